@@ -2,6 +2,7 @@
 /* Curves against curves: row i of one file against row i of the other. */
 #include <chrono>
 
+#include "asking.h"
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"
@@ -62,21 +63,26 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Query 
     row.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
     row.has_t = row.has_t_b = row.has_points = row.result.obstacle_index >= 0;
     out.stopped = row.result.status == CPROX_STOPPED;
-    if (row.result.status < 0)
-      out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_error(workspace.get()));
+    if (row.result.status != CPROX_OK) row.message = cprox_status_text(row.result.status);
+    if (row.result.status < 0) {
+      row.message = cprox_workspace_error(workspace.get());
+      out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + row.message);
+    }
     if (with_proof && row.result.status >= 0 && cprox_certificate_get_info(proof.get()).size == 0)
       out.unproven.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_error(workspace.get()));
   } catch (const std::bad_alloc &) {
     row.result.status = CPROX_MEMORY;
+    row.message = cprox_status_text(CPROX_MEMORY);
     out.complaints.push_back(arguments.curves + ": id '" + row.id + "': " + cprox_status_text(CPROX_MEMORY));
   } catch (const std::exception &e) {
     row.result.status = CPROX_INVALID;
+    row.message = e.what();
     const bool own = !rows.second && rows.first;
     out.complaints.push_back(own ? placeOf(*rows.first, arguments.curves) + ": " + e.what() : e.what());
   }
   if (with_proof) row.proof = proofOf(proof);
   if (with_proof) out.certificate = recordOf(proof);
-  out.text = resultsLine(row);
+  out.text = resultsLine(row, columnsOf(arguments));
   noteVerdict(row, out);
   return out;
 }
@@ -95,7 +101,7 @@ int answerAgainst(const Arguments &arguments, Console &console) {
   console.warn(warnings);
 
   catchInterrupts();
-  results.write(resultsHeader(!arguments.certificate.empty()));
+  results.write(headerOf(arguments));
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {
     RowPair pair{first.next(), second.next()};
@@ -105,7 +111,7 @@ int answerAgainst(const Arguments &arguments, Console &console) {
   rows.write = [&](const std::string &text) { results.write(text); };
   if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [&] { return first.portion(); };
-  return finish(runRows(arguments.threads, rows, console), query.query_type, console);
+  return finish(runRows(arguments.threads, rows, console), console);
 }
 
 } // namespace curve_proximity::cli

@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char *kDefaultNode = "/curve_proximity";
 constexpr std::size_t kMostThreads = 256;
+constexpr const char *kStandardInput = "/dev/stdin";
 
 /* For which actions an option is meant, and whether a value follows it. */
 struct Option {
@@ -40,15 +41,24 @@ const std::map<std::string, Option> &options() {
       {"--node", {true, {Action::SEND}}},
       {"--replace", {false, {Action::SEND}}},
       {"--add", {false, {Action::SEND}}},
-      {"--epsilon", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--dataset", {true, {Action::CERTIFY}}},
+      {"--shards", {true, {Action::CERTIFY}}},
+      {"--shard", {true, {Action::CERTIFY}}},
+      {"--progress", {true, {Action::CERTIFY}}},
+      {"--epsilon", {true, {Action::CURVES, Action::PAIRS, Action::CERTIFY}}},
       {"--delta", {true, {Action::CURVES}}},
-      {"--max-nodes", {true, {Action::CURVES, Action::PAIRS}}},
-      {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
+      {"--max-nodes", {true, {Action::CURVES, Action::PAIRS, Action::CERTIFY}}},
+      {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::CHECK}}},
       {"--per-object", {false, {Action::CURVES}}},
-      {"--max-lod", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--max-lod", {true, {Action::CURVES, Action::PAIRS, Action::CERTIFY}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
       {"--timings", {false, {Action::CURVES}}},
-      {"--out", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
+      {"--per-link", {false, {Action::CURVES}}},
+      {"--intervals", {true, {Action::CURVES}}},
+      {"--breaks", {true, {Action::CURVES}}},
+      {"--pairs", {true, {Action::CURVES}}},
+      {"--within", {true, {Action::CURVES}}},
+      {"--out", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::MERGE}}},
   };
   return table;
 }
@@ -57,24 +67,35 @@ struct Command {
   const char *word;
   Action action;
   QueryType query_type;
+  Asking asking = Asking::SEARCH;
 };
 const Command kCommands[] = {
     {"distance", Action::CURVES, QueryType::DISTANCE},
     {"tolerance", Action::CURVES, QueryType::TOLERANCE},
     {"collision", Action::CURVES, QueryType::COLLISION},
+    {"profile", Action::CURVES, QueryType::DISTANCE, Asking::PROFILE},
+    {"nearest", Action::CURVES, QueryType::DISTANCE, Asking::NEAREST},
+    {"time-of-contact", Action::CURVES, QueryType::COLLISION, Asking::CONTACT},
     {"pairs", Action::PAIRS, QueryType::DISTANCE},
+    {"constraints", Action::CONSTRAINTS, QueryType::DISTANCE},
     {"send", Action::SEND, QueryType::DISTANCE},
     {"check", Action::CHECK, QueryType::DISTANCE},
-    {"constraints", Action::CONSTRAINTS, QueryType::DISTANCE},
+    {"certify", Action::CERTIFY, QueryType::DISTANCE},
+    {"merge", Action::MERGE, QueryType::DISTANCE},
 };
+
+/* "distance, tolerance, …" */
+std::string commandNames() {
+  std::string names;
+  for (const Command &command : kCommands) names += (names.empty() ? "" : ", ") + std::string(command.word);
+  return names;
+}
 
 const Command &findCommand(const std::string &word) {
   for (const Command &command : kCommands) {
     if (word == command.word) return command;
   }
-  throw BadUsage(
-      "'" + word +
-      "' is no command; the commands are distance, tolerance, collision, pairs, constraints, send, check (see --help)");
+  throw BadUsage("'" + word + "' is no command; the commands are " + commandNames() + " (see --help)");
 }
 
 /* The words behind the command: options with their values, and what is no option. */
@@ -152,11 +173,28 @@ std::uint64_t readCount(const Words &words, const std::string &name, std::uint64
   return *value;
 }
 
+/* Parameters that ascend. */
+std::vector<double> readBreaks(const std::string &text) {
+  std::vector<double> out;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    const std::optional<double> value = parseFinite(std::string(trimmed(text.substr(begin, comma - begin))));
+    if (!value || (!out.empty() && *value <= out.back()))
+      throw BadUsage("--breaks is '" + text + "'; it must be finite numbers that ascend: \"0, 0.5, 1\"");
+    out.push_back(*value);
+    begin = comma + 1;
+  }
+  if (out.size() < 2) throw BadUsage("--breaks needs at least two numbers: where intervals begin and end");
+  return out;
+}
+
 void readQuery(const Words &words, const Command &command, Query &query) {
   query.query_type = command.query_type;
   query.per_object = words.has("--per-object");
   query.options.signed_distance = words.has("--signed");
-  if (words.has("--signed") && command.query_type != QueryType::DISTANCE) throw BadUsage("--signed is for 'distance'");
+  const bool has_depth = command.query_type == QueryType::DISTANCE && command.asking != Asking::PROFILE;
+  if (words.has("--signed") && !has_depth) throw BadUsage("--signed is for 'distance' and 'nearest'");
 
   /* accuracy and budget */
   if (words.has("--epsilon")) {
@@ -183,10 +221,34 @@ void readQuery(const Words &words, const Command &command, Query &query) {
   }
 }
 
+/* Options that are for one command alone. */
+void readAsking(const Words &words, const Command &command, Arguments &out) {
+  const auto only = [&](const char *name, const char *command_name, Asking asking) {
+    if (words.has(name) && command.asking != asking)
+      throw BadUsage(std::string(name) + " is for '" + command_name + "'");
+    return words.has(name);
+  };
+  out.asking = command.asking;
+  if (only("--intervals", "profile", Asking::PROFILE)) {
+    constexpr std::uint64_t kMostIntervals = 1000000;
+    if (words.has("--breaks")) throw BadUsage("--intervals and --breaks exclude each other");
+    out.intervals = static_cast<std::size_t>(readCount(words, "--intervals", kMostIntervals));
+  }
+  if (only("--breaks", "profile", Asking::PROFILE)) out.breaks = readBreaks(words.text("--breaks"));
+  if (only("--pairs", "nearest", Asking::NEAREST))
+    out.limits.count = static_cast<std::size_t>(readCount(words, "--pairs", std::numeric_limits<std::uint32_t>::max()));
+  if (only("--within", "nearest", Asking::NEAREST))
+    out.limits.within = readNumber(words, "--within", 0.0, true, "of at least 0 (metres)");
+  if (command.asking == Asking::SEARCH) return;
+  for (const char *name : {"--against", "--certificate"}) {
+    if (words.has(name)) throw BadUsage("'" + std::string(command.word) + "' takes no " + name);
+  }
+}
+
 /* Curves against curves: there is no scene, and a row has one answer. */
 void readAgainst(const Words &words, Arguments &out) {
-  for (const char *name :
-       {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings", "--max-lod"}) {
+  for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings",
+                           "--max-lod", "--per-link"}) {
     if (words.has(name))
       throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
   }
@@ -203,10 +265,20 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   if (out.action == Action::CURVES) out.action = Action::TRAJECTORY;
   out.trajectory = words.text("--trajectory");
   out.self = words.has("--self");
+  out.per_link = words.has("--per-link");
+  if (out.per_link && words.has("--per-object")) throw BadUsage("--per-link and --per-object exclude each other");
   out.scene = words.text("--scene");
   out.robot = words.text("--robot");
   out.srdf = words.text("--srdf");
   out.state = words.text("--state");
+}
+
+/* The number of a shard, from 0. */
+std::size_t readShard(const Words &words, std::size_t shards) {
+  const std::optional<std::uint64_t> shard = parseCount(words.text("--shard"));
+  if (shard && *shard < shards) return static_cast<std::size_t>(*shard);
+  throw BadUsage("--shard is '" + words.text("--shard") + "'; of " + std::to_string(shards) +
+                 " shards it must be an integer from 0 to " + std::to_string(shards - 1));
 }
 
 /* The files that a command cannot do without, and words that it does not understand. */
@@ -229,6 +301,8 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
         break;
       }
       if (words.has("--self")) throw BadUsage("--self needs --trajectory T.yaml");
+      if (words.has("--per-link"))
+        throw BadUsage("--per-link needs --trajectory T.yaml; --per-object has a row for each link that a curve meets");
       out.curves = required("--curves", "CURVES.csv");
       if (words.has("--against")) {
         readAgainst(words, out);
@@ -241,6 +315,22 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       out.state = words.text("--state");
       if (out.robot.empty() && !out.state.empty()) throw BadUsage("--state needs --robot URDF");
       if (out.robot.empty() && !out.srdf.empty()) throw BadUsage("--srdf needs --robot URDF");
+      break;
+    case Action::CERTIFY: {
+      constexpr std::uint64_t kMostShards = 1000000;
+      out.dataset = required("--dataset", "MANIFEST, JSON Lines or CSV");
+      required("--out", "FOLDER, where the shards go");
+      if (words.has("--shards")) out.shards = static_cast<std::size_t>(readCount(words, "--shards", kMostShards));
+      if (words.has("--shard")) out.shard = readShard(words, out.shards);
+      out.progress = words.has("--progress") ? words.text("--progress") : "line";
+      if (out.progress != "line" && out.progress != "json")
+        throw BadUsage("--progress is '" + out.progress + "'; it must be line or json");
+      break;
+    }
+    case Action::MERGE:
+      if (plain.empty()) throw BadUsage("'merge' needs a folder: cprox merge FOLDER, where 'certify' left its shards");
+      out.shard_folder = plain.front();
+      plain.erase(plain.begin());
       break;
     case Action::PAIRS: out.pairs = required("--in", "PAIRS.yaml"); break;
     case Action::CONSTRAINTS:
@@ -262,13 +352,23 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
   if (!plain.empty()) throw BadUsage("'" + plain.front() + "' is not understood (see --help)");
 }
 
+/* "-" is standard input, for one file. */
+void readStandardInput(Arguments &out) {
+  bool taken = false;
+  for (std::string *path :
+       {&out.curves, &out.against, &out.trajectory, &out.scene, &out.robot, &out.srdf, &out.pairs, &out.cases}) {
+    if (*path != "-") continue;
+    if (taken) throw BadUsage("'-', standard input, can be only one of the files");
+    taken = true;
+    *path = kStandardInput;
+  }
+}
+
 } // namespace
 
 Arguments parseArguments(const std::vector<std::string> &words) {
   Arguments out;
-  if (words.empty())
-    throw BadUsage(
-        "no command; the commands are distance, tolerance, collision, pairs, constraints, send, check (see --help)");
+  if (words.empty()) throw BadUsage("no command; the commands are " + commandNames() + " (see --help)");
 
   /* help and version win over everything else on the line */
   const auto said = [&](const char *word) { return std::find(words.begin(), words.end(), word) != words.end(); };
@@ -282,12 +382,14 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   const Words split = splitWords(words, command);
   out.action = command.action;
   readQuery(split, command, out.query);
+  readAsking(split, command, out);
   readFiles(split, command, out);
+  readStandardInput(out);
 
   out.out = split.text("--out");
   if (split.has("--certificate")) out.certificate = split.text("--certificate");
-  if (split.has("--certificate") && out.query.per_object) {
-    throw BadUsage("--certificate takes no --per-object: a certificate is about all objects at once");
+  if (split.has("--certificate") && (out.query.per_object || out.per_link)) {
+    throw BadUsage("--certificate takes no --per-object and no --per-link: a certificate is about all pairs at once");
   }
   out.skipped = split.has("--skipped");
   out.timings = split.has("--timings");
@@ -305,15 +407,20 @@ cprox distance  --robot URDF [--srdf SRDF] --trajectory T.yaml [--scene SCENE.ya
                                         the robot along a joint trajectory: a row of kind environment, one of kind self
 cprox tolerance --delta D  (as above)   verdict: clear (farther than D everywhere), violated or undecided
 cprox collision            (as above)   verdict: clear (no common point), violated (a common point) or undecided
+cprox time-of-contact      (as distance, without --against)   where along the curve or trajectory the first contact is
+cprox profile              (as distance, without --against)   the clearance on each interval of the parameter
+cprox nearest              (as distance, without --against)   the pairs that come closest, nearest first
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
 cprox constraints --provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parameters "name: value, ..."]
                                         value and gradient of clearance constraints by a plugin
 cprox send      SCENE.yaml [--replace | --add] [--node NAME]   hands a scene file to a running node
 cprox check     FILE  (the inputs of the query)  what the certificates in FILE prove
+cprox certify   --dataset MANIFEST --out FOLDER [--shards N [--shard I]]   answers the rows of a dataset, shard by shard
+cprox merge     FOLDER                  all shards as one table; refuses gaps and shards of different runs
 
   --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier, bspline,
-                    polynomial, legendre, lagrange (nodes for knots) or trigonometric; lines that begin with # are
-                    skipped
+                    polynomial, legendre, lagrange (nodes for knots) or trigonometric; lines that begin with # and
+                    a header row are skipped
   --against FILE    curves, too: instead of a scene
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
   --robot FILE      a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)
@@ -326,6 +433,7 @@ cprox check     FILE  (the inputs of the query)  what the certificates in FILE p
                     (mid-range where 0 is beyond the limits)
   --in FILE         a list of {id, a: BODY, b: BODY}; of 'constraints' the request of ~evaluate_constraints:
                     cases: [{id, a: {pose, bodies: [BODY], ...} or {id: an object of --scene}, b, curve}]
+                    Each FILE that is read may be -, standard input. doc/formats.md shows all formats
   --provider NAME   curve_proximity/CurveDistance, .../SuperquadricDistance, .../FourierGap, or another package's
   --certificate FILE  writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near or none.
                     The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that
@@ -334,12 +442,21 @@ cprox check     FILE  (the inputs of the query)  what the certificates in FILE p
   --delta D         the clearance asked of 'tolerance', metres
   --max-nodes N     budget of parameter intervals for each target (default 20000)
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
-  --per-object      a row for each curve and object or link, not one for the nearest
+  --per-object      rows for each curve and object or link, not for the nearest alone
+  --per-link        with --trajectory: rows for each link and each object that a link carries
+  --intervals N     'profile': N intervals of equal length (default 100)
+  --breaks LIST     'profile': where intervals begin and end instead, "0, 0.5, 2"
+  --pairs K         'nearest': at most K pairs for each curve or trajectory (default 10)
+  --within D        'nearest': only pairs that come within D metres
   --max-lod R       the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies
                     by their bounding spheres); a coarser one is never farther away
+  --dataset FILE    JSON Lines, or CSV with a header: id, robot, srdf, scene, trajectory, query, delta, self a row
+  --shards N        'certify': the dataset is cut into N parts of equal length (default 1)
+  --shard I         'certify': part I alone, from 0 to N-1 (default: all of them). A part that is whole is skipped
+  --progress P      'certify': line (default, on a terminal) or json, a line a second on standard error
   --skipped         tell on standard error what takes no part, and why
   --timings         tell on standard error how long loading the robot and the scene takes, mesh by mesh
-  --out FILE        the results, instead of standard output
+  --out FILE        the results, instead of standard output; of 'certify' the folder of the shards
   --replace         'send': the file takes the place of the node's scene (default, unless the file says is_diff: true)
   --add             'send': the file is added to the node's scene
   --node NAME       the node that 'send' talks to (default )" +
@@ -347,12 +464,16 @@ cprox check     FILE  (the inputs of the query)  what the certificates in FILE p
   --help, --version
 
 Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,
-t_b,lod. Of 'constraints': id,provider,status,value,lower,upper,valid,t, gradients ga_ and gb_ by a step of side a and b
-(v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,microseconds,n,g0x,g0y,g0z,... by the curve's points.
-Metres and radians. A row that fails is told on standard error and has the status 'invalid'.
-Exit code of tolerance and collision: 0 every verdict is clear; 1 one is violated; 2 the command line, an input file or
-a row cannot be used; 3 none is violated, one is undecided. So a shell can gate on it: undecided counts as unsafe.
-Of the other commands: 0 every row is answered; 1 some are not; 2 the command line or an input file cannot be used.
+t_b,lod,message. Of 'time-of-contact' also t_contact_lower: there is no contact at any smaller parameter. Of 'profile':
+id,kind,status,t0,t1,lower,upper,t,a,b,message, a row an interval. Of 'constraints': id,provider,status,value,lower,upper,valid,t,
+gradients ga_ and gb_ by a step of side a and b (v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,
+microseconds,message,n,g0x,g0y,g0z,... by the curve's points. Metres and radians. A row that fails has the status 'invalid',
+and its column message says why.
+Exit code of every command: 0 everything is answered, and nothing of it is violated, undecided or unproven; 1 a verdict is
+violated, or 'check' finds a certificate that does not prove its answer; 2 a row has no answer, there is no row, or the
+command line or a file cannot be used; 3 a verdict is undecided; 130 interrupted. Of several, 2 comes before 1, and 1 before
+3. Only 0 says that all is well, so that a shell can gate on it. Of 'certify' 0 says that its shards are whole, whatever their
+rows say: 'merge' tells.
 )";
 }
 

@@ -12,16 +12,29 @@
 
 namespace curve_proximity::cli {
 
-enum class Action { HELP, VERSION, CURVES, AGAINST, TRAJECTORY, PAIRS, CONSTRAINTS, SEND, CHECK };
+enum class Action { HELP, VERSION, CURVES, AGAINST, TRAJECTORY, PAIRS, CONSTRAINTS, SEND, CHECK, CERTIFY, MERGE };
+
+/** What is asked about curves and trajectories. */
+enum class Asking {
+  SEARCH,  /**< one interval: distance, tolerance, collision */
+  PROFILE, /**< an interval for each interval of the parameter */
+  NEAREST, /**< the pairs that come closest */
+  CONTACT  /**< the time of contact */
+};
 
 struct Arguments {
   Action action = Action::HELP;
-  Query query; /**< CURVES, AGAINST and PAIRS: the command, and how it is to be answered */
+  Asking asking = Asking::SEARCH; /**< of CURVES and TRAJECTORY */
+  Query query;                    /**< CURVES, AGAINST and PAIRS: the command, and how it is to be answered */
 
   std::string curves, scene;   /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
   std::string against;         /**< file of AGAINST; of CHECK where it was given */
   std::string trajectory;      /**< file of TRAJECTORY; of CHECK where it was given */
   bool self = false;           /**< with a trajectory: ask about the robot itself, too */
+  bool per_link = false;       /**< with a trajectory: for each link and attached object */
+  std::size_t intervals = 100; /**< PROFILE: so many of equal length, unless there are breaks */
+  std::vector<double> breaks;  /**< PROFILE: where intervals begin and end; empty: see intervals */
+  PairLimits limits;           /**< NEAREST */
   std::string certificate;     /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
   std::string robot, srdf;     /**< files of the robot; empty: none */
   std::string state;           /**< "joint: value, …" */
@@ -31,7 +44,12 @@ struct Arguments {
   std::string parameters;      /**< CONSTRAINTS: "name: value, …" */
   std::string node;            /**< SEND: the node's name */
   std::optional<bool> replace; /**< SEND: as the file's is_diff says, unless set */
-  std::string out;             /**< file of the results; empty: standard output */
+  std::string dataset;         /**< CERTIFY: the manifest */
+  std::size_t shards = 1;      /**< CERTIFY: into how many parts it is cut */
+  std::optional<std::size_t> shard; /**< CERTIFY: the one that is wanted; else all */
+  std::string progress;             /**< CERTIFY: "line" or "json" */
+  std::string shard_folder;         /**< MERGE */
+  std::string out;                  /**< file of the results; empty: standard output */
   std::size_t threads = 1;
   bool skipped = false; /**< tell on standard error what takes no part, and why */
   bool timings = false; /**< tell on standard error how long loading takes */

@@ -27,6 +27,12 @@ int answerConstraints(const Arguments &arguments, Console &console);
 /** check: what certificates prove about a query. */
 int checkCertificates(const Arguments &arguments, Console &console);
 
+/** certify: the rows of a dataset, shard by shard. */
+int certifyDataset(const Arguments &arguments, Console &console);
+
+/** merge: the shards as one table. */
+int mergeShards(const Arguments &arguments, Console &console);
+
 /** send: a scene file to a running node. */
 int sendScene(const Arguments &arguments, Console &console);
 

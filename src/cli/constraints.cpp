@@ -19,7 +19,7 @@ namespace {
 
 const char *kHeader =
     "id,provider,status,value,lower,upper,valid,t,ga_vx,ga_vy,ga_vz,ga_wx,ga_wy,ga_wz,gb_vx,gb_vy,gb_vz,gb_wx,gb_wy,"
-    "gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_radius,microseconds,n,g0x,g0y,g0z\n";
+    "gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_radius,microseconds,message,n,g0x,g0y,g0z\n";
 
 /* A number and the comma before it. */
 void append(std::string &line, double value) {
@@ -37,11 +37,11 @@ void append(std::string &line, const Eigen::Vector3d &v, bool known = true) {
   }
 }
 
-/* A row without an answer ends after its status. */
+/* A row without an answer has a status and a message alone. */
 std::string toLine(const ConstraintRow &row) {
   const ConstraintValue &value = row.value;
   std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + cprox_status_name(row.status);
-  if (row.status < 0) return line + std::string(32, ',') + '\n';
+  if (row.status < 0) return line + std::string(29, ',') + quotedField(row.message) + ",,,,\n";
   append(line, value.value);
   if (value.bounded) {
     append(line, value.lower);
@@ -63,8 +63,8 @@ std::string toLine(const ConstraintRow &row) {
     append(line, *point, value.has_points);
   append(line, value.radius);
   char time[40];
-  std::snprintf(time, sizeof time, ",%.1f,%d", row.microseconds, static_cast<int>(value.points.cols()));
-  line += time;
+  std::snprintf(time, sizeof time, ",%.1f,", row.microseconds);
+  line += time + quotedField(row.message) + ',' + std::to_string(value.points.cols());
   for (Eigen::Index i = 0; i < value.points.cols(); ++i) append(line, value.points.col(i));
   return line + (along ? "\n" : ",,,\n");
 }
@@ -138,7 +138,7 @@ int answerConstraints(const Arguments &arguments, Console &console) {
   rows.portion = [&]() -> std::optional<double> {
     return entries.empty() ? 1.0 : static_cast<double>(given) / static_cast<double>(entries.size());
   };
-  return finish(runRows(arguments.threads, rows, console), QueryType::DISTANCE, console);
+  return finish(runRows(arguments.threads, rows, console), console);
 }
 
 } // namespace curve_proximity::cli

@@ -16,6 +16,19 @@ bool isBlank(std::string_view text) {
   return trimmed(text).empty();
 }
 
+/* The names of the columns: spreadsheets and data frames write them above the rows. */
+bool isHeader(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return false;
+  const auto name = [](std::string_view field) {
+    field = trimmed(field);
+    const bool quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
+    return quoted ? field.substr(1, field.size() - 2) : field;
+  };
+  const std::string_view rest = text.substr(comma + 1);
+  return name(text.substr(0, comma)) == "id" && name(rest.substr(0, rest.find(','))) == "basis";
+}
+
 /* "column 9 (y0)": where a number stands that is wrong. */
 std::string columnName(std::size_t column, std::size_t n) {
   static const char *const kHead[] = {"id", "basis", "degree", "t0", "t1", "radius", "n"};
@@ -98,7 +111,7 @@ std::optional<CsvRow> CsvFile::next() {
     /* what is no row: a carriage return, the byte order mark that spreadsheets leave, comments, blank lines */
     if (!text.empty() && text.back() == '\r') text.pop_back();
     if (line_ == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);
-    if (isBlank(text) || text.front() == '#') continue;
+    if (isBlank(text) || text.front() == '#' || isHeader(text)) continue;
 
     ++row_;
     return CsvRow{row_, line_, std::move(text)};

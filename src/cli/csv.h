@@ -15,7 +15,7 @@
 
 namespace curve_proximity::cli {
 
-/** A line of the file that is a row: neither blank nor a comment. */
+/** A line of the file that is a row: neither blank, nor a comment, nor a header (id,basis,…). */
 struct CsvRow {
   std::size_t number = 0; /**< among the rows, from 1 */
   std::size_t line = 0;   /**< in the file, from 1 */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "asking.h"
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"
@@ -11,53 +12,88 @@
 namespace curve_proximity::cli {
 namespace {
 
-/* The row of a curve that could not be asked about, and the sentence that says why. */
-Outcome failedCurve(const std::string &id, const std::string &place, const std::string &why, cprox_status status,
-                    bool with_proof) {
-  ResultRow row;
-  row.proof = with_proof ? "none" : "";
-  row.id = row.a = id;
-  row.kind = "curve";
-  row.result.status = status;
-  Outcome out;
-  out.text = resultsLine(row);
-  out.complaints.push_back(place + ": " + why);
-  out.certificate = emptyRecord();
-  return out;
+/* What curves are measured against: everything, or one object or link. */
+struct Side {
+  std::string name; /* empty: everything */
+  Targets targets;
+};
+
+/* One side, or one for each object and link, where the query is about each and ask() does not part them itself. */
+std::vector<Side> sidesOf(const World &world, const Arguments &arguments, const Query &query) {
+  std::vector<Side> sides;
+  const auto add = [&](const std::string &name, std::vector<std::string> Query::*names) {
+    Query named = query;
+    (named.*names).push_back(name);
+    sides.push_back({name, Targets(world.snapshot, world.links, named)});
+  };
+  if (query.per_object && arguments.asking != Asking::SEARCH) {
+    for (const auto &object : world.snapshot->objects()) add(object.first, &Query::objects);
+    for (const auto &link : world.links) {
+      if (!world.snapshot->linkGeometry(link.first).empty()) add(link.first, &Query::links);
+    }
+    for (const auto &object : world.snapshot->attached()) add(object.first, &Query::objects);
+  }
+  if (sides.empty()) sides.push_back({"", Targets(world.snapshot, world.links, query)});
+  return sides;
+}
+
+/* The intervals of one curve, with its certificate where one is wanted. */
+void search(const CompiledCurve &curve, const std::string &place, const Targets &targets, const Arguments &arguments,
+            const Query &query, Workspace &workspace, Outcome &out) {
+  const bool with_proof = !arguments.certificate.empty();
+  const CertificateHandle proof = makeCertificate();
+  Query asked = query;
+  if (with_proof) asked.options.certificate = proof.get();
+  for (const Answer &answer : ask(targets, curve, asked, workspace)) {
+    const cprox_status status = answer.result.status;
+    out.stopped = out.stopped || status == CPROX_STOPPED;
+    ResultRow row = toRow(answer, query.query_type);
+    if (with_proof) row.proof = proofOf(proof);
+    if (with_proof) out.certificate = recordOf(proof);
+    if (!answer.unproven.empty()) out.unproven.push_back(place + ": no certificate: " + answer.unproven);
+    out.text += resultsLine(row, columnsOf(arguments));
+    noteVerdict(row, out);
+    if (status < 0) {
+      const std::string against = answer.b.empty() ? "" : ": against '" + answer.b + "'";
+      out.complaints.push_back(place + against + ": " + answer.message);
+    }
+  }
 }
 
 /* All rows of one curve. */
-Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &targets, const Query &query,
-                    bool with_proof, Workspace &workspace) {
-  const std::string id = rowId(csv.text);
-  const std::string place = placeOf(csv, file);
-  try {
-    const CompiledCurve curve = compile(parseCurve(csv.text));
+Outcome answerCurve(const CsvRow &csv, const std::vector<Side> &sides, const Arguments &arguments, const Query &query,
+                    Workspace &workspace) {
+  const std::string place = placeOf(csv, arguments.curves);
+  CompiledCurve curve;
+  CurveSubject failed(sides.front().targets, curve); // a curve that could not be asked about
+  failed.id = rowId(csv.text);
+  failed.place = place;
+  const auto fail = [&](cprox_status status, const std::string &why) {
     Outcome out;
-    const CertificateHandle proof = makeCertificate();
-    Query asked = query;
-    if (with_proof) asked.options.certificate = proof.get();
-    for (const Answer &answer : ask(targets, curve, asked, workspace)) {
-      const cprox_status status = answer.result.status;
-      out.stopped = out.stopped || status == CPROX_STOPPED;
-      ResultRow row = toRow(answer, query.query_type);
-      if (with_proof) row.proof = proofOf(proof);
-      if (with_proof) out.certificate = recordOf(proof);
-      if (!answer.unproven.empty()) out.unproven.push_back(place + ": no certificate: " + answer.unproven);
-      out.text += resultsLine(row);
-      noteVerdict(row, out);
-      if (status < 0) {
-        const std::string against = answer.b.empty() ? "" : ": against '" + answer.b + "'";
-        out.complaints.push_back(place + against + ": " + answer.message);
+    addFailure(failed, arguments, status, why, out);
+    out.certificate = emptyRecord();
+    return out;
+  };
+  try {
+    curve = compile(parseCurve(csv.text));
+    Outcome out;
+    for (const Side &side : sides) {
+      if (arguments.asking == Asking::SEARCH) {
+        search(curve, place, side.targets, arguments, query, workspace, out);
+        continue;
       }
+      CurveSubject subject(side.targets, curve);
+      subject.place = place;
+      subject.object = side.name;
+      answer(subject, arguments, query, workspace, out);
     }
     return out;
   } catch (const Error &e) {
-    return failedCurve(id, place, e.what(), e.status(), with_proof);
+    return fail(e.status(), e.what());
   } catch (const std::bad_alloc &) {
-    return failedCurve(id, place, cprox_status_text(CPROX_MEMORY), CPROX_MEMORY, with_proof);
+    return fail(CPROX_MEMORY, cprox_status_text(CPROX_MEMORY));
   } catch (const std::exception &e) {
-    return failedCurve(id, place, e.what(), CPROX_INVALID, with_proof);
+    return fail(CPROX_INVALID, e.what());
   }
 }
 
@@ -69,16 +105,15 @@ int answerCurves(const Arguments &arguments, Console &console) {
   const World world = readWorld(arguments, warnings);
   Query query = arguments.query;
   query.options.stop = interrupted;
-  const Targets targets(world.snapshot, world.links, query);
+  const std::vector<Side> sides = sidesOf(world, arguments, query);
 
   CsvFile file(arguments.curves);
   const std::vector<std::string> inputs{arguments.curves, arguments.scene, arguments.robot, arguments.srdf};
   ResultsFile results(arguments.out, inputs);
   std::optional<ResultsFile> certificates;
-  const bool with_proofs = !arguments.certificate.empty();
-  if (with_proofs) {
+  if (!arguments.certificate.empty()) {
     certificates.emplace(arguments.certificate, inputs, "--certificate");
-    warnOfUnprovable(unprovable(targets), warnings);
+    warnOfUnprovable(unprovable(sides.front().targets), warnings);
   }
   console.warn(warnings);
   if (arguments.timings) tellTimings(world.timings, console);
@@ -86,19 +121,19 @@ int answerCurves(const Arguments &arguments, Console &console) {
 
   /* row by row */
   catchInterrupts();
-  results.write(resultsHeader(with_proofs));
+  results.write(headerOf(arguments));
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {
     std::optional<CsvRow> row = file.next();
     if (!row) return std::nullopt;
     return [&, csv = *std::move(row)](Workspace &workspace) {
-      return answerCurve(csv, arguments.curves, targets, query, with_proofs, workspace);
+      return answerCurve(csv, sides, arguments, query, workspace);
     };
   };
   rows.write = [&](const std::string &text) { results.write(text); };
   if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [&] { return file.portion(); };
-  return finish(runRows(arguments.threads, rows, console), query.query_type, console);
+  return finish(runRows(arguments.threads, rows, console), console);
 }
 
 } // namespace curve_proximity::cli

@@ -9,14 +9,13 @@ namespace curve_proximity::cli {
 
 using namespace yaml;
 
-/** What the program leaves behind, as the manual promises. BadUsage: main() prints the one line and ends with
- * kBadUsage. */
+/** What the program leaves behind: one rule for all commands. BadUsage: main() prints the one line and ends with
+ *  kUnanswered. Of several, kUnanswered comes before kSomeViolated, and that before kSomeUndecided. */
 enum ExitCode {
-  kAllAnswered = 0,    /**< of tolerance and collision: every verdict is clear */
-  kSomeRowsFailed = 1, /**< of the commands without verdicts */
-  kSomeViolated = 1,   /**< of tolerance and collision: a verdict is violated */
-  kBadUsage = 2,       /**< of tolerance and collision also: a row has no answer */
-  kSomeUndecided = 3,  /**< of tolerance and collision: none is violated, a verdict is undecided */
+  kAllAnswered = 0,   /**< every row is answered; every verdict is clear, every certificate proven */
+  kSomeViolated = 1,  /**< a verdict is violated, or a certificate does not prove its answer */
+  kUnanswered = 2,    /**< a row has no answer, there is no row, or the command line or a file cannot be used */
+  kSomeUndecided = 3, /**< a verdict is undecided */
   kInterrupted = 130
 };
 

@@ -23,7 +23,7 @@ void noteVerdict(const ResultRow &row, Outcome &outcome) {
   outcome.undecided = outcome.undecided || row.result.verdict == CPROX_VERDICT_UNDECIDED;
 }
 
-int finish(const Tally &tally, QueryType query_type, Console &console) {
+int finish(const Tally &tally, Console &console) {
   if (tally.failed) console.say(std::to_string(tally.failed) + " of " + std::to_string(tally.rows) + " rows failed");
   if (tally.unproven) console.say(std::to_string(tally.unproven) + " answers have no certificate (column proof: none)");
   if (tally.interrupted) {
@@ -34,8 +34,7 @@ int finish(const Tally &tally, QueryType query_type, Console &console) {
     console.say("warning: " + std::to_string(tally.against_nothing) + " of " + std::to_string(tally.rows) +
                 " rows were measured against nothing");
   if (!tally.rows) console.say("warning: the input has no rows");
-  if (query_type == QueryType::DISTANCE) return tally.failed ? kSomeRowsFailed : kAllAnswered;
-  if (tally.failed || !tally.rows) return kBadUsage;
+  if (tally.failed || !tally.rows) return kUnanswered;
   if (tally.violated) return kSomeViolated;
   return tally.undecided ? kSomeUndecided : kAllAnswered;
 }

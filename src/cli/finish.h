@@ -21,11 +21,9 @@ void tellSkipped(const std::vector<std::string> &sentences, Console &console);
 /** Notes the verdict of a row of the results, so that finish() can count it. */
 void noteVerdict(const ResultRow &row, Outcome &outcome);
 
-/** The exit code that a run deserves; says how many rows failed, and that it was interrupted. A shell may gate on the
- *  code of tolerance and collision: only 0 means that all is proven clear. A row without an answer (2) outweighs a
- *  violated verdict (1), and that an undecided one (3). Without any row nothing is proven (2). Warns of rows that were
- *  measured against nothing. */
-int finish(const Tally &tally, QueryType query_type, Console &console);
+/** The exit code that a run deserves, see ExitCode; says how many rows failed, and that it was interrupted. Warns of an
+ *  input without rows, and of rows that were measured against nothing. */
+int finish(const Tally &tally, Console &console);
 
 } // namespace curve_proximity::cli
 #endif

@@ -28,9 +28,11 @@ int run(const std::vector<std::string> &words, Console &console) {
     case Action::PAIRS: return answerPairs(arguments, console);
     case Action::CONSTRAINTS: return answerConstraints(arguments, console);
     case Action::CHECK: return checkCertificates(arguments, console);
+    case Action::CERTIFY: return certifyDataset(arguments, console);
+    case Action::MERGE: return mergeShards(arguments, console);
     case Action::SEND: return sendScene(arguments, console);
   }
-  return kBadUsage;
+  return kUnanswered;
 }
 
 } // namespace
@@ -44,7 +46,7 @@ int main(int argc, char **argv) {
     return run(std::vector<std::string>(argv + 1, argv + argc), console);
   } catch (const BadUsage &e) {
     console.say(std::string("cprox: ") + e.what());
-    return kBadUsage;
+    return kUnanswered;
   } catch (const std::bad_alloc &) {
     console.say("cprox: out of memory");
   } catch (const std::exception &e) {
@@ -52,5 +54,5 @@ int main(int argc, char **argv) {
   } catch (...) {
     console.say("cprox: an error without a name");
   }
-  return kSomeRowsFailed;
+  return kUnanswered;
 }

@@ -37,6 +37,7 @@ ResultRow measure(const PairDescription &pair, const Query &query, const Resourc
   const auto begin = std::chrono::steady_clock::now();
   row.result = curve_proximity::pair(place(a, pair.a), place(b, pair.b), query.options, workspace);
   row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  if (row.result.status != CPROX_OK) row.message = cprox_status_text(row.result.status);
   return row;
 }
 
@@ -45,6 +46,7 @@ Outcome failedPair(const PairRow &pair, const std::string &place, const std::str
   row.kind = "pair";
   row.id = row.a = row.b = pair.id;
   row.result.status = status;
+  row.message = why;
   Outcome out;
   out.text = resultsLine(row);
   out.complaints.push_back(place + ": " + why);
@@ -115,7 +117,7 @@ int answerPairs(const Arguments &arguments, Console &console) {
   rows.portion = [&]() -> std::optional<double> {
     return entries.empty() ? 1.0 : static_cast<double>(given) / static_cast<double>(entries.size());
   };
-  return finish(runRows(arguments.threads, rows, console), QueryType::DISTANCE, console);
+  return finish(runRows(arguments.threads, rows, console), console);
 }
 
 } // namespace curve_proximity::cli

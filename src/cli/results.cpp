@@ -58,17 +58,18 @@ ResultRow toRow(const Answer &answer, QueryType query_type) {
   row.microseconds = answer.microseconds;
   row.has_verdict = query_type != QueryType::DISTANCE;
   row.has_t = row.has_points = answer.result.obstacle_index >= 0;
+  row.message = answer.message;
   return row;
 }
 
-std::string resultsHeader(bool with_proofs) {
+std::string resultsHeader(const Columns &columns) {
   return std::string(
              "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,t_b,"
-             "lod") +
-         (with_proofs ? ",proof\n" : "\n");
+             "lod,message") +
+         (columns.proof ? ",proof" : "") + (columns.contact ? ",t_contact_lower" : "") + "\n";
 }
 
-std::string resultsLine(const ResultRow &row) {
+std::string resultsLine(const ResultRow &row, const Columns &columns) {
   const cprox_result &result = row.result;
   const bool answered = result.status >= 0;
   std::string line = quotedField(row.id) + ',' + row.kind + ',' + cprox_status_name(result.status) + ',';
@@ -95,8 +96,33 @@ std::string resultsLine(const ResultRow &row) {
   } else {
     line += ",,,,,";
   }
-  if (!row.proof.empty()) line += ',' + row.proof;
+  line += ',' + quotedField(row.message);
+  if (columns.proof) line += ',' + row.proof;
+  if (columns.contact && answered)
+    append(line, result.t_contact_lower);
+  else if (columns.contact)
+    line += ',';
   return line + '\n';
+}
+
+std::string profileHeader() {
+  return "id,kind,status,t0,t1,lower,upper,t,a,b,message\n";
+}
+
+std::string profileLine(const std::string &id, const std::string &kind, const ClearanceInterval &interval) {
+  std::string line = quotedField(id) + ',' + kind + ',' + cprox_status_name(interval.status);
+  for (const double value : {interval.t0, interval.t1, interval.lower, interval.upper}) append(line, value);
+  if (std::isfinite(interval.upper))
+    append(line, interval.t);
+  else
+    line += ',';
+  const std::string message = interval.status == CPROX_OK ? "" : cprox_status_text(interval.status);
+  return line + ',' + quotedField(interval.a) + ',' + quotedField(interval.b) + ',' + quotedField(message) + '\n';
+}
+
+std::string failedProfileLine(const std::string &id, const std::string &kind, cprox_status status,
+                              const std::string &message) {
+  return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ",,,,,,,," + quotedField(message) + '\n';
 }
 
 ResultsFile::ResultsFile(const std::string &path, const std::vector<std::string> &inputs, const std::string &option)

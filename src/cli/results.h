@@ -22,16 +22,31 @@ struct ResultRow {
   bool has_t_b = false;     /**< so has that of a second curve */
   bool has_points = false;  /**< there is something to measure against */
   std::string proof;        /**< where certificates are asked for: what is proven (proofOf()) */
+  std::string message;      /**< why there is no answer, or a remark */
+};
+
+/** Which columns the results have beyond those that all have. */
+struct Columns {
+  bool proof = false;   /**< of certificates */
+  bool contact = false; /**< t_contact_lower */
 };
 
 /** What the scene says, as a row. */
 ResultRow toRow(const Answer &answer, QueryType query_type);
 
 /** The first line, with its newline. */
-std::string resultsHeader(bool with_proofs = false);
+std::string resultsHeader(const Columns &columns = {});
 
 /** The line of a row, with its newline. Numbers have 17 significant digits. */
-std::string resultsLine(const ResultRow &row);
+std::string resultsLine(const ResultRow &row, const Columns &columns = {});
+
+/** The same of clearance profiles: a line an interval. id and kind are those of the curve or motion. */
+std::string profileHeader();
+std::string profileLine(const std::string &id, const std::string &kind, const ClearanceInterval &interval);
+
+/** The line of a profile that there is none of. */
+std::string failedProfileLine(const std::string &id, const std::string &kind, cprox_status status,
+                              const std::string &message);
 
 /** Where results go: standard output, or a file that is written anew. */
 class ResultsFile {

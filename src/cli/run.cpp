@@ -100,7 +100,10 @@ class Run {
       const Outcome &next = it->second;
       stopped_ = next.stopped;
       if (stopped_) break;
-      for (const std::string &complaint : next.complaints) console_.say(complaint);
+      for (const std::string &complaint : next.complaints) {
+        if (complaints_++ < rows_.most_complaints) console_.say(complaint);
+        if (complaints_ == rows_.most_complaints) console_.say("further rows that fail are counted");
+      }
       for (const std::string &sentence : next.unproven) {
         if (tally_.unproven++ < kMostWarnings) console_.say("warning: " + sentence);
       }
@@ -120,6 +123,10 @@ class Run {
   }
 
   void tellProgress() {
+    if (rows_.progress) {
+      rows_.progress(tally_);
+      return;
+    }
     std::string line = std::to_string(tally_.rows) + " rows";
     if (tally_.failed) line += ", " + std::to_string(tally_.failed) + " failed";
     if (portion_) line += ", " + std::to_string(static_cast<int>(100.0 * *portion_)) + " %";
@@ -134,6 +141,7 @@ class Run {
   std::condition_variable room_, finished_;
   std::map<std::size_t, Outcome> waiting_;
   std::size_t taken_ = 0, written_ = 0, working_ = 0;
+  std::size_t complaints_ = 0;
   bool exhausted_ = false, stopped_ = false;
   std::exception_ptr failure_;
   std::optional<double> portion_;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,15 +31,7 @@ struct Outcome {
 /** Answers one row; called by one of the threads, each with its own workspace. Must not throw. */
 using Task = std::function<Outcome(Workspace &)>;
 
-/** Where the rows come from and where they go. Each function is called by one thread at a time; `next` may wait for its
- *  input while the others go on. */
-struct Rows {
-  std::function<std::optional<Task>()> next;        /**< nothing at the end */
-  std::function<void(const std::string &)> write;   /**< lines of the results */
-  std::function<void(const std::string &)> certify; /**< records of certificates; empty where none are wanted */
-  std::function<std::optional<double>()> portion;   /**< of the input that has been read, 0 to 1, if it is known */
-};
-
+/** Counts of a run so far. */
 struct Tally {
   std::size_t rows = 0, failed = 0; /**< rows of the input */
   std::size_t unproven = 0;         /**< answers without the certificate that was wanted */
@@ -46,6 +39,19 @@ struct Tally {
   std::size_t undecided = 0;        /**< and without one, but with an undecided verdict */
   std::size_t against_nothing = 0;  /**< rows of the input that had nothing to measure against */
   bool interrupted = false;
+};
+
+/** Where the rows come from and where they go. Each function is called by one thread at a time; `next` may wait for its
+ *  input while the others go on. */
+struct Rows {
+  std::function<std::optional<Task>()> next;        /**< nothing at the end */
+  std::function<void(const std::string &)> write;   /**< lines of the results */
+  std::function<void(const std::string &)> certify; /**< records of certificates; empty where none are wanted */
+  std::function<std::optional<double>()> portion;   /**< of the input that has been read, 0 to 1, if it is known */
+  std::function<void(const Tally &)> progress;      /**< instead of the usual progress line; may be empty */
+
+  /** So many complaints are told; all are counted. */
+  std::size_t most_complaints = std::numeric_limits<std::size_t>::max();
 };
 
 /** From now on SIGINT and SIGTERM end a run in good order; a second one ends the program at once. */

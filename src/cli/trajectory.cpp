@@ -2,6 +2,9 @@
 /* The robot along a joint trajectory. */
 #include "trajectory.h"
 
+#include <filesystem>
+
+#include "asking.h"
 #include "certificates.h"
 #include "commands.h"
 #include "failure.h"
@@ -14,46 +17,80 @@
 namespace curve_proximity::cli {
 namespace {
 
-/* Joints that the trajectory does not move: --state, then its own fixed_joints, then the scene's robot_state. */
+void addAnswers(const std::vector<Answer> &answers, const Arguments &arguments, const std::string &proof,
+                Outcome &out) {
+  for (const Answer &answer : answers) {
+    out.stopped = out.stopped || answer.result.status == CPROX_STOPPED;
+    ResultRow row = toRow(answer, arguments.query.query_type);
+    row.proof = proof;
+    out.text += resultsLine(row, columnsOf(arguments));
+    noteVerdict(row, out);
+    const std::string place = arguments.trajectory + ": " + answer.kind + ": ";
+    if (!answer.unproven.empty()) out.unproven.push_back(place + "no certificate: " + answer.unproven);
+    if (answer.result.status < 0) out.complaints.push_back(place + answer.message);
+  }
+}
+
+/* The intervals of one of the two queries, of one link or all; with the record of its certificate, where one is wanted.
+ */
+void search(const RobotMotion &motion, bool self, const std::string &link, const Query &query,
+            const Arguments &arguments, Workspace &workspace, Outcome &out) {
+  const CertificateHandle proof = makeCertificate();
+  const bool with_proof = !arguments.certificate.empty();
+  Query asked = query;
+  if (with_proof) asked.options.certificate = proof.get();
+  if (self) asked.per_object = false; /* the robot itself is one row */
+  if (!link.empty()) asked.links = {link};
+  std::vector<Answer> answers =
+      self ? std::vector<Answer>{askSelf(motion, asked, workspace)} : askEnvironment(motion, asked, workspace);
+  for (Answer &answer : answers) putLinkFirst(link, answer);
+  addAnswers(answers, arguments, with_proof ? proofOf(proof) : "", out);
+  if (with_proof) out.certificate = recordOf(proof);
+}
+
+/* One of the two queries, of one link or all. */
+Outcome askOne(const RobotMotion &motion, bool self, const std::string &link, const std::string &object,
+               const Query &query, const Arguments &arguments, Workspace &workspace) {
+  Outcome out;
+  if (arguments.asking == Asking::SEARCH) {
+    search(motion, self, link, query, arguments, workspace, out);
+    return out;
+  }
+  MotionSubject subject(motion, self);
+  subject.id = std::filesystem::path(arguments.trajectory).stem().string();
+  subject.place = arguments.trajectory + ": " + subject.kind;
+  subject.link = link;
+  subject.object = object;
+  answer(subject, arguments, query, workspace, out);
+  return out;
+}
+
+/* The links that have rows of their own; "": all are one. */
+std::vector<std::string> linksOf(const RobotMotion &motion, bool self, const Arguments &arguments) {
+  std::vector<std::string> links;
+  if (arguments.per_link) links = askedNames(motion, self);
+  if (links.empty()) links.emplace_back();
+  return links;
+}
+
+/* The objects that have rows of their own, where askEnvironment() does not part them itself. */
+std::vector<std::string> objectsOf(const World &world, bool self, const Arguments &arguments) {
+  std::vector<std::string> objects;
+  if (arguments.query.per_object && !self && arguments.asking != Asking::SEARCH) {
+    for (const auto &object : world.snapshot->objects()) objects.push_back(object.first);
+  }
+  if (objects.empty()) objects.emplace_back();
+  return objects;
+}
+
+} // namespace
+
 JointPositions restOf(const TrajectoryDescription &trajectory, const World &world) {
   JointPositions out = world.scene_joints;
   for (const auto &[joint, value] : trajectory.fixed_joints) out[joint] = value;
   for (const auto &[joint, value] : world.state) out[joint] = value;
   return out;
 }
-
-Outcome toOutcome(const std::vector<Answer> &answers, QueryType query_type, const std::string &file,
-                  const std::string &proof) {
-  Outcome out;
-  for (const Answer &answer : answers) {
-    out.stopped = out.stopped || answer.result.status == CPROX_STOPPED;
-    ResultRow row = toRow(answer, query_type);
-    row.proof = proof;
-    out.text += resultsLine(row);
-    noteVerdict(row, out);
-    if (!answer.unproven.empty())
-      out.unproven.push_back(file + ": " + answer.kind + ": no certificate: " + answer.unproven);
-    if (answer.result.status < 0) out.complaints.push_back(file + ": " + answer.kind + ": " + answer.message);
-  }
-  return out;
-}
-
-/* One of the two queries; with the record of its certificate, where one is wanted. */
-Outcome askOne(const RobotMotion &motion, bool self, const Query &query, const Arguments &arguments,
-               Workspace &workspace) {
-  const CertificateHandle proof = makeCertificate();
-  Query asked = query;
-  if (!arguments.certificate.empty()) asked.options.certificate = proof.get();
-  if (self) asked.per_object = false; /* the robot itself is one row */
-  const std::vector<Answer> answers =
-      self ? std::vector<Answer>{askSelf(motion, asked, workspace)} : askEnvironment(motion, asked, workspace);
-  const bool with_proof = !arguments.certificate.empty();
-  Outcome out = toOutcome(answers, query.query_type, arguments.trajectory, with_proof ? proofOf(proof) : "");
-  if (with_proof) out.certificate = recordOf(proof);
-  return out;
-}
-
-} // namespace
 
 RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings &warnings) {
   TrajectoryDescription trajectory = readTrajectory(arguments.trajectory, warnings);
@@ -91,13 +128,19 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
     tellSkipped(motion.skipped(), console);
   }
 
-  /* two tasks: the scene, and the robot itself */
+  /* the scene, and the robot itself; a task for each part that has rows of its own */
   catchInterrupts();
-  results.write(resultsHeader(!arguments.certificate.empty()));
+  results.write(headerOf(arguments));
   std::vector<Task> tasks;
-  tasks.push_back([&](Workspace &workspace) { return askOne(motion, false, query, arguments, workspace); });
-  if (arguments.self)
-    tasks.push_back([&](Workspace &workspace) { return askOne(motion, true, query, arguments, workspace); });
+  for (const bool self : {false, true}) {
+    if (self && !arguments.self) continue;
+    for (const std::string &link : linksOf(motion, self, arguments)) {
+      for (const std::string &object : objectsOf(world, self, arguments))
+        tasks.push_back([&, self, link, object](Workspace &workspace) {
+          return askOne(motion, self, link, object, query, arguments, workspace);
+        });
+    }
+  }
   Rows rows;
   std::size_t next = 0;
   rows.next = [&]() -> std::optional<Task> {
@@ -106,7 +149,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   rows.write = [&](const std::string &text) { results.write(text); };
   if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [] { return std::optional<double>(); };
-  return finish(runRows(arguments.threads, rows, console), query.query_type, console);
+  return finish(runRows(arguments.threads, rows, console), console);
 }
 
 } // namespace curve_proximity::cli

@@ -12,5 +12,8 @@ namespace curve_proximity::cli {
 /** Reads --trajectory. Throws BadUsage with one line. */
 RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings &warnings);
 
+/** Joints that the trajectory does not move: --state, then its own fixed_joints, then the scene's robot_state. */
+JointPositions restOf(const TrajectoryDescription &trajectory, const World &world);
+
 } // namespace curve_proximity::cli
 #endif

@@ -39,10 +39,11 @@ JointPositions stateOfScene(const SceneFile &file, const Robot &robot, Warnings 
   return out;
 }
 
-PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, Warnings &warnings) {
+PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, const RobotSource &robots,
+                       Warnings &warnings) {
   PlacedRobot out;
   if (arguments.robot.empty()) return out;
-  out.robot = readRobot(arguments.robot);
+  out.robot = robots ? robots(arguments.robot) : readRobot(arguments.robot);
   out.fixed.insert(out.robot->rootLink());
   if (!arguments.srdf.empty()) {
     /* the robot stands in the parent frame of its first virtual joint */
@@ -184,7 +185,7 @@ std::vector<std::string> timingsOf(const PlacedRobot &robot, double robot_second
 
 } // namespace
 
-World readWorld(const Arguments &arguments, Warnings &warnings) {
+World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSource &robots) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -192,7 +193,7 @@ World readWorld(const Arguments &arguments, Warnings &warnings) {
   const Clock::time_point start = Clock::now();
   const SceneFile file = arguments.scene.empty() ? SceneFile() : readScene(arguments.scene, warnings);
   const Clock::time_point robot_start = Clock::now();
-  const PlacedRobot robot = placeRobot(arguments, file, warnings);
+  const PlacedRobot robot = placeRobot(arguments, file, robots, warnings);
   const double robot_seconds = since(robot_start);
   const Frames frames(robot.fixed, file.transforms, robot.links_of_scene, warnings);
 

@@ -3,6 +3,8 @@
 #ifndef CURVE_PROXIMITY_CLI_WORLD_H
 #define CURVE_PROXIMITY_CLI_WORLD_H
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,8 +28,11 @@ struct World {
   std::vector<std::string> timings; /**< how long loading took, a sentence each */
 };
 
-/** Reads --scene, --robot, --srdf and --state. Throws BadUsage with one line. */
-World readWorld(const Arguments &arguments, Warnings &warnings);
+/** Where a robot comes from: its file, or a place where it has been read before. */
+using RobotSource = std::function<std::shared_ptr<const Robot>(const std::string &path)>;
+
+/** Reads --scene, --robot, --srdf and --state. Throws BadUsage with one line. robots: readRobot() if empty. */
+World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSource &robots = {});
 
 } // namespace curve_proximity::cli
 #endif

@@ -36,17 +36,17 @@ class Against(Case):
 
     def a_bad_row_of_either_file_is_told_and_the_others_are_answered(self):
         answer = self.against('distance', [LINE, 'bad,bezier,1,0,1,0,2,0,0,0,1,1', LINE], [ABOVE, ABOVE, 'worse,bezier,9'])
-        self.assertEqual(answer.code, 1)
+        self.assertEqual(answer.code, 2)
         self.assertEqual([row['status'] for row in answer.rows], ['ok', 'invalid', 'invalid'])
         self.assertRegex(answer.err, r"a\.csv: row 2 \(line 2, id 'bad'\)")
         self.assertRegex(answer.err, r"b\.csv: row 3 \(line 3, id 'worse'\)")
 
     def a_file_that_ends_early_leaves_rows_unanswered(self):
         answer = self.against('distance', [LINE, LINE], [ABOVE])
-        self.assertEqual((answer.code, [row['status'] for row in answer.rows]), (1, ['ok', 'invalid']))
+        self.assertEqual((answer.code, [row['status'] for row in answer.rows]), (2, ['ok', 'invalid']))
         self.assertRegex(answer.err, r"a\.csv: row 2 .*b\.csv: has no row for it")
         answer = self.against('distance', [LINE], [ABOVE, ABOVE])
-        self.assertEqual((answer.code, [row['b'] for row in answer.rows]), (1, ['above', 'above']))
+        self.assertEqual((answer.code, [row['b'] for row in answer.rows]), (2, ['above', 'above']))
 
     def options_of_scenes_are_refused(self):
         for words in (['--scene', 's'], ['--robot', 'r'], ['--per-object'], ['--max-lod', 'hull']):

@@ -108,7 +108,7 @@ class CertificateTest(Case):
     def rows_without_an_answer_claim_nothing(self):
         self.certificates = os.path.join(self.folder, 'answers.cpc')
         answer = self.ask('distance', [PASSING, 'bad,bezier,1,0,1,0,2,0,0'], BOX_SCENE, '--certificate', self.certificates)
-        self.assertEqual(answer.code, 1)
+        self.assertEqual(answer.code, 2)
         checked = self.check()
         self.assertEqual(checked.code, 1)
         self.assertIn('passing: proven', checked.out)

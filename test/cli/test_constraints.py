@@ -74,7 +74,7 @@ world:
 - {id: moved, curve: {basis: bezier, points: [[0, -4, 0], [0, 4, 0]]}, b: {id: box, pose: {position: [3, 0, 0]}}}
 - {id: none, curve: {basis: bezier, points: [[0, -4, 0], [0, 4, 0]]}, b: {id: ghost}}
 ''', '--scene', scene)
-        self.assertEqual(answer.code, 1)
+        self.assertEqual(answer.code, 2)
         self.assertAlmostEqual(float(answer.row('there')['value']), 4.0, delta=1e-8)
         self.assertAlmostEqual(float(answer.row('moved')['value']), 2.0, delta=1e-8)
         self.assertEqual(answer.row('none')['status'], 'invalid')
@@ -89,7 +89,7 @@ world:
 - {{id: empty}}
 - {{id: good, {good}}}
 ''')
-        self.assertEqual(answer.code, 1)
+        self.assertEqual(answer.code, 2)
         for name, word in (('negative', 'sphere'), ('curve', 'CurveDistance'), ('frame', 'elsewhere'), ('empty', "'b'")):
             self.assertEqual((answer.row(name)['status'], answer.row(name)['value']), ('invalid', ''))
             self.assertIn(word, [line for line in answer.err.splitlines() if f"'{name}'" in line][0])

@@ -90,7 +90,7 @@ class Pairs(Case):
 
     def an_empty_list_has_a_header_as_its_answer(self):
         answer = self.pairs('[]')
-        self.assertEqual((answer.code, answer.out), (0, HEADER + '\n'))
+        self.assertEqual((answer.code, answer.out), (2, HEADER + '\n'))
 
     def quaternions_are_checked(self):
         answer = self.pairs(pair('zero', UNIT_BALL, f'{{type: point, {at(3, 0, 0, [0, 0, 0, 0])}}}')

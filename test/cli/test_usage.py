@@ -9,7 +9,8 @@ class Usage(Case):
         self.assertEqual((answer.code, answer.err), (0, ''))
         for word in ('distance', 'tolerance', 'collision', 'pairs', 'send', '--curves', '--scene', '--robot', '--srdf', '--state',
                      '--in', '--against', '--trajectory', '--self', '--signed', 'check', '--certificate', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-lod', '--skipped',
-                     '--out', '--node', '--version', 'constraints', '--provider', '--parameters'):
+                     '--out', '--node', '--version', 'constraints', '--provider', '--parameters', 'profile', 'nearest', 'time-of-contact',
+                     '--per-link', '--intervals', '--breaks', '--pairs', '--within'):
             self.assertIn(word, answer.out)
 
     def help_wins_over_everything_else(self):
@@ -58,7 +59,8 @@ class Usage(Case):
         values = {'--curves': 'c', '--against': 'd', '--trajectory': 't', '--scene': 's', '--robot': 'r', '--srdf': 'q', '--state': 'j: 1',
                   '--certificate': 'f', '--in': 'i', '--provider': 'p', '--parameters': 'k: 1', '--node': '/n', '--epsilon': '1e-3',
                   '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-lod': 'hull', '--out': 'o', '--self': None,
-                  '--replace': None, '--add': None, '--signed': None, '--per-object': None, '--skipped': None}
+                  '--replace': None, '--add': None, '--signed': None, '--per-object': None, '--skipped': None, '--per-link': None,
+                  '--intervals': '9', '--breaks': '0, 1', '--pairs': '2', '--within': '1'}
         run = {'--epsilon', '--max-nodes', '--threads', '--out'}
         rows = [('pairs', ['--in', 'i'], run | {'--max-lod', '--skipped'}),
                 ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--threads', '--out'}),
@@ -69,7 +71,11 @@ class Usage(Case):
                       run | own | {'--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-lod', '--skipped', '--against'}),
                      (command, start + ['--curves', 'c', '--against', 'd'], run | own | {'--certificate', '--scene', '--robot'}),
                      (command, start + ['--trajectory', 't', '--robot', 'r'], run | own - {'--signed'} | {
-                         '--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-lod', '--skipped', '--self'})]
+                         '--scene', '--srdf', '--state', '--certificate', '--per-object', '--per-link', '--max-lod', '--skipped', '--self'})]
+        for command, own in (('profile', {'--intervals', '--breaks'}), ('nearest', {'--pairs', '--within', '--signed'}), ('time-of-contact', set())):
+            both = run | own | {'--scene', '--srdf', '--state', '--per-object', '--max-lod', '--skipped'}
+            rows += [(command, ['--curves', 'c', '--robot', 'r'], both),
+                     (command, ['--trajectory', 't', '--robot', 'r'], both - {'--signed'} | {'--self', '--per-link'})]
         for command, inputs, has in rows:
             for name, value in values.items():
                 if name in inputs or name in ('--against', '--scene', '--robot') and '--curves' in inputs:

@@ -29,6 +29,7 @@ void makeResourcesAbsolute(ObjectDescription &object, const std::string &folder)
 
 std::string folderOf(const std::string &path) {
   std::error_code error;
+  if (path == "/dev/stdin") return std::filesystem::current_path(error).string();
   return std::filesystem::absolute(path, error).parent_path().string();
 }
 

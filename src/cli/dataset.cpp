@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "dataset.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "../scene/digest.h"
+#include "../scene/yaml/numbers.h"
+#include "../scene/yaml/scene_change.h"
+#include "csv.h"
+#include "failure.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+const std::array<const char *, 8> kKeys = {"id", "robot", "srdf", "scene", "trajectory", "query", "delta", "self"};
+
+void requireKnown(const std::string &key) {
+  if (std::find_if(kKeys.begin(), kKeys.end(), [&](const char *known) { return key == known; }) != kKeys.end()) return;
+  std::string known;
+  for (const char *name : kKeys) known += (known.empty() ? "" : ", ") + std::string(name);
+  throw BadInput("'" + key + "' is none of " + known);
+}
+
+QueryType queryFromName(const std::string &name) {
+  if (name == "distance") return QueryType::DISTANCE;
+  if (name == "tolerance") return QueryType::TOLERANCE;
+  if (name == "collision") return QueryType::COLLISION;
+  throw BadInput("query is '" + name + "'; it must be distance, tolerance or collision");
+}
+
+Interpolation interpolationFromName(const std::string &name) {
+  if (name == "linear") return Interpolation::LINEAR;
+  if (name == "cubic") return Interpolation::CUBIC;
+  if (name == "quintic") return Interpolation::QUINTIC;
+  throw BadInput("interpolation is '" + name + "'; it must be linear, cubic or quintic");
+}
+
+double timeOf(const Json &value) {
+  if (value.kind != Json::Kind::MAP) return value.number("time_from_start");
+  const Json *seconds = value.find("secs"), *nanoseconds = value.find("nsecs");
+  if (!seconds && !nanoseconds) throw BadInput("time_from_start needs secs or nsecs");
+  return (seconds ? seconds->number("secs") : 0.0) + 1e-9 * (nanoseconds ? nanoseconds->number("nsecs") : 0.0);
+}
+
+TrajectoryPoint toPoint(const Json &value) {
+  TrajectoryPoint out;
+  const auto list = [&](const char *key) {
+    const Json *found = value.find(key);
+    return found ? found->numbers(key) : std::vector<double>();
+  };
+  out.positions = list("positions");
+  out.velocities = list("velocities");
+  out.accelerations = list("accelerations");
+  const Json *time = value.find("time_from_start");
+  if (!time) throw BadInput("a point of the trajectory has no time_from_start");
+  out.time = timeOf(*time);
+  return out;
+}
+
+/* The id of a row, or its number. */
+std::string idIn(const Json &row, std::size_t number) {
+  const Json *id = row.find("id");
+  if (id && id->kind == Json::Kind::TEXT) return id->text_value;
+  if (!id || id->kind != Json::Kind::NUMBER) return std::to_string(number);
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", id->number_value);
+  return text;
+}
+
+} // namespace
+
+TrajectoryDescription toTrajectory(const Json &value) {
+  if (value.kind != Json::Kind::MAP) throw BadInput("the trajectory must be a map with joint_trajectory");
+  for (const auto &member : value.members) {
+    for (const char *known : {"joint_trajectory", "interpolation", "fixed_joints", "robot", "scene", ""}) {
+      if (!*known) throw BadInput("the trajectory's key '" + member.first + "' is not known here: use a YAML file");
+      if (member.first == known) break;
+    }
+  }
+  TrajectoryDescription out;
+  const Json *trajectory = value.find("joint_trajectory");
+  if (!trajectory || !trajectory->find("joint_names") || !trajectory->find("points"))
+    throw BadInput("the trajectory needs joint_trajectory with joint_names and points");
+  if (const Json *interpolation = value.find("interpolation"))
+    out.interpolation = interpolationFromName(interpolation->text("interpolation"));
+  if (const Json *fixed = value.find("fixed_joints")) {
+    if (fixed->kind != Json::Kind::MAP) throw BadInput("fixed_joints must be a map");
+    for (const auto &member : fixed->members) out.fixed_joints[member.first] = member.second.number("fixed_joints");
+  }
+  for (const Json &name : trajectory->find("joint_names")->list("joint_names"))
+    out.joints.push_back(name.text("joint_names"));
+  for (const Json &point : trajectory->find("points")->list("points")) out.points.push_back(toPoint(point));
+  checkTrajectory(out);
+  return out;
+}
+
+ShardRange cut(std::size_t rows, std::size_t shards, std::size_t shard) {
+  /* rows * shard / shards without a product that is too large */
+  const auto begin = [&](std::size_t i) { return rows / shards * i + rows % shards * i / shards; };
+  return {begin(shard), begin(shard + 1)};
+}
+
+Dataset::Dataset(const std::string &path) : path_(path), folder_(yaml::folderOf(path)) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw BadUsage(path + ": is a folder, not a manifest");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw BadUsage(path + ": cannot be read");
+  is_csv_ = std::filesystem::path(path).extension() == ".csv";
+
+  Hasher hasher;
+  std::string line;
+  while (std::getline(stream, line)) {
+    hasher.add(line);
+    if (!isRow(line)) continue;
+    if (is_csv_ && columns_.empty()) {
+      if (line.back() == '\r') line.pop_back();
+      try {
+        for (const std::string &field : splitFields(line)) {
+          columns_.emplace_back(yaml::trimmed(field));
+          requireKnown(columns_.back());
+        }
+      } catch (const BadInput &e) {
+        throw BadUsage(path + ": its first row must name its columns: " + e.what());
+      }
+      continue;
+    }
+    ++rows_;
+  }
+  if (stream.bad()) throw BadUsage(path + ": cannot be read");
+  digest_ = toHex(hasher.finish());
+}
+
+bool Dataset::isRow(const std::string &line) const {
+  return !yaml::trimmed(line).empty() && line != "\r" && !(is_csv_ && line.front() == '#');
+}
+
+Dataset::Reader::Reader(const Dataset &dataset, const ShardRange &range)
+    : dataset_(dataset), stream_(dataset.path_, std::ios::binary), range_(range) {}
+
+std::optional<ManifestRow> Dataset::Reader::next() {
+  std::string line;
+  bool header = dataset_.is_csv_ && at_ == 0;
+  while (at_ < range_.last && std::getline(stream_, line)) {
+    if (!dataset_.isRow(line)) continue;
+    if (header) {
+      header = false;
+      continue;
+    }
+    if (at_++ < range_.first) continue;
+    if (line.back() == '\r') line.pop_back();
+    return ManifestRow{at_ - 1, std::move(line)};
+  }
+  if (at_ < range_.last) throw BadUsage(dataset_.path_ + ": has changed while it was read");
+  return std::nullopt;
+}
+
+/* A row of CSV: its fields as texts, empty ones left out; numbers and truths are read from their texts. */
+Json Dataset::toJson(const std::string &text) const {
+  if (!is_csv_) return parseJson(text);
+  const std::vector<std::string> fields = splitFields(text);
+  if (fields.size() != columns_.size())
+    throw BadInput("it has " + std::to_string(fields.size()) + " columns, the header " +
+                   std::to_string(columns_.size()));
+  Json row;
+  row.kind = Json::Kind::MAP;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string field(yaml::trimmed(fields[i]));
+    if (field.empty()) continue;
+    Json value;
+    value.kind = Json::Kind::TEXT;
+    value.text_value = field;
+    if (columns_[i] == "delta") {
+      const std::optional<double> number = yaml::parseFinite(field);
+      if (!number) throw BadInput("delta is '" + field + "', not a finite number");
+      value.kind = Json::Kind::NUMBER;
+      value.number_value = *number;
+    } else if (columns_[i] == "self") {
+      if (field != "true" && field != "false") throw BadInput("self is '" + field + "', not true or false");
+      value.kind = Json::Kind::TRUTH;
+      value.truth_value = field == "true";
+    }
+    row.members.emplace_back(columns_[i], std::move(value));
+  }
+  return row;
+}
+
+std::string Dataset::fileOf(const Json &row, const char *key) const {
+  const Json *value = row.find(key);
+  return value ? (std::filesystem::path(folder_) / value->text(key)).string() : "";
+}
+
+DatasetRow Dataset::parse(const ManifestRow &row) const {
+  const Json value = toJson(row.text);
+  if (value.kind != Json::Kind::MAP) throw BadInput("a row must be a map");
+  for (const auto &member : value.members) requireKnown(member.first);
+  DatasetRow out;
+  out.id = idIn(value, row.number);
+  out.robot = fileOf(value, "robot");
+  out.srdf = fileOf(value, "srdf");
+  out.scene = fileOf(value, "scene");
+  if (out.robot.empty()) throw BadInput("it names no robot");
+  const Json *trajectory = value.find("trajectory");
+  if (!trajectory) throw BadInput("it names no trajectory");
+  if (trajectory->kind == Json::Kind::MAP)
+    out.inline_trajectory = toTrajectory(*trajectory);
+  else
+    out.trajectory = fileOf(value, "trajectory");
+
+  /* the query */
+  const Json *query = value.find("query"), *delta = value.find("delta"), *self = value.find("self");
+  if (query) out.query_type = queryFromName(query->text("query"));
+  if (delta) out.delta = delta->number("delta");
+  if (self) out.self = self->truth("self");
+  if (!query && delta) out.query_type = QueryType::TOLERANCE;
+  const bool tolerance = out.query_type == QueryType::TOLERANCE;
+  if (tolerance && !delta) throw BadInput("tolerance needs a delta");
+  if (!tolerance && out.delta != 0.0) throw BadInput("delta is for tolerance");
+  if (out.delta < 0.0) throw BadInput("delta is below 0");
+  return out;
+}
+
+std::string Dataset::idOf(const ManifestRow &row) const {
+  try {
+    return idIn(toJson(row.text), row.number);
+  } catch (const BadInput &) {
+    return std::to_string(row.number);
+  }
+}
+
+} // namespace curve_proximity::cli
