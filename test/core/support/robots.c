@@ -297,6 +297,11 @@ static ref_pose given(const cprox_pose *pose) {
                    pose->orientation.w);
 }
 
+ref_pose ref_pose_under(const cprox_pose *base, const ref_pose *pose) {
+  const ref_pose outer = given(base);
+  return compose(&outer, pose);
+}
+
 static ref_pose about(vec3l axis, long double angle) {
   const vec3l v = ref_scale(sinl(angle / 2) / ref_norm(axis), axis);
   return unit_pose((vec3l){0, 0, 0}, v.x, v.y, v.z, cosl(angle / 2));

@@ -64,6 +64,9 @@ typedef struct ref_pose {
 vec3l ref_pose_apply(const ref_pose *pose, vec3l x);
 vec3l ref_pose_undo(const ref_pose *pose, vec3l x);
 
+/* Where a pose is in the world, given in the frame of another one. */
+ref_pose ref_pose_under(const cprox_pose *base, const ref_pose *pose);
+
 /* The frames of all links. */
 void robot_ref_links(const test_robot *t, const long double *values, ref_pose *links);
 
