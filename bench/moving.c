@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Bodies that move and turn: first contacts in the scenes of DART's comparative benchmark of continuous collision, a
+ * box that turns along a cubic Bézier curve beside the same box that does not, and ten quadrotors on one clock. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "curve_proximity/cprox.h"
+#include "solve/list.h"
+#include "support/measure.h"
+#include "support/random.h"
+
+enum { SCENES = 9, FLYERS = 10, SEGMENTS = 100, FLYER_PAIRS = FLYERS * (FLYERS - 1) / 2 };
+
+static const cprox_pose HERE = {.orientation = {.w = 1.0}};
+static const int32_t VARIABLES[7] = {0, 1, 2, 3, 4, 5, 6};
+static const double RIGHT_ANGLE = 1.57079632679489661923;
+
+/* A body on a joint of its own, or along a curve, and what stands. */
+typedef struct scene {
+  const char *name;
+  cprox_body *body, *other;
+  cprox_robot *robot;
+  cprox_motion *motion;
+  cprox_curve *curve;
+  cprox_obstacle target;
+  cprox_mover mover;
+} scene;
+
+static void begin(scene *s, const char *name, cprox_body *body, cprox_body *other, cprox_pose at) {
+  *s = (scene){.name = name, .body = body, .other = other, .target = cprox_obstacle_at(other, at)};
+}
+
+/* A motion of one second. */
+static void ride(scene *s, cprox_joint_type type, cprox_motion_description d) {
+  const cprox_link link = {.parent = -1, .type = type, .origin = HERE};
+  const cprox_link_geometry geometry = {.body = s->body, .pose = HERE};
+  d.variables = VARIABLES, d.n_variables = type == CPROX_JOINT_FLOATING ? 7 : 6;
+  if (cprox_robot_create(&link, 1, &geometry, 1, d.n_variables, NULL, &s->robot) == CPROX_OK &&
+      cprox_motion_create(s->robot, &d, NULL, &s->motion) == CPROX_OK)
+    s->mover = cprox_robot_along(s->motion, NULL, 0);
+}
+
+static void go(scene *s, const double from[7], const double to[7], cprox_turning turning) {
+  const cprox_waypoint ends[2] = {{.time = 0, .positions = from}, {.time = 1, .positions = to}};
+  ride(s, CPROX_JOINT_FLOATING, (cprox_motion_description){.waypoints = ends, .n_waypoints = 2, .turning = turning});
+}
+
+/* Along DART's curve, turning so far about z. */
+static void follow(scene *s, double turn) {
+  double control[4][6] = {{-2, 2, 0}, {-2, -2, 0}, {2, -2, 0}, {2, 2, 0}};
+  for (int i = 0; i < 4; i++) control[i][5] = turn * i / 3.0;
+  static const double KNOTS[8] = {0, 0, 0, 0, 1, 1, 1, 1};
+  ride(s, CPROX_JOINT_ROTATION_VECTOR,
+       (cprox_motion_description){.kind = CPROX_MOTION_BSPLINE,
+                                  .control = control[0],
+                                  .n_control = 4,
+                                  .degree = 3,
+                                  .knots = KNOTS,
+                                  .n_knots = 8});
+}
+
+static void end(scene *s) {
+  cprox_motion_free(s->motion);
+  cprox_robot_free(s->robot);
+  cprox_curve_free(s->curve);
+  cprox_body_free(s->body);
+  cprox_body_free(s->other);
+}
+
+/* ---- bodies ---- */
+
+static cprox_body *box(void) {
+  cprox_body *body = NULL;
+  cprox_body_create_box((cprox_vec3){1, 1, 1}, NULL, &body);
+  return body;
+}
+
+static cprox_body *sphere(void) {
+  cprox_body *body = NULL;
+  cprox_body_create_sphere(0.5, NULL, &body);
+  return body;
+}
+
+static cprox_body *capsule(void) {
+  cprox_body *body = NULL;
+  cprox_body_create_capsule(1.0, 0.4, NULL, &body);
+  return body;
+}
+
+static cprox_body *cylinder(void) {
+  cprox_body *body = NULL;
+  cprox_body_create_cylinder(1.0, 0.5, NULL, &body);
+  return body;
+}
+
+static cprox_body *octahedron(void) {
+  static const cprox_vec3 TIPS[6] = {{0.6, 0, 0}, {-0.6, 0, 0}, {0, 0.6, 0}, {0, -0.6, 0}, {0, 0, 0.6}, {0, 0, -0.6}};
+  cprox_body *body = NULL;
+  cprox_body_create_polytope(TIPS, 6, NULL, &body);
+  return body;
+}
+
+/* ---- methods ---- */
+
+static void answer_with(cprox_status status, const cprox_result *r, double lower, double upper, bench_answer *answer) {
+  *answer = (bench_answer){.lower = lower, .upper = upper, .nodes = r->nodes, .distance_queries = r->distance_queries};
+  answer->failed = status != CPROX_OK;
+}
+
+/* The answer is the time: never after the truth. */
+static void contact(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const scene *s = (const scene *)problems + i;
+  cprox_result r;
+  const cprox_status status = list_time_of_contact(s->mover, &s->target, 1, NULL, state, &r);
+  answer_with(status, &r, r.t_contact_lower, r.t_contact_lower + 1e-6, answer);
+}
+
+static void distance(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const scene *s = (const scene *)problems + i;
+  cprox_result r;
+  const cprox_status status = list_distance(s->mover, &s->target, 1, NULL, state, &r, NULL);
+  answer_with(status, &r, r.lower, r.upper, answer);
+}
+
+static void among(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const cprox_mover *mover = (const cprox_mover *)problems + i;
+  cprox_result r;
+  const cprox_status status = list_distance(*mover, NULL, 0, NULL, state, &r, NULL);
+  answer_with(status, &r, r.lower, r.upper, answer);
+}
+
+/* ---- workloads ---- */
+
+static void contacts(const bench_size *size, cprox_workspace *ws) {
+  static const double FROM[7] = {-5, 0, 0, 0, 0, 0, 1}, TO[7] = {5, 0, 0, 0, 0, 0, 1};
+  const double h = sqrt(0.5), turn_from[7] = {-3, 0, 0, 0, 0, 0, 1}, screw_from[7] = {0, 0, -2, 0, 0, 0, 1},
+               turned[7] = {0, 0, 0, 0, 0, h, h};
+  const cprox_pose below = {.position = {0, -1, 0}, .orientation = {.w = 1.0}};
+  scene s[SCENES];
+  begin(&s[0], "box box", box(), box(), HERE);
+  begin(&s[1], "sphere sphere", sphere(), sphere(), HERE);
+  begin(&s[2], "capsule capsule", capsule(), capsule(), HERE);
+  begin(&s[3], "sphere box", sphere(), box(), HERE);
+  begin(&s[4], "octahedron octahedron", octahedron(), octahedron(), HERE);
+  begin(&s[5], "sphere cylinder", sphere(), cylinder(), HERE);
+  for (int i = 0; i < 6; i++) go(&s[i], FROM, TO, CPROX_TURNING_SLERP);
+  begin(&s[6], "box box turning", box(), box(), HERE);
+  go(&s[6], turn_from, turned, CPROX_TURNING_SLERP);
+  begin(&s[7], "box box screw", box(), box(), HERE);
+  go(&s[7], screw_from, turned, CPROX_TURNING_SCREW);
+  begin(&s[8], "box box spline", box(), box(), below);
+  follow(&s[8], 0.0);
+  static const double TRUTH[SCENES] = {0.4, 0.4, 0.42, 0.4, 0.38, 0.4, 0.600565822321, 0.5, 0.326351822333};
+  const bench_method ours = {"curve_proximity", contact, ws};
+  for (int i = 0; i < SCENES; i++) {
+    const bench_workload w = {"moving", "contact", s[i].name, &s[i], 1, &TRUTH[i], 1e-11};
+    bench_measure(&w, size, &ours, 1);
+    end(&s[i]);
+  }
+}
+
+/* The other box stands 1 m below the lowest point of the curve. */
+static void turning_box(const bench_size *size, cprox_workspace *ws) {
+  static const cprox_vec3 CURVE[4] = {{-2, 2, 0}, {-2, -2, 0}, {2, -2, 0}, {2, 2, 0}};
+  const cprox_pose below = {.position = {0.3, -3, 0.2}, .orientation = {.w = 1.0}};
+  scene s[3];
+  for (int i = 0; i < 3; i++) begin(&s[i], "cubic Bezier", box(), box(), below);
+  follow(&s[0], RIGHT_ANGLE);
+  follow(&s[1], 0.0);
+  const cprox_curve_description d = {.kind = CPROX_CURVE_BEZIER, .points = CURVE, .n = 4, .t1 = 1.0};
+  if (cprox_curve_create(&d, NULL, &s[2].curve) == CPROX_OK) s[2].mover = cprox_body_along(s[2].body, s[2].curve);
+  static const char *const NAMES[3] = {"curve_proximity", "rotation vector at rest", "body along a curve"};
+  for (int i = 0; i < 3; i++) {
+    const bench_workload w = {"moving", "turning box", "cubic Bezier eps 1e-06", &s[i], 1, NULL, 0.0};
+    const bench_method method = {NAMES[i], distance, ws};
+    bench_measure(&w, size, &method, 1);
+  }
+  for (int i = 0; i < 3; i++) end(&s[i]);
+}
+
+/* Splines of 100 segments over 20 m by 20 m, each with a height and a start of its own: they cross above each other. */
+static void quadrotors(const bench_size *size, cprox_workspace *ws) {
+  rng r = rng_seed(2010);
+  scene s[FLYERS];
+  const cprox_robot *robots[FLYERS];
+  cprox_joined_motion motions[FLYERS];
+  double knots[SEGMENTS + 7];
+  for (int k = 0; k < SEGMENTS + 7; k++) knots[k] = fmin(fmax(k - 3, 0), SEGMENTS) * 0.1;
+  for (int i = 0; i < FLYERS; i++) {
+    static double control[SEGMENTS + 3][6];
+    cprox_vec3 at = {rng_uniform(&r, -10, 10), rng_uniform(&r, -10, 10), 0.9 * i};
+    cprox_vec3 v = {0, 0, 0};
+    for (int k = 0; k < SEGMENTS + 3; k++) {
+      v = (cprox_vec3){0.95 * v.x + rng_uniform(&r, -0.05, 0.05) - 0.002 * at.x,
+                       0.95 * v.y + rng_uniform(&r, -0.05, 0.05) - 0.002 * at.y,
+                       0.9 * v.z + rng_uniform(&r, -0.01, 0.01) - 0.05 * (at.z - 0.9 * i)};
+      at = (cprox_vec3){at.x + v.x, at.y + v.y, at.z + v.z};
+      const double row[6] = {at.x, at.y, at.z, -v.y, v.x, 0.01 * k};
+      memcpy(control[k], row, sizeof row);
+    }
+    cprox_body *body = NULL;
+    cprox_body_create_cylinder(0.2, 0.3, NULL, &body);
+    begin(&s[i], "quadrotor", body, NULL, HERE);
+    ride(&s[i], CPROX_JOINT_ROTATION_VECTOR,
+         (cprox_motion_description){.kind = CPROX_MOTION_BSPLINE,
+                                    .control = control[0],
+                                    .n_control = SEGMENTS + 3,
+                                    .degree = 3,
+                                    .knots = knots,
+                                    .n_knots = SEGMENTS + 7});
+    robots[i] = s[i].robot;
+    motions[i] = (cprox_joined_motion){s[i].motion, 0.03 * i};
+  }
+  cprox_robot *all = NULL;
+  cprox_motion *motion = NULL;
+  cprox_robot_pair pairs[FLYER_PAIRS];
+  size_t n = 0;
+  for (int32_t i = 0; i < FLYERS; i++)
+    for (int32_t k = i + 1; k < FLYERS; k++) pairs[n++] = (cprox_robot_pair){i, k};
+  const cprox_motion_description d = {.kind = CPROX_MOTION_JOINED, .joined = motions, .n_joined = FLYERS};
+  if (cprox_robot_join(robots, NULL, FLYERS, ws, &all) == CPROX_OK &&
+      cprox_motion_create(all, &d, ws, &motion) == CPROX_OK) {
+    const cprox_mover mover = cprox_robot_self(motion, pairs, n);
+    const bench_workload w = {"moving", "quadrotors", "10 of 100 segments eps 1e-06", &mover, 1, NULL, 0.0};
+    const bench_method ours = {"curve_proximity", among, ws};
+    bench_measure(&w, size, &ours, 1);
+  }
+  cprox_motion_free(motion);
+  cprox_robot_free(all);
+  for (int i = 0; i < FLYERS; i++) end(&s[i]);
+}
+
+int main(int argc, char **argv) {
+  const bench_size size = bench_arguments(argc, argv);
+  cprox_workspace *ws = cprox_workspace_create();
+  if (bench_wanted(&size, "contact")) contacts(&size, ws);
+  if (bench_wanted(&size, "turning box")) turning_box(&size, ws);
+  if (bench_wanted(&size, "quadrotors")) quadrotors(&size, ws);
+  cprox_workspace_free(ws);
+  return 0;
+}
