@@ -20,6 +20,41 @@ static void any_robot(rng *r, size_t i, size_t points, test_robot *t) {
   robot_make_turning(r, rng_log_uniform(r, rng_index(r, 3) ? 0.02 : 1e-9, 4), (cprox_turning)(i % TURNINGS), points, t);
 }
 
+/* Long steps beside short ones: a span's waypoints then say little of the way between them. */
+static void make_uneven(rng *r, test_robot *t) {
+  double steps[TEST_MAX_WAYPOINTS][TEST_MAX_VARIABLES];
+  for (size_t i = 1; i < t->n_points; i++) {
+    const double part = rng_index(r, 2) ? rng_log_uniform(r, 1e-6, 1e-3) : 1.0;
+    for (size_t k = 0; k < t->n_variables; k++) steps[i][k] = part * (t->positions[i][k] - t->positions[i - 1][k]);
+  }
+  for (size_t i = 1; i < t->n_points; i++)
+    for (size_t k = 0; k < t->n_variables; k++) t->positions[i][k] = t->positions[i - 1][k] + steps[i][k];
+  robot_rebuild(t);
+}
+
+/* Even steps along a line, turning to and fro: waypoints on a straight line say nothing of the arcs between them. Small
+ * bodies, so that it matters where they are and not how they turn. */
+static void make_zigzag(test_robot *t) {
+  for (size_t i = 0; i < t->n_links; i++) {
+    for (size_t k = 0; k < TEST_VERTICES; k++) t->vertices[i][k] = vec_scale(0.01, t->vertices[i][k]);
+    cprox_body_free((cprox_body *)t->geometries[i].body);
+    cprox_body *body = NULL;
+    assert_int_equal(cprox_body_create_polytope(t->vertices[i], TEST_VERTICES, NULL, &body), CPROX_OK);
+    t->geometries[i].body = body;
+    t->geometries[i].pose.position = vec_scale(0.01, t->geometries[i].pose.position);
+  }
+  for (size_t i = 2; i < t->n_points; i++)
+    for (size_t k = 0; k < t->n_variables; k++)
+      t->positions[i][k] = t->positions[0][k] + (double)i * (t->positions[1][k] - t->positions[0][k]);
+  for (size_t l = 0; l < t->n_links; l++)
+    for (size_t i = 2; i < t->n_points && t->links[l].type == CPROX_JOINT_FLOATING; i++)
+      for (size_t k = 3; k < 7; k++) {
+        const size_t v = (size_t)t->links[l].variable + k;
+        t->positions[i][v] = t->positions[i % 2][v];
+      }
+  robot_rebuild(t);
+}
+
 /* ---- kinematics ---- */
 
 CASE(parts_are_within_their_error_of_where_they_are) {
@@ -177,16 +212,21 @@ CASE(no_point_is_nearer_than_the_bounds_of_an_interval_say) {
 
 CASE(no_point_is_nearer_than_the_bounds_of_a_span_say) {
   rng r = rng_seed(7103);
-  for (size_t i = 0; i < test_cases(60); i++) {
+  for (size_t i = 0; i < test_cases(90); i++) {
     test_robot t;
-    any_robot(&r, i, TEST_WAYPOINTS + 1 + rng_index(&r, TEST_MAX_WAYPOINTS - TEST_WAYPOINTS - 1), &t);
+    const bool few = rng_index(&r, 2);
+    any_robot(&r, i, few ? 3 : TEST_WAYPOINTS + 1 + rng_index(&r, TEST_MAX_WAYPOINTS - TEST_WAYPOINTS - 1), &t);
+    if (!t.spline && few && rng_index(&r, 2))
+      make_zigzag(&t);
+    else if (!t.spline && rng_index(&r, 3))
+      make_uneven(&r, &t);
     for (int k = 0; k < 20 && t.motion->n_segments > 1; k++) {
       bound_case c;
       vec3 n;
       any_sides(&r, &t, &c, &n);
       c.over.first = rng_index(&r, t.motion->n_segments - 1);
       const size_t most = t.motion->n_segments - c.over.first - 1;
-      c.over.last = c.over.first + 2 + rng_index(&r, most < 6 || rng_index(&r, 3) == 0 ? most : 6);
+      c.over.last = c.over.first + 2 + (most > 0 ? rng_index(&r, most < 6 || rng_index(&r, 3) == 0 ? most : 6) : 0);
       c.over.a = rng_index(&r, 2) ? 0.0 : rng_uniform(&r, 0, 1),
       c.over.b = rng_index(&r, 2) ? 1.0 : rng_uniform(&r, 0, 1);
       claim(&t, n, vec(0, 0, 0), &c);
@@ -194,6 +234,91 @@ CASE(no_point_is_nearer_than_the_bounds_of_a_span_say) {
     }
     robot_free(&t);
   }
+}
+
+/* Spans take arcs for the straight line between their waypoints. */
+CASE(arcs_stay_as_near_to_their_chords_as_said) {
+  rng r = rng_seed(7105);
+  double nearest[2] = {0};
+  for (size_t i = 0; i < test_cases(3000); i++) {
+    const double angle = rng_log_uniform(&r, 1e-6, 3.1);
+    const vec3 u = rng_unit(&r), p0 = rng_in_cube(&r, 2.0), p1 = rng_in_cube(&r, 2.0);
+    const cprox_quat given = rng_quat(&r);
+    const double q0[4] = {given.x, given.y, given.z, given.w}, c = cos(angle / 2), s = sin(angle / 2);
+    const vec3 v = vec(given.x, given.y, given.z);
+    const vec3 turned = vec_add(vec_add(vec_scale(c, v), vec_scale(s * given.w, u)), vec_scale(s, vec_cross(u, v)));
+    const double q1[4] = {turned.x, turned.y, turned.z, c * given.w - s * vec_dot(u, v)};
+    const motion_arc arc = arc_screw(q0, q1, p0, p1);
+    double position;
+    const double orientation = arc_sagitta(&arc, &position);
+    for (int k = 0; k <= 16; k++) {
+      const double t = k / 16.0;
+      double q[4], off = 0.0;
+      vec3 p[3];
+      arc_orientation(&arc, t, q);
+      arc_position(&arc, t, p);
+      for (int j = 0; j < 4; j++) off += pow(q[j] - (1.0 - t) * q0[j] - t * q1[j], 2);
+      const double aside = vec_norm(vec_sub(p[0], vec_axpy(p0, t, vec_sub(p1, p0))));
+      assert_true(sqrt(off) <= orientation + 1e-15 && aside <= position + 1e-14);
+      nearest[0] = fmax(nearest[0], sqrt(off) / (orientation + 1e-12));
+      nearest[1] = fmax(nearest[1], aside / (position + 1e-12));
+    }
+  }
+  print_message("largest distance / bound: quaternions %.3f, positions %.3f\n", nearest[0], nearest[1]);
+  assert_true(nearest[0] > 0.9 && nearest[1] > 0.9);
+}
+
+/* ---- rates ---- */
+
+/* That of the first link, by u, from central differences in long double. */
+static vec3l angular_velocity(const test_robot *t, size_t segment, long double u) {
+  static const long double STEP = 1e-5L;
+  ref_pose before[TEST_MAX_LINKS], here[TEST_MAX_LINKS], after[TEST_MAX_LINKS];
+  links_at(t, segment, u - STEP, before);
+  links_at(t, segment, u, here);
+  links_at(t, segment, u + STEP, after);
+  const long double *p = here[0].q;
+  long double d[4], along = 0;
+  for (int k = 0; k < 4; k++) along += before[0].q[k] * after[0].q[k];
+  for (int k = 0; k < 4; k++) d[k] = (after[0].q[k] - (along < 0 ? -1 : 1) * before[0].q[k]) / (2 * STEP);
+  const vec3l a = {d[0], d[1], d[2]}, b = {p[0], p[1], p[2]};
+  const vec3l omega = ref_scale(2, ref_sub(ref_sub(ref_scale(p[3], a), ref_scale(d[3], b)), ref_cross(a, b)));
+  long double sign = 0; /* a quaternion and its opposite are one rotation */
+  for (int k = 0; k < 4; k++) sign += p[k] * after[0].q[k];
+  return ref_scale(sign < 0 ? -1 : 1, omega);
+}
+
+/* Differences of differences leave 1e-5 of the rates; rotation vectors that go straight come near their bounds. */
+CASE(joints_turn_no_faster_than_said) {
+  static const long double STEP = 1e-3L, LEFT = 1e-5L;
+  rng r = rng_seed(7104);
+  double nearest[3] = {0};
+  for (size_t i = 0; i < test_cases(900); i++) {
+    test_robot t;
+    any_robot(&r, i, 2 + rng_index(&r, 3), &t);
+    const double a = rng_uniform(&r, 0.1, 0.8), width = 0.05;
+    double rows[MOTION_ROWS * (TEST_MAX_VARIABLES + MOTION_LANES)];
+    axis_state axes[MAX_AXES + 1];
+    motion_node(t.motion, 0, a, a + width, rows, axes);
+    const axis_state *axis = &axes[t.robot->links[0].axis];
+    vec3l omega[3];
+    for (int k = 0; k < 3; k++) omega[k] = angular_velocity(&t, 0, a + 0.5L * width + (k - 1) * STEP);
+    const vec3l second = ref_add(ref_sub(omega[2], ref_scale(2, omega[1])), omega[0]);
+    const long double rate[3] = {width * ref_norm(omega[1]),
+                                 width * width * ref_norm(ref_sub(omega[2], omega[0])) / (2 * STEP),
+                                 width * width * width * ref_norm(second) / (STEP * STEP)};
+    const double said[3] = {axis->w, axis->a, axis->g};
+    const bool straight =
+        t.links[0].type == CPROX_JOINT_ROTATION_VECTOR && !t.spline && t.interpolation == CPROX_INTERPOLATION_LINEAR;
+    for (int k = 0; k < 3; k++) {
+      if (rate[k] > said[k] * (1 + LEFT) + LEFT * powl(width, k + 1))
+        fail_msg("robot %zu: derivative %d is %.9Lg, said to be at most %.9g", i, k + 1, rate[k], said[k]);
+      if (straight && said[k] > 1e-6) nearest[k] = fmax(nearest[k], (double)rate[k] / said[k]);
+    }
+    robot_free(&t);
+  }
+  print_message("largest rate / bound: %.3f, %.3f, %.3f\n", nearest[0], nearest[1], nearest[2]);
+  assert_true(nearest[0] > 0.9 && nearest[1] > 0.3 && nearest[2] > 0.1);
 }
 
 /* ---- exact poses ---- */

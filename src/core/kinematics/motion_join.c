@@ -194,7 +194,7 @@ static void fill_arcs(cprox_motion *m, const cprox_joined_motion *joined, size_t
     for (size_t i = 0; i < from->robot->n_axes && from->arcs; i++)
       if (from->arc_of[i] >= 0) m->arc_of[axes + i] = (int32_t)arcs + from->arc_of[i];
     segments[k] = 0;
-    for (size_t i = 0; i < m->n_segments && from->n_arcs > 0; i++) {
+    for (size_t i = 0; i < m->n_segments && from->arcs && m->arcs; i++) {
       const joined_piece piece = piece_over(&joined[k], m->times[i], m->times[i + 1], &segments[k]);
       for (size_t j = 0; j < from->n_arcs; j++) {
         motion_arc *arc = &m->arcs[(arcs + j) * m->n_segments + i];
