@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Robots and objects that move at the same time: against each other, and against the objects that stand. */
+#ifndef CURVE_PROXIMITY_MOVERS_HPP
+#define CURVE_PROXIMITY_MOVERS_HPP
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/motion.hpp>
+
+namespace curve_proximity {
+
+/** How an object goes from one pose to the next. */
+enum class Turning {
+  SLERP, /**< its origin along a straight line, turning about one axis at a constant rate, the shorter way */
+  SCREW  /**< with a constant twist: about one line and along it, at constant rates */
+};
+
+/** A pose at a time. */
+struct TimedPose {
+  double time = 0.0;                                      /**< [s] ascending */
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< of the object's frame in the fixed frame */
+};
+
+/** An object that moves. */
+struct MovingObject {
+  ObjectDescription object;         /**< its id names it; its frame and pose are not used: `poses` has them */
+  std::vector<TimedPose> poses;     /**< at least one; one: it stands there */
+  Turning turning = Turning::SLERP; /**< between two poses */
+  double start = 0.0;               /**< [s] is added to all times */
+};
+
+/** A robot that moves. */
+struct MovingRobot {
+  std::string name;                          /**< names it in answers: its link L is "name/L" */
+  std::shared_ptr<const RobotMotion> motion; /**< its trajectory, base and SRDF */
+  double start = 0.0;                        /**< [s] is added to all times */
+};
+
+/** What movers are tested against. */
+enum class Against {
+  OBJECTS, /**< the objects that stand */
+  MOVERS,  /**< each other; and each robot against itself, as askSelf() does */
+  BOTH     /**< all of these at once */
+};
+
+/** Robots and objects on one clock. It begins with the first of them and ends with the last one; a mover that has not
+ *  begun stands at its first pose, one that has ended at its last one. Immutable; shared by any number of threads. */
+class Movers {
+ public:
+  /** snapshot   the objects that stand; its robot does not count. Of a robot's own snapshot only the robot, what it
+   *             carries, paddings and allowed pairs count.
+   *  allowed    pairs of names that may touch: movers, links of moving robots ("name/link"), objects.
+   *  resources  for shapes of moving objects that come from files.
+   *
+   *  Throws Error: no mover; names that are empty, contain '/' or clash with another mover or an object that stands; a
+   *  moving object without shapes or poses; what makeGeometry() refuses, and halfspaces; times that do not ascend;
+   *  orientations that are half a turn apart; clocks that leave a pause in which nothing moves. The message names the
+   *  mover. */
+  Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, const std::vector<MovingObject> &objects,
+         const std::vector<std::array<std::string, 2>> &allowed = {}, const ResourceOptions &resources = {});
+  ~Movers();
+  /** Moves. */
+  Movers(Movers &&) noexcept;
+  /** Moves. */
+  Movers &operator=(Movers &&) noexcept;
+
+  /** The first start and the last end [s]. */
+  std::array<double, 2> domain() const;
+
+  struct Data;
+  /** Internal. */
+  const Data &data() const {
+    return *data_;
+  }
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+
+/** How close movers come. kind is "environment" where b is an object that stands, else "movers"; a and b are names of
+ *  moving objects or links ("name/link"), result.t is the time [s]. Queries take no links, objects, per_object,
+ *  signed_distance or certificate: such a query is refused, with status "invalid". */
+Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace);
+
+/** The time of contact: result.t_contact_lower [s] is never after the first contact; of objects that robots carry their
+ *  poses count as rounded. Verdict violated: contact at result.t, within the rounding of poses. The query is of type
+ *  COLLISION. Everything else as for ask(). */
+Answer timeOfContact(const Movers &movers, Against against, const Query &query, Workspace &workspace);
+
+} // namespace curve_proximity
+#endif
