@@ -157,7 +157,7 @@ static bool link_takes(const cprox_body *body) {
 /* And not every body may be an obstacle of a robot. */
 static bool robot_meets(world *w, const cprox_body *body) {
   const cprox_obstacle target = cprox_obstacle_at(body, HERE);
-  cprox_result x;
+  cprox_result x = {0};
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.max_nodes = 1;
   return distance_of_list(cprox_robot_along(w->members[0].motion, NULL, 0), &target, 1, &options, w->a->ws, &x, NULL) >=
@@ -393,7 +393,7 @@ static void check_width(world *w, const cprox_result *x, const cprox_options *op
 static void ask_distance(world *w, const cprox_options *options) {
   size_t n;
   const cprox_obstacle *targets = targets_of(w, &n);
-  cprox_result x;
+  cprox_result x = {0};
   if (!answered(w, distance_of_list(w->mover, targets, n, options, w->a->ws, &x, NULL))) return;
   check_result(w, &x);
   if (x.status == CPROX_OK) check_width(w, &x, options);
@@ -403,7 +403,7 @@ static void ask_tolerance(world *w, const cprox_options *options) {
   size_t n;
   const cprox_obstacle *targets = targets_of(w, &n);
   const double delta = rng_index(w->r, 3) ? rng_log_uniform(w->r, 1e-4, 1.0) : 0.0;
-  cprox_result x;
+  cprox_result x = {0};
   if (!answered(w, delta > 0.0 ? tolerance_of_list(w->mover, targets, n, delta, options, w->a->ws, &x, NULL)
                                : collision_of_list(w->mover, targets, n, options, w->a->ws, &x, NULL)))
     return;
@@ -420,7 +420,7 @@ static void ask_time_of_contact(world *w, const cprox_options *asked) {
   const cprox_obstacle *targets = targets_of(w, &n);
   cprox_options options = *asked;
   options.relative_epsilon = 0.0; /* it does not apply */
-  cprox_result x;
+  cprox_result x = {0};
   if (!answered(w, time_of_contact_of_list(w->mover, targets, n, &options, w->a->ws, &x))) return;
   if (!is_sound(w, &x)) return;
   attack_count(w->a, cprox_verdict_name(x.verdict));

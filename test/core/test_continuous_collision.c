@@ -228,7 +228,8 @@ CASE(a_ball_falls_as_far_on_a_large_box_as_on_a_small_one) {
   const double radius = 0.5166, halves[3] = {5, 50, 500};
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 9; k++) {
-      const double half = halves[i], x = 0.83 * half * (k % 3 - 1), y = 0.61 * half * (k / 3 - 1);
+      const int column = k % 3 - 1, row = k / 3 - 1;
+      const double half = halves[i], x = 0.83 * half * column, y = 0.61 * half * row;
       const double from[7] = {x, y, half + 20, 0, 0, 0, 1}, to[7] = {x, y, half, 0, 0, 0, 1};
       scene s;
       scene_begin(sphere(radius), HERE, CPROX_JOINT_FLOATING, box(2 * half, 2 * half, 2 * half), HERE, &s);
