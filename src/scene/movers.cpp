@@ -254,6 +254,7 @@ void choosePairs(const Allowed &allowed, Movers::Data &data) {
 
 std::string faultOfMovers(const Query &query) {
   if (!query.objects.empty()) return "objects do not apply to movers, '" + query.objects.front() + "' among them";
+  if (!query.links.empty()) return "links do not apply to movers, '" + query.links.front() + "' among them";
   if (query.options.certificate) return "a certificate does not apply: movers on one clock have none";
   return faultOfMotion(query, true);
 }
@@ -363,8 +364,7 @@ Answer ask(const Movers &movers, Against against, const Query &query, Workspace 
 
 Answer timeOfContact(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
   std::string fault = faultOfMovers(query);
-  if (fault.empty() && query.query_type != QueryType::COLLISION)
-    fault = "query_type does not apply: the time of contact is a query of type collision";
+  if (fault.empty()) fault = faultOfContact(query);
   const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
     /* what is nearer than the rounding may be in contact: standing bodies grow by it */
     std::vector<cprox_obstacle> grown = targets;

@@ -170,6 +170,9 @@ TEST_F(Movement, what_cannot_be_is_refused_by_name) {
   Query query;
   query.objects = {"wall"};
   expectContains(ask(movers, Against::OBJECTS, query, workspace).message, "objects do not apply to movers");
+  query.objects.clear();
+  query.links = {"cart"};
+  expectContains(ask(movers, Against::OBJECTS, query, workspace).message, "links do not apply to movers");
   expectContains(timeOfContact(movers, Against::OBJECTS, Query(), workspace).message, "a query of type collision");
   EXPECT_EQ(ask(movers, Against::MOVERS, Query(), workspace).result.lower, INFINITY); /* nothing to measure */
 }
