@@ -58,13 +58,13 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   query q = query_create(mover, c->targets, n, delta, true, &options, ws);
   query_ask_whole(&q);
   watched w = {.looks = 0};
-  const search_goal goal = {.order = delta < 0.0 ? SEARCH_BEST_FIRST : SEARCH_DEPTH_FIRST,
-                            .limit = delta,
-                            .cutoff = INFINITY,
-                            .time_cutoff = INFINITY,
-                            .epsilon = epsilon,
-                            .relative_epsilon = options.relative_epsilon,
-                            .max_nodes = options.max_nodes};
+  search_goal goal = {.order = delta < 0.0 ? SEARCH_BEST_FIRST : SEARCH_DEPTH_FIRST,
+                      .limit = delta,
+                      .cutoff = INFINITY,
+                      .time_cutoff = INFINITY,
+                      .epsilon = epsilon,
+                      .relative_epsilon = options.relative_epsilon,
+                      .max_nodes = options.max_nodes};
   if (!robot_scene_begin(&w.search.scene, &q, 0, n)) return false;
   robot_search_begin(&w.search, &goal);
   w.oracle = robot_search_oracle(&w.search);

@@ -4,13 +4,15 @@
  * median of what each round took over what one thread took in the same round, times one thread's median: what slows a
  * machine for longer than a round slows both. Beside them a loop of plain arithmetic over the same pools: where that
  * gains nothing from a second thread, the machine's second core was not free. What is wrong is what differs from one
- * thread's answers. */
+ * thread's answers.
+ * Then single queries, each on all threads: robots with their meshes, against themselves. */
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <string>
 #include <thread>
@@ -20,6 +22,9 @@
 #include <curve_proximity/parallel.hpp>
 
 #include "support/measure.h"
+extern "C" {
+#include "support/robot_case.h"
+}
 
 namespace {
 
@@ -126,6 +131,65 @@ void print(const std::string &workload, const char *method, unsigned threads, co
               times.p95, nodes, wrong, failed);
 }
 
+/* A robot of test/data/motion with its exact meshes on a long way: to and fro between postures of its trajectory. */
+struct Wanderer {
+  robot_case c{};
+  cprox_motion *motion = nullptr;
+
+  Wanderer(FILE *f, std::mt19937_64 &engine) {
+    constexpr std::size_t kWaypoints = 60;
+    if (!robot_case_read(f, BENCH_DATA_DIR "/motion", &c)) std::abort();
+    const cprox_motion_info info = cprox_motion_get_info(c.mesh_motion);
+    std::uniform_real_distribution<double> time(info.t0, info.t1);
+    std::vector<std::int32_t> variables(c.n_variables);
+    std::iota(variables.begin(), variables.end(), 0);
+    std::vector<std::vector<double>> positions(kWaypoints, std::vector<double>(c.n_variables));
+    std::vector<cprox_waypoint> waypoints;
+    for (std::size_t k = 0; k < kWaypoints; ++k) {
+      cprox_motion_evaluate(c.mesh_motion, time(engine), positions[k].data());
+      waypoints.push_back({static_cast<double>(k), positions[k].data(), nullptr, nullptr});
+    }
+    cprox_motion_description description{};
+    description.variables = variables.data(), description.n_variables = c.n_variables;
+    description.waypoints = waypoints.data(), description.n_waypoints = kWaypoints;
+    if (cprox_motion_create(c.mesh_robot, &description, nullptr, &motion) != CPROX_OK) std::abort();
+  }
+  ~Wanderer() {
+    cprox_motion_free(motion);
+    robot_case_free(&c);
+  }
+  Wanderer(const Wanderer &) = delete;
+  Wanderer &operator=(const Wanderer &) = delete;
+};
+
+/* Queries that take one thread this long [us]: shorter ones have no need of a second. */
+constexpr double kLongQuery = 5000.0;
+
+void oneQuery(const std::vector<std::unique_ptr<Pool>> &pools, int rounds) {
+  const Obstacles nothing({});
+  std::mt19937_64 engine(7);
+  FILE *f = std::fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
+  std::size_t n = 0;
+  if (!f || std::fscanf(f, "%zu", &n) != 1) std::abort();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Wanderer robot(f, engine);
+    const cprox_mover mover = cprox_robot_self(robot.motion, robot.c.self_pairs, robot.c.n_self_pairs);
+    const SharedQuery query(nothing, mover, CPROX_OPTIONS_DEFAULT);
+    query.distance(*pools[0]);
+    if (wallTime([&] { query.distance(*pools[0]); }) < kLongQuery) continue;
+    std::vector<cprox_result> answers(pools.size());
+    const std::vector<Times> times =
+        measure(pools, rounds, [&](std::size_t k) { answers[k] = query.distance(*pools[k]); });
+    for (std::size_t k = 0; k < pools.size(); ++k) {
+      const cprox_result &own = answers[k], &alone = answers[0];
+      const bool wrong = own.lower > alone.upper || alone.lower > own.upper;
+      print(std::string("growth one query ") + robot.c.name, "curve_proximity", pools[k]->threads(), times[k],
+            own.nodes, wrong, own.status != CPROX_OK);
+    }
+  }
+  std::fclose(f);
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
@@ -157,6 +221,7 @@ int main(int argc, char **argv) {
       print(workload, "curve_proximity", pools[k]->threads(), times[k], nodes, wrong, failed);
     }
   }
+  if (bench_wanted(&size, "growth one query")) oneQuery(pools, rounds);
   const std::string loop = "growth plain loop over threads";
   if (bench_wanted(&size, loop.c_str())) {
     const std::vector<Times> times = measure(pools, rounds, [&](std::size_t k) { plainLoop(*pools[k]); });

@@ -6,10 +6,13 @@
 #define CURVE_PROXIMITY_PARALLEL_HPP
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -237,6 +240,115 @@ class Batch {
   }
 
   Obstacles obstacles_;
+};
+
+/** One query about a robot, worked on by all threads of a pool: the intervals of its motion are taken in turn. Those of
+ * a distance share their best upper bound, and a violation ends those of a verdict. One thread with a query each is the
+ *  better use of a pool; this is for a single query that takes long. */
+class SharedQuery {
+ public:
+  /** The robot against the obstacles (kind ROBOT), itself (ROBOT_SELF), or both (ROBOT_WHOLE). What they name must
+   *  outlive the query. options.max_nodes is a budget for each interval; no certificate, interval or share. Throws
+   * Error for a mover that is no robot. */
+  SharedQuery(const Obstacles &obstacles, const cprox_mover &robot, const cprox_options &options)
+      : obstacles_(obstacles), robot_(robot), options_(options) {
+    if (!robot.motion)
+      throw Error("one query on several threads is for robots: the mover has no motion", CPROX_INVALID);
+    if (options.interval || options.share || options.certificate || options.stop)
+      throw Error("one query on several threads takes no interval, share, certificate or stop", CPROX_INVALID);
+  }
+
+  /** The distance: an interval no wider than asked, whose ends may differ by that width from run to run. The witness is
+   *  that of upper; nodes and distance_queries are summed up. Throws Error as Batch. */
+  cprox_result distance(Pool &pool) const {
+    return ask(pool, -1.0);
+  }
+
+  /** The tolerance verdict, delta >= 0 [m], the same for any number of threads as long as no budget ends a part of the
+   *  search; nodes and the witness of a violation may differ. */
+  cprox_result tolerance(double delta, Pool &pool) const {
+    return ask(pool, delta);
+  }
+
+ private:
+  static constexpr std::size_t kIntervalsPerThread = 8;
+
+  /** What all intervals know. */
+  struct Known {
+    std::atomic<double> upper{std::numeric_limits<double>::infinity()};
+    std::atomic<bool> violated{false};
+
+    static double share(void *user, double upper) {
+      auto &known = static_cast<Known *>(user)->upper;
+      double least = known.load(std::memory_order_relaxed);
+      while (upper < least && !known.compare_exchange_weak(least, upper, std::memory_order_relaxed)) {
+      }
+      return std::min(upper, least);
+    }
+    static bool stop(void *user) {
+      return static_cast<const Known *>(user)->violated.load(std::memory_order_relaxed);
+    }
+  };
+
+  cprox_result ask(Pool &pool, double delta) const {
+    const cprox_motion_info info = cprox_motion_get_info(robot_.motion);
+    const std::size_t n = pool.threads() == 1 ? 1 : kIntervalsPerThread * pool.threads();
+    const auto end = [&](std::size_t k) {
+      const double part = static_cast<double>(k) / static_cast<double>(n);
+      return k == n ? info.t1 : info.t0 + part * (info.t1 - info.t0);
+    };
+    Known known;
+    std::vector<cprox_result> results(n);
+    std::vector<char> asked(n, 0); // an interval that is shorter than double tells has no inside
+    pool.run(n, 1, [&](std::size_t first, std::size_t, Workspace &workspace) {
+      const std::array<double, 2> interval = {end(first), end(first + 1)};
+      if (!(interval[0] < interval[1])) return;
+      cprox_options options = options_;
+      options.interval = interval.data();
+      const bool verdict = delta >= 0.0;
+      if (verdict) options.stop = &Known::stop, options.stop_user = &known;
+      if (!verdict) options.share = &Known::share, options.share_user = &known;
+      results[first] = verdict ? obstacles_.tolerance(robot_, delta, options, workspace)
+                               : obstacles_.distance(robot_, options, workspace);
+      asked[first] = 1;
+      if (results[first].verdict == CPROX_VERDICT_VIOLATED) known.violated = true;
+    });
+    return join(results, asked, delta);
+  }
+
+  /** The union: the least of both ends, with the witness of the upper one. */
+  cprox_result join(const std::vector<cprox_result> &results, const std::vector<char> &asked, double delta) const {
+    cprox_result all{};
+    bool first = true;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (!asked[i]) continue;
+      const cprox_result &one = results[i];
+      const cprox_result before = all;
+      if (first || one.upper < all.upper) all = one;
+      if (!first) {
+        all.lower = std::min(before.lower, one.lower);
+        all.nodes = before.nodes + one.nodes;
+        all.distance_queries = before.distance_queries + one.distance_queries;
+        all.lod = std::max(before.lod, one.lod);
+        all.status = std::max(before.status, one.status);
+      }
+      first = false;
+    }
+    const double width = std::max(options_.epsilon, options_.relative_epsilon * all.upper);
+    if (delta >= 0.0) {
+      all.verdict = all.upper <= delta  ? CPROX_VERDICT_VIOLATED
+                    : all.lower > delta ? CPROX_VERDICT_CLEAR
+                                        : CPROX_VERDICT_UNDECIDED;
+    }
+    const bool decided = delta >= 0.0 && all.verdict != CPROX_VERDICT_UNDECIDED;
+    if (decided || (all.upper < std::numeric_limits<double>::infinity() && !(all.upper - all.lower > width)))
+      all.status = CPROX_OK;
+    return all;
+  }
+
+  const Obstacles &obstacles_;
+  cprox_mover robot_;
+  cprox_options options_;
 };
 
 } // namespace curve_proximity

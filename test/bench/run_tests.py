@@ -3,8 +3,10 @@
 """What scripts/bench says of its rows: targets, a second run, the record of soundness, the pages of the committed run."""
 import contextlib
 import csv
+import glob
 import io
 import os
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -37,6 +39,18 @@ def target(**given):
 def committed():
     with open(os.path.join(CHARTS, 'results.csv'), newline='') as text:
         return list(csv.DictReader(text))
+
+
+class Programs(unittest.TestCase):
+    def test_those_in_c_match_the_core(self):
+        """Compiled, not built: those of peers need the peers' headers."""
+        peers = ('curve_sisl.c', 'ipopt.c', 'libraries.c')
+        files = [path for folder in ('*', '*/*') for path in glob.glob(os.path.join(REPO, 'bench', folder + '.c')) if not path.endswith(peers)]
+        self.assertGreater(len(files), 40)
+        folders = ['include', 'src', 'src/core', 'src/fourier', 'check', 'bench', 'test/core']
+        command = ['cc', '-std=c11', '-fsyntax-only', '-DBENCH_DATA_DIR=""', *(f'-I{REPO}/{folder}' for folder in folders)]
+        done = subprocess.run(command + files, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        self.assertEqual(done.returncode, 0, done.stdout)
 
 
 class Targets(unittest.TestCase):

@@ -1,19 +1,29 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pool and batches over it. Also run under ThreadSanitizer. */
+#include <curve_proximity/cprox/robot.h>
 #include <curve_proximity/parallel.hpp>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <random>
 #include <stdexcept>
 #include <thread>
 
 #include "support/cases.h"
 
+using curve_proximity::at;
 using curve_proximity::Batch;
+using curve_proximity::BodyHandle;
+using curve_proximity::CurveHandle;
+using curve_proximity::makeBezier;
+using curve_proximity::makeBox;
+using curve_proximity::makeSphere;
 using curve_proximity::Pool;
+using curve_proximity::SharedQuery;
 using curve_proximity::Workspace;
 
 namespace {
@@ -162,6 +172,159 @@ CASE(unusable_targets_and_options_are_told) {
   assert_int_equal(answers.status, CPROX_INVALID);
   assert_true(answers.reason.find("delta") != std::string::npos);
   for (const cprox_result &result : answers.results) assert_int_equal(result.status, CPROX_INVALID);
+}
+
+/* ---- one query on several threads ---- */
+
+constexpr std::size_t kJoints = 6, kWaypoints = 9;
+
+/* A chain of six bars on a motion through nine waypoints, among twelve balls. */
+struct Arm {
+  std::vector<BodyHandle> bodies;
+  std::vector<cprox_obstacle> targets;
+  cprox_robot *robot = nullptr;
+  cprox_motion *motion = nullptr;
+
+  explicit Arm(std::mt19937 &random) {
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    bodies.push_back(makeBox({0.1, 0.1, 0.4}));
+    bodies.push_back(makeSphere(0.1));
+    std::vector<cprox_link> links;
+    std::vector<cprox_link_geometry> geometries;
+    std::array<std::int32_t, kJoints> variables{};
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const auto number = static_cast<std::int32_t>(i);
+      variables[i] = number;
+      cprox_link link{};
+      link.parent = number - 1, link.type = CPROX_JOINT_REVOLUTE, link.variable = number, link.multiplier = 1.0;
+      link.origin = {{0.0, 0.0, i == 0 ? 0.0 : 0.5}, {0, 0, 0, 1}};
+      link.axis = i % 2 == 0 ? cprox_vec3{0, 1, 0} : cprox_vec3{1, 0, 0};
+      links.push_back(link);
+      geometries.push_back({bodies[0].get(), {{0.0, 0.0, 0.25}, {0, 0, 0, 1}}, number, 0.0});
+    }
+    std::vector<std::array<double, kJoints>> positions(kWaypoints);
+    std::vector<cprox_waypoint> waypoints;
+    for (std::size_t k = 0; k < kWaypoints; ++k) {
+      for (double &q : positions[k]) q = 1.2 * unit(random);
+      waypoints.push_back({static_cast<double>(k), positions[k].data(), nullptr, nullptr});
+    }
+    for (int i = 0; i < 12; ++i) {
+      const Eigen::Vector3d way(unit(random), unit(random), unit(random));
+      targets.push_back(at(bodies[1], Eigen::Isometry3d(Eigen::Translation3d(2.2 * way))));
+    }
+    cprox_motion_description description{};
+    description.variables = variables.data(), description.n_variables = kJoints;
+    description.waypoints = waypoints.data(), description.n_waypoints = kWaypoints;
+    assert_int_equal(cprox_robot_create(links.data(), kJoints, geometries.data(), kJoints, kJoints, nullptr, &robot),
+                     CPROX_OK);
+    assert_int_equal(cprox_motion_create(robot, &description, nullptr, &motion), CPROX_OK);
+  }
+  ~Arm() {
+    cprox_motion_free(motion);
+    cprox_robot_free(robot);
+  }
+  Arm(const Arm &) = delete;
+  Arm &operator=(const Arm &) = delete;
+};
+
+/* Arms against obstacles, themselves and both: the intervals of one and of several threads both contain the distance,
+ * and are no wider than asked; verdicts on either side of it are the same. The arms and where they are nearest: seed 5.
+ */
+CASE(one_query_on_several_threads_answers_as_on_one) {
+  std::mt19937 random(5);
+  Pool alone(1), two(2), three(3);
+  Workspace workspace;
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  for (int i = 0; i < 24; ++i) {
+    const Arm arm(random);
+    const curve_proximity::Obstacles obstacles(i % 3 == 1 ? std::vector<cprox_obstacle>() : arm.targets);
+    cprox_mover mover = cprox_robot_along(arm.motion, nullptr, 0);
+    mover.kind = i % 3 == 0 ? CPROX_MOVER_ROBOT : i % 3 == 1 ? CPROX_MOVER_ROBOT_SELF : CPROX_MOVER_ROBOT_WHOLE;
+    options.epsilon = i % 2 == 0 ? 1e-6 : 1e-3;
+    const SharedQuery query(obstacles, mover, options);
+    const cprox_result whole = obstacles.distance(mover, options, workspace);
+    for (Pool *pool : {&alone, &two, &three}) {
+      const cprox_result r = query.distance(*pool);
+      assert_int_equal(r.status, CPROX_OK);
+      assert_true(r.lower <= r.upper && r.upper - r.lower <= options.epsilon);
+      assert_true(r.lower <= whole.upper && whole.lower <= r.upper);
+      for (const double delta : {0.5 * whole.lower, 0.9 * whole.lower, 1.1 * whole.upper, whole.upper + 0.1}) {
+        const cprox_result verdict = query.tolerance(delta, *pool);
+        assert_int_equal(verdict.status, CPROX_OK);
+        assert_int_equal(verdict.verdict, delta >= whole.upper ? CPROX_VERDICT_VIOLATED
+                                          : delta < whole.lower
+                                              ? CPROX_VERDICT_CLEAR
+                                              : obstacles.tolerance(mover, delta, options, workspace).verdict);
+      }
+    }
+  }
+}
+
+/* The least of the distances of intervals is that of the whole motion, and times stay inside: seed 6. */
+CASE(intervals_of_a_motion_cover_it) {
+  std::mt19937 random(6);
+  Workspace workspace;
+  for (int i = 0; i < 20; ++i) {
+    const Arm arm(random);
+    const curve_proximity::Obstacles obstacles(arm.targets);
+    const cprox_mover mover = cprox_robot_along(arm.motion, nullptr, 0);
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    const cprox_result whole = obstacles.distance(mover, options, workspace);
+    const cprox_result contact = obstacles.timeOfContact(mover, options, workspace);
+    const std::vector<double> ends = {0.0, 0.3, 1.0, 2.7, 2.8, 5.0, 5.0 + 1e-9, 8.0};
+    double lower = INFINITY, upper = INFINITY, first_contact = INFINITY;
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+      options.interval = &ends[k];
+      const cprox_result r = obstacles.distance(mover, options, workspace);
+      assert_true(r.t >= ends[k] && r.t <= ends[k + 1]);
+      lower = std::min(lower, r.lower), upper = std::min(upper, r.upper);
+      const cprox_result touch = obstacles.timeOfContact(mover, options, workspace);
+      if (touch.verdict == CPROX_VERDICT_CLEAR) continue;
+      assert_true(touch.t_contact_lower >= ends[k] && touch.t_contact_lower <= ends[k + 1]);
+      first_contact = std::min(first_contact, touch.t_contact_lower);
+    }
+    assert_true(lower <= whole.upper && whole.lower <= upper && upper - lower <= 1e-6);
+    if (contact.verdict == CPROX_VERDICT_VIOLATED) {
+      assert_true(first_contact <= contact.t);
+      assert_true(std::fabs(first_contact - contact.t_contact_lower) < 1e-4);
+    }
+  }
+}
+
+CASE(what_is_no_part_of_a_robots_query_is_told) {
+  std::mt19937 random(7);
+  const Arm arm(random);
+  const curve_proximity::Obstacles obstacles(arm.targets);
+  Workspace workspace;
+  cprox_result r;
+  const cprox_mover mover = cprox_robot_along(arm.motion, nullptr, 0);
+  const auto refused = [&](const cprox_mover &asked, const cprox_options &options, const char *words) {
+    const cprox_status status =
+        cprox_obstacles_distance(obstacles.get(), asked, &options, workspace.get(), &r, nullptr);
+    return status == CPROX_INVALID && workspace.reason().find(words) != std::string::npos;
+  };
+  const CurveHandle curve = makeBezier(Eigen::Matrix3Xd::Random(3, 4));
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  for (const std::array<double, 2> &bad :
+       std::vector<std::array<double, 2>>{{-1, 2}, {2, 9}, {3, 3}, {4, 3}, {NAN, 3}, {0, INFINITY}}) {
+    options.interval = bad.data();
+    assert_true(refused(mover, options, "interval is ["));
+  }
+  const std::array<double, 2> good = {0.0, 0.5};
+  options.interval = good.data();
+  assert_true(refused(curve_proximity::along(curve), options, "interval is an option of robots"));
+  options.share = [](void *, double upper) { return upper; };
+  options.interval = nullptr;
+  assert_true(refused(curve_proximity::along(curve), options, "share is an option of robots"));
+  assert_int_equal(cprox_obstacles_tolerance(obstacles.get(), mover, 0.1, &options, workspace.get(), &r, nullptr),
+                   CPROX_INVALID);
+  bool told = false;
+  try {
+    SharedQuery(obstacles, mover, options);
+  } catch (const curve_proximity::Error &error) {
+    told = std::string(error.what()).find("takes no interval") != std::string::npos;
+  }
+  assert_true(told);
 }
 
 } // namespace

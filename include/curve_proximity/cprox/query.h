@@ -136,7 +136,9 @@ CPROX_API const char *cprox_lod_name(cprox_lod lod);
  *    pair                                      yes               yes   yes       no           yes: always signed
  *    translating distance                      yes               no    no        no           no
  *    translating contact, growth distance      no                yes   no        no           no
- *    certificate for an answer                 yes               no    yes       no           no */
+ *    certificate for an answer                 yes               no    yes       no           no
+ *
+ *  Of robots alone: interval goes with distance, tolerance, collision and time of contact; share with distance. */
 typedef struct cprox_options {
   /** sizeof(cprox_options), as CPROX_OPTIONS_DEFAULT sets it; any other size is refused */
   size_t size;
@@ -165,11 +167,22 @@ typedef struct cprox_options {
    *  are. A coarser model contains the body: lower and clear hold for the body itself as well, but upper, the witness
    *  points and violated are the model's */
   cprox_lod max_lod;
+  /** robots: NULL for the whole motion, or two times [s], begin < end, both within the motion's domain: distance,
+   *  tolerance, collision and time of contact are then asked of this interval alone, without certificate */
+  const double *interval;
+  /** robots, distance: several queries, each of an interval or of some pairs, that are one question together: called at
+   *  each node with the upper bound of this query, it returns the least one of all of them. A query need not look
+   *  closer than that, so that its lower is either near its own upper, or at most a width below the least one. NULL: a
+   *  query of its own. Calls come from the thread that asks; parallel.hpp has a use of it */
+  double (*share)(void *user, double upper);
+  /** handed to share */
+  void *share_user;
 } cprox_options;
 
 /** The default of all options. */
-#define CPROX_OPTIONS_DEFAULT \
-  (CPROX_VALUE(cprox_options){sizeof(cprox_options), 1e-6, 0.0, 20000, NULL, NULL, NULL, false, CPROX_LOD_MESH})
+#define CPROX_OPTIONS_DEFAULT                                                                                         \
+  (CPROX_VALUE(cprox_options){sizeof(cprox_options), 1e-6, 0.0, 20000, NULL, NULL, NULL, false, CPROX_LOD_MESH, NULL, \
+                              NULL, NULL})
 
 /** The result of a query. */
 typedef struct cprox_result {

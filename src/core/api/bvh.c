@@ -40,8 +40,8 @@ static cprox_status out_of_memory(const query *q) {
 }
 
 static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, cprox_result *result) {
-  const unsigned depths = query_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED;
-  const cprox_status begun = bvh_begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | depths});
+  const unsigned others = ARGUMENTS_INTERVAL | (query_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED | ARGUMENTS_SHARE);
+  const cprox_status begun = bvh_begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | others});
   if (begun != CPROX_OK) return begun;
   if (q->mover.motion || !boxes_hold(q)) return query_answer(q, 0, q->n, INFINITY, result);
   set_walk walk;
@@ -92,8 +92,10 @@ cprox_status bvh_collision(const obstacle_bvh *set, cprox_mover mover, const cpr
 cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
                                  cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
-  const cprox_status begun = bvh_begin(
-      set, &q, (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE});
+  const cprox_status begun =
+      bvh_begin(set, &q,
+                (arguments_query){"time of contact with a set",
+                                  ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL});
   if (begun != CPROX_OK) return begun;
   if (q.set) return robot_time_of_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))

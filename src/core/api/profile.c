@@ -107,7 +107,7 @@ static cprox_status measure_motion(query *q, double t0, double t1, cprox_profile
                                        .t1 = t1,
                                        .lower = r.lower,
                                        .upper = r.upper,
-                                       .t = r.obstacle_index < 0 ? t0 : fmin(fmax(r.t, t0), t1),
+                                       .t = r.obstacle_index < 0 ? t0 : r.t,
                                        .obstacle_index = r.obstacle_index,
                                        .mover_part = r.mover_part};
   return status;

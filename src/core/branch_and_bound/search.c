@@ -113,8 +113,8 @@ static cprox_status work_on(const search_goal *goal, const search_oracle *oracle
   return enter(goal, oracle, &child[first], open, outcome) ? CPROX_OK : CPROX_MEMORY;
 }
 
-cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
-                        cprox_workspace *workspace, search_outcome *outcome) {
+cprox_status search_run(search_goal *goal, const search_oracle *oracle, search_node root, cprox_workspace *workspace,
+                        search_outcome *outcome) {
   frontier open = {.workspace = workspace, .order = goal->order};
   const bool best_first = goal->order == SEARCH_BEST_FIRST;
   cprox_status status = CPROX_OK;
@@ -124,6 +124,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
 
   while (open.count > 0) {
     search_node node = frontier_pop(&open);
+    if (goal->share) goal->cutoff = lesser(goal->cutoff, goal->share(goal->share_user, outcome->best.upper));
 
     /* what is known already may settle it, or make another node the more promising one */
     const bool pruned_all =

@@ -64,10 +64,12 @@ typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST, SEARCH_LEFT_T
  * than the width; a verdict search (limit >= 0) on nodes that could come as close as the limit. */
 typedef struct search_goal {
   search_order order;
-  double limit;       /* verdicts: delta; distance: -1 */
-  bool is_signed;     /* distance: bounds below 0 are not as good as 0 */
-  double cutoff;      /* distance: an upper bound known from elsewhere, or infinity */
-  double beyond;      /* distance: nodes that come within this of the best point are worked on, too; 0: they are not */
+  double limit;   /* verdicts: delta; distance: -1 */
+  bool is_signed; /* distance: bounds below 0 are not as good as 0 */
+  double cutoff;  /* distance: an upper bound known from elsewhere, or infinity */
+  double beyond;  /* distance: nodes that come within this of the best point are worked on, too; 0: they are not */
+  double (*share)(void *user, double upper); /* distance: tells ours, returns the least one of all who share; or NULL */
+  void *share_user;
   double time_cutoff; /* left to right: parameters from here on are of no interest; infinity: all are */
   double epsilon, relative_epsilon;
   uint32_t max_nodes;
@@ -114,8 +116,9 @@ static inline bool search_is_answered(const search_goal *goal, double upper) {
   return upper <= (goal->beyond > 0.0 ? 0.0 : search_width(goal, upper));
 }
 
-/* Searches from the root on; *outcome is always filled, and true, when the status is not negative. */
-cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
-                        cprox_workspace *workspace, search_outcome *outcome);
+/* Searches from the root on; *outcome is always filled, and true, when the status is not negative. Where bounds are
+ * shared goal->cutoff falls meanwhile. */
+cprox_status search_run(search_goal *goal, const search_oracle *oracle, search_node root, cprox_workspace *workspace,
+                        search_outcome *outcome);
 
 #endif

@@ -24,6 +24,7 @@ void query_ask_whole(query *q) {
   if (q->mover.motion) {
     const cprox_motion_info info = cprox_motion_get_info(q->mover.motion);
     q->t0 = info.t0, q->t1 = info.t1;
+    if (q->options.interval) q->t0 = q->options.interval[0], q->t1 = q->options.interval[1];
     return;
   }
   q->part = curve_side_whole();

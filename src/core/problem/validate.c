@@ -34,6 +34,9 @@ static cprox_status check_applies(const cprox_options *options, arguments_query 
       {ARGUMENTS_RELATIVE, options->relative_epsilon != 0.0, "relative_epsilon", "set epsilon alone"},
       {ARGUMENTS_LOD, options->max_lod != CPROX_LOD_NONE && options->max_lod != CPROX_LOD_MESH, "max_lod",
        "bodies answer as they are"},
+      {ARGUMENTS_INTERVAL, options->interval != NULL, "interval",
+       "it is an option of distance, tolerance, collision and time of contact"},
+      {ARGUMENTS_SHARE, options->share != NULL, "share", "it is an option of distance queries"},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     if (all[i].set && !(asked.has & all[i].option))
@@ -213,6 +216,23 @@ static cprox_status check_kind(const cprox_mover *mover, cprox_workspace *worksp
   return CPROX_OK;
 }
 
+/* The options by which a query is a part of one. */
+static cprox_status check_part(const cprox_mover *mover, const cprox_options *options, cprox_workspace *workspace) {
+  if (!options->interval && !options->share) return CPROX_OK;
+  const char *name = options->interval ? "interval" : "share";
+  if (!mover->motion) return workspace_fail(workspace, CPROX_INVALID, "%s is an option of robots", name);
+  if (options->certificate)
+    return workspace_fail(workspace, CPROX_INVALID, "%s: a certificate is about the whole motion", name);
+  if (!options->interval) return CPROX_OK;
+  const cprox_motion_info whole = cprox_motion_get_info(mover->motion);
+  const double from = options->interval[0], to = options->interval[1];
+  if (!(from >= whole.t0 && to <= whole.t1 && from < to))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "interval is [%.17g, %.17g], must ascend within the motion's [%.17g, %.17g]", from, to,
+                          whole.t0, whole.t1);
+  return CPROX_OK;
+}
+
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                                    const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
@@ -233,6 +253,7 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacl
     return workspace_fail(workspace, CPROX_INVALID,
                           "signed_distance does not apply to robots: how deep they overlap is not measured");
   checked = check_robot(mover, n, workspace);
+  if (checked == CPROX_OK) checked = check_part(mover, options, workspace);
   if (checked == CPROX_OK) checked = check_ride(mover, options->max_lod, workspace);
   if (checked == CPROX_OK) checked = arguments_check_targets(targets, n, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)

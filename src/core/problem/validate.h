@@ -13,6 +13,8 @@ typedef enum arguments_option {
   ARGUMENTS_RELATIVE = 8,    /* relative_epsilon */
   ARGUMENTS_LOD = 16,        /* max_lod */
   ARGUMENTS_WHOLE = 32,      /* robots against obstacles and themselves at once */
+  ARGUMENTS_INTERVAL = 64,   /* interval, of robots */
+  ARGUMENTS_SHARE = 128,     /* share, of robots */
   ARGUMENTS_SEARCH = ARGUMENTS_STOP | ARGUMENTS_RELATIVE | ARGUMENTS_LOD
 } arguments_option;
 

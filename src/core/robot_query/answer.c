@@ -17,7 +17,7 @@ static cprox_status run(const query *q, const search_goal *goal, robot_search *o
   if (!robot_search_root(o, &over, &root))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
   const search_oracle oracle = robot_search_oracle(o);
-  const cprox_status status = search_run(goal, &oracle, root, q->workspace, found);
+  const cprox_status status = search_run(&o->goal, &oracle, root, q->workspace, found);
   if (status == CPROX_MEMORY) return workspace_fail(q->workspace, status, "no memory for the open intervals");
   return status;
 }
@@ -28,7 +28,7 @@ static void report(const robot_search *o, const robot_sample *sample, cprox_resu
   if (sample->pair < 0) return;
   const robot_scene *s = &o->scene;
   const robot_pair *pair = &s->pairs[sample->pair];
-  r->t = motion_time(s->motion, sample->segment, sample->u);
+  r->t = fmin(fmax(motion_time(s->motion, sample->segment, sample->u), s->q->t0), s->q->t1);
   r->witness_mover = sample->gap.on_moving, r->witness_obstacle = sample->gap.on_standing,
   r->normal = sample->gap.normal;
   r->mover_part = s->parts[pair->moving].body.index;
@@ -54,7 +54,8 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double cuto
   robot_search o;
   if (!robot_scene_begin(&o.scene, q, first, last))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
-  const search_goal goal = query_goal(q, query_order(q), cutoff);
+  search_goal goal = query_goal(q, query_order(q), cutoff);
+  if (!query_wants_verdict(q)) goal.share = q->options.share, goal.share_user = q->options.share_user;
   search_outcome found;
   const cprox_status status = run(q, &goal, &o, &found);
   if (status < 0) return status;
@@ -63,6 +64,7 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double cuto
   robot_search_report(&o, &r);
   r.lower = fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
   r.nodes = found.nodes;
+  if (goal.share) cutoff = lesser(cutoff, goal.share(goal.share_user, r.upper));
   query_conclude(q, cutoff, status, &r);
   *result = r;
   return r.status;
@@ -87,7 +89,7 @@ cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   report(&o, sample, &r);
   r.upper = sample->pair < 0 ? INFINITY : fmax(sample->gap.upper, 0.0);
   r.lower = touch ? 0.0 : fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
-  r.t_contact_lower = fmin(found.free_until, q->t1);
+  r.t_contact_lower = fmax(fmin(found.free_until, q->t1), q->t0);
   r.verdict = touch ? CPROX_VERDICT_VIOLATED : isinf(found.free_until) ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_UNDECIDED;
   if (sample->pair < 0) r.t = NAN;
   if (touch) r.t = fmax(r.t, r.t_contact_lower); /* one is rounded, the other rounded down */

@@ -15,7 +15,7 @@ static cprox_result nothing(void) {
 /* ---- one candidate ---- */
 
 /* Searches a pair from left to right: where the two come within epsilon first, and where contact is proven. */
-static cprox_status meet_placed(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+static cprox_status meet_placed(const query *q, const placed_pair *p, search_goal *goal, search_outcome *found,
                                 time_of_contact *met) {
   curve_search s;
   curve_start start = {.goal = *goal};
