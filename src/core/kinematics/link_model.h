@@ -6,6 +6,7 @@
 
 #include "bvh/bvh.h"
 #include "shape/body.h"
+#include "shape/cluster_hulls.h"
 
 typedef struct part_model {
   const convex *shape; /* of a level-of-detail body its hull, of a mesh, points or boxes a point */
@@ -17,6 +18,7 @@ typedef struct part_model {
   const tree *tree;    /* the elements; NULL: the body is the shape with its margin */
   vec3 tree_at;        /* where the tree's origin is, from the centre */
   double tree_margin;
+  const cluster_hulls *clusters; /* between the shape and the elements; NULL: there are none */
 } part_model;
 
 /* body: no compound. */

@@ -19,6 +19,9 @@ static const double MOST_DISPLACEMENT = 0.5;
 /* Normals that turn faster than this over a node are taken to stand still. */
 static const double FASTEST_NORMAL_RATE = 0.5;
 
+/* Pairs are opened while there are no more than so many: the node is too long for more, halves will tell. */
+enum { MOST_OPEN = 512 };
+
 /* Where a plane in the middle asks for more pieces than this, no distance is measured. */
 static const double ENOUGH_PIECES = 3.0;
 
@@ -117,12 +120,13 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
   robot_pair pair = {.moving = whole->moving,
                      .standing = whole->standing,
                      .element = {found->element[0], found->element[1]},
+                     .near = {ROBOT_WHOLE, ROBOT_WHOLE},
                      .self = whole->self};
   const robot_body *moving = robot_scene_moving(&o->scene, &pair), *standing = robot_scene_standing(&o->scene, &pair);
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
   robot_keep_normal(o, &pair, standing, &found->gap);
-  list_entry entry = {.lower = found->gap.lower - motion->displacement};
+  list_entry entry = {.lower = found->gap.lower - motion->displacement, .bounded = true};
   double slack = moving->side.error + standing->side.error;
   if (!robot_is_pruned(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
     entry.lower = fmax(entry.lower, bound_by_gap(o, &pair, moving, standing, motion, &found->gap, &slack));
@@ -162,7 +166,7 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   entry->needs_split = false;
   double coarse = INFINITY;
-  if (pair->element[0] < 0 && pair->element[1] < 0) {
+  if (pair->element[0] == ROBOT_WHOLE && pair->element[1] == ROBOT_WHOLE) {
     coarse = robot_scene_coarse_displacement(&o->scene, pair);
     entry->lower = greater(robot_pair_balls(moving, standing) - coarse, entry->lower);
     if (robot_is_pruned(o, entry->lower)) return;
@@ -178,6 +182,28 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   want_pieces(o, displacement / size);
 }
 
+static cprox_status keep_open(robot_search *o, const list_entry *entry) {
+  if (!robot_is_pruned(o, entry->lower)) return keep_entry(o, entry) ? CPROX_OK : robot_no_memory(o);
+  o->dropped = lesser(entry->lower, o->dropped);
+  return CPROX_OK;
+}
+
+/* The clusters of one side take the place of the pair. */
+static cprox_status open_pair(robot_search *o, const search_node *node, list_entry *entry) {
+  uint32_t count;
+  const int32_t first = robot_scene_open_pair(&o->scene, entry->pair, &count);
+  if (first < 0) return robot_no_memory(o);
+  o->refined = true;
+  cprox_status status = CPROX_OK;
+  for (uint32_t i = 0; i < count && status == CPROX_OK; i++) {
+    list_entry inner = {.lower = entry->lower, .pair = first + (int32_t)i};
+    bound_pair_roughly(o, node, &inner);
+    status = keep_open(o, &inner);
+  }
+  entry->lower = INFINITY;
+  return status;
+}
+
 /* The same by planes and distances, the cheapest way that settles it. */
 static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
   robot_pair *pair = &o->scene.pairs[entry->pair];
@@ -186,6 +212,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
   const double displacement = motion->displacement;
+  const bool can_open = robot_can_open((const robot_body *const[2]){moving, standing});
 
   if (!pair->normal_known) keep_guess(o, pair, moving, standing);
   if (pair->normal_known) {
@@ -212,8 +239,20 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   entry->lower = fmax(entry->lower, gap.lower - displacement);
   if (pair->normal_known && gap.upper > 0.0)
     entry->lower = fmax(entry->lower, bound_by_gap(o, pair, moving, standing, motion, &gap, slack));
-  if (!robot_is_pruned(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
-  if (robot_is_convex(moving, standing) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
+  if (robot_is_pruned(o, entry->lower)) return CPROX_OK;
+  const double pieces = pieces_for(o, gap.lower, entry->lower);
+  const robot_pair *whole = &o->scene.pairs[entry->pair];
+  if (can_open && !robot_is_pruned(o, gap.lower) && o->goal.limit < 0.0 && whole->element[0] == ROBOT_WHOLE &&
+      whole->element[1] == ROBOT_WHOLE) {
+    robot_refinement nearest = robot_refinement_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
+    const cprox_status refined = robot_refine_elements(o, &nearest);
+    if (refined < 0) return refined;
+  }
+  const bool too_many = o->n_next > MOST_OPEN && !robot_is_short(node);
+  if (can_open && !too_many && (!robot_is_pruned(o, gap.lower) || robot_is_short(node)))
+    return open_pair(o, node, entry);
+  want_pieces(o, pieces);
+  if (can_open || robot_is_convex(moving, standing) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
   if (o->goal.limit < 0.0 && gap.lower < o->best_bound.upper) {
@@ -223,12 +262,6 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   }
   if (robot_is_pruned(o, gap.lower) && !robot_is_short(node)) return CPROX_OK;
   return refine_pair_elements(o, node, entry, &gap, displacement);
-}
-
-static cprox_status keep_open(robot_search *o, const list_entry *entry) {
-  if (!robot_is_pruned(o, entry->lower)) return keep_entry(o, entry) ? CPROX_OK : robot_no_memory(o);
-  o->dropped = lesser(entry->lower, o->dropped);
-  return CPROX_OK;
 }
 
 /* The pairs of a part and the target in a box of the set's tree. */
@@ -307,15 +340,14 @@ cprox_status robot_bound_node(robot_search *o, search_node *node) {
   const cprox_status rough = bound_roughly(o, node);
   if (rough < 0) return rough;
 
-  /* those that stay move to the front, elements that take the place of a pair come behind the last one */
-  const size_t n = o->n_next;
+  /* those that stay move to the front, what takes the place of a pair comes behind the last one */
   o->cut = o->pieces > 2.0;
   size_t kept = 0;
   node->lower = INFINITY;
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < o->n_next; i++) {
     list_entry entry = o->next[i];
     double slack = 0.0;
-    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !o->scene.bent) {
+    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !entry.bounded && !o->scene.bent) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
       if (robot_is_answered(o)) {
@@ -327,10 +359,10 @@ cprox_status robot_bound_node(robot_search *o, search_node *node) {
       o->dropped = lesser(entry.lower, o->dropped);
       continue;
     }
+    entry.bounded = false;
     o->next[kept++] = entry;
     if (entry.lower < node->lower) node->lower = entry.lower, node->slack = slack;
   }
-  for (size_t i = n; i < o->n_next; i++) o->next[kept++] = o->next[i];
   o->n_next = kept;
 
   const int32_t list = lists_take(&o->lists, o->n_next);

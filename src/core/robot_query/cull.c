@@ -69,7 +69,7 @@ int32_t cluster_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count)
   }
   int32_t first = -1;
   for (size_t i = 0; i < *count; i++) {
-    const robot_pair pair = {.moving = part, .standing = obstacle + (int32_t)i, .element = {-1, -1}};
+    const robot_pair pair = {.moving = part, .standing = obstacle + (int32_t)i, .element = {-1, -1}, .near = {-1, -1}};
     const int32_t added = robot_scene_add_pair(s, &pair);
     if (added < 0) return -1;
     if (i == 0) first = added;

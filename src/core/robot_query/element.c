@@ -17,7 +17,7 @@ static void find_box(robot_element *e, int n) {
   double low[3] = {e->x[0], e->y[0], e->z[0]}, high[3] = {e->x[0], e->y[0], e->z[0]};
   for (int i = 1; i < n; i++) {
     const double at[3] = {e->x[i], e->y[i], e->z[i]};
-    for (int k = 0; k < 3; k++) low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
+    for (int k = 0; k < 3; k++) low[k] = lesser(low[k], at[k]), high[k] = greater(high[k], at[k]);
   }
   robot_body *body = &e->body;
   const double grow = ROUND_U * e->shape.scale;
@@ -25,11 +25,34 @@ static void find_box(robot_element *e, int n) {
   body->half = vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
   if (n != 2) return;
   body->middle = vec(0, 0, 0);
-  for (int k = 0; k < 3; k++) e->shape.size[k] = fmax(fabs(low[k]), fabs(high[k]));
+  for (int k = 0; k < 3; k++) e->shape.size[k] = greater(fabs(low[k]), fabs(high[k]));
   body->half = vec(e->shape.size[0] + grow, e->shape.size[1] + grow, e->shape.size[2] + grow);
 }
 
+/* Lengths that enter the place of what is at `at` from the owner's shape and reaches so far round there. */
+static double placing_error(const robot_body *owner, double reach, vec3 world) {
+  const double sizes = vec_norm(owner->tree_at) + 2.0 * owner->tree->scale + reach;
+  return ROUND_UP * ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(world));
+}
+
+static const robot_body *cluster_make(const robot_body *owner, int32_t code, robot_element *e) {
+  const cluster_hull *hull = robot_cluster_of(owner, code);
+  e->body = *owner;
+  robot_body *body = &e->body;
+  body->side.shape = &hull->shape;
+  body->side.margin = owner->tree_margin;
+  body->side.at.p = placement_apply(&owner->side.at, vec_add(owner->tree_at, hull->centre));
+  body->side.error += placing_error(owner, hull->radius, body->side.at.p);
+  body->radius = hull->radius + owner->tree_margin;
+  const double grow = ROUND_U * hull->radius;
+  body->middle = vec(0, 0, 0);
+  body->half = vec_add(hull->half, vec(grow, grow, grow));
+  return body;
+}
+
 const robot_body *robot_element_make(const robot_body *owner, int32_t code, robot_element *e) {
+  e->node = 0;
+  if (code < ROBOT_WHOLE) return cluster_make(owner, code, e);
   const tree *t = owner->tree;
   vec3 v[3];
   const int n = tree_corners(t, robot_element_place(code), v);
@@ -38,7 +61,7 @@ const robot_body *robot_element_make(const robot_body *owner, int32_t code, robo
   for (int i = 0; i < 8; i++) {
     const vec3 corner = vec_sub(v[i < n ? i : n - 1], middle);
     e->x[i] = corner.x, e->y[i] = corner.y, e->z[i] = corner.z;
-    reach = fmax(reach, vec_norm(corner));
+    reach = greater(reach, vec_norm(corner));
   }
   reach *= 1.0 + 8.0 * ROUND_U;
   e->shape = (convex){.ops = n == 3 ? &convex_polytope : n == 2 ? &convex_box : &convex_point, .scale = reach};
@@ -48,12 +71,11 @@ const robot_body *robot_element_make(const robot_body *owner, int32_t code, robo
   e->body = *owner;
   robot_body *body = &e->body;
   const vec3 at = vec_add(owner->tree_at, middle);
-  body->tree = NULL;
+  body->tree = NULL, body->clusters = NULL;
   body->side.shape = &e->shape;
   body->side.margin = owner->tree_margin;
   body->side.at.p = placement_apply(&owner->side.at, at);
-  const double sizes = vec_norm(owner->tree_at) + 2.0 * t->scale + reach;
-  body->side.error += ROUND_UP * ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(body->side.at.p));
+  body->side.error += placing_error(owner, reach, body->side.at.p);
   body->radius = reach + owner->tree_margin;
   find_box(e, n);
   return body;

@@ -95,8 +95,11 @@ cprox_status robot_measure_whole(robot_search *o, int32_t index) {
       &gap);
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  if (status < 0 || robot_is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
-  robot_refinement c = robot_refinement_from(o, index, &gap, o->best_bound.upper, 0.0);
+  /* a verdict is not about what is farther than its limit */
+  const bool verdict = o->goal.limit >= 0.0 && o->goal.order != SEARCH_LEFT_TO_RIGHT;
+  const double most = verdict ? lesser(o->best_bound.upper, o->goal.limit + o->goal.epsilon) : o->best_bound.upper;
+  if (status < 0 || robot_is_convex(moving, standing) || gap.lower >= most) return status;
+  robot_refinement c = robot_refinement_from(o, index, &gap, most, 0.0);
   return robot_refine_elements(o, &c);
 }
 
@@ -209,7 +212,7 @@ static cprox_status seed_span(robot_search *o, int32_t list, const motion_interv
 
 cprox_status robot_measure_if_near(robot_search *o, int32_t index) {
   const robot_pair *pair = &o->scene.pairs[index];
-  if (pair->element[0] >= 0 || pair->element[1] >= 0) return CPROX_OK;
+  if (pair->element[0] != ROBOT_WHOLE || pair->element[1] != ROBOT_WHOLE) return CPROX_OK;
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   if (robot_pair_balls(moving, standing) > o->goal.epsilon) return CPROX_OK;
   return robot_pair_ball_distance(moving, standing) > o->goal.epsilon ? CPROX_OK : robot_measure_whole(o, index);

@@ -13,7 +13,8 @@ typedef struct list_entry {
   int32_t pair; /* or -1: all that is under a node of the set's tree, for one part of the robot */
   int32_t part;
   uint32_t under;
-  bool needs_split; /* on this node the part moves too far to be measured */
+  bool needs_split; /* on this node the part moves too far to be measured, */
+  bool bounded;     /* and planes have said what they can */
 } list_entry;
 
 enum { LIST_CLASSES = 28 };

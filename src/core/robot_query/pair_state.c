@@ -42,7 +42,8 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
   placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->margin};
   for (int i = 0; i < 9; i++) placed.side.at.r[i] = f.r[i];
   placed.side.at.p = frame_to_world(&f, vec(0, 0, 0));
-  placed.tree = m.tree, placed.tree_at = m.tree_at, placed.tree_margin = m.tree_margin + target->margin;
+  placed.tree = m.tree, placed.clusters = m.tree ? m.clusters : NULL, placed.tree_at = m.tree_at,
+  placed.tree_margin = m.tree_margin + target->margin;
   if (robot_body_is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
   const double sizes = vec_norm(m.centre) + placed.radius;
   placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
@@ -67,7 +68,8 @@ static robot_body part_body(const query *q, size_t i) {
   const part_model m = model_for(q, part->model);
   robot_body body = {.radius = m.radius, .steps = part->steps, .index = part->geometry, .part = (int32_t)i};
   body.side = (bound_side){.shape = m.shape, .margin = m.margin, .error = motion->part_error[i]};
-  body.tree = m.tree, body.tree_at = m.tree_at, body.tree_margin = m.tree_margin;
+  body.tree = m.tree, body.clusters = m.tree ? m.clusters : NULL, body.tree_at = m.tree_at,
+  body.tree_margin = m.tree_margin;
   body.middle = m.middle, body.half = m.half;
   return body;
 }
@@ -75,7 +77,8 @@ static robot_body part_body(const query *q, size_t i) {
 /* ---- pairs ---- */
 
 static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing, bool self) {
-  robot_pair pair = {.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}, .self = self};
+  robot_pair pair = {
+      .moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}, .near = {-1, -1}, .self = self};
   if (!self || !s->displacements) return pair;
   const cprox_robot *robot = s->motion->robot;
   const int32_t common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
@@ -208,6 +211,25 @@ int32_t robot_scene_add_pair(robot_scene *s, const robot_pair *pair) {
   return (int32_t)s->n_pairs++;
 }
 
+int32_t robot_scene_open_pair(robot_scene *s, int32_t index, uint32_t *count) {
+  const robot_pair whole = s->pairs[index];
+  *count = whole.n_inner;
+  if (whole.n_inner > 0) return whole.inner;
+  const robot_body *const side[2] = {robot_scene_moving(s, &whole), robot_scene_standing(s, &whole)};
+  const int opened = robot_side_to_open(side);
+  const cluster_hull *hull = robot_cluster_of(side[opened], whole.element[opened]);
+  int32_t first = -1;
+  for (uint32_t i = 0; i < hull->count; i++) {
+    robot_pair inner = whole; /* with the direction that parts the whole */
+    inner.element[opened] = robot_inner_code(hull, i);
+    const int32_t number = robot_scene_add_pair(s, &inner);
+    if (number < 0) return -1;
+    if (i == 0) first = number;
+  }
+  s->pairs[index].inner = first, s->pairs[index].n_inner = *count = hull->count;
+  return first;
+}
+
 /* ---- over a node ---- */
 
 void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
@@ -261,14 +283,27 @@ static inline part_state *place(robot_scene *s, int32_t index) {
   return state;
 }
 
+/* An element or a cluster, made anew only where it is not the last one. */
+static const robot_body *element_of(const robot_scene *s, const robot_body *owner, int32_t part, int32_t code,
+                                    bool self, robot_element *element) {
+  if (element->node == s->node && element->part == part && element->code == code && element->self == self)
+    return &element->body;
+  const robot_body *made = robot_element_make(owner, code, element);
+  element->node = s->node, element->part = part, element->code = code, element->self = self;
+  return made;
+}
+
 const robot_body *robot_scene_moving(robot_scene *s, const robot_pair *pair) {
   const robot_body *body = &place(s, pair->moving)->body;
-  return pair->element[0] < 0 ? body : robot_element_make(body, pair->element[0], &s->element[0]);
+  return pair->element[0] == ROBOT_WHOLE ? body
+                                         : element_of(s, body, pair->moving, pair->element[0], true, &s->element[0]);
 }
 
 const robot_body *robot_scene_standing(robot_scene *s, const robot_pair *pair) {
   const robot_body *body = pair->self ? &place(s, pair->standing)->body : &s->obstacles[pair->standing];
-  return pair->element[1] < 0 ? body : robot_element_make(body, pair->element[1], &s->element[1]);
+  return pair->element[1] == ROBOT_WHOLE
+             ? body
+             : element_of(s, body, pair->standing, pair->element[1], pair->self, &s->element[1]);
 }
 
 /* What the motion of a pair's moving side is seen from. */
@@ -306,14 +341,14 @@ double robot_scene_coarse_displacement(robot_scene *s, const robot_pair *pair) {
 }
 
 double robot_scene_displacement(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
-  if (!pair->self && pair->element[0] < 0) return displacement_of_part(s, pair->moving);
+  if (!pair->self && pair->element[0] == ROBOT_WHOLE) return displacement_of_part(s, pair->moving);
   return motion_displacement(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
                              moving->side.at.p, moving->radius + moving->side.error);
 }
 
 const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own) {
-  if (pair->self || pair->element[0] >= 0) {
+  if (pair->self || pair->element[0] != ROBOT_WHOLE) {
     find_motion(s, pair, moving, own);
     return own;
   }

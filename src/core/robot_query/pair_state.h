@@ -13,7 +13,10 @@ typedef struct robot_pair {
   int32_t moving;     /* which part of the robot */
   int32_t standing;   /* which obstacle, or of a pair with itself which part */
   uint32_t shared;    /* of the robot itself: so many axes are above both sides */
-  int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
+  int32_t element[2]; /* of what the moving and the standing side are made of, as robot_element_make() has it */
+  int32_t near[2];  /* of whole sides: the elements that were nearest to each other last; ROBOT_WHOLE: none is known */
+  int32_t inner;    /* the first of the pairs that it was opened into, */
+  uint32_t n_inner; /* so many; 0: it was not */
   /* the last separating direction, from what stands to what moves, in the frame of what stands, where on the motion it
    * was found (robot_scene_place()), and how fast it turned there; so it may be carried on between `from` and `to` */
   vec3 normal, normal_rate;
@@ -75,6 +78,10 @@ double robot_scene_place(const robot_scene *scene, size_t segment, double u);
 
 /* One more pair; its number, or -1 where memory is out. It may move all pairs in memory. */
 int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
+
+/* The pairs that a pair is opened into: of one side's clusters or elements instead of that side. The first one's number
+ * and how many, or -1 where memory is out. It may move all pairs in memory. */
+int32_t robot_scene_open_pair(robot_scene *scene, int32_t pair, uint32_t *count);
 
 /* The two sides of a pair in the middle of the node, how far the one moves as the other sees it, and how it moves. Of
  * pairs of elements, only those of one pair at a time. */

@@ -53,7 +53,7 @@ static int32_t whole_pair(const robot_search *o, int32_t index) {
   for (size_t i = 0; i < o->scene.n_pairs; i++) {
     const robot_pair *pair = &o->scene.pairs[i];
     if (pair->moving == of->moving && pair->standing == of->standing && pair->self == of->self &&
-        pair->element[0] < 0 && pair->element[1] < 0)
+        pair->element[0] == ROBOT_WHOLE && pair->element[1] == ROBOT_WHOLE)
       return (int32_t)i;
   }
   return index;

@@ -150,6 +150,77 @@ static void descend(robot_refinement *c, const robot_body *const side[2], const 
   tree_seek(own->tree, &d.seeker);
 }
 
+/* ---- clusters ---- */
+
+/* Two sides that are still of interest, by their numbers. */
+typedef struct open_sides {
+  double apart;
+  int32_t code[2];
+} open_sides;
+
+typedef struct cluster_descent {
+  const robot_body *whole[2];
+  size_t count;
+  open_sides open[2 * TREE_LANES * TREE_DEEPEST];
+} cluster_descent;
+
+static const robot_body *side_of(robot_refinement *c, const cluster_descent *d, int which, int32_t code) {
+  const robot_body *whole = d->whole[which];
+  return code == ROBOT_WHOLE ? whole : robot_element_make(whole, code, &c->scene->element[which]);
+}
+
+/* What one side consists of takes its place, the nearest on top. */
+static void open_inside(robot_refinement *c, cluster_descent *d, const robot_body *const side[2],
+                        const int32_t code[2]) {
+  const int opened = robot_side_to_open(side);
+  const cluster_hull *hull = robot_cluster_of(side[opened], code[opened]);
+  const size_t floor = d->count;
+  for (uint32_t i = 0; i < hull->count; i++) {
+    open_sides inner = {.code = {code[0], code[1]}};
+    inner.code[opened] = robot_inner_code(hull, i);
+    const robot_body *const sides[2] = {side_of(c, d, MOVING, inner.code[MOVING]),
+                                        side_of(c, d, STANDING, inner.code[STANDING])};
+    inner.apart = robot_pair_ball_distance(sides[MOVING], sides[STANDING]);
+    if (inner.apart >= c->reach) continue;
+    size_t k = d->count++;
+    for (; k > floor && d->open[k - 1].apart < inner.apart; k--) d->open[k] = d->open[k - 1];
+    d->open[k] = inner;
+  }
+}
+
+static void visit_sides(robot_refinement *c, cluster_descent *d, const int32_t code[2]) {
+  const robot_body *const side[2] = {side_of(c, d, MOVING, code[MOVING]), side_of(c, d, STANDING, code[STANDING])};
+  if (!robot_can_open(side)) {
+    measure(c, side, code);
+    return;
+  }
+  const bool whole = code[MOVING] == ROBOT_WHOLE && code[STANDING] == ROBOT_WHOLE; /* it is known how far these are */
+  if (!whole && is_behind(c, side, 0)) return;
+  robot_gap gap = {.lower = -INFINITY};
+  if (!whole) ask(c, side, 0, &gap);
+  if (gap.support_failed)
+    fail(c);
+  else if (gap.lower < c->reach)
+    open_inside(c, d, side, code);
+}
+
+/* The nearest elements by the hulls of clusters. Those that were nearest when the pair was looked at last come first:
+ * mostly they still are, or nearly so. */
+static void descend_clusters(robot_refinement *c, const robot_body *const side[2]) {
+  cluster_descent d;
+  d.whole[MOVING] = side[MOVING], d.whole[STANDING] = side[STANDING];
+  d.open[0] = (open_sides){.apart = -INFINITY, .code = {ROBOT_WHOLE, ROBOT_WHOLE}};
+  d.count = 1;
+  const robot_pair *pair = &c->scene->pairs[c->pair];
+  if (pair->near[MOVING] != pair->near[STANDING]) visit_sides(c, &d, pair->near);
+  while (d.count > 0) {
+    const open_sides top = d.open[--d.count];
+    if (top.apart < c->reach) visit_sides(c, &d, top.code);
+  }
+  robot_pair *known = &c->scene->pairs[c->pair];
+  for (int k = 0; k < 2 && c->nearest.gap.upper < INFINITY; k++) known->near[k] = c->nearest.element[k];
+}
+
 /* The standing side's elements first, where both have some: each of them is small. */
 void robot_refinement_run(robot_refinement *c) {
   robot_scene *s = c->scene;
@@ -164,6 +235,11 @@ void robot_refinement_run(robot_refinement *c) {
   }
   const robot_pair *pair = &s->pairs[c->pair];
   const robot_body *const side[2] = {robot_scene_moving(s, pair), robot_scene_standing(s, pair)};
+  if (!c->listing && robot_can_open(side)) {
+    descend_clusters(c, side);
+    c->rest = c->reach;
+    return;
+  }
   const int32_t whole[2] = {-1, -1};
   descend(c, side, whole, side[STANDING]->tree ? STANDING : MOVING);
   c->rest = c->reach;

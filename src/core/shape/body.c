@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "shape/body.h"
+#include "shape/cluster_hulls.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 #include "bvh/bvh.h"
 #include "bvh/winding.h"
 #include "convex/feature.h"
+#include "shape/cluster_hulls.h"
 #include "shape/construct.h"
 #include "shape/elements.h"
 
@@ -337,6 +339,7 @@ void cprox_body_free(cprox_body *body) {
   free(body->shape.implicit); /* one block */
   if (!body->borrows_tree) tree_free(body->tree);
   winding_free(body->winding);
+  cluster_hulls_free(body->clusters);
   free(body);
 }
 

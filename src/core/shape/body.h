@@ -23,10 +23,11 @@ struct cprox_body {
   size_t n_parts;
   struct tree
       *tree; /* meshes, points, boxes: the elements, about `centre`; the shape has the margin and the scale alone */
-  bool borrows_tree;             /* the tree belongs to another body */
-  struct winding *winding;       /* solid meshes: what tells inside from outside */
-  const cprox_body *hull, *mesh; /* level-of-detail bodies: the two models, */
-  double excess;                 /* and how far the mesh may stick out of the hull */
+  bool borrows_tree;              /* the tree belongs to another body */
+  struct winding *winding;        /* solid meshes: what tells inside from outside */
+  const cprox_body *hull, *mesh;  /* level-of-detail bodies: the two models, */
+  double excess;                  /* how far the mesh may stick out of the hull, */
+  struct cluster_hulls *clusters; /* and of a mesh of triangles what is between the two */
 };
 
 /* A compound's convex parts; any other body is the one part of its own, and so is no body at all. */

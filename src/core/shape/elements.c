@@ -6,6 +6,7 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "bvh/winding.h"
+#include "shape/cluster_hulls.h"
 #include "shape/construct.h"
 
 /* Fourth powers of lengths must not overflow. */
@@ -89,6 +90,7 @@ bool elements_are_solid(const cprox_body *body) {
 }
 
 size_t elements_bytes(const cprox_body *body) {
+  if (body->clusters) return cluster_hulls_bytes(body->clusters);
   return body->tree ? sizeof *body + tree_bytes(body->tree) + winding_bytes(body->winding) : 0;
 }
 

@@ -2,6 +2,7 @@
 target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/body.c
   ${CMAKE_CURRENT_LIST_DIR}/boxes.c
+  ${CMAKE_CURRENT_LIST_DIR}/cluster_hulls.c
   ${CMAKE_CURRENT_LIST_DIR}/compound.c
   ${CMAKE_CURRENT_LIST_DIR}/elements.c
   ${CMAKE_CURRENT_LIST_DIR}/implicit_body.c

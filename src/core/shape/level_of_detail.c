@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/workspace.h"
+#include "shape/cluster_hulls.h"
 #include "shape/construct.h"
 
 /* A hull that leaves out what the mesh has would call hits clear: along the axes, the diagonals of their planes and of
@@ -42,7 +43,12 @@ cprox_status cprox_body_create_lod(const cprox_body *hull, double excess, const 
   if (covered != CPROX_OK) return covered;
 
   cprox_body *made = body_allocate(NULL, CPROX_BODY_LOD);
-  if (!made) return body_out_of_memory(workspace);
+  const bool triangles = mesh->tree->kind == TREE_TRIANGLES;
+  if (made && triangles) made->clusters = cluster_hulls_create(mesh->tree);
+  if (!made || (triangles && !made->clusters)) {
+    cprox_body_free(made);
+    return body_out_of_memory(workspace);
+  }
   made->hull = hull;
   made->mesh = mesh;
   made->excess = excess;
