@@ -120,11 +120,61 @@ typedef struct cprox_motion_gradient {
  *  looked at to either side.
  *
  *  Returns as cprox_obstacles_distance(), also where valid is false. CPROX_INVALID also where the mover is no robot,
- * and where rows are wanted that are not known. Cost: 1.5 distances (instructions, the sum over 46 queries about real
+ * and where rows are wanted that are not known. Cost: 1.52 distances (instructions, the sum over 46 queries about real
  * robots). Source: J. M. Danskin, The theory of max-min, 1967; doc/robot-bounds.md. */
 CPROX_API cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cprox_mover mover,
                                                      const cprox_options *options, cprox_workspace *workspace,
                                                      cprox_result *result, cprox_motion_gradient *gradient);
+
+/** What rows are wanted. */
+typedef struct cprox_rows_query {
+  /** [s] n_intervals + 1 times, ascending, within the motion; NULL: the waypoints or the knots of the motion */
+  const double *breaks;
+  /** the number of intervals; ignored where breaks is NULL */
+  size_t n_intervals;
+  /** [m] >= 0, finite: rows of what comes within it */
+  double horizon;
+  /** at most so many rows a pair, the nearest ones; >= 1 */
+  size_t per_pair;
+} cprox_rows_query;
+
+/** A row: a pair of a robot on one interval of its motion. */
+typedef struct cprox_motion_row {
+  /** its distance there, as cprox_obstacles_distance() gives it; mover_part and obstacle_index say which pair */
+  cprox_result result;
+  /** its gradient, as cprox_robot_distance_gradient() gives it for this pair and interval; valid is about these alone.
+   *  The caller sets the arrays that are wanted in every row before the call */
+  cprox_motion_gradient gradient;
+  /** between breaks[interval] and breaks[interval + 1] */
+  size_t interval;
+} cprox_motion_row;
+
+/** The rows of a clearance constraint on a robot's motion: for each pair that comes near, its least distances along the
+ *  motion with their gradients. That is what an SQP linearises.
+ *
+ *  obstacles  NULL: none, for a robot against itself.
+ *  mover      cprox_robot_along() or cprox_robot_self().
+ *  asked      see cprox_rows_query.
+ *  options    NULL: the default. A certificate is refused.
+ *  rows       room for `room` of them; receives those of one pair after those of another, nearest first. Rows may
+ *             exchange the arrays that the caller set.
+ *  count      receives their number.
+ *
+ *  Certified: the distance of a row's pair on its interval is in [lower, upper]. A pair that has no row for an interval
+ *    is farther than the horizon there, or
+ *    is nearest at the break to the neighbouring interval, and comes as near or nearer there: that one has a row, or
+ *    the same is true of it, or
+ *    has per_pair rows that come as near or nearer.
+ *  So each row is a local minimum along the motion, as far as minimisers at breaks are told exactly. Minima within an
+ *  interval besides its least one have no row: choose shorter intervals. Where `room` is too small CPROX_BUDGET is
+ *  returned: then some rows are left out.
+ *
+ *  Returns as cprox_obstacles_distance(). *count is untouched on a negative status. Cost: a search for each pair, which
+ *  ends as soon as the pair is farther than the horizon; one more for each interval of those that are not; a gradient
+ *  for each row. Source: doc/robot-bounds.md. */
+CPROX_API cprox_status cprox_robot_rows(const cprox_obstacles *obstacles, cprox_mover mover,
+                                        const cprox_rows_query *asked, const cprox_options *options,
+                                        cprox_workspace *workspace, cprox_motion_row *rows, size_t room, size_t *count);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/bvh.c
   ${CMAKE_CURRENT_LIST_DIR}/distance.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_gradient.c
+  ${CMAKE_CURRENT_LIST_DIR}/motion_rows.c
   ${CMAKE_CURRENT_LIST_DIR}/nearest.c
   ${CMAKE_CURRENT_LIST_DIR}/nearest_pairs.c
   ${CMAKE_CURRENT_LIST_DIR}/obstacles.c

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pairs of a robot that come closest: a search for each, which ends where the pair is out of query. */
+#include "api/nearest_pairs.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -10,9 +12,8 @@
 #include "solve/list.h"
 #include "solve/solve.h"
 
-/* Lists the pairs of geometries, or of geometries and targets, that are asked about where none are given; counts them
- * where there is no room. The parts of a geometry stand together. */
-static size_t list_pairs(const query *q, cprox_robot_pair *pairs) {
+/* The parts of a geometry stand together. */
+size_t robot_pairs_list(const query *q, cprox_robot_pair *pairs) {
   const cprox_motion *motion = q->mover.motion;
   const cprox_robot *robot = motion->robot;
   size_t n = 0;
@@ -77,10 +78,10 @@ cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets
   const cprox_robot_pair *pairs = mover.pairs;
   size_t n_pairs = mover.n_pairs;
   if (!pairs) {
-    n_pairs = list_pairs(&q, NULL);
+    n_pairs = robot_pairs_list(&q, NULL);
     cprox_robot_pair *listed = workspace_reserve(workspace, WORKSPACE_RANKING, (n_pairs + 1) * sizeof *listed);
     if (!listed) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of pairs");
-    list_pairs(&q, listed);
+    robot_pairs_list(&q, listed);
     pairs = listed;
   }
   cprox_result *kept = query_reserve_results(&q, n_pairs);
