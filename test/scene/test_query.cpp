@@ -368,7 +368,7 @@ TEST(Contact, no_sampled_contact_comes_before_the_time) {
   int contacts = 0;
   for (int i = 0; i < CASES; ++i) {
     Scene scene;
-    const Operation ball = add("ball", {shape(ShapeType::SPHERE, {0.5})}, random.pose(2));
+    const Operation ball = add("ball", {shape(ShapeType::SPHERE, {0.5})}, random.pose(1));
     ASSERT_TRUE(scene.apply(change({ball})).empty());
     const Targets targets(scene.snapshot(), {}, Query());
     const CompiledCurve curve = compile(randomBezier(random, 5, 2.0));
