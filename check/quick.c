@@ -11,6 +11,12 @@ enum { MOST_POINTS = 61 };
 /* Beyond these squares and products may underflow or overflow: then nothing is said. */
 static const double SMALL = 1e-100, LARGE = 1e100;
 
+static bool used = true;
+
+void quick_use(bool on) {
+  used = on;
+}
+
 /* a becomes the part [s, 1] or, left, the part [0, s] of the polynomial with these Bézier numbers. */
 static void cut(num *a, size_t degree, num s, bool left) {
   for (size_t r = 1; r <= degree; r++)
@@ -60,6 +66,7 @@ static rot rot_of_pose(const pose *p) {
 
 bool quick_separates(const quick_query *q) {
   const set *s = q->set;
+  if (!used) return false;
   vec n = vec_of(s->kind == HALFSPACE ? s->size : q->normal); /* a halfspace has no other */
   const double size = length_of(n.m);
   if (!(size > SMALL && size < LARGE)) return false;

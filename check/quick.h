@@ -17,4 +17,7 @@ typedef struct quick_query {
 /* True: the direction separates, as separates() of check.c means it. False: nothing is known. */
 bool quick_separates(const quick_query *q);
 
+/* For tests, which compare both ways: false, and from now on nothing is known in doubles. */
+void quick_use(bool on);
+
 #endif
