@@ -4,7 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <string>
+
+#include <locale.h>
 
 namespace curve_proximity::yaml {
 
@@ -17,22 +20,19 @@ std::string_view trimmed(std::string_view text) {
 
 std::optional<double> parseFinite(std::string_view text) {
   text = trimmed(text);
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1); /* "+-1" is no number */
 
-  /* from_chars knows no leading plus, and "+-1" shall not become a number either */
-  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-
-  double value = 0.0;
-  const char *const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (stop != end || text.empty()) return std::nullopt;
-
-  /* "out of range" is said of numbers that are too small, too: those round to 0 or a denormal as anywhere else */
-  if (error == std::errc::result_out_of_range) {
-    value = std::strtod(std::string(text).c_str(), nullptr);
-    return std::abs(value) < 1.0 ? std::optional<double>(value) : std::nullopt;
-  }
-  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  /* strtod of the C locale: libstdc++ before version 11 has no from_chars for doubles. Its hexadecimal numbers, names
+   * and leading blanks are no decimal numbers. */
+  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
+  const std::string ended(text);
+  const std::size_t first = ended.find_first_not_of('-');
+  const bool decimal = first <= 1 && std::strchr(".0123456789", ended[first]) != nullptr;
+  if (!decimal || ended.find_first_of("xX") != std::string::npos) return std::nullopt;
+  char *stop = nullptr;
+  const double value = strtod_l(ended.c_str(), &stop, c_locale);
+  if (stop != ended.c_str() + ended.size() || !std::isfinite(value)) return std::nullopt;
+  return value; /* what is too small for a double rounds to 0 or a denormal */
 }
 
 std::optional<std::uint64_t> parseCount(std::string_view text) {
