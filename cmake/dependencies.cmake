@@ -44,6 +44,7 @@ set(CPROX_YAML_INCLUDE_DIRS ${PC_YAML_INCLUDEDIR} ${PC_YAML_INCLUDE_DIRS})
 pkg_check_modules(PC_OCTOMAP REQUIRED octomap)
 pkg_check_modules(PC_URDFDOM REQUIRED urdfdom)
 pkg_check_modules(PC_TINYXML2 REQUIRED tinyxml2)
+pkg_check_modules(PC_JSON REQUIRED nlohmann_json)
 pkg_check_modules(PC_ASSIMP REQUIRED assimp)
 # qhull brings pkg-config files since 2020 only; the reentrant library is there since 2015.
 find_path(CPROX_QHULL_INCLUDE_DIR libqhull_r/qhull_ra.h)

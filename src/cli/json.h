@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** JSON (RFC 8259) as values: for lines of a dataset, which yaml-cpp takes a tenth of a search to read. */
+/** JSON as values, read by nlohmann-json: for lines of a dataset, which yaml-cpp takes a tenth of a search to read. */
 #ifndef CURVE_PROXIMITY_CLI_JSON_H
 #define CURVE_PROXIMITY_CLI_JSON_H
 
@@ -33,7 +33,8 @@ struct Json {
   const std::vector<Json> &list(const char *what) const;
 };
 
-/** The whole text as one value. Throws BadInput: what is wrong, and at which character; a name that comes twice. */
+/** The whole text as one value. Throws BadInput: what is wrong, and at which character; a name that comes twice; more
+ *  than 64 lists and maps in each other. */
 Json parseJson(std::string_view text);
 
 } // namespace curve_proximity::cli
