@@ -219,23 +219,40 @@ static approach approach_of(const ball *a, const ball *b) {
   return out;
 }
 
+/* Two balls as robots of one motion. */
+typedef struct pair_of_balls {
+  ball a, b;
+  cprox_robot *robot;
+  cprox_motion *motion;
+} pair_of_balls;
+
+static void pair_make(rng *r, pair_of_balls *p) {
+  *p = (pair_of_balls){0};
+  ball_make(r, &p->a);
+  ball_make(r, &p->b);
+  const cprox_robot *robots[2] = {p->a.robot, p->b.robot};
+  const cprox_joined_motion joined[2] = {{p->a.motion, p->a.start}, {p->b.motion, p->b.start}};
+  assert_int_equal(cprox_robot_join(robots, NULL, 2, ws, &p->robot), CPROX_OK);
+  assert_int_equal(join(p->robot, joined, 2, &p->motion), CPROX_OK);
+}
+
+static void pair_free(pair_of_balls *p) {
+  cprox_motion_free(p->motion);
+  cprox_robot_free(p->robot);
+  ball_free(&p->a);
+  ball_free(&p->b);
+}
+
 /* Long double and rounding of poses: 1e-12 is a hundred times either. */
 CASE(balls_on_one_clock_are_as_near_and_meet_when_they_do) {
   rng r = rng_seed(7003);
   size_t touching = 0;
   for (size_t i = 0; i < test_cases(1500); i++) {
-    ball a, b;
-    ball_make(&r, &a);
-    ball_make(&r, &b);
-    const cprox_robot *robots[2] = {a.robot, b.robot};
-    const cprox_joined_motion joined[2] = {{a.motion, a.start}, {b.motion, b.start}};
-    cprox_robot *robot = NULL;
-    cprox_motion *motion = NULL;
-    assert_int_equal(cprox_robot_join(robots, NULL, 2, ws, &robot), CPROX_OK);
-    assert_int_equal(join(robot, joined, 2, &motion), CPROX_OK);
-    const cprox_mover mover = cprox_robot_self(motion, &(cprox_robot_pair){0, 1}, 1);
-    const approach exact = approach_of(&a, &b);
-    const long double clearance = fmaxl(exact.distance - a.radius - b.radius, 0);
+    pair_of_balls p;
+    pair_make(&r, &p);
+    const cprox_mover mover = cprox_robot_self(p.motion, &(cprox_robot_pair){0, 1}, 1);
+    const approach exact = approach_of(&p.a, &p.b);
+    const long double clearance = fmaxl(exact.distance - p.a.radius - p.b.radius, 0);
     touching += exact.first < HUGE_VALL;
 
     cprox_result d = {0}, v = {0}, c = {0};
@@ -252,10 +269,7 @@ CASE(balls_on_one_clock_are_as_near_and_meet_when_they_do) {
     } else if (clearance > 1e-6L) {
       assert_int_equal(c.verdict, CPROX_VERDICT_CLEAR);
     }
-    cprox_motion_free(motion);
-    cprox_robot_free(robot);
-    ball_free(&a);
-    ball_free(&b);
+    pair_free(&p);
   }
   assert_true(touching > 50);
 }
@@ -264,41 +278,32 @@ CASE(balls_on_one_clock_are_as_near_and_meet_when_they_do) {
 CASE(obstacles_and_the_other_robot_are_asked_about_at_once) {
   rng r = rng_seed(7004);
   for (size_t i = 0; i < test_cases(200); i++) {
-    ball a, b;
-    ball_make(&r, &a);
-    ball_make(&r, &b);
-    const cprox_robot *robots[2] = {a.robot, b.robot};
-    const cprox_joined_motion joined[2] = {{a.motion, a.start}, {b.motion, b.start}};
-    cprox_robot *robot = NULL;
-    cprox_motion *motion = NULL;
-    assert_int_equal(cprox_robot_join(robots, NULL, 2, ws, &robot), CPROX_OK);
-    assert_int_equal(join(robot, joined, 2, &motion), CPROX_OK);
+    pair_of_balls p;
+    pair_make(&r, &p);
     cprox_body *box = NULL;
     assert_int_equal(cprox_body_create_box(vec(0.2, 0.3, 0.4), NULL, &box), CPROX_OK);
     const cprox_obstacle target = cprox_obstacle_at(box, rng_pose(&r, 1.0));
     const cprox_robot_pair pair = {0, 1};
-    cprox_mover whole = cprox_robot_along(motion, NULL, 0);
+    cprox_mover whole = cprox_robot_along(p.motion, NULL, 0);
     whole.kind = CPROX_MOVER_ROBOT_WHOLE, whole.self_pairs = &pair, whole.n_self_pairs = 1;
     cprox_result all = {0}, standing = {0}, between = {0};
     assert_int_equal(distance_of_list(whole, &target, 1, NULL, ws, &all, NULL), CPROX_OK);
-    assert_int_equal(distance_of_list(cprox_robot_along(motion, NULL, 0), &target, 1, NULL, ws, &standing, NULL),
+    assert_int_equal(distance_of_list(cprox_robot_along(p.motion, NULL, 0), &target, 1, NULL, ws, &standing, NULL),
                      CPROX_OK);
-    assert_int_equal(distance_of_list(cprox_robot_self(motion, &pair, 1), NULL, 0, NULL, ws, &between, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(cprox_robot_self(p.motion, &pair, 1), NULL, 0, NULL, ws, &between, NULL),
+                     CPROX_OK);
     const double lower = fmin(standing.lower, between.lower), upper = fmin(standing.upper, between.upper);
     assert_true(all.lower <= upper && lower <= all.upper);
 
     /* on one half of the clock and on the other */
-    const cprox_motion_info info = cprox_motion_get_info(motion);
+    const cprox_motion_info info = cprox_motion_get_info(p.motion);
     const double breaks[3] = {info.t0, 0.5 * (info.t0 + info.t1), info.t1};
     cprox_profile_interval halves[2] = {0};
-    assert_true(profile_of_list(cprox_robot_self(motion, &pair, 1), NULL, 0, breaks, 2, NULL, ws, halves) >= 0);
+    assert_true(profile_of_list(cprox_robot_self(p.motion, &pair, 1), NULL, 0, breaks, 2, NULL, ws, halves) >= 0);
     assert_true(fmin(halves[0].lower, halves[1].lower) <= between.upper);
     assert_true(between.lower <= fmin(halves[0].upper, halves[1].upper));
-    cprox_motion_free(motion);
-    cprox_robot_free(robot);
+    pair_free(&p);
     cprox_body_free(box);
-    ball_free(&a);
-    ball_free(&b);
   }
 }
 

@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "kinematics/bound.h"
+
 /* ---- random robots ---- */
 
 static size_t width_of(cprox_joint_type type) {
@@ -345,4 +347,29 @@ void robot_ref_vertices(const test_robot *t, const ref_pose *links, size_t geome
   for (size_t k = 0; k < TEST_VERTICES; k++)
     vertices[k] =
         ref_pose_apply(&links[t->geometries[geometry].link], ref_pose_apply(&pose, ref_vec(t->vertices[geometry][k])));
+}
+
+double robot_part_error(const test_robot *t, size_t segment, double u) {
+  double values[TEST_MAX_VARIABLES + 1];
+  placement frames[4 * TEST_MAX_LINKS + 1];
+  motion_place(t->motion, segment, u, values, frames);
+  const long double t0 = t->motion->times[segment], t1 = t->motion->times[segment + 1];
+  long double exact[TEST_MAX_VARIABLES + 1];
+  ref_pose links[TEST_MAX_LINKS];
+  robot_ref_values(t, (1 - (long double)u) * t0 + u * t1, exact);
+  robot_ref_links(t, exact, links);
+  double worst = 0.0;
+  for (size_t p = 0; p < t->robot->n_parts; p++) {
+    const robot_part *part = &t->robot->parts[p];
+    const placement at = placement_under(frames, part->axis, &part->at);
+    vec3l vertices[TEST_VERTICES];
+    robot_ref_vertices(t, links, p, vertices);
+    for (size_t v = 0; v < TEST_VERTICES; v++) {
+      const vec3 local = vec_sub(t->vertices[p][v], t->geometries[p].body->centre);
+      const long double off = ref_error(vertices[v], placement_apply(&at, local));
+      const double part_of_it = off > 0 ? (double)(off / t->motion->part_error[p]) : 0.0;
+      if (!(part_of_it <= worst)) worst = part_of_it;
+    }
+  }
+  return worst;
 }

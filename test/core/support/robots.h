@@ -73,4 +73,8 @@ void robot_ref_links(const test_robot *t, const long double *values, ref_pose *l
 /* The vertices of a geometry in the world. */
 void robot_ref_vertices(const test_robot *t, const ref_pose *links, size_t geometry, vec3l *vertices);
 
+/* How far the core has the vertices of the parts from where they are, at u of a segment of the motion: the largest, as
+ * a fraction of the error that the motion states. */
+double robot_part_error(const test_robot *t, size_t segment, double u);
+
 #endif
