@@ -25,6 +25,9 @@ class PreparedRobot {
                          const std::vector<std::string> &base_joints = {},
                          const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity());
 
+  /** The snapshot that it was made of. */
+  const SnapshotPtr &snapshot() const;
+
   struct Data;
   /** Internal. */
   const std::shared_ptr<const Data> &data() const {
@@ -150,6 +153,75 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
  *  not, and where the core refuses. */
 std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
                                                 const Query &query, Workspace &workspace);
+
+/* ---- gradients ---- */
+
+/** Which pairs of a robot in motion are measured. */
+enum class RobotPairs {
+  ENVIRONMENT, /**< links and objects */
+  SELF,        /**< links of the robot */
+  WHOLE        /**< both */
+};
+
+/** The derivatives of a clearance along a motion, at its minimiser t. */
+struct ClearanceGradient {
+  bool valid = false; /**< the clearance is differentiable here; the numbers are else those of one minimiser, or 0 */
+  std::string reason; /**< why valid is false */
+  double t = std::numeric_limits<double>::quiet_NaN(); /**< [s] the minimiser; NaN: none was found */
+
+  /** By the positions of the trajectory's points: a row a point, a column a joint of the trajectory [m/rad], [m/m]. 0
+   * for joints that follow others. No rows for a state that is no trajectory. */
+  Eigen::MatrixXd positions;
+  /** By the velocities likewise [m s/rad], [m s/m]; no rows if no point has velocities. 0 where the interpolation does
+   *  not use them. */
+  Eigen::MatrixXd velocities;
+  Eigen::MatrixXd accelerations; /**< by the accelerations, likewise */
+  JointPositions joints; /**< by each joint value of the robot at t, or at rest if the trajectory does not name it */
+  double duration = 0.0; /**< [m/s] by the duration: all times are stretched alike, the points' numbers are kept */
+
+  Eigen::Vector3d base_linear = Eigen::Vector3d::Zero(); /**< by a shift of the whole robot, fixed frame */
+  Eigen::Vector3d base_angular =
+      Eigen::Vector3d::Zero(); /**< [m/rad] by its small turn about the fixed frame's origin */
+  Eigen::Vector3d object_linear = Eigen::Vector3d::Zero();  /**< by a shift of the nearest object; 0: it is the robot */
+  Eigen::Vector3d object_angular = Eigen::Vector3d::Zero(); /**< [m/rad] by its small turn about its own origin */
+  double margin = 0.0; /**< by the margin of one side: -1; 0 if there is nothing to measure */
+};
+
+/** A clearance along a motion with its gradient. */
+struct ClearanceRow {
+  /** Names, interval, witness points; result.t in seconds. kind: "environment" or "self", whichever is the nearest. */
+  Answer answer;
+  ClearanceGradient gradient; /**< at answer.result.t, as far as the search tells it */
+  double t0 = 0.0;            /**< [s] the start of the part of the motion that the row is about */
+  double t1 = 0.0;            /**< [s] the end of it */
+};
+
+/** The least distance of the robot along its motion and its derivatives, by one search
+ *  (cprox_robot_distance_gradient()). The guarantees of askEnvironment() and askSelf(). Without anything to measure
+ *  lower and upper are infinity and valid is false. Takes no other query than DISTANCE, no signed_distance, no
+ *  per_object and no certificate; throws Error for those, and where the core refuses. Cost: about 1.5 distances. */
+ClearanceRow clearanceGradient(const RobotMotion &motion, RobotPairs pairs, const Query &query, Workspace &workspace);
+
+/** What rows clearanceRows() gives. */
+struct RowLimits {
+  double horizon = 0.0;       /**< [m] >= 0, finite: rows of what comes within it */
+  std::size_t per_pair = 1;   /**< >= 1: at most so many rows a pair of collision elements, the nearest ones */
+  std::size_t most = 1000;    /**< >= 1: at most so many rows in all; more is CPROX_BUDGET */
+  std::vector<double> breaks; /**< [s] rows are minima between two of these, ascending; empty: the trajectory's times */
+};
+
+/** The rows of a clearance constraint. */
+struct ClearanceRows {
+  std::vector<ClearanceRow> rows; /**< of one pair after those of another; of a pair the nearest first */
+  cprox_status status = CPROX_OK; /**< CPROX_BUDGET: rows are left out, or a search ended early */
+  std::string message;            /**< why the status is not CPROX_OK */
+};
+
+/** For each pair of collision elements that comes within the horizon: its least distances along the motion, with their
+ *  gradients (cprox_robot_rows(), which says what is certified of pairs without a row). Throws Error as
+ *  clearanceGradient(). */
+ClearanceRows clearanceRows(const RobotMotion &motion, RobotPairs pairs, const RowLimits &limits, const Query &query,
+                            Workspace &workspace);
 
 } // namespace curve_proximity
 #endif

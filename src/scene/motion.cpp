@@ -66,6 +66,20 @@ const double *chosen(const std::vector<double> &values, const Columns &columns,
   return memory.back().data();
 }
 
+TrajectoryShape shapeOf(const TrajectoryDescription &trajectory, const Columns &columns) {
+  TrajectoryShape out;
+  out.n_points = trajectory.points.size();
+  out.n_joints = trajectory.joints.size();
+  for (const TrajectoryPoint &point : trajectory.points) {
+    out.has_velocities = out.has_velocities || !point.velocities.empty();
+    out.has_accelerations = out.has_accelerations || !point.accelerations.empty();
+    out.times.push_back(point.time);
+  }
+  out.column = columns.column;
+  out.variable = columns.variable;
+  return out;
+}
+
 cprox_interpolation toCore(Interpolation interpolation) {
   switch (interpolation) {
     case Interpolation::LINEAR: return CPROX_INTERPOLATION_LINEAR;
@@ -92,6 +106,7 @@ void makeState(const std::vector<double> &values, RobotMotion::Data &data) {
   description.kind = CPROX_MOTION_STATE;
   description.rest = values.data();
   data.stands = true;
+  data.shape.times = {0.0, 1.0};
   createCore(description, data);
 }
 
@@ -99,6 +114,7 @@ void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &r
   const Kinematics &kinematics = *data.kinematics;
   const Columns columns = columnsOf(kinematics, trajectory);
   std::vector<double> still = restOf(kinematics, rest);
+  data.shape = shapeOf(trajectory, columns);
   if (trajectory.points.size() == 1) {
     const TrajectoryPoint &point = trajectory.points.front();
     if (point.time > 0.0)
@@ -153,6 +169,10 @@ PreparedRobot::PreparedRobot(SnapshotPtr snapshot, const std::vector<std::array<
                 "' has no collision geometry: nothing of it can come close to anything");
   preparePairs(disabled, *data);
   data_ = std::move(data);
+}
+
+const SnapshotPtr &PreparedRobot::snapshot() const {
+  return data_->snapshot;
 }
 
 RobotMotion::RobotMotion(const PreparedRobot &robot, const TrajectoryDescription &trajectory,

@@ -37,6 +37,15 @@ struct PreparedRobot::Data {
 /* Fills all but snapshot and kinematics; `disabled` are pairs of links. */
 void preparePairs(const std::vector<std::array<std::string, 2>> &disabled, PreparedRobot::Data &data);
 
+/* Where the numbers of a trajectory are in the core's motion. */
+struct TrajectoryShape {
+  std::size_t n_points = 0, n_joints = 0;
+  bool has_velocities = false, has_accelerations = false; /* any of the points has them */
+  std::vector<double> times;                              /* [s] of the points; of a state 0 and 1 */
+  std::vector<std::size_t> column;                        /* of each variable that the motion gives: its joint */
+  std::vector<std::int32_t> variable;                     /* the variables that the motion gives */
+};
+
 /* A motion, and which geometries are measured against which items or geometries. */
 struct RobotMotion::Data {
   std::shared_ptr<const PreparedRobot::Data> prepared;
@@ -44,6 +53,7 @@ struct RobotMotion::Data {
   std::shared_ptr<const Kinematics> kinematics; /* likewise */
   std::string id;
   std::unique_ptr<cprox_motion, void (*)(cprox_motion *)> core{nullptr, cprox_motion_free};
+  TrajectoryShape shape;
   bool stands = false;                       /* a state: the robot does not move */
   std::vector<bool> wanted;                  /* of each geometry: does the query name its link */
   std::vector<cprox_robot_pair> self;        /* geometry against geometry */

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "asked_pairs.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include <curve_proximity/nearest_name.hpp>
+
+#include "answering.h"
+
+namespace curve_proximity {
+namespace {
+
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+
+double mostExcess(const std::vector<MovingGeometry> &geometries) {
+  double most = 0.0;
+  for (const MovingGeometry &geometry : geometries) most = std::max(most, geometry.excess);
+  return most;
+}
+
+/* Whether a query names the owner of a geometry; without names it means all. */
+class Named {
+ public:
+  /* Throws Error for a name that is none. */
+  Named(const RobotMotion::Data &data, const std::vector<std::string> &names)
+      : geometries_(data.kinematics->geometries), names_(names.begin(), names.end()) {
+    std::set<std::string> known;
+    for (const MovingGeometry &geometry : geometries_) known.insert(geometry.owner());
+    for (const std::string &name : names_) {
+      if (known.count(name) == 0)
+        throw Error("the robot has no link with geometry and carries no object '" + name + "'" +
+                    didYouMean(name, std::vector<std::string>(known.begin(), known.end())));
+    }
+  }
+
+  bool operator()(std::int32_t geometry) const {
+    return names_.empty() || names_.count(geometries_[static_cast<std::size_t>(geometry)].owner()) > 0;
+  }
+
+ private:
+  const std::vector<MovingGeometry> &geometries_;
+  const std::set<std::string> names_;
+};
+
+/* Of an answer that there is: what is special about it. */
+void addWarnings(const RobotMotion::Data &data, Answer &answer) {
+  if (answer.result.status < 0) return;
+  for (const std::string &sentence : data.warnings) answer.message += (answer.message.empty() ? "" : "; ") + sentence;
+}
+
+void finish(const RobotMotion::Data &data, Answer &answer, Clock::time_point start) {
+  answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  if (answer.result.status != CPROX_OK && answer.message.empty())
+    answer.message = cprox_status_text(answer.result.status);
+  answer.status = cprox_status_name(answer.result.status);
+  addWarnings(data, answer);
+}
+
+} // namespace
+
+cprox_mover Asked::mover() const {
+  if (against == RobotPairs::SELF) return cprox_robot_self(data.core.get(), pairs.data(), pairs.size());
+  cprox_mover mover = cprox_robot_along(data.core.get(), pairs.data(), pairs.size());
+  if (against == RobotPairs::ENVIRONMENT) return mover;
+  mover.kind = CPROX_MOVER_ROBOT_WHOLE;
+  mover.self_pairs = self_pairs.data();
+  mover.n_self_pairs = self_pairs.size();
+  return mover;
+}
+
+/* Robots are asked about surfaces: solid meshes are answered by their hulls, which contain their inside. */
+Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
+                 const std::vector<std::string> &links) {
+  const Named named(data, links);
+  Asked asked{data, RobotPairs::ENVIRONMENT, std::move(wanted), {}, {}, {}, mostExcess(data.kinematics->geometries),
+              {}};
+  const std::vector<Item> &items = data.snapshot->world().items();
+  std::vector<std::int32_t> number(items.size(), -1);
+  double rounding = 0.0;
+  for (const std::size_t k : asked.items) {
+    number[k] = static_cast<std::int32_t>(asked.targets.size());
+    const PlacedShape &shape = *items[k].shape;
+    const bool by_hull = shape.is_mesh && cprox_body_get_info(shape.target.body).is_solid;
+    asked.targets.push_back(by_hull ? shape.hull : shape.target);
+    asked.proven.push_back(shape.surface);
+    rounding = std::max(rounding, shape.rounding + (by_hull ? shape.hull_excess : 0.0));
+  }
+  for (const cprox_robot_pair &pair : data.environment) {
+    const std::int32_t k = number[static_cast<std::size_t>(pair.other)];
+    if (k >= 0 && named(pair.geometry)) asked.pairs.push_back({pair.geometry, k});
+  }
+  asked.rounding += rounding;
+  return asked;
+}
+
+Asked askedSelf(const RobotMotion::Data &data, const std::vector<std::string> &links) {
+  Asked asked{data, RobotPairs::SELF, {}, {}, {}, {}, 2.0 * mostExcess(data.kinematics->geometries), {}};
+  const Named named(data, links);
+  for (const cprox_robot_pair &pair : data.self) {
+    if (named(pair.geometry) || named(pair.other)) asked.pairs.push_back(pair);
+  }
+  return asked;
+}
+
+std::vector<std::size_t> namedItems(const RobotMotion::Data &data, const std::vector<std::string> &names) {
+  for (const std::string &name : names) {
+    if (data.snapshot->objects().count(name) == 0) throw Error("there is no object '" + name + "' in the scene");
+  }
+  std::vector<std::size_t> out;
+  const std::vector<Item> &items = data.snapshot->world().items();
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    if (names.empty() || std::find(names.begin(), names.end(), *items[k].owner) != names.end()) out.push_back(k);
+  }
+  return out;
+}
+
+void nameSides(const Asked &asked, const Query &query, Answer &answer) {
+  cprox_result &result = answer.result;
+  if (result.status < 0 || result.obstacle_index < 0) return;
+  const std::vector<MovingGeometry> &geometries = asked.data.kinematics->geometries;
+  const MovingGeometry &moving = geometries[static_cast<std::size_t>(result.mover_part)];
+  const auto other = static_cast<std::size_t>(result.obstacle_index);
+  answer.a = moving.owner();
+  result.mover_part = moving.part;
+  const bool coarse = query.options.max_lod != CPROX_LOD_MESH;
+  answer.by_hull = coarse && moving.is_mesh;
+  if (asked.isSelf(result)) {
+    const MovingGeometry &standing =
+        geometries[asked.against == RobotPairs::WHOLE ? other - asked.targets.size() : other];
+    answer.b = standing.owner();
+    answer.b_is_link = !standing.attached;
+    result.obstacle_index = standing.part;
+    answer.by_hull = answer.by_hull || (coarse && standing.is_mesh);
+  } else {
+    const Item &item = asked.data.snapshot->world().items()[asked.items[other]];
+    answer.b = *item.owner;
+    result.obstacle_index = item.part;
+    answer.by_hull =
+        answer.by_hull || (item.shape->is_mesh && (coarse || cprox_body_get_info(item.shape->target.body).is_solid));
+  }
+  if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
+}
+
+Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &query, const Workspace &workspace,
+                Clock::time_point start) {
+  Answer answer;
+  answer.id = asked.data.id;
+  answer.result = result;
+  answer.kind = result.obstacle_index >= 0 && asked.isSelf(result) ? "self" : "environment";
+  if (asked.against == RobotPairs::SELF) answer.kind = "self";
+  if (result.status < 0) {
+    answer.message = workspace.reason();
+  } else {
+    if (!asked.pairs.empty()) widen(query, asked.rounding, INFINITE, answer.result);
+    nameSides(asked, query, answer);
+  }
+  finish(asked.data, answer, start);
+  return answer;
+}
+
+std::string faultInAll(RobotPairs against, const Query &query) {
+  if (against == RobotPairs::SELF && !query.objects.empty())
+    return "objects do not apply to a robot against itself, '" + query.objects.front() + "' among them";
+  return faultOfMotion(query, true);
+}
+
+void checkDistances(RobotPairs against, const Query &query) {
+  std::string fault = faultOfDistances(query);
+  if (fault.empty()) fault = faultInAll(against, query);
+  if (!fault.empty()) throw Error(fault);
+}
+
+Asked askedOf(const RobotMotion &motion, RobotPairs against, const Query &query) {
+  const RobotMotion::Data &data = motion.data();
+  if (against == RobotPairs::SELF) return askedSelf(data, query.links);
+  Asked asked = askedItems(data, namedItems(data, query.objects), query.links);
+  if (against == RobotPairs::ENVIRONMENT) return asked;
+  Asked self = askedSelf(data, query.links);
+  if (self.pairs.empty()) return asked;
+  if (asked.pairs.empty()) return self;
+  asked.against = RobotPairs::WHOLE;
+  asked.self_pairs = std::move(self.pairs);
+  asked.rounding = std::max(asked.rounding, self.rounding);
+  return asked;
+}
+
+} // namespace curve_proximity
