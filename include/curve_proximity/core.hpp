@@ -121,6 +121,10 @@ inline std::vector<cprox_vec3> toVec3s(const Eigen::Matrix3Xd &points) {
 
 /* ---- makers: each as the function of cprox/body.h or cprox/curve.h of that name, throwing Error ---- */
 
+/** Asked now and then while the BVH of a body is built; true: the maker throws Error. Null: never. It throws nothing.
+ */
+using Stop = std::function<bool()>;
+
 namespace detail {
 
 /** The columns as the C library reads them, in place. */
@@ -131,8 +135,12 @@ inline const cprox_vec3 *columns(const Eigen::Matrix3Xd &points) {
 
 /** Runs a C constructor of a body and takes the handle over. `keep` lives as long as the body. */
 template <typename Create, typename Keep = std::nullptr_t>
-BodyHandle makeBody(Create create, Keep keep = nullptr) {
+BodyHandle makeBody(Create create, Keep keep = nullptr, const Stop &stop = nullptr) {
   Workspace workspace;
+  if (stop) {
+    const auto call = [](void *user) { return (*static_cast<const Stop *>(user))(); };
+    cprox_workspace_set_stop(workspace.get(), call, const_cast<Stop *>(&stop));
+  }
   cprox_body *body = nullptr;
   require(create(workspace.get(), &body), workspace);
   return BodyHandle(body, [keep](const cprox_body *b) {
@@ -143,14 +151,20 @@ BodyHandle makeBody(Create create, Keep keep = nullptr) {
 
 /** Makes the curve of a description and takes the handle over. `keep` lives as long as the curve. */
 template <typename Keep = std::nullptr_t>
-CurveHandle makeCurve(const cprox_curve_description &description, Keep keep = nullptr) {
-  Workspace workspace;
+CurveHandle createCurve(const cprox_curve_description &description, Workspace &workspace, Keep keep = nullptr) {
   cprox_curve *curve = nullptr;
   require(cprox_curve_create(&description, workspace.get(), &curve), workspace);
   return CurveHandle(curve, [keep](const cprox_curve *c) {
     (void)keep;
     cprox_curve_free(const_cast<cprox_curve *>(c));
   });
+}
+
+/** The same with a workspace of its own. */
+template <typename Keep = std::nullptr_t>
+CurveHandle makeCurve(const cprox_curve_description &description, Keep keep = nullptr) {
+  Workspace workspace;
+  return createCurve(description, workspace, keep);
 }
 
 /** The description of a kind over [t0, t1], without its other members. */
@@ -252,34 +266,40 @@ inline BodyHandle makePolytope(const Eigen::Matrix3Xd &vertices) {
 
 /** A point cloud: a ball of the radius >= 0 about each column. memory_limit: the largest size of the body in bytes. */
 inline BodyHandle makePoints(const Eigen::Matrix3Xd &points, double radius = 0.0,
-                             std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
-  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+                             std::size_t memory_limit = std::numeric_limits<std::size_t>::max(),
+                             const Stop &stop = nullptr) {
+  const auto create = [&](cprox_workspace *w, cprox_body **b) {
     return cprox_body_create_points(detail::columns(points), static_cast<std::size_t>(points.cols()), radius,
                                     memory_limit, w, b);
-  });
+  };
+  return detail::makeBody(create, nullptr, stop);
 }
 
 /** Solid axis-aligned boxes from low.col(i) to high.col(i). Both matrices have as many columns. */
 inline BodyHandle makeBoxes(const Eigen::Matrix3Xd &low, const Eigen::Matrix3Xd &high,
-                            std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
+                            std::size_t memory_limit = std::numeric_limits<std::size_t>::max(),
+                            const Stop &stop = nullptr) {
   if (low.cols() != high.cols()) throw Error("boxes need as many low corners as high ones");
-  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+  const auto create = [&](cprox_workspace *w, cprox_body **b) {
     return cprox_body_create_boxes(detail::columns(low), detail::columns(high), static_cast<std::size_t>(low.cols()),
                                    memory_limit, w, b);
-  });
+  };
+  return detail::makeBody(create, nullptr, stop);
 }
 
 /** A triangle mesh. Each column of `triangles` holds three column indices of `vertices`, from 0. */
 inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix<int, 3, Eigen::Dynamic> &triangles,
                            cprox_mesh_fill fill = CPROX_MESH_FILL_SURFACE,
-                           std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
+                           std::size_t memory_limit = std::numeric_limits<std::size_t>::max(),
+                           const Stop &stop = nullptr) {
   // An index below 0 becomes one that is out of range.
   const Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic> indices = triangles.cast<std::uint32_t>();
-  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+  const auto create = [&](cprox_workspace *w, cprox_body **b) {
     return cprox_body_create_mesh(detail::columns(vertices), static_cast<std::size_t>(vertices.cols()),
                                   reinterpret_cast<const std::uint32_t(*)[3]>(indices.data()),
                                   static_cast<std::size_t>(indices.cols()), fill, memory_limit, w, b);
-  });
+  };
+  return detail::makeBody(create, nullptr, stop);
 }
 
 /** A mesh without its inside; it shares the triangles and keeps the mesh alive. */

@@ -29,6 +29,9 @@ struct ResourceOptions {
   /** [bytes] The largest size of the body of one mesh, point cloud or octree. */
   std::size_t memory_limit = std::numeric_limits<std::size_t>::max();
 
+  /** Asked now and then while a body is made; true: makeGeometry() throws Error. Null: never. It throws nothing. */
+  std::function<bool()> stop;
+
   /** Where meshes that were read, and their convex hulls, are kept for the next time; "": nowhere. The files are found
    *  by the content of the mesh file, its scale and the version of this library. Files that are damaged or belong to
    *  another user are ignored and made again. At most 1 GiB is kept. */

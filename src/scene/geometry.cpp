@@ -120,7 +120,7 @@ void checkConstraints(const ShapeDescription &shape) {
 Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options, const MeshLoader &loader) {
   const Eigen::Vector3d scale = meshScale(shape);
   if (shape.resource.empty()) {
-    return makeMeshGeometry({shape.vertices, shape.triangles}, scale, shape.solid, options.memory_limit);
+    return makeMeshGeometry({shape.vertices, shape.triangles}, scale, shape.solid, options);
   }
   return loader({shape.resource, resolveResource(shape.resource, options), scale, shape.solid});
 }
@@ -139,7 +139,7 @@ auto ofOctree(const ShapeDescription &shape, Work work) -> decltype(work()) {
 BodyHandle makeCells(const ShapeDescription &shape, const ResourceOptions &options) {
   const Boxes cells = octreeBoxes(shape, options);
   if (cells.low.cols() == 0) return {};
-  return ofOctree(shape, [&] { return makeBoxes(cells.low, cells.high, options.memory_limit); });
+  return ofOctree(shape, [&] { return makeBoxes(cells.low, cells.high, options.memory_limit, options.stop); });
 }
 
 BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &options) {
@@ -158,7 +158,8 @@ BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &option
     case ShapeType::POLYGON: return makePolygon(shape.vertices.topRows<2>());
     case ShapeType::SUPERQUADRIC: return makeSuperquadric({d[0], d[1], d[2]}, {d[3], d[4], d[5]});
     case ShapeType::IMPLICIT: return makeImplicit(shape.hyperquadrics, shape.planes, shape.quadrics);
-    case ShapeType::POINTS: return makePoints(shape.vertices, d.empty() ? 0.0 : d[0], options.memory_limit);
+    case ShapeType::POINTS:
+      return makePoints(shape.vertices, d.empty() ? 0.0 : d[0], options.memory_limit, options.stop);
     case ShapeType::OCTREE: return makeCells(shape, options);
     case ShapeType::MESH: break;
   }

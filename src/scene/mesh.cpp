@@ -52,12 +52,19 @@ Points usedVertices(const MeshData &mesh, const Eigen::Vector3d &scale) {
   return points;
 }
 
+/* Between steps that ask nobody while they last. */
+void checkTime(const ResourceOptions &options) {
+  if (options.stop && options.stop()) throw Error("stopped before its BVH was built", CPROX_STOPPED);
+}
+
 Geometry geometryOf(const MeshData &mesh, const HullPoints &hull_points, const Eigen::Vector3d &scale, bool solid,
-                    std::size_t memory_limit) {
+                    const ResourceOptions &options) {
+  checkTime(options);
   const BodyHandle hull = polytopeOf(hull_points.kept);
   const Eigen::Matrix3Xd vertices = scale.asDiagonal() * mesh.vertices;
   const BodyHandle triangles =
-      makeMesh(vertices, mesh.triangles, solid ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE, memory_limit);
+      makeMesh(vertices, mesh.triangles, solid ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE, options.memory_limit,
+               options.stop);
   const bool has_inside = cprox_body_get_info(triangles.get()).is_solid;
 
   Geometry out;
@@ -135,8 +142,10 @@ MeshData readMesh(const std::string &file) {
   return ofMesh(file, [&] { return readMeshBy(readerProgram(), file); });
 }
 
-Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid, std::size_t memory_limit) {
+Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid,
+                          const ResourceOptions &options) {
   checkMesh(mesh, scale);
+  checkTime(options);
   const Digest key = keyOfArrays(mesh, scale);
   PreparedMeshPtr hull = recallMesh(key);
   if (!hull) {
@@ -145,7 +154,7 @@ Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bo
     keepMesh(key, made);
     hull = made;
   }
-  return geometryOf(mesh, hull->hull, scale, solid, memory_limit);
+  return geometryOf(mesh, hull->hull, scale, solid, options);
 }
 
 bool MeshRequest::operator<(const MeshRequest &other) const {
@@ -169,7 +178,7 @@ Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &opt
   return ofMesh(request.uri, [&] {
     const PreparedMeshPtr mesh = complete(found, request, options.cache_dir);
     times.hull = lap();
-    Geometry out = geometryOf(mesh->mesh, mesh->hull, request.scale, request.solid, options.memory_limit);
+    Geometry out = geometryOf(mesh->mesh, mesh->hull, request.scale, request.solid, options);
     times.tree = lap();
     return out;
   });

@@ -23,8 +23,9 @@ MeshData readMesh(const std::string &file);
 /* The mesh, scaled along the axes, as a level-of-detail body of the convex hull of the vertices that triangles use, and
  * the triangles. The hull is kept in memory and found again by the mesh's content. Throws Error: no triangle, an index
  * out of range, vertices or scale not finite, a scale of 0; CPROX_MEMORY where the triangles would take more than
- * memory_limit bytes. */
-Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid, std::size_t memory_limit);
+ * options.memory_limit bytes, or options.stop ends it. */
+Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid,
+                          const ResourceOptions &options);
 
 /* A mesh file that a description names. */
 struct MeshRequest {

@@ -37,13 +37,17 @@ struct Prepared {
 Prepared prepare(const ObjectDescription &given, const ResourceOptions &resources, const SceneChange &change) {
   Prepared out;
   const std::vector<ShapeDescription> &shapes = given.shapes;
+  ResourceOptions within = resources;
+  within.stop = change.stop;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     try {
-      if (change.stop && change.stop()) throw Error("there was no time left to make its shapes", CPROX_STOPPED);
+      if (change.stop && change.stop()) throw Error("it was not begun", CPROX_STOPPED);
       checkPose(shapes[i].pose, "its pose");
-      out.geometries.push_back(makeGeometry(shapes[i], resources));
+      out.geometries.push_back(makeGeometry(shapes[i], within));
     } catch (const Error &error) {
-      out.fault = std::make_exception_ptr(Error(shapeName(i, shapes.size()) + error.what(), error.status()));
+      const bool late = change.stop && change.stop();
+      const std::string why = (late ? "there was no time left to make its shapes: " : "") + std::string(error.what());
+      out.fault = std::make_exception_ptr(Error(shapeName(i, shapes.size()) + why, error.status()));
       return out;
     } catch (...) {
       out.fault = std::current_exception();

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Trees: every kernel gives the same answer, and it is that of looking at every element. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "bvh/kernels.h"
@@ -162,6 +163,53 @@ CASE(bounds_of_nodes_hold_for_what_is_below_them) {
     mesh_free(&mesh);
   }
   if (!(3 * better > all)) fail_msg("%zu of %zu", better, all);
+}
+
+/* Counts its calls, and wants an end at the one that is named. */
+typedef struct stopper {
+  int calls, last;
+} stopper;
+
+static bool stop_at(void *user) {
+  stopper *s = user;
+  return ++s->calls >= s->last;
+}
+
+/* 100,000 points and 60,000 triangles: whenever the end is wanted, nothing is made, and the reason is said. Asked in
+ * full, it is asked often enough. The leak checkers see what is not given back. */
+CASE(a_body_is_not_made_any_further_once_an_end_is_wanted) {
+  enum { POINTS = 100000, TRIANGLES = 60000 };
+  rng r = rng_seed(32);
+  vec3 *points = malloc(POINTS * sizeof *points);
+  assert_non_null(points);
+  for (size_t i = 0; i < POINTS; i++) points[i] = rng_in_cube(&r, 1.0);
+  test_mesh mesh = mesh_soup(&r, TRIANGLES, 1.0, 0.1);
+  cprox_workspace *w = cprox_workspace_create();
+  const int wanted_at[] = {1, 2, 5, 1000000};
+  for (int kind = 0; kind < 2; kind++) {
+    for (size_t k = 0; k < sizeof wanted_at / sizeof *wanted_at; k++) {
+      stopper s = {.last = wanted_at[k]};
+      cprox_workspace_set_stop(w, stop_at, &s);
+      cprox_body *body = NULL;
+      const cprox_status status =
+          kind == 0 ? cprox_body_create_points(points, POINTS, 0.0, SIZE_MAX, w, &body)
+                    : cprox_body_create_mesh(mesh.vertices, mesh.n, (const uint32_t(*)[3])mesh.triangles, mesh.m,
+                                             CPROX_MESH_FILL_SURFACE, SIZE_MAX, w, &body);
+      if (wanted_at[k] == 1000000) {
+        assert_int_equal(status, CPROX_OK);
+        assert_true(s.calls >= 5);
+      } else {
+        assert_int_equal(status, CPROX_INVALID);
+        assert_null(body);
+        assert_non_null(strstr(cprox_workspace_error(w), "stopped while the BVH of"));
+        assert_int_equal(s.calls, wanted_at[k]);
+      }
+      cprox_body_free(body);
+    }
+  }
+  cprox_workspace_free(w);
+  mesh_free(&mesh);
+  free(points);
 }
 
 int main(void) {

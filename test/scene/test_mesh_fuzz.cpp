@@ -155,8 +155,10 @@ void tryOne(const std::string &name, const std::string &content, bool whole_way,
     return;
   }
   ++tally.meshes;
+  ResourceOptions options;
+  options.memory_limit = std::size_t{1} << 30;
   try {
-    makeMeshGeometry(mesh, Eigen::Vector3d::Ones(), tally.meshes % 2 == 0, std::size_t{1} << 30);
+    makeMeshGeometry(mesh, Eigen::Vector3d::Ones(), tally.meshes % 2 == 0, options);
   } catch (const Error &) {
     ++tally.no_body;
   }

@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_CPROX_BASE_H
 #define CURVE_PROXIMITY_CPROX_BASE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -114,6 +115,14 @@ CPROX_API const char *cprox_workspace_error(const cprox_workspace *workspace);
 /** Sets the error message of a workspace; NULL or "": none. For libraries on top of this one, whose calls take the same
  *  workspace (libcprox_fourier is one). A message longer than 255 bytes is cut. */
 CPROX_API void cprox_workspace_set_error(cprox_workspace *workspace, const char *message);
+
+/** A function that ends the making of bodies with this workspace: while the BVH of a mesh, of points or of boxes is
+ *  built, it is called every few milliseconds, and once it returns true the constructor fails with CPROX_INVALID and
+ * gives all memory back. Queries have a function of their own, cprox_options.stop.
+ *
+ *  stop  NULL: nothing ends it, as in a new workspace. It may be called by the thread that uses the workspace only.
+ *  user  handed to it. */
+CPROX_API void cprox_workspace_set_stop(cprox_workspace *workspace, bool (*stop)(void *user), void *user);
 
 /** Memory of the caller in a workspace: at least `bytes`, NULL where memory is out. What it held stays. No query of
  *  this library uses it. Valid until the next call of this function; freed with the workspace. */

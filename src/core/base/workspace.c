@@ -9,6 +9,9 @@ struct cprox_workspace {
   void *memory[WORKSPACE_BUFFERS];
   size_t bytes[WORKSPACE_BUFFERS];
   char reason[256];
+  bool (*stop)(void *user); /* NULL: never */
+  void *stop_user;
+  bool stopped;
 };
 
 cprox_workspace *cprox_workspace_create(void) {
@@ -53,6 +56,25 @@ cprox_status workspace_fail(cprox_workspace *workspace, cprox_status status, con
   return status;
 }
 
+void cprox_workspace_set_stop(cprox_workspace *workspace, bool (*stop)(void *user), void *user) {
+  if (!workspace) return;
+  workspace->stop = stop;
+  workspace->stop_user = user;
+  workspace->stopped = false;
+}
+
+bool workspace_stops(cprox_workspace *workspace) {
+  if (!workspace || !workspace->stop) return false;
+  workspace->stopped = workspace->stopped || workspace->stop(workspace->stop_user);
+  return workspace->stopped;
+}
+
+bool workspace_has_stopped(const cprox_workspace *workspace) {
+  return workspace && workspace->stopped;
+}
+
 void workspace_clear(cprox_workspace *workspace) {
-  if (workspace) workspace->reason[0] = '\0';
+  if (!workspace) return;
+  workspace->reason[0] = '\0';
+  workspace->stopped = false;
 }

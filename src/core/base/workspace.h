@@ -44,7 +44,13 @@ void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, siz
 cprox_status workspace_fail(cprox_workspace *workspace, cprox_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Forgets the reason of the last failure. */
+/* Whether the function of cprox_workspace_set_stop() wants an end, now or when it was last asked. NULL is allowed. */
+bool workspace_stops(cprox_workspace *workspace);
+
+/* Whether it wanted an end when it was last asked. */
+bool workspace_has_stopped(const cprox_workspace *workspace);
+
+/* Forgets the reason of the last failure, and that an end was wanted. */
 void workspace_clear(cprox_workspace *workspace);
 
 #endif

@@ -45,7 +45,10 @@ struct tree_keyed {
 };
 void tree_morton_order(const tree_source *source, struct tree_keyed *memory, uint32_t *order);
 
-/* Both fill a tree with room for all; false where memory is out. */
+/* Elements that are worked on between two looks at the stop function: a few milliseconds. */
+enum { TREE_STOP_INTERVAL = 1 << 14 };
+
+/* Both fill a tree with room for all; false where memory is out, or the source's workspace stops. */
 bool tree_build_by_area(tree *t, const tree_source *source);
 bool tree_build_by_morton(tree *t, const tree_source *source);
 

@@ -3,6 +3,7 @@
  * a node has its eight children. */
 #include <stdlib.h>
 
+#include "base/workspace.h"
 #include "bvh/build.h"
 
 enum { BINS = 16, DEEPEST_BY_AREA = 24 };
@@ -17,6 +18,7 @@ typedef struct builder {
   tree *t;
   const tree_source *source;
   item *items; /* a range for each subtree */
+  bool stopped;
 } builder;
 
 /* box_add(), in line. */
@@ -161,6 +163,8 @@ static uint32_t build_range(builder *b, size_t first, size_t last, int depth, bo
   }
   size_t at[TREE_LANES + 1] = {first, last}, n = 1;
   while (n < TREE_LANES) {
+    if (last - first > TREE_STOP_INTERVAL && !b->stopped) b->stopped = workspace_stops(b->source->workspace);
+    if (b->stopped) break;
     size_t widest = 0;
     for (size_t i = 1; i < n; i++)
       if (at[i + 1] - at[i] > at[widest + 1] - at[widest]) widest = i;
@@ -169,10 +173,11 @@ static uint32_t build_range(builder *b, size_t first, size_t last, int depth, bo
     for (size_t i = ++n; i > widest + 1; i--) at[i] = at[i - 1];
     at[widest + 1] = m;
   }
+  *all = box_empty();
+  if (b->stopped) return TREE_LEAF; /* nobody will look at it */
   const uint32_t node = (uint32_t)b->t->n_nodes++;
   box boxes[TREE_LANES];
   uint32_t children[TREE_LANES];
-  *all = box_empty();
   for (size_t i = 0; i < n; i++) {
     children[i] = build_range(b, at[i], at[i + 1], depth + 1, &boxes[i]);
     box_add(all, &boxes[i]);
@@ -184,14 +189,15 @@ static uint32_t build_range(builder *b, size_t first, size_t last, int depth, bo
 bool tree_build_by_area(tree *t, const tree_source *source) {
   builder b = {.t = t, .source = source};
   b.items = malloc(source->n * sizeof *b.items);
-  const bool made = b.items != NULL;
+  bool made = b.items != NULL;
   if (made) {
     for (size_t i = 0; i < source->n; i++)
       b.items[i] = (item){.b = element_box(source, (uint32_t)i), .element = (uint32_t)i};
     box all;
     const uint32_t root = build_range(&b, 0, source->n, 0, &all);
+    made = !b.stopped;
     /* a single pack hangs from a node of its own */
-    if (root & TREE_LEAF) tree_fill_node(&t->nodes[t->n_nodes++], &all, &root, 1);
+    if (made && root & TREE_LEAF) tree_fill_node(&t->nodes[t->n_nodes++], &all, &root, 1);
   }
   free(b.items);
   return made;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/workspace.h"
 #include "bvh/build.h"
 
 enum { KEY_BITS = 21, RADIX_BITS = 11, RADIX = 1 << RADIX_BITS, FIRST_BIT = 3 * KEY_BITS - 4 * RADIX_BITS };
@@ -45,8 +46,8 @@ static void make_keys(const tree_source *source, keyed *list) {
 }
 
 /* By the upper 44 bits of the key, in four passes; 22 of them, in two, tell the elements of one block apart. Ends in
- * `list`. */
-static void sort_keys(keyed *list, keyed *other, size_t n) {
+ * `list`. False where the workspace stops. */
+static bool sort_keys(keyed *list, keyed *other, size_t n, cprox_workspace *workspace) {
   enum { PASSES = 4 };
   size_t start[PASSES][RADIX + 1] = {{0}};
   const int first = n > TREE_BLOCK ? 0 : PASSES / 2;
@@ -55,6 +56,7 @@ static void sort_keys(keyed *list, keyed *other, size_t n) {
     for (int pass = first; pass < PASSES; pass++, digits >>= RADIX_BITS) start[pass][(digits & (RADIX - 1)) + 1]++;
   }
   for (int pass = first; pass < PASSES; pass++) {
+    if (n > TREE_STOP_INTERVAL && workspace_stops(workspace)) return false;
     const int shift = FIRST_BIT + pass * RADIX_BITS;
     size_t *to = start[pass];
     for (int i = 0; i < RADIX; i++) to[i + 1] += to[i];
@@ -63,11 +65,12 @@ static void sort_keys(keyed *list, keyed *other, size_t n) {
     list = other;
     other = swap;
   }
+  return true;
 }
 
 void tree_morton_order(const tree_source *source, keyed *memory, uint32_t *order) {
   make_keys(source, memory);
-  sort_keys(memory, memory + source->n, source->n);
+  sort_keys(memory, memory + source->n, source->n, NULL);
   for (size_t i = 0; i < source->n; i++) order[i] = memory[i].element;
 }
 
@@ -115,11 +118,12 @@ bool tree_build_by_morton(tree *t, const tree_source *source) {
   const size_t n = source->n, packs = tree_most_packs(n, TREE_BY_MORTON);
   keyed *list = malloc(2 * n * sizeof *list);
   box *boxes = malloc(packs * sizeof *boxes);
-  const bool made = list && boxes;
+  bool made = list && boxes;
   if (made) {
     make_keys(source, list);
-    sort_keys(list, list + n, n);
-    for (size_t p = 0; p < packs; p++) {
+    made = sort_keys(list, list + n, n, source->workspace);
+    for (size_t p = 0; p < packs && made; p++) {
+      if (p * TREE_LANES % TREE_STOP_INTERVAL == 0 && p > 0) made = !workspace_stops(source->workspace);
       /* elements that are near in space may be anywhere in memory */
       for (size_t i = (p + AHEAD) * TREE_LANES; i < (p + AHEAD + 1) * TREE_LANES && i < n; i++)
         prefetch(source, list[i].element);
@@ -129,7 +133,7 @@ bool tree_build_by_morton(tree *t, const tree_source *source) {
         elements[count] = list[p * TREE_LANES + count].element;
       boxes[p] = tree_append_pack(t, source, elements, count);
     }
-    build_levels(t, boxes);
+    if (made) build_levels(t, boxes);
   }
   free(list);
   free(boxes);

@@ -69,12 +69,13 @@ typedef struct tree_source {
   const vec3 *high;               /* the boxes' upper corners */
   const uint32_t (*triangles)[3]; /* indices of vertices */
   vec3 centre;
+  cprox_workspace *workspace; /* its stop function is asked while the tree is built; may be NULL */
 } tree_source;
 
 /* By surface area: slower to build, faster to ask. By Morton's curve: for what changes with every measurement. */
 typedef enum tree_build { TREE_BY_AREA, TREE_BY_MORTON } tree_build;
 
-/* NULL where memory is out. tree_free() frees. */
+/* NULL where memory is out, or the source's workspace stops. tree_free() frees. */
 tree *tree_create(const tree_source *source, tree_build build);
 void tree_free(tree *t);
 

@@ -62,10 +62,15 @@ cprox_status elements_create(cprox_body_kind kind, tree_source *source, size_t n
   }
   source->centre = vec_axpy(vec_scale(0.5, low), 0.5, high);
 
+  source->workspace = workspace;
   cprox_body *made = body_allocate(NULL, kind);
   if (made) made->tree = tree_create(source, build);
   if (!made || !made->tree) {
+    const bool stopped = made && workspace_has_stopped(workspace);
     cprox_body_free(made);
+    if (stopped)
+      return workspace_fail(workspace, CPROX_INVALID, "stopped while the BVH of %zu elements was being built",
+                            source->n);
     return body_out_of_memory(workspace);
   }
   made->centre = made->ball_centre = source->centre;
