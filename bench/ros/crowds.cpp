@@ -171,7 +171,7 @@ int runCrowd(int argc, char **argv) {
   return 0;
 }
 
-void measureCrowds(ros::NodeHandle &handle, const std::string &node, bool quick) {
+void measureCrowds(ros::NodeHandle &handle, const std::string &node, bool quick, bool many_alone) {
   const double seconds = quick ? 2.0 : 10.0;
   ApplyScene scene;
   scene.request.clear = true;
@@ -181,6 +181,7 @@ void measureCrowds(ros::NodeHandle &handle, const std::string &node, bool quick)
   const Program empty({PROGRAM, "--empty"});
   waitFor(EMPTY, [] { return ros::service::exists(std::string(EMPTY) + "/distance", false); });
   for (const int curves : {1, 100, 1000}) measureMany(handle, node, curves, seconds);
+  if (many_alone) return;
   const char *heavy = "one curve a call beside 8 clients with 2000 curves a call";
   measureBeside(handle, node, "heavy", heavy, "curve_proximity", seconds);
   measureBeside(handle, EMPTY, "heavy", heavy, "empty roscpp service", seconds);

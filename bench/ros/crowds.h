@@ -15,8 +15,8 @@ int serveEmpty(int argc, char **argv);
 /** Clients that ask the same again and again, as a process: --crowd SERVICE KIND, KIND of heavy, lost. */
 int runCrowd(int argc, char **argv);
 
-/** Prints all rows. node: the server that is asked; its scene is replaced. */
-void measureCrowds(ros::NodeHandle &handle, const std::string &node, bool quick);
+/** Prints all rows, or those of many curves a call alone. node: the server that is asked; its scene is replaced. */
+void measureCrowds(ros::NodeHandle &handle, const std::string &node, bool quick, bool many_alone);
 
 } // namespace bench
 #endif

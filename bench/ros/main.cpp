@@ -5,7 +5,8 @@
  * roscpp's. Then many curves a call and many clients, beside an empty service: see crowds.h. Starts a master and the
  * nodes.
  *
- *  usage: curve_proximity_bench_ros [--quick] [--calls N]
+ *  usage: curve_proximity_bench_ros [--quick] [--calls N] [--many]
+ *  --many: many curves a call alone, for work on their rate.
  *  Prints rows of results.csv. The memory row's error is what the node's resident set grew by over that many calls
  * [MB]. */
 #include <curve_proximity/ApplyScene.h>
@@ -275,19 +276,20 @@ void measureMemory(ros::NodeHandle &handle, const std::string &server, const Pro
   print("curve_proximity", "memory over " + std::to_string(calls) + " calls", each, each, node.residentMb() - before);
 }
 
-void measure(bool quick, int calls) {
+void measure(bool quick, int calls, bool many) {
   const std::string node = "/bench_node", nodelet = "/bench_nodelet";
   ros::NodeHandle handle;
   {
     const Program server({"rosrun", "curve_proximity", "curve_proximity_node", "__name:=bench_node"});
     build(node);
+    if (many) return measureCrowds(handle, node, quick, true);
     {
       const Program plain({PROGRAM, "--plain"});
       waitFor("the plain server", [] { return ros::service::exists("/bench_plain/distance", false); });
       measureService(handle, node, "/bench_plain", quick ? 5000 : 20000);
     }
     measureMemory(handle, node, server, calls);
-    measureCrowds(handle, node, quick);
+    measureCrowds(handle, node, quick, false);
   }
   handle.setParam(nodelet + "/query_type", "distance");
   nodelet::Loader loader;
@@ -305,10 +307,11 @@ int main(int argc, char **argv) {
   if (argc > 1 && std::strcmp(argv[1], "--plain") == 0) return servePlainly(argc, argv);
   if (argc > 1 && std::strcmp(argv[1], "--empty") == 0) return serveEmpty(argc, argv);
   if (argc > 3 && std::strcmp(argv[1], "--crowd") == 0) return runCrowd(argc, argv);
-  bool quick = false;
+  bool quick = false, many = false;
   int calls = 0;
   for (int i = 1; i < argc; ++i) {
     quick = quick || std::strcmp(argv[i], "--quick") == 0;
+    many = many || std::strcmp(argv[i], "--many") == 0;
     if (std::strcmp(argv[i], "--calls") == 0 && i + 1 < argc) calls = std::atoi(argv[++i]);
   }
   if (calls <= 0) calls = quick ? 20000 : 1000000;
@@ -321,7 +324,7 @@ int main(int argc, char **argv) {
     if (ros::console::set_logger_level(ROSCONSOLE_ROOT_LOGGER_NAME, ros::console::levels::Warn))
       ros::console::notifyLoggerLevelsChanged(); // standard output belongs to the rows
     waitFor("the master", [] { return ros::master::check(); });
-    measure(quick, calls);
+    measure(quick, calls, many);
     ros::shutdown();
   } catch (const std::exception &error) {
     std::fprintf(stderr, "ros: %s\n", error.what());
