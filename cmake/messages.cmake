@@ -12,6 +12,7 @@ set(CURVE_PROXIMITY_MESSAGES
   LinkPadding.msg
   LinkScale.msg
   Octree.msg
+  Profile.msg
   Proximity.msg
   ProximityQuery.msg
   ProximityResults.msg
@@ -21,10 +22,13 @@ set(CURVE_PROXIMITY_MESSAGES
 )
 set(CURVE_PROXIMITY_SERVICES
   ApplyScene.srv
+  ClearanceProfile.srv
   Collision.srv
   Distance.srv
   EvaluateConstraints.srv
   GetScene.srv
+  NearestPairs.srv
+  TimeOfContact.srv
   Tolerance.srv
 )
 

@@ -69,19 +69,22 @@ struct CompiledCurve {
   CurveHandle curve;   /**< compiled */
   double radius = 0.0; /**< [m] of the ball along the curve */
 
-  /** Boxes that together contain the curve (the radius left out), rounding included. */
+  /** Boxes that together contain the curve (the radius left out), rounding included; or none. */
   std::vector<Eigen::AlignedBox3d> boxes;
 };
 
 /** How closely CompiledCurve::boxes follow a curve. The answers are the same. */
 enum class CurveBoxes {
-  ONE, /**< one box: costs less to make */
-  MANY /**< several boxes: find what is near among many obstacles */
+  NONE, /**< none: every obstacle is tested exactly */
+  MANY  /**< several boxes: find what is near among many obstacles */
 };
 
 /** Checks and compiles a curve. Throws Error: a basis that is not available, points that are too few or not finite,
  *  a degree that does not fit, knots that descend or are too few, t0 >= t1, a radius that is negative or not finite. */
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes = CurveBoxes::MANY);
+
+/** The same for many curves: `workspace` saves each curve one of its own. */
+CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes, Workspace &workspace);
 
 /** The objects and links of a query, resolved once for all its curves. Immutable; shared by any number of threads. */
 class Targets {

@@ -19,10 +19,15 @@ geometry_msgs::Point toPointMessage(const Eigen::Vector3d &point) {
   return message;
 }
 
-Eigen::Matrix3Xd toPoints(const std::vector<geometry_msgs::Point> &points) {
-  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(points.size()));
+void fillPoints(const std::vector<geometry_msgs::Point> &points, Eigen::Matrix3Xd &out) {
+  out.resize(3, static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     out.col(static_cast<Eigen::Index>(i)) << points[i].x, points[i].y, points[i].z;
+}
+
+Eigen::Matrix3Xd toPoints(const std::vector<geometry_msgs::Point> &points) {
+  Eigen::Matrix3Xd out;
+  fillPoints(points, out);
   return out;
 }
 
@@ -371,13 +376,18 @@ static bool isSeries(const std::string &basis) {
 
 CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed) {
   CurveDescription out;
+  toDescription(curve, frame_in_fixed, out);
+  return out;
+}
+
+void toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed, CurveDescription &out) {
   out.id = curve.id;
   out.basis = curve.basis;
   out.degree = curve.degree;
   out.t0 = curve.t0;
   out.t1 = curve.t1;
   out.radius = curve.radius;
-  out.points = toPoints(curve.points);
+  fillPoints(curve.points, out.points);
   out.knots = curve.knots;
 
   // The identity leaves the points to the last bit as they are.
@@ -396,7 +406,6 @@ CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &fram
       out.t1 = curve.knots[n];
     }
   }
-  return out;
 }
 
 /* ---- the scene ---- */
@@ -537,6 +546,7 @@ Proximity toMessage(const Answer &answer, QueryType query_type) {
   message.lower = result.lower;
   message.upper = result.upper;
   message.t = result.t;
+  message.t_contact_lower = std::numeric_limits<double>::quiet_NaN();
   message.witness_a = toPointMessage(result.witness_mover);
   message.witness_b = toPointMessage(result.witness_obstacle);
   message.normal.x = result.normal.x;
@@ -558,7 +568,7 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   message.id = id;
   message.kind = kind;
   message.status = cprox_status_name(CPROX_INVALID);
-  message.lower = message.upper = message.t = none;
+  message.lower = message.upper = message.t = message.t_contact_lower = none;
   message.witness_a.x = message.witness_a.y = message.witness_a.z = none;
   message.witness_b = message.witness_a;
   message.normal.x = message.normal.y = message.normal.z = none;
@@ -566,6 +576,21 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   message.a = id;
   message.lod = cprox_lod_name(CPROX_LOD_NONE);
   message.message = why;
+  return message;
+}
+
+Profile toMessage(const std::vector<ClearanceInterval> &intervals) {
+  Profile message;
+  for (const ClearanceInterval &interval : intervals) {
+    message.t0.push_back(interval.t0);
+    message.t1.push_back(interval.t1);
+    message.lower.push_back(interval.lower);
+    message.upper.push_back(interval.upper);
+    message.t.push_back(interval.t);
+    message.a.push_back(interval.a);
+    message.b.push_back(interval.b);
+    message.converged.push_back(interval.status == CPROX_OK);
+  }
   return message;
 }
 

@@ -11,6 +11,7 @@
 #include <curve_proximity/GetScene.h>
 #include <curve_proximity/LinkPadding.h>
 #include <curve_proximity/LinkScale.h>
+#include <curve_proximity/Profile.h>
 #include <curve_proximity/Proximity.h>
 #include <geometry_msgs/Pose.h>
 #include <sensor_msgs/JointState.h>
@@ -34,6 +35,8 @@ geometry_msgs::Point toPointMessage(const cprox_vec3 &point);
 /** A curve with its points brought to the fixed frame. An empty parameter range becomes the whole of the curve.
  *  What is wrong with the curve itself is left to compile(). */
 CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed);
+/** The same in the memory of another description. */
+void toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed, CurveDescription &out);
 
 /** One operation on the scene; its object's pose is still the message's, in header.frame_id.
  *  Throws Error, which names the object and the shape: an unknown type or operation, poses that do not match the
@@ -62,6 +65,9 @@ ApplySceneRequest toMessage(const SceneChange &change);
 
 /** One row of the results. What has no answer has NaN for numbers. */
 Proximity toMessage(const Answer &answer, QueryType query_type);
+
+/** The profile of what the summary is about, without that. */
+Profile toMessage(const std::vector<ClearanceInterval> &intervals);
 
 /** The row of a curve or motion that could not be asked about. */
 Proximity toFailedRow(const std::string &id, const std::string &kind, const std::string &why);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <sstream>
 
+#include "live_scene.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -25,6 +27,7 @@ void Doubts::objects(const Query &query, bool any) {
   stale_objects_.clear();
   unknown_objects_.clear();
   const bool everything = query.objects.empty() && query.links.empty();
+  if (lost_ && everything) unknown_objects_ = SCENE_LOST;
   for (const SensorState &sensor : sensors_) {
     const bool named = std::find(query.objects.begin(), query.objects.end(), sensor.id) != query.objects.end();
     if (!any || !(everything || named)) continue;
@@ -57,6 +60,7 @@ void Doubts::apply(Proximity &row) {
   if (why.text.empty()) return;
   row.status = why.stale ? Proximity::STATUS_STALE : Proximity::STATUS_UNKNOWN;
   row.lower = 0.0;
+  row.t_contact_lower = std::numeric_limits<double>::quiet_NaN();
   if (row.verdict == Proximity::VERDICT_CLEAR || (why.stale && !row.verdict.empty()))
     row.verdict = Proximity::VERDICT_UNDECIDED;
   add(row.message, why.text);

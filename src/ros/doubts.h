@@ -17,8 +17,10 @@ namespace curve_proximity {
 /** Turns 'clear' into 'undecided' where it does not hold of the world as it is now. For one request. */
 class Doubts {
  public:
-  /** max_age [s]: ~max_age, 0 for none. */
-  Doubts(double max_age, const std::vector<SensorState> &sensors) : max_age_(max_age), sensors_(sensors) {}
+  /** max_age [s]: ~max_age, 0 for none. lost: the scene of the server before this one is gone, so that nothing is known
+   * of what is not named. */
+  Doubts(double max_age, const std::vector<SensorState> &sensors, bool lost = false)
+      : max_age_(max_age), sensors_(sensors), lost_(lost) {}
 
   /** Which objects the rows to come are about: those of the query, or none. */
   void objects(const Query &query, bool any = true);
@@ -45,6 +47,7 @@ class Doubts {
 
   const double max_age_;
   const std::vector<SensorState> sensors_;
+  const bool lost_;
   std::string stale_objects_, unknown_objects_, stale_ages_;
   std::set<std::string> told_;
 };

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <iterator>
 #include <map>
 #include <mutex>
 #include <sstream>
-#include <thread>
 
 #include "conversions.h"
 #include "guard.h"
@@ -22,8 +22,11 @@ namespace {
 /** Markers show no more curves than a person can tell apart. */
 constexpr std::size_t MAX_DRAWN_CURVES = 100;
 
-/** From here on further threads are worth their while, on a busy machine too: below, they cost more than they do. */
-constexpr std::size_t MANY_CURVES = 512;
+/** From here on a further thread is worth its while: a curve takes a few microseconds, to wake a thread ten or more. */
+constexpr std::size_t MANY_CURVES = 64;
+
+/** Curves that a thread takes at a time. */
+constexpr std::size_t A_PART = 16;
 
 /** Ends a query when its time is over or the server goes, and makes way for others meanwhile. */
 class TimeBudget {
@@ -166,6 +169,75 @@ class Failures {
   std::string first_;
 };
 
+/** Where the intervals of a profile begin and end. */
+std::vector<double> breaksOf(const Asking &asking, double t0, double t1) {
+  if (!asking.breaks.empty()) return asking.breaks;
+  std::vector<double> breaks(asking.intervals + 1);
+  const auto n = static_cast<double>(asking.intervals);
+  for (std::size_t i = 0; i < asking.intervals; ++i) breaks[i] = t0 + (t1 - t0) * (static_cast<double>(i) / n);
+  breaks.back() = t1;
+  return breaks;
+}
+
+/** One curve's answers. Without anything to measure against the nearest pairs are answered as a distance is. */
+std::vector<Answer> askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query,
+                             const Asking &asking, Workspace &workspace) {
+  if (asking.kind == Asking::CONTACT) return {timeOfContact(targets, curve, query, workspace)};
+  if (asking.kind == Asking::NEAREST) {
+    std::vector<Answer> answers = nearestPairs(targets, curve, asking.limits, query, workspace);
+    if (!answers.empty() || std::isfinite(asking.limits.within)) return answers;
+  }
+  return ask(targets, curve, query, workspace);
+}
+
+Profile profileOf(const Targets &targets, const CompiledCurve &curve, const Query &query, const Asking &asking,
+                  Workspace &workspace) {
+  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  return toMessage(clearanceProfile(targets, curve, breaksOf(asking, info.t0, info.t1), query, workspace));
+}
+
+Proximity toRow(const Answer &answer, const Query &query, const Asking &asking) {
+  Proximity row = toMessage(answer, query.query_type);
+  if (asking.kind == Asking::CONTACT && answer.result.status >= 0) row.t_contact_lower = answer.result.t_contact_lower;
+  return row;
+}
+
+/** The rows of a motion. */
+struct MotionRows {
+  std::vector<Answer> answers;
+  std::vector<Profile> profiles; /* of Asking::PROFILE: one for each answer */
+};
+
+/** Appends the rows of one kind. */
+void askMotion(const RobotMotion &motion, const Query &query, bool self, const Asking &asking, Workspace &workspace,
+               MotionRows &out) {
+  const auto plainly = [&](const Query &wanted) {
+    if (self) return std::vector<Answer>{askSelf(motion, wanted, workspace)};
+    return askEnvironment(motion, wanted, workspace);
+  };
+  std::vector<Answer> answers;
+  if (asking.kind == Asking::CONTACT) answers = {timeOfContact(motion, self, query, workspace)};
+  if (asking.kind == Asking::NEAREST) {
+    answers = nearestPairs(motion, self, asking.limits, query, workspace);
+    if (answers.empty() && !std::isfinite(asking.limits.within)) answers = plainly(query);
+  }
+  if (asking.kind == Asking::ANSWER) answers = plainly(query);
+  if (asking.kind == Asking::PROFILE) {
+    const std::vector<double> breaks = breaksOf(asking, motion.domain()[0], motion.domain()[1]);
+    std::vector<std::string> links = asking.per_link ? askedNames(motion, self) : std::vector<std::string>();
+    if (links.empty()) links.emplace_back();
+    for (const std::string &link : links) {
+      Query of_link = query;
+      if (!link.empty()) of_link.links.push_back(link);
+      answers.push_back(plainly(of_link).front());
+      if (answers.back().a.empty()) answers.back().a = link; // nothing is near it
+      out.profiles.push_back(toMessage(clearanceProfile(motion, self, breaks, of_link, workspace)));
+      out.profiles.back().link = link;
+    }
+  }
+  std::move(answers.begin(), answers.end(), std::back_inserter(out.answers));
+}
+
 /** The name of one of several. */
 std::string numbered(const std::string &name, std::size_t i, std::size_t all) {
   return all == 1 ? name : name + "/" + std::to_string(i);
@@ -177,7 +249,8 @@ std::string numbered(const std::string &name, std::size_t i, std::size_t all) {
 struct Queries::CurveSearch {
   StampedTargets targets;
   WorkspacePool::Lease workspace;
-  std::size_t curves; /* so far */
+  CurveDescription scratch; /* the curve at hand */
+  std::size_t curves;       /* so far */
   Failures failures;
   const LinkPoses *drawn; /* the robot of the last curve that is drawn; null: none is */
 };
@@ -195,6 +268,7 @@ struct Queries::CurveRows {
   std::vector<Proximity> rows;
   std::vector<std::size_t> counts;  /* of rows, for each curve */
   std::vector<Drawing::Line> lines; /* of those that are drawn */
+  std::vector<Profile> profiles;    /* of Asking::PROFILE: one for each row */
 };
 
 QueryType queryTypeFromName(const std::string &name) {
@@ -217,6 +291,10 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   if (request.delta != 0.0 && request.query_type != QueryType::TOLERANCE)
     throw Error("delta is " + std::to_string(request.delta) + ": it is the clearance that tolerance asks for");
   const std::size_t motions = request.trajectories.size() + request.multi_dof_trajectories.size();
+  if (request.asking.kind != Asking::ANSWER && more.per_object)
+    throw Error("per_object does not apply: it is of distance, tolerance and collision");
+  if (request.asking.per_link && motions == 0 && !more.robot_state)
+    throw Error("per_link is about the robot along a trajectory or as it stands (robot_state): there is neither");
   if (more.self_collision && motions == 0 && !more.robot_state)
     throw Error("self_collision is about the robot along a trajectory or as it stands (robot_state): there is neither");
   Query query;
@@ -274,7 +352,15 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   }
   const std::size_t motions =
       request.trajectories.size() + request.multi_dof_trajectories.size() + (request.more.robot_state ? 1 : 0);
-  const std::size_t rows = (curves + motions) * targets + motions;
+  const Asking &asking = request.asking;
+  if (asking.kind == Asking::NEAREST) targets = asking.limits.count;
+  if (asking.kind == Asking::PROFILE) targets = std::max(asking.intervals, asking.breaks.size());
+  limit("max_results", static_cast<std::size_t>(parameters_.max_results), targets, "results");
+  const bool often = asking.kind != Asking::ANSWER && request.more.self_collision; // as many rows of kind self
+  const std::size_t profiles =
+      (asking.per_link && snapshot.robot() ? snapshot.robot()->links().size() + snapshot.attached().size() : 1) *
+      (often ? 2 : 1);
+  const std::size_t rows = (curves + motions * profiles) * targets + motions;
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
   return rows;
 }
@@ -311,7 +397,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
             std::move(query),
             FrameLookup(frames_, request.turn),
             currentJoints(request.more.joint_state, current && snapshot->robot(), live_.joints),
-            Doubts(parameters_.max_age, response.scene.sensors),
+            Doubts(parameters_.max_age, response.scene.sensors, live_.lost),
             response,
             drawing,
             budget_ms,
@@ -351,7 +437,9 @@ void Queries::describe(Work &work) const {
     response.warnings.push_back("row '" + first->id + "' (" + first->kind + ") was measured against nothing" +
                                 (response.scene.objects == 0 ? ": there is no object" : ""));
   work.doubts.tell(response.warnings);
-  if (live_.lost) response.warnings.push_back(SCENE_LOST);
+  const auto &said = response.warnings;
+  if (live_.lost && std::find(said.begin(), said.end(), SCENE_LOST) == said.end())
+    response.warnings.push_back(SCENE_LOST);
 }
 
 /** Ready for the next curve. */
@@ -361,6 +449,7 @@ Queries::CurveSearch &Queries::curveSearch(Work &work) {
     work.search.reset(new CurveSearch{StampedTargets(work.snapshot, work.query, live_.srdf,
                                                      by_joints ? &work.joints.positions : nullptr, work.lookup),
                                       WorkspacePool::Lease(workspaces_),
+                                      {},
                                       0,
                                       {},
                                       nullptr});
@@ -416,18 +505,21 @@ Queries::CurvePlace Queries::place(const Curve &curve, CurveSearch &search, Work
 }
 
 /** What is wrong with a curve fails its row only. Any number of threads, each with its own query and workspace. */
-void Queries::search(const Curve &message, const CurvePlace &place, const Query &query, bool drawn,
-                     Workspace &workspace, CurveRows &out) {
+void Queries::search(const Curve &message, const CurvePlace &place, const Query &query, const Asking &asking,
+                     bool drawn, Workspace &workspace, CurveDescription &scratch, CurveRows &out) {
   const std::size_t before = out.rows.size();
   try {
     if (!place.why_not.empty()) throw Error(place.why_not);
     const Targets &targets = place.stamped->targets;
-    CompiledCurve curve = compile(toDescription(message, *place.frame), targets.boxes());
-    std::vector<Answer> answers = ask(targets, curve, query, workspace);
-    for (const Answer &answer : answers) out.rows.push_back(toMessage(answer, query.query_type));
+    toDescription(message, *place.frame, scratch);
+    CompiledCurve curve = compile(scratch, targets.boxes(), workspace);
+    std::vector<Answer> answers = askCurve(targets, curve, query, asking, workspace);
+    if (asking.kind == Asking::PROFILE) out.profiles.push_back(profileOf(targets, curve, query, asking, workspace));
+    for (const Answer &answer : answers) out.rows.push_back(toRow(answer, query, asking));
     if (drawn) out.lines.push_back({std::move(curve), std::move(answers)});
   } catch (const Error &error) {
     out.rows.push_back(toFailedRow(message.id, Proximity::KIND_CURVE, error.what()));
+    if (asking.kind == Asking::PROFILE) out.profiles.emplace_back();
   }
   out.counts.push_back(out.rows.size() - before);
 }
@@ -447,13 +539,15 @@ void Queries::gather(const CurvePlace *places, CurveRows &&found, CurveSearch &s
     if (place.stamped && work.drawing.lines.size() < MAX_DRAWN_CURVES) search.drawn = &place.stamped->links;
   }
   std::move(found.lines.begin(), found.lines.end(), std::back_inserter(work.drawing.lines));
+  std::move(found.profiles.begin(), found.profiles.end(), std::back_inserter(work.response.profiles));
 }
 
 void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work) {
   if (work.request.turn) work.request.turn->yield();
   const CurvePlace where = place(message, search, work);
   CurveRows found;
-  Queries::search(message, where, work.query, work.drawing.lines.size() < MAX_DRAWN_CURVES, *search.workspace, found);
+  Queries::search(message, where, work.query, work.request.asking, work.drawing.lines.size() < MAX_DRAWN_CURVES,
+                  *search.workspace, search.scratch, found);
   gather(&where, std::move(found), search, work);
 }
 
@@ -462,67 +556,120 @@ void Queries::refuseCurve(const std::string &id, const std::string &why, CurveSe
   CurveRows found;
   found.rows.push_back(toFailedRow(id, Proximity::KIND_CURVE, why));
   found.counts.push_back(1);
+  if (work.request.asking.kind == Asking::PROFILE) found.profiles.emplace_back();
   const CurvePlace nowhere;
   gather(&nowhere, std::move(found), search, work);
 }
+
+/* Parts of a request's curves that several threads answer. It outlives the request where a thread comes too late. */
+struct Queries::SharedRows {
+  explicit SharedRows(std::size_t n) : parts(n) {}
+
+  /* The next part that nobody has begun; the request then waits until finish() is called for it. */
+  bool claim(std::size_t &part) {
+    part = next++;
+    return part < parts.size();
+  }
+
+  void finish() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (++finished == parts.size()) all_finished.notify_all();
+  }
+
+  /* The part at hand cannot be answered, and no other shall be. */
+  void fail(const std::string &why) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      failure = why;
+    }
+    finish();
+    for (std::size_t part; claim(part);) finish();
+  }
+
+  /* turn: may be null. */
+  void wait(Turn *turn) {
+    std::unique_lock<std::mutex> lock(mutex);
+    const auto done = [this] { return finished == parts.size(); };
+    if (all_finished.wait_for(lock, std::chrono::milliseconds(1), done)) return;
+    lock.unlock();
+    const Turn::Pause pause(turn); // one that is not done may wait for a turn
+    lock.lock();
+    all_finished.wait(lock, done);
+  }
+
+  std::vector<CurveRows> parts;
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::condition_variable all_finished;
+  std::size_t finished = 0;
+  std::string failure;
+};
 
 /** By several threads, as long as turns are free: each takes the next few curves. */
 void Queries::answerManyCurves(CurveSearch &search, Work &work) {
   const List<Curve> &curves = work.request.curves;
   std::vector<CurvePlace> places;
   places.reserve(curves.size());
-  for (const Curve &curve : curves) places.push_back(place(curve, search, work));
+  for (const Curve &curve : curves) {
+    const Curve *before = places.empty() ? nullptr : &curve - 1;
+    const bool same =
+        before && before->header.frame_id == curve.header.frame_id && before->header.stamp == curve.header.stamp;
+    if (same) {
+      places.push_back(places.back());
+    } else {
+      places.push_back(place(curve, search, work));
+    }
+  }
 
-  constexpr std::size_t A_PART = 16; /* curves */
-  std::vector<CurveRows> parts((curves.size() + A_PART - 1) / A_PART);
-  std::atomic<std::size_t> next{0};
-  const auto answerParts = [&](const Query &query, Turn *turn, Workspace &workspace) {
-    for (std::size_t part = next++; part < parts.size(); part = next++) {
+  const auto rows = std::make_shared<SharedRows>((curves.size() + A_PART - 1) / A_PART);
+  const auto answerParts = [&, rows = rows.get()](std::size_t part, const Query &query, Turn *turn,
+                                                  Workspace &workspace, CurveDescription &scratch) {
+    for (bool claimed = true; claimed;) {
       const std::size_t first = part * A_PART, last = std::min(first + A_PART, curves.size());
-      parts[part].rows.reserve(last - first);
+      CurveRows &out = rows->parts[part];
+      out.rows.reserve(last - first);
+      out.counts.reserve(last - first);
       for (std::size_t i = first; i < last; ++i) {
         if (turn) turn->yield();
-        Queries::search(curves.begin()[i], places[i], query, i < MAX_DRAWN_CURVES, workspace, parts[part]);
+        Queries::search(curves.begin()[i], places[i], query, work.request.asking, i < MAX_DRAWN_CURVES, workspace,
+                        scratch, out);
       }
+      claimed = rows->claim(part); // before the request may go on without this thread
+      rows->finish();
     }
   };
+  const auto fail = [rows](const std::string &why) { rows->fail(why); };
 
+  // What belongs to this request is touched by those alone that it waits for: they have claimed a part.
   Turn *const own = work.request.turn;
-  std::mutex mutex;
-  std::string failure;
-  std::vector<std::thread> helpers;
-  const auto most = std::min<std::size_t>(std::thread::hardware_concurrency(), curves.size() * 2 / MANY_CURVES);
-  while (own && helpers.size() + 1 < most) {
-    std::shared_ptr<Turn> turn = own->another();
-    if (!turn) break;
-    helpers.emplace_back([&, turn] {
-      guarded(
-          [&] {
-            TimeBudget budget(work.budget_ms, work.request, stop_, turn.get());
-            Query query = work.query;
-            query.options.stop_user = &budget;
-            const WorkspacePool::Lease workspace(workspaces_);
-            answerParts(query, turn.get(), *workspace);
-          },
-          [&](const std::string &why) {
-            const std::lock_guard<std::mutex> lock(mutex);
-            failure = why;
-          });
+  const auto help = [&, this](std::size_t part, Turn *turn) {
+    TimeBudget budget(work.budget_ms, work.request, stop_, turn);
+    Query query = work.query;
+    query.options.stop_user = &budget;
+    const WorkspacePool::Lease workspace(workspaces_);
+    CurveDescription scratch;
+    answerParts(part, query, turn, *workspace, scratch);
+  };
+  const std::size_t most = own ? std::min(crew_.most(), 2 * curves.size() / MANY_CURVES - 1) : 0;
+  for (std::size_t i = 0; i < most; ++i) {
+    const bool offered = crew_.offer([rows, fail, &help, others = own->others()] {
+      if (rows->next >= rows->parts.size()) return;
+      const std::unique_ptr<Turn> turn = others();
+      std::size_t part = 0;
+      if (turn && rows->claim(part)) guarded([&] { help(part, turn.get()); }, fail);
     });
+    if (!offered) break;
   }
-  guarded([&] { answerParts(work.query, own, *search.workspace); },
-          [&](const std::string &why) {
-            next = parts.size();
-            const std::lock_guard<std::mutex> lock(mutex);
-            failure = why;
-          });
-  {
-    const Turn::Pause pause(own); // a helper may wait for its turn
-    for (std::thread &helper : helpers) helper.join();
-  }
-  if (!failure.empty()) throw Error(failure);
-  for (std::size_t part = 0; part < parts.size(); ++part)
-    gather(&places[part * A_PART], std::move(parts[part]), search, work);
+  guarded(
+      [&] {
+        std::size_t part = 0;
+        if (rows->claim(part)) answerParts(part, work.query, own, *search.workspace, search.scratch);
+      },
+      fail);
+  rows->wait(own);
+  if (!rows->failure.empty()) throw Error(rows->failure);
+  for (std::size_t part = 0; part < rows->parts.size(); ++part)
+    gather(&places[part * A_PART], std::move(rows->parts[part]), search, work);
 }
 
 void Queries::answerTrajectories(Work &work) {
@@ -620,16 +767,19 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     const WorkspacePool::Lease workspace(workspaces_);
     Query environment = work.query;
     environment.links.clear(); // the motion has them
-    std::vector<Answer> answers = askEnvironment(*motion, environment, *workspace);
+    MotionRows rows;
+    askMotion(*motion, environment, false, request.asking, *workspace, rows);
     if (request.more.self_collision) {
-      Query self = environment; // one row, of no objects
+      Query self = environment; // of no objects
       self.per_object = false;
       self.objects.clear();
       if (request.turn) request.turn->yield();
-      answers.push_back(askSelf(*motion, self, *workspace));
+      askMotion(*motion, self, true, request.asking, *workspace, rows);
     }
+    std::vector<Answer> &answers = rows.answers;
+    std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(response.profiles));
     for (const Answer &answer : answers) {
-      response.results.push_back(toMessage(answer, request.query_type));
+      response.results.push_back(toRow(answer, environment, request.asking));
       Proximity &row = response.results.back();
       if (!remark.empty() && answer.result.status >= 0) row.message += (row.message.empty() ? "" : "; ") + remark;
       work.doubts.objects(environment, answer.kind == Proximity::KIND_ENVIRONMENT);
@@ -641,6 +791,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
   } catch (const Error &error) {
     response.results.push_back(toFailedRow(id, Proximity::KIND_ENVIRONMENT, error.what()));
     if (request.more.self_collision) response.results.push_back(toFailedRow(id, Proximity::KIND_SELF, error.what()));
+    if (request.asking.kind == Asking::PROFILE) response.profiles.resize(response.results.size());
   }
 
   // A row that failed fails the call, as a curve's does.

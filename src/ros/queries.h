@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_ROS_QUERIES_H
 
 #include <curve_proximity/Curve.h>
+#include <curve_proximity/Profile.h>
 #include <curve_proximity/Proximity.h>
 #include <curve_proximity/ProximityQuery.h>
 #include <curve_proximity/SceneState.h>
@@ -12,6 +13,7 @@
 #include <trajectory_msgs/JointTrajectory.h>
 #include <trajectory_msgs/MultiDOFJointTrajectory.h>
 
+#include <algorithm>
 #include <atomic>
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/query.hpp>
@@ -20,8 +22,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "crew.h"
 #include "doubts.h"
 #include "frames.h"
 #include "live_scene.h"
@@ -61,6 +65,16 @@ struct QueryResponse;
 /** Told of the rows so far, and how many curves, paths and trajectories are done. */
 using Progress = std::function<void(const QueryResponse &response, std::size_t done)>;
 
+/** What is asked of each curve and motion. */
+struct Asking {
+  enum Kind { ANSWER, NEAREST, CONTACT, PROFILE };
+  Kind kind = ANSWER;
+  PairLimits limits;          /**< of NEAREST */
+  std::size_t intervals = 0;  /**< of PROFILE, where there are no breaks */
+  std::vector<double> breaks; /**< of PROFILE */
+  bool per_link = false;      /**< of PROFILE */
+};
+
 /** What services, topics and the action ask, by reference. */
 struct QueryRequest {
   QueryType query_type;
@@ -69,6 +83,7 @@ struct QueryRequest {
   List<nav_msgs::Path> paths;
   List<trajectory_msgs::JointTrajectory> trajectories;
   List<trajectory_msgs::MultiDOFJointTrajectory> multi_dof_trajectories;
+  Asking asking;
   const ProximityQuery &more; /**< all else; what stands in the four lists above is not looked at */
   double budget_ms = 0.0;     /**< 0: the server's */
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
@@ -101,6 +116,7 @@ struct QueryResponse {
   std::vector<std::string> warnings;
   SceneState scene;
   std::vector<Proximity> results;
+  std::vector<Profile> profiles; /**< of Asking::PROFILE: one for each of the results, their summaries not filled in */
 };
 
 /** What the markers show of a query. */
@@ -135,6 +151,7 @@ class Queries {
   struct CurveSearch;
   struct CurvePlace;
   struct CurveRows;
+  struct SharedRows;
 
   /* A request on its way: what was asked, of which scene, and what the answer rests on. */
   struct Work {
@@ -158,8 +175,8 @@ class Queries {
   void answerCurves(Work &work);
   CurveSearch &curveSearch(Work &work);
   static CurvePlace place(const Curve &curve, CurveSearch &search, Work &work);
-  static void search(const Curve &message, const CurvePlace &place, const Query &query, bool drawn,
-                     Workspace &workspace, CurveRows &out);
+  static void search(const Curve &message, const CurvePlace &place, const Query &query, const Asking &asking,
+                     bool drawn, Workspace &workspace, CurveDescription &scratch, CurveRows &out);
   static void gather(const CurvePlace *places, CurveRows &&found, CurveSearch &search, Work &work);
   static void answerCurve(const Curve &message, CurveSearch &search, Work &work);
   static void refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work);
@@ -181,6 +198,7 @@ class Queries {
   Statistics &statistics_;
   const std::atomic<bool> &stop_;
   WorkspacePool workspaces_;
+  Crew crew_{std::max(1u, std::thread::hardware_concurrency()) - 1};
 };
 
 } // namespace curve_proximity

@@ -3,6 +3,7 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
 #include <chrono>
 #include <curve_proximity/nearest_name.hpp>
 #include <optional>
@@ -43,14 +44,57 @@ constexpr int LARGE_CHANGES = 1;
  *  with their trees. */
 constexpr std::size_t QUERY_TIMES_WIRE = 4, SCENE_TIMES_WIRE = 5;
 
-double deltaOf(const Distance::Request &) {
-  return 0.0;
-}
-double deltaOf(const Collision::Request &) {
+template <class Request>
+double deltaOf(const Request &) {
   return 0.0;
 }
 double deltaOf(const Tolerance::Request &request) {
   return request.delta;
+}
+
+template <class Request>
+Asking askingOf(const Request &) {
+  return {};
+}
+Asking askingOf(const NearestPairs::Request &request) {
+  constexpr std::size_t USUAL_PAIRS = 10;
+  if (!(request.within >= 0.0)) throw Error("within is " + std::to_string(request.within) + ": it must be at least 0");
+  Asking out;
+  out.kind = Asking::NEAREST;
+  out.limits.count = request.count != 0 ? request.count : USUAL_PAIRS;
+  if (request.within > 0.0) out.limits.within = request.within;
+  return out;
+}
+Asking askingOf(const TimeOfContact::Request &) {
+  Asking out;
+  out.kind = Asking::CONTACT;
+  return out;
+}
+Asking askingOf(const ClearanceProfile::Request &request) {
+  constexpr std::size_t USUAL_INTERVALS = 100;
+  if (request.intervals != 0 && !request.breaks.empty()) throw Error("give intervals or breaks, not both");
+  if (request.breaks.size() == 1) throw Error("breaks has one value: two make an interval");
+  Asking out;
+  out.kind = Asking::PROFILE;
+  out.intervals = request.intervals != 0 ? request.intervals : USUAL_INTERVALS;
+  out.breaks = request.breaks;
+  out.per_link = request.per_link != 0;
+  return out;
+}
+
+template <class Response>
+void deliver(QueryResponse &answer, Response &response) {
+  response.results = std::move(answer.results);
+}
+void deliver(QueryResponse &answer, ClearanceProfile::Response &response) {
+  response.profiles = std::move(answer.profiles);
+  for (std::size_t i = 0; i < response.profiles.size(); ++i) {
+    Profile &profile = response.profiles[i];
+    profile.summary = std::move(answer.results[i]);
+    const std::string &status = profile.summary.status;
+    if (status != Proximity::STATUS_STALE && status != Proximity::STATUS_UNKNOWN) continue;
+    std::fill(profile.lower.begin(), profile.lower.end(), 0.0);
+  }
 }
 
 /** Once, here: not in every answer. */
@@ -113,6 +157,9 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       advertise<Distance>(handle_, "distance", queryHandler<Distance>(QueryType::DISTANCE)),
       advertise<Tolerance>(handle_, "tolerance", queryHandler<Tolerance>(QueryType::TOLERANCE)),
       advertise<Collision>(handle_, "collision", queryHandler<Collision>(QueryType::COLLISION)),
+      advertise<NearestPairs>(handle_, "nearest_pairs", queryHandler<NearestPairs>(QueryType::DISTANCE)),
+      advertise<TimeOfContact>(handle_, "time_of_contact", queryHandler<TimeOfContact>(QueryType::COLLISION)),
+      advertise<ClearanceProfile>(handle_, "clearance_profile", queryHandler<ClearanceProfile>(QueryType::DISTANCE)),
       advertise<ApplyScene>(handle_, "apply_scene",
                             handler<ApplyScene>(SCENE_TIMES_WIRE,
                                                 [this](const Call &call, const RequestThreads::AtWork &at_work,
@@ -220,6 +267,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType
                             response.frame_id = frames_.fixedFrame();
                             Turn turn(turns_, call.client, waitUntil(call, at_work));
                             QueryRequest request(query_type, deltaOf(asked), asked.query);
+                            request.asking = askingOf(asked);
                             request.budget_ms = asked.query.budget_ms;
                             request.arrival = call.arrival;
                             request.turn = &turn;
@@ -230,7 +278,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType
                             response.message = std::move(answer.message);
                             response.warnings = std::move(answer.warnings);
                             response.scene = std::move(answer.scene);
-                            response.results = std::move(answer.results);
+                            deliver(answer, response);
                             markers_->show(std::move(drawing));
                           });
 }

@@ -93,7 +93,8 @@ void Turns::release(Ticket &ticket) {
   grant();
 }
 
-Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point deadline) : turns_(turns) {
+Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point deadline)
+    : turns_(turns), client_(client) {
   Turns::Lock lock(turns_.mutex_);
   ticket_.client = &turns_.enter(client);
   ticket_.since = Turns::Clock::now();
@@ -106,18 +107,19 @@ Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point dea
              std::to_string(static_cast<int>(1000.0 * waited)) + " ms");
 }
 
-/** Granted already. */
-Turn::Turn(Turns &turns, Turns::Client &client) : turns_(turns) {
-  ticket_.client = &client;
+/** The lock is held. */
+Turn::Turn(Turns &turns, const std::string &client, Granted) : turns_(turns), client_(client) {
+  ticket_.client = &turns_.enter(client);
   ticket_.since = ticket_.began = Turns::Clock::now();
-  ++client.active;
   ++turns_.running_;
 }
 
-std::unique_ptr<Turn> Turn::another() {
-  const Turns::Lock lock(turns_.mutex_);
-  if (!turns_.waiting_.empty() || turns_.running_ >= turns_.slots_) return nullptr;
-  return std::unique_ptr<Turn>(new Turn(turns_, *ticket_.client));
+std::function<std::unique_ptr<Turn>()> Turn::others() const {
+  return [&turns = turns_, client = client_]() -> std::unique_ptr<Turn> {
+    const Turns::Lock lock(turns.mutex_);
+    if (!turns.waiting_.empty() || turns.running_ >= turns.slots_) return nullptr;
+    return std::unique_ptr<Turn>(new Turn(turns, client, Granted()));
+  };
 }
 
 Turn::~Turn() {

@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
@@ -88,8 +89,9 @@ class Turn {
   Turn(const Turn &) = delete;
   Turn &operator=(const Turn &) = delete;
 
-  /** Another turn for the same client, if one is free now and nobody waits; else null. */
-  std::unique_ptr<Turn> another();
+  /** Makes another turn for the same client, on any thread, if one is free then and nobody waits; else null. It may
+   *  outlive this turn, not the Turns. */
+  std::function<std::unique_ptr<Turn>()> others() const;
 
   /** Lets others compute if it is their turn; returns when it is ours again. Costs a load where nobody waits. */
   void yield();
@@ -111,11 +113,13 @@ class Turn {
   };
 
  private:
-  Turn(Turns &turns, Turns::Client &client);
+  struct Granted {};
+  Turn(Turns &turns, const std::string &client, Granted granted);
   void giveBack();
   void takeAgain();
 
   Turns &turns_;
+  const std::string client_;
   Turns::Ticket ticket_;
 };
 

@@ -20,10 +20,12 @@ void reviewVerdict(const Query &query, cprox_result &result) {
 /* How far the curve's points can be from a position. */
 double farthest(const CompiledCurve &curve, const cprox_vec3 &from) {
   double far = 0.0;
-  for (const Eigen::AlignedBox3d &box : curve.boxes) {
+  const auto look = [&](const Eigen::AlignedBox3d &box) {
     const Eigen::Vector3d p = toEigen(from);
     far = std::max(far, (box.min() - p).cwiseAbs().cwiseMax((box.max() - p).cwiseAbs()).norm());
-  }
+  };
+  for (const Eigen::AlignedBox3d &box : curve.boxes) look(box);
+  if (curve.boxes.empty()) look(boxOf(curve.curve.get()));
   return far + curve.radius;
 }
 
@@ -44,6 +46,11 @@ void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
 }
 
 } // namespace
+
+Eigen::AlignedBox3d boxOf(const cprox_curve *curve) {
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  return {toEigen(info.lowest), toEigen(info.highest)};
+}
 
 std::optional<cprox_lod> lodFromName(const std::string &name) {
   for (const cprox_lod lod : {CPROX_LOD_SPHERE, CPROX_LOD_HULL, CPROX_LOD_MESH}) {

@@ -12,6 +12,9 @@
 
 namespace curve_proximity {
 
+/* A box that contains the curve. */
+Eigen::AlignedBox3d boxOf(const cprox_curve *curve);
+
 /* What the query asks for and its answer would not heed, as a sentence; "" where there is nothing. Of a robot in
  * motion, of which `in_all` has one answer for all objects or pairs. */
 std::string faultOf(const Query &query);

@@ -5,6 +5,8 @@
 
 #include <curve_proximity/query.hpp>
 
+#include "answering.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -15,11 +17,6 @@ constexpr std::size_t MOST_BOXES = 32;
 /* Control points of a part of a curve are within (12 degree + 20) 2^-53 of the largest coordinate, and those of a half
  * of it within degree 2^-53 more: of an eighth below 1e-13. */
 constexpr double BOX_MARGIN = 1e-12;
-
-Eigen::AlignedBox3d bounds(const cprox_curve *curve) {
-  const cprox_curve_info info = cprox_curve_get_info(curve);
-  return {toEigen(info.lowest), toEigen(info.highest)};
-}
 
 /* The two halves of a Bézier curve of n control points, by de Casteljau's averages: the left one takes the curve's
  * place. */
@@ -149,6 +146,11 @@ CurveHandle makeSeries(const CurveDescription &curve) {
 } // namespace
 
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes) {
+  Workspace workspace;
+  return compile(curve, boxes, workspace);
+}
+
+CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes, Workspace &workspace) {
   if (!std::isfinite(curve.radius) || curve.radius < 0.0) throw Error("the radius must be finite and not below 0");
   CompiledCurve out;
   out.id = curve.id;
@@ -161,7 +163,7 @@ CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes) {
                   std::to_string(curve.degree + 1) + " points, got " + std::to_string(n));
     }
     if (!curve.knots.empty()) throw Error("a bezier curve takes no knots, got " + std::to_string(curve.knots.size()));
-    out.curve = makeBezier(curve.points, curve.t0, curve.t1);
+    out.curve = detail::createCurve(detail::describe(CPROX_CURVE_BEZIER, curve.points, curve.t0, curve.t1), workspace);
     if (boxes == CurveBoxes::MANY) out.boxes = cutBoxes(out.curve.get(), {curve.t0, curve.t1}, BOXES);
   } else if (curve.basis == "bspline") {
     out.curve = makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
@@ -170,7 +172,7 @@ CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes) {
     out.curve = makeSeries(curve);
     if (boxes == CurveBoxes::MANY) out.boxes = pieceBoxes(curve, out.curve.get());
   }
-  if (out.boxes.empty()) out.boxes.push_back(bounds(out.curve.get()));
+  if (out.boxes.empty() && boxes == CurveBoxes::MANY) out.boxes.push_back(boxOf(out.curve.get()));
   return out;
 }
 

@@ -91,6 +91,7 @@ void chooseWithin(double reach, const Seed &seed, const Targets::Data &data, Sea
 }
 
 void chooseAll(Search &search, std::size_t first, std::size_t last) {
+  search.chosen.reserve(last - first);
   for (std::size_t i = first; i < last; ++i) search.chosen.push_back(static_cast<std::uint32_t>(i));
 }
 
@@ -124,7 +125,7 @@ void chooseForVerdict(double limit, const Seed &seed, const Targets::Data &data,
 }
 
 void choose(const Targets::Data &data, Search &search) {
-  const bool with_tree = data.in_tree > 0 && search.items.size() > FEW_SHAPES;
+  const bool with_tree = data.in_tree > 0 && search.items.size() > FEW_SHAPES && !search.curve.boxes.empty();
   const Seed seed = with_tree ? nearestBoxOf(search, data) : Seed();
   if (seed.gap == INFINITE) {
     chooseAll(search, 0, search.items.size());
@@ -156,8 +157,7 @@ void nameTarget(const Search &search, Answer &answer) {
   nameItem(search.items[search.chosen[static_cast<std::size_t>(found)]], search.query.options.max_lod, answer);
 }
 
-Answer answerOf(const Search &search) {
-  Answer answer;
+void answerOf(const Search &search, Answer &answer) {
   answer.id = answer.a = search.curve.id;
 
   const double rounding = roundingOf(search);
@@ -173,7 +173,6 @@ Answer answerOf(const Search &search) {
     nameTarget(search, answer);
   }
   finishAnswer(search.workspace, answer);
-  return answer;
 }
 
 double microsecondsSince(Clock::time_point start) {
@@ -213,7 +212,8 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
     const Clock::time_point start = Clock::now();
     Search search{curve, query, items, data.few.get(), workspace, {}, INFINITE};
     choose(data, search);
-    answers.push_back(answerOf(search));
+    answers.resize(1);
+    answerOf(search, answers.back());
     answers.back().microseconds = microsecondsSince(start);
     return answers;
   }
@@ -225,7 +225,8 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
     while (last < items.size() && items[last].owner == items[first].owner) ++last;
     Search search{curve, query, items, nullptr, workspace, {}, INFINITE};
     chooseAll(search, first, last);
-    answers.push_back(answerOf(search));
+    answers.emplace_back();
+    answerOf(search, answers.back());
     if (answers.back().b.empty()) { // refused: say of which
       answers.back().b = *items[first].owner;
       answers.back().b_is_link = items[first].is_link;

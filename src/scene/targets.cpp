@@ -104,7 +104,7 @@ Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &quer
 }
 
 CurveBoxes Targets::boxes() const {
-  return data_->items.size() <= FEW_SHAPES ? CurveBoxes::ONE : CurveBoxes::MANY;
+  return data_->items.size() <= FEW_SHAPES ? CurveBoxes::NONE : CurveBoxes::MANY;
 }
 
 Targets::~Targets() = default;

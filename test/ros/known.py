@@ -193,6 +193,27 @@ class Known(unittest.TestCase):
         self.assertTrue(server.apply(sphere('ball', 0.25)).success)
         self.assertEqual(server.distance(LINE).warnings, [])
 
+    def test_a_scene_that_a_restart_has_lost_is_said_and_never_clear(self):
+        node, server = self.begin('forgetful', state_file='')
+        server.replace(sphere('ball', 0.25))
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].verdict, 'clear')
+        self.assertTrue(until(lambda: rospy.has_param('/forgetful/last_scene'), 5))
+        node, server = self.crash(node, 'forgetful', state_file='')
+        self.assertEqual(server.scene().objects, [])
+        for answer in (server.tolerance(LINE, 0.1), server.collision(LINE)):
+            row, = answer.results
+            self.assertEqual((row.status, row.verdict, row.lower), ('unknown', 'undecided', 0.0))
+            self.assertIn('lost', row.message)
+            self.assertEqual(len([w for w in answer.warnings if 'lost' in w]), 1)
+        row, = server.distance(LINE).results
+        self.assertEqual((row.status, row.lower), ('unknown', 0.0))
+
+        # from the next scene on nothing is lost any more
+        self.assertTrue(server.apply(sphere('ball', 0.25)).success)
+        answer = server.tolerance(LINE, 0.1)
+        self.assertEqual((answer.results[0].status, answer.results[0].verdict), ('ok', 'clear'))
+        self.assertEqual(answer.warnings, [])
+
     def crash(self, node, name, **parameters):
         """The node dies, and another one of its name takes its place, as by a respawn: the master keeps parameters."""
         node.process.send_signal(signal.SIGKILL)

@@ -8,34 +8,31 @@
 #include "base/workspace.h"
 #include "curve/rectifiable.h"
 
+/* One block: short curves are made and freed by the thousand. Packs first, which are the largest; all is aligned as
+ * doubles are. */
 cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
-  cprox_curve *c = calloc(1, sizeof *c);
-  if (!c) return NULL;
+  if (n_pieces > SIZE_MAX / 1024 / (degree + 1)) return NULL; /* the sums below would overflow */
+  size_t n_leaves = 1;
+  while (n_leaves < n_pieces) n_leaves *= 2;
+  const size_t packs = curve_packs(n_leaves), points = n_pieces * (degree + 1), tables = curve_tables_size(degree);
+  const size_t numbers = 3 * points + (n_pieces + 1) + n_pieces + tables;
+  char *memory = calloc(1, sizeof(cprox_curve) + packs * sizeof(curve_pack) + numbers * sizeof(double));
+  if (!memory) return NULL;
+  cprox_curve *c = (cprox_curve *)(void *)memory;
   c->degree = degree;
   c->n_pieces = n_pieces;
-  c->n_leaves = 1;
-  while (c->n_leaves < n_pieces) c->n_leaves *= 2;
-  c->breaks = calloc(n_pieces + 1, sizeof *c->breaks);
-  c->points = calloc(n_pieces * (degree + 1), sizeof *c->points);
-  c->error = calloc(n_pieces, sizeof *c->error);
-  const size_t packs = curve_packs(c->n_leaves);
-  c->packs = packs > 0 ? calloc(packs, sizeof *c->packs) : NULL;
-  c->tables = calloc(curve_tables_size(degree), sizeof *c->tables);
-  if (!c->breaks || !c->points || !c->error || (packs > 0 && !c->packs) || !c->tables) {
-    cprox_curve_free(c);
-    return NULL;
-  }
+  c->n_leaves = n_leaves;
+  c->packs = packs > 0 ? (curve_pack *)(void *)(memory + sizeof(cprox_curve)) : NULL;
+  c->points = (vec3 *)(void *)(memory + sizeof(cprox_curve) + packs * sizeof(curve_pack));
+  c->breaks = (double *)(void *)(c->points + points);
+  c->error = c->breaks + n_pieces + 1;
+  c->tables = c->error + n_pieces;
   return c;
 }
 
 void cprox_curve_free(cprox_curve *curve) {
   if (!curve) return;
-  free(curve->breaks);
-  free(curve->points);
-  free(curve->error);
-  free(curve->packs);
   free(curve->arcs);
-  free(curve->tables);
   free(curve);
 }
 

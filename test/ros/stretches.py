@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nearest pairs, times of contact and clearance profiles by service, against distances that are computed by hand."""
+import math
+import unittest
+
+import rospy
+from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest,
+                                 TimeOfContact, TimeOfContactRequest)
+from helpers import Server, bezier, joint_trajectory, query, run, sphere, until
+
+EPSILON = 1e-6  # [m] ~epsilon
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+THROUGH = bezier((-1, 0, 0.1), (1, 0, 0.1))
+QUARTER = joint_trajectory(['turn'], [0.0], [math.pi / 2])  # in a second
+ONLY = {'objects': ['ball']}  # the arm is not asked about
+
+
+class Stretches(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.services = {}
+        for name, kind in (('nearest_pairs', NearestPairs), ('time_of_contact', TimeOfContact), ('clearance_profile', ClearanceProfile)):
+            rospy.wait_for_service('/curve_proximity/' + name, 20)
+            cls.services[name] = rospy.ServiceProxy('/curve_proximity/' + name, kind, persistent=True)
+        assert until(lambda: cls.server.distance([], trajectory=QUARTER).success, 20)
+
+    def setUp(self):
+        self.server.replace(sphere('ball', 0.25), sphere('far', 0.1, (0, 0, -3)))
+
+    def pairs(self, asked, **fields):
+        return self.services['nearest_pairs'](NearestPairsRequest(query=asked, **fields))
+
+    def contact(self, asked):
+        return self.services['time_of_contact'](TimeOfContactRequest(query=asked))
+
+    def profile(self, asked, **fields):
+        return self.services['clearance_profile'](ClearanceProfileRequest(query=asked, **fields))
+
+    def good(self, response):
+        self.assertTrue(response.success, response.message)
+        return response.profiles if hasattr(response, 'profiles') else response.results
+
+    def assertIs(self, lower, upper, expected):
+        self.assertLessEqual(lower, expected + 1e-12)
+        self.assertGreaterEqual(upper, expected - 1e-12)
+        self.assertLessEqual(upper - lower, EPSILON)
+
+    def assertRefused(self, response, *words):
+        self.assertFalse(response.success)
+        for word in words:
+            self.assertIn(word, response.message)
+
+    def test_the_pairs_of_a_curve_come_nearest_first(self):
+        rows = self.good(self.pairs(query(LINE, objects=['ball', 'far'])))
+        self.assertEqual([row.b for row in rows], ['ball', 'far'])
+        self.assertIs(rows[0].lower, rows[0].upper, 0.75)
+        self.assertIs(rows[1].lower, rows[1].upper, 3.9)
+        self.assertAlmostEqual(rows[0].witness_b.z, 0.25, delta=1e-5)
+        self.assertTrue(math.isnan(rows[0].t_contact_lower))
+        row, = self.good(self.pairs(query(LINE, objects=['ball', 'far']), count=1))
+        self.assertEqual(row.b, 'ball')
+        row, = self.good(self.pairs(query(LINE, objects=['ball', 'far']), within=1.0))
+        self.assertEqual(row.b, 'ball')
+        self.assertEqual(self.good(self.pairs(query(LINE, objects=['ball', 'far']), within=0.5)), [])
+        rows = self.good(self.pairs(query([LINE, THROUGH], objects=['ball', 'far'])))
+        self.assertEqual([(row.b, row.upper == 0.0) for row in rows], [('ball', False), ('far', False), ('ball', True), ('far', False)])
+
+    def test_the_pairs_of_a_robot_are_of_links_and_objects_and_of_links(self):
+        rows = self.good(self.pairs(query(trajectory=QUARTER, self_collision=True, **ONLY)))
+        kinds = [row.kind for row in rows]
+        self.assertEqual(kinds, ['environment'] * kinds.count('environment') + ['self'] * kinds.count('self'))
+        environment = {row.a: row for row in rows if row.kind == 'environment'}
+        self.assertEqual(set(environment), {'arm', 'slider'})
+        self.assertIs(environment['arm'].lower, environment['arm'].upper, math.sqrt(0.5) - 0.35)
+        self.assertIs(environment['slider'].lower, environment['slider'].upper, 0.5 - 0.3)
+        own = [row for row in rows if row.kind == 'self']
+        self.assertEqual([{row.a, row.b} for row in own], [{'arm', 'slider'}])
+
+    def test_contact_is_never_said_too_late(self):
+        row, = self.good(self.contact(query(THROUGH, **ONLY)))
+        expected = (1.0 - math.sqrt(0.25**2 - 0.1**2)) / 2
+        self.assertEqual((row.verdict, row.b), ('violated', 'ball'))
+        self.assertLessEqual(row.t_contact_lower, expected + 1e-12)
+        self.assertGreaterEqual(row.t, expected - 1e-12)
+        self.assertLess(row.t - row.t_contact_lower, 1e-4)
+        row, = self.good(self.contact(query(LINE, **ONLY)))
+        self.assertEqual((row.verdict, row.t_contact_lower), ('clear', 1.0))
+
+    def test_the_arm_meets_the_post_when_the_chord_says_so(self):
+        self.server.replace(sphere('ball', 0.1, (0, 0.5, 0.5)))
+        row, other = self.good(self.contact(query(trajectory=QUARTER, self_collision=True)))
+        expected = (math.pi / 2 - 2 * math.asin(0.2)) / (math.pi / 2)
+        self.assertEqual((row.kind, row.verdict, row.a, row.b), ('environment', 'violated', 'arm', 'ball'))
+        self.assertLessEqual(row.t_contact_lower, expected + 1e-9)
+        self.assertGreaterEqual(row.t, expected - 1e-9)
+        self.assertLess(row.t - row.t_contact_lower, 1e-3)
+        self.assertEqual((other.kind, other.verdict, other.t_contact_lower), ('self', 'clear', 1.0))
+
+    def test_a_profile_has_the_least_distance_of_each_interval(self):
+        def at(x):
+            return math.sqrt(x * x + 1) - 0.25
+        for asked in ({'intervals': 4}, {'breaks': [0, 0.25, 0.5, 0.75, 1]}):
+            profile, = self.good(self.profile(query(LINE, **ONLY), **asked))
+            self.assertEqual((list(profile.t0), list(profile.t1)), ([0, 0.25, 0.5, 0.75], [0.25, 0.5, 0.75, 1]))
+            for lower, upper, expected in zip(profile.lower, profile.upper, (at(0.5), 0.75, 0.75, at(0.5))):
+                self.assertIs(lower, upper, expected)
+            self.assertTrue(all(a <= t <= b for a, t, b in zip(profile.t0, profile.t, profile.t1)))
+            self.assertEqual((set(profile.b), set(profile.converged), profile.link), ({'ball'}, {True}, ''))
+            self.assertIs(profile.summary.lower, profile.summary.upper, 0.75)
+            self.assertAlmostEqual(profile.summary.witness_a.z, 1.0, delta=1e-9)
+        profile, = self.good(self.profile(query(LINE, **ONLY)))
+        self.assertEqual(len(profile.lower), 100)
+
+    def test_a_profile_for_each_link(self):
+        post = sphere('ball', 0.1, (0, 0.5, 0.5))
+        self.server.replace(post)
+        profiles = self.good(self.profile(query(trajectory=QUARTER, self_collision=True), per_link=True, intervals=10))
+        self.assertEqual([(p.summary.kind, p.link) for p in profiles],
+                         [('environment', 'arm'), ('environment', 'slider'), ('self', 'arm'), ('self', 'slider')])
+        for i in range(10):
+            # the arm's ball comes nearer all the time, the slider goes away
+            turn = math.pi / 2 - (i + 1) * math.pi / 20
+            arm = max(0.0, math.sin(turn / 2) - 0.2)
+            self.assertIs(profiles[0].lower[i], profiles[0].upper[i], arm)
+            slider = math.hypot(i * math.pi / 20, math.sqrt(1.25)) - 0.15
+            self.assertIs(profiles[1].lower[i], profiles[1].upper[i], slider)
+            self.assertEqual((profiles[1].a[i], profiles[1].b[i]), ('slider', 'ball'))
+        together, own = self.good(self.profile(query(trajectory=QUARTER, self_collision=True), intervals=10))
+        self.assertEqual([together.summary.kind, own.summary.kind], ['environment', 'self'])
+        for i in range(10):
+            self.assertIs(together.lower[i], together.upper[i], min(profiles[0].upper[i], profiles[1].upper[i]))
+
+    def test_what_cannot_be_answered_is_refused_in_one_line(self):
+        for ask in (self.pairs, self.contact, self.profile):
+            self.assertRefused(ask(query(LINE, per_object=True)), 'per_object')
+        self.assertRefused(self.pairs(query(LINE), within=-1.0), 'within')
+        self.assertRefused(self.pairs(query(LINE), within=math.nan), 'within')
+        self.assertRefused(self.pairs(query(LINE), count=100000), 'max_results')
+        self.assertRefused(self.profile(query(LINE), intervals=4000000000), 'max_results')
+        self.assertRefused(self.profile(query(LINE), intervals=4, breaks=[0, 1]), 'intervals or breaks')
+        self.assertRefused(self.profile(query(LINE), breaks=[0.5]), 'breaks')
+        self.assertRefused(self.profile(query(LINE), per_link=True), 'per_link')
+
+        # of one curve: the others are answered
+        bad = bezier((0, 0, 0), (math.nan, 0, 0))
+        for response in (self.pairs(query([bad, LINE], **ONLY)), self.contact(query([bad, LINE], **ONLY))):
+            self.assertRefused(response, '1 of 2 rows', 'not finite')
+            self.assertEqual([row.status for row in response.results], ['invalid', 'ok'])
+        for breaks in ([0, 2], [0.5, 0.5], [0, math.nan]):
+            response = self.profile(query(LINE, **ONLY), breaks=breaks)
+            self.assertRefused(response, '1 of 1 rows')
+            profile, = response.profiles
+            self.assertEqual((profile.summary.status, list(profile.lower)), ('invalid', []))
+        response = self.profile(query([bad, LINE], **ONLY), intervals=3)
+        self.assertEqual([(p.summary.status, len(p.lower)) for p in response.profiles], [('invalid', 0), ('ok', 3)])
+
+    def test_nothing_to_measure_against_is_said(self):
+        self.server.replace()
+        row, = self.good(self.contact(query(trajectory=QUARTER)))
+        self.assertEqual((row.verdict, row.upper, row.b), ('clear', math.inf, ''))
+        response = self.pairs(query(trajectory=QUARTER))
+        self.assertTrue(any('against nothing' in warning for warning in response.warnings), response.warnings)
+        profile, = self.good(self.profile(query(trajectory=QUARTER), intervals=2))
+        self.assertEqual((list(profile.lower), list(profile.b)), ([math.inf] * 2, [''] * 2))
+
+
+if __name__ == '__main__':
+    run('stretches')
