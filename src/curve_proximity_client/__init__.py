@@ -13,8 +13,10 @@ import time
 
 import rospy
 from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, Curve, ProximityQuery
-from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance, DistanceRequest,
-                                 EvaluateConstraints, EvaluateConstraintsRequest, Tolerance, ToleranceRequest)
+from curve_proximity.srv import (ApplyScene, ApplySceneRequest, ClearanceProfile, ClearanceProfileRequest, Collision,
+                                 CollisionRequest, Distance, DistanceRequest, EvaluateConstraints, EvaluateConstraintsRequest,
+                                 NearestPairs, NearestPairsRequest, TimeOfContact, TimeOfContactRequest, Tolerance,
+                                 ToleranceRequest)
 from geometry_msgs.msg import Point, Pose, Quaternion
 
 __all__ = ['Client', 'Failure', 'bezier', 'bspline', 'body', 'box', 'pose', 'sphere']
@@ -91,6 +93,21 @@ class Client:
         """The same; verdict 'violated': it touches something."""
         return self._ask('collision', Collision, CollisionRequest, curves, fields)
 
+    def time_of_contact(self, curves, **fields):
+        """When each curve first touches something: rows as of collision(), with t_contact_lower. For a motion of the robot: no curves
+        and trajectory=a JointTrajectory, here as in the other queries."""
+        return self._ask('time_of_contact', TimeOfContact, TimeOfContactRequest, curves, fields)
+
+    def nearest_pairs(self, curves, count=10, within=0.0, **fields):
+        """At most count pairs for each curve, the nearest first, or only those within a distance [m]: a list of Proximity messages."""
+        return self._answers('nearest_pairs', NearestPairs, NearestPairsRequest, curves, dict(fields, count=count, within=float(within)))
+
+    def clearance_profile(self, curves, intervals=100, breaks=(), per_link=False, **fields):
+        """The least distance on each of so many intervals of the parameter, or between breaks: a Profile message, or a list of them
+        for a list or per_link."""
+        own = dict(breaks=list(breaks), per_link=per_link) if len(breaks) else dict(intervals=intervals, per_link=per_link)
+        return self._ask('clearance_profile', ClearanceProfile, ClearanceProfileRequest, curves, dict(fields, **own))
+
     def is_clear(self, curve, delta, **fields):
         """True only where it is proven that the curve stays farther than delta [m] from everything."""
         return self.tolerance(curve, delta, **fields).verdict == 'clear'
@@ -122,20 +139,24 @@ class Client:
         return CollisionObject() if side is None else CollisionObject(id=side) if isinstance(side, str) else side
 
     def _ask(self, service, kind, request, curves, fields):
-        alone = isinstance(curves, Curve)
-        asked = ProximityQuery(curves=[curves] if alone else list(curves))
-        own = {}
+        """The one answer about one curve, else the list."""
+        answers = self._answers(service, kind, request, curves, fields)
+        return answers[0] if isinstance(curves, Curve) and len(answers) == 1 else answers
+
+    def _answers(self, service, kind, request, curves, fields):
+        asked = ProximityQuery(curves=[curves] if isinstance(curves, Curve) else list(curves))
+        whole = request(query=asked)
         for name, value in fields.items():
-            if name == 'delta':
-                own[name] = value
-            elif name == 'trajectory':
+            if name == 'trajectory':
                 asked.trajectories = [value]
             elif name in ProximityQuery.__slots__:
                 setattr(asked, name, value)
+            elif name in request.__slots__:
+                setattr(whole, name, value)
             else:
                 raise Failure('a query has no field %r' % name)
-        response = self._call(service, kind, request(query=asked, **own))
-        return response.results[0] if alone and len(response.results) == 1 else response.results
+        response = self._call(service, kind, whole)
+        return response.profiles if service == 'clearance_profile' else response.results
 
     def _call(self, service, kind, request):
         """Calls until there is an answer or the patience is over. A call whose answer was lost is made again: all of these can bear

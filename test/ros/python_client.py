@@ -34,6 +34,23 @@ class PythonClient(unittest.TestCase):
         both = self.client.distance([LINE, bspline([(0, 5, 0), (0, 6, 0), (0, 7, 0), (0, 8, 0)])])
         self.assertEqual([r.b for r in both], ['ball', 'far'])
 
+    def test_contacts_pairs_and_profiles_have_answers(self):
+        self.client.add(sphere('ball', 0.25, (1, 0, 0)), sphere('far', 0.5, (0, 0, 3)))
+        row = self.client.time_of_contact(bezier([(0, 0, 0), (2, 0, 0)]), epsilon=1e-9)
+        self.assertEqual(row.verdict, 'violated')
+        self.assertLessEqual(row.t_contact_lower, 0.375)
+        self.assertAlmostEqual(row.t, 0.375, delta=1e-6)
+        self.assertEqual([pair.b for pair in self.client.nearest_pairs(LINE)], ['ball', 'far'])
+        self.assertEqual([pair.b for pair in self.client.nearest_pairs(LINE, count=1)], ['ball'])
+        self.assertEqual([pair.b for pair in self.client.nearest_pairs(LINE, within=1.0)], ['ball'])
+        profile = self.client.clearance_profile(LINE, intervals=4)
+        self.assertEqual(list(profile.t0), [0.0, 0.25, 0.5, 0.75])
+        self.assertAlmostEqual(profile.upper[1], 0.75, delta=1e-5)
+        self.assertEqual(profile.b[0], 'ball')
+        self.assertEqual(len(self.client.clearance_profile([LINE, LINE], breaks=(0.0, 0.1, 1.0))[1].lower), 2)
+        with self.assertRaises(Failure):
+            self.client.distance(LINE, count=3)
+
     def test_objects_come_and_go(self):
         self.client.add(sphere('ball', 0.25), body('egg', 'ellipsoid', (0.1, 0.2, 0.3), (1, 0, 0)))
         self.client.remove('ball')
