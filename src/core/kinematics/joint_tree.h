@@ -8,6 +8,7 @@
 #include "base/rotation.h"
 #include "curve_proximity/cprox/robot.h"
 #include "kinematics/link_model.h"
+#include "kinematics/part_groups.h"
 #include "shape/body.h"
 
 typedef enum axis_kind {
@@ -63,6 +64,7 @@ struct cprox_robot {
   robot_link *links;
   robot_axis *axes; /* parents first */
   robot_part *parts;
+  part_groups groups;
   cprox_link *given_links; /* as they were given: what certificates are about */
   cprox_link_geometry *given_geometries;
 };

@@ -246,6 +246,10 @@ cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const c
   made->n_geometries = n_geometries;
   for (size_t i = 0; i < n_links; i++) add_link(made, &links[i]);
   for (size_t i = 0; i < n_geometries; i++) add_geometry(made, &geometries[i], i);
+  if (!part_groups_create(made, &made->groups)) {
+    cprox_robot_free(made);
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot of %zu links", n_links);
+  }
   *robot = made;
   return CPROX_OK;
 }
@@ -310,6 +314,7 @@ void cprox_robot_free(cprox_robot *robot) {
   free(robot->links);
   free(robot->axes);
   free(robot->parts);
+  part_groups_free(&robot->groups);
   free(robot->given_links);
   free(robot->given_geometries);
   free(robot);

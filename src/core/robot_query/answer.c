@@ -12,7 +12,7 @@ static cprox_status run(const query *q, const search_goal *goal, robot_search *o
   const motion_interval over = motion_interval_of(q->mover.motion, q->t0, q->t1);
   robot_search_begin(o, goal);
   *found = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
-  if (o->scene.n_pairs == 0 && !q->set) return CPROX_OK;
+  if (o->scene.n_pairs == 0 && !q->set && !o->scene.groups) return CPROX_OK;
   search_node root;
   if (!robot_search_root(o, &over, &root))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
@@ -38,7 +38,7 @@ static void report(const robot_search *o, const robot_sample *sample, cprox_resu
 }
 
 static cprox_lod lod_of(const robot_search *o) {
-  if (o->scene.n_pairs == 0) return CPROX_LOD_NONE;
+  if (o->scene.n_pairs == 0 && !o->scene.groups) return CPROX_LOD_NONE;
   if (o->refined) return CPROX_LOD_MESH;
   const bool by_balls = o->gaps + o->planes == 0 || o->scene.q->options.max_lod == CPROX_LOD_SPHERE;
   return by_balls ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;
@@ -52,7 +52,7 @@ void robot_search_report(const robot_search *o, cprox_result *result) {
 
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
   robot_search o;
-  if (!robot_scene_begin(&o.scene, q, first, last))
+  if (!robot_scene_begin(&o.scene, q, first, last, ROBOT_MOST_LISTED))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   search_goal goal = query_goal(q, query_order(q), cutoff);
   if (!query_wants_verdict(q)) goal.share = q->options.share, goal.share_user = q->options.share_user;
@@ -74,7 +74,7 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double cuto
 
 cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   robot_search o;
-  if (!robot_scene_begin(&o.scene, q, 0, q->n))
+  if (!robot_scene_begin(&o.scene, q, 0, q->n, ROBOT_MOST_LISTED))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   const search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
   search_outcome found;

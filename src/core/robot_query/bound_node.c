@@ -7,6 +7,7 @@
 #include "base/workspace.h"
 #include "broadphase/obstacle_set.h"
 #include "robot_query/cull.h"
+#include "robot_query/groups.h"
 #include "robot_query/measure.h"
 
 /* Of a pair that is too far to matter in the middle only so much of the excess need be known. */
@@ -21,6 +22,9 @@ static const double FASTEST_NORMAL_RATE = 0.5;
 
 /* Pairs are opened while there are no more than so many: the node is too long for more, halves will tell. */
 enum { MOST_OPEN = 512 };
+
+/* Groups move farther than what is near in them, so they are opened up to this many times that. */
+static const double GROUP_DISPLACEMENT = 4.0;
 
 /* Where a plane in the middle asks for more pieces than this, no distance is measured. */
 static const double ENOUGH_PIECES = 3.0;
@@ -312,6 +316,72 @@ static cprox_status open_cluster(robot_search *o, const search_node *node, const
   return status;
 }
 
+/* Two single parts. */
+static cprox_status open_parts(robot_search *o, const search_node *node, group_pair groups, double lower) {
+  list_entry one = {.lower = lower, .pair = robot_groups_pair(&o->scene, groups)};
+  if (one.pair < 0) return robot_no_memory(o);
+  bound_pair_roughly(o, node, &one);
+  return keep_open(o, &one);
+}
+
+/* Whether two groups move so far that it does not pay to open them on this node. */
+static bool want_split_of_groups(robot_search *o, const search_node *node, double apart, double displacement,
+                                 double radius) {
+  const double size = greater(MOST_DISPLACEMENT * apart, radius);
+  if (!(displacement > GROUP_DISPLACEMENT * size) || robot_is_short(node)) return false;
+  want_pieces(o, displacement / size);
+  return true;
+}
+
+/* Two groups of parts: what is within reach of each other becomes pairs, or, where they move too far for these to be
+ * measured, pairs of groups. */
+static cprox_status open_groups(robot_search *o, const search_node *node, const list_entry *entry) {
+  struct {
+    group_pair groups;
+    double lower, displacement; /* the parts of groups move together no farther than those of what contains them */
+  } stack[GROUP_STACK];
+  stack[0].groups = (group_pair){{entry->part, (int32_t)entry->under}};
+  stack[0].lower = entry->lower, stack[0].displacement = INFINITY;
+  size_t n = 1;
+  cprox_status status = CPROX_OK;
+  while (n > 0 && status == CPROX_OK) {
+    const group_pair groups = stack[--n].groups;
+    double lower = stack[n].lower, displacement = stack[n].displacement;
+    bool needs_split = false;
+    const bool parts = robot_groups_are_parts(&o->scene, groups);
+    if (!group_pair_is_one(groups)) {
+      double radius = 0.0;
+      const double apart = robot_groups_apart(&o->scene, groups);
+      lower = greater(apart - displacement, lower);
+      if (!robot_is_pruned(o, lower)) {
+        displacement = lesser(robot_groups_displacement(&o->scene, groups, &radius), displacement);
+        lower = greater(apart - displacement, lower);
+      }
+      if (robot_is_pruned(o, lower)) {
+        o->dropped = lesser(lower, o->dropped);
+        continue;
+      }
+      needs_split = !parts && want_split_of_groups(o, node, apart, displacement, radius);
+    }
+    if (parts) {
+      status = open_parts(o, node, groups, lower);
+    } else if (needs_split) {
+      const list_entry kept = {.lower = lower,
+                               .pair = LIST_GROUPS,
+                               .part = groups.group[0],
+                               .under = (uint32_t)groups.group[1],
+                               .needs_split = true};
+      status = keep_open(o, &kept);
+    } else {
+      group_pair inside[GROUP_PAIRS_INSIDE];
+      const size_t count = robot_groups_open(&o->scene, groups, inside);
+      for (size_t i = 0; i < count; i++, n++)
+        stack[n].groups = inside[i], stack[n].lower = lower, stack[n].displacement = displacement;
+    }
+  }
+  return status;
+}
+
 /* Balls and boxes of all pairs of a node; those that still matter are kept. */
 static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   const int32_t list = robot_known(node)->list;
@@ -319,10 +389,12 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   cprox_status status = CPROX_OK;
   for (size_t i = 0; i < n && status == CPROX_OK; i++) {
     list_entry entry = lists_at(&o->lists, list)[i];
-    if (!robot_is_pruned(o, entry.lower) && entry.pair < 0) {
-      status = open_cluster(o, node, &entry);
+    if (robot_is_pruned(o, entry.lower)) {
+      o->dropped = lesser(entry.lower, o->dropped);
+    } else if (entry.pair < 0) {
+      status = entry.pair == LIST_CLUSTER ? open_cluster(o, node, &entry) : open_groups(o, node, &entry);
     } else {
-      if (!robot_is_pruned(o, entry.lower)) bound_pair_roughly(o, node, &entry);
+      bound_pair_roughly(o, node, &entry);
       status = keep_open(o, &entry);
     }
   }

@@ -2,70 +2,23 @@
 #include "robot_query/cull.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/rounding.h"
-#include "base/workspace.h"
 #include "broadphase/obstacle_set.h"
 #include "simd/dispatch.h"
 
-/* ---- which pairs there are already ---- */
-
-/* Of a part and a target their first pair, of the part -1 the target's first obstacle. An open table, at most half
- * full. */
-struct cluster_slot {
-  int32_t part, first; /* first < 0: nothing is here */
-  uint32_t target;
-};
-
-enum { FIRST_ROOM = 64 };
-
-static struct cluster_slot *slot_of(struct cluster_slot *table, size_t room, int32_t part, uint32_t target) {
-  const uint64_t key = ((uint64_t)(uint32_t)part << 32 | target) * 0x9e3779b97f4a7c15u;
-  size_t i = (size_t)(key >> 32) & (room - 1);
-  while (table[i].first >= 0 && (table[i].part != part || table[i].target != target)) i = (i + 1) & (room - 1);
-  return &table[i];
-}
-
-static void empty(struct cluster_slot *table, size_t room) {
-  for (size_t i = 0; i < room; i++) table[i].first = -1;
-}
-
-/* Room for one more; the larger table is made behind the old one, then takes its place. */
-static bool make_room(robot_scene *s) {
-  const size_t old = s->cluster_room, room = old ? 2 * old : FIRST_ROOM;
-  if (old && 2 * s->cluster_count < old) return true;
-  struct cluster_slot *table =
-      workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_CLUSTER, (old + room) * sizeof *table);
-  if (!table) return false;
-  empty(table + old, room);
-  for (size_t i = 0; i < old; i++)
-    if (table[i].first >= 0) *slot_of(table + old, room, table[i].part, table[i].target) = table[i];
-  memmove(table, table + old, room * sizeof *table);
-  s->cluster_table = table;
-  s->cluster_room = room;
-  return true;
-}
-
-static void note(robot_scene *s, int32_t part, uint32_t target, int32_t first) {
-  *slot_of(s->cluster_table, s->cluster_room, part, target) =
-      (struct cluster_slot){.part = part, .first = first, .target = target};
-  s->cluster_count++;
-}
+/* ---- pairs ---- */
 
 int32_t cluster_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count) {
   const uint32_t target = s->q->set->of_box[box];
   *count = body_n_parts(s->q->targets[target].body);
-  if (!make_room(s)) return -1;
-  const int32_t known = slot_of(s->cluster_table, s->cluster_room, part, target)->first;
+  const int32_t known = pair_table_find(&s->met, MADE_PAIRS, part, target);
   if (known >= 0) return known;
 
-  int32_t obstacle = slot_of(s->cluster_table, s->cluster_room, -1, target)->first;
+  int32_t obstacle = pair_table_find(&s->met, MADE_OBSTACLES, 0, target);
   if (obstacle < 0) {
     obstacle = robot_scene_add_obstacles(s, target);
-    if (obstacle < 0) return -1;
-    note(s, -1, target, obstacle);
-    if (!make_room(s)) return -1;
+    if (obstacle < 0 || !pair_table_note(&s->met, s->q->workspace, MADE_OBSTACLES, 0, target, obstacle)) return -1;
   }
   int32_t first = -1;
   for (size_t i = 0; i < *count; i++) {
@@ -74,8 +27,7 @@ int32_t cluster_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count)
     if (added < 0) return -1;
     if (i == 0) first = added;
   }
-  note(s, part, target, first);
-  return first;
+  return pair_table_note(&s->met, s->q->workspace, MADE_PAIRS, part, target, first) ? first : -1;
 }
 
 /* ---- boxes ---- */

@@ -4,11 +4,13 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/bound_node.c
   ${CMAKE_CURRENT_LIST_DIR}/cull.c
   ${CMAKE_CURRENT_LIST_DIR}/element.c
+  ${CMAKE_CURRENT_LIST_DIR}/groups.c
   ${CMAKE_CURRENT_LIST_DIR}/measure.c
   ${CMAKE_CURRENT_LIST_DIR}/oracle.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_distance.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_lists.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_state.c
+  ${CMAKE_CURRENT_LIST_DIR}/pair_table.c
   ${CMAKE_CURRENT_LIST_DIR}/prove_contact.c
   ${CMAKE_CURRENT_LIST_DIR}/refine.c
 )

@@ -7,7 +7,8 @@
 #include "broadphase/obstacle_set.h"
 #include "robot_query/cull.h"
 
-enum { MOST_SEEDS = 16, MOST_SEED_TESTS = 40000 };
+/* Of each part with groups of others about so many are tested. */
+enum { MOST_SEEDS = 16, MOST_SEED_TESTS = 40000, GROUP_SEED_TESTS = 16 };
 
 /* The first distances of a search need be no more exact than this. */
 static const double SEED_FRACTION = 0.02;
@@ -159,6 +160,49 @@ static cprox_status try_cluster(robot_search *o, const list_entry *entry, neares
   return CPROX_OK;
 }
 
+/* What two groups consist of, of what is nearer than `most`; the nearest on top, groups with themselves above all. */
+typedef struct group_stack {
+  group_pair at[GROUP_STACK];
+  double apart[GROUP_STACK];
+  size_t count;
+} group_stack;
+
+static void begin_groups(group_stack *stack, group_pair groups) {
+  stack->at[0] = groups, stack->apart[0] = -INFINITY;
+  stack->count = 1;
+}
+
+static void push_groups_inside(robot_search *o, group_stack *stack, group_pair groups, double most) {
+  group_pair inside[GROUP_PAIRS_INSIDE];
+  const size_t n = robot_groups_open(&o->scene, groups, inside), first = stack->count;
+  for (size_t k = 0; k < n; k++) {
+    const double apart = group_pair_is_one(inside[k]) ? -INFINITY : robot_groups_apart(&o->scene, inside[k]);
+    if (!(apart < most)) continue;
+    size_t i = stack->count++;
+    for (; i > first && stack->apart[i - 1] < apart; i--)
+      stack->apart[i] = stack->apart[i - 1], stack->at[i] = stack->at[i - 1];
+    stack->apart[i] = apart, stack->at[i] = inside[k];
+  }
+}
+
+/* The pair that comes closest of those of two groups. */
+static cprox_status try_groups(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
+  group_stack stack;
+  begin_groups(&stack, (group_pair){{entry->part, (int32_t)entry->under}});
+  while (stack.count > 0) {
+    const group_pair groups = stack.at[--stack.count];
+    if (stack.apart[stack.count] >= nearest->apart) continue;
+    if (robot_groups_are_parts(&o->scene, groups)) {
+      const int32_t pair = robot_groups_pair(&o->scene, groups);
+      if (pair < 0) return robot_no_memory(o);
+      try_pair(o, pair, nearest);
+    } else {
+      push_groups_inside(o, &stack, groups, nearest->apart);
+    }
+  }
+  return CPROX_OK;
+}
+
 /* Measures the pair whose balls and boxes come closest where the scene is. */
 static cprox_status seed_here(robot_search *o, int32_t list) {
   const double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
@@ -166,9 +210,12 @@ static cprox_status seed_here(robot_search *o, int32_t list) {
   nearest_pair nearest = {.apart = most, .pair = -1};
   for (size_t k = 0; k < n; k++) {
     const list_entry entry = lists_at(&o->lists, list)[k];
-    const cprox_status status = entry.pair < 0 ? try_cluster(o, &entry, &nearest) : CPROX_OK;
+    cprox_status status = CPROX_OK;
+    if (entry.pair >= 0)
+      try_pair(o, entry.pair, &nearest);
+    else
+      status = entry.pair == LIST_CLUSTER ? try_cluster(o, &entry, &nearest) : try_groups(o, &entry, &nearest);
     if (status < 0) return status;
-    if (entry.pair >= 0) try_pair(o, entry.pair, &nearest);
   }
   return nearest.pair < 0 ? CPROX_OK : robot_measure_whole(o, nearest.pair);
 }
@@ -240,6 +287,24 @@ static cprox_status measure_near_cluster(robot_search *o, const list_entry *entr
   return status;
 }
 
+cprox_status robot_measure_near_groups(robot_search *o, group_pair groups) {
+  const double known = o->touch_at, near = nextafter(o->goal.epsilon, INFINITY);
+  group_stack stack;
+  begin_groups(&stack, groups);
+  cprox_status status = CPROX_OK;
+  while (stack.count > 0 && status >= 0 && o->touch_at == known) {
+    const group_pair top = stack.at[--stack.count];
+    if (!robot_groups_are_parts(&o->scene, top)) {
+      push_groups_inside(o, &stack, top, near);
+      continue;
+    }
+    const int32_t pair = robot_groups_pair(&o->scene, top);
+    if (pair < 0) return robot_no_memory(o);
+    status = robot_measure_if_near(o, pair);
+  }
+  return status;
+}
+
 cprox_status robot_measure_start(robot_search *o, const search_node *node) {
   const robot_node *payload = robot_known(node);
   const double known = o->touch_at;
@@ -248,7 +313,12 @@ cprox_status robot_measure_start(robot_search *o, const search_node *node) {
   cprox_status status = CPROX_OK;
   for (size_t k = 0; k < n && status >= 0 && o->touch_at == known; k++) {
     const list_entry entry = lists_at(&o->lists, payload->list)[k];
-    status = entry.pair < 0 ? measure_near_cluster(o, &entry) : robot_measure_if_near(o, entry.pair);
+    if (entry.pair >= 0)
+      status = robot_measure_if_near(o, entry.pair);
+    else if (entry.pair == LIST_CLUSTER)
+      status = measure_near_cluster(o, &entry);
+    else
+      status = robot_measure_near_groups(o, (group_pair){{entry.part, (int32_t)entry.under}});
   }
   return status;
 }
@@ -256,7 +326,8 @@ cprox_status robot_measure_start(robot_search *o, const search_node *node) {
 cprox_status robot_seed(robot_search *o, const search_node *node) {
   const motion_interval over = robot_interval(node);
   const int32_t list = robot_known(node)->list;
-  const size_t n = lists_count(&o->lists, list);
+  const size_t n =
+      lists_count(&o->lists, list) + (o->scene.groups ? GROUP_SEED_TESTS * o->scene.motion->robot->n_parts : 0);
   size_t places = MOST_SEEDS;
   while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
   cprox_status status = seed_span(o, list, &over, places);

@@ -4,6 +4,7 @@
 #ifndef CPROX_ROBOT_QUERY_MEASURE_H
 #define CPROX_ROBOT_QUERY_MEASURE_H
 
+#include "robot_query/groups.h"
 #include "robot_query/oracle.h"
 
 /* A gap is measured to this fraction of the width asked for. */
@@ -47,6 +48,9 @@ cprox_status robot_measure_whole(robot_search *o, int32_t index);
 
 /* Measures a pair that is near enough to touch where the scene is. */
 cprox_status robot_measure_if_near(robot_search *o, int32_t index);
+
+/* The same of all pairs of two groups, until contact is proven. */
+cprox_status robot_measure_near_groups(robot_search *o, group_pair groups);
 
 /* The knot inside the span, a multiple of `step` where there is one, that is nearest to a time. */
 size_t robot_knot_near(const cprox_motion *m, size_t first, size_t last, size_t step, double t);

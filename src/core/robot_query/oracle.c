@@ -25,14 +25,16 @@ bool robot_search_root(robot_search *o, const motion_interval *over, search_node
   *root = (search_node){.lower = -INFINITY};
   const obstacle_bvh *set = o->scene.q->set;
   const size_t n_pairs = o->scene.n_pairs, n_parts = set && set->boxes ? o->scene.motion->robot->n_parts : 0;
-  const int32_t slot = lists_take(&o->lists, n_pairs + n_parts);
+  const int32_t slot = lists_take(&o->lists, n_pairs + n_parts + 1);
   if (slot < 0) return false;
   robot_own(root)->list = slot;
   list_entry *entry = lists_at(&o->lists, slot);
   for (size_t i = 0; i < n_pairs; i++) entry[i] = (list_entry){.lower = -INFINITY, .pair = (int32_t)i};
   size_t n = n_pairs;
   for (size_t i = 0; i < n_parts; i++)
-    if (robot_scene_asks(&o->scene, i)) entry[n++] = (list_entry){.lower = -INFINITY, .pair = -1, .part = (int32_t)i};
+    if (robot_scene_asks(&o->scene, i))
+      entry[n++] = (list_entry){.lower = -INFINITY, .pair = LIST_CLUSTER, .part = (int32_t)i};
+  if (o->scene.groups) entry[n++] = (list_entry){.lower = -INFINITY, .pair = LIST_GROUPS}; /* all parts with all */
   lists_set_count(&o->lists, slot, n);
   *root = node_of(o, root, over->first, over->a, over->last, over->b);
   return true;

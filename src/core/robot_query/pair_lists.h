@@ -8,11 +8,15 @@
 
 #include "base/workspace.h"
 
+/* What is no pair yet: all that is under a node of the set's tree, for one part of the robot; two groups of its parts.
+ */
+enum { LIST_CLUSTER = -1, LIST_GROUPS = -2 };
+
 typedef struct list_entry {
   double lower; /* a bound on the pair's distance over the node, known so far */
-  int32_t pair; /* or -1: all that is under a node of the set's tree, for one part of the robot */
-  int32_t part;
-  uint32_t under;
+  int32_t pair;
+  int32_t part;     /* or one group */
+  uint32_t under;   /* or the other one */
   bool needs_split; /* on this node the part moves too far to be measured, */
   bool bounded;     /* and planes have said what they can */
 } list_entry;

@@ -5,6 +5,7 @@
 
 #include "base/rounding.h"
 #include "broadphase/obstacle_set.h"
+#include "robot_query/groups.h"
 
 enum { MOST_DISPLACEMENTS = 1 << 18 };
 
@@ -79,11 +80,15 @@ static robot_body part_body(const query *q, size_t i) {
 static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing, bool self) {
   robot_pair pair = {
       .moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}, .near = {-1, -1}, .self = self};
-  if (!self || !s->displacements) return pair;
+  if (!self) return pair;
   const cprox_robot *robot = s->motion->robot;
-  const int32_t common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
-  pair.shared = robot_axis_depth(robot, common);
+  pair.common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
+  pair.shared = robot_axis_depth(robot, pair.common);
   return pair;
+}
+
+robot_pair robot_scene_self_pair(const robot_scene *s, int32_t moving, int32_t standing) {
+  return pair_of(s, (size_t)moving, (size_t)standing, true);
 }
 
 static int32_t geometry_of_part(const robot_scene *s, size_t part) {
@@ -107,6 +112,10 @@ static size_t first_from(const robot_scene *s, int32_t (*number_of)(const robot_
       high = middle;
   }
   return low;
+}
+
+int32_t robot_scene_first_part(const robot_scene *s, int32_t geometry) {
+  return (int32_t)first_from(s, geometry_of_part, s->motion->robot->n_parts, geometry);
 }
 
 /* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no
@@ -152,6 +161,7 @@ static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
   size_t n = 0;
   const bool whole = mover_is_whole(mover);
   for (int self = mover_is_self(mover); self <= (mover_is_self(mover) || whole); self++) {
+    if (self && s->groups) continue;
     const bool second = self && whole;
     const cprox_robot_pair *given = second ? mover->self_pairs : mover->pairs;
     const size_t count = second ? mover->n_self_pairs : mover->n_pairs;
@@ -163,19 +173,32 @@ static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
 
 /* ---- beginning ---- */
 
-bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last) {
+/* So many pairs with itself there are at most. */
+static size_t count_self_pairs(const robot_scene *s) {
+  const cprox_mover *mover = &s->q->mover;
+  const bool whole = mover_is_whole(mover);
+  const size_t n = s->motion->robot->n_parts, all = n * (n - 1) / 2;
+  const cprox_robot_pair *given = whole ? mover->self_pairs : mover->pairs;
+  const size_t count = whole ? mover->n_self_pairs : mover->n_pairs;
+  if (!s->self || n < 2) return 0;
+  return given && count < all && n == s->motion->robot->n_geometries ? count : all;
+}
+
+bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last, size_t most_listed) {
   const bool self = mover_is_self(&q->mover) || mover_is_whole(&q->mover);
   *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self};
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;
+  if (count_self_pairs(s) > most_listed && !robot_groups_begin(s)) return false;
   size_t deepest = 0;
-  for (size_t i = 0; s->self && i < robot->n_parts; i++) {
+  for (size_t i = 0; s->self && !s->groups && i < robot->n_parts; i++) {
     const size_t depth = robot_axis_depth(robot, robot->parts[i].axis);
     deepest = depth > deepest ? depth : deepest;
   }
   s->n_displacements = deepest + 1;
-  const size_t all_displacements =
-      s->self && s->n_displacements * robot->n_parts <= MOST_DISPLACEMENTS ? s->n_displacements * robot->n_parts : 0;
+  const size_t all_displacements = s->self && !s->groups && s->n_displacements * robot->n_parts <= MOST_DISPLACEMENTS
+                                       ? s->n_displacements * robot->n_parts
+                                       : 0;
   const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
                        (motion_rows_size(s->motion) + all_displacements) * sizeof *s->rows;
@@ -332,6 +355,7 @@ static double displacement_of_part(robot_scene *s, int32_t index) {
 }
 
 double robot_scene_coarse_displacement(robot_scene *s, const robot_pair *pair) {
+  if (pair->self && s->groups) return robot_groups_displacement_of(s, pair);
   const double coarse = displacement_of_part(s, pair->moving);
   if (!pair->self) return coarse;
   const double other = displacement_of_part(s, pair->standing);

@@ -7,12 +7,14 @@
 #include "problem/candidates.h"
 #include "robot_query/element.h"
 #include "robot_query/pair_distance.h"
+#include "robot_query/pair_table.h"
 
 /* A pair of a part of the robot that moves and what it is held against. */
 typedef struct robot_pair {
   int32_t moving;     /* which part of the robot */
   int32_t standing;   /* which obstacle, or of a pair with itself which part */
-  uint32_t shared;    /* of the robot itself: so many axes are above both sides */
+  uint32_t shared;    /* of the robot itself: so many axes are above both sides, */
+  int32_t common;     /* this one the last of them; -1: none */
   int32_t element[2]; /* of what the moving and the standing side are made of, as robot_element_make() has it */
   int32_t near[2];  /* of whole sides: the elements that were nearest to each other last; ROBOT_WHOLE: none is known */
   int32_t inner;    /* the first of the pairs that it was opened into, */
@@ -48,19 +50,31 @@ typedef struct robot_scene {
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
-  struct cluster_slot *cluster_table; /* which targets of the set have obstacles and pairs (robot_query/cull.c) */
-  size_t cluster_room, cluster_count;
-  robot_element element[2]; /* those of the pair that was placed last: moving, standing */
-  uint32_t node;            /* counts the nodes, so that states know whether they are of the present one */
-  motion_interval over;     /* that node; */
-  size_t segment;           /* everything stands as it does at u of this segment: its middle, or near that of a span */
+  pair_table met;              /* what was made of targets of the set, and of groups */
+  struct robot_groups *groups; /* of parts, where pairs with itself are found by them (robot_query/groups.h), or NULL */
+  robot_element element[2];    /* those of the pair that was placed last: moving, standing */
+  uint32_t node;               /* counts the nodes, so that states know whether they are of the present one */
+  motion_interval over;        /* that node; */
+  size_t segment; /* everything stands as it does at u of this segment: its middle, or near that of a span */
   double u;
   bool bent; /* a span that is only bounded by how far parts move */
 } robot_scene;
 
+/* So many pairs of a robot with itself are listed one by one; groups of parts would cost more. */
+#ifndef ROBOT_MOST_LISTED
+#define ROBOT_MOST_LISTED 300
+#endif
+
 /* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the
- * rest come as they are needed. */
-bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last);
+ * rest come as they are needed. If the robot could have more than `most_listed` pairs with itself, these come as groups
+ * of its parts come near each other. */
+bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last, size_t most_listed);
+
+/* Of a geometry. */
+int32_t robot_scene_first_part(const robot_scene *scene, int32_t geometry);
+
+/* A pair of two parts of the robot, of which nothing is known. */
+robot_pair robot_scene_self_pair(const robot_scene *scene, int32_t moving, int32_t standing);
 
 /* Whether the robot's part is asked about, against obstacles. */
 bool robot_scene_asks(const robot_scene *scene, size_t part);

@@ -23,6 +23,8 @@ static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, dou
   if (pair >= 0) status = robot_measure_whole(o, pair);
   const size_t n = pair < 0 ? o->scene.n_pairs : 0;
   for (size_t i = 0; i < n && status >= 0 && o->touch_at == known; i++) status = robot_measure_if_near(o, (int32_t)i);
+  if (pair < 0 && o->scene.groups && status >= 0 && o->touch_at == known)
+    status = robot_measure_near_groups(o, (group_pair){{0, 0}});
   *upper = o->best_bound.upper;
   o->best = best, o->best_bound = bound, o->goal.epsilon = epsilon;
   return status;
