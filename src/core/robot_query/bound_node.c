@@ -186,7 +186,7 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   want_pieces(o, displacement / size);
 }
 
-static cprox_status keep_open(robot_search *o, const list_entry *entry) {
+static inline cprox_status keep_open(robot_search *o, const list_entry *entry) {
   if (!robot_is_pruned(o, entry->lower)) return keep_entry(o, entry) ? CPROX_OK : robot_no_memory(o);
   o->dropped = lesser(entry->lower, o->dropped);
   return CPROX_OK;

@@ -355,10 +355,9 @@ static double displacement_of_part(robot_scene *s, int32_t index) {
 }
 
 double robot_scene_coarse_displacement(robot_scene *s, const robot_pair *pair) {
-  if (pair->self && s->groups) return robot_groups_displacement_of(s, pair);
-  const double coarse = displacement_of_part(s, pair->moving);
-  if (!pair->self) return coarse;
-  const double other = displacement_of_part(s, pair->standing);
+  if (!pair->self) return displacement_of_part(s, pair->moving);
+  if (s->groups) return robot_groups_displacement_of(s, pair);
+  const double coarse = displacement_of_part(s, pair->moving), other = displacement_of_part(s, pair->standing);
   if (!s->displacements) return coarse + other;
   return s->displacements[(size_t)pair->moving * s->n_displacements + pair->shared] +
          s->displacements[(size_t)pair->standing * s->n_displacements + pair->shared];
