@@ -22,6 +22,7 @@ REPO = os.environ.get('REPO', os.path.dirname(os.path.dirname(os.path.abspath(__
 WORKSPACE = os.environ.get('WORKSPACE', '')
 LOGS = os.environ.get('LOGS', '')
 RUNNER_LIMIT = 600  # seconds for one runner; a test that hangs is a failed one
+IDLE_LIMIT = 1800  # the same beside other groups
 RUNNERS = max(1, min(os.cpu_count() or 1, 4))  # how many runners work at the same time
 PRINTING = threading.Lock()
 
@@ -80,6 +81,8 @@ def count_junit(path, code, name):
 # ------------------------------------------------------------------------------------------------------ running things
 def execute(command, log, cwd=REPO, env=None, limit=RUNNER_LIMIT):
     """Runs a command into a log. Returns what it printed and its exit code (124 when it ran out of time)."""
+    if os.sched_getscheduler(0) == os.SCHED_IDLE:
+        command, limit = when_idle(command), IDLE_LIMIT
     with open(log, 'w', errors='replace') as out:
         process = subprocess.Popen(command, cwd=cwd, env=dict(os.environ, **(env or {})), stdin=subprocess.DEVNULL,
                                    stdout=out, stderr=subprocess.STDOUT, start_new_session=True)
@@ -91,6 +94,19 @@ def execute(command, log, cwd=REPO, env=None, limit=RUNNER_LIMIT):
             end_group(process)
     with open(log, errors='replace') as printed:
         return printed.read(), code
+
+
+def work_when_idle():
+    """From here on this thread, its threads and its processes work when nothing else wants the processor."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+    except OSError:
+        pass  # a sandbox that knows no such policy: they work at the priority of all others
+
+
+def when_idle(command):
+    """The command of a thread that works when idle. Where Linux groups processes by session, the group is idle, too."""
+    return ['sh', '-c', 'echo 19 2>/dev/null > /proc/self/autogroup; exec "$@"', 'sh', *command]
 
 
 def end_group(process):
@@ -295,11 +311,6 @@ def threads():
     return count + run_one(command, 'threads-scene', lambda _, code, name: count_junit(results, code, name), env=libraries)
 
 
-def when_idle(command):
-    """The command, working when nothing else wants the processor; where Linux groups processes by session, its group, too."""
-    return ['sh', '-c', 'echo 19 2>/dev/null > /proc/self/autogroup; exec chrt --idle 0 "$@"', 'sh', *command]
-
-
 def compile_commands_once():
     """A folder with the workspace's compile commands, the first of each file: clang-tidy analyses a file once for each of its
     commands, and the tests compile the core a second time, with fused multiplications."""
@@ -317,7 +328,7 @@ def compile_commands_once():
 def tidy():
     files = [path for path in sources('src/core') if path.endswith('.c')]
     command = ['xargs', '-a', write_list(files), f'-P{RUNNERS}', '-n4', 'clang-tidy', '--quiet', '-p', compile_commands_once()]
-    return run_one(when_idle(command), 'clang-tidy', count_exit, limit=1800)
+    return run_one(command, 'clang-tidy', count_exit, limit=1800)
 
 
 def write_list(files):
@@ -413,8 +424,9 @@ GROUPS = {
     'install': install, 'demo': demo,
 }
 
-# Rostests mostly wait: what stands here works beside them and all groups after them, when nothing else wants the processor.
-BESIDE_ROSTESTS = ('tidy',)
+# These work beside all others, when nothing else wants the processor: while rostests wait, which they mostly do, while CMake
+# configures, and while the last program of a build is compiled.
+WHEN_IDLE = ('tidy', 'threads')
 
 NAMED = (*CORE_FOLDERS, 'scene', 'providers', 'cli', 'python', 'ros')  # rooms whose tests have names: scripts/test core.test_pair
 
@@ -460,15 +472,13 @@ def main():
     os.makedirs(LOGS, exist_ok=True)
     total = Count()
     print(f"{'group':<12}{'passed':>8}{'failed':>8}{'seconds':>9}", flush=True)
-    with concurrent.futures.ThreadPoolExecutor(1) as beside:
-        waiting = {}
+    idle = [name for name in WHEN_IDLE if name in groups] if not arguments.groups else []
+    with concurrent.futures.ThreadPoolExecutor(1, initializer=work_when_idle) as beside:
+        waiting = [(name, beside.submit(timed, name)) for name in idle]
         for name in groups:
-            if name in BESIDE_ROSTESTS and 'ros' in groups:
-                continue
-            if name == 'ros':
-                waiting = {other: beside.submit(timed, other) for other in BESIDE_ROSTESTS if other in groups}
-            total += report(name, *timed(name))
-        for name, group in waiting.items():
+            if name not in idle:
+                total += report(name, *timed(name))
+        for name, group in waiting:
             total += report(name, *group.result())
 
     # Say what failed, then the sum.
