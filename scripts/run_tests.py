@@ -202,8 +202,9 @@ CORE_FOLDERS = ('core', 'check', 'attack')
 INSTRUMENTED = ['-DCPROX_TESTS=ON', '-DCMAKE_BUILD_TYPE=RelWithDebInfo',
                 *(f'-DCMAKE_{language}_FLAGS_RELWITHDEBINFO=-O1 -g1 -DNDEBUG' for language in ('C', 'CXX'))]
 # The slowest tests of random cases: under a sanitizer they ask a quarter of them, the group core asks them all.
-SLOW = r'\.test_(convex_polytope|curve_(bspline|control|evaluate|piecewise|planar|polynomial|pythagorean)|depth|time_of_contact|' \
-    r'fourier_(gap|kinds|query)|gradient|mesh|pair|robot_motion|robot_query|rounding)$'
+SLOW = r'\.test_(approach|certificates|convex_polytope|curve_(bspline|control|evaluate|piecewise|planar|polynomial|pythagorean)|depth|' \
+    r'fourier_(gap|kinds|query)|gradient|implicit_(motion|solver|support)|mesh|pair|pair_(peers|traps)|quick|' \
+    r'robot_(crowd|gradient|mesh|motion|query|spans)|rounding|superquadric_nearest|time_of_contact)$'
 
 
 def workspace_build():

@@ -191,7 +191,7 @@ CASE(proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are) {
   }
   print_message("meshes: %zu asked, %zu apart, %zu near, %zu without; %zu in a hull that clear the mesh\n", sum.asked,
                 sum.apart, sum.near, sum.none, within);
-  assert_true(within > 5 && sum.apart > 100 && sum.near > 20);
+  assert_true(within > test_cases(5) && sum.apart > test_cases(100) && sum.near > test_cases(20));
   cprox_certificate_free(c);
   cprox_workspace_free(ws);
 }
@@ -222,7 +222,7 @@ CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
     }
     asked_free(&q);
   }
-  assert_true(tried > 20);
+  assert_true(tried > test_cases(20));
   cprox_certificate_free(c);
   cprox_workspace_free(ws);
 }
