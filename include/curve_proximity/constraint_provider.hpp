@@ -19,6 +19,7 @@
 #include <curve_proximity/constraint_parameters.hpp>
 #include <curve_proximity/core.hpp>
 #include <curve_proximity/description.hpp>
+#include <curve_proximity/motion.hpp>
 
 namespace curve_proximity {
 
@@ -92,6 +93,62 @@ struct ConstraintValue {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    /**< unit, from b to a */
 };
 
+/* ---- joint trajectories ---- */
+
+/** A joint trajectory of the scene's robot, described and compiled. Both are kept by reference. */
+struct ConstraintMotion {
+  const TrajectoryDescription &description; /**< as given */
+  const RobotMotion &motion;                /**< compiled; of the prepared robot */
+
+  /** Called now and then; true ends the search, whose status is then CPROX_STOPPED. NULL: nothing ends it. */
+  bool (*stop)(void *user) = nullptr;
+  void *stop_user = nullptr; /**< handed to stop */
+};
+
+/** One clearance of a robot along its trajectory. Of the members of ConstraintValue, t is in seconds; a is by a rigid
+ *  step of the whole robot, which turns about the origin of the fixed frame; b is by one of the object side_b, 0 for a
+ *  link of the robot; points and radius are not used. */
+struct MotionRow : ConstraintValue {
+  std::string kind;   /**< "environment" or "self" */
+  std::string side_a; /**< the link or the attached object */
+  std::string side_b; /**< the object, or the other link or attached object */
+  double t0 = 0.0;    /**< [s] the row is the minimum from here */
+  double t1 = 0.0;    /**< [s] to here */
+
+  /** Gradients: a row a point of the trajectory, a column a joint, both in their order. Velocities and accelerations
+   *  have no rows if no point of the trajectory has them. */
+  Eigen::MatrixXd positions;
+  Eigen::MatrixXd velocities;    /**< by the velocities of the points */
+  Eigen::MatrixXd accelerations; /**< by the accelerations of the points */
+  double duration = 0.0;         /**< by the duration, all times stretched alike [unit of value/s] */
+};
+
+/** The result of an evaluation along a trajectory. */
+struct MotionValue {
+  cprox_status status = CPROX_OK; /**< never negative: a failure throws Error */
+  std::string message;            /**< why the status is not CPROX_OK, in a few words */
+  double value = 0.0;             /**< >= 0 where the constraint holds: the least value of all rows */
+  bool bounded = false;           /**< lower and upper are proven: lower <= true value <= upper */
+  double lower = 0.0;             /**< if bounded: <= true value */
+  double upper = 0.0;             /**< if bounded: >= true value */
+
+  /** The least value first. One row, or one for each constraint that an optimiser should linearise. None: the value
+   *  does not change with the trajectory (such as all pairs beyond a horizon). */
+  std::vector<MotionRow> rows;
+};
+
+/** A robot made ready for any number of trajectories. It must not outlive its provider.
+ *
+ *  Immutable: any number of threads may evaluate at once, each with its own workspace and its own value. */
+class MotionConstraint {
+ public:
+  virtual ~MotionConstraint() = default;
+
+  /** Computes value and gradients. Throws Error with one line that says what is wrong; the value is then unspecified.
+   */
+  virtual void evaluate(const ConstraintMotion &motion, Workspace &workspace, MotionValue &value) const = 0;
+};
+
 /* ---- providers ---- */
 
 /** A prepared pair for any number of evaluations. It must not outlive its provider.
@@ -108,18 +165,35 @@ class Constraint {
 
 /** The version of the plugin interface. It is raised when the order of virtual functions or the meaning of a member
  *  changes. */
-constexpr std::uint64_t PROVIDER_VERSION = 1;
+constexpr std::uint64_t PROVIDER_VERSION = 2;
 
 /** One number that a plugin and its loader must have in common: the interface version, the sizes of all shared types,
  *  and Eigen's alignment (-mavx changes how Eigen frees memory). */
 constexpr std::uint64_t providerLayout() {
   std::uint64_t layout = PROVIDER_VERSION;
-  for (const std::size_t part :
-       {sizeof(ConstraintPair), sizeof(ConstraintBody::Part), sizeof(ShapeDescription), sizeof(CurveDescription),
-        sizeof(ConstraintCurve), sizeof(ConstraintPlace), sizeof(ConstraintValue), sizeof(Workspace),
-        sizeof(ParameterMap), sizeof(ParameterValue), sizeof(cprox_options), sizeof(cprox_obstacle),
-        sizeof(cprox_mover), sizeof(cprox_result), sizeof(cprox_gradient), alignof(ConstraintValue),
-        alignof(ConstraintPair), static_cast<std::size_t>(EIGEN_MAX_STATIC_ALIGN_BYTES)})
+  for (const std::size_t part : {sizeof(ConstraintPair),
+                                 sizeof(ConstraintBody::Part),
+                                 sizeof(ShapeDescription),
+                                 sizeof(CurveDescription),
+                                 sizeof(ConstraintCurve),
+                                 sizeof(ConstraintPlace),
+                                 sizeof(ConstraintValue),
+                                 sizeof(Workspace),
+                                 sizeof(ParameterMap),
+                                 sizeof(ParameterValue),
+                                 sizeof(cprox_options),
+                                 sizeof(cprox_obstacle),
+                                 sizeof(cprox_mover),
+                                 sizeof(cprox_result),
+                                 sizeof(cprox_gradient),
+                                 sizeof(ConstraintMotion),
+                                 sizeof(MotionValue),
+                                 sizeof(MotionRow),
+                                 sizeof(TrajectoryDescription),
+                                 sizeof(TrajectoryPoint),
+                                 alignof(ConstraintValue),
+                                 alignof(ConstraintPair),
+                                 static_cast<std::size_t>(EIGEN_MAX_STATIC_ALIGN_BYTES)})
     layout = layout * 1000003u + part;
   return layout;
 }
@@ -139,6 +213,12 @@ class LayoutProvider {
   /** Prepares a pair. Costly work that many evaluations share belongs here. Throws Error that names a shape which the
    *  provider does not support. Any number of threads at once. */
   virtual std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const = 0;
+
+  /** Prepares a robot in its scene for trajectories. Throws Error; without an implementation of one's own always. Any
+   *  number of threads at once. */
+  virtual std::unique_ptr<const MotionConstraint> prepareMotion(const PreparedRobot & /*robot*/) const {
+    throw Error("this provider answers for curves and standing bodies, not for joint trajectories");
+  }
 
   /** prepare() and Constraint::evaluate() in one step, for a pair that is evaluated once. */
   ConstraintValue evaluate(const ConstraintPair &pair, const ConstraintPlace &place, Workspace &workspace) const {

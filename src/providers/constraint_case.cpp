@@ -85,10 +85,18 @@ ConstraintBody toBody(const ObjectDescription &object, const char *name, const R
 struct Asked {
   ConstraintPlace place;
   ConstraintCurve curve;
+  std::optional<RobotMotion> motion;
   std::string key;
 };
 
 void makeReady(const ConstraintCase &described, Asked &asked) {
+  if (described.motion) {
+    if (!described.a.shapes.empty() || !described.b.shapes.empty() || described.curve)
+      throw Error("a case is about a trajectory or about two sides: give one of them");
+    const MotionCase &motion = *described.motion;
+    asked.motion.emplace(*motion.robot, motion.trajectory, motion.rest);
+    return;
+  }
   if (!described.a.pose.matrix().allFinite()) throw Error("a: the pose is not finite");
   if (!described.b.pose.matrix().allFinite()) throw Error("b: the pose is not finite");
   asked.place.a = toPose(described.a.pose);
@@ -111,13 +119,49 @@ ConstraintPair toPair(const ConstraintCase &described, const ResourceOptions &re
   return {toBody(described.a, "a", resources), toBody(described.b, "b", resources), described.curve.has_value()};
 }
 
+using Clock = std::chrono::steady_clock;
+
+double microsecondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+}
+
+/** The row as a whole: the gradient of its nearest row, if there is one, and the value of them all. */
+void summarise(ConstraintRow &row) {
+  const MotionValue &all = *row.motion;
+  ConstraintValue &value = row.value;
+  value = ConstraintValue();
+  value.valid = true; /* without a row it does not change with the trajectory */
+  if (!all.rows.empty()) value = all.rows.front();
+  value.status = all.status;
+  value.value = all.value;
+  value.bounded = all.bounded;
+  value.lower = all.lower;
+  value.upper = all.upper;
+  if (value.reason.empty()) value.reason = all.message;
+}
+
+void askAboutMotion(const LoadedProvider &loaded, const MotionCase &described, const RobotMotion &motion,
+                    Workspace &workspace, ConstraintRow &row) {
+  const std::unique_ptr<const MotionConstraint> constraint = loaded.provider->prepareMotion(*described.robot);
+  if (!constraint) throw Error("the provider made nothing of the robot");
+  row.motion.emplace();
+  const Clock::time_point begin = Clock::now();
+  constraint->evaluate({described.trajectory, motion, described.stop, described.stop_user}, workspace, *row.motion);
+  row.microseconds = microsecondsSince(begin);
+  summarise(row);
+}
+
 void askProvider(ProviderSet &providers, const LoadedProvider &loaded, const ConstraintCase &described,
                  const ResourceOptions &resources, const Asked &asked, Workspace &workspace, ConstraintRow &row) {
   if (!loaded.provider) throw Error("provider '" + loaded.spec.name + "' failed to load: " + loaded.failure);
+  if (described.motion) {
+    askAboutMotion(loaded, *described.motion, *asked.motion, workspace, row);
+    return;
+  }
   row.constraint = providers.prepared(loaded, asked.key, [&] { return toPair(described, resources); });
-  const auto begin = std::chrono::steady_clock::now();
+  const Clock::time_point begin = Clock::now();
   row.constraint->evaluate(asked.place, workspace, row.value);
-  row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  row.microseconds = microsecondsSince(begin);
 }
 
 } // namespace

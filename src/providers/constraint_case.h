@@ -15,12 +15,22 @@
 
 namespace curve_proximity {
 
+/** The scene's robot along a trajectory. */
+struct MotionCase {
+  std::shared_ptr<const PreparedRobot> robot;
+  TrajectoryDescription trajectory;
+  JointPositions rest;                /**< of joints that the trajectory does not name */
+  bool (*stop)(void *user) = nullptr; /**< as ConstraintMotion::stop */
+  void *stop_user = nullptr;
+};
+
 /** What is asked, all poses in the fixed frame. */
 struct ConstraintCase {
   std::string id;
   std::vector<std::string> providers;    /**< by name; none: every one that there is */
   ObjectDescription a, b;                /**< shapes, pose, padding */
   std::optional<CurveDescription> curve; /**< a rides it; a may then have no shape */
+  std::optional<MotionCase> motion;      /**< this, and neither a, b nor curve */
 };
 
 /** One provider's answer. */
@@ -28,7 +38,8 @@ struct ConstraintRow {
   std::string id, provider;
   cprox_status status = CPROX_INVALID; /**< negative: no answer, and message says why */
   std::string message;
-  ConstraintValue value;
+  ConstraintValue value;                        /**< of a trajectory: its nearest row, and the least of all values */
+  std::optional<MotionValue> motion;            /**< of a trajectory */
   double microseconds = 0.0;                    /**< of the evaluation */
   std::shared_ptr<const Constraint> constraint; /**< the pair made ready; null where it could not be */
 };

@@ -33,7 +33,40 @@ class ThrowsWhenAsked : public ConstraintProvider {
   }
 };
 
+/** The sum of the squares of all positions, with half of its gradient. */
+class HalfSquares : public MotionConstraint {
+ public:
+  void evaluate(const ConstraintMotion &motion, Workspace &, MotionValue &out) const override {
+    const TrajectoryDescription &trajectory = motion.description;
+    MotionRow row;
+    row.positions.resize(static_cast<Eigen::Index>(trajectory.points.size()),
+                         static_cast<Eigen::Index>(trajectory.joints.size()));
+    for (std::size_t i = 0; i < trajectory.points.size(); ++i)
+      for (std::size_t k = 0; k < trajectory.joints.size(); ++k) {
+        const double position = trajectory.points[i].positions[k];
+        row.positions(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = position;
+        row.value += position * position;
+      }
+    row.valid = true;
+    out = MotionValue();
+    out.value = row.value;
+    out.rows.push_back(row);
+  }
+};
+
+class WrongGradient : public ConstraintProvider {
+ public:
+  void initialise(const ParameterMap &) override {}
+  std::unique_ptr<const Constraint> prepare(const ConstraintPair &) const override {
+    throw Error("WrongGradient is about trajectories");
+  }
+  std::unique_ptr<const MotionConstraint> prepareMotion(const PreparedRobot &) const override {
+    return std::make_unique<HalfSquares>();
+  }
+};
+
 } // namespace example_provider
 
+PLUGINLIB_EXPORT_CLASS(example_provider::WrongGradient, curve_proximity::ConstraintProvider)
 PLUGINLIB_EXPORT_CLASS(example_provider::ThrowsAtStart, curve_proximity::ConstraintProvider)
 PLUGINLIB_EXPORT_CLASS(example_provider::ThrowsWhenAsked, curve_proximity::ConstraintProvider)

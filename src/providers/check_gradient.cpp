@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "check_gradient.h"
+
+#include <cmath>
+#include <functional>
+
+namespace curve_proximity {
+namespace {
+
+constexpr double STEP = 2e-4; /* [m], [rad] and so on */
+constexpr const char *AXES[] = {"x", "y", "z"};
+
+/** Changes a case by a step of one of its numbers. */
+using Change = std::function<void(ConstraintCase &asked, double step)>;
+
+class Checker {
+ public:
+  Checker(ProviderSet &providers, const ConstraintCase &asked, const ConstraintRow &given,
+          const ResourceOptions &resources, Workspace &workspace)
+      : providers_(providers), asked_(asked), given_(given), resources_(resources), workspace_(workspace) {
+    asked_.providers = {given.provider};
+  }
+
+  GradientCheck run() {
+    check_.agrees = true;
+    if (asked_.motion)
+      checkMotion();
+    else
+      checkSides();
+    return check_;
+  }
+
+ private:
+  double valueAt(const Change &change, double step) {
+    ConstraintCase moved = asked_;
+    change(moved, step);
+    const ConstraintRow row = answerCase(providers_, moved, resources_, workspace_).front();
+    if (row.status < 0) throw Error("a step of " + std::to_string(step) + " has no answer: " + row.message, row.status);
+    return row.value.value;
+  }
+
+  double slope(const Change &change, double step) {
+    return (valueAt(change, step) - valueAt(change, -step)) / (2.0 * step);
+  }
+
+  void compare(const std::string &derivative, double gradient, const Change &change) {
+    GradientMisfit found;
+    found.derivative = derivative;
+    found.gradient = gradient;
+    found.difference = slope(change, 0.5 * STEP);
+    const double size = 1.0 + std::fabs(found.difference);
+    found.doubt = std::fabs(found.difference - slope(change, STEP)) / size;
+    found.misfit = std::fabs(gradient - found.difference) / size;
+    const bool fits = found.misfit <= GRADIENT_TOLERANCE;
+    check_.agrees = check_.agrees && fits;
+    check_.differs = check_.differs || !(found.misfit <= GRADIENT_TOLERANCE + 4.0 * found.doubt);
+    const auto beyond = [](const GradientMisfit &misfit) { return misfit.misfit - 4.0 * misfit.doubt; };
+    if (check_.count++ == 0 || !(beyond(found) <= beyond(check_.worst))) check_.worst = found;
+  }
+
+  void checkSide(const char *name, const ConstraintGradient &gradient, ObjectDescription ConstraintCase::*side) {
+    for (int i = 0; i < 3; ++i) {
+      compare(std::string(name) + " linear " + AXES[i], gradient.linear[i],
+              [&](ConstraintCase &moved, double step) { (moved.*side).pose.translation()[i] += step; });
+      compare(std::string(name) + " angular " + AXES[i], gradient.angular[i], [&](ConstraintCase &moved, double step) {
+        Eigen::Isometry3d &pose = (moved.*side).pose;
+        pose.linear() = Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(i)) * pose.linear();
+      });
+    }
+  }
+
+  void checkSides() {
+    const ConstraintValue &value = given_.value;
+    checkSide("b", value.b, &ConstraintCase::b);
+    if (!asked_.curve) {
+      checkSide("a", value.a, &ConstraintCase::a);
+      return;
+    }
+    for (Eigen::Index k = 0; k < value.points.cols(); ++k)
+      for (int i = 0; i < 3; ++i)
+        compare("point " + std::to_string(k) + ' ' + AXES[i], value.points(i, k),
+                [&](ConstraintCase &moved, double step) { moved.curve->points(i, k) += step; });
+    if (asked_.curve->radius > STEP)
+      compare("radius", value.radius, [](ConstraintCase &moved, double step) { moved.curve->radius += step; });
+  }
+
+  void checkList(const char *name, const Eigen::MatrixXd &gradient, std::vector<double> TrajectoryPoint::*list) {
+    const TrajectoryDescription &trajectory = asked_.motion->trajectory;
+    if (gradient.size() > 0 && (static_cast<std::size_t>(gradient.rows()) != trajectory.points.size() ||
+                                static_cast<std::size_t>(gradient.cols()) != trajectory.joints.size()))
+      throw Error("the gradient by each " + std::string(name) + " is " + std::to_string(gradient.rows()) + " by " +
+                  std::to_string(gradient.cols()) + ", not points by joints");
+    if (gradient.size() == 0) return;
+    for (std::size_t i = 0; i < trajectory.points.size(); ++i) {
+      if ((trajectory.points[i].*list).empty()) continue;
+      for (std::size_t k = 0; k < trajectory.joints.size(); ++k)
+        compare(std::string(name) + ' ' + std::to_string(i) + ' ' + trajectory.joints[k],
+                gradient(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)),
+                [&](ConstraintCase &moved, double step) { (moved.motion->trajectory.points[i].*list)[k] += step; });
+    }
+  }
+
+  /* Of the least of all values. Without a row all derivatives are 0. */
+  void checkMotion() {
+    MotionRow row;
+    row.positions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(asked_.motion->trajectory.points.size()),
+                                          static_cast<Eigen::Index>(asked_.motion->trajectory.joints.size()));
+    if (!given_.motion->rows.empty()) row = given_.motion->rows.front();
+    checkList("position", row.positions, &TrajectoryPoint::positions);
+    checkList("velocity", row.velocities, &TrajectoryPoint::velocities);
+    checkList("acceleration", row.accelerations, &TrajectoryPoint::accelerations);
+    const double start = asked_.motion->trajectory.points.front().time;
+    const double duration = asked_.motion->trajectory.points.back().time - start;
+    if (!(duration > 10.0 * STEP)) return;
+    compare("duration", row.duration, [&](ConstraintCase &moved, double step) {
+      for (TrajectoryPoint &point : moved.motion->trajectory.points)
+        point.time = start + (point.time - start) * ((duration + step) / duration);
+    });
+  }
+
+  ProviderSet &providers_;
+  ConstraintCase asked_;
+  const ConstraintRow &given_;
+  const ResourceOptions &resources_;
+  Workspace &workspace_;
+  GradientCheck check_;
+};
+
+} // namespace
+
+GradientCheck checkGradient(ProviderSet &providers, const ConstraintCase &asked, const ConstraintRow &given,
+                            const ResourceOptions &resources, Workspace &workspace) {
+  GradientCheck none;
+  if (!given.value.valid) {
+    none.reason = "the gradient is not valid: " + given.message;
+    return none;
+  }
+  return Checker(providers, asked, given, resources, workspace).run();
+}
+
+} // namespace curve_proximity
