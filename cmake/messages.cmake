@@ -19,6 +19,7 @@ set(CURVE_PROXIMITY_MESSAGES
   Refusal.msg
   SceneState.msg
   SensorState.msg
+  TrajectoryConstraint.msg
 )
 set(CURVE_PROXIMITY_SERVICES
   ApplyScene.srv

@@ -112,12 +112,17 @@ class Client:
         """True only where it is proven that the curve stays farther than delta [m] from everything."""
         return self.tolerance(curve, delta, **fields).verdict == 'clear'
 
-    def constraint(self, provider, b, a=None, curve=None):
+    def constraint(self, provider, b=None, a=None, curve=None, trajectory=None, joint_state=None):
         """Value and gradient of a provider of the node's ~constraint_providers: a ConstraintResult. b and a are objects, or names of
-        objects in the scene; a may be None along a curve."""
+        objects in the scene; a may be None along a curve. Of a trajectory (trajectory_msgs/JointTrajectory) neither is given;
+        joint_state has the joints that it does not name."""
         case = ConstraintQuery(id='case', providers=[provider], b=self._side(b), a=self._side(a))
         if curve is not None:
             case.curve = curve
+        if trajectory is not None:
+            case.trajectory = trajectory
+        if joint_state is not None:
+            case.joint_state = joint_state
         response = self._call('evaluate_constraints', EvaluateConstraints, EvaluateConstraintsRequest(cases=[case]))
         return response.results[0]
 

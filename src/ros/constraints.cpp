@@ -3,7 +3,9 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -54,18 +56,12 @@ ObjectDescription toSide(const CollisionObject &message, const Snapshot &snapsho
   return side;
 }
 
-ConstraintCase toCase(const ConstraintQuery &message, const Snapshot &snapshot, FrameLookup &lookup) {
-  ConstraintCase out;
-  out.id = message.id;
-  out.providers = message.providers;
-  const bool rides = !message.curve.points.empty();
-  out.a = toSide(message.a, snapshot, lookup, rides);
-  out.b = toSide(message.b, snapshot, lookup, false);
-  if (rides) {
-    const std_msgs::Header &header = message.curve.header;
-    out.curve = toDescription(message.curve, lookup.toFixed(header.frame_id, header.stamp));
-  }
-  return out;
+bool hasTrajectory(const ConstraintQuery &message) {
+  return !message.trajectory.joint_names.empty() || !message.trajectory.points.empty();
+}
+
+bool isNamed(const CollisionObject &side) {
+  return hasShapes(side) || !side.id.empty();
 }
 
 /* ---- to messages ---- */
@@ -85,7 +81,49 @@ geometry_msgs::Twist toTwistMessage(const ConstraintGradient &gradient) {
   return message;
 }
 
-ConstraintResult toMessage(const ConstraintRow &row) {
+/** Row by row. */
+std::vector<double> toList(const Eigen::MatrixXd &matrix) {
+  std::vector<double> list;
+  list.reserve(static_cast<std::size_t>(matrix.size()));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) list.push_back(matrix(i, k));
+  return list;
+}
+
+/** What all rows of a result share: the points and the normal. */
+template <class Message>
+void fillWitness(const ConstraintValue &value, bool answered, Message &message) {
+  const Eigen::Vector3d nothing = Eigen::Vector3d::Constant(NONE);
+  const bool points = answered && value.has_points;
+  message.witness_a = toPointMessage(toVec3(points ? value.witness_a : nothing));
+  message.witness_b = toPointMessage(toVec3(points ? value.witness_b : nothing));
+  message.normal = toVectorMessage(points ? value.normal : nothing);
+}
+
+TrajectoryConstraint toMessage(const MotionRow &row) {
+  TrajectoryConstraint message;
+  message.kind = row.kind;
+  message.a = row.side_a;
+  message.b = row.side_b;
+  message.value = row.value;
+  message.lower = row.bounded ? row.lower : NONE;
+  message.upper = row.bounded ? row.upper : NONE;
+  message.t0 = row.t0;
+  message.t1 = row.t1;
+  message.t = row.t;
+  message.valid = row.valid;
+  message.message = row.reason;
+  message.gradient_positions = toList(row.positions);
+  message.gradient_velocities = toList(row.velocities);
+  message.gradient_accelerations = toList(row.accelerations);
+  message.gradient_duration = row.duration;
+  message.gradient_a = toTwistMessage(row.a);
+  message.gradient_b = toTwistMessage(row.b);
+  fillWitness(row, true, message);
+  return message;
+}
+
+ConstraintResult toMessage(const ConstraintRow &row, const ConstraintCase &asked) {
   ConstraintResult message;
   message.id = row.id;
   message.provider = row.provider;
@@ -107,12 +145,24 @@ ConstraintResult toMessage(const ConstraintRow &row) {
     message.gradient_points.push_back(toVectorMessage(value.points.col(i)));
   message.gradient_radius = answered ? value.radius : NONE;
   message.t = answered ? value.t : NONE;
-  const bool points = answered && value.has_points;
-  message.witness_a = toPointMessage(toVec3(points ? value.witness_a : nothing));
-  message.witness_b = toPointMessage(toVec3(points ? value.witness_b : nothing));
-  message.normal = toVectorMessage(points ? value.normal : nothing);
+  fillWitness(value, answered, message);
+  if (answered && row.motion) {
+    const TrajectoryDescription &trajectory = asked.motion->trajectory;
+    message.joints = trajectory.joints;
+    for (const TrajectoryPoint &point : trajectory.points) message.times.push_back(point.time);
+    for (const MotionRow &one : row.motion->rows) message.rows.push_back(toMessage(one));
+  }
   message.microseconds = answered ? row.microseconds : NONE;
   return message;
+}
+
+/** By the points of a trajectory, in all rows. */
+std::size_t countDerivatives(const ConstraintRow &row) {
+  Eigen::Index count = 0;
+  if (row.motion)
+    for (const MotionRow &one : row.motion->rows)
+      count += one.positions.size() + one.velocities.size() + one.accelerations.size();
+  return static_cast<std::size_t>(count);
 }
 
 void limit(const char *parameter, int most, std::size_t count, const char *what) {
@@ -146,13 +196,90 @@ std::vector<std::string> Constraints::failures() const {
 void Constraints::checkLimits(const EvaluateConstraints::Request &request) const {
   limit("max_curves", parameters_.max_curves, request.cases.size(), "cases");
   NameLimits(parameters_.max_name_length).check(request);
-  std::size_t points = 0, results = 0;
+  std::size_t points = 0, values = 0, results = 0;
   for (const ConstraintQuery &asked : request.cases) {
     points += asked.curve.points.size();
+    values += asked.trajectory.points.size() * asked.trajectory.joint_names.size();
     results += asked.providers.empty() ? providers_->all().size() : asked.providers.size();
   }
   limit("max_control_points", parameters_.max_control_points, points, "control points");
+  limit("max_control_points", parameters_.max_control_points, values, "joint values");
   limit("max_results", parameters_.max_results, results, "results");
+}
+
+/* A request on its way. */
+struct Constraints::Work {
+  /* In the shape of cprox_options.stop. */
+  static bool isOver(void *user) {
+    const Work &work = *static_cast<const Work *>(user);
+    if (work.turn) work.turn->yield();
+    return work.stop || Clock::now() >= work.deadline;
+  }
+
+  using Clock = std::chrono::steady_clock;
+  const SnapshotPtr snapshot;
+  const Clock::time_point deadline;
+  const std::atomic<bool> &stop;
+  Turn *const turn;
+  FrameLookup lookup;
+  std::size_t derivatives = 0; /* of all rows so far */
+  double joints_age = NONE;    /* [s] of the case at hand */
+
+  /* The robot made ready last, for trajectories that begin at the same base. */
+  std::shared_ptr<const PreparedRobot> robot;
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+};
+
+MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work) const {
+  if (!work.snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
+  if (isNamed(message.a) || isNamed(message.b) || !message.curve.points.empty())
+    throw Error("a case is about a trajectory or about two sides: give one of them");
+  MotionCase out;
+  const CurrentJoints joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
+  work.joints_age = joints.age;
+  std::string remark;
+  out.trajectory = toDescription(message.trajectory, joints.positions, remark);
+  out.trajectory.id = message.id;
+  out.rest = joints.positions;
+  out.stop = Work::isOver;
+  out.stop_user = &work;
+  checkTrajectory(out.trajectory);
+
+  // Where the robot stands, or the frame that its virtual joint moves in.
+  adoptBase(live_.srdf.virtual_joints, out.trajectory);
+  const bool on_joint = !out.trajectory.base.empty();
+  const ros::Time &stamp = message.trajectory.header.stamp;
+  const Eigen::Isometry3d base = on_joint ? work.lookup.toFixed(out.trajectory.base.front().parent_frame, stamp)
+                                          : rootPose(*work.snapshot->robot(), live_.srdf, stamp, work.lookup);
+  if (on_joint || !work.robot || work.base.matrix() != base.matrix()) {
+    out.robot = std::make_shared<const PreparedRobot>(work.snapshot, live_.srdf.disabled, out.trajectory.base,
+                                                      out.trajectory.base_joints, base);
+    work.base = base;
+    work.robot = on_joint ? nullptr : out.robot;
+  } else {
+    out.robot = work.robot;
+  }
+  return out;
+}
+
+ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) const {
+  ConstraintCase out;
+  out.id = message.id;
+  out.providers = message.providers;
+  if (hasTrajectory(message)) {
+    out.motion = toMotionCase(message, work);
+    return out;
+  }
+  if (!message.joint_state.name.empty() || message.current_joints)
+    throw Error("joint_state and current_joints are about a trajectory, and there is none");
+  const bool rides = !message.curve.points.empty();
+  out.a = toSide(message.a, *work.snapshot, work.lookup, rides);
+  out.b = toSide(message.b, *work.snapshot, work.lookup, false);
+  if (rides) {
+    const std_msgs::Header &header = message.curve.header;
+    out.curve = toDescription(message.curve, work.lookup.toFixed(header.frame_id, header.stamp));
+  }
+  return out;
 }
 
 void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
@@ -167,13 +294,15 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
   live_.demand(*snapshot, request.scene_epoch, request.scene_version);
   const ResourceOptions resources = resourceOptions("", parameters_.max_shape_mb);
   const WorkspacePool::Lease workspace(workspaces_);
-  FrameLookup lookup(frames_, turn);
-  Doubts doubts(parameters_.max_age, response.scene.sensors);
+  Work work{
+      snapshot, deadline, stop_, turn, FrameLookup(frames_, turn), 0, NONE, nullptr, Eigen::Isometry3d::Identity()};
+  Doubts doubts(parameters_.max_age, response.scene.sensors, live_.lost);
   std::size_t failed = 0;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
     const ConstraintQuery &asked = request.cases[i];
     if (turn) turn->yield();
-    lookup.begin();
+    work.lookup.begin();
+    work.joints_age = NONE;
     std::vector<ConstraintRow> rows;
     ConstraintCase described;
     cprox_status fault = CPROX_OK;
@@ -181,13 +310,20 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
         [&] {
           if (stop_) throw Error("the server is shutting down");
           if (std::chrono::steady_clock::now() >= deadline) throw Error("~budget_ms are over");
-          described = toCase(asked, *snapshot, lookup);
+          described = toCase(asked, work);
           rows = answerCase(*providers_, described, resources, *workspace);
+          for (const ConstraintRow &row : rows) work.derivatives += countDerivatives(row);
+          limit("max_control_points", parameters_.max_control_points, work.derivatives, "derivatives");
         },
         &fault);
     if (fault < 0) rows = {failedRow(asked.id, why, fault)};
 
-    doubts.ages(lookup.age(), NONE);
+    // A trajectory is measured against all objects.
+    Query about;
+    if (!described.motion) about.objects = {asked.a.id, asked.b.id};
+    doubts.objects(about);
+    doubts.ages(work.lookup.age(), work.joints_age);
+    response.scene.joint_state_age = std::fmax(response.scene.joint_state_age, work.joints_age);
 
     // The first row that failed is told.
     std::shared_ptr<const Constraint> gap;
@@ -195,15 +331,17 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
       if (row.status < 0 && failed++ == 0)
         response.message = "case " + std::to_string(i) + " ('" + row.id + "')" +
                            (row.provider.empty() ? "" : ", provider '" + row.provider + "'") + ": " + row.message;
-      response.results.push_back(toMessage(row));
+      response.results.push_back(toMessage(row, described));
       doubts.apply(response.results.back());
-      if (row.status >= 0 && providers_->find(row.provider)->spec.type == GAP) gap = row.constraint;
+      if (row.constraint && row.status >= 0 && providers_->find(row.provider)->spec.type == GAP) gap = row.constraint;
     }
     if (gap) drawing = std::make_shared<const LevelDrawing>(LevelDrawing{std::move(gap), std::move(described)});
   }
-  response.scene.transform_age = lookup.oldest();
+  response.scene.transform_age = work.lookup.oldest();
   doubts.tell(response.warnings);
-  if (live_.lost) response.warnings.push_back(SCENE_LOST);
+  const std::vector<std::string> &said = response.warnings;
+  if (live_.lost && std::find(said.begin(), said.end(), SCENE_LOST) == said.end())
+    response.warnings.push_back(SCENE_LOST);
   response.success = failed == 0;
   if (failed)
     response.message =

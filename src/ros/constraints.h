@@ -39,7 +39,10 @@ class Constraints {
   std::vector<std::string> failures() const;
 
  private:
+  struct Work;
   void checkLimits(const EvaluateConstraints::Request &request) const;
+  ConstraintCase toCase(const ConstraintQuery &message, Work &work) const;
+  MotionCase toMotionCase(const ConstraintQuery &message, Work &work) const;
 
   const Parameters &parameters_;
   const LiveScene &live_;

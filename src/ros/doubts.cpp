@@ -70,8 +70,9 @@ void Doubts::apply(ConstraintResult &row) {
   if (row.value != row.value) return;
   const Reason why = reason();
   if (why.text.empty()) return;
-  row.status = ConstraintResult::STATUS_STALE; // providers measure no object that a sensor keeps
+  row.status = why.stale ? ConstraintResult::STATUS_STALE : ConstraintResult::STATUS_UNKNOWN;
   row.lower = row.upper = std::numeric_limits<double>::quiet_NaN();
+  for (TrajectoryConstraint &one : row.rows) one.lower = one.upper = row.lower;
   add(row.message, why.text);
 }
 

@@ -85,6 +85,9 @@ class NameLimits {
       check(query.a);
       check(query.b);
       check(query.curve);
+      check("a trajectory's frame", query.trajectory.header.frame_id);
+      check("the name of a joint", query.trajectory.joint_names);
+      check("the name of a joint", query.joint_state.name);
     }
   }
 

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""~evaluate_constraints about trajectories of the Panda: values, gradients by waypoints, and rows for optimisers."""
+import copy
+import math
+import unittest
+
+import rospy
+from curve_proximity.msg import ConstraintQuery
+from curve_proximity.srv import EvaluateConstraints
+from helpers import Server, bezier, box, joints, run, sphere
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+ARM = [f'panda_joint{i}' for i in range(1, 8)]
+POSES = [[-0.6, 0.1, 0.1, -1.9, 0.1, 2.0, 0.5], [0.1, 0.5, 0.2, -1.6, -0.2, 2.2, 0.8], [0.7, 0.2, -0.1, -2.1, 0.2, 1.8, 0.3]]
+SPEEDS = [[0.2, 0.1, -0.1, 0.1, 0.0, -0.1, 0.2], [0.5, -0.2, 0.1, -0.1, 0.2, 0.1, -0.1], [0.1, -0.1, 0.2, 0.0, 0.1, 0.2, 0.0]]
+
+
+def trajectory(velocities=True, **fields):
+    """Three points, 0.8 s apart."""
+    return JointTrajectory(joint_names=ARM, points=[
+        JointTrajectoryPoint(positions=list(q), velocities=list(v) if velocities else [], time_from_start=rospy.Duration(0.8 * i))
+        for i, (q, v) in enumerate(zip(POSES, SPEEDS))], **fields)
+
+
+def query(path, *providers, name='case', **fields):
+    return ConstraintQuery(id=name, providers=list(providers), trajectory=path, **fields)
+
+
+class Optimise(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
+        rospy.wait_for_service('/curve_proximity/evaluate_constraints', 20)
+        cls.service = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints, persistent=True)
+
+    def results(self, *cases):
+        response = self.service(cases=list(cases))
+        self.assertTrue(response.success, response.message)
+        return response.results
+
+    def refused(self, case):
+        response = self.service(cases=[case])
+        self.assertFalse(response.success)
+        self.assertEqual(response.results[0].status, 'invalid')
+        self.assertEqual(response.results[0].rows, [])
+        return response.results[0].message
+
+    def test_the_gradient_is_that_of_differences_through_the_service(self):
+        """Central differences, steps of 2e-4, of values that are exact to 1e-9 m: 5e-6; a third derivative of up to 100 times the
+        step's square the same again."""
+        row, = self.results(query(trajectory(), 'exact'))
+        self.assertTrue(row.valid, row.message)
+        self.assertEqual((row.joints, [round(t, 9) for t in row.times]), (ARM, [0.0, 0.8, 1.6]))
+        least, = row.rows
+        self.assertEqual(len(least.gradient_positions), 21)
+        self.assertEqual(len(least.gradient_velocities), 21)
+        self.assertEqual(len(least.gradient_accelerations), 0)
+        h, cases, expected = 2e-4, [], []
+        for of, gradient in (('positions', least.gradient_positions), ('velocities', least.gradient_velocities)):
+            for i in range(3):
+                for k in range(7):
+                    for step in (h, -h):
+                        moved = trajectory()
+                        getattr(moved.points[i], of)[k] += step
+                        cases.append(query(moved, 'exact'))
+                    expected.append(gradient[7 * i + k])
+        values = [result.value for result in self.results(*cases)]
+        differences = [(ahead - behind) / (2 * h) for ahead, behind in zip(values[::2], values[1::2])]
+        for found, difference in zip(expected, differences):
+            self.assertAlmostEqual(found, difference, delta=1e-5)
+        self.assertGreater(max(map(abs, expected)), 0.01)
+
+    def test_the_value_is_the_distance_that_the_node_answers(self):
+        row, = self.results(query(trajectory(), 'scene'))
+        response = self.server.distance([], trajectory=trajectory())
+        answer = response.results[0]
+        self.assertAlmostEqual(row.value, answer.upper - 0.02, delta=1e-5)
+        self.assertLessEqual(row.lower, answer.upper - 0.02)
+        self.assertGreaterEqual(row.upper + 0.02, answer.lower)
+        self.assertEqual((row.rows[0].kind, row.rows[0].a, row.rows[0].b), ('environment', answer.a, answer.b))
+        self.assertAlmostEqual(row.t, answer.t, delta=1e-2)
+        self.assertAlmostEqual(row.witness_a.z, row.rows[0].witness_a.z)
+        # A step of the nearest object is the opposite of one of the robot.
+        self.assertAlmostEqual(row.gradient_a.linear.z, -row.gradient_b.linear.z, delta=1e-9)
+
+    def test_rows_are_those_of_all_pairs_within_the_horizon_nearest_first(self):
+        least, rows = self.results(query(trajectory(), 'least', 'rows'))
+        self.assertGreater(len(rows.rows), 1)
+        values = [row.value for row in rows.rows]
+        self.assertEqual(values, sorted(values))
+        self.assertAlmostEqual(values[0], least.value, delta=1e-5)
+        self.assertAlmostEqual(rows.value, least.value, delta=1e-5)
+        for row in rows.rows:
+            self.assertLessEqual(row.lower, 0.3)
+            self.assertTrue(row.t0 <= row.t <= row.t1)
+            self.assertEqual(len(row.gradient_positions), 21)
+            self.assertTrue(row.valid or row.message)
+
+    def test_beyond_the_horizon_there_is_no_row_and_the_horizon_is_the_value(self):
+        self.server.replace(sphere('far', 0.1, (9, 9, 9)))
+        try:
+            row, = self.results(query(trajectory(), 'near'))
+            self.assertEqual((row.value, row.lower, row.rows, row.valid), (0.25, 0.25, [], True))
+            self.assertEqual(row.upper, math.inf)
+        finally:
+            self.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
+
+    def test_points_are_read_as_in_other_queries(self):
+        late = trajectory()
+        for point in late.points:
+            point.time_from_start += rospy.Duration(1.0)
+        late.points.append(copy.deepcopy(late.points[-1]))  # a repeated point
+        row, = self.results(query(late, 'least', joint_state=joints(**dict(zip(ARM, POSES[0])))))
+        self.assertEqual([round(t, 9) for t in row.times], [0.0, 1.0, 1.8, 2.6])
+        self.assertEqual(len(row.rows[0].gradient_positions), 28)
+        state = trajectory(velocities=False)
+        del state.points[1:]
+        row, = self.results(query(state, 'least'))
+        self.assertEqual(list(row.times), [0.0])
+        self.assertEqual(len(row.rows[0].gradient_positions), 7)
+
+    def test_wrong_cases_are_told_by_one_line(self):
+        def changed(**fields):
+            path = trajectory()
+            for key, value in fields.items():
+                setattr(path, key, value)
+            return path
+        self.assertIn("'elbow'", self.refused(query(changed(joint_names=['elbow'] + ARM[1:]), 'least')))
+        self.assertIn('7', self.refused(query(changed(joint_names=ARM + ['panda_finger_joint1']), 'least')))
+        self.assertIn('point', self.refused(query(changed(points=[]), 'least')))
+        bad = trajectory()
+        bad.points[1].positions[2] = math.nan
+        self.assertIn('finite', self.refused(query(bad, 'least')))
+        bad = trajectory()
+        bad.points[2].time_from_start = rospy.Duration(0.1)
+        self.assertIn('is not after point 1', self.refused(query(bad, 'least')))
+        self.assertIn('two sides', self.refused(query(trajectory(), 'least', b=sphere('', 0.1))))
+        self.assertIn('two sides', self.refused(query(trajectory(), 'least', curve=bezier((0, 0, 0), (1, 0, 0)))))
+        self.assertIn('joint_state', self.refused(query(trajectory(), 'least', joint_state=JointState(name=['x']))))
+        self.assertIn('joint_state', self.refused(ConstraintQuery(
+            providers=['least'], a=sphere('', 0.1), b=sphere('', 0.1), joint_state=joints(panda_joint1=0.0))))
+
+    def test_providers_about_something_else_say_so(self):
+        for name in ('curve_proximity/CurveDistance', 'balls'):
+            self.assertIn('not for joint trajectories', self.refused(query(trajectory(), name)))
+        two = ConstraintQuery(providers=['least'], a=sphere('', 0.1), b=sphere('', 0.1, (1, 0, 0)))
+        self.assertIn('RobotDistance is about joint trajectories', self.refused(two))
+
+    def test_in_contact_the_value_is_proven_and_no_gradient_is(self):
+        through = trajectory(velocities=False)
+        through.points[1].positions = [0.0, 1.4, 0.0, -0.6, 0.0, 2.0, 0.8]
+        row, = self.results(query(through, 'scene'))
+        self.assertAlmostEqual(row.value, -0.02)
+        self.assertFalse(row.valid)
+        self.assertTrue(row.message)
+
+
+if __name__ == '__main__':
+    run('optimise')
