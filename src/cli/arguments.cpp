@@ -27,17 +27,18 @@ const std::map<std::string, Option> &options() {
   static const std::map<std::string, Option> table = {
       {"--curves", {true, {Action::CURVES, Action::CHECK}}},
       {"--against", {true, {Action::CURVES, Action::CHECK}}},
-      {"--trajectory", {true, {Action::CURVES, Action::CHECK}}},
+      {"--trajectory", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
       {"--self", {false, {Action::CURVES, Action::CHECK}}},
       {"--signed", {false, {Action::CURVES}}},
       {"--scene", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
-      {"--robot", {true, {Action::CURVES, Action::CHECK}}},
-      {"--srdf", {true, {Action::CURVES, Action::CHECK}}},
-      {"--state", {true, {Action::CURVES, Action::CHECK}}},
+      {"--robot", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
+      {"--srdf", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
+      {"--state", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
       {"--certificate", {true, {Action::CURVES}}},
       {"--in", {true, {Action::PAIRS, Action::CONSTRAINTS}}},
       {"--provider", {true, {Action::CONSTRAINTS}}},
       {"--parameters", {true, {Action::CONSTRAINTS}}},
+      {"--check-gradient", {false, {Action::CONSTRAINTS}}},
       {"--node", {true, {Action::SEND}}},
       {"--replace", {false, {Action::SEND}}},
       {"--add", {false, {Action::SEND}}},
@@ -335,8 +336,16 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
     case Action::PAIRS: out.pairs = required("--in", "PAIRS.yaml"); break;
     case Action::CONSTRAINTS:
       out.provider = required("--provider", "NAME, such as curve_proximity/CurveDistance");
-      out.cases = required("--in", "CASES.yaml");
       out.parameters = words.text("--parameters");
+      out.check_gradient = words.has("--check-gradient");
+      if (words.has("--trajectory")) {
+        if (words.has("--in")) throw BadUsage("--trajectory takes no --in");
+        readTrajectoryWords(words, out);
+        break;
+      }
+      for (const char *name : {"--robot", "--srdf", "--state"})
+        if (words.has(name)) throw BadUsage(std::string(name) + " needs --trajectory T.yaml");
+      out.cases = required("--in", "CASES.yaml, or --trajectory T.yaml");
       out.scene = words.text("--scene");
       break;
     case Action::SEND:
@@ -413,6 +422,8 @@ cprox nearest              (as distance, without --against)   the pairs that com
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
 cprox constraints --provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parameters "name: value, ..."]
                                         value and gradient of clearance constraints by a plugin
+                (or --trajectory T.yaml --robot URDF [--srdf SRDF --state TEXT], instead of --in)   of a robot along a trajectory
+                --check-gradient        holds the gradients against central differences
 cprox send      SCENE.yaml [--replace | --add] [--node NAME]   hands a scene file to a running node
 cprox check     FILE  (the inputs of the query)  what the certificates in FILE prove
 cprox certify   --dataset MANIFEST --out FOLDER [--shards N [--shard I]]   answers the rows of a dataset, shard by shard
@@ -434,7 +445,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --in FILE         a list of {id, a: BODY, b: BODY}; of 'constraints' the request of ~evaluate_constraints:
                     cases: [{id, a: {pose, bodies: [BODY], ...} or {id: an object of --scene}, b, curve}]
                     Each FILE that is read may be -, standard input. doc/formats.md shows all formats
-  --provider NAME   curve_proximity/CurveDistance, .../SuperquadricDistance, .../FourierGap, or another package's
+  --provider NAME   curve_proximity/CurveDistance, .../SuperquadricDistance, .../FourierGap, .../RobotDistance
+                    (of trajectories), or another package's
   --certificate FILE  writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near or none.
                     The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that
                     it is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs
@@ -467,7 +479,11 @@ Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_
 t_b,lod,message. Of 'time-of-contact' also t_contact_lower: there is no contact at any smaller parameter. Of 'profile':
 id,kind,status,t0,t1,lower,upper,t,a,b,message, a row an interval. Of 'constraints': id,provider,status,value,lower,upper,valid,t,
 gradients ga_ and gb_ by a step of side a and b (v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,
-microseconds,message,n,g0x,g0y,g0z,... by the curve's points. Metres and radians. A row that fails has the status 'invalid',
+microseconds,message,n,g0x,g0y,g0z,... by the curve's points. Of trajectories: t0,t1,kind,a,b (as above), g_duration, and a
+column for each number of each point: q0_JOINT, v0_JOINT, a0_JOINT by its position, velocity and acceleration; ga_ is by a step of the
+robot's base, gb_ by one of the object b. With --check-gradient: id,provider,status,verdict,derivatives (how many were compared),
+derivative (the one that fits least),gradient,difference,misfit,doubt,message; verdict: clear (all agree within 1e-3 of 1 + the
+difference), violated (one does not, by more than four times what a smaller step changes: doubt) or undecided. Metres and radians. A row that fails has the status 'invalid',
 and its column message says why.
 Exit code of every command: 0 everything is answered, and nothing of it is violated, undecided or unproven; 1 a verdict is
 violated, or 'check' finds a certificate that does not prove its answer; 2 a row has no answer, there is no row, or the

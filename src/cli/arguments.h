@@ -29,7 +29,7 @@ struct Arguments {
 
   std::string curves, scene;   /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
   std::string against;         /**< file of AGAINST; of CHECK where it was given */
-  std::string trajectory;      /**< file of TRAJECTORY; of CHECK where it was given */
+  std::string trajectory;      /**< file of TRAJECTORY; of CHECK and CONSTRAINTS where it was given */
   bool self = false;           /**< with a trajectory: ask about the robot itself, too */
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
   std::size_t intervals = 100; /**< PROFILE: so many of equal length, unless there are breaks */
@@ -42,6 +42,7 @@ struct Arguments {
   std::string cases;           /**< file of CONSTRAINTS */
   std::string provider;        /**< CONSTRAINTS: the plugin */
   std::string parameters;      /**< CONSTRAINTS: "name: value, …" */
+  bool check_gradient = false; /**< CONSTRAINTS: hold gradients against differences */
   std::string node;            /**< SEND: the node's name */
   std::optional<bool> replace; /**< SEND: as the file's is_diff says, unless set */
   std::string dataset;         /**< CERTIFY: the manifest */

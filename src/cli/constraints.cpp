@@ -1,73 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include <cstdio>
+#include <utility>
 
+#include "../providers/check_gradient.h"
 #include "../providers/constraint_case.h"
 #include "../scene/yaml/scene_change.h"
 #include "../scene/yaml/scene_yaml.h"
 #include "commands.h"
+#include "constraint_lines.h"
 #include "constraints_yaml.h"
-#include "csv.h"
 #include "failure.h"
 #include "finish.h"
 #include "packages.h"
 #include "results.h"
 #include "run.h"
+#include "trajectory.h"
+#include "trajectory_yaml.h"
 #include "world.h"
 
 namespace curve_proximity::cli {
 namespace {
-
-const char *kHeader =
-    "id,provider,status,value,lower,upper,valid,t,ga_vx,ga_vy,ga_vz,ga_wx,ga_wy,ga_wz,gb_vx,gb_vy,gb_vz,gb_wx,gb_wy,"
-    "gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_radius,microseconds,message,n,g0x,g0y,g0z\n";
-
-/* A number and the comma before it. */
-void append(std::string &line, double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, ",%.17g", value);
-  line += text;
-}
-
-void append(std::string &line, const Eigen::Vector3d &v, bool known = true) {
-  for (int i = 0; i < 3; ++i) {
-    if (known)
-      append(line, v[i]);
-    else
-      line += ',';
-  }
-}
-
-/* A row without an answer has a status and a message alone. */
-std::string toLine(const ConstraintRow &row) {
-  const ConstraintValue &value = row.value;
-  std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + cprox_status_name(row.status);
-  if (row.status < 0) return line + std::string(29, ',') + quotedField(row.message) + ",,,,\n";
-  append(line, value.value);
-  if (value.bounded) {
-    append(line, value.lower);
-    append(line, value.upper);
-  } else {
-    line += ",,";
-  }
-  line += value.valid ? ",true" : ",false";
-  const bool along = value.points.cols() > 0;
-  if (along)
-    append(line, value.t);
-  else
-    line += ',';
-  for (const ConstraintGradient *side : {&value.a, &value.b}) {
-    append(line, side->linear);
-    append(line, side->angular);
-  }
-  for (const Eigen::Vector3d *point : {&value.witness_a, &value.witness_b, &value.normal})
-    append(line, *point, value.has_points);
-  append(line, value.radius);
-  char time[40];
-  std::snprintf(time, sizeof time, ",%.1f,", row.microseconds);
-  line += time + quotedField(row.message) + ',' + std::to_string(value.points.cols());
-  for (Eigen::Index i = 0; i < value.points.cols(); ++i) append(line, value.points.col(i));
-  return line + (along ? "\n" : ",,,\n");
-}
 
 /* The objects of --scene; none without. */
 SnapshotPtr readObjects(const Arguments &arguments, const ResourceOptions &resources, Warnings &warnings) {
@@ -89,25 +40,53 @@ std::unique_ptr<ProviderSet> loadProvider(const Arguments &arguments) {
   return set;
 }
 
+/* What one case is answered by. */
+struct Session {
+  ProviderSet &providers;
+  const Arguments &arguments;
+  const ResourceOptions &resources;
+};
+
+/* The lines of a case that has been answered, and what its gradient is worth where that is asked. */
+void tellAnswer(const Session &session, const ConstraintCase &described, const ConstraintRow &row, Workspace &workspace,
+                Outcome &out) {
+  if (!session.arguments.check_gradient) {
+    out.text = described.motion ? constraintsLines(row, described.motion->trajectory) : constraintsLine(row);
+    return;
+  }
+  const GradientCheck check = checkGradient(session.providers, described, row, session.resources, workspace);
+  out.text = gradientsLine(row, &check);
+  out.violated = verdictOf(check) == CPROX_VERDICT_VIOLATED;
+  out.undecided = verdictOf(check) == CPROX_VERDICT_UNDECIDED;
+}
+
 /* Answers a case, or says why it cannot be asked about. */
-Outcome answerOne(ProviderSet &providers, ConstraintCase described, const std::string &fault,
-                  const std::string &provider, const std::string &place, const ResourceOptions &resources,
+Outcome answerOne(const Session &session, ConstraintCase described, const std::string &fault, const std::string &place,
                   Workspace &workspace) {
+  const Arguments &arguments = session.arguments;
+  Outcome out;
   ConstraintRow row = failedRow(described.id, fault);
   if (fault.empty()) {
-    described.providers = {provider};
-    row = answerCase(providers, described, resources, workspace).front();
+    described.providers = {arguments.provider};
+    row = answerCase(session.providers, described, session.resources, workspace).front();
   }
-  row.provider = provider;
-  Outcome out;
-  out.text = toLine(row);
-  if (row.status < 0) out.complaints.push_back(place + ": " + row.message);
+  row.provider = arguments.provider;
+  out.stopped = row.status == CPROX_STOPPED || (row.status < 0 && interrupted(nullptr));
+  if (row.status >= 0) {
+    const std::string why = sentenceOf([&] { tellAnswer(session, described, row, workspace, out); }, &row.status);
+    if (row.status >= 0) return out;
+    row.message = why;
+  }
+  if (arguments.check_gradient)
+    out.text = gradientsLine(row, nullptr);
+  else
+    out.text = described.motion ? constraintsLines(row, described.motion->trajectory) : constraintsLine(row);
+  out.complaints.push_back(place + ": " + row.message);
   return out;
 }
 
-} // namespace
-
-int answerConstraints(const Arguments &arguments, Console &console) {
+/* A case for each entry of --in. */
+int answerCases(const Arguments &arguments, Console &console) {
   Warnings warnings;
   const std::vector<YamlValue> entries = readCases(arguments.cases, warnings);
   ResourceOptions resources;
@@ -115,11 +94,12 @@ int answerConstraints(const Arguments &arguments, Console &console) {
   resources.find_package = packageFinder(resources.base_dir);
   const SnapshotPtr snapshot = readObjects(arguments, resources, warnings);
   const std::unique_ptr<ProviderSet> providers = loadProvider(arguments);
+  const Session session{*providers, arguments, resources};
   ResultsFile results(arguments.out, {arguments.cases, arguments.scene});
 
   /* case by case; a warning is told when it first comes up */
   catchInterrupts();
-  results.write(kHeader);
+  results.write(arguments.check_gradient ? gradientsHeader() : constraintsHeader());
   std::size_t given = 0, warned = 0;
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {
@@ -131,7 +111,7 @@ int answerConstraints(const Arguments &arguments, Console &console) {
     const std::string fault = sentenceOf([&] { described = parseCase(entry, *snapshot, warnings); });
     for (; warned < warnings.sentences().size(); ++warned) console.say("warning: " + warnings.sentences()[warned]);
     return [&, described, fault, place](Workspace &workspace) {
-      return answerOne(*providers, described, fault, arguments.provider, place, resources, workspace);
+      return answerOne(session, described, fault, place, workspace);
     };
   };
   rows.write = [&](const std::string &text) { results.write(text); };
@@ -139,6 +119,57 @@ int answerConstraints(const Arguments &arguments, Console &console) {
     return entries.empty() ? 1.0 : static_cast<double>(given) / static_cast<double>(entries.size());
   };
   return finish(runRows(arguments.threads, rows, console), console);
+}
+
+/* The robot of the command line along --trajectory, ready to be asked about. */
+ConstraintCase readMotionCase(const Arguments &arguments, const World &world, Warnings &warnings) {
+  ConstraintCase out;
+  MotionCase motion;
+  motion.trajectory = readTrajectory(arguments.trajectory, warnings);
+  adoptBase(world.srdf.virtual_joints, motion.trajectory);
+  motion.rest = restOf(motion.trajectory, world);
+  motion.stop = interrupted;
+  try {
+    motion.robot = std::make_shared<const PreparedRobot>(world.snapshot, world.srdf.disabled, motion.trajectory.base,
+                                                         motion.trajectory.base_joints);
+    const RobotMotion tried(*motion.robot, motion.trajectory, motion.rest);
+    for (const std::string &sentence : tried.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
+  } catch (const Error &e) {
+    throw BadUsage(arguments.trajectory + ": " + e.what());
+  }
+  out.id = motion.trajectory.id;
+  out.motion = std::move(motion);
+  return out;
+}
+
+/* One case: the trajectory. */
+int answerMotion(const Arguments &arguments, Console &console) {
+  Warnings warnings;
+  const World world = readWorld(arguments, warnings);
+  const ConstraintCase described = readMotionCase(arguments, world, warnings);
+  const std::unique_ptr<ProviderSet> providers = loadProvider(arguments);
+  const ResourceOptions resources;
+  const Session session{*providers, arguments, resources};
+  ResultsFile results(arguments.out, {arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf});
+  console.warn(warnings);
+  catchInterrupts();
+  results.write(arguments.check_gradient ? gradientsHeader() : constraintsHeader(described.motion->trajectory));
+  bool given = false;
+  Rows rows;
+  rows.next = [&]() -> std::optional<Task> {
+    if (given) return std::nullopt;
+    given = true;
+    return [&](Workspace &workspace) { return answerOne(session, described, "", arguments.trajectory, workspace); };
+  };
+  rows.write = [&](const std::string &text) { results.write(text); };
+  rows.portion = [] { return std::optional<double>(); };
+  return finish(runRows(1, rows, console), console);
+}
+
+} // namespace
+
+int answerConstraints(const Arguments &arguments, Console &console) {
+  return arguments.trajectory.empty() ? answerCases(arguments, console) : answerMotion(arguments, console);
 }
 
 } // namespace curve_proximity::cli

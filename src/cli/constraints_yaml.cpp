@@ -84,6 +84,8 @@ std::string caseId(const YamlValue &entry) {
 
 ConstraintCase parseCase(const YamlValue &entry, const Snapshot &snapshot, Warnings &warnings) {
   const YamlValue value(entry.named(caseId(entry)));
+  if (const auto trajectory = value.find("trajectory"))
+    trajectory->fail("is given by --trajectory T.yaml and --robot URDF, without --in");
   value.warnOfOthers({"id", "providers", "a", "b", "curve"}, warnings);
   ConstraintCase out;
   out.id = caseId(entry);

@@ -53,9 +53,10 @@ class Checker {
     found.misfit = std::fabs(gradient - found.difference) / size;
     const bool fits = found.misfit <= GRADIENT_TOLERANCE;
     check_.agrees = check_.agrees && fits;
-    check_.differs = check_.differs || !(found.misfit <= GRADIENT_TOLERANCE + 4.0 * found.doubt);
-    const auto beyond = [](const GradientMisfit &misfit) { return misfit.misfit - 4.0 * misfit.doubt; };
-    if (check_.count++ == 0 || !(beyond(found) <= beyond(check_.worst))) check_.worst = found;
+    const bool differs = !(found.misfit <= GRADIENT_TOLERANCE + 4.0 * found.doubt);
+    const bool larger = differs == check_.differs && !(found.misfit <= check_.worst.misfit);
+    if (check_.count++ == 0 || (differs && !check_.differs) || larger) check_.worst = found;
+    check_.differs = check_.differs || differs;
   }
 
   void checkSide(const char *name, const ConstraintGradient &gradient, ObjectDescription ConstraintCase::*side) {

@@ -21,7 +21,7 @@ struct GradientMisfit {
 /** The derivatives of one answer. */
 struct GradientCheck {
   std::size_t count = 0; /**< of derivatives; 0: the gradient is not valid, or there is none */
-  GradientMisfit worst;  /**< the one with the largest misfit beyond its doubt */
+  GradientMisfit worst;  /**< the one with the largest misfit; of those that differ, if there are any */
   std::string reason;    /**< why nothing can be told; else empty */
 
   /** Every derivative agrees within the tolerance. */

@@ -87,10 +87,12 @@ world:
 - {{id: curve, curve: {{basis: bezier, points: [[0, 0, 0], [1, 0, 0]]}}, b: {{bodies: [{BALL}]}}}}
 - {{id: frame, a: {{bodies: [{BALL}], header: {{frame_id: elsewhere}}}}, b: {{bodies: [{BALL}]}}}}
 - {{id: empty}}
+- {{id: arm, trajectory: {{joint_names: []}}}}
 - {{id: good, {good}}}
 ''')
         self.assertEqual(answer.code, 2)
-        for name, word in (('negative', 'sphere'), ('curve', 'CurveDistance'), ('frame', 'elsewhere'), ('empty', "'b'")):
+        for name, word in (('negative', 'sphere'), ('curve', 'CurveDistance'), ('frame', 'elsewhere'), ('empty', "'b'"),
+                           ('arm', '--trajectory T.yaml')):
             self.assertEqual((answer.row(name)['status'], answer.row(name)['value']), ('invalid', ''))
             self.assertIn(word, [line for line in answer.err.splitlines() if f"'{name}'" in line][0])
         self.assertAlmostEqual(float(answer.row('good')['value']), 1.5, delta=1e-8)
@@ -106,3 +108,114 @@ world:
         self.assertRefused(cprox('constraints', '--provider', GAP), '--in')
         self.assertRefused(cprox('constraints', '--provider', GAP, '--in', self.file('list.yaml', '- 1')), "a list 'cases'")
         self.assertRefused(cprox('pairs', '--in', 'x', '--provider', GAP), "'pairs' takes no --provider")
+
+
+ROBOT = 'curve_proximity/RobotDistance'
+
+
+class Trajectories(Case):
+    """A slider that comes down on a table, from 1.5 m to 0.7 m and up to 1.1 m: a ball of 0.1 m, so 0.6 m at t = 1."""
+
+    def inputs(self):
+        robot = self.file('slider.urdf', '''
+<robot name="slider">
+  <link name="base"/>
+  <joint name="lift" type="prismatic"><parent link="base"/><child link="tool"/><axis xyz="0 0 1"/>
+    <limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+  <link name="tool"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+</robot>''')
+        scene = self.file('scene.yaml', '''
+world:
+  collision_objects:
+    - {id: table, primitives: [{type: box, dimensions: [2, 2, 0.2]}], pose: {position: [0, 0, -0.1]}}
+    - {id: ceiling, primitives: [{type: box, dimensions: [2, 2, 0.2]}], pose: {position: [0, 0, 2.1]}}
+''')
+        path = self.file('t.yaml', '''
+joint_trajectory:
+  joint_names: [lift]
+  points:
+    - {positions: [1.5], velocities: [0.0], time_from_start: 0}
+    - {positions: [0.7], velocities: [0.0], time_from_start: 1}
+    - {positions: [1.1], velocities: [0.1], time_from_start: 3}
+''')
+        return '--robot', robot, '--scene', scene, '--trajectory', path
+
+    def constraints(self, *more, provider=ROBOT):
+        return cprox('constraints', '--provider', provider, *self.inputs(), *more)
+
+    def the_least_distance_has_a_gradient_by_every_point(self):
+        answer = self.constraints('--parameters', 'margin: 0.05')
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        row = answer.row('t')
+        self.assertEqual((row['status'], row['valid'], row['kind'], row['a'], row['b']), ('ok', 'true', 'environment', 'tool', 'ceiling'))
+        self.assertAlmostEqual(float(row['value']), 0.35, delta=1e-5)
+        self.assertLessEqual(float(row['lower']), 0.35)
+        self.assertAlmostEqual(float(row['t']), 0.0, delta=1e-9)
+        self.assertEqual([round(float(row[name]), 6) for name in ('q0_lift', 'q1_lift', 'q2_lift', 'v0_lift', 'v2_lift')], [-1, 0, 0, 0, 0])
+        self.assertEqual((float(row['ga_vz']), float(row['gb_vz'])), (-1, 1))
+        self.assertNotIn('a0_lift', row)
+
+    def rows_are_those_of_pairs_within_the_horizon(self):
+        answer = self.constraints('--parameters', 'horizon: 0.62')
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        self.assertEqual([(row['b'], round(float(row['value']), 4), round(float(row['t']), 4)) for row in answer.rows],
+                         [('ceiling', 0.4, 0), ('table', 0.6, 1)])
+        self.assertEqual((float(answer.rows[1]['t0']), float(answer.rows[0]['t1'])), (0, 1))
+        answer = self.constraints('--parameters', 'horizon: 0.3')
+        row = answer.row('t')
+        self.assertEqual((answer.code, float(row['value']), float(row['upper']), row['kind'], row['q0_lift']), (0, 0.3, float('inf'), '', ''))
+
+    def gradients_are_held_against_differences(self):
+        answer = self.constraints('--check-gradient')
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        row = answer.row('t')
+        self.assertEqual((row['verdict'], row['derivatives']), ('clear', '7'))
+        self.assertLess(float(row['misfit']), 1e-4)
+        self.assertEqual(self.constraints('--check-gradient', '--parameters', 'horizon: 0.3').code, 0)
+
+    def a_provider_whose_gradient_is_wrong_is_told(self):
+        answer = self.constraints('--check-gradient', provider='example_provider/WrongGradient')
+        row = answer.row('t')
+        self.assertEqual((answer.code, answer.err, row['verdict'], row['derivative']), (1, '', 'violated', 'position 0 lift'))
+        self.assertEqual((float(row['gradient']), round(float(row['difference']), 6)), (1.5, 3.0))
+
+    def what_is_wrong_is_told_by_one_line(self):
+        self.assertIn('not for joint trajectories', self.constraints(provider=CURVES).err)
+        self.assertEqual(self.constraints(provider=CURVES).code, 2)
+        self.assertIn('RobotDistance is about joint trajectories', cprox(
+            'constraints', '--provider', ROBOT, '--in',
+            self.file('cases.yaml', f'cases:\n- {{id: x, a: {{bodies: [{BALL}]}}, b: {{bodies: [{BALL}]}}}}')).err)
+        self.assertRefused(self.constraints('--in', 'x'), '--trajectory takes no --in')
+        self.assertRefused(self.constraints('--parameters', 'against: walls'), 'environment, self, whole')
+        self.assertRefused(self.constraints('--parameters', 'horizon: -1'), 'parameter horizon')
+        self.assertRefused(cprox('constraints', '--provider', ROBOT, '--in', 'x', '--robot', 'y'), '--robot needs --trajectory')
+        self.assertRefused(cprox('constraints', '--provider', ROBOT, '--trajectory', 'x'), '--trajectory needs --robot')
+
+
+class Gradients(Case):
+    """--check-gradient of providers about sides and curves."""
+
+    def check(self, provider, cases, *more):
+        return cprox('constraints', '--provider', provider, '--in', self.file('cases.yaml', 'cases:\n' + cases), '--check-gradient', *more)
+
+    def those_that_agree_are_clear(self):
+        answer = self.check(CURVES, f'''
+- id: passing
+  curve: {{basis: bezier, radius: 0.1, points: [[-1, 0.1, 1], [1, 0.2, 0.6], [3, 0, 1]]}}
+  b: {{bodies: [{{type: ellipsoid, dimensions: [0.3, 0.2, 0.25]}}], pose: {{position: [1, 0, 0]}}}}
+''')
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        self.assertEqual((answer.row('passing')['verdict'], answer.row('passing')['derivatives']), ('clear', '16'))
+        answer = self.check(PAIRS, f'''
+- {{id: two, a: {{bodies: [{BALL}]}}, b: {{bodies: [{{type: superquadric, dimensions: [0.3, 0.4, 0.2, 2, 3, 4]}}], pose: {{position: [1, 0.4, 0.2]}}}}}}
+''')
+        self.assertEqual((answer.code, answer.row('two')['verdict'], answer.row('two')['derivatives']), (0, 'clear', '12'))
+
+    def where_there_is_no_gradient_nothing_is_decided(self):
+        answer = self.check(CURVES, f'''
+- id: along
+  curve: {{basis: bezier, points: [[-1, 0, 1], [1, 0, 1]]}}
+  b: {{bodies: [{{type: box, dimensions: [9, 9, 1]}}]}}
+''')
+        self.assertEqual((answer.code, answer.row('along')['verdict'], answer.row('along')['derivatives']), (3, 'undecided', '0'))
+        self.assertIn('not valid', answer.row('along')['message'])

@@ -60,10 +60,12 @@ class Usage(Case):
                   '--certificate': 'f', '--in': 'i', '--provider': 'p', '--parameters': 'k: 1', '--node': '/n', '--epsilon': '1e-3',
                   '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-lod': 'hull', '--out': 'o', '--self': None,
                   '--replace': None, '--add': None, '--signed': None, '--per-object': None, '--skipped': None, '--per-link': None,
-                  '--intervals': '9', '--breaks': '0, 1', '--pairs': '2', '--within': '1'}
+                  '--intervals': '9', '--breaks': '0, 1', '--pairs': '2', '--within': '1', '--check-gradient': None}
         run = {'--epsilon', '--max-nodes', '--threads', '--out'}
         rows = [('pairs', ['--in', 'i'], run | {'--max-lod', '--skipped'}),
-                ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--threads', '--out'}),
+                ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--threads', '--out', '--check-gradient'}),
+                ('constraints', ['--trajectory', 't', '--robot', 'r', '--provider', 'p'],
+                 {'--parameters', '--scene', '--srdf', '--state', '--threads', '--out', '--check-gradient'}),
                 ('send', ['s'], {'--node', '--replace', '--add'})]
         for command, own in (('distance', {'--signed'}), ('tolerance', {'--delta'}), ('collision', set())):
             start = ['--delta', '1'] if command == 'tolerance' else []
