@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Makes the way of a Panda through a shelf smooth and 10 mm clear: NLopt's SLSQP, with the rows and gradients of the
+ * provider curve_proximity/RobotDistance.
+ *
+ *      push_out_arm PANDA.urdf PANDA.srdf SCENE.yaml TRAJECTORY.yaml [BEFORE.yaml AFTER.yaml]
+ *
+ *  TRAJECTORY.yaml is the path of a planner. It becomes a cubic B-spline of all joints, which begins and ends at rest.
+ *  The variables are the inner control points; the objective is the square of the jerk, the bounds are the joint
+ * limits. The constraints are, for each span of the spline, the pairs of links and objects, or of two links, that come
+ * nearest. At the end the whole spline is asked about once more: its clearance is then proven, not sampled. BEFORE.yaml
+ * and AFTER.yaml get the spline before and after, for `cprox tolerance --trajectory` and for draw_push_out_arm.py. */
+#include <nlopt.h>
+#include <yaml-cpp/yaml.h>
+#include <pluginlib/class_loader.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/constraint_provider.hpp>
+
+#include "../src/scene/yaml/scene_change.h"
+
+using namespace curve_proximity;
+
+namespace {
+
+constexpr int kSpans = 10;       /* of the spline */
+constexpr int kPairs = 3;        /* constraints a span: the pairs that come nearest */
+constexpr double kClear = 0.01;  /* [m] what is to be proven */
+constexpr double kMargin = 1e-4; /* [m] what is asked of the optimiser beyond that */
+constexpr double kHorizon = 0.02;
+constexpr double kDuration = 5.0; /* [s] */
+
+/* ---- the spline ---- */
+
+/* Uniform cubic B-splines with the first and the last three control points alike begin and end at rest. A row a control
+ * point, a column a joint. */
+constexpr int kControls = kSpans + 3, kInner = kControls - 6;
+constexpr double kStep = kDuration / kSpans;
+
+/* The numbers of the spline at its knots are weighted control points: exactly a trajectory of cubic segments. */
+struct Weights {
+  double position[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
+  double velocity[3] = {-0.5 / kStep, 0.0, 0.5 / kStep};
+};
+
+TrajectoryDescription trajectoryOf(const std::vector<std::string> &joints, const Eigen::MatrixXd &control) {
+  const Weights weights;
+  TrajectoryDescription out;
+  out.joints = joints;
+  for (int knot = 0; knot <= kSpans; ++knot) {
+    Eigen::RowVectorXd position = Eigen::RowVectorXd::Zero(control.cols()), velocity = position;
+    for (int k = 0; k < 3; ++k) {
+      position += weights.position[k] * control.row(knot + k);
+      velocity += weights.velocity[k] * control.row(knot + k);
+    }
+    TrajectoryPoint point;
+    point.time = knot * kStep;
+    point.positions.assign(position.data(), position.data() + position.size());
+    point.velocities.assign(velocity.data(), velocity.data() + velocity.size());
+    out.points.push_back(std::move(point));
+  }
+  return out;
+}
+
+/* The gradient by control points, from that by positions and velocities at the knots. */
+Eigen::MatrixXd byControls(const MotionRow &row) {
+  const Weights weights;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(kControls, row.positions.cols());
+  for (int knot = 0; knot <= kSpans; ++knot)
+    for (int k = 0; k < 3; ++k)
+      out.row(knot + k) +=
+          weights.position[k] * row.positions.row(knot) + weights.velocity[k] * row.velocities.row(knot);
+  return out;
+}
+
+/* ---- the problem ---- */
+
+struct Problem {
+  std::vector<std::string> joints;
+  JointPositions rest;
+  std::unique_ptr<PreparedRobot> robot;
+  std::unique_ptr<const MotionConstraint> constraint;
+  Eigen::MatrixXd control;
+  Workspace workspace;
+  MotionValue value;
+  unsigned evaluations = 0;
+  nlopt_opt optimiser = nullptr;
+  std::string failure; /* no exception may pass through NLopt */
+};
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/* The first and the last three control points stay; what lies between are the variables. */
+Eigen::MatrixXd controlAt(const Problem &problem, const double *x) {
+  Eigen::MatrixXd out = problem.control;
+  out.middleRows(3, kInner) = Eigen::Map<const RowMajor>(x, kInner, out.cols());
+  return out;
+}
+
+void putInner(const Eigen::MatrixXd &by_controls, double *gradient) {
+  Eigen::Map<RowMajor>(gradient, kInner, by_controls.cols()) = by_controls.middleRows(3, kInner);
+}
+
+/* The integral of the squared third derivative, which is constant on each span; the times are left out. */
+double jerk(unsigned, const double *x, double *gradient, void *data) {
+  const Eigen::MatrixXd control = controlAt(*static_cast<const Problem *>(data), x);
+  Eigen::MatrixXd by_controls = Eigen::MatrixXd::Zero(control.rows(), control.cols());
+  double sum = 0.0;
+  for (int i = 0; i < kSpans; ++i) {
+    const Eigen::RowVectorXd third =
+        control.row(i + 3) - 3.0 * control.row(i + 2) + 3.0 * control.row(i + 1) - control.row(i);
+    sum += third.squaredNorm();
+    by_controls.row(i + 3) += 2.0 * third;
+    by_controls.row(i + 2) -= 6.0 * third;
+    by_controls.row(i + 1) += 6.0 * third;
+    by_controls.row(i) -= 2.0 * third;
+  }
+  if (gradient) putInner(by_controls, gradient);
+  return sum;
+}
+
+/* The provider's rows, the nearest ones of each span. A span with fewer rows is clear by the horizon. */
+void clearances(Problem &problem, unsigned n, const double *x, double *result, double *gradient) {
+  const TrajectoryDescription trajectory = trajectoryOf(problem.joints, controlAt(problem, x));
+  const RobotMotion motion(*problem.robot, trajectory, problem.rest);
+  problem.constraint->evaluate({trajectory, motion}, problem.workspace, problem.value);
+  ++problem.evaluations;
+  if (problem.value.status != CPROX_OK) throw Error(problem.value.message);
+  constexpr std::size_t m = kSpans * kPairs;
+  std::fill(result, result + m, kHorizon - kClear - kMargin);
+  if (gradient) std::fill(gradient, gradient + m * n, 0.0);
+  std::vector<int> taken(kSpans, 0);
+  for (const MotionRow &row : problem.value.rows) { // the least first
+    const auto span = static_cast<std::size_t>(std::lround(row.t0 / kStep));
+    if (taken[span] == kPairs) continue;
+    const std::size_t slot = span * kPairs + static_cast<std::size_t>(taken[span]++);
+    result[slot] = row.value;
+    if (gradient) putInner(byControls(row), gradient + slot * n);
+  }
+}
+
+/* NLopt wants c(x) <= 0: minus the values. */
+void tooNear(unsigned m, double *result, unsigned n, const double *x, double *gradient, void *data) {
+  Problem &problem = *static_cast<Problem *>(data);
+  try {
+    clearances(problem, n, x, result, gradient);
+  } catch (const std::exception &error) {
+    problem.failure = error.what();
+    nlopt_force_stop(problem.optimiser);
+  }
+  for (unsigned i = 0; i < m; ++i) result[i] = -result[i];
+  for (unsigned i = 0; gradient && i < m * n; ++i) gradient[i] = -gradient[i];
+}
+
+/* ---- files ---- */
+
+std::string readText(const std::string &path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path + " cannot be read");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+SnapshotPtr readScene(const std::string &urdf, const Srdf &srdf, const std::string &path) {
+  RobotOptions options;
+  options.resources.base_dir = yaml::folderOf(urdf);
+  yaml::Warnings warnings;
+  Scene scene(Robot::fromUrdf(readText(urdf), options), {}, allowedPairs(srdf));
+  for (const std::string &fault : scene.apply(yaml::toChange(yaml::readScene(path, warnings), path, warnings)))
+    throw Error(fault);
+  return scene.snapshot();
+}
+
+/* The planner's path, evenly spaced in time: control points of the spline. */
+void readPath(const std::string &path, Problem &problem) {
+  const YAML::Node file = YAML::LoadFile(path);
+  problem.joints = file["joint_trajectory"]["joint_names"].as<std::vector<std::string>>();
+  if (file["fixed_joints"]) problem.rest = file["fixed_joints"].as<JointPositions>();
+  TrajectoryDescription given;
+  given.joints = problem.joints;
+  for (const YAML::Node &node : file["joint_trajectory"]["points"]) {
+    TrajectoryPoint point;
+    point.positions = node["positions"].as<std::vector<double>>();
+    point.time = node["time_from_start"].as<double>();
+    given.points.push_back(std::move(point));
+  }
+  checkTrajectory(given);
+  problem.control.resize(kControls, static_cast<Eigen::Index>(problem.joints.size()));
+  std::size_t k = 0;
+  for (int i = 0; i < kControls; ++i) {
+    const double inner = std::clamp((i - 2.0) / (kControls - 5.0), 0.0, 1.0);
+    const double t = given.points.front().time + inner * (given.points.back().time - given.points.front().time);
+    while (k + 2 < given.points.size() && given.points[k + 1].time < t) ++k;
+    const TrajectoryPoint &a = given.points[k], &b = given.points[k + 1];
+    const double s = std::clamp((t - a.time) / (b.time - a.time), 0.0, 1.0);
+    for (std::size_t j = 0; j < problem.joints.size(); ++j)
+      problem.control(i, static_cast<Eigen::Index>(j)) = a.positions[j] + s * (b.positions[j] - a.positions[j]);
+  }
+}
+
+void write(const char *path, const Problem &problem, const TrajectoryDescription &trajectory) {
+  std::ofstream out(path);
+  out.precision(17);
+  const auto list = [&out](const auto &values) {
+    const char *comma = "[";
+    for (const auto &value : values) out << std::exchange(comma, ", ") << value;
+    out << "]";
+  };
+  out << "interpolation: cubic\nfixed_joints:\n";
+  for (const auto &[joint, value] : problem.rest) out << "  " << joint << ": " << value << "\n";
+  out << "joint_trajectory:\n  joint_names: ";
+  list(trajectory.joints);
+  out << "\n  points:\n";
+  for (const TrajectoryPoint &point : trajectory.points) {
+    out << "    - {time_from_start: " << point.time << ", positions: ";
+    list(point.positions);
+    out << ", velocities: ";
+    list(point.velocities);
+    out << "}\n";
+  }
+  if (!out) throw Error(std::string(path) + " cannot be written");
+}
+
+/* ---- the example ---- */
+
+/* What is proven of a whole trajectory: is it farther than kClear from all objects and from itself? */
+bool tell(const char *when, Problem &problem, const TrajectoryDescription &trajectory) {
+  const RobotMotion motion(*problem.robot, trajectory, problem.rest);
+  Query distance, tolerance;
+  tolerance.query_type = QueryType::TOLERANCE;
+  tolerance.delta = kClear;
+  const ClearanceRow least = clearanceGradient(motion, RobotPairs::WHOLE, distance, problem.workspace);
+  const bool clear =
+      askEnvironment(motion, tolerance, problem.workspace).front().result.verdict == CPROX_VERDICT_CLEAR &&
+      askSelf(motion, tolerance, problem.workspace).result.verdict == CPROX_VERDICT_CLEAR;
+  std::printf("%s at least %.4f mm, between %s and %s; more than %g mm everywhere: %s\n", when,
+              1e3 * least.answer.result.lower, least.answer.a.c_str(), least.answer.b.c_str(), 1e3 * kClear,
+              clear ? "proven" : "no");
+  return clear;
+}
+
+/* The joint limits, for all control points: a B-spline stays within those of its control points. */
+void setLimits(const Problem &problem, const Robot &robot) {
+  std::vector<double> lower, upper;
+  for (int i = 0; i < kInner; ++i)
+    for (const std::string &name : problem.joints)
+      for (const Robot::Joint &joint : robot.joints()) {
+        if (joint.name != name) continue;
+        lower.push_back(joint.lower);
+        upper.push_back(joint.upper);
+      }
+  nlopt_set_lower_bounds(problem.optimiser, lower.data());
+  nlopt_set_upper_bounds(problem.optimiser, upper.data());
+}
+
+int run(char **arguments, const char *before_file, const char *after_file) {
+  Problem problem;
+  const Srdf srdf = parseSrdf(readText(arguments[2]));
+  const SnapshotPtr snapshot = readScene(arguments[1], srdf, arguments[3]);
+  problem.robot = std::make_unique<PreparedRobot>(snapshot, srdf.disabled);
+  readPath(arguments[4], problem);
+  pluginlib::ClassLoader<ConstraintProvider> plugins("curve_proximity", "curve_proximity::ConstraintProvider");
+  const auto provider = plugins.createUniqueInstance("curve_proximity/RobotDistance");
+  provider->initialise({{"horizon", kHorizon}, {"per_pair", kSpans}, {"margin", kClear + kMargin}, {"epsilon", 1e-6}});
+  problem.constraint = provider->prepareMotion(*problem.robot);
+
+  // From the planner's path to the smoothest spline that is clear.
+  const auto n = static_cast<unsigned>(kInner * problem.control.cols());
+  constexpr unsigned m = kSpans * kPairs;
+  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> optimiser(nlopt_create(NLOPT_LD_SLSQP, n), nlopt_destroy);
+  problem.optimiser = optimiser.get();
+  const std::vector<double> tolerances(m, 1e-6);
+  nlopt_set_min_objective(optimiser.get(), jerk, &problem);
+  nlopt_add_inequality_mconstraint(optimiser.get(), m, tooNear, &problem, tolerances.data());
+  setLimits(problem, *snapshot->robot());
+  nlopt_set_maxeval(optimiser.get(), 30);
+  nlopt_set_ftol_rel(optimiser.get(), 1e-3);
+  std::vector<double> x(n);
+  putInner(problem.control, x.data());
+  const double first = jerk(n, x.data(), nullptr, &problem);
+  const TrajectoryDescription before = trajectoryOf(problem.joints, problem.control);
+  double least = 0.0;
+  const nlopt_result result = nlopt_optimize(optimiser.get(), x.data(), &least);
+  if (!problem.failure.empty()) throw Error(problem.failure);
+  const TrajectoryDescription after = trajectoryOf(problem.joints, controlAt(problem, x.data()));
+
+  tell("before:", problem, before);
+  const bool clear = tell("after: ", problem, after);
+  std::printf("the squared jerk fell to %.1f %%; %u evaluations, NLopt said %d\n", 100.0 * least / first,
+              problem.evaluations, static_cast<int>(result));
+  if (before_file) write(before_file, problem, before);
+  if (after_file) write(after_file, problem, after);
+  return clear ? 0 : 1;
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  if (argc != 5 && argc != 7) {
+    std::fprintf(stderr, "usage: %s PANDA.urdf PANDA.srdf SCENE.yaml TRAJECTORY.yaml [BEFORE.yaml AFTER.yaml]\n",
+                 argv[0]);
+    return 2;
+  }
+  try {
+    return run(argv, argc == 7 ? argv[5] : nullptr, argc == 7 ? argv[6] : nullptr);
+  } catch (const std::exception &error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 1;
+  }
+}
