@@ -190,9 +190,8 @@ static void check_group(const crowded_robot *c, robot_scene *s, int32_t group, i
 }
 
 static void check_pair(const crowded_robot *c, robot_scene *s, group_pair pair, const placed_points *now) {
-  double radius;
   const part_groups *groups = &c->robot->groups;
-  const double lower = robot_groups_apart(s, pair) - robot_groups_displacement(s, pair, &radius);
+  const double lower = robot_groups_apart(s, pair) - robot_groups_displacement(s, pair);
   const part_group *a = &groups->at[pair.group[0]], *b = &groups->at[pair.group[1]];
   for (int32_t p = a->first; p < a->last; p++)
     for (int32_t q = b->first; q < b->last; q++) {

@@ -77,6 +77,19 @@ double motion_displacements(const cprox_motion *motion, const axis_state *axes, 
   return ROUND_UP * displacement;
 }
 
+void motion_displacements_up(const cprox_motion *motion, const axis_state *axes, int32_t axis, int32_t from,
+                             vec3 centre, double radius, double *displacements) {
+  const robot_axis *robot = motion->robot->axes;
+  size_t depth = robot_axis_depth(motion->robot, axis);
+  double displacement = displacements[depth];
+  for (; axis != from; axis = robot[axis].parent) {
+    const axis_state *state = &axes[axis];
+    if (motion->axis_moves[axis])
+      displacement += state->shift * (turns(state) ? ROUND_UP * (lever_arm(state, centre) + radius) : 1.0);
+    displacements[--depth] = ROUND_UP * displacement;
+  }
+}
+
 /* Velocity and acceleration of the centre, from the base to the tip. */
 static void find_rates(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, chain_motion *m) {
   m->v = m->omega = m->a = m->alpha = vec(0, 0, 0);

@@ -41,6 +41,11 @@ double motion_displacement(const cprox_motion *motion, const axis_state *axes, i
 double motion_displacements(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
                             double radius, double *displacements);
 
+/* What is added to the displacement bound of something on `axis` on the way up to an axis above it, which sees it so:
+ * begins with displacements[depth of `axis`] and fills those of all depths down to that of `from`. */
+void motion_displacements_up(const cprox_motion *motion, const axis_state *axes, int32_t axis, int32_t from,
+                             vec3 centre, double radius, double *displacements);
+
 /* The two sides of a pair in the middle of the node. */
 typedef struct bound_side {
   const convex *shape;

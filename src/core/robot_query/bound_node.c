@@ -324,59 +324,51 @@ static cprox_status open_parts(robot_search *o, const search_node *node, group_p
   return keep_open(o, &one);
 }
 
-/* Whether two groups move so far that it does not pay to open them on this node. */
-static bool want_split_of_groups(robot_search *o, const search_node *node, double apart, double displacement,
-                                 double radius) {
-  const double size = greater(MOST_DISPLACEMENT * apart, radius);
-  if (!(displacement > GROUP_DISPLACEMENT * size) || robot_is_short(node)) return false;
-  want_pieces(o, displacement / size);
+/* Two groups, on a stack. */
+typedef struct open_groups {
+  group_pair groups;
+  double lower, displacement; /* neither group's parts move farther than those of what contains them */
+} open_groups;
+
+/* Raises the bound of two groups. Whether they move too far to be opened on this node, which they want cut. */
+static bool bound_groups(robot_search *o, const search_node *node, open_groups *pair) {
+  const double apart = robot_groups_apart(&o->scene, pair->groups);
+  pair->lower = greater(apart - pair->displacement, pair->lower);
+  if (robot_is_pruned(o, pair->lower)) return false;
+  pair->displacement = lesser(robot_groups_displacement(&o->scene, pair->groups), pair->displacement);
+  pair->lower = greater(apart - pair->displacement, pair->lower);
+  if (robot_is_pruned(o, pair->lower) || robot_groups_are_parts(&o->scene, pair->groups)) return false;
+  const double size = greater(MOST_DISPLACEMENT * apart, robot_groups_radius(&o->scene, pair->groups));
+  if (!(pair->displacement > GROUP_DISPLACEMENT * size) || robot_is_short(node)) return false;
+  want_pieces(o, pair->displacement / size);
   return true;
 }
 
 /* Two groups of parts: what is within reach of each other becomes pairs, or, where they move too far for these to be
  * measured, pairs of groups. */
-static cprox_status open_groups(robot_search *o, const search_node *node, const list_entry *entry) {
-  struct {
-    group_pair groups;
-    double lower, displacement; /* the parts of groups move together no farther than those of what contains them */
-  } stack[GROUP_STACK];
-  stack[0].groups = (group_pair){{entry->part, (int32_t)entry->under}};
-  stack[0].lower = entry->lower, stack[0].displacement = INFINITY;
+static cprox_status open_groups_of(robot_search *o, const search_node *node, const list_entry *entry) {
+  open_groups stack[GROUP_STACK];
+  stack[0] = (open_groups){{{entry->part, (int32_t)entry->under}}, entry->lower, INFINITY};
   size_t n = 1;
   cprox_status status = CPROX_OK;
   while (n > 0 && status == CPROX_OK) {
-    const group_pair groups = stack[--n].groups;
-    double lower = stack[n].lower, displacement = stack[n].displacement;
-    bool needs_split = false;
-    const bool parts = robot_groups_are_parts(&o->scene, groups);
-    if (!group_pair_is_one(groups)) {
-      double radius = 0.0;
-      const double apart = robot_groups_apart(&o->scene, groups);
-      lower = greater(apart - displacement, lower);
-      if (!robot_is_pruned(o, lower)) {
-        displacement = lesser(robot_groups_displacement(&o->scene, groups, &radius), displacement);
-        lower = greater(apart - displacement, lower);
-      }
-      if (robot_is_pruned(o, lower)) {
-        o->dropped = lesser(lower, o->dropped);
-        continue;
-      }
-      needs_split = !parts && want_split_of_groups(o, node, apart, displacement, radius);
-    }
-    if (parts) {
-      status = open_parts(o, node, groups, lower);
+    open_groups top = stack[--n];
+    const bool needs_split = !group_pair_is_one(top.groups) && bound_groups(o, node, &top);
+    if (robot_is_pruned(o, top.lower)) {
+      o->dropped = lesser(top.lower, o->dropped);
+    } else if (robot_groups_are_parts(&o->scene, top.groups)) {
+      status = open_parts(o, node, top.groups, top.lower);
     } else if (needs_split) {
-      const list_entry kept = {.lower = lower,
+      const list_entry kept = {.lower = top.lower,
                                .pair = LIST_GROUPS,
-                               .part = groups.group[0],
-                               .under = (uint32_t)groups.group[1],
+                               .part = top.groups.group[0],
+                               .under = (uint32_t)top.groups.group[1],
                                .needs_split = true};
       status = keep_open(o, &kept);
     } else {
       group_pair inside[GROUP_PAIRS_INSIDE];
-      const size_t count = robot_groups_open(&o->scene, groups, inside);
-      for (size_t i = 0; i < count; i++, n++)
-        stack[n].groups = inside[i], stack[n].lower = lower, stack[n].displacement = displacement;
+      const size_t count = robot_groups_open(&o->scene, top.groups, inside);
+      for (size_t i = 0; i < count; i++) stack[n++] = (open_groups){inside[i], top.lower, top.displacement};
     }
   }
   return status;
@@ -392,7 +384,7 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node) {
     if (robot_is_pruned(o, entry.lower)) {
       o->dropped = lesser(entry.lower, o->dropped);
     } else if (entry.pair < 0) {
-      status = entry.pair == LIST_CLUSTER ? open_cluster(o, node, &entry) : open_groups(o, node, &entry);
+      status = entry.pair == LIST_CLUSTER ? open_cluster(o, node, &entry) : open_groups_of(o, node, &entry);
     } else {
       bound_pair_roughly(o, node, &entry);
       status = keep_open(o, &entry);

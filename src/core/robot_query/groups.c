@@ -6,12 +6,12 @@
 
 #include "base/rounding.h"
 
-enum { WORD = 64 };
+enum { WORD = 64, MOST_SEEN = 1 << 18 };
 
 /* A group over the node at hand. */
 typedef struct group_state {
-  uint32_t placed, moved; /* the node for which the ball and `within`, and for which `displacement` were found */
-  vec3 centre;            /* of a ball, in the middle of the node, that contains the parts where they are exactly */
+  uint32_t placed; /* the node for which all this was found */
+  vec3 centre;     /* of a ball, in the middle of the node, that contains the parts where they are exactly */
   double radius;
   double within; /* so far they move as the group's axis sees them */
   int32_t from;  /* so far as this axis above it sees them, */
@@ -23,8 +23,11 @@ struct robot_groups {
   group_state *state;
   uint64_t *asked; /* of each group a row of bits: the places of parts that some part of it is asked about with */
   uint64_t
-      *given;     /* of each place the places of the parts that stand in given pairs in which it moves; NULL: all may */
-  size_t words;   /* in a row */
+      *given;   /* of each place the places of the parts that stand in given pairs in which it moves; NULL: all may */
+  size_t words; /* in a row */
+  double *seen; /* of each group and each depth of an axis above it: how far that axis sees it move, as far up as was
+                   asked; NULL: there are too many */
+  size_t depths;
   int32_t *first; /* of what is on an axis, by its number + 1, the first place; -1: none */
 };
 
@@ -178,12 +181,16 @@ bool robot_groups_begin(robot_scene *s) {
   const size_t n = robot->n_parts, words = (n + WORD - 1) / WORD;
   if (n == 0) return true;
   const bool given = (mover_is_whole(&s->q->mover) ? s->q->mover.self_pairs : s->q->mover.pairs) != NULL;
+  size_t depths = 1;
+  for (size_t i = 0; i < robot->n_axes; i++)
+    depths = robot->axes[i].depth >= depths ? robot->axes[i].depth + 1 : depths;
+  const size_t seen = of->n * depths <= MOST_SEEN ? of->n * depths : 0;
   const size_t bits = (of->n + n + (given ? n : 0)) * words;
-  const size_t bytes = sizeof *s->groups + of->n * sizeof *s->groups->state + bits * sizeof *s->groups->asked +
-                       (robot->n_axes + 1) * sizeof *s->groups->first;
+  const size_t cleared = sizeof *s->groups + of->n * sizeof *s->groups->state + bits * sizeof *s->groups->asked;
+  const size_t bytes = cleared + seen * sizeof *s->groups->seen + (robot->n_axes + 1) * sizeof *s->groups->first;
   struct robot_groups *g = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_GROUPS, bytes);
   if (!g) return false;
-  memset(g, 0, bytes);
+  memset(g, 0, cleared);
   s->groups = g;
   g->of = of;
   g->words = words;
@@ -191,7 +198,9 @@ bool robot_groups_begin(robot_scene *s) {
   g->asked = (uint64_t *)(void *)(g->state + of->n);
   uint64_t *rows = g->asked + of->n * words;
   g->given = given ? rows + n * words : NULL;
-  g->first = (int32_t *)(void *)(g->asked + bits);
+  g->seen = seen ? (double *)(void *)(g->asked + bits) : NULL;
+  g->depths = depths;
+  g->first = (int32_t *)(void *)((char *)g + cleared + seen * sizeof *g->seen);
   for (size_t i = 0; i <= robot->n_axes; i++) g->first[i] = -1;
   if (given)
     ask_given(s, rows);
@@ -214,56 +223,72 @@ static void unite_balls(const group_state *a, const group_state *b, group_state 
                                     vec_norm(vec_sub(b->centre, both->centre)) + b->radius);
 }
 
-static group_state *place_group(robot_scene *s, int32_t group) {
+static void place_group(robot_scene *s, int32_t group);
+
+static inline group_state *group_at(robot_scene *s, int32_t group) {
+  group_state *state = &s->groups->state[group];
+  if (state->placed != s->node) place_group(s, group);
+  return state;
+}
+
+static void place_group(robot_scene *s, int32_t group) {
   const struct robot_groups *g = s->groups;
   const part_group *of = &g->of->at[group];
   group_state *state = &g->state[group];
-  if (state->placed == s->node) return state;
   state->placed = s->node;
+  state->from = of->axis;
+  double *seen = g->seen ? g->seen + (size_t)group * g->depths + robot_axis_depth(s->motion->robot, of->axis) : NULL;
+  if (seen) *seen = 0.0;
   if (of->half < 0) {
     const robot_pair any = {.moving = g->of->part[of->first], .element = {ROBOT_WHOLE, ROBOT_WHOLE}};
     const robot_body *body = robot_scene_moving(s, &any);
     state->centre = body->side.at.p;
     state->radius = ROUND_UP * (body->radius + body->side.error);
-    state->within = 0.0;
-    return state;
+    state->within = state->displacement = 0.0;
+    return;
   }
-  const group_state *a = place_group(s, of->half), *b = place_group(s, of->half + 1);
-  unite_balls(a, b, state);
-  state->within =
+  unite_balls(group_at(s, of->half), group_at(s, of->half + 1), state);
+  state->within = state->displacement =
       greater(robot_group_displacement(s, of->half, of->axis), robot_group_displacement(s, of->half + 1, of->axis));
-  return state;
+  if (seen) *seen = state->within;
 }
 
-/* What is known of the way up to an axis goes on to those above it. */
 double robot_group_displacement(robot_scene *s, int32_t group, int32_t from) {
-  group_state *state = place_group(s, group);
+  group_state *state = group_at(s, group);
+  if (state->from == from) return state->displacement;
+  const struct robot_groups *g = s->groups;
   const cprox_robot *robot = s->motion->robot;
-  if (state->moved != s->node || robot_axis_depth(robot, from) > robot_axis_depth(robot, state->from)) {
-    state->moved = s->node;
-    state->from = s->groups->of->at[group].axis;
-    state->displacement = state->within;
+  const uint32_t depth = robot_axis_depth(robot, from), known = robot_axis_depth(robot, state->from);
+  if (g->seen) {
+    double *seen = g->seen + (size_t)group * g->depths;
+    if (depth >= known) return seen[depth];
+    motion_displacements_up(s->motion, s->axes, state->from, from, state->centre, state->radius, seen);
+    state->displacement = seen[depth];
+  } else {
+    if (depth > known) state->from = g->of->at[group].axis, state->displacement = state->within;
+    if (state->from != from)
+      state->displacement = ROUND_UP * (state->displacement + motion_displacement(s->motion, s->axes, from, state->from,
+                                                                                  state->centre, state->radius));
   }
-  if (state->from != from) {
-    state->displacement = ROUND_UP * (state->displacement + motion_displacement(s->motion, s->axes, from, state->from,
-                                                                                state->centre, state->radius));
-    state->from = from;
-  }
+  state->from = from;
   return state->displacement;
 }
 
 double robot_groups_apart(robot_scene *s, group_pair pair) {
-  const group_state *a = place_group(s, pair.group[0]), *b = place_group(s, pair.group[1]);
+  const group_state *a = group_at(s, pair.group[0]), *b = group_at(s, pair.group[1]);
   const double between = vec_norm(vec_sub(a->centre, b->centre)), radii = a->radius + b->radius;
   return between - radii - ROUND_UP * 8.0 * ROUND_U * (between + radii);
 }
 
-double robot_groups_displacement(robot_scene *s, group_pair pair, double *radius) {
+double robot_groups_radius(robot_scene *s, group_pair pair) {
+  return greater(group_at(s, pair.group[0])->radius, group_at(s, pair.group[1])->radius);
+}
+
+double robot_groups_displacement(robot_scene *s, group_pair pair) {
   const part_group *a = &s->groups->of->at[pair.group[0]], *b = &s->groups->of->at[pair.group[1]];
   const int32_t common = robot_common_axis(s->motion->robot, a->axis, b->axis);
   const double displacement =
       robot_group_displacement(s, pair.group[0], common) + robot_group_displacement(s, pair.group[1], common);
-  *radius = greater(s->groups->state[pair.group[0]].radius, s->groups->state[pair.group[1]].radius);
   return ROUND_UP * displacement;
 }
 
@@ -293,7 +318,7 @@ size_t robot_groups_open(robot_scene *s, group_pair pair, group_pair inside[GROU
     keep_asked(s, half, half + 1, inside, &n);
     return n;
   }
-  const double a = place_group(s, pair.group[0])->radius, b = place_group(s, pair.group[1])->radius;
+  const double a = group_at(s, pair.group[0])->radius, b = group_at(s, pair.group[1])->radius;
   const int opened = at[pair.group[1]].half < 0 || (at[pair.group[0]].half >= 0 && a >= b) ? 0 : 1;
   const int32_t half = at[pair.group[opened]].half, other = pair.group[1 - opened];
   keep_asked(s, half, other, inside, &n);

@@ -28,8 +28,11 @@ bool robot_groups_ask(const robot_scene *scene, group_pair pair);
 /* How far two groups are apart in the middle of the node, at least. */
 double robot_groups_apart(robot_scene *scene, group_pair pair);
 
-/* How far both move together over the node, as the axis above both sees it, at most; *radius: of the larger one. */
-double robot_groups_displacement(robot_scene *scene, group_pair pair, double *radius);
+/* The radius of the larger one. */
+double robot_groups_radius(robot_scene *scene, group_pair pair);
+
+/* How far both move together over the node, as the axis above both sees it, at most. */
+double robot_groups_displacement(robot_scene *scene, group_pair pair);
 
 /* How far the parts of a group move, seen from an axis that carries them all (-1: the world), at most. */
 double robot_group_displacement(robot_scene *scene, int32_t group, int32_t from);

@@ -62,7 +62,7 @@ typedef struct robot_scene {
 
 /* So many pairs of a robot with itself are listed one by one; groups of parts would cost more. */
 #ifndef ROBOT_MOST_LISTED
-#define ROBOT_MOST_LISTED 300
+#define ROBOT_MOST_LISTED 200
 #endif
 
 /* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the
