@@ -60,6 +60,10 @@ const char *shapeTypeName(ShapeType type);
 /** The type with that lower-case name; std::nullopt for any other word. */
 std::optional<ShapeType> shapeTypeFromName(const std::string &name);
 
+/** The shortest rotation that turns the direction `from` to the direction `to`. (Eigen's FromTwoVectors; its singular
+ * value decomposition takes a compiler ten seconds wherever it stands.) */
+Eigen::Quaterniond rotationBetween(const Eigen::Vector3d &from, const Eigen::Vector3d &to);
+
 /** An occupancy octree as octomap serialises it: the fields of octomap_msgs/Octomap. The corner of cell (0, 0, 0) is
  *  at the origin. */
 struct OctreeData {

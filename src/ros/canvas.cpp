@@ -168,7 +168,7 @@ void Canvas::addHalfspace(const std::string &space, const ShapeDescription &shap
   const Eigen::Vector3d normal(shape.dimensions[0], shape.dimensions[1], shape.dimensions[2]);
   constexpr double THICKNESS = 0.02;
   Eigen::Isometry3d local = Eigen::Isometry3d::Identity();
-  local.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix();
+  local.linear() = rotationBetween(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix();
   local.translation() = -normal * (shape.dimensions[3] / normal.squaredNorm()) - normal.normalized() * (THICKNESS / 2);
   Marker &marker = add(space, Marker::CUBE, pose * local);
   setScale(marker, HALFSPACE_SIZE, HALFSPACE_SIZE, THICKNESS);

@@ -26,8 +26,7 @@ std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> framesAlong(const std::
     const Eigen::Vector3d chord = points[std::min(i + 1, points.size() - 1)] - points[i > 0 ? i - 1 : 0];
     if (chord.norm() > 0.0) {
       const Eigen::Vector3d next = chord.normalized();
-      across =
-          i == 0 ? next.unitOrthogonal() : Eigen::Vector3d(Eigen::Quaterniond::FromTwoVectors(along, next) * across);
+      across = i == 0 ? next.unitOrthogonal() : Eigen::Vector3d(rotationBetween(along, next) * across);
       along = next;
     }
     frames.emplace_back(across, along.cross(across));

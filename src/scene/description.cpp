@@ -39,4 +39,8 @@ std::optional<ShapeType> shapeTypeFromName(const std::string &name) {
   return std::nullopt;
 }
 
+Eigen::Quaterniond rotationBetween(const Eigen::Vector3d &from, const Eigen::Vector3d &to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 } // namespace curve_proximity

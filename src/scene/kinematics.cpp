@@ -121,7 +121,7 @@ class Builder {
   /* The core's planar joint moves in z = 0: its frame is turned to the plane, and turned back behind it. */
   std::size_t addPlanar(int parent, const Robot::Joint &joint) {
     Eigen::Isometry3d to_plane = Eigen::Isometry3d::Identity();
-    to_plane.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
+    to_plane.linear() = rotationBetween(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
     const std::size_t moved = addLink(parent, CPROX_JOINT_PLANAR, joint.origin * to_plane, Eigen::Vector3d::UnitZ(),
                                       addParts(joint.name, PLANAR_PARTS, {}), 1.0, 0.0);
     return to_plane.matrix().isIdentity(0.0) ? moved : addFixed(static_cast<int>(moved), to_plane.inverse());

@@ -19,7 +19,7 @@ Eigen::Isometry3d planarMotion(const std::string &name, const Eigen::Vector3d &n
   double v[3];
   for (int i = 0; i < 3; ++i) v[i] = valueOr(positions, name + PLANAR_PARTS[i], 0.0);
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  const Eigen::Quaterniond to_plane = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+  const Eigen::Quaterniond to_plane = rotationBetween(Eigen::Vector3d::UnitZ(), normal);
   motion.linear() = Eigen::AngleAxisd(v[2], normal).toRotationMatrix();
   motion.translation() = to_plane * Eigen::Vector3d(v[0], v[1], 0.0);
   return motion;
