@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything the ROS side stands on, found once; dependency_targets.cmake makes targets of it.
+# What the scene library and the Python package stand on, found once; dependency_targets.cmake makes targets of it.
 
-find_package(catkin REQUIRED COMPONENTS
-  actionlib actionlib_msgs diagnostic_msgs diagnostic_updater dynamic_reconfigure geometric_shapes geometry_msgs message_generation
-  nav_msgs nodelet pluginlib roscpp roslib sensor_msgs shape_msgs std_msgs tf2 tf2_eigen tf2_ros trajectory_msgs urdf
-  visualization_msgs)
 find_package(Eigen3 REQUIRED)
 
-# The Python package: pybind11 builds for the Python that catkin uses.
-set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
+# The Python package: pybind11 builds for the Python that catkin uses, or for -DPython3_EXECUTABLE.
+if(CPROX_ROS)
+  set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
+endif()
 find_package(Python3 REQUIRED COMPONENTS Interpreter Development)
 find_package(pybind11 REQUIRED CONFIG)
 
@@ -35,16 +33,12 @@ endif()
 message(STATUS "FCL ${CPROX_FCL_VERSION}, found by ${CPROX_FCL_FOUND_BY}")
 
 # The rest by pkg-config, as absolute library files: whoever links us needs no -L.
-pkg_check_modules(PC_CCD REQUIRED ccd)
-set(CPROX_CCD_LIBRARIES ${PC_CCD_LINK_LIBRARIES})
-set(CPROX_CCD_INCLUDE_DIRS ${PC_CCD_INCLUDEDIR} ${PC_CCD_INCLUDE_DIRS})
 pkg_check_modules(PC_YAML REQUIRED yaml-cpp)
 set(CPROX_YAML_LIBRARIES ${PC_YAML_LINK_LIBRARIES})
 set(CPROX_YAML_INCLUDE_DIRS ${PC_YAML_INCLUDEDIR} ${PC_YAML_INCLUDE_DIRS})
 pkg_check_modules(PC_OCTOMAP REQUIRED octomap)
 pkg_check_modules(PC_URDFDOM REQUIRED urdfdom)
 pkg_check_modules(PC_TINYXML2 REQUIRED tinyxml2)
-pkg_check_modules(PC_JSON REQUIRED nlohmann_json)
 pkg_check_modules(PC_ASSIMP REQUIRED assimp)
 # qhull brings pkg-config files since 2020 only; the reentrant library is there since 2015.
 find_path(CPROX_QHULL_INCLUDE_DIR libqhull_r/qhull_ra.h)

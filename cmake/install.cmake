@@ -2,13 +2,6 @@
 # What `catkin_make install` or `cmake --install` lays down.
 include(CMakePackageConfigHelpers)
 
-if(CPROX_ROS)
-  set(CPROX_LIB_DIR ${CATKIN_PACKAGE_LIB_DESTINATION})
-else()
-  include(GNUInstallDirs)
-  set(CPROX_LIB_DIR ${CMAKE_INSTALL_LIBDIR})
-endif()
-
 # The core and the Fourier gaps on top of it: libraries, C headers, a CMake package with the component `fourier`, and a
 # pkg-config file each; all relocatable.
 # Before 1.0 a new minor version may break the ABI, so that the SONAME carries it.
@@ -36,13 +29,35 @@ install(DIRECTORY include/curve_proximity/ DESTINATION include/curve_proximity F
 # The C++ classes over the core alone need Eigen, and parallel.hpp threads; they are headers.
 install(FILES include/curve_proximity/core.hpp include/curve_proximity/parallel.hpp DESTINATION include/curve_proximity)
 
+# The scene library, the program that reads meshes for it, and the Python package. A static scene library serves the Python
+# package alone: whoever links it would need all that it needs.
+if(CPROX_SCENE)
+  #catkin_lint: ignore_once wrong_install_destination
+  install(TARGETS ${PROJECT_NAME}_mesh_reader RUNTIME DESTINATION ${CPROX_PROGRAM_DIR})
+  # pybind11_add_module() makes it.
+  #catkin_lint: ignore_once undefined_target wrong_install_destination
+  install(TARGETS cprox_python LIBRARY DESTINATION ${CPROX_PYTHON_DIR}/cprox)
+  if(CPROX_ROS OR BUILD_SHARED_LIBS)
+    install(TARGETS ${PROJECT_NAME}_scene EXPORT cprox_sceneTargets
+            LIBRARY DESTINATION ${CPROX_LIB_DIR} ARCHIVE DESTINATION ${CPROX_LIB_DIR})
+    install(EXPORT cprox_sceneTargets NAMESPACE cprox:: DESTINATION ${CPROX_LIB_DIR}/cmake/cprox)
+  endif()
+endif()
+if(CPROX_SCENE AND NOT CPROX_ROS)
+  #catkin_lint: ignore_once wrong_install_destination
+  install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION include/${PROJECT_NAME} FILES_MATCHING PATTERN "*.hpp"
+          PATTERN client.hpp EXCLUDE PATTERN "constraint_*.hpp" EXCLUDE)
+  #catkin_lint: ignore_once wrong_install_destination
+  install(DIRECTORY src/python/cprox DESTINATION ${CPROX_PYTHON_DIR} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN py.typed)
+endif()
+
 # The ROS side.
 if(CPROX_ROS)
   install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION}
           FILES_MATCHING PATTERN "*.hpp")
-  install(TARGETS ${PROJECT_NAME}_scene ${PROJECT_NAME}_constraints ${PROJECT_NAME}_providers ${PROJECT_NAME}_ros
+  install(TARGETS ${PROJECT_NAME}_constraints ${PROJECT_NAME}_providers ${PROJECT_NAME}_ros
           LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION} ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
-  install(TARGETS ${PROJECT_NAME}_node ${PROJECT_NAME}_mesh_reader RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+  install(TARGETS ${PROJECT_NAME}_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   # The command line belongs on the PATH of whoever sources the space.
   set_target_properties(cprox_cli PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
@@ -51,9 +66,6 @@ if(CPROX_ROS)
   set_target_properties(cprox_check PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
   install(TARGETS cprox_check RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-  # pybind11_add_module() makes it.
-  #catkin_lint: ignore_once undefined_target
-  install(TARGETS cprox_python LIBRARY DESTINATION ${CATKIN_GLOBAL_PYTHON_DESTINATION}/cprox)
   catkin_install_python(PROGRAMS nodes/play_trajectory.py nodes/stand_still.py nodes/urdf_for_rviz.py
     nodes/keep_running.py nodes/show_in_rviz.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   install(DIRECTORY launch config rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
