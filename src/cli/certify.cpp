@@ -99,7 +99,7 @@ Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Que
     TrajectoryDescription trajectory =
         row.inline_trajectory ? std::move(*row.inline_trajectory) : trajectoryOf(row.trajectory);
     adoptBase(world.srdf.virtual_joints, trajectory);
-    const RobotMotion motion(world.snapshot, trajectory, restOf(trajectory, world), world.srdf.disabled);
+    const RobotMotion motion(place->prepared(trajectory), trajectory, restOf(trajectory, world));
     Query query = options;
     query.query_type = row.query_type;
     query.delta = row.delta;

@@ -52,6 +52,22 @@ std::string digestOfFile(const std::string &path, bool with_meshes) {
   return toHex(hasher.finish());
 }
 
+PreparedRobot Place::prepared(const TrajectoryDescription &trajectory) const {
+  constexpr std::size_t kMostBases = 16; /* a dataset has one, or none */
+  std::string key = std::to_string(trajectory.base.size());
+  for (const VirtualJoint &joint : trajectory.base)
+    for (const std::string *word : {&joint.name, &joint.type, &joint.parent_frame, &joint.child_link})
+      key += *word + '\0';
+  for (const std::string &joint : trajectory.base_joints) key += joint + '\0';
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = prepared_.find(key);
+  if (found != prepared_.end()) return found->second;
+  if (prepared_.size() == kMostBases) prepared_.clear();
+  return prepared_
+      .emplace(key, PreparedRobot(world->snapshot, world->srdf.disabled, trajectory.base, trajectory.base_joints))
+      .first->second;
+}
+
 std::shared_ptr<const Robot> Library::robot(const std::string &path) {
   const std::lock_guard<std::mutex> lock(robots_mutex_);
   std::shared_ptr<const Robot> &robot = robots_[path];

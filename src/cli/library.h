@@ -11,6 +11,8 @@
 #include <mutex>
 #include <string>
 
+#include <curve_proximity/motion.hpp>
+
 #include "world.h"
 
 namespace curve_proximity::cli {
@@ -20,6 +22,14 @@ struct Place {
   std::shared_ptr<const World> world; /**< null: see fault */
   std::string fault;
   bool missing = false; /**< a file that is named is not there */
+
+  /** The robot made ready for the motions of this trajectory's base: once for all of them. Throws Error as
+   * PreparedRobot does. Any number of threads. */
+  PreparedRobot prepared(const TrajectoryDescription &trajectory) const;
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, PreparedRobot> prepared_; /* by base */
 };
 
 /** Keeps the places that were used last. Any number of threads; one that asks for what another loads waits for it. */
