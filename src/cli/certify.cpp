@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "../scene/yaml/scene_change.h"
+#include "../scene/yaml/trajectory_yaml.h"
 #include "commands.h"
 #include "csv.h"
 #include "dataset.h"
@@ -16,7 +17,6 @@
 #include "run.h"
 #include "shard_file.h"
 #include "trajectory.h"
-#include "trajectory_yaml.h"
 
 namespace curve_proximity::cli {
 namespace {

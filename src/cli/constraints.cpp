@@ -5,6 +5,7 @@
 #include "../providers/constraint_case.h"
 #include "../scene/yaml/scene_change.h"
 #include "../scene/yaml/scene_yaml.h"
+#include "../scene/yaml/trajectory_yaml.h"
 #include "commands.h"
 #include "constraint_lines.h"
 #include "constraints_yaml.h"
@@ -14,7 +15,6 @@
 #include "results.h"
 #include "run.h"
 #include "trajectory.h"
-#include "trajectory_yaml.h"
 #include "world.h"
 
 namespace curve_proximity::cli {

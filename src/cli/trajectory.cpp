@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "../scene/yaml/trajectory_yaml.h"
 #include "asking.h"
 #include "certificates.h"
 #include "commands.h"
@@ -11,7 +12,6 @@
 #include "finish.h"
 #include "results.h"
 #include "run.h"
-#include "trajectory_yaml.h"
 #include "world.h"
 
 namespace curve_proximity::cli {

@@ -24,21 +24,6 @@ struct PlacedRobot {
   Srdf srdf;
 };
 
-/* The scene's robot_state, without the joints that this robot does not have. */
-JointPositions stateOfScene(const SceneFile &file, const Robot &robot, Warnings &warnings) {
-  JointPositions out;
-  std::string others;
-  for (const auto &[joint, value] : file.joints) {
-    if (robot.hasJoint(joint)) {
-      out.emplace(joint, value);
-    } else {
-      others += (others.empty() ? "'" : ", '") + joint + "'";
-    }
-  }
-  if (!others.empty()) warnings.add("robot_state: the robot has no joint " + others + "; ignored");
-  return out;
-}
-
 PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, const RobotSource &robots,
                        Warnings &warnings) {
   PlacedRobot out;
@@ -51,7 +36,7 @@ PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, const 
     if (!out.srdf.virtual_joints.empty()) out.fixed.insert(out.srdf.virtual_joints.front().parent_frame);
   }
 
-  out.scene_joints = stateOfScene(file, *out.robot, warnings);
+  out.scene_joints = jointsOf(file, *out.robot, warnings);
   out.state = readState(arguments.state, *out.robot);
   JointPositions joints = out.scene_joints;
   try {
@@ -62,70 +47,6 @@ PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, const 
     throw BadUsage(arguments.robot + ": " + e.what());
   }
   return out;
-}
-
-/* An object's pose, from the frame that it names to the fixed frame. Shapes that are appended without a pose belong to
- * an object that stands there already. */
-Operation toFixed(Operation operation, const Frames &frames) {
-  ObjectDescription &object = operation.object;
-  const bool relative = operation.kind == Operation::Kind::APPEND && object.pose.matrix().isIdentity(0.0);
-  if (operation.kind == Operation::Kind::REMOVE || relative) return operation;
-  try {
-    object.pose = frames.find(object.frame) * object.pose;
-    object.frame.clear();
-  } catch (const BadInput &e) {
-    throw BadUsage("object '" + object.id + "': " + e.what());
-  }
-  return operation;
-}
-
-/* What a link carries, from the frame that it names to the link's, by where the scene's robot_state has the link.
- * Without a robot it stands where it is. */
-void attach(const Attachment &given, const Frames &frames, const PlacedRobot &robot, SceneChange &change) {
-  if (!robot.robot) {
-    change.operations.push_back(toFixed(Operation{Operation::Kind::ADD, given.object}, frames));
-    return;
-  }
-  const auto link = robot.links_of_scene.find(given.link);
-  if (link == robot.links_of_scene.end()) {
-    throw BadUsage("object '" + given.object.id + "' is attached to '" + given.link +
-                   "', which is no link of the robot");
-  }
-  Attachment attachment = given;
-  if (given.object.frame != given.link) {
-    const Operation standing = toFixed(Operation{Operation::Kind::ADD, given.object}, frames);
-    attachment.object.pose = link->second.inverse() * standing.object.pose;
-  }
-  change.attachments.push_back(std::move(attachment));
-}
-
-/* An id that comes twice: the later object takes the earlier one's place, which is hardly what was meant. */
-void warnOfReplaced(const std::vector<Operation> &operations, Warnings &warnings) {
-  std::set<std::string> there;
-  for (const Operation &operation : operations) {
-    const std::string &id = operation.object.id;
-    if (operation.kind == Operation::Kind::REMOVE && id.empty()) {
-      there.clear();
-    } else if (operation.kind == Operation::Kind::REMOVE) {
-      there.erase(id);
-    } else if (operation.kind == Operation::Kind::ADD && !there.insert(id).second) {
-      warnings.add("object '" + id + "' comes twice; the later one replaces the earlier");
-    }
-  }
-}
-
-/* All that the file says, in the fixed frame. */
-SceneChange changeOf(const SceneFile &file, const Frames &frames, const PlacedRobot &robot, Warnings &warnings) {
-  SceneChange change;
-  for (const Operation &operation : file.operations) change.operations.push_back(toFixed(operation, frames));
-  for (const Attachment &attached : file.attached) attach(attached, frames, robot, change);
-  warnOfReplaced(change.operations, warnings);
-
-  /* without a robot there are no links to be enlarged */
-  if (robot.robot) change.link_padding = file.link_padding;
-  if (robot.robot) change.link_scale = file.link_scale;
-  change.allowed = file.allowed;
-  return change;
 }
 
 void apply(Scene &scene, const SceneChange &change) {
@@ -203,7 +124,7 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
   resources.find_package = packageFinder(resources.base_dir);
   Scene scene(robot.robot, resources, allowedPairs(robot.srdf));
   try {
-    apply(scene, changeOf(file, frames, robot, warnings));
+    apply(scene, toFixedChange(file, frames, robot.robot.get(), robot.links_of_scene, warnings));
   } catch (const BadUsage &e) {
     throw BadUsage(arguments.scene + ": " + e.what());
   }

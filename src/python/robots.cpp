@@ -3,6 +3,7 @@
 #include <fstream>
 #include <sstream>
 
+#include <curve_proximity/files.hpp>
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/srdf.hpp>
 
@@ -56,6 +57,13 @@ std::shared_ptr<LoadedRobot> load(const std::string &urdf, const std::optional<s
   return out;
 }
 
+/* As Python's warnings, which may be errors. */
+void warn(const std::string &path, const std::vector<std::string> &sentences) {
+  for (const std::string &sentence : sentences) {
+    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + sentence).c_str(), 1) != 0) throw py::error_already_set();
+  }
+}
+
 /* A scene whose changes throw. */
 class PythonScene {
  public:
@@ -71,6 +79,17 @@ class PythonScene {
       wrong = scene_.apply(change);
     }
     if (!wrong.empty()) throw Error(wrong.front());
+  }
+
+  void load(const std::string &path) {
+    SceneFileContents contents;
+    {
+      const py::gil_scoped_release release;
+      contents = robot_ ? loadSceneFile(path, robot_->robot.get(), robot_->srdf) : loadSceneFile(path);
+    }
+    warn(path, contents.warnings);
+    change(contents.change);
+    for (const auto &[joint, value] : contents.joints) joints_[joint] = value;
   }
 
   void add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
@@ -117,10 +136,17 @@ class PythonScene {
   const LoadedRobot *robot() const {
     return robot_.get();
   }
+  /* Where joints stand that a motion does not move: as the scene's files say, or better, as the caller does. */
+  JointPositions rest(const JointPositions &given) const {
+    JointPositions out = joints_;
+    for (const auto &[joint, value] : given) out[joint] = value;
+    return out;
+  }
 
  private:
   std::shared_ptr<LoadedRobot> robot_;
   Scene scene_;
+  JointPositions joints_;
 };
 
 /* ---- motions ---- */
@@ -136,12 +162,20 @@ void requireRows(const Array &rows, std::size_t n, std::size_t joints, const cha
                 "): one row a time, one column a joint");
 }
 
+std::shared_ptr<RobotMotion> move(const PythonScene &scene, TrajectoryDescription trajectory,
+                                  const JointPositions &rest, const std::optional<Array> &base) {
+  if (!scene.robot()) throw Error("the scene has no robot");
+  adoptBase(scene.robot()->srdf.virtual_joints, trajectory);
+  const Eigen::Isometry3d at = toTransform(base);
+  const py::gil_scoped_release release;
+  return std::make_shared<RobotMotion>(scene.snapshot(), trajectory, rest, scene.robot()->srdf.disabled, at);
+}
+
 std::shared_ptr<RobotMotion> makeMotion(const PythonScene &scene, const std::vector<std::string> &joints,
                                         const std::vector<double> &times, const Array &positions,
                                         const std::optional<Array> &velocities,
                                         const std::optional<Array> &accelerations, const JointPositions &rest,
                                         const std::optional<Array> &base) {
-  if (!scene.robot()) throw Error("the scene has no robot");
   requireRows(positions, times.size(), joints.size(), "positions");
   if (velocities) requireRows(*velocities, times.size(), joints.size(), "velocities");
   if (accelerations) requireRows(*accelerations, times.size(), joints.size(), "accelerations");
@@ -155,10 +189,21 @@ std::shared_ptr<RobotMotion> makeMotion(const PythonScene &scene, const std::vec
     if (accelerations) point.accelerations = row(*accelerations, k);
     trajectory.points.push_back(std::move(point));
   }
-  adoptBase(scene.robot()->srdf.virtual_joints, trajectory);
-  const Eigen::Isometry3d at = toTransform(base);
-  const py::gil_scoped_release release;
-  return std::make_shared<RobotMotion>(scene.snapshot(), trajectory, rest, scene.robot()->srdf.disabled, at);
+  return move(scene, std::move(trajectory), scene.rest(rest), base);
+}
+
+std::shared_ptr<RobotMotion> loadMotion(const PythonScene &scene, const std::string &path, const JointPositions &rest,
+                                        const std::optional<Array> &base) {
+  std::vector<std::string> warnings;
+  TrajectoryDescription trajectory;
+  {
+    const py::gil_scoped_release release;
+    trajectory = loadTrajectoryFile(path, &warnings);
+  }
+  warn(path, warnings);
+  JointPositions still = scene.rest(trajectory.fixed_joints);
+  for (const auto &[joint, value] : rest) still[joint] = value;
+  return move(scene, std::move(trajectory), still, base);
 }
 
 Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes) {
@@ -242,6 +287,11 @@ void addRobots(py::module &module) {
   py::class_<PythonScene, std::shared_ptr<PythonScene>>(module, "Scene", "Objects by name, and a robot.")
       .def(py::init<std::shared_ptr<LoadedRobot>, const Packages &>(), py::arg("robot") = nullptr,
            py::arg("packages") = Packages{})
+      .def(
+          "load", &PythonScene::load, py::arg("path"),
+          "Takes over a scene file (YAML), which replaces the scene unless it is a diff. Where its robot_state has the "
+          "joints,\n"
+          "they stand in motions that are made later and do not say better. What is ignored is a UserWarning.")
       .def("add", &PythonScene::add, py::arg("id"), py::arg("type"), py::arg("dimensions") = std::vector<double>{},
            py::arg("pose") = py::none(), py::arg("padding") = 0.0, py::arg("vertices") = py::none(),
            py::arg("triangles") = py::none(), py::arg("resource") = "", py::arg("solid") = false,
@@ -274,6 +324,9 @@ void addRobots(py::module &module) {
            py::arg("rest") = JointPositions{}, py::arg("base") = py::none(),
            "Waypoints: times (n,) [s], positions (n, joints); with velocities the motion is cubic between them, with\n"
            "accelerations too quintic, else linear. rest: values of the other joints by name.")
+      .def_static("from_file", &loadMotion, py::arg("scene"), py::arg("path"), py::arg("rest") = JointPositions{},
+                  py::arg("base") = py::none(),
+                  "The trajectory of a file (YAML). rest: joints that stand elsewhere than the files say.")
       .def_property_readonly("domain", &RobotMotion::domain, "[s] The first and the last time.")
       .def(
           "link_poses",

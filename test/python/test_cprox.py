@@ -3,6 +3,7 @@
 """The Python package cprox: answers against dense samples in NumPy, arrays in and out, errors, threads, a robot."""
 import os
 import signal
+import tempfile
 import threading
 import time
 import unittest
@@ -208,6 +209,52 @@ class Robots(unittest.TestCase):
         pairs = motion.nearest_pairs(k=3)
         self.assertEqual(len(pairs), 3)
         self.assertAlmostEqual(pairs[0]['result'].upper, answer['result'].upper, places=5)
+
+    def test_scene_and_trajectory_files_are_what_they_say(self):
+        path = os.path.join(DATA, 'scenes/mbm/box_panda/scene0001.yaml')
+        scene = cprox.Scene(self.robot)
+        scene.add('old', 'sphere', [1])
+        scene.load(path)
+        with open(path) as text:
+            objects = yaml.safe_load(text)['world']['collision_objects']
+        self.assertEqual(scene.objects, sorted(o['id'] for o in objects))
+        loaded = cprox.Motion.from_file(scene, os.path.join(DATA, 'trajectories/panda_box_0001_rrt.yaml'))
+
+        by_hand = cprox.Scene(self.robot)
+        for o in objects:
+            for shape, pose in zip(o['primitives'], o['primitive_poses']):
+                by_hand.add(o['id'], shape['type'], shape['dimensions'], cprox.transform(pose['position'], pose['orientation']))
+        ours, theirs = loaded.distance(), self.motion(by_hand).distance()
+        self.assertEqual((ours['a'], ours['b']), (theirs['a'], theirs['b']))
+        self.assertAlmostEqual(ours['result'].upper, theirs['result'].upper, delta=1e-9)
+        self.assertEqual(loaded.domain, self.motion(by_hand).domain)
+
+    def test_bad_files_are_told(self):
+        scene = cprox.Scene(self.robot)
+        with self.assertRaises(ValueError) as caught:
+            scene.load('nowhere.yaml')
+        self.assertIn('nowhere.yaml', str(caught.exception))
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'bad.yaml')
+            for text, words in (('world: {collision_objects: [{id: x, header: {frame_id: moon}, primitives: [{type: sphere, '
+                                 'dimensions: [1]}], primitive_poses: [{position: [0, 0, 0]}]}]}', ['x', 'moon']),
+                                ('world: {collision_objects: [{id: x, primitives: [{type: sphere, dimensions: [1, 2]}], '
+                                 'primitive_poses: [{position: [0, 0, 0]}]}]}', ['x'])):
+                with open(path, 'w') as out:
+                    out.write(text)
+                with self.assertRaises(ValueError) as caught:
+                    scene.load(path)
+                for word in words:
+                    self.assertIn(word, str(caught.exception))
+            self.assertEqual(scene.objects, [])
+            with open(path, 'w') as out:
+                out.write('{nmae: x, world: {collision_objects: []}}')
+            with self.assertWarns(UserWarning) as warned:
+                scene.load(path)
+            self.assertIn('nmae', str(warned.warning))
+            with self.assertRaises(ValueError) as caught:
+                cprox.Motion.from_file(scene, path)
+            self.assertIn('joint_trajectory', str(caught.exception))
 
     def test_self_collision_and_changes_of_the_scene(self):
         scene = cprox.Scene(self.robot)

@@ -2,9 +2,9 @@
 #include "scene_change.h"
 
 #include <filesystem>
+#include <set>
 
 #include "failure.h"
-#include "frames.h"
 
 namespace curve_proximity::yaml {
 namespace {
@@ -25,7 +25,63 @@ void makeResourcesAbsolute(ObjectDescription &object, const std::string &folder)
   }
 }
 
+/* An object's pose, from the frame that it names to the fixed frame. Shapes that are appended without a pose belong to
+ * an object that stands there already. */
+Operation toFixed(Operation operation, const Frames &frames) {
+  ObjectDescription &object = operation.object;
+  const bool relative = operation.kind == Operation::Kind::APPEND && object.pose.matrix().isIdentity(0.0);
+  if (operation.kind == Operation::Kind::REMOVE || relative) return operation;
+  try {
+    object.pose = frames.find(object.frame) * object.pose;
+    object.frame.clear();
+  } catch (const BadInput &e) {
+    throw BadUsage("object '" + object.id + "': " + e.what());
+  }
+  return operation;
+}
+
+/* What a link carries, from the frame that it names to the link's, by where the scene's robot_state has the link.
+ * Without a robot it stands where it is. */
+void attach(const Attachment &given, const Frames &frames, const Robot *robot, const LinkPoses &links,
+            SceneChange &change) {
+  if (!robot) {
+    change.operations.push_back(toFixed(Operation{Operation::Kind::ADD, given.object}, frames));
+    return;
+  }
+  const auto link = links.find(given.link);
+  if (link == links.end()) {
+    throw BadUsage("object '" + given.object.id + "' is attached to '" + given.link +
+                   "', which is no link of the robot");
+  }
+  Attachment attachment = given;
+  if (given.object.frame != given.link) {
+    const Operation standing = toFixed(Operation{Operation::Kind::ADD, given.object}, frames);
+    attachment.object.pose = link->second.inverse() * standing.object.pose;
+  }
+  change.attachments.push_back(std::move(attachment));
+}
+
+/* An id that comes twice: the later object takes the earlier one's place, which is hardly what was meant. */
+void warnOfReplaced(const std::vector<Operation> &operations, Warnings &warnings) {
+  std::set<std::string> there;
+  for (const Operation &operation : operations) {
+    const std::string &id = operation.object.id;
+    if (operation.kind == Operation::Kind::REMOVE && id.empty()) {
+      there.clear();
+    } else if (operation.kind == Operation::Kind::REMOVE) {
+      there.erase(id);
+    } else if (operation.kind == Operation::Kind::ADD && !there.insert(id).second) {
+      warnings.add("object '" + id + "' comes twice; the later one replaces the earlier");
+    }
+  }
+}
+
 } // namespace
+
+void makeResourcesAbsolute(SceneChange &change, const std::string &folder) {
+  for (Operation &operation : change.operations) makeResourcesAbsolute(operation.object, folder);
+  for (Attachment &attachment : change.attachments) makeResourcesAbsolute(attachment.object, folder);
+}
 
 std::string folderOf(const std::string &path) {
   std::error_code error;
@@ -45,12 +101,40 @@ SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &w
     } catch (const BadInput &e) {
       throw BadUsage(path + ": object '" + object.id + "': " + e.what());
     }
-    makeResourcesAbsolute(object, folderOf(path));
   };
   for (Operation &operation : change.operations) prepare(operation.object);
   for (Attachment &attachment : change.attachments) prepare(attachment.object);
+  makeResourcesAbsolute(change, folderOf(path));
   change.link_padding = file.link_padding;
   change.link_scale = file.link_scale;
+  change.allowed = file.allowed;
+  return change;
+}
+
+JointPositions jointsOf(const SceneFile &file, const Robot &robot, Warnings &warnings) {
+  JointPositions out;
+  std::string others;
+  for (const auto &[joint, value] : file.joints) {
+    if (robot.hasJoint(joint)) {
+      out.emplace(joint, value);
+    } else {
+      others += (others.empty() ? "'" : ", '") + joint + "'";
+    }
+  }
+  if (!others.empty()) warnings.add("robot_state: the robot has no joint " + others + "; ignored");
+  return out;
+}
+
+SceneChange toFixedChange(const SceneFile &file, const Frames &frames, const Robot *robot, const LinkPoses &links,
+                          Warnings &warnings) {
+  SceneChange change;
+  for (const Operation &operation : file.operations) change.operations.push_back(toFixed(operation, frames));
+  for (const Attachment &attached : file.attached) attach(attached, frames, robot, links, change);
+  warnOfReplaced(change.operations, warnings);
+
+  /* without a robot there are no links to be enlarged */
+  if (robot) change.link_padding = file.link_padding;
+  if (robot) change.link_scale = file.link_scale;
   change.allowed = file.allowed;
   return change;
 }

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "frames.h"
 #include "scene_yaml.h"
 
 namespace curve_proximity::yaml {
@@ -16,6 +17,18 @@ std::string folderOf(const std::string &path);
  * tf2 to resolve. Mesh files get absolute paths. A file that is no diff (is_diff) replaces the scene: the change clears
  * it. Throws BadUsage naming file and object where the file's frames go in a ring. */
 SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &warnings);
+
+/** Paths of mesh files that are relative become those below the folder. */
+void makeResourcesAbsolute(SceneChange &change, const std::string &folder);
+
+/** The file's robot_state, without the joints that this robot does not have: a warning names those. */
+JointPositions jointsOf(const SceneFile &file, const Robot &robot, Warnings &warnings);
+
+/** All that the file says, in the fixed frame. robot may be null: what is attached then stands where it is. links:
+ * where the robot's links are at the file's robot_state. Throws BadUsage naming the object: a frame or a link that is
+ * not known. */
+SceneChange toFixedChange(const SceneFile &file, const Frames &frames, const Robot *robot, const LinkPoses &links,
+                          Warnings &warnings);
 
 } // namespace curve_proximity::yaml
 #endif

@@ -5,7 +5,7 @@
 
 #include "failure.h"
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 namespace {
 
 Interpolation readInterpolation(const YamlValue &value) {
@@ -93,4 +93,4 @@ TrajectoryDescription readTrajectory(const std::string &path, Warnings &warnings
   }
 }
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml
