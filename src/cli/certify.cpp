@@ -85,10 +85,10 @@ TrajectoryDescription trajectoryOf(const std::string &path) {
 
 Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Query &options, Library &library,
                   Workspace &workspace) {
-  std::string id = std::to_string(manifest.number);
+  std::string id;
   try {
-    id = dataset.idOf(manifest);
     DatasetRow row = dataset.parse(manifest);
+    id = row.id;
     const std::shared_ptr<const Place> place = library.place(row.robot, row.srdf, row.scene);
     if (!place->world) return unanswered(manifest.number, id, place->missing ? "missing" : "failed", place->fault);
     std::error_code error;
@@ -108,9 +108,10 @@ Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Que
     if (row.self) addAnswer(manifest.number, id, askSelf(motion, query, workspace), row.query_type, out);
     return out;
   } catch (const std::bad_alloc &) {
-    return unanswered(manifest.number, id, "failed", cprox_status_text(CPROX_MEMORY));
+    return unanswered(manifest.number, id.empty() ? std::to_string(manifest.number) : id, "failed",
+                      cprox_status_text(CPROX_MEMORY));
   } catch (const std::exception &e) {
-    return unanswered(manifest.number, id, "failed", e.what());
+    return unanswered(manifest.number, id.empty() ? dataset.idOf(manifest) : id, "failed", e.what());
   }
 }
 
