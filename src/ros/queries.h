@@ -25,6 +25,7 @@
 #include <thread>
 #include <vector>
 
+#include "asking.h"
 #include "crew.h"
 #include "doubts.h"
 #include "frames.h"
@@ -64,16 +65,6 @@ struct QueryResponse;
 
 /** Told of the rows so far, and how many curves, paths and trajectories are done. */
 using Progress = std::function<void(const QueryResponse &response, std::size_t done)>;
-
-/** What is asked of each curve and motion. */
-struct Asking {
-  enum Kind { ANSWER, NEAREST, CONTACT, PROFILE };
-  Kind kind = ANSWER;
-  PairLimits limits;          /**< of NEAREST */
-  std::size_t intervals = 0;  /**< of PROFILE, where there are no breaks */
-  std::vector<double> breaks; /**< of PROFILE */
-  bool per_link = false;      /**< of PROFILE */
-};
 
 /** What services, topics and the action ask, by reference. */
 struct QueryRequest {

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What a service asks of each curve and motion, and the rows that answer it. */
+#ifndef CURVE_PROXIMITY_ROS_ASKING_H
+#define CURVE_PROXIMITY_ROS_ASKING_H
+
+#include <curve_proximity/Profile.h>
+#include <curve_proximity/Proximity.h>
+
+#include <cstddef>
+#include <curve_proximity/motion.hpp>
+#include <vector>
+
+namespace curve_proximity {
+
+/** What is asked of each curve and motion. */
+struct Asking {
+  enum Kind { ANSWER, NEAREST, CONTACT, PROFILE };
+  Kind kind = ANSWER;
+  PairLimits limits;          /**< of NEAREST */
+  std::size_t intervals = 0;  /**< of PROFILE, where there are no breaks */
+  std::vector<double> breaks; /**< of PROFILE */
+  bool per_link = false;      /**< of PROFILE */
+};
+
+/** One curve's answers. Without anything to measure against the nearest pairs are answered as a distance is. */
+std::vector<Answer> askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query,
+                             const Asking &asking, Workspace &workspace);
+
+/** The profile of one curve, of Asking::PROFILE; the summary is not filled in. */
+Profile profileOf(const Targets &targets, const CompiledCurve &curve, const Query &query, const Asking &asking,
+                  Workspace &workspace);
+
+/** The rows of a motion. */
+struct MotionRows {
+  std::vector<Answer> answers;
+  std::vector<Profile> profiles; /* of Asking::PROFILE: one for each answer */
+};
+
+/** Appends the rows of one kind: against objects, or of the robot with itself. */
+void askMotion(const RobotMotion &motion, const Query &query, bool self, const Asking &asking, Workspace &workspace,
+               MotionRows &out);
+
+/** The row of an answer. */
+Proximity toRow(const Answer &answer, const Query &query, const Asking &asking);
+
+} // namespace curve_proximity
+#endif
