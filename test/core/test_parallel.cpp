@@ -291,6 +291,39 @@ CASE(intervals_of_a_motion_cover_it) {
   }
 }
 
+/* Sixteen intervals that share a bound, by turns: only the first one looks for a bound of its own before it divides, so
+ * that all together measure little more than one query of the whole. Seed 8. */
+CASE(intervals_that_share_a_bound_measure_little_more_than_the_whole) {
+  constexpr std::size_t kIntervals = 16;
+  std::mt19937 random(8);
+  Workspace workspace;
+  std::uint64_t of_whole = 0, of_intervals = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Arm arm(random);
+    const curve_proximity::Obstacles obstacles(i % 2 == 0 ? arm.targets : std::vector<cprox_obstacle>());
+    cprox_mover mover = cprox_robot_along(arm.motion, nullptr, 0);
+    mover.kind = i % 2 == 0 ? CPROX_MOVER_ROBOT : CPROX_MOVER_ROBOT_SELF;
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    const cprox_result whole = obstacles.distance(mover, options, workspace);
+    of_whole += whole.distance_queries;
+    double least = INFINITY, lower = INFINITY;
+    options.share = [](void *known, double upper) {
+      return *static_cast<double *>(known) = std::min(*static_cast<double *>(known), upper);
+    };
+    options.share_user = &least;
+    const cprox_motion_info info = cprox_motion_get_info(arm.motion);
+    const auto end = [&](std::size_t k) { return info.t0 + (info.t1 - info.t0) * static_cast<double>(k) / kIntervals; };
+    for (std::size_t k = 0; k < kIntervals; ++k) {
+      const std::array<double, 2> interval = {end(k), end(k + 1)};
+      options.interval = interval.data();
+      const cprox_result r = obstacles.distance(mover, options, workspace);
+      of_intervals += r.distance_queries, lower = std::min(lower, r.lower);
+    }
+    assert_true(lower <= whole.upper && whole.lower <= least && least - lower <= options.epsilon);
+  }
+  assert_true(of_whole > 1000 && of_intervals < of_whole + of_whole * 6 / 10);
+}
+
 CASE(what_is_no_part_of_a_robots_query_is_told) {
   std::mt19937 random(7);
   const Arm arm(random);

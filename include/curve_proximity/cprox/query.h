@@ -171,9 +171,10 @@ typedef struct cprox_options {
    *  tolerance, collision and time of contact are then asked of this interval alone, without certificate */
   const double *interval;
   /** robots, distance: several queries, each of an interval or of some pairs, that are one question together: called at
-   *  each node with the upper bound of this query, it returns the least one of all of them. A query need not look
-   *  closer than that, so that its lower is either near its own upper, or at most a width below the least one. NULL: a
-   *  query of its own. Calls come from the thread that asks; parallel.hpp has a use of it */
+   *  each node with the upper bound of this query (infinity while it has none), it returns the least one of all of
+   *  them. A query need not look closer than that, so that its lower is either near its own upper, or at most a width
+   *  below the least one. NULL: a query of its own. Calls come from the thread that asks; parallel.hpp has a use of it
+   */
   double (*share)(void *user, double upper);
   /** handed to share */
   void *share_user;

@@ -46,13 +46,18 @@ static double filter(void *self, search_node *node, double goal) {
   return node->lower;
 }
 
+/* Another search of those that share a bound has one already. */
+static bool others_seeded(const robot_search *o) {
+  return o->goal.share && isfinite(o->goal.cutoff);
+}
+
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   robot_search *o = self;
   cprox_status status = CPROX_OK;
   if (!o->seeded) {
     o->seeded = true;
     if (o->goal.order == SEARCH_LEFT_TO_RIGHT) status = robot_measure_start(o, node);
-    if (status >= 0 && !isfinite(o->touch_at)) status = robot_seed(o, node);
+    if (status >= 0 && !isfinite(o->touch_at) && !others_seeded(o)) status = robot_seed(o, node);
   }
   const bool begins_in_contact = o->touch_at <= node->start;
   if (status == CPROX_OK && !robot_is_answered(o) && !begins_in_contact) status = robot_bound_node(o, node);
