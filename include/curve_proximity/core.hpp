@@ -378,6 +378,36 @@ inline CurveHandle makeTrigonometric(const Eigen::Matrix3Xd &coefficients, doubl
   return detail::makeCurve(detail::describe(CPROX_CURVE_TRIGONOMETRIC, coefficients, t0, t1));
 }
 
+/** A rational Bézier curve on [t0, t1]; a weight > 0 for each column. */
+inline CurveHandle makeRationalBezier(const Eigen::Matrix3Xd &points, const std::vector<double> &weights,
+                                      double t0 = 0.0, double t1 = 1.0) {
+  if (weights.size() != static_cast<std::size_t>(points.cols())) throw Error("a curve needs as many weights as points");
+  cprox_curve_description d = detail::describe(CPROX_CURVE_RATIONAL_BEZIER, points, t0, t1);
+  d.weights = weights.data();
+  return detail::makeCurve(d);
+}
+
+/** A NURBS curve on [t0, t1]: a B-spline with a weight > 0 for each column. */
+inline CurveHandle makeNurbs(const Eigen::Matrix3Xd &points, const std::vector<double> &weights, std::size_t degree,
+                             const std::vector<double> &knots, double t0, double t1) {
+  if (weights.size() != static_cast<std::size_t>(points.cols())) throw Error("a curve needs as many weights as points");
+  cprox_curve_description d = detail::describe(CPROX_CURVE_NURBS, points, t0, t1);
+  d.degree = degree, d.knots = knots.data(), d.n_knots = knots.size(), d.weights = weights.data();
+  return detail::makeCurve(d);
+}
+
+/** A part of a curve: points keep their parameters. It stands at the pose; a curve known by its arc length takes none
+ *  but the identity. */
+inline CurveHandle restrictCurve(const CurveHandle &curve, double t0, double t1,
+                                 const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity()) {
+  const cprox_curve *whole = curve.get();
+  cprox_curve_description d = detail::describe(CPROX_CURVE_PART, t0, t1);
+  d.curves = &whole, d.n = 1;
+  const cprox_pose placed = toPose(pose);
+  if (!pose.matrix().isIdentity(0.0)) d.pose = &placed;
+  return detail::makeCurve(d, curve);
+}
+
 /** A clothoid: at `start` with the heading and curvature at t = 0, t being arc length. */
 inline CurveHandle makeClothoid(const Eigen::Vector3d &start, double heading, double curvature, double curvature_rate,
                                 double t0, double t1) {

@@ -23,7 +23,8 @@ typedef enum cprox_curve_kind {
   /** A Bézier curve: psi(t) = sum_i B_i^m(s) points[i], s = (t - t0)/(t1 - t0), m = n - 1.
    *
    *  points, n    [m] 2 … CPROX_MAX_DEGREE + 1 control points. They may coincide (a curve that stands still).
-   *  t0, t1       the parameter range. */
+   *  t0, t1       the parameter range. It reparametrises: the curve begins at t0 and ends at t1. CPROX_CURVE_PART
+   *               restricts. */
   CPROX_CURVE_BEZIER,
   /** A B-spline curve, restricted to [t0, t1].
    *
@@ -49,7 +50,7 @@ typedef enum cprox_curve_kind {
   /** A series of Legendre polynomials: psi(t) = sum_k points[k] P_k(x), x = (2t - t0 - t1)/(t1 - t0) in [-1, 1].
    *
    *  points, n    [m] 1 … CPROX_MAX_DEGREE + 1 coefficients of P_k, ascending.
-   *  t0, t1       the parameter range.
+   *  t0, t1       the parameter range. It reparametrises, as that of a Bézier curve.
    *
    *  The conversion is that of a polynomial: the error is about 1e-16 of the size of the curve up to degree 40, and
    *  below 2e-12 times the sum of |points| at degree 60. High degrees become several pieces. Source: R. T. Farouki,
@@ -119,7 +120,7 @@ typedef enum cprox_curve_kind {
    *
    *  start          [m] psi(t0).
    *  preimage, n    [m^1/2] 1 … 30 coefficients, at most 1e75 long; 3 make the usual quintics.
-   *  t0, t1         the parameter range.
+   *  t0, t1         the parameter range. It reparametrises, as that of a Bézier curve.
    *
    *  The curve is a polynomial of degree 2m + 1: the error is about 1e-16 of its size. Source: R. T. Farouki,
    *  "Pythagorean-Hodograph Curves", 2008. */
@@ -158,7 +159,32 @@ typedef enum cprox_curve_kind {
    *  65 parameters, detect a point that is not finite, and two points that are farther apart than the length between
    *  them: CPROX_INVALID, with the parameter. They cannot detect a length that is too small and yet longer than the
    *  chord. Source: A. Lakshmanan et al. 2019, Lemma 1 and Theorem 1; doc/rounding.md, "Ellipsoids". */
-  CPROX_CURVE_RECTIFIABLE
+  CPROX_CURVE_RECTIFIABLE,
+  /** A rational Bézier curve: psi(t) = sum_i w_i B_i^m(s) points[i] / sum_i w_i B_i^m(s), s = (t - t0)/(t1 - t0),
+   *  m = n - 1. Degree 2 makes all conics: an arc of a circle is one of them.
+   *
+   *  points, n    [m] 2 … CPROX_MAX_DEGREE + 1 control points.
+   *  weights      n positive numbers; the largest is at most 1e6 times the least.
+   *  t0, t1       the parameter range, 1e-30 … 1e30 long. It reparametrises: the curve begins at t0 and ends at t1.
+   *
+   *  The pieces are quintics; the remainder is about 1e-13 of the size of the curve. The bound of the sixth derivative
+   *  is that of the homogeneous control points. A quarter of a circle takes about 60 pieces. Ranges that need more than
+   *  65536 pieces are refused. Source: doc/rounding.md, "Rational curves". */
+  CPROX_CURVE_RATIONAL_BEZIER,
+  /** A NURBS curve: a rational B-spline, restricted to [t0, t1].
+   *
+   *  points, n, degree, knots, n_knots, t0, t1   as of a B-spline; spans are 1e-30 … 1e30 long.
+   *  weights                                     as of a rational Bézier curve. */
+  CPROX_CURVE_NURBS,
+  /** A part of a curve of any kind, at a pose: psi(t) = R curves[0](t) + x for t in [t0, t1].
+   *
+   *  curves, n    one curve, n = 1; its pieces are copied.
+   *  t0, t1       inside the range of that curve. It restricts every kind: a point keeps its parameter.
+   *  pose         NULL: none. R and x; CPROX_CURVE_RECTIFIABLE has none.
+   *
+   *  Cutting and turning cost a few roundings, which cprox_curve_info.error contains. Of a CPROX_CURVE_RECTIFIABLE it
+   *  is a curve of that kind. */
+  CPROX_CURVE_PART
 } cprox_curve_kind;
 
 /** The words of Dubins paths: left and right turns and straight lines. */
@@ -223,15 +249,19 @@ typedef struct cprox_rectifiable_curve {
 typedef struct cprox_curve_description {
   /** which members are read */
   cprox_curve_kind kind;
+  /** of a Dubins path */
+  cprox_dubins_word word;
   /** the start of the parameter range; not read for Dubins paths and piecewise curves */
   double t0;
   /** the end of the parameter range, above t0; not read where t0 is not */
   double t1;
   /** [m] control points, coefficients, or points to pass */
   const cprox_vec3 *points;
+  /** one a point, for rational curves */
+  const double *weights;
   /** quaternions, for Pythagorean-hodograph curves */
   const cprox_quat *preimage;
-  /** curves to join, for piecewise curves */
+  /** curves to join, for piecewise curves; one, for a part */
   const cprox_curve *const *curves;
   /** the number of points, of quaternions, or of curves */
   size_t n;
@@ -255,10 +285,10 @@ typedef struct cprox_curve_description {
   double curvature_rate;
   /** [m] of the turns of a Dubins path, of the circle of an involute */
   double radius;
-  /** of a Dubins path */
-  cprox_dubins_word word;
   /** [m] the largest distance between the curves of a piecewise curve */
   double gap;
+  /** of a part; NULL: the identity */
+  const cprox_pose *pose;
   /** functions of a smooth curve */
   const cprox_smooth_curve *smooth;
   /** functions of a curve that is known by its arc length */
@@ -277,8 +307,8 @@ CPROX_API cprox_status cprox_curve_create(const cprox_curve_description *descrip
 
 /** The weights of the coefficients at t: psi(t) = sum of weights[i] points[i].
  *
- *  description  of a Bézier curve, B-spline, polynomial, Legendre series, Lagrange polynomial or trigonometric series,
- *               as for cprox_curve_create(), but unchecked and without its points.
+ *  description  of a Bézier curve, B-spline, polynomial, Legendre series, Lagrange polynomial, trigonometric series,
+ *               rational Bézier curve or NURBS, as for cprox_curve_create(), but unchecked and without its points.
  *  weights      receives description->n numbers. Accuracy: a few n 2^-53 of the sum of |weights|.
  *
  *  Returns CPROX_INVALID for other kinds, and then writes nothing. With cprox_gradient.mover the weights are the

@@ -51,9 +51,7 @@ static double largest_norm(const vec3 *points, size_t n) {
   return sqrt(largest) + CURVE_LEAST;
 }
 
-/* The Bézier points of one span, from its degree + 1 control points and 2 degree knots; returns their error. */
-static double convert_span(const vec3 *control, const double *knots, size_t degree, double lo, double hi,
-                           vec3 *bezier) {
+double curve_convert_span(const vec3 *control, const double *knots, size_t degree, double lo, double hi, vec3 *bezier) {
   const double p = (double)degree;
 
   /* about a control point where the span is small against its distance from the origin */
@@ -71,19 +69,26 @@ static double convert_span(const vec3 *control, const double *knots, size_t degr
   return ROUND_UP * ROUND_U * ((5.0 * p + 1.0) * size + largest_norm(bezier, degree + 1));
 }
 
+cprox_status curve_check_spline(const cprox_curve_description *d, cprox_workspace *workspace) {
+  cprox_status status = curve_check_points(d->points, d->n, workspace);
+  if (status == CPROX_OK) status = check_knots(d->knots, d->n, d->degree, d->n_knots, workspace);
+  if (status == CPROX_OK) status = curve_check_range(d->t0, d->t1, workspace);
+  if (status != CPROX_OK) return status;
+  const double from = d->knots[d->degree], to = d->knots[d->n];
+  if (d->t0 < from || d->t1 > to)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "[t0, t1] = [%.15g, %.15g] leaves the spline's domain [%.15g, %.15g]", d->t0, d->t1, from,
+                          to);
+  return CPROX_OK;
+}
+
 cprox_status curve_create_bspline(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_status status = curve_check_spline(d, workspace);
+  if (status != CPROX_OK) return status;
   const cprox_vec3 *points = d->points;
   const double *knots = d->knots;
-  const size_t n_points = d->n, degree = d->degree, n_knots = d->n_knots;
+  const size_t n_points = d->n, degree = d->degree;
   const double t0 = d->t0, t1 = d->t1;
-  cprox_status status = curve_check_points(points, n_points, workspace);
-  if (status == CPROX_OK) status = check_knots(knots, n_points, degree, n_knots, workspace);
-  if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
-  if (status != CPROX_OK) return status;
-  if (t0 < knots[degree] || t1 > knots[n_points])
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "[t0, t1] = [%.15g, %.15g] leaves the spline's domain [%.15g, %.15g]", t0, t1, knots[degree],
-                          knots[n_points]);
 
   /* spans that have a length */
   double lo, hi;
@@ -95,8 +100,8 @@ cprox_status curve_create_bspline(const cprox_curve_description *d, cprox_worksp
   size_t i = 0;
   for (size_t r = degree; r < n_points; r++) {
     if (!cut_span(knots, r, t0, t1, &lo, &hi)) continue;
-    c->error[i] =
-        convert_span(points + (r - degree), knots + (r - degree + 1), degree, lo, hi, c->points + i * (degree + 1));
+    c->error[i] = curve_convert_span(points + (r - degree), knots + (r - degree + 1), degree, lo, hi,
+                                     c->points + i * (degree + 1));
     c->breaks[i++] = lo;
     c->breaks[i] = hi;
   }

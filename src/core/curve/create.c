@@ -23,6 +23,9 @@ static const curve_maker makers[] = {
     [CPROX_CURVE_PIECEWISE] = {curve_create_piecewise, NULL},
     [CPROX_CURVE_SMOOTH] = {curve_create_smooth, NULL},
     [CPROX_CURVE_RECTIFIABLE] = {curve_create_rectifiable, NULL},
+    [CPROX_CURVE_RATIONAL_BEZIER] = {curve_create_rational_bezier, curve_weights_rational_bezier},
+    [CPROX_CURVE_NURBS] = {curve_create_nurbs, curve_weights_nurbs},
+    [CPROX_CURVE_PART] = {curve_create_part, NULL},
 };
 
 /* NULL for a kind that is none. */
@@ -41,7 +44,7 @@ cprox_status cprox_curve_create(const cprox_curve_description *description, cpro
   cprox_curve *made = NULL;
   const cprox_status status = maker->create(description, workspace, &made);
   if (status != CPROX_OK) return status;
-  made->kind = description->kind;
+  made->kind = made->arcs ? CPROX_CURVE_RECTIFIABLE : description->kind;
   *curve = made;
   return CPROX_OK;
 }

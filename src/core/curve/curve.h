@@ -86,12 +86,12 @@ typedef cprox_status curve_constructor(const cprox_curve_description *d, cprox_w
 curve_constructor curve_create_bezier, curve_create_bspline, curve_create_polynomial, curve_create_legendre,
     curve_create_lagrange, curve_create_trigonometric, curve_create_clothoid, curve_create_dubins,
     curve_create_involute, curve_create_pythagorean_hodograph, curve_create_piecewise, curve_create_smooth,
-    curve_create_rectifiable;
+    curve_create_rectifiable, curve_create_rational_bezier, curve_create_nurbs, curve_create_part;
 
 /* The weights of a kind's coefficients at t, as many as there are coefficients; the description is not checked. */
 typedef void curve_weighting(const cprox_curve_description *d, double t, double *weights);
 curve_weighting curve_weights_bezier, curve_weights_bspline, curve_weights_polynomial, curve_weights_legendre,
-    curve_weights_lagrange, curve_weights_trigonometric;
+    curve_weights_lagrange, curve_weights_trigonometric, curve_weights_rational_bezier, curve_weights_nurbs;
 
 /* Checks that constructors share: CPROX_OK, or CPROX_INVALID with the message set. The points: at least 2, finite,
  * small enough that their squares do not overflow. The range: finite, t0 < t1. */
@@ -99,6 +99,8 @@ cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *w
 /* 1 … most vectors that are no points of the curve, under a name of their own ("coefficient"). */
 cprox_status curve_check_values(const char *name, const vec3 *values, size_t n, size_t most,
                                 cprox_workspace *workspace);
+/* Points, degree, knots and range of a spline, rational or not. */
+cprox_status curve_check_spline(const cprox_curve_description *d, cprox_workspace *workspace);
 cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace);
 /* All of it for a sum of coefficients times functions of t. */
 cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, double t1, cprox_workspace *workspace);
@@ -113,6 +115,10 @@ cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, doub
  * 2p knots u, for u[p-1] <= lo < hi <= u[p]. Convex combinations only: each b_j is within 5 p u max|d| of the exact
  * one. */
 void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double hi, vec3 *b);
+
+/* The same for one span of a spline, or a part of a Bézier piece whose knots all stand at its ends; returns the error
+ * of the points. */
+double curve_convert_span(const vec3 *control, const double *knots, size_t degree, double lo, double hi, vec3 *bezier);
 
 /* Value and derivatives (by the local parameter s of [0,1]) of one Bézier piece of degree >= 1, SoA or not is the
  * caller's: x, y, z with the given stride. Any output may be NULL. The value is within (3 n + 3) u max|P| of the exact

@@ -18,9 +18,11 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/packets.c
   ${CMAKE_CURRENT_LIST_DIR}/packets_clusters.c
   ${CMAKE_CURRENT_LIST_DIR}/packets_obb.c
+  ${CMAKE_CURRENT_LIST_DIR}/part.c
   ${CMAKE_CURRENT_LIST_DIR}/piecewise.c
   ${CMAKE_CURRENT_LIST_DIR}/polynomial.c
   ${CMAKE_CURRENT_LIST_DIR}/pythagorean.c
+  ${CMAKE_CURRENT_LIST_DIR}/rational.c
   ${CMAKE_CURRENT_LIST_DIR}/rectifiable.c
   ${CMAKE_CURRENT_LIST_DIR}/relative_curve.c
   ${CMAKE_CURRENT_LIST_DIR}/smooth.c

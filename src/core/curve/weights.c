@@ -76,3 +76,23 @@ void curve_weights_trigonometric(const cprox_curve_description *d, double t, dou
   }
   weights[0] = 1.0;
 }
+
+/* w_i B_i / sum w_k B_k */
+static void weigh_rational(const cprox_curve_description *d, double *weights) {
+  double sum = 0.0;
+  for (size_t i = 0; i < d->n; i++) {
+    weights[i] *= d->weights[i];
+    sum += weights[i];
+  }
+  for (size_t i = 0; i < d->n; i++) weights[i] /= sum;
+}
+
+void curve_weights_rational_bezier(const cprox_curve_description *d, double t, double *weights) {
+  curve_weights_bezier(d, t, weights);
+  weigh_rational(d, weights);
+}
+
+void curve_weights_nurbs(const cprox_curve_description *d, double t, double *weights) {
+  curve_weights_bspline(d, t, weights);
+  weigh_rational(d, weights);
+}

@@ -94,6 +94,27 @@ static inline cprox_curve_description describe_piecewise(const cprox_curve *cons
       .kind = CPROX_CURVE_PIECEWISE, .curves = curves, .n = n, .knots = ends, .n_knots = ends ? n + 1 : 0, .gap = gap};
 }
 
+static inline cprox_curve_description describe_rational_bezier(const cprox_vec3 *points, const double *weights,
+                                                               size_t n, double t0, double t1) {
+  cprox_curve_description d = describe_sum(CPROX_CURVE_RATIONAL_BEZIER, points, n, t0, t1);
+  d.weights = weights;
+  return d;
+}
+
+static inline cprox_curve_description describe_nurbs(const cprox_vec3 *points, const double *weights, size_t n,
+                                                     size_t degree, const double *knots, size_t n_knots, double t0,
+                                                     double t1) {
+  cprox_curve_description d = describe_bspline(points, n, degree, knots, n_knots, t0, t1);
+  d.kind = CPROX_CURVE_NURBS, d.weights = weights;
+  return d;
+}
+
+/* pose: NULL for none. The pointer to the whole is read while the part is made. */
+static inline cprox_curve_description describe_part(const cprox_curve *const *whole, double t0, double t1,
+                                                    const cprox_pose *pose) {
+  return (cprox_curve_description){.kind = CPROX_CURVE_PART, .curves = whole, .n = 1, .t0 = t0, .t1 = t1, .pose = pose};
+}
+
 static inline cprox_curve_description describe_smooth(const cprox_smooth_curve *functions, double t0, double t1) {
   return (cprox_curve_description){.kind = CPROX_CURVE_SMOOTH, .smooth = functions, .t0 = t0, .t1 = t1};
 }
