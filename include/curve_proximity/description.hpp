@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <Eigen/Geometry>
 #include <optional>
 #include <string>
@@ -101,6 +102,33 @@ struct ObjectDescription {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< the poses of the shapes are relative to it */
   std::vector<ShapeDescription> shapes;                   /**< at least one */
   double padding = 0.0;                                   /**< [m] >= 0, a ball that is added to the shapes */
+};
+
+/** How an object goes from one pose to the next. */
+enum class Turning {
+  SLERP, /**< its origin along a straight line, turning about one axis at a constant rate, the shorter way */
+  SCREW  /**< with a constant twist: about one line and along it, at constant rates */
+};
+
+/** "slerp", "screw". */
+const char *turningName(Turning turning);
+
+/** The turning with that name, and SLERP for ""; std::nullopt for any other word. */
+std::optional<Turning> turningFromName(const std::string &name);
+
+/** A pose at a time. */
+struct TimedPose {
+  double time = 0.0;                                      /**< [s] ascending */
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< of the object's frame */
+};
+
+/** The trajectory of an object that moves. */
+struct ObjectTrajectory {
+  std::vector<TimedPose> poses;     /**< at least one */
+  Turning turning = Turning::SLERP; /**< between two poses */
+  /** [ns] The moment of time 0, on the clock of stamps: since 1970 or by a simulation. 0: when the motion begins that a
+   *  query is about. */
+  std::int64_t start = 0;
 };
 
 /** A curve of a polynomial or trigonometric basis. */

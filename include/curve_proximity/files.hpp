@@ -13,13 +13,24 @@
 
 namespace curve_proximity {
 
+/** A further robot of a scene file, along a trajectory. */
+struct MovingRobotFile {
+  std::string name;                                       /**< names it in answers */
+  std::string urdf;                                       /**< file, absolute */
+  std::string srdf;                                       /**< file, absolute; or empty */
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity(); /**< its root link, or its virtual joint's parent frame */
+  TrajectoryDescription trajectory;                       /**< its fixed_joints are joints at rest */
+  double start = 0.0;                                     /**< [s] is added to all times */
+};
+
 /** What a scene file says. */
 struct SceneFileContents {
   /** For Scene::apply(). All poses are in the fixed frame, all paths of mesh files absolute. It clears the scene unless
    *  the file is a diff. */
   SceneChange change;
-  JointPositions joints;             /**< robot_state, as far as the robot has these joints */
-  std::vector<std::string> warnings; /**< what was ignored, a sentence each */
+  JointPositions joints;                      /**< robot_state, as far as the robot has these joints */
+  std::vector<MovingRobotFile> moving_robots; /**< further robots, for Movers */
+  std::vector<std::string> warnings;          /**< what was ignored, a sentence each */
 };
 
 /** Reads a scene file (YAML) for a robot, or for none: without a robot what is attached to links stands where it is,

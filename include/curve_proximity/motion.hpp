@@ -82,6 +82,12 @@ class RobotMotion {
   /** The trajectory's first and last time [s]. */
   std::array<double, 2> domain() const;
 
+  /** The snapshot that it was made of. */
+  const SnapshotPtr &snapshot() const;
+
+  /** Is it one state, which has no times of its own? */
+  bool stands() const;
+
   /** Forward kinematics: the poses of all links at the time t [s]. */
   LinkPoses linkPoses(double t) const;
 

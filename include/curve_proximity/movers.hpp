@@ -12,25 +12,19 @@
 
 namespace curve_proximity {
 
-/** How an object goes from one pose to the next. */
-enum class Turning {
-  SLERP, /**< its origin along a straight line, turning about one axis at a constant rate, the shorter way */
-  SCREW  /**< with a constant twist: about one line and along it, at constant rates */
-};
-
-/** A pose at a time. */
-struct TimedPose {
-  double time = 0.0;                                      /**< [s] ascending */
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< of the object's frame in the fixed frame */
-};
-
 /** An object that moves. */
 struct MovingObject {
   ObjectDescription object;         /**< its id names it; its frame and pose are not used: `poses` has them */
-  std::vector<TimedPose> poses;     /**< at least one; one: it stands there */
+  std::vector<TimedPose> poses;     /**< in the fixed frame; at least one; one: it stands there */
   Turning turning = Turning::SLERP; /**< between two poses */
   double start = 0.0;               /**< [s] is added to all times */
+
+  /** What Snapshot::moving() has made of object, poses and turning; null: it is made of them. */
+  std::shared_ptr<const MovingBody> body;
 };
+
+/** The objects of a snapshot that move. origin: [ns] the moment that is time 0, on the clock of stamps. */
+std::vector<MovingObject> movingObjects(const Snapshot &snapshot, std::int64_t origin = 0);
 
 /** A robot that moves. */
 struct MovingRobot {
@@ -43,22 +37,24 @@ struct MovingRobot {
 enum class Against {
   OBJECTS, /**< the objects that stand */
   MOVERS,  /**< each other; and each robot against itself, as askSelf() does */
-  BOTH     /**< all of these at once */
+  BOTH,    /**< all of these at once */
+  OTHERS   /**< all of these at once, but no robot against itself */
 };
 
 /** Robots and objects on one clock. It begins with the first of them and ends with the last one; a mover that has not
  *  begun stands at its first pose, one that has ended at its last one. Immutable; shared by any number of threads. */
 class Movers {
  public:
-  /** snapshot   the objects that stand; its robot does not count. Of a robot's own snapshot only the robot, what it
-   *             carries, paddings and allowed pairs count.
+  /** snapshot   the objects that stand, and allowed pairs; its robot does not count. Of a robot's own snapshot only the
+   *             robot, what it carries, paddings and allowed pairs count.
+   *  objects    those of movingObjects() among them.
    *  allowed    pairs of names that may touch: movers, links of moving robots ("name/link"), objects.
    *  resources  for shapes of moving objects that come from files.
    *
-   *  Throws Error: no mover; names that are empty, contain '/' or clash with another mover or an object that stands; a
-   *  moving object without shapes or poses; what makeGeometry() refuses, and halfspaces; times that do not ascend;
-   *  orientations that are half a turn apart; clocks that leave a pause in which nothing moves. The message names the
-   *  mover. */
+   *  Throws Error: no mover; names that are empty, contain '/' or clash with another mover or an object that stands; an
+   *  object that moves in the snapshot and is not among `objects`; a moving object without shapes or poses; what
+   *  makeGeometry() refuses, and halfspaces; times that do not ascend; orientations that are half a turn apart; clocks
+   *  that leave a pause in which nothing moves. The message names the mover. */
   Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, const std::vector<MovingObject> &objects,
          const std::vector<std::array<std::string, 2>> &allowed = {}, const ResourceOptions &resources = {});
   ~Movers();
@@ -69,6 +65,9 @@ class Movers {
 
   /** The first start and the last end [s]. */
   std::array<double, 2> domain() const;
+
+  /** Where a moving object's frame is at the time t [s] of the clock. Throws Error for a name that is none. */
+  Eigen::Isometry3d objectPose(const std::string &name, double t) const;
 
   struct Data;
   /** Internal. */
@@ -81,14 +80,28 @@ class Movers {
 };
 
 /** How close movers come. kind is "environment" where b is an object that stands, else "movers"; a and b are names of
- *  moving objects or links ("name/link"), result.t is the time [s]. Queries take no links, objects, per_object,
+ *  moving objects or links ("name/link"), result.t is the time [s]. query.links: only pairs with one of these movers
+ *  ("name") or links ("name/link"). query.options.interval: only these times. Queries take no objects, per_object,
  *  signed_distance or certificate: such a query is refused, with status "invalid". */
 Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace);
+
+/** How close one of the robots comes to all that stands and to all others that move, at the times of its own motion;
+ * one that stands at all times. kind is "environment", a is its link or carried object by its own name. query.links:
+ * only these of its own. Everything else as above. */
+Answer ask(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace);
+
+/** Throws Error where a mover has ended before the robot `subject` begins, or begins after that has ended: by how much.
+ *  A robot or object that stands is never late. */
+void checkClocks(const MovingRobot &subject, const std::vector<MovingRobot> &robots,
+                 const std::vector<MovingObject> &objects);
 
 /** The time of contact: result.t_contact_lower [s] is never after the first contact; of objects that robots carry their
  *  poses count as rounded. Verdict violated: contact at result.t, within the rounding of poses. The query is of type
  *  COLLISION. Everything else as for ask(). */
 Answer timeOfContact(const Movers &movers, Against against, const Query &query, Workspace &workspace);
+
+/** The same of one of the robots, as ask() of one of them. */
+Answer timeOfContact(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace);
 
 } // namespace curve_proximity
 #endif

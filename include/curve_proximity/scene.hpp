@@ -23,6 +23,7 @@
 namespace curve_proximity {
 
 class World;
+struct MovingBody;
 
 /** One change of one object. */
 struct Operation {
@@ -35,6 +36,9 @@ struct Operation {
   enum class Kind { ADD, APPEND, MOVE, REMOVE };
   Kind kind = Kind::ADD;    /**< what to do */
   ObjectDescription object; /**< MOVE uses its id and pose, REMOVE its id */
+
+  /** ADD: the object moves (Snapshot::moving()). The poses are in the fixed frame, and object.pose is the identity. */
+  std::optional<ObjectTrajectory> trajectory = std::nullopt;
 };
 
 /** An entry of the allowed collision matrix (see Snapshot::mayTouch()). */
@@ -99,6 +103,14 @@ struct SceneObject {
   std::vector<ObjectShape> shapes; /**< as many as description.shapes; that of an empty octree has no body */
 };
 
+/** An object of the scene that moves along a trajectory. */
+struct MovingSceneObject {
+  ObjectDescription description;          /**< as given */
+  ObjectTrajectory trajectory;            /**< as given */
+  std::vector<Geometry> geometries;       /**< of description.shapes */
+  std::shared_ptr<const MovingBody> body; /**< internal */
+};
+
 /** An object that is attached to a link. */
 struct AttachedObject {
   std::string link;                     /**< the link */
@@ -120,6 +132,12 @@ class Snapshot {
   /** The objects by id. */
   const std::map<std::string, std::shared_ptr<const SceneObject>> &objects() const {
     return objects_;
+  }
+
+  /** The objects that move, by id; none of objects() has the same id. Queries of movers.hpp test against them. All
+   *  others refuse to answer about a scene in which anything moves, unless they name objects that stand. */
+  const std::map<std::string, std::shared_ptr<const MovingSceneObject>> &moving() const {
+    return moving_;
   }
 
   /** The robot; null if the scene has none. */
@@ -180,6 +198,7 @@ class Snapshot {
 
   std::uint64_t version_ = 0;
   std::map<std::string, std::shared_ptr<const SceneObject>> objects_;
+  std::map<std::string, std::shared_ptr<const MovingSceneObject>> moving_;
   std::shared_ptr<const Robot> robot_;
   std::map<std::string, std::shared_ptr<const AttachedObject>> attached_;
   std::map<std::string, double> link_padding_, link_scale_;
@@ -214,8 +233,9 @@ class Scene {
    *
    *  Errors are: an unknown id on MOVE or REMOVE; an object without an id, or with that of an attached object; poses or
    *  paddings that are not finite; a padding < 0; an unknown link; an allowed pair without a first name; a halfspace to
-   *  attach. Cost: microseconds per unchanged object, whose bodies are shared; more for new objects, whose bodies are
-   *  made before other changes have to wait. */
+   *  attach; MOVE, APPEND and attaching of an object that moves; a trajectory whose times do not ascend, or with
+   *  orientations half a turn apart. Cost: microseconds per unchanged object, whose bodies are shared; more for new
+   * objects, whose bodies are made before other changes have to wait. */
   std::vector<std::string> apply(const SceneChange &change);
 
  private:

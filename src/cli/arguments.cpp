@@ -28,6 +28,7 @@ const std::map<std::string, Option> &options() {
       {"--curves", {true, {Action::CURVES, Action::CHECK}}},
       {"--against", {true, {Action::CURVES, Action::CHECK}}},
       {"--trajectory", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
+      {"--movers", {false, {Action::CURVES}}},
       {"--self", {false, {Action::CURVES, Action::CHECK}}},
       {"--signed", {false, {Action::CURVES}}},
       {"--scene", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
@@ -241,7 +242,9 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
   if (only("--within", "nearest", Asking::NEAREST))
     out.limits.within = readNumber(words, "--within", 0.0, true, "of at least 0 (metres)");
   if (command.asking == Asking::SEARCH) return;
-  for (const char *name : {"--against", "--certificate"}) {
+  const bool contact = command.asking == Asking::CONTACT;
+  for (const char *name : {"--against", "--certificate", "--movers"}) {
+    if (contact && std::string(name) == "--movers") continue;
     if (words.has(name)) throw BadUsage("'" + std::string(command.word) + "' takes no " + name);
   }
 }
@@ -274,6 +277,18 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   out.state = words.text("--state");
 }
 
+/* What moves in the scene, without a robot of the command line. */
+void readMoversWords(const Words &words, Arguments &out) {
+  for (const char *name : {"--curves", "--against", "--trajectory", "--signed", "--robot", "--srdf", "--state",
+                           "--per-object", "--per-link", "--certificate"}) {
+    if (words.has(name)) throw BadUsage("--movers takes no " + std::string(name));
+  }
+  if (!words.has("--scene")) throw BadUsage("--movers needs --scene SCENE.yaml: what moves in it is asked about");
+  out.action = Action::MOVERS;
+  out.scene = words.text("--scene");
+  out.self = words.has("--self");
+}
+
 /* The number of a shard, from 0. */
 std::size_t readShard(const Words &words, std::size_t shards) {
   const std::optional<std::uint64_t> shard = parseCount(words.text("--shard"));
@@ -297,6 +312,10 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       plain.erase(plain.begin());
       [[fallthrough]];
     case Action::CURVES:
+      if (words.has("--movers")) {
+        readMoversWords(words, out);
+        break;
+      }
       if (words.has("--trajectory")) {
         readTrajectoryWords(words, out);
         break;
@@ -414,6 +433,7 @@ cprox distance  --curves CURVES.csv --scene SCENE.yaml [--robot URDF [--srdf SRD
 cprox distance  --curves A.csv --against B.csv    row i of A against row i of B, each anywhere on its curve
 cprox distance  --robot URDF [--srdf SRDF] --trajectory T.yaml [--scene SCENE.yaml] [--self]
                                         the robot along a joint trajectory: a row of kind environment, one of kind self
+cprox distance  --scene SCENE.yaml --movers [--self]   what moves in the scene: objects with a trajectory, moving_robots
 cprox tolerance --delta D  (as above)   verdict: clear (farther than D everywhere), violated or undecided
 cprox collision            (as above)   verdict: clear (no common point), violated (a common point) or undecided
 cprox time-of-contact      (as distance, without --against)   where along the curve or trajectory the first contact is
@@ -436,6 +456,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
   --robot FILE      a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)
   --trajectory FILE a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint
+  --movers          what moves in the scene, instead of curves or a robot: against what stands there, and against each other
   --self            how close the robot comes to itself, too
   --signed          distances of curves inside a body are negative: minus the deepest penetration
   --srdf FILE       links that are not checked against each other, and the frame in which the robot stands

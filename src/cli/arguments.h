@@ -12,7 +12,20 @@
 
 namespace curve_proximity::cli {
 
-enum class Action { HELP, VERSION, CURVES, AGAINST, TRAJECTORY, PAIRS, CONSTRAINTS, SEND, CHECK, CERTIFY, MERGE };
+enum class Action {
+  HELP,
+  VERSION,
+  CURVES,
+  AGAINST,
+  TRAJECTORY,
+  MOVERS,
+  PAIRS,
+  CONSTRAINTS,
+  SEND,
+  CHECK,
+  CERTIFY,
+  MERGE
+};
 
 /** What is asked about curves and trajectories. */
 enum class Asking {
@@ -30,7 +43,7 @@ struct Arguments {
   std::string curves, scene;   /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
   std::string against;         /**< file of AGAINST; of CHECK where it was given */
   std::string trajectory;      /**< file of TRAJECTORY; of CHECK and CONSTRAINTS where it was given */
-  bool self = false;           /**< with a trajectory: ask about the robot itself, too */
+  bool self = false;           /**< with a trajectory, or of MOVERS: ask about the robot itself, too */
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
   std::size_t intervals = 100; /**< PROFILE: so many of equal length, unless there are breaks */
   std::vector<double> breaks;  /**< PROFILE: where intervals begin and end; empty: see intervals */

@@ -212,7 +212,7 @@ std::string pairOf(const std::optional<CsvRow> &first, const std::optional<CsvRo
 
 void tellCurves(const Arguments &arguments, Console &console, Checkers &checkers) {
   Warnings warnings;
-  const World world = readWorld(arguments, warnings);
+  const World world = readStandingWorld(arguments, "'check'", warnings);
   const Targets targets(world.snapshot, world.links, arguments.query);
   const std::vector<std::string> none = unprovable(targets);
   warnOfUnprovable(none, warnings);
@@ -225,7 +225,7 @@ void tellCurves(const Arguments &arguments, Console &console, Checkers &checkers
 
 void tellTrajectory(const Arguments &arguments, Console &console, Checkers &checkers) {
   Warnings warnings;
-  const World world = readWorld(arguments, warnings);
+  const World world = readStandingWorld(arguments, "'check'", warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
   warnOfUnprovable(unprovable(motion, false, arguments.query), warnings);
   if (arguments.self) warnOfUnprovable(unprovable(motion, true, arguments.query), warnings);

@@ -18,6 +18,10 @@ int answerAgainst(const Arguments &arguments, Console &console);
 /** distance, tolerance, collision: the robot along a joint trajectory, against the scene and itself. */
 int answerTrajectory(const Arguments &arguments, Console &console);
 
+/** distance, tolerance, collision, time-of-contact: what moves in the scene, against what stands there and against each
+ *  other. */
+int answerMovers(const Arguments &arguments, Console &console);
+
 /** pairs: signed distances of standing bodies. */
 int answerPairs(const Arguments &arguments, Console &console);
 

@@ -22,7 +22,7 @@ namespace {
 
 /* The objects of --scene; none without. */
 SnapshotPtr readObjects(const Arguments &arguments, const ResourceOptions &resources, Warnings &warnings) {
-  if (!arguments.scene.empty()) return readWorld(arguments, warnings).snapshot;
+  if (!arguments.scene.empty()) return readStandingWorld(arguments, "'constraints'", warnings).snapshot;
   return Scene(nullptr, resources).snapshot();
 }
 
@@ -145,7 +145,7 @@ ConstraintCase readMotionCase(const Arguments &arguments, const World &world, Wa
 /* One case: the trajectory. */
 int answerMotion(const Arguments &arguments, Console &console) {
   Warnings warnings;
-  const World world = readWorld(arguments, warnings);
+  const World world = readStandingWorld(arguments, "'constraints'", warnings);
   const ConstraintCase described = readMotionCase(arguments, world, warnings);
   const std::unique_ptr<ProviderSet> providers = loadProvider(arguments);
   const ResourceOptions resources;

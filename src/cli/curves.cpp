@@ -102,7 +102,7 @@ Outcome answerCurve(const CsvRow &csv, const std::vector<Side> &sides, const Arg
 int answerCurves(const Arguments &arguments, Console &console) {
   /* what curves are measured against */
   Warnings warnings;
-  const World world = readWorld(arguments, warnings);
+  const World world = readStandingWorld(arguments, "a query of curves", warnings);
   Query query = arguments.query;
   query.options.stop = interrupted;
   const std::vector<Side> sides = sidesOf(world, arguments, query);

@@ -92,7 +92,7 @@ std::shared_ptr<const Place> Library::load(const std::string &robot, const std::
     files.scene = scene;
     Warnings warnings;
     out->world = std::make_shared<const World>(
-        readWorld(files, warnings, [this](const std::string &path) { return this->robot(path); }));
+        readStandingWorld(files, "a dataset", warnings, [this](const std::string &path) { return this->robot(path); }));
   } catch (const std::bad_alloc &) {
     throw;
   } catch (const std::exception &e) {

@@ -25,6 +25,7 @@ int run(const std::vector<std::string> &words, Console &console) {
     case Action::CURVES: return answerCurves(arguments, console);
     case Action::AGAINST: return answerAgainst(arguments, console);
     case Action::TRAJECTORY: return answerTrajectory(arguments, console);
+    case Action::MOVERS: return answerMovers(arguments, console);
     case Action::PAIRS: return answerPairs(arguments, console);
     case Action::CONSTRAINTS: return answerConstraints(arguments, console);
     case Action::CHECK: return checkCertificates(arguments, console);

@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "failure.h"
 #include "finish.h"
+#include "movers.h"
 #include "results.h"
 #include "run.h"
 #include "world.h"
@@ -105,6 +106,7 @@ RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings 
 int answerTrajectory(const Arguments &arguments, Console &console) {
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
+  if (world.moves()) return answerAmongMovers(arguments, world, warnings, console);
   const RobotMotion motion = readMotion(arguments, world, warnings);
   if (world.snapshot->robot())
     for (const std::string &link : unknownLinks(world.srdf, *world.snapshot->robot()))

@@ -135,7 +135,18 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
           robot.state,
           robot.srdf,
           skippedOf(file, robot),
-          timingsOf(robot, robot_seconds, since(start))};
+          timingsOf(robot, robot_seconds, since(start)),
+          file.moving_robots};
+}
+
+World readStandingWorld(const Arguments &arguments, const std::string &what, Warnings &warnings,
+                        const RobotSource &robots) {
+  World world = readWorld(arguments, warnings, robots);
+  if (!world.moves()) return world;
+  const std::string who = world.snapshot->moving().empty() ? "robot '" + world.moving_robots.front().name + "'"
+                                                           : "object '" + world.snapshot->moving().begin()->first + "'";
+  throw BadUsage(arguments.scene + ": " + who + " moves along a trajectory, and " + what +
+                 " takes scenes in which nothing moves");
 }
 
 } // namespace curve_proximity::cli

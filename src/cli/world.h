@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <curve_proximity/files.hpp>
 #include <curve_proximity/scene.hpp>
 #include <curve_proximity/srdf.hpp>
 
@@ -20,12 +21,18 @@ namespace curve_proximity::cli {
 /** The scene, and where the robot's links are. */
 struct World {
   SnapshotPtr snapshot;
-  LinkPoses links;                  /**< empty without a robot */
-  JointPositions scene_joints;      /**< the scene's robot_state, as far as the robot has its joints */
-  JointPositions state;             /**< --state */
-  Srdf srdf;                        /**< empty without --srdf */
-  std::vector<std::string> skipped; /**< what takes no part, a sentence each */
-  std::vector<std::string> timings; /**< how long loading took, a sentence each */
+  LinkPoses links;                            /**< empty without a robot */
+  JointPositions scene_joints;                /**< the scene's robot_state, as far as the robot has its joints */
+  JointPositions state;                       /**< --state */
+  Srdf srdf;                                  /**< empty without --srdf */
+  std::vector<std::string> skipped;           /**< what takes no part, a sentence each */
+  std::vector<std::string> timings;           /**< how long loading took, a sentence each */
+  std::vector<MovingRobotFile> moving_robots; /**< of the scene file */
+
+  /** Does anything move beside the robot of the command line? */
+  bool moves() const {
+    return !moving_robots.empty() || !snapshot->moving().empty();
+  }
 };
 
 /** Where a robot comes from: its file, or a place where it has been read before. */
@@ -33,6 +40,10 @@ using RobotSource = std::function<std::shared_ptr<const Robot>(const std::string
 
 /** Reads --scene, --robot, --srdf and --state. Throws BadUsage with one line. robots: readRobot() if empty. */
 World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSource &robots = {});
+
+/** The same, and BadUsage where anything moves in the scene. what: the query that does not take it. */
+World readStandingWorld(const Arguments &arguments, const std::string &what, Warnings &warnings,
+                        const RobotSource &robots = {});
 
 } // namespace curve_proximity::cli
 #endif

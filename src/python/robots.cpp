@@ -87,6 +87,9 @@ class PythonScene {
       const py::gil_scoped_release release;
       contents = robot_ ? loadSceneFile(path, robot_->robot.get(), robot_->srdf) : loadSceneFile(path);
     }
+    if (!contents.moving_robots.empty())
+      throw Error(path + ": moving robot '" + contents.moving_robots.front().name +
+                  "': further robots are available in C++ and on the command line alone");
     warn(path, contents.warnings);
     change(contents.change);
     for (const auto &[joint, value] : contents.joints) joints_[joint] = value;

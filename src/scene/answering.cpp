@@ -76,6 +76,15 @@ std::string faultOfMotion(const Query &query, bool in_all) {
   return faultOf(query);
 }
 
+std::string faultOfMoving(const Snapshot &snapshot, const std::vector<std::string> &objects) {
+  const auto &moving = snapshot.moving();
+  if (moving.empty()) return "";
+  std::string name = objects.empty() ? moving.begin()->first : "";
+  for (const std::string &object : objects)
+    if (moving.count(object) > 0) name = object;
+  return name.empty() ? "" : "object '" + name + "' moves along a trajectory, and this query takes objects that stand";
+}
+
 Answer refusal(const std::string &id, const std::string &kind, const std::string &why) {
   Answer answer;
   answer.id = id;

@@ -20,6 +20,10 @@ Eigen::AlignedBox3d boxOf(const cprox_curve *curve);
 std::string faultOf(const Query &query);
 std::string faultOfMotion(const Query &query, bool in_all);
 
+/* Why a query that knows only objects that stand cannot be answered about the objects named (none: about all), ""
+ * where it can. */
+std::string faultOfMoving(const Snapshot &snapshot, const std::vector<std::string> &objects);
+
 /* The answer to such a query. */
 Answer refusal(const std::string &id, const std::string &kind, const std::string &why);
 

@@ -105,6 +105,8 @@ Asked askedSelf(const RobotMotion::Data &data, const std::vector<std::string> &l
 }
 
 std::vector<std::size_t> namedItems(const RobotMotion::Data &data, const std::vector<std::string> &names) {
+  const std::string fault = faultOfMoving(*data.snapshot, names);
+  if (!fault.empty()) throw Error(fault);
   for (const std::string &name : names) {
     if (data.snapshot->objects().count(name) == 0) throw Error("there is no object '" + name + "' in the scene");
   }

@@ -39,6 +39,16 @@ std::optional<ShapeType> shapeTypeFromName(const std::string &name) {
   return std::nullopt;
 }
 
+const char *turningName(Turning turning) {
+  return turning == Turning::SCREW ? "screw" : "slerp";
+}
+
+std::optional<Turning> turningFromName(const std::string &name) {
+  if (name == "screw") return Turning::SCREW;
+  if (name == "slerp" || name.empty()) return Turning::SLERP;
+  return std::nullopt;
+}
+
 Eigen::Quaterniond rotationBetween(const Eigen::Vector3d &from, const Eigen::Vector3d &to) {
   return Eigen::Quaterniond::FromTwoVectors(from, to);
 }

@@ -208,6 +208,14 @@ std::array<double, 2> RobotMotion::domain() const {
   return {info.t0, info.t1};
 }
 
+const SnapshotPtr &RobotMotion::snapshot() const {
+  return data_->snapshot;
+}
+
+bool RobotMotion::stands() const {
+  return data_->stands;
+}
+
 LinkPoses RobotMotion::linkPoses(double t) const {
   const Kinematics &kinematics = *data_->kinematics;
   std::vector<double> values(kinematics.rest.size());

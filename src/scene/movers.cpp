@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <set>
 
 #include "answering.h"
 #include "motion_data.h"
+#include "moving_body.h"
 
 namespace curve_proximity {
 namespace {
@@ -17,13 +19,6 @@ using Clock = std::chrono::steady_clock;
 using RobotPtr = std::unique_ptr<cprox_robot, void (*)(cprox_robot *)>;
 using MotionPtr = std::unique_ptr<cprox_motion, void (*)(cprox_motion *)>;
 using Names = std::array<std::string, 2>;
-
-/* A robot of one link and its motion: what the core makes of a moving object. */
-struct ObjectMover {
-  std::vector<Geometry> geometries; /* own the bodies */
-  RobotPtr robot{nullptr, cprox_robot_free};
-  MotionPtr motion{nullptr, cprox_motion_free};
-};
 
 /* One geometry of the joined robot. */
 struct MoverGeometry {
@@ -43,7 +38,9 @@ void expect(cprox_status status, const std::string &who, const Workspace &worksp
 struct Movers::Data {
   SnapshotPtr snapshot;
   std::vector<std::shared_ptr<const RobotMotion>> robots; /* kept */
-  std::vector<ObjectMover> objects;
+  std::vector<std::shared_ptr<const MovingBody>> objects;
+  std::vector<std::string> object_names;
+  std::vector<double> object_starts;
   RobotPtr robot{nullptr, cprox_robot_free};
   MotionPtr motion{nullptr, cprox_motion_free};
   std::vector<MoverGeometry> geometries;
@@ -56,58 +53,15 @@ namespace {
 
 /* ---- moving objects ---- */
 
-void makeRobot(const MovingObject &mover, const ResourceOptions &resources, ObjectMover &out) {
-  const std::string who = "object '" + mover.object.id + "'";
-  if (mover.object.shapes.empty()) throw Error(who + " has no shapes");
-  if (!(mover.object.padding >= 0.0) || !std::isfinite(mover.object.padding))
-    throw Error(who + ": its padding must be finite and not below 0");
-  std::vector<cprox_link_geometry> geometries;
-  for (const ShapeDescription &shape : mover.object.shapes) {
-    try {
-      out.geometries.push_back(makeGeometry(shape, resources));
-    } catch (const Error &error) {
-      throw Error(who + ": " + error.what(), error.status());
-    }
-    const Geometry &geometry = out.geometries.back();
-    if (!geometry.surface) throw Error(who + ": its octree has no occupied cell");
-    geometries.push_back({geometry.surface.get(), toPose(shape.pose), 0, mover.object.padding});
+std::shared_ptr<const MovingBody> bodyOf(const MovingObject &mover, const ResourceOptions &resources) {
+  if (mover.body) return mover.body;
+  try {
+    std::vector<Geometry> geometries;
+    for (const ShapeDescription &shape : mover.object.shapes) geometries.push_back(makeGeometry(shape, resources));
+    return makeMovingBody(mover.object, std::move(geometries), mover.poses, mover.turning);
+  } catch (const Error &error) {
+    throw Error("object '" + mover.object.id + "': " + error.what(), error.status());
   }
-  cprox_link link{};
-  link.parent = -1;
-  link.type = CPROX_JOINT_FLOATING;
-  link.origin.orientation.w = 1.0;
-  Workspace workspace;
-  cprox_robot *made = nullptr;
-  expect(cprox_robot_create(&link, 1, geometries.data(), geometries.size(), 7, workspace.get(), &made), who, workspace);
-  out.robot.reset(made);
-}
-
-void makeMotion(const MovingObject &mover, ObjectMover &out) {
-  const std::string who = "object '" + mover.object.id + "'";
-  if (mover.poses.empty()) throw Error(who + " has no poses");
-  std::vector<std::array<double, 7>> values;
-  for (const TimedPose &point : mover.poses) {
-    const cprox_pose pose = toPose(point.pose);
-    values.push_back({pose.position.x, pose.position.y, pose.position.z, pose.orientation.x, pose.orientation.y,
-                      pose.orientation.z, pose.orientation.w});
-  }
-  static constexpr std::array<std::int32_t, 7> VARIABLES{0, 1, 2, 3, 4, 5, 6};
-  std::vector<cprox_waypoint> points;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    points.push_back({mover.poses[i].time, values[i].data(), nullptr, nullptr});
-  cprox_motion_description description{};
-  const bool stands = points.size() == 1;
-  description.kind = stands ? CPROX_MOTION_STATE : CPROX_MOTION_WAYPOINTS;
-  description.rest = stands ? values.front().data() : nullptr;
-  description.variables = stands ? nullptr : VARIABLES.data();
-  description.n_variables = stands ? 0 : VARIABLES.size();
-  description.waypoints = points.data();
-  description.n_waypoints = points.size();
-  description.turning = mover.turning == Turning::SCREW ? CPROX_TURNING_SCREW : CPROX_TURNING_SLERP;
-  Workspace workspace;
-  cprox_motion *made = nullptr;
-  expect(cprox_motion_create(out.robot.get(), &description, workspace.get(), &made), who, workspace);
-  out.motion.reset(made);
 }
 
 /* ---- names ---- */
@@ -125,6 +79,8 @@ void checkNames(const Snapshot &snapshot, const std::vector<MovingRobot> &robots
   for (const MovingRobot &robot : robots) check(robot.name);
   for (const MovingObject &object : objects) check(object.object.id);
   if (known.empty()) throw Error("nothing moves: there is no mover");
+  for (const auto &[id, object] : snapshot.moving())
+    if (known.count(id) == 0) throw Error("object '" + id + "' moves in the scene, and is none of the movers");
 }
 
 /* Which pairs of names may touch: of movers, or of what belongs to them. */
@@ -163,7 +119,7 @@ class Joiner {
 
   void join() {
     for (const MovingRobot &robot : robots_) addRobot(robot);
-    for (std::size_t i = 0; i < objects_.size(); ++i) addObject(objects_[i], out_.objects[i]);
+    for (std::size_t i = 0; i < objects_.size(); ++i) addObject(objects_[i], *out_.objects[i]);
     Workspace workspace;
     cprox_robot *robot = nullptr;
     expect(cprox_robot_join(cores_.data(), nullptr, cores_.size(), workspace.get(), &robot), "the movers", workspace);
@@ -195,7 +151,7 @@ class Joiner {
     out_.robots.push_back(robot.motion);
   }
 
-  void addObject(const MovingObject &object, const ObjectMover &made) {
+  void addObject(const MovingObject &object, const MovingBody &made) {
     for (std::size_t i = 0; i < made.geometries.size(); ++i)
       out_.geometries.push_back(
           {cores_.size(), object.object.id, static_cast<int>(i), made.geometries[i].excess, object.poses.size() > 1});
@@ -222,6 +178,19 @@ class Joiner {
 
 /* ---- pairs ---- */
 
+/* Does the snapshot of the robot that the geometry belongs to let it touch the object? */
+bool mayTouchInOwn(const Movers::Data &data, const MoverGeometry &geometry, const std::string &object) {
+  if (geometry.mover >= data.robots.size()) return false;
+  const std::string link = geometry.name.substr(geometry.name.find('/') + 1);
+  return data.robots[geometry.mover]->data().snapshot->mayTouch(link, object);
+}
+
+/* The same of an object that moves. */
+bool ownMayTouch(const Movers::Data &data, std::size_t i, std::size_t object) {
+  const MoverGeometry &other = data.geometries[object];
+  return other.mover >= data.robots.size() && mayTouchInOwn(data, data.geometries[i], other.name);
+}
+
 void choosePairs(const Allowed &allowed, Movers::Data &data) {
   const std::vector<MoverGeometry> &geometries = data.geometries;
   const std::vector<Item> &items = data.snapshot->world().items();
@@ -236,15 +205,16 @@ void choosePairs(const Allowed &allowed, Movers::Data &data) {
     most = std::max(most, geometries[i].excess);
     const std::size_t mover = geometries[i].mover;
     const std::string &name = geometries[i].name;
-    const std::string own = name.substr(name.find('/') + 1); /* in the robot's own snapshot */
     for (std::size_t k = 0; k < items.size() && geometries[i].moves; ++k) {
       const std::string &object = *items[k].owner;
-      const bool by_robot = mover < data.robots.size() && data.robots[mover]->data().snapshot->mayTouch(own, object);
-      if (!by_robot && !data.snapshot->mayTouch(name, object) && !allowed.has(name, object))
+      if (!mayTouchInOwn(data, geometries[i], object) && !data.snapshot->mayTouch(name, object) &&
+          !allowed.has(name, object))
         data.environment.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
     for (std::size_t k = i + 1; k < geometries.size(); ++k) {
       if (geometries[k].mover == mover || allowed.has(name, geometries[k].name)) continue;
+      if (data.snapshot->mayTouch(name, geometries[k].name) || ownMayTouch(data, i, k) || ownMayTouch(data, k, i))
+        continue;
       data.among.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
   }
@@ -255,28 +225,66 @@ void choosePairs(const Allowed &allowed, Movers::Data &data) {
 
 std::string faultOfMovers(const Query &query) {
   if (!query.objects.empty()) return "objects do not apply to movers, '" + query.objects.front() + "' among them";
-  if (!query.links.empty()) return "links do not apply to movers, '" + query.links.front() + "' among them";
   if (query.options.certificate) return "a certificate does not apply: movers on one clock have none";
   return faultOfMotion(query, true);
 }
 
-cprox_mover moverOf(const Movers::Data &data, Against against) {
-  cprox_mover mover = against == Against::MOVERS
-                          ? cprox_robot_self(data.motion.get(), data.among.data(), data.among.size())
-                          : cprox_robot_along(data.motion.get(), data.environment.data(), data.environment.size());
-  if (against == Against::BOTH) {
-    mover.kind = CPROX_MOVER_ROBOT_WHOLE;
-    mover.self_pairs = data.among.data();
-    mover.n_self_pairs = data.among.size();
+/* What a query is about: pairs with objects that stand, and pairs of movers. */
+struct Pairs {
+  Against against = Against::BOTH;
+  std::vector<cprox_robot_pair> environment, among;
+};
+
+/* The geometries that query.links names; all where it names none. Throws Error for a name that is none. */
+std::vector<bool> namedGeometries(const Movers::Data &data, const std::vector<std::string> &names) {
+  std::vector<bool> out(data.geometries.size(), names.empty());
+  for (const std::string &name : names) {
+    bool found = false;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const std::string &own = data.geometries[i].name;
+      const bool fits = own == name || own.substr(0, own.find('/')) == name;
+      out[i] = out[i] || fits;
+      found = found || fits;
+    }
+    if (!found) throw Error("'" + name + "' is no mover, and no link of one, that has geometry");
   }
-  return mover;
+  return out;
 }
 
-/* What there are pairs of; a list of no pairs would mean all of them. */
-Against narrowed(const Movers::Data &data, Against against) {
-  if (against != Against::BOTH) return against;
-  if (data.environment.empty()) return Against::MOVERS;
-  return data.among.empty() ? Against::OBJECTS : Against::BOTH;
+Pairs pairsOf(const Movers::Data &data, Against against, const Query &query) {
+  Pairs out;
+  const std::vector<bool> named = namedGeometries(data, query.links);
+  const auto at = [](std::int32_t geometry) { return static_cast<std::size_t>(geometry); };
+  if (against != Against::MOVERS) {
+    for (const cprox_robot_pair &pair : data.environment)
+      if (named[at(pair.geometry)]) out.environment.push_back(pair);
+  }
+  if (against != Against::OBJECTS) {
+    for (const cprox_robot_pair &pair : data.among) {
+      const bool self = data.geometries[at(pair.geometry)].mover == data.geometries[at(pair.other)].mover;
+      if (self && against == Against::OTHERS) continue;
+      if (named[at(pair.geometry)] || named[at(pair.other)]) out.among.push_back(pair);
+    }
+  }
+  /* a list of no pairs would mean all of them to the core */
+  if (out.among.empty()) {
+    out.against = against == Against::MOVERS ? Against::MOVERS : Against::OBJECTS;
+  } else {
+    out.against = out.environment.empty() ? Against::MOVERS : Against::BOTH;
+  }
+  return out;
+}
+
+cprox_mover moverOf(const Movers::Data &data, const Pairs &pairs) {
+  cprox_mover mover = pairs.against == Against::MOVERS
+                          ? cprox_robot_self(data.motion.get(), pairs.among.data(), pairs.among.size())
+                          : cprox_robot_along(data.motion.get(), pairs.environment.data(), pairs.environment.size());
+  if (pairs.against == Against::BOTH) {
+    mover.kind = CPROX_MOVER_ROBOT_WHOLE;
+    mover.self_pairs = pairs.among.data();
+    mover.n_self_pairs = pairs.among.size();
+  }
+  return mover;
 }
 
 void nameSides(const Movers::Data &data, Against against, Answer &answer) {
@@ -304,21 +312,27 @@ template <class Core>
 Answer answerOf(const Movers &movers, Against asked, const Query &query, const std::string &fault,
                 const Workspace &workspace, Core core) {
   const Movers::Data &data = movers.data();
-  const Against against = narrowed(data, asked);
-  const std::string kind = against == Against::MOVERS ? "movers" : "environment";
+  const std::string kind = asked == Against::MOVERS ? "movers" : "environment";
   if (!fault.empty()) return refusal("movers", kind, fault);
   const Clock::time_point start = Clock::now();
+  Pairs pairs;
+  try {
+    pairs = pairsOf(data, asked, query);
+  } catch (const Error &error) {
+    return refusal("movers", kind, error.what());
+  }
   Answer answer;
   answer.id = "movers";
   answer.kind = kind;
   answer.result.obstacle_index = -1;
-  if ((against == Against::MOVERS ? data.among : data.environment).empty()) {
+  if (pairs.environment.empty() && pairs.among.empty()) {
     answerNothing(query, answer.result);
+    answer.result.t_contact_lower = movers.domain()[1];
   } else {
     const std::vector<cprox_obstacle> none;
-    core(moverOf(data, against), against == Against::MOVERS ? none : data.targets, answer.result);
+    core(moverOf(data, pairs), pairs.against == Against::MOVERS ? none : data.targets, answer.result);
     if (answer.result.status < 0) answer.message = workspace.reason();
-    nameSides(data, against, answer);
+    nameSides(data, pairs.against, answer);
   }
   answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   if (answer.result.status != CPROX_OK && answer.message.empty())
@@ -335,9 +349,9 @@ Movers::Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, con
   auto data = std::make_unique<Data>();
   data->snapshot = std::move(snapshot);
   for (const MovingObject &object : objects) {
-    data->objects.emplace_back();
-    makeRobot(object, resources, data->objects.back());
-    makeMotion(object, data->objects.back());
+    data->objects.push_back(bodyOf(object, resources));
+    data->object_names.push_back(object.object.id);
+    data->object_starts.push_back(object.start);
   }
   Joiner(robots, objects, *data).join();
   choosePairs(Allowed(allowed), *data);
@@ -348,9 +362,116 @@ Movers::~Movers() = default;
 Movers::Movers(Movers &&) noexcept = default;
 Movers &Movers::operator=(Movers &&) noexcept = default;
 
+std::vector<MovingObject> movingObjects(const Snapshot &snapshot, std::int64_t origin) {
+  constexpr double NANOSECOND = 1e-9;
+  std::vector<MovingObject> out;
+  for (const auto &[id, object] : snapshot.moving()) {
+    MovingObject mover;
+    mover.object = object->description;
+    mover.poses = object->trajectory.poses;
+    mover.turning = object->trajectory.turning;
+    if (object->trajectory.start != 0)
+      mover.start = NANOSECOND * static_cast<double>(object->trajectory.start - origin);
+    mover.body = object->body;
+    out.push_back(std::move(mover));
+  }
+  return out;
+}
+
+void checkClocks(const MovingRobot &subject, const std::vector<MovingRobot> &robots,
+                 const std::vector<MovingObject> &objects) {
+  if (subject.motion->stands()) return;
+  const auto domain = subject.motion->domain();
+  const double begin = domain[0] + subject.start, end = domain[1] + subject.start;
+  const auto check = [&](const std::string &who, double first, double last) {
+    char seconds[40];
+    if (last < begin) {
+      std::snprintf(seconds, sizeof seconds, "%.6g", begin - last);
+      throw Error(who + ": its trajectory is stale: it ends " + seconds + " s before that of '" + subject.name +
+                  "' begins");
+    }
+    if (first > end) {
+      std::snprintf(seconds, sizeof seconds, "%.6g", first - end);
+      throw Error(who + ": its trajectory is in the future: it begins " + seconds + " s after that of '" +
+                  subject.name + "' has ended");
+    }
+  };
+  for (const MovingRobot &robot : robots) {
+    if (!robot.motion || robot.motion->stands()) continue;
+    const auto of = robot.motion->domain();
+    check("robot '" + robot.name + "'", of[0] + robot.start, of[1] + robot.start);
+  }
+  for (const MovingObject &object : objects)
+    if (object.poses.size() > 1)
+      check("object '" + object.object.id + "'", object.poses.front().time + object.start,
+            object.poses.back().time + object.start);
+}
+
 std::array<double, 2> Movers::domain() const {
   const cprox_motion_info info = cprox_motion_get_info(data_->motion.get());
   return {info.t0, info.t1};
+}
+
+Eigen::Isometry3d Movers::objectPose(const std::string &name, double t) const {
+  const auto found = std::find(data_->object_names.begin(), data_->object_names.end(), name);
+  if (found == data_->object_names.end()) throw Error("'" + name + "' is no moving object");
+  const auto i = static_cast<std::size_t>(found - data_->object_names.begin());
+  const MovingBody &body = *data_->objects[i];
+  const cprox_motion_info info = cprox_motion_get_info(body.motion.get());
+  std::array<double, 7> values{};
+  cprox_motion_evaluate(body.motion.get(), std::clamp(t - data_->object_starts[i], info.t0, info.t1), values.data());
+  cprox_vec3 position;
+  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rotation;
+  cprox_robot_link_frame(body.robot.get(), values.data(), 0, &position, rotation.data());
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation;
+  pose.translation() = toEigen(position);
+  return pose;
+}
+
+namespace {
+
+/* The query by the names of all movers, and the time that it is about. */
+struct OfRobot {
+  Query query;
+  std::array<double, 2> interval{};
+
+  OfRobot(const MovingRobot &robot, const Query &asked) : query(asked) {
+    for (std::string &link : query.links) link = robot.name + "/" + link;
+    if (query.links.empty()) query.links = {robot.name};
+    if (robot.motion->stands()) return;
+    for (std::size_t i = 0; i < interval.size(); ++i) interval[i] = robot.motion->domain()[i] + robot.start;
+    query.options.interval = interval.data();
+  }
+  OfRobot(const OfRobot &) = delete;
+  OfRobot &operator=(const OfRobot &) = delete;
+};
+
+/* Side a is the robot's, by its own name. */
+Answer ofRobot(const MovingRobot &robot, Answer answer) {
+  const std::string prefix = robot.name + "/";
+  answer.kind = "environment";
+  if (answer.a.rfind(prefix, 0) != 0 && answer.b.rfind(prefix, 0) == 0) {
+    std::swap(answer.a, answer.b);
+    std::swap(answer.result.witness_mover, answer.result.witness_obstacle);
+    std::swap(answer.result.mover_part, answer.result.obstacle_index);
+    cprox_vec3 &normal = answer.result.normal;
+    normal = {-normal.x, -normal.y, -normal.z};
+  }
+  if (answer.a.rfind(prefix, 0) == 0) answer.a.erase(0, prefix.size());
+  return answer;
+}
+
+} // namespace
+
+Answer ask(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace) {
+  const OfRobot asked(robot, query);
+  return ofRobot(robot, ask(movers, Against::OTHERS, asked.query, workspace));
+}
+
+Answer timeOfContact(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace) {
+  const OfRobot asked(robot, query);
+  return ofRobot(robot, timeOfContact(movers, Against::OTHERS, asked.query, workspace));
 }
 
 Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace) {

@@ -9,6 +9,7 @@
 #include <curve_proximity/scene.hpp>
 
 #include "attaching.h"
+#include "moving_body.h"
 #include "placing.h"
 #include "world.h"
 
@@ -16,6 +17,9 @@ namespace curve_proximity {
 namespace {
 
 using Objects = std::map<std::string, std::shared_ptr<const SceneObject>>;
+using MovingObjects = std::map<std::string, std::shared_ptr<const MovingSceneObject>>;
+
+constexpr const char *IT_MOVES = "it moves along a trajectory: ADD replaces it, REMOVE removes it";
 
 /* APPEND's pose must be the object's own, within what a conversion of frames costs. */
 constexpr double SAME_POSE = 1e-9;
@@ -112,19 +116,38 @@ std::shared_ptr<const SceneObject> moved(const SceneObject &before, const Object
   return object;
 }
 
-/* One operation; throws Error and leaves the objects as they were where it cannot be done. */
-void applyOperation(const Operation &operation, Prepared &prepared, const AttachedObjects &attached, Objects &objects) {
+/* An object that moves. */
+std::shared_ptr<const MovingSceneObject> launched(const Operation &operation, Prepared &prepared) {
   const ObjectDescription &given = operation.object;
+  const ObjectTrajectory &trajectory = *operation.trajectory;
+  if (!given.pose.matrix().isIdentity(0.0))
+    throw Error("it has a pose and a trajectory: the poses of the trajectory say where it is");
+  if (prepared.fault) std::rethrow_exception(prepared.fault);
+  const auto object = std::make_shared<MovingSceneObject>();
+  object->description = given;
+  object->trajectory = trajectory;
+  object->geometries = prepared.geometries;
+  object->body = makeMovingBody(given, std::move(prepared.geometries), trajectory.poses, trajectory.turning);
+  return object;
+}
+
+/* One operation; throws Error and leaves the objects as they were where it cannot be done. */
+void applyOperation(const Operation &operation, Prepared &prepared, const AttachedObjects &attached, Objects &objects,
+                    MovingObjects &moving) {
+  const ObjectDescription &given = operation.object;
+  if (operation.trajectory && operation.kind != Operation::Kind::ADD) throw Error("only ADD takes a trajectory");
   if (operation.kind == Operation::Kind::REMOVE && given.id.empty()) {
     objects.clear();
+    moving.clear();
     return;
   }
   if (given.id.empty()) throw Error("it has no id");
   const auto held = attached.find(given.id);
   if (held != attached.end()) throw Error("link '" + held->second->link + "' carries it: detach it first");
   const auto it = objects.find(given.id);
-  const bool known = it != objects.end();
+  const bool known = it != objects.end(), moves = moving.count(given.id) > 0;
   if (operation.kind == Operation::Kind::REMOVE) {
+    if (moving.erase(given.id) > 0) return;
     if (!known) throw Error("there is no object of that id to remove");
     objects.erase(it);
     return;
@@ -132,6 +155,12 @@ void applyOperation(const Operation &operation, Prepared &prepared, const Attach
 
   checkPose(given.pose, "its pose");
   checkPadding(given.padding);
+  if (moves && operation.kind != Operation::Kind::ADD) throw Error(IT_MOVES);
+  if (operation.trajectory) {
+    moving[given.id] = launched(operation, prepared);
+    objects.erase(given.id);
+    return;
+  }
   switch (operation.kind) {
     case Operation::Kind::MOVE:
       if (!known) throw Error("there is no object of that id to move");
@@ -143,7 +172,10 @@ void applyOperation(const Operation &operation, Prepared &prepared, const Attach
         break;
       }
       [[fallthrough]];
-    default: objects[given.id] = added(given, prepared); break;
+    default:
+      objects[given.id] = added(given, prepared);
+      moving.erase(given.id);
+      break;
   }
 }
 
@@ -155,6 +187,7 @@ struct Carrying {
   const std::map<std::string, double> &link_scale;
   const ResourceOptions &resources;
   Objects &objects;
+  const MovingObjects &moving;
   AttachedObjects &attached;
 
   double scaleOf(const std::string &link) const {
@@ -167,6 +200,7 @@ struct Carrying {
 void attach(const Attachment &given, Carrying &scene) {
   const std::string &id = given.object.id;
   if (id.empty()) throw Error("it has no id");
+  if (scene.moving.count(id) > 0) throw Error(IT_MOVES);
   checkLink(given.link, scene.robot);
   checkPose(given.object.pose, "its pose");
   checkPadding(given.object.padding);
@@ -280,6 +314,7 @@ Snapshot::~Snapshot() = default;
 Snapshot::Snapshot(const Snapshot &other)
     : version_(other.version_),
       objects_(other.objects_),
+      moving_(other.moving_),
       robot_(other.robot_),
       attached_(other.attached_),
       link_padding_(other.link_padding_),
@@ -355,6 +390,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   ++next->version_;
   if (change.clear) {
     next->objects_.clear();
+    next->moving_.clear();
     next->allowed_ = first_allowed_;
     next->attached_.clear();
     next->link_padding_.clear();
@@ -366,7 +402,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   for (std::size_t i = 0; i < change.operations.size(); ++i) {
     const Operation &operation = change.operations[i];
     try {
-      applyOperation(operation, prepared[i], next->attached_, next->objects_);
+      applyOperation(operation, prepared[i], next->attached_, next->objects_, next->moving_);
     } catch (const std::exception &error) {
       faults.push_back("object '" + operation.object.id + "': " + error.what());
     }
@@ -379,7 +415,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   for (const Attachment &attachment : change.attachments) {
     Objects objects = next->objects_;
     AttachedObjects attached = next->attached_;
-    Carrying carrying{next->robot_.get(), next->link_scale_, resources_, objects, attached};
+    Carrying carrying{next->robot_.get(), next->link_scale_, resources_, objects, next->moving_, attached};
     try {
       applyAttachment(attachment, carrying);
       next->objects_ = std::move(objects);

@@ -6,6 +6,7 @@
 
 #include <curve_proximity/nearest_name.hpp>
 
+#include "answering.h"
 #include "placing.h"
 #include "proving.h"
 
@@ -85,6 +86,8 @@ void addAttached(bool everything, const Names &names, const LinkPoses &poses, Ta
 Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &query) {
   const Names objects(query.objects.begin(), query.objects.end());
   const Names named_links(query.links.begin(), query.links.end());
+  const std::string fault = objects.empty() && !named_links.empty() ? "" : faultOfMoving(*snapshot, query.objects);
+  if (!fault.empty()) throw Error(fault);
   checkObjects(objects, *snapshot);
   checkLinks(named_links, links, snapshot->robot().get());
 

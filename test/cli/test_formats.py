@@ -26,7 +26,7 @@ class Formats(Case):
         with open(os.path.join(REPO, 'doc/formats.md'), encoding='utf-8') as page:
             text = page.read().replace('\\\n', ' ')
         commands = re.findall(r'^    cprox (.*)$', text, re.M)
-        self.assertEqual(len(commands), 7)
+        self.assertEqual(len(commands), 9)
         for command in commands:
             with self.subTest(command=command):
                 answer = run(*shlex.split(command.replace('/tmp/', self.folder + '/')))
@@ -73,6 +73,15 @@ class Formats(Case):
         ball = run('nearest', *ARM, *WORLD, '--pairs', '1').rows[0]
         least = min(float(row['upper']) for row in answer.rows)
         self.assertAlmostEqual(least, float(ball['upper']), delta=2e-6)
+
+    def movers_pass_each_other_as_the_file_says(self):
+        scene = ('--scene', FILES + 'movers.yaml')
+        # where the box has turned by 45 degrees its edge is 0.1 sqrt(2) from its axis; the shelf ends at y = -1.45
+        row = run('distance', *scene, '--movers').row('movers')
+        self.assertAnswer(row, 0.15 - 0.1 * math.sqrt(2))
+        self.assertEqual((row['a'], row['b']), ('box', 'shelf'))
+        self.assertEqual(run('time-of-contact', *scene, '--movers').row('movers')['verdict'], 'clear')
+        self.assertIn(run('distance', *ARM, *scene).row('trajectory')['b'], ('second/lower', 'shelf', 'box'))
 
     def pairs_are_as_far_as_the_file_says(self):
         answer = run('pairs', '--in', FILES + 'pairs.yaml')

@@ -10,7 +10,7 @@ class Usage(Case):
         for word in ('distance', 'tolerance', 'collision', 'pairs', 'send', '--curves', '--scene', '--robot', '--srdf', '--state',
                      '--in', '--against', '--trajectory', '--self', '--signed', 'check', '--certificate', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-lod', '--skipped',
                      '--out', '--node', '--version', 'constraints', '--provider', '--parameters', 'profile', 'nearest', 'time-of-contact',
-                     '--per-link', '--intervals', '--breaks', '--pairs', '--within'):
+                     '--per-link', '--intervals', '--breaks', '--pairs', '--within', '--movers'):
             self.assertIn(word, answer.out)
 
     def help_wins_over_everything_else(self):
@@ -60,7 +60,7 @@ class Usage(Case):
                   '--certificate': 'f', '--in': 'i', '--provider': 'p', '--parameters': 'k: 1', '--node': '/n', '--epsilon': '1e-3',
                   '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-lod': 'hull', '--out': 'o', '--self': None,
                   '--replace': None, '--add': None, '--signed': None, '--per-object': None, '--skipped': None, '--per-link': None,
-                  '--intervals': '9', '--breaks': '0, 1', '--pairs': '2', '--within': '1', '--check-gradient': None}
+                  '--intervals': '9', '--breaks': '0, 1', '--pairs': '2', '--within': '1', '--check-gradient': None, '--movers': None}
         run = {'--epsilon', '--max-nodes', '--threads', '--out'}
         rows = [('pairs', ['--in', 'i'], run | {'--max-lod', '--skipped'}),
                 ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--threads', '--out', '--check-gradient'}),
@@ -78,6 +78,7 @@ class Usage(Case):
             both = run | own | {'--scene', '--srdf', '--state', '--per-object', '--max-lod', '--skipped'}
             rows += [(command, ['--curves', 'c', '--robot', 'r'], both),
                      (command, ['--trajectory', 't', '--robot', 'r'], both - {'--signed'} | {'--self', '--per-link'})]
+        rows += [('distance', ['--scene', 's', '--movers'], run | {'--max-lod', '--skipped', '--self'})]
         for command, inputs, has in rows:
             for name, value in values.items():
                 if name in inputs or name in ('--against', '--scene', '--robot') and '--curves' in inputs:

@@ -256,6 +256,28 @@ class Robots(unittest.TestCase):
                 cprox.Motion.from_file(scene, path)
             self.assertIn('joint_trajectory', str(caught.exception))
 
+    def test_what_moves_is_never_left_out_in_silence(self):
+        scene = cprox.Scene(self.robot)
+        ball = ('{id: ball, primitives: [{type: sphere, dimensions: [0.1]}], trajectory: {waypoints: [{time: 0, pose: {position: '
+                '[0, 0, 9]}}, {time: 1, pose: {position: [0, 0, 8]}}]}}')
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'moving.yaml')
+            for text, words in (('moving_robots: [{name: second, robot: a.urdf, trajectory: {joint_trajectory: {joint_names: [a], points: '
+                                 '[{positions: [0], time_from_start: 0}]}}}]', 'second'), ('world: {collision_objects: [%s]}' % ball, '')):
+                with open(path, 'w') as out:
+                    out.write(text)
+                if words:
+                    with self.assertRaises(ValueError) as caught:
+                        scene.load(path)
+                    self.assertIn(words, str(caught.exception))
+                else:
+                    scene.load(path)
+        motion = self.motion(scene)
+        for ask in (motion.distance, motion.collision):
+            with self.assertRaises(ValueError) as caught:
+                ask()
+            self.assertIn("object 'ball' moves along a trajectory", str(caught.exception))
+
     def test_self_collision_and_changes_of_the_scene(self):
         scene = cprox.Scene(self.robot)
         motion = self.motion(scene)

@@ -159,8 +159,8 @@ TEST_F(Movement, what_cannot_be_is_refused_by_name) {
   refuse({{"wall", there}}, {}, "'wall' is a mover and an object that stands");
   refuse({{"a/b", there}}, {}, "it contains '/'");
   refuse({{"a", nullptr}}, {}, "robot 'a' has no motion");
-  refuse({}, {box("ball", {})}, "object 'ball' has no poses");
-  refuse({}, {mover("ball", {}, {{0, here}})}, "object 'ball' has no shapes");
+  refuse({}, {box("ball", {})}, "object 'ball': it has no poses");
+  refuse({}, {mover("ball", {}, {{0, here}})}, "object 'ball': it has no shapes");
   refuse({}, {box("ball", {{1, here}, {1, here}})}, "object 'ball': waypoint 0 is at 1 s, waypoint 1 at 1 s");
   refuse({}, {mover("floor", {shape(ShapeType::HALFSPACE, {0, 0, 1, 0})}, {{0, here}, {1, here}})}, "a halfspace");
   refuse({{"a", there, 0.0}, {"b", there, 100.0}}, {}, "the clocks do not overlap: motion 1 begins at 100 s, 99 s");
@@ -172,9 +172,109 @@ TEST_F(Movement, what_cannot_be_is_refused_by_name) {
   expectContains(ask(movers, Against::OBJECTS, query, workspace).message, "objects do not apply to movers");
   query.objects.clear();
   query.links = {"cart"};
-  expectContains(ask(movers, Against::OBJECTS, query, workspace).message, "links do not apply to movers");
+  expectContains(ask(movers, Against::OBJECTS, query, workspace).message, "'cart' is no mover, and no link of one");
   expectContains(timeOfContact(movers, Against::OBJECTS, Query(), workspace).message, "a query of type collision");
   EXPECT_EQ(ask(movers, Against::MOVERS, Query(), workspace).result.lower, INFINITY); /* nothing to measure */
+}
+
+/* A cart that slides, two balls that fall: who is named is asked about. */
+TEST_F(Movement, links_of_a_query_name_movers_and_their_links) {
+  const auto there = slide(carts.snapshot(), 0, 2, 0);
+  const auto ball = [](const std::string &id, double y) {
+    return mover(id, {shape(ShapeType::SPHERE, {0.1})}, {{0, translation(0, y, 0)}, {1, translation(2, y, 0)}});
+  };
+  const Movers movers(world.snapshot(), {{"a", there}}, {ball("near", 0.5), ball("far", 0.65)});
+  const auto distance = [&](const std::vector<std::string> &names) {
+    Query query;
+    query.links = names;
+    return ask(movers, Against::OTHERS, query, workspace);
+  };
+  expectDistance(distance({}), 0.0); /* of the balls */
+  expectDistance(distance({"a"}), 0.3);
+  expectDistance(distance({"a/cart"}), 0.3);
+  EXPECT_EQ(distance({"a"}).b, "near");
+  expectDistance(distance({"far"}), 0.0);
+}
+
+/* ---- the scene holds what moves ---- */
+
+Operation launch(const std::string &id, std::vector<TimedPose> poses, double radius = 0.1) {
+  Operation out = add(id, {shape(ShapeType::SPHERE, {radius})});
+  out.trajectory = ObjectTrajectory{std::move(poses), Turning::SLERP, 0};
+  return out;
+}
+
+TEST_F(Movement, a_scene_keeps_what_moves_apart_from_what_stands) {
+  const std::vector<TimedPose> way{{0, translation(0, 1, 0)}, {1, translation(0, 3, 0)}};
+  ASSERT_TRUE(world.apply(change({launch("ball", way)})).empty());
+  EXPECT_EQ(world.snapshot()->moving().size(), 1u);
+  EXPECT_EQ(world.snapshot()->objects().count("ball"), 0u);
+  const Movers movers(world.snapshot(), {{"a", slide(carts.snapshot(), 0, 0, 0)}}, movingObjects(*world.snapshot()));
+  expectDistance(ask(movers, Against::MOVERS, Query(), workspace), 1.0 - 0.1 - 0.1);
+
+  /* what does not know movers refuses, unless it names what stands */
+  const std::string because = "object 'ball' moves along a trajectory";
+  Query query;
+  expectContains(errorOf([&] { Targets(world.snapshot(), {}, query); }), because);
+  query.objects = {"ball"};
+  expectContains(errorOf([&] { Targets(world.snapshot(), {}, query); }), because);
+  query.objects = {"wall"};
+  EXPECT_NO_THROW(Targets(world.snapshot(), {}, query));
+  ASSERT_TRUE(carts.apply(change({launch("ball", way)})).empty());
+  const auto motion = slide(carts.snapshot(), 0, 1, 0);
+  query.objects.clear();
+  expectContains(errorOf([&] { askEnvironment(*motion, query, workspace); }), because);
+  expectContains(errorOf([&] { nearestPairs(*motion, false, {}, query, workspace); }), because);
+  expectContains(errorOf([&] { clearanceProfile(*motion, false, {0, 1}, query, workspace); }), because);
+  expectContains(errorOf([&] { clearanceGradient(*motion, RobotPairs::WHOLE, query, workspace); }), because);
+  expectContains(errorOf([&] { timeOfContact(*motion, false, collision(), workspace); }), because);
+  EXPECT_EQ(askSelf(*motion, query, workspace).status, "ok");
+  expectContains(errorOf([&] { Movers(carts.snapshot(), {{"a", motion}}, {}); }), "'ball' moves in the scene");
+
+  /* it is replaced and removed as others are */
+  const auto faultOf = [&](Operation::Kind kind) {
+    Operation operation = add("ball", {shape(ShapeType::SPHERE, {0.1})});
+    operation.kind = kind;
+    const std::vector<std::string> faults = world.apply(change({operation}));
+    return faults.empty() ? "" : faults.front();
+  };
+  expectContains(faultOf(Operation::Kind::MOVE), "it moves along a trajectory");
+  expectContains(faultOf(Operation::Kind::APPEND), "it moves along a trajectory");
+  EXPECT_EQ(faultOf(Operation::Kind::ADD), "");
+  EXPECT_TRUE(world.snapshot()->moving().empty());
+  ASSERT_TRUE(world.apply(change({launch("ball", way)})).empty());
+  EXPECT_EQ(world.snapshot()->objects().count("ball"), 0u);
+  EXPECT_EQ(faultOf(Operation::Kind::REMOVE), "");
+  EXPECT_TRUE(world.snapshot()->moving().empty());
+}
+
+TEST_F(Movement, a_trajectory_that_cannot_be_leaves_the_scene_as_it_was) {
+  const auto fault = [&](const Operation &operation) {
+    const std::vector<std::string> faults = world.apply(change({operation}));
+    return faults.size() == 1 ? faults.front() : "";
+  };
+  expectContains(fault(launch("ball", {})), "object 'ball': it has no poses");
+  expectContains(fault(launch("ball", {{1, translation(0, 0, 0)}, {1, translation(0, 0, 1)}})), "waypoint 1 at 1 s");
+  expectContains(fault(launch("ball", {{1, translation(0, 0, 0)}, {2, translation(0, NAN, 1)}})), "waypoint 1");
+  Operation both = launch("ball", {{0, translation(0, 0, 0)}});
+  both.object.pose = translation(0, 0, 1);
+  expectContains(fault(both), "a pose and a trajectory");
+  EXPECT_TRUE(world.snapshot()->moving().empty());
+}
+
+/* Stamps of 2033: a start is a difference of nanoseconds, and no rounding of seconds since 1970. */
+TEST_F(Movement, stamps_are_put_on_one_clock) {
+  Operation ball = launch("ball", {{0, translation(0, 1, 0)}, {1, translation(0, 3, 0)}});
+  ball.trajectory->start = 2000000000000000123;
+  ASSERT_TRUE(world.apply(change({ball})).empty());
+  const std::int64_t origin = 1999999999000000000;
+  const std::vector<MovingObject> objects = movingObjects(*world.snapshot(), origin);
+  EXPECT_DOUBLE_EQ(objects.front().start, 1.000000123);
+  const auto cart = slide(carts.snapshot(), 0, 1, 0);
+  const MovingRobot early{"a", cart, -0.5}, late{"a", cart, 3.0};
+  EXPECT_NO_THROW(checkClocks({"a", cart, 0.5}, {}, objects));
+  expectContains(errorOf([&] { checkClocks(early, {}, objects); }), "it begins 0.5 s after that of 'a' has ended");
+  expectContains(errorOf([&] { checkClocks(late, {}, objects); }), "stale: it ends 1 s before that of 'a' begins");
 }
 
 } // namespace

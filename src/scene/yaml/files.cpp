@@ -28,6 +28,7 @@ SceneFileContents loadSceneFile(const std::string &path, const Robot *robot, con
       throw Error(path + ": " + e.what());
     }
     makeResourcesAbsolute(out.change, folderOf(path));
+    out.moving_robots = file.moving_robots;
     out.change.clear = !file.is_diff;
   } catch (const BadUsage &e) {
     throw Error(e.what());

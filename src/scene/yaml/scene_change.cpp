@@ -16,6 +16,17 @@ void resolveFrame(ObjectDescription &object, const Frames &frames) {
   object.frame.clear();
 }
 
+/* The same of all poses of an object that moves; its own is left as it is. */
+void movePoses(const Eigen::Isometry3d &frame, Operation &operation) {
+  for (TimedPose &waypoint : operation.trajectory->poses) waypoint.pose = frame * waypoint.pose;
+  operation.object.frame.clear();
+}
+
+void resolveFrame(Operation &operation, const Frames &frames) {
+  if (!operation.trajectory) return resolveFrame(operation.object, frames);
+  if (frames.knows(operation.object.frame)) movePoses(frames.find(operation.object.frame), operation);
+}
+
 /* The node does not know the folder that paths in the file are relative to. */
 void makeResourcesAbsolute(ObjectDescription &object, const std::string &folder) {
   for (ShapeDescription &shape : object.shapes) {
@@ -32,8 +43,13 @@ Operation toFixed(Operation operation, const Frames &frames) {
   const bool relative = operation.kind == Operation::Kind::APPEND && object.pose.matrix().isIdentity(0.0);
   if (operation.kind == Operation::Kind::REMOVE || relative) return operation;
   try {
-    object.pose = frames.find(object.frame) * object.pose;
-    object.frame.clear();
+    const Eigen::Isometry3d frame = frames.find(object.frame);
+    if (operation.trajectory) {
+      movePoses(frame, operation);
+    } else {
+      object.pose = frame * object.pose;
+      object.frame.clear();
+    }
   } catch (const BadInput &e) {
     throw BadUsage("object '" + object.id + "': " + e.what());
   }
@@ -95,15 +111,18 @@ SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &w
   change.clear = !file.is_diff;
   change.operations = file.operations;
   change.attachments = file.attached;
-  const auto prepare = [&](ObjectDescription &object) {
+  const auto prepare = [&](auto &what, const std::string &id) {
     try {
-      resolveFrame(object, frames);
+      resolveFrame(what, frames);
     } catch (const BadInput &e) {
-      throw BadUsage(path + ": object '" + object.id + "': " + e.what());
+      throw BadUsage(path + ": object '" + id + "': " + e.what());
     }
   };
-  for (Operation &operation : change.operations) prepare(operation.object);
-  for (Attachment &attachment : change.attachments) prepare(attachment.object);
+  if (!file.moving_robots.empty())
+    throw BadUsage(path + ": moving robot '" + file.moving_robots.front().name +
+                   "': a live scene takes no further robots; requests name them (moving_robots)");
+  for (Operation &operation : change.operations) prepare(operation, operation.object.id);
+  for (Attachment &attachment : change.attachments) prepare(attachment.object, attachment.object.id);
   makeResourcesAbsolute(change, folderOf(path));
   change.link_padding = file.link_padding;
   change.link_scale = file.link_scale;

@@ -2,12 +2,15 @@
 #include "scene_yaml.h"
 
 #include <array>
+#include <filesystem>
 #include <map>
 #include <utility>
 
 #include "body_yaml.h"
 #include "failure.h"
 #include "numbers.h"
+#include "scene_change.h"
+#include "trajectory_yaml.h"
 
 namespace curve_proximity::yaml {
 namespace {
@@ -102,7 +105,7 @@ Operation readObject(const YamlValue &plain, Warnings &warnings) {
   const YamlValue value = object.id.empty() ? plain : plain.named(object.id);
   value.warnOfOthers(
       {"header", "pose", "id", "type", "primitives", "primitive_poses", "meshes", "mesh_poses", "planes", "plane_poses",
-       "bodies", "body_poses", "padding", "subframe_names", "subframe_poses", "operation"},
+       "bodies", "body_poses", "padding", "subframe_names", "subframe_poses", "operation", "trajectory"},
       warnings);
 
   /* what is to be done with it; a file is a scene, so ADD is what is meant where nothing is said */
@@ -121,6 +124,10 @@ Operation readObject(const YamlValue &plain, Warnings &warnings) {
   const bool shapes_expected = out.kind == Operation::Kind::ADD || out.kind == Operation::Kind::APPEND;
   if (shapes_expected && object.shapes.empty()) {
     value.fail("the object has no shape: neither primitives, meshes, planes nor bodies");
+  }
+  if (const auto trajectory = value.find("trajectory")) {
+    if (value.find("pose")) value.fail("has a pose and a trajectory: the trajectory says where the object is");
+    out.trajectory = readObjectTrajectory(*trajectory, warnings);
   }
   return out;
 }
@@ -200,6 +207,7 @@ void readRobotState(const YamlValue &root, SceneFile &out, Warnings &warnings) {
     value.warnOfOthers({"link_name", "object", "touch_links", "detach_posture", "weight"}, warnings);
     const Operation operation = readObject(value.at("object"), warnings);
     if (operation.kind != Operation::Kind::ADD) value.fail("an attached object's operation must be add (0)");
+    if (operation.trajectory) value.fail("an attached object moves with its link: it takes no trajectory");
     Attachment attachment;
     attachment.link = value.at("link_name").text();
     attachment.object = operation.object;
@@ -285,6 +293,25 @@ void readAllowed(const YamlValue &root, SceneFile &out, Warnings &warnings) {
   out.allowed = entries.pairs();
 }
 
+/* Further robots, each along its trajectory. */
+void readMovingRobots(const YamlValue &root, const std::string &folder, SceneFile &out, Warnings &warnings) {
+  const auto fileOf = [&](const YamlValue &value) {
+    return (std::filesystem::path(folder) / value.text()).lexically_normal().string();
+  };
+  for (const YamlValue &plain : root.itemsOf("moving_robots")) {
+    MovingRobotFile robot;
+    robot.name = plain.at("name").text();
+    const YamlValue value = plain.named(robot.name);
+    value.warnOfOthers({"name", "robot", "srdf", "base", "trajectory", "start"}, warnings);
+    robot.urdf = fileOf(value.at("robot"));
+    if (const auto srdf = value.find("srdf")) robot.srdf = fileOf(*srdf);
+    if (const auto base = value.find("base")) robot.base = toIsometry(base->pose(warnings));
+    robot.trajectory = readTrajectoryValue(value.at("trajectory"), folder, warnings);
+    if (const auto start = value.find("start")) robot.start = readTime(*start);
+    out.moving_robots.push_back(std::move(robot));
+  }
+}
+
 } // namespace
 
 ObjectDescription readPlacedShapes(const YamlValue &value, Warnings &warnings) {
@@ -308,7 +335,7 @@ SceneFile readScene(const std::string &path, Warnings &warnings) {
     /* known keys that Cartesian curves have no use for are ignored without a word */
     root.warnOfOthers({"name", "robot_model_name", "robot_state", "fixed_frame_transforms", "allowed_collision_matrix",
                        "link_padding", "link_scale", "object_colors", "world", "is_diff", "virtual_joint",
-                       "fixed_joints", "robot", "scene"},
+                       "fixed_joints", "robot", "scene", "moving_robots"},
                       warnings);
     if (const auto world = root.find("world")) readWorld(*world, out, warnings);
     if (const auto diff = root.find("is_diff")) out.is_diff = diff->truth();
@@ -316,6 +343,7 @@ SceneFile readScene(const std::string &path, Warnings &warnings) {
     readRobotState(root, out, warnings);
     readLinkSizes(root, out, warnings);
     readAllowed(root, out, warnings);
+    readMovingRobots(root, folderOf(path), out, warnings);
   } catch (const BadInput &e) {
     throw BadUsage(path + ": " + e.what());
   } catch (const Error &e) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <curve_proximity/files.hpp>
 #include <curve_proximity/robot.hpp>
 #include <curve_proximity/scene.hpp>
 
@@ -29,6 +30,7 @@ struct SceneFile {
   JointPositions joints; /**< robot_state */
   std::map<std::string, double> link_padding, link_scale;
   std::vector<AllowedPair> allowed;
+  std::vector<MovingRobotFile> moving_robots;
   std::vector<std::string> skipped; /**< what of the file takes no part, a sentence each */
 };
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "trajectory_yaml.h"
 
+#include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "failure.h"
@@ -16,15 +18,23 @@ Interpolation readInterpolation(const YamlValue &value) {
   value.fail("the interpolation '" + text + "' is none of linear, cubic, quintic");
 }
 
-/* Seconds, or seconds and nanoseconds as ROS prints a duration. */
-double readTime(const YamlValue &value) {
-  if (!value.isMap()) return value.number();
+/* Seconds and nanoseconds, as ROS prints a duration. */
+std::array<double, 2> readParts(const YamlValue &value) {
   const auto part = [&](const char *key) {
     const std::optional<YamlValue> found = value.find(key);
     return found ? found->number() : 0.0;
   };
   if (!value.find("secs") && !value.find("nsecs")) value.fail("needs secs or nsecs");
-  return part("secs") + 1e-9 * part("nsecs");
+  return {part("secs"), part("nsecs")};
+}
+
+/* Nanoseconds: times since 1970 have no room in a double. */
+std::int64_t readStamp(const YamlValue &value) {
+  constexpr double BILLION = 1e9, MOST = 9.2e9; /* [s] */
+  const std::array<double, 2> parts = value.isMap() ? readParts(value) : std::array<double, 2>{value.number(), 0.0};
+  if (!(std::abs(parts[0]) < MOST && std::abs(parts[1]) < BILLION)) value.fail("is out of range");
+  const double whole = std::floor(parts[0]);
+  return static_cast<std::int64_t>(whole) * 1000000000 + std::llround((parts[0] - whole) * BILLION + parts[1]);
 }
 
 std::vector<double> readList(const YamlValue &point, const char *key) {
@@ -79,6 +89,45 @@ TrajectoryDescription readFile(const YamlValue &root, Warnings &warnings) {
 }
 
 } // namespace
+
+double readTime(const YamlValue &value) {
+  if (!value.isMap()) return value.number();
+  const std::array<double, 2> parts = readParts(value);
+  return parts[0] + 1e-9 * parts[1];
+}
+
+ObjectTrajectory readObjectTrajectory(const YamlValue &value, Warnings &warnings) {
+  if (!value.isMap()) value.fail("must be a map with waypoints: [{time, pose}]");
+  value.warnOfOthers({"start", "turning", "waypoints"}, warnings);
+  ObjectTrajectory out;
+  if (const auto start = value.find("start")) out.start = readStamp(*start);
+  if (const auto turning = value.find("turning")) {
+    const std::optional<Turning> known = turningFromName(turning->text());
+    if (!known) turning->fail("the turning '" + turning->text() + "' is none of slerp, screw");
+    out.turning = *known;
+  }
+  for (const YamlValue &point : value.at("waypoints").items()) {
+    point.warnOfOthers({"time", "pose"}, warnings);
+    const double time = readTime(point.at("time"));
+    if (!out.poses.empty() && !(time > out.poses.back().time))
+      point.at("time").fail("does not ascend: the waypoint before is at " + std::to_string(out.poses.back().time) +
+                            " s");
+    out.poses.push_back({time, toIsometry(point.at("pose").pose(warnings))});
+  }
+  if (out.poses.empty()) value.fail("there are no waypoints");
+  return out;
+}
+
+TrajectoryDescription readTrajectoryValue(const YamlValue &value, const std::string &folder, Warnings &warnings) {
+  if (value.isScalar()) return readTrajectory((std::filesystem::path(folder) / value.text()).string(), warnings);
+  TrajectoryDescription out = readFile(value, warnings);
+  try {
+    checkTrajectory(out);
+  } catch (const Error &error) {
+    value.fail(error.what());
+  }
+  return out;
+}
 
 TrajectoryDescription readTrajectory(const std::string &path, Warnings &warnings) {
   try {

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Objects and further robots that move. Distances and times are worked out by hand."""
+import math
+
+from support import Case, cprox
+from test_trajectory import SLIDE, SLIDER
+
+# A cube of 0.4 falls four metres in a second and turns by a right angle about x, past the edge of a shelf at y = -0.3.
+FALL = '''
+world:
+  collision_objects:
+    - {id: shelf, primitives: [{type: box, dimensions: [1, 1, 0.1]}], primitive_poses: [{position: [0, -0.8, 0]}]}
+    - id: box
+      primitives: [{type: box, dimensions: [0.4, 0.4, 0.4]}]
+      trajectory:
+        turning: slerp
+        waypoints:
+          - {time: 0, pose: {position: [0, 0, 2]}}
+          - {time: 1, pose: {position: [0, 0, -2], orientation: [0.7071067811865476, 0, 0, 0.7071067811865476]}}
+'''
+# A ball of 0.1 crosses the way of SLIDE's cart from y = 1 to y = -1 in four seconds.
+BALL = '''
+world:
+  collision_objects:
+    - id: ball
+      primitives: [{type: sphere, dimensions: [0.1]}]
+      trajectory:
+        start: START
+        waypoints: [{time: 0, pose: {position: [1, 1, 0]}}, {time: 4, pose: {position: [1, -1, 0]}}]
+'''
+# A second slider, 0.5 beside the first, against its direction: both carts are 0.2 wide.
+SECOND = '''
+moving_robots:
+  - name: NAME
+    robot: robot.urdf
+    base: {position: [2, 0.5, 0], orientation: [0, 0, 1, 0]}
+    trajectory: {joint_trajectory: {joint_names: [slide], points: [{positions: [0], time_from_start: 0}, {positions: [2], time_from_start: 4}]}}
+    start: START
+'''
+
+
+class Movers(Case):
+    def scene(self, query_type, scene, *more):
+        return cprox(query_type, '--scene', self.file('scene.yaml', scene), *more)
+
+    def robot(self, query_type, scene, *more):
+        return self.scene(query_type, scene, '--robot', self.file('robot.urdf', SLIDER), '--trajectory',
+                          self.file('go.yaml', SLIDE), *more)
+
+    def a_box_that_falls_and_turns_is_measured_at_its_corner(self):
+        answer = self.scene('distance', FALL, '--movers')
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        row = answer.row('movers')
+        self.assertAnswer(row, 0.3 - 0.2 * math.sqrt(2))
+        self.assertEqual((row['kind'], row['a'], row['b']), ('environment', 'box', 'shelf'))
+        self.assertAlmostEqual(float(row['t']), 0.5, delta=0.02)
+        self.assertEqual(self.scene('time-of-contact', FALL, '--movers').row('movers')['verdict'], 'clear')
+        self.assertEqual(self.scene('tolerance', FALL, '--movers', '--delta', '0.018').row('movers')['verdict'], 'violated')
+
+    def contact_is_never_told_late(self):
+        """With the shelf in its way: the lower face, turned by a, meets z = 0.05 with its lowest corner."""
+        scene = FALL.replace('-0.8, 0]', '0, 0]')
+        answer = self.scene('time-of-contact', scene, '--movers')
+        self.assertEqual(answer.code, 1)
+
+        def height(t):
+            a = t * math.pi / 2
+            return 2 - 4 * t - 0.2 * (math.cos(a) + math.sin(a))
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            mid = (low + high) / 2
+            low, high = (mid, high) if height(mid) > 0.05 else (low, mid)
+        row = answer.row('movers')
+        self.assertLessEqual(float(row['t_contact_lower']), low + 1e-12)
+        self.assertAlmostEqual(float(row['t_contact_lower']), low, delta=1e-5)
+
+    def a_robot_and_a_ball_are_on_one_clock(self):
+        together = self.robot('collision', BALL.replace('START', '0'))
+        self.assertEqual((together.code, together.row('go')['b']), (1, 'ball'))
+        contact = self.robot('time-of-contact', BALL.replace('START', '0')).row('go')
+        # the cart's corner and the ball: both gaps are 0.9 - t / 2
+        truth = 2 * (0.9 - 0.1 / math.sqrt(2))
+        self.assertLessEqual(float(contact['t_contact_lower']), truth)
+        self.assertAlmostEqual(float(contact['t_contact_lower']), truth, delta=1e-4)
+        for start in ('3', '{secs: 3, nsecs: 0}'):
+            later = self.robot('distance', BALL.replace('START', start))
+            self.assertEqual((later.code, later.err), (0, ''))
+            row = later.row('go')
+            self.assertAnswer(row, 0.8)  # at the ball's first place, that it has not left
+            self.assertEqual((row['kind'], row['a'], row['b']), ('environment', 'cart', 'ball'))
+            self.assertTrue(1.79 <= float(row['t']) <= 2.21, row['t'])
+        # nothing is asked of the time after the trajectory's end: the ball comes to y = 0.5 by then
+        self.assertAnswer(self.robot('distance', BALL.replace('START', '3').replace('[1,', '[2.5,')).row('go'),
+                          math.hypot(0.4, 0.4) - 0.1)
+
+    def two_robots_are_on_one_clock(self):
+        answer = self.robot('distance', SECOND.replace('NAME', 'other').replace('START', '0'), '--self')
+        self.assertEqual(answer.code, 0, answer.err)  # the slide moves no pair of links of its own
+        row = answer.rows[0]
+        self.assertAnswer(row, 0.3)
+        self.assertEqual((row['kind'], row['a'].split('/')[-1], row['b'].split('/')[0]), ('environment', row['a'], 'other'))
+        self.assertEqual(answer.rows[1]['kind'], 'self')
+        # two seconds late it has come to x = 1 when the other one is at 2
+        late = self.robot('distance', SECOND.replace('NAME', 'other').replace('START', '3').replace('0.5, 0]', '0, 0]'))
+        self.assertEqual(late.row('go')['b'].split('/')[0], 'other')
+        self.assertAnswer(late.row('go'), 0)
+        alone = self.scene('distance', SECOND.replace('NAME', 'other').replace('START', '0'), '--movers')
+        self.assertEqual(alone.rows[0]['lower'], 'inf')
+        self.assertIn('measured against nothing', alone.err)
+
+    def what_may_touch_is_left_out(self):
+        allowed = '\nallowed_collision_matrix: {entry_names: [cart, ball], entry_values: [[true, true], [true, true]]}\n'
+        row = self.robot('distance', BALL.replace('START', '0') + allowed).row('go')
+        self.assertEqual((row['a'], row['b']), ('arm', 'ball'))
+
+    def a_frame_takes_the_whole_trajectory_with_it(self):
+        frame = "\nfixed_frame_transforms: [{header: {frame_id: world}, child_frame_id: tilted, transform: {translation: [0, 0.01, 0]}}]\n"
+        row = self.scene('distance', FALL.replace('id: box', 'id: box\n      header: {frame_id: tilted}') + frame, '--movers').row('movers')
+        self.assertAnswer(row, 0.31 - 0.2 * math.sqrt(2))
+
+    def clocks_that_do_not_overlap_are_refused_by_how_much(self):
+        self.assertRefused(self.robot('distance', BALL.replace('START', '10')), "object 'ball'", 'it begins 6 s after that of')
+        self.assertRefused(self.robot('distance', BALL.replace('START', '-7')), "object 'ball'", 'stale: it ends 3 s before')
+        self.assertRefused(self.robot('distance', SECOND.replace('NAME', 'other').replace('START', '4.5')), "robot 'other'", '0.5 s')
+
+    def names_that_clash_are_refused(self):
+        self.assertRefused(self.robot('distance', SECOND.replace('NAME', 'slider').replace('START', '0')), "two movers are named 'slider'")
+        twice = BALL.replace('START', '0') + SECOND.replace('NAME', 'ball').replace('START', '0')
+        self.assertRefused(self.robot('distance', twice), "two movers are named 'ball'")
+
+    def bad_trajectories_are_refused_by_place(self):
+        ball = BALL.replace('START', '0')
+        for change, into, because in (
+                ('time: 4', 'time: 0', "'ball'.trajectory.waypoints[1].time (line 8): does not ascend"),
+                ('[1, -1, 0]}', '[1, -1, 0], orientation: [0, 0, 0, 0]}', "the quaternion's norm is 0"),
+                ('[1, -1, 0]}', '[1, -1, 0], orientation: [0, 0, 1, 0]}', 'half a turn'),
+                ('[1, -1, 0]', '[1, .nan, 0]', 'not a finite number'),
+                ('start: 0', 'turning: fast', "'fast' is none of slerp, screw"),
+                ('trajectory:', 'pose: {position: [0, 0, 1]}\n      trajectory:', 'a pose and a trajectory'),
+                ('id: ball', 'id: ball\n      operation: append', 'only ADD takes a trajectory')):
+            with self.subTest(into=into):
+                self.assertRefused(self.scene('distance', ball.replace(change, into), '--movers'), because)
+        self.assertRefused(self.scene('distance', SECOND.replace('NAME', 'a').replace('START', '0').replace('robot.urdf', 'none.urdf'), '--movers'), "none.urdf")
+
+    def what_does_not_know_movers_says_so(self):
+        ball = BALL.replace('START', '0')
+        for query_type, more in (('profile', ()), ('nearest', ()), ('distance', ('--per-object',)), ('distance', ('--per-link',)),
+                                 ('distance', ('--certificate', self.folder + '/c'))):
+            self.assertRefused(self.robot(query_type, ball, *more), 'not available where objects or further robots move')
+        curves = self.file('curves.csv', 'c,bezier,1,0,1,0,2,0,0,0,1,0,0\n')
+        self.assertRefused(self.scene('distance', ball, '--curves', curves), "object 'ball' moves along a trajectory")
+        self.assertRefused(self.scene('distance', 'world: {}', '--movers'), 'nothing moves in this scene')
+        self.assertRefused(cprox('distance', '--movers'), '--movers needs --scene')
+        self.assertRefused(cprox('profile', '--movers', '--scene', 's'), "'profile' takes no --movers")
+        self.assertRefused(self.scene('distance', ball, '--movers', '--robot', 'r'), '--movers takes no --robot')
