@@ -3,6 +3,7 @@
  * box that turns along a cubic Bézier curve beside the same box that does not, and ten quadrotors on one clock. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
@@ -231,12 +232,57 @@ static void quadrotors(const bench_size *size, cprox_workspace *ws) {
   for (int i = 0; i < FLYERS; i++) end(&s[i]);
 }
 
+/* One box flies 4 m through a hall in which n others fall and turn. The hall grows with n: few of them are near. */
+static void among_many(const bench_size *size, cprox_workspace *ws) {
+  static const int NUMBERS[] = {10, 32, 100, 316, 1000};
+  for (size_t row = 0; row < sizeof NUMBERS / sizeof *NUMBERS; row++) {
+    const int n = NUMBERS[row] + 1;
+    rng r = rng_seed(317);
+    scene *s = calloc((size_t)n, sizeof *s);
+    const cprox_robot **robots = calloc((size_t)n, sizeof *robots);
+    cprox_joined_motion *motions = calloc((size_t)n, sizeof *motions);
+    cprox_robot_pair *pairs = calloc((size_t)n, sizeof *pairs);
+    if (!s || !robots || !motions || !pairs) exit(1);
+    for (int i = 0; i < n; i++) {
+      begin(&s[i], "falling", box(), NULL, HERE);
+      const double x = 2.5 * (i - 0.5 * n), h = sqrt(0.5);
+      const double y = (i & 1 ? 1.6 : -1.6) + rng_uniform(&r, -0.2, 0.2);
+      const double top[7] = {x, y, 3, 0, 0, 0, 1}, floor[7] = {x, y, -3, h, 0, 0, h};
+      const double from[7] = {-2, 0, 0, 0, 0, 0, 1}, to[7] = {2, 0, 0, 0, 0, h, h};
+      go(&s[i], i ? top : from, i ? floor : to, CPROX_TURNING_SLERP);
+      robots[i] = s[i].robot;
+      motions[i] = (cprox_joined_motion){s[i].motion, i ? rng_uniform(&r, -0.2, 0.2) : 0.0};
+      if (i) pairs[i - 1] = (cprox_robot_pair){0, i};
+    }
+    cprox_robot *all = NULL;
+    cprox_motion *motion = NULL;
+    const cprox_motion_description d = {.kind = CPROX_MOTION_JOINED, .joined = motions, .n_joined = (size_t)n};
+    if (cprox_robot_join(robots, NULL, (size_t)n, ws, &all) == CPROX_OK &&
+        cprox_motion_create(all, &d, ws, &motion) == CPROX_OK) {
+      const cprox_mover mover = cprox_robot_self(motion, pairs, (size_t)n - 1);
+      char parameter[40];
+      snprintf(parameter, sizeof parameter, "%d falling eps 1e-06", n - 1);
+      const bench_workload w = {"moving", "box among falling boxes", parameter, &mover, 1, NULL, 0.0};
+      const bench_method ours = {"curve_proximity", among, ws};
+      bench_measure(&w, size, &ours, 1);
+    }
+    cprox_motion_free(motion);
+    cprox_robot_free(all);
+    for (int i = 0; i < n; i++) end(&s[i]);
+    free(pairs);
+    free(motions);
+    free(robots);
+    free(s);
+  }
+}
+
 int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
   cprox_workspace *ws = cprox_workspace_create();
   if (bench_wanted(&size, "contact")) contacts(&size, ws);
   if (bench_wanted(&size, "turning box")) turning_box(&size, ws);
   if (bench_wanted(&size, "quadrotors")) quadrotors(&size, ws);
+  if (bench_wanted(&size, "box among falling boxes")) among_many(&size, ws);
   cprox_workspace_free(ws);
   return 0;
 }
