@@ -12,14 +12,17 @@ set(CURVE_PROXIMITY_MESSAGES
   LinkPadding.msg
   LinkScale.msg
   Octree.msg
+  PoseTrajectory.msg
   Profile.msg
   Proximity.msg
   ProximityQuery.msg
   ProximityResults.msg
   Refusal.msg
+  RobotTrajectory.msg
   SceneState.msg
   SensorState.msg
   TrajectoryConstraint.msg
+  Waypoint.msg
 )
 set(CURVE_PROXIMITY_SERVICES
   ApplyScene.srv

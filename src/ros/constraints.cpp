@@ -38,6 +38,9 @@ bool hasPose(const CollisionObject &side) {
 /** A side as described, or the scene's object of that id; its pose in the fixed frame, unless it rides a curve. */
 ObjectDescription toSide(const CollisionObject &message, const Snapshot &snapshot, FrameLookup &lookup, bool rides) {
   ObjectDescription side;
+  if (!message.trajectory.waypoints.empty()) throw Error("a side of a constraint takes no trajectory of its own");
+  if (snapshot.moving().count(message.id) > 0 && !hasShapes(message))
+    throw Error("object '" + message.id + "' moves along a trajectory, and constraints take objects that stand");
   if (hasShapes(message)) {
     CollisionObject object = message;
     object.operation = CollisionObject::ADD;

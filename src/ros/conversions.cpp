@@ -194,11 +194,48 @@ CollisionObject::_operation_type toOperationByte(Operation::Kind kind) {
   return CollisionObject::ADD;
 }
 
+/** The way of an object that moves. */
+ObjectTrajectory toTrajectory(const PoseTrajectory &message) {
+  const std::optional<Turning> turning = turningFromName(message.turning);
+  if (!turning) throw Error("the turning '" + message.turning + "' is none of slerp, screw");
+  ObjectTrajectory out;
+  out.turning = *turning;
+  out.start = static_cast<std::int64_t>(message.start.toNSec());
+  for (const Waypoint &waypoint : message.waypoints) {
+    try {
+      if (!std::isfinite(waypoint.time)) throw Error("the time is not finite");
+      out.poses.push_back({waypoint.time, toIsometry(waypoint.pose)});
+    } catch (const Error &error) {
+      throw Error("waypoint " + std::to_string(out.poses.size()) + ": " + error.what());
+    }
+  }
+  return out;
+}
+
+PoseTrajectory toTrajectoryMessage(const ObjectTrajectory &trajectory) {
+  constexpr std::int64_t SECOND = 1000000000;
+  if (trajectory.start < 0 || trajectory.start / SECOND > std::numeric_limits<std::uint32_t>::max())
+    throw Error("a trajectory starts at a time that no stamp has: " + std::to_string(trajectory.start / SECOND) + " s");
+  PoseTrajectory message;
+  message.start.fromNSec(static_cast<std::uint64_t>(trajectory.start));
+  message.turning = turningName(trajectory.turning);
+  for (const TimedPose &pose : trajectory.poses) {
+    message.waypoints.emplace_back();
+    message.waypoints.back().time = pose.time;
+    message.waypoints.back().pose = toMessage(pose.pose);
+  }
+  return message;
+}
+
 /** An object that stands in `frame_in_fixed` gets its pose in the fixed frame. APPEND may leave the pose out: then the
  *  shapes are relative to the object that is there, and nothing is to be brought anywhere. */
 void bringToFixed(Operation &operation, const Eigen::Isometry3d &frame_in_fixed) {
   const bool relative = operation.kind == Operation::Kind::APPEND && operation.object.pose.matrix().isIdentity(0.0);
-  if (!relative) operation.object.pose = frame_in_fixed * operation.object.pose;
+  if (operation.trajectory) {
+    for (TimedPose &waypoint : operation.trajectory->poses) waypoint.pose = frame_in_fixed * waypoint.pose;
+  } else if (!relative) {
+    operation.object.pose = frame_in_fixed * operation.object.pose;
+  }
 }
 
 /** The points of a cloud stand in the frame of their object: no other may be meant. */
@@ -227,6 +264,8 @@ Eigen::Isometry3d frameOf(const CollisionObject &object, const ToFixed &to_fixed
 Attachment toAttachment(const AttachedCollisionObject &message, const ToFixed &to_fixed,
                         const LinkToFixed &link_to_fixed, const Snapshot &before) {
   Operation operation = toOperation(message.object);
+  if (operation.trajectory)
+    throw Error("object '" + message.object.id + "': what a link carries moves with it, and takes no trajectory");
   Attachment out;
   out.link = message.link_name;
   out.touch_links = message.touch_links;
@@ -425,6 +464,7 @@ Operation toOperation(const CollisionObject &message) {
     append(message.planes, message.plane_poses, "plane", out.object.shapes);
     checkCloudFrames(message);
     append(message.bodies, message.body_poses, "body", out.object.shapes);
+    if (!message.trajectory.waypoints.empty()) out.trajectory = toTrajectory(message.trajectory);
   } catch (const Error &error) {
     throw Error("object '" + message.id + "': " + error.what());
   }
@@ -486,14 +526,25 @@ CollisionObject toMessage(const ObjectDescription &object) {
   return message;
 }
 
+/* What ~apply_scene would take to build it again. */
+static CollisionObject toMessage(const MovingSceneObject &object) {
+  CollisionObject message = toMessage(object.description);
+  message.trajectory = toTrajectoryMessage(object.trajectory);
+  return message;
+}
+
 void toMessage(const Snapshot &snapshot, const std::vector<std::string> &ids, GetSceneResponse &response) {
   if (ids.empty()) {
     for (const auto &object : snapshot.objects()) response.objects.push_back(toMessage(object.second->description));
+    for (const auto &object : snapshot.moving()) response.objects.push_back(toMessage(*object.second));
   }
   for (const std::string &id : ids) {
     const auto object = snapshot.objects().find(id);
+    const auto moving = snapshot.moving().find(id);
     if (object != snapshot.objects().end()) {
       response.objects.push_back(toMessage(object->second->description));
+    } else if (moving != snapshot.moving().end()) {
+      response.objects.push_back(toMessage(*moving->second));
     } else if (snapshot.attached().count(id) == 0) {
       throw Error("there is no object '" + id + "'");
     }
@@ -518,6 +569,7 @@ ApplySceneRequest toMessage(const SceneChange &change) {
   for (const Operation &operation : change.operations) {
     request.objects.push_back(toMessage(operation.object));
     request.objects.back().operation = toOperationByte(operation.kind);
+    if (operation.trajectory) request.objects.back().trajectory = toTrajectoryMessage(*operation.trajectory);
   }
   if (change.default_link_padding) request.link_padding.push_back(toPaddingMessage("", *change.default_link_padding));
   for (const auto &padding : change.link_padding)

@@ -23,7 +23,8 @@ SceneState LiveScene::state(const Snapshot &snapshot) const {
   out.version = snapshot.version();
   out.joint_state_age = out.transform_age = std::numeric_limits<double>::quiet_NaN();
   out.sensors = sensors.states();
-  out.objects = static_cast<std::uint32_t>(snapshot.objects().size() + snapshot.attached().size());
+  out.objects =
+      static_cast<std::uint32_t>(snapshot.objects().size() + snapshot.moving().size() + snapshot.attached().size());
   if (!snapshot.robot()) return out;
   for (const auto &link : snapshot.robot()->links()) out.links += !link.second.empty();
   return out;

@@ -12,6 +12,7 @@
 #include "curve_markers.h"
 #include "guard.h"
 #include "motion_markers.h"
+#include "mover_markers.h"
 
 namespace curve_proximity {
 namespace {
@@ -66,7 +67,8 @@ MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawin
 
   // One robot: at the closest moment of the trajectory, or where the curves met it.
   PlacedBodies everything = objects;
-  if (motion) {
+  addMovers(canvas, scene, motion, resources.objects, resources.robot);
+  if (motion && motion->motion) {
     addMotion(canvas, scene, *motion, resources.robot, objects);
   } else if (curves && curves->snapshot->robot()) {
     addRobot(canvas, *curves->snapshot, curves->links, resources.robot, everything);
@@ -87,7 +89,7 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, co
 
 void MarkerPublisher::show(std::shared_ptr<const Drawing> drawing) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (drawing->motion) motion_ = drawing;
+  if (drawing->motion || drawing->movers) motion_ = drawing;
   if (!drawing->lines.empty()) curves_ = std::move(drawing);
   changed_ = true;
 }

@@ -50,11 +50,19 @@ class NameLimits {
     check("the name of a link", query.links);
     check("the name of a group", query.group);
     check("the name of a joint", query.joint_state.name);
+    for (const RobotTrajectory &robot : query.moving_robots) {
+      check("the name of a robot", robot.name);
+      check("the name of a robot", robot.robot);
+      check("a robot's frame", robot.base.header.frame_id);
+      check("the name of a joint", robot.trajectory.joint_names);
+      check("the name of a joint", robot.joint_state.name);
+    }
   }
 
   void check(const CollisionObject &object) const {
     check("an object's id", object.id);
     check("an object's frame", object.header.frame_id);
+    check("the turning of a trajectory", object.trajectory.turning);
     for (const Body &body : object.bodies) {
       check("a body's type", body.type);
       check("an octree's id", body.octree.id);

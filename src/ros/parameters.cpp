@@ -132,6 +132,18 @@ class Reader {
     }
   }
 
+  void operator()(const char *name, std::map<std::string, std::string> &value) {
+    Xml given;
+    if (!get(name, given)) return;
+    if (given.getType() != Xml::TypeStruct) wrong(name, "names and the parameters that hold their URDFs are expected");
+    value.clear();
+    for (auto &member : given) {
+      if (member.second.getType() != Xml::TypeString)
+        wrong(name, member.first + ": the name of the parameter that holds its URDF is expected");
+      value[member.first] = static_cast<std::string>(member.second);
+    }
+  }
+
   /** A name that is ours, though nobody sets it. */
   void keep(const char *name) {
     known_.insert(name);

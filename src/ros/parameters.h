@@ -6,6 +6,7 @@
 #include <ros/node_handle.h>
 
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ class ParameterError : public std::runtime_error {
 struct Parameters {
   std::string robot_description = "robot_description";
   std::string robot_description_semantic = "robot_description_semantic";
+  std::map<std::string, std::string> robots; /**< parameters that hold URDFs, by the names of robots */
   std::string urdf_dir;
   bool allow_missing_geometry = false;
   std::string fixed_frame = "world";
@@ -76,6 +78,7 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   constexpr double count = std::numeric_limits<int>::max();
   visit("robot_description", parameters.robot_description);
   visit("robot_description_semantic", parameters.robot_description_semantic);
+  visit("robots", parameters.robots);
   visit("urdf_dir", parameters.urdf_dir);
   visit("allow_missing_geometry", parameters.allow_missing_geometry);
   visit("fixed_frame", parameters.fixed_frame);

@@ -169,6 +169,19 @@ class Failures {
   std::string first_;
 };
 
+/** Links with geometry, and what they carry; none: all. */
+std::vector<std::string> ownNames(const Snapshot &snapshot, const std::vector<std::string> &links) {
+  std::vector<std::string> out;
+  for (const std::string &link : links) {
+    const auto found = snapshot.robot()->links().find(link);
+    if (found != snapshot.robot()->links().end() && !found->second.empty()) out.push_back(link);
+    for (const auto &entry : snapshot.attached())
+      if (entry.second->link == link && !entry.second->shapes.empty()) out.push_back(entry.first);
+  }
+  if (!links.empty() && out.empty()) throw Error("none of the links has collision geometry");
+  return out;
+}
+
 /** The name of one of several. */
 std::string numbered(const std::string &name, std::size_t i, std::size_t all) {
   return all == 1 ? name : name + "/" + std::to_string(i);
@@ -226,8 +239,12 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
     throw Error("per_object does not apply: it is of distance, tolerance and collision");
   if (request.asking.per_link && motions == 0 && !more.robot_state)
     throw Error("per_link is about the robot along a trajectory or as it stands (robot_state): there is neither");
-  if (more.self_collision && motions == 0 && !more.robot_state)
+  if (more.self_collision && motions == 0 && !more.robot_state && !more.movers)
     throw Error("self_collision is about the robot along a trajectory or as it stands (robot_state): there is neither");
+  if (!more.moving_robots.empty() && motions == 0 && !more.robot_state && !more.movers)
+    throw Error("moving_robots are about trajectories, robot_state or movers: there is none of these");
+  if (!more.moving_robots.empty() && request.curves.size() + request.paths.size() > 0)
+    throw Error("moving_robots do not apply to curves and paths: ask about them without");
   Query query;
   query.query_type = request.query_type;
   query.delta = request.delta;
@@ -273,6 +290,12 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   }
   limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), values, "joint values");
 
+  for (const RobotTrajectory &robot : request.more.moving_robots)
+    values += robot.trajectory.points.size() * robot.trajectory.joint_names.size();
+  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), values, "joint values");
+  limit("max_curves", static_cast<std::size_t>(parameters_.max_curves), request.more.moving_robots.size(),
+        "moving robots");
+
   // With per_object the answer may be far larger than the query.
   std::size_t targets = 1;
   if (request.more.per_object) {
@@ -291,7 +314,7 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   const std::size_t profiles =
       (asking.per_link && snapshot.robot() ? snapshot.robot()->links().size() + snapshot.attached().size() : 1) *
       (often ? 2 : 1);
-  const std::size_t rows = (curves + motions * profiles) * targets + motions;
+  const std::size_t rows = (curves + motions * profiles) * targets + motions + (request.more.movers ? 1 : 0);
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
   return rows;
 }
@@ -339,6 +362,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
   answerTrajectories(work);
   answerMultiDofTrajectories(work);
   answerState(work);
+  answerMovers(work);
   if (work.search) {
     work.search->failures.tell(response);
     if (work.search->drawn) drawing.links = *work.search->drawn;
@@ -636,6 +660,8 @@ void Queries::answerMultiDofTrajectories(Work &work) {
 void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work) {
   CurveSearch &search = curveSearch(work);
   try {
+    if (!work.request.more.moving_robots.empty())
+      throw Error("moving_robots do not apply to what flies by itself: ask about it without");
     for (const Curve &curve : toCurves(trajectory, parameters_.path_radius)) answerCurve(curve, search, work);
   } catch (const Error &error) {
     refuseCurve(trajectory.joint_names.empty() ? "" : trajectory.joint_names.front(), error.what(), search, work);
@@ -675,6 +701,37 @@ void Queries::answerState(Work &work) {
   answerMotion(std::move(state), work.request.more.joint_state.header.stamp, "", "", work);
 }
 
+/** All that moves, with nobody in its middle. */
+void Queries::answerMovers(Work &work) {
+  const QueryRequest &request = work.request;
+  if (!request.more.movers) return;
+  Proximity row;
+  try {
+    if (!work.query.links.empty()) throw Error("links and group do not apply to movers");
+    const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), work.lookup);
+    const WorkspacePool::Lease workspace(workspaces_);
+    Answer answer = around.ask(work.query, request.more.self_collision != 0, request.asking, *workspace);
+    answer.kind = Proximity::KIND_MOVERS;
+    row = toRow(answer, work.query, request.asking);
+    work.doubts.objects(work.query);
+    work.doubts.ages(work.lookup.age(), NAN);
+    work.doubts.apply(row);
+    if (!work.drawing.motion) {
+      work.drawing.movers = around.movers();
+      work.drawing.robots = around.robots();
+      work.drawing.motion_answers = {std::move(answer)};
+    }
+  } catch (const Error &error) {
+    row = toFailedRow("movers", Proximity::KIND_MOVERS, error.what());
+  }
+  if (std::isnan(row.lower) && work.response.success) {
+    work.response.success = false;
+    work.response.message = "movers: " + row.message;
+  }
+  work.response.results.push_back(std::move(row));
+  if (request.asking.kind == Asking::PROFILE) work.response.profiles.resize(work.response.results.size());
+}
+
 void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
                            const std::string &why_not, Work &work) {
   const QueryRequest &request = work.request;
@@ -699,7 +756,17 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     Query environment = work.query;
     environment.links.clear(); // the motion has them
     MotionRows rows;
-    askMotion(*motion, environment, false, request.asking, *workspace, rows);
+    if (movesBeside(request.more, *work.snapshot)) {
+      const Surroundings around(work.snapshot, request.more, robots_, motion, stamp, work.lookup);
+      Query among = environment;
+      among.links = ownNames(*work.snapshot, work.query.links);
+      rows.answers.push_back(around.ask(among, false, request.asking, *workspace));
+      rows.answers.back().id = id;
+      work.drawing.movers = around.movers();
+      work.drawing.robots.assign(around.robots().begin() + 1, around.robots().end());
+    } else {
+      askMotion(*motion, environment, false, request.asking, *workspace, rows);
+    }
     if (request.more.self_collision) {
       Query self = environment; // of no objects
       self.per_object = false;

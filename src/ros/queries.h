@@ -30,6 +30,7 @@
 #include "doubts.h"
 #include "frames.h"
 #include "live_scene.h"
+#include "movers.h"
 #include "parameters.h"
 #include "statistics.h"
 #include "tuning.h"
@@ -124,15 +125,25 @@ struct Drawing {
   /** The robot along the last trajectory of the request, and what was said of it; null: none. */
   std::shared_ptr<const RobotMotion> motion;
   std::vector<Answer> motion_answers;
+
+  /** What moved beside the robot of the last trajectory, or of the last request of movers; null: nothing. */
+  std::shared_ptr<const Movers> movers;
+  std::vector<MovingRobot> robots; /**< of it, without the robot of `motion` */
 };
 
 /** Answers requests, from any number of threads at once. */
 class Queries {
  public:
-  /** All are kept by reference. stop: set, it ends running queries with the intervals that they have. */
+  /** All but robots are kept by reference. stop: set, it ends running queries with the intervals that they have. */
   Queries(const Parameters &parameters, const Tuning &tuning, const LiveScene &live, const Frames &frames,
-          Statistics &statistics, const std::atomic<bool> &stop)
-      : parameters_(parameters), tuning_(tuning), live_(live), frames_(frames), statistics_(statistics), stop_(stop) {}
+          Statistics &statistics, const std::atomic<bool> &stop, FurtherRobots robots = {})
+      : parameters_(parameters),
+        tuning_(tuning),
+        live_(live),
+        frames_(frames),
+        statistics_(statistics),
+        stop_(stop),
+        robots_(std::move(robots)) {}
 
   /** Fills the response and the drawing. Throws Error where nothing can be answered at all; what is
    *  wrong with one curve becomes its row. */
@@ -177,6 +188,7 @@ class Queries {
   void answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work);
   void answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not = "");
   void answerState(Work &work);
+  void answerMovers(Work &work);
   static void tellProgress(Work &work);
   void answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
                     const std::string &why_not, Work &work);
@@ -188,6 +200,7 @@ class Queries {
   const Frames &frames_;
   Statistics &statistics_;
   const std::atomic<bool> &stop_;
+  const FurtherRobots robots_;
   WorkspacePool workspaces_;
   Crew crew_{std::max(1u, std::thread::hardware_concurrency()) - 1};
 };

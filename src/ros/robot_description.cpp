@@ -50,15 +50,9 @@ Srdf loadSrdf(const ros::NodeHandle &handle, const Parameters &parameters) {
   }
 }
 
-std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Parameters &parameters) {
-  std::string name;
-  const std::string xml =
-      findText(handle, parameters.robot_description, Parameters().robot_description, "robot_description", "URDF", name);
-  if (xml.empty()) {
-    ROS_INFO("there is no robot_description: this server knows objects only");
-    return nullptr;
-  }
+namespace {
 
+std::shared_ptr<const Robot> parseRobot(const std::string &xml, const std::string &name, const Parameters &parameters) {
   // Geometry that is left out must never read as free space without a word.
   RobotOptions options;
   options.resources = resourceOptions(parameters.urdf_dir, parameters.max_shape_mb);
@@ -76,6 +70,43 @@ std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Para
   for (const std::string &warning : robot->warnings()) ROS_WARN("%s", warning.c_str());
   ROS_INFO("robot '%s' with %zu links from '%s'", robot->name().c_str(), robot->links().size(), name.c_str());
   return robot;
+}
+
+} // namespace
+
+std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Parameters &parameters) {
+  std::string name;
+  const std::string xml =
+      findText(handle, parameters.robot_description, Parameters().robot_description, "robot_description", "URDF", name);
+  if (xml.empty()) {
+    ROS_INFO("there is no robot_description: this server knows objects only");
+    return nullptr;
+  }
+  return parseRobot(xml, name, parameters);
+}
+
+std::map<std::string, FurtherRobot> loadFurtherRobots(const ros::NodeHandle &handle, const Parameters &parameters,
+                                                      const std::shared_ptr<const Robot> &own, const Srdf &own_srdf) {
+  std::map<std::string, FurtherRobot> out;
+  const auto add = [&](const std::string &name, std::shared_ptr<const Robot> robot, const Srdf &srdf) {
+    const Scene alone(robot, {}, allowedPairs(srdf));
+    out[name] = {std::move(robot), srdf, alone.snapshot()};
+  };
+  if (own) add("", own, own_srdf);
+  for (const auto &[name, parameter] : parameters.robots) {
+    if (name.empty()) throw ParameterError("parameter ~robots: a robot has no name");
+    std::string where;
+    const std::string urdf = findText(handle, parameter, "", "robots", "URDF", where);
+    const std::string semantic = where + "_semantic";
+    std::string srdf;
+    handle.getParam(semantic, srdf);
+    try {
+      add(name, parseRobot(urdf, where, parameters), srdf.empty() ? Srdf() : parseSrdf(srdf));
+    } catch (const Error &error) {
+      throw Error("robot '" + name + "' of ~robots: " + error.what(), error.status());
+    }
+  }
+  return out;
 }
 
 } // namespace curve_proximity

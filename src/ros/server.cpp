@@ -140,7 +140,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       live_(loadRobot(handle, parameters_), loadSrdf(handle, parameters_),
             resourceOptions("", parameters_.max_shape_mb)),
       state_file_(handle, parameters_, live_),
-      queries_(parameters_, tuning_, live_, frames_, statistics_, stop_),
+      queries_(parameters_, tuning_, live_, frames_, statistics_, stop_,
+               loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf)),
       constraints_(parameters_, live_, frames_, stop_) {
   memory::setLimit(static_cast<std::size_t>(parameters_.memory_limit_mb) << 20);
   warnOfOtherLinks(live_);

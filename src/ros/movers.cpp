@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "movers.h"
+
+#include <algorithm>
+#include <curve_proximity/nearest_name.hpp>
+
+#include "conversions.h"
+
+namespace curve_proximity {
+namespace {
+
+constexpr double NANOSECOND = 1e-9;
+
+/** A message that nobody filled in has zeros everywhere. */
+Eigen::Isometry3d poseOf(const geometry_msgs::Pose &pose) {
+  const geometry_msgs::Quaternion &q = pose.orientation;
+  const geometry_msgs::Point &p = pose.position;
+  const bool unset = p.x == 0 && p.y == 0 && p.z == 0 && q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0;
+  return unset ? Eigen::Isometry3d::Identity() : toIsometry(pose);
+}
+
+MovingRobot toMovingRobot(const RobotTrajectory &message, const FurtherRobots &robots, std::int64_t origin,
+                          FrameLookup &lookup) {
+  try {
+    const auto found = robots.find(message.robot);
+    if (found == robots.end() && message.robot.empty()) throw Error("this server has no robot of its own");
+    if (found == robots.end())
+      throw Error("there is no '" + message.robot + "' in ~robots" + didYouMean(message.robot, namesOf(robots)));
+    const FurtherRobot &robot = found->second;
+    const JointPositions rest = toJointPositions(message.joint_state);
+    std::string remark;
+    TrajectoryDescription trajectory = toDescription(message.trajectory, rest, remark);
+    if (!remark.empty()) throw Error(remark);
+    adoptBase(robot.srdf.virtual_joints, trajectory);
+    const std_msgs::Header &header = message.base.header;
+    const Eigen::Isometry3d base = lookup.toFixed(header.frame_id, header.stamp) * poseOf(message.base.pose);
+    const std::int64_t stamp = static_cast<std::int64_t>(message.trajectory.header.stamp.toNSec());
+    MovingRobot out;
+    out.name = message.name;
+    out.motion = std::make_shared<const RobotMotion>(robot.alone, trajectory, rest, robot.srdf.disabled, base);
+    out.start = stamp != 0 ? NANOSECOND * static_cast<double>(stamp - origin) : 0.0;
+    return out;
+  } catch (const Error &error) {
+    throw Error("robot '" + message.name + "': " + error.what(), error.status());
+  }
+}
+
+/** The moment that is time 0: the stamp of the subject, or now; without a subject the earliest stamp. */
+std::int64_t originOf(const ProximityQuery &query, const Snapshot &snapshot, bool subject, const ros::Time &stamp) {
+  if (subject) return static_cast<std::int64_t>((stamp.isZero() ? ros::Time::now() : stamp).toNSec());
+  std::vector<std::int64_t> stamps;
+  for (const auto &robot : query.moving_robots)
+    stamps.push_back(static_cast<std::int64_t>(robot.trajectory.header.stamp.toNSec()));
+  for (const auto &entry : snapshot.moving()) stamps.push_back(entry.second->trajectory.start);
+  stamps.erase(std::remove(stamps.begin(), stamps.end(), 0), stamps.end());
+  return stamps.empty() ? 0 : *std::min_element(stamps.begin(), stamps.end());
+}
+
+void checkAsked(const Query &query, const Asking &asking) {
+  const std::string where = " while objects or further robots move";
+  if (asking.kind == Asking::NEAREST) throw Error("nearest pairs are not available" + where);
+  if (asking.kind == Asking::PROFILE) throw Error("clearance profiles are not available" + where);
+  if (query.per_object) throw Error("per_object is not available" + where);
+  if (!query.objects.empty()) throw Error("a choice of objects is not available" + where);
+}
+
+} // namespace
+
+bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot) {
+  return !query.moving_robots.empty() || !snapshot.moving().empty();
+}
+
+Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
+                           std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, FrameLookup &lookup)
+    : has_subject_(subject != nullptr) {
+  const std::int64_t origin = originOf(query, *snapshot, has_subject_, stamp);
+  const std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
+  for (const auto &message : query.moving_robots) robots_.push_back(toMovingRobot(message, robots, origin, lookup));
+  if (subject) {
+    const MovingRobot robot{snapshot->robot()->name(), std::move(subject), 0.0};
+    checkClocks(robot, robots_, objects);
+    robots_.insert(robots_.begin(), robot);
+  }
+  movers_ = std::make_shared<const Movers>(snapshot, robots_, objects);
+}
+
+Answer Surroundings::ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace) const {
+  checkAsked(query, asking);
+  const bool contact = asking.kind == Asking::CONTACT;
+  if (has_subject_)
+    return contact ? timeOfContact(*movers_, robots_.front(), query, workspace)
+                   : curve_proximity::ask(*movers_, robots_.front(), query, workspace);
+  const Against against = against_self ? Against::BOTH : Against::OTHERS;
+  return contact ? timeOfContact(*movers_, against, query, workspace)
+                 : curve_proximity::ask(*movers_, against, query, workspace);
+}
+
+} // namespace curve_proximity

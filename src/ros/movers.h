@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What moves beside a robot: objects of the scene and further robots of a request, on one clock. */
+#ifndef CURVE_PROXIMITY_ROS_MOVERS_H
+#define CURVE_PROXIMITY_ROS_MOVERS_H
+
+#include <curve_proximity/ProximityQuery.h>
+#include <ros/time.h>
+
+#include <curve_proximity/movers.hpp>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "asking.h"
+#include "frames.h"
+#include "robot_description.h"
+
+namespace curve_proximity {
+
+/** Robots by the name that requests give them. */
+using FurtherRobots = std::map<std::string, FurtherRobot>;
+
+/** Does anything move beside the robot that is asked about? */
+bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot);
+
+/** Robots and objects on one clock, and how they are asked about. */
+class Surroundings {
+ public:
+  /** subject: the robot that is asked about, with its stamp; null: nobody. Throws Error, which names the mover: a robot
+   *  that is not known, what RobotMotion and Movers refuse, a trajectory that is stale or in the future. */
+  Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
+               std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, FrameLookup &lookup);
+
+  /** One answer: of the subject, else of all that moves; against_self: of that each robot against itself, too. Throws
+   *  Error for what is not available of movers. query: its links are those of the subject. */
+  Answer ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace) const;
+
+  const std::shared_ptr<const Movers> &movers() const {
+    return movers_;
+  }
+  const std::vector<MovingRobot> &robots() const {
+    return robots_;
+  }
+
+ private:
+  bool has_subject_ = false;
+  std::vector<MovingRobot> robots_; /* the subject first */
+  std::shared_ptr<const Movers> movers_;
+};
+
+} // namespace curve_proximity
+#endif

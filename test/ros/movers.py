@@ -1,0 +1,362 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Objects and further robots that move, held against dense samples of an own reference: forward kinematics of the URDF in numpy,
+convex hulls of its mesh files, and their distances by Gilbert's algorithm."""
+import math
+import os
+import struct
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import numpy
+import rospy
+import yaml
+from curve_proximity.msg import CollisionObject, PoseTrajectory, RobotTrajectory, Waypoint
+from curve_proximity.srv import ClearanceProfile, ClearanceProfileRequest, TimeOfContact, TimeOfContactRequest
+from helpers import Server, bezier, box, joints, pose, query, run, sphere, until
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from visualization_msgs.msg import Marker, MarkerArray
+
+DATA = os.path.dirname(os.path.abspath(__file__)) + '/../data'
+PANDA = DATA + '/robots/panda/'
+SHELF = DATA + '/scenes/mbm/bookshelf_tall_panda/scene0001.yaml'
+READY = dict(panda_joint1=0.0, panda_joint2=0.4, panda_joint3=0.0, panda_joint4=-1.4, panda_joint5=0.0, panda_joint6=1.8,
+             panda_joint7=0.785, panda_finger_joint1=0.02, panda_finger_joint2=0.02)
+
+
+# ---- the reference ----
+
+def rotation(rpy):
+    (sr, cr), (sp, cp), (sy, cy) = [(math.sin(a), math.cos(a)) for a in rpy]
+    return numpy.array([[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+                        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr], [-sp, cp * sr, cp * cr]])
+
+
+def about(axis, angle):
+    x, y, z = axis
+    k = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return numpy.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * k @ k
+
+
+def frame(r=None, p=(0, 0, 0)):
+    out = numpy.eye(4)
+    out[:3, :3] = numpy.eye(3) if r is None else r
+    out[:3, 3] = p
+    return out
+
+
+def numbers(element, key, default):
+    text = element.get(key) if element is not None else None
+    return [float(x) for x in text.split()] if text else default
+
+
+def origin(element):
+    o = element.find('origin')
+    return frame(rotation(numbers(o, 'rpy', [0, 0, 0])), numbers(o, 'xyz', [0, 0, 0]))
+
+
+def stl_points(path):
+    with open(path, 'rb') as file:
+        data = file.read()
+    count, = struct.unpack('<I', data[80:84])
+    rows = numpy.frombuffer(data[84:84 + 50 * count], dtype=numpy.dtype([('f', '<f4', 12), ('a', '<u2')]))
+    return numpy.unique(rows['f'][:, 3:].reshape(-1, 3).astype(float), axis=0)
+
+
+class Robot:
+    def __init__(self, folder, name):
+        root = ElementTree.parse(folder + name).getroot()
+        self.joints = {j.find('child').get('link'): j for j in root.findall('joint')}
+        self.links = {}
+        for link in root.findall('link'):
+            for collision in link.findall('collision'):
+                mesh = collision.find('geometry/mesh')
+                points = stl_points(folder + mesh.get('filename')) * numbers(mesh, 'scale', [1, 1, 1])
+                at = origin(collision)
+                self.links.setdefault(link.get('name'), []).append(points @ at[:3, :3].T + at[:3, 3])
+
+    def pose(self, link, values):
+        joint = self.joints.get(link)
+        if joint is None:
+            return numpy.eye(4)
+        here = self.pose(joint.find('parent').get('link'), values) @ origin(joint)
+        axis, value = numbers(joint.find('axis'), 'xyz', [1, 0, 0]), values.get(joint.get('name'), 0.0)
+        if joint.get('type') in ('revolute', 'continuous'):
+            return here @ frame(about(axis, value))
+        return here @ frame(p=numpy.array(axis) * value) if joint.get('type') == 'prismatic' else here
+
+    def hulls(self, values, base):
+        out = []
+        for link, meshes in self.links.items():
+            at = base @ self.pose(link, values)
+            out += [(link, points @ at[:3, :3].T + at[:3, 3]) for points in meshes]
+        return out
+
+
+def distance(a, b, good=1e-7):
+    """[lower, upper] of the distance of two hulls, by Gilbert's algorithm with steps away from vertices (Wolfe)."""
+    x = a[0] - b[0]
+    active = [x]
+    weights = numpy.array([1.0])
+    lower = 0.0
+    for _ in range(400):
+        norm = math.sqrt(x @ x)
+        if norm < 1e-9:
+            return 0.0, norm
+        s = a[numpy.argmin(a @ x)] - b[numpy.argmax(b @ x)]
+        lower = max(lower, (s @ x) / norm)
+        if norm - lower < good:
+            break
+        active.append(s)
+        weights = numpy.append(weights, 0.0)
+        while True:  # the affine minimum, or as far towards it as weights allow
+            m = numpy.array(active)
+            n = len(m)
+            system = numpy.zeros((n + 1, n + 1))
+            system[:n, :n], system[:n, n], system[n, :n] = m @ m.T, 1, 1
+            best = numpy.linalg.lstsq(system, numpy.append(numpy.zeros(n), 1.0), rcond=None)[0][:n]
+            if (best > -1e-12).all():
+                weights = numpy.maximum(best, 0)
+                break
+            with numpy.errstate(divide='ignore', invalid='ignore'):
+                step = min([weights[i] / (weights[i] - best[i]) for i in range(n) if best[i] <= -1e-12])
+            weights = weights + step * (best - weights)
+            kept = weights > 1e-12
+            if kept.all():
+                kept[numpy.argmin(weights)] = False
+            active = [p for p, keep in zip(active, kept) if keep]
+            weights = weights[kept] / weights[kept].sum()
+        x = weights @ numpy.array(active)
+    return lower, math.sqrt(x @ x)
+
+
+def between(first, second):
+    """[lower, upper] of the least distance of two lists of hulls; pairs whose balls are farther apart are left out."""
+    balls = [[(p.mean(0), numpy.linalg.norm(p - p.mean(0), axis=1).max()) for _, p in hulls] for hulls in (first, second)]
+    gaps = sorted((numpy.linalg.norm(c - d) - r - s, i, j) for i, (c, r) in enumerate(balls[0]) for j, (d, s) in enumerate(balls[1]))
+    lower = upper = math.inf
+    for gap, i, j in gaps:
+        if gap > upper:
+            break
+        low, high = distance(first[i][1], second[j][1])
+        lower, upper = min(lower, low), min(upper, high)
+    return lower, upper
+
+
+def cube(half):
+    return numpy.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
+
+
+def shelf_hulls():
+    with open(SHELF) as file:
+        scene = yaml.safe_load(file)
+    out = []
+    for thing in scene['world']['collision_objects']:
+        for shape, at in zip(thing['primitives'], thing['primitive_poses']):
+            x, y, z, w = at['orientation']
+            q = numpy.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                             [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                             [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+            if shape['type'] == 'box':
+                out.append((thing['id'], cube(numpy.array(shape['dimensions']) / 2) @ q.T + numpy.array(at['position'])))
+    return out
+
+
+# ---- messages ----
+
+def waypoint(time, position, orientation=(0, 0, 0, 1)):
+    return Waypoint(time, pose(position, orientation))
+
+
+def moving(thing, *waypoints, **fields):
+    thing.trajectory = PoseTrajectory(waypoints=list(waypoints), **fields)
+    return thing
+
+
+def swing(begin, end, seconds=2.0, stamp=0.0):
+    names = [name for name in READY if name != 'panda_finger_joint2']
+    message = JointTrajectory(joint_names=names)
+    message.header.stamp = rospy.Time.from_sec(stamp)
+    for t, value in ((0.0, begin), (seconds, end)):
+        values = dict(READY, panda_joint1=value)
+        message.points.append(JointTrajectoryPoint(positions=[values[n] for n in names], time_from_start=rospy.Duration(t)))
+    return message
+
+
+def other(trajectory, x=1.6, robot='other', name='right'):
+    out = RobotTrajectory(name=name, robot=robot, trajectory=trajectory)
+    out.base.pose = pose((x, 0, 0), (0, 0, 1, 0))
+    return out
+
+
+class Movers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        rospy.wait_for_service('/curve_proximity/time_of_contact', 20)
+        cls.contact = rospy.ServiceProxy('/curve_proximity/time_of_contact', TimeOfContact)
+        cls.profile = rospy.ServiceProxy('/curve_proximity/clearance_profile', ClearanceProfile)
+        until(lambda: cls.server.distance([], robot_state=True, joint_state=joints(**READY)).success, 20)
+        cls.panda = Robot(PANDA, 'panda.urdf')
+
+    def setUp(self):
+        self.server.replace()
+
+    def pandas(self, t, delay, gap):
+        """The hulls of both at the time t, the second one's motion late by delay."""
+        def at(s):
+            return dict(READY, panda_joint1=-0.8 + 0.8 * min(max(s, 0.0), 2.0))
+        return (self.panda.hulls(at(t), numpy.eye(4)),
+                self.panda.hulls(at(t - delay), frame(about((0, 0, 1), math.pi), (gap, 0, 0))))
+
+    def test_two_pandas_cross_on_one_clock(self):
+        for delay, gap, robot in ((0.0, 1.6, 'other'), (0.75, 1.6, '')):
+            first = swing(-0.8, 0.8, stamp=1000.0)
+            second = swing(-0.8, 0.8, stamp=1000.0 + delay)
+            response = self.server.distance([], trajectory=first, moving_robots=[other(second, gap, robot)], epsilon=1e-5)
+            self.assertTrue(response.success, response.message)
+            row, = response.results
+            self.assertEqual((row.id, row.kind, row.b.split('/')[0]), ('trajectory', 'environment', 'right'))
+            self.assertLessEqual(row.upper - row.lower, 1.01e-5)
+            low, high = between(*self.pandas(row.t, delay, gap))
+            self.assertLessEqual(low - 1e-5, row.upper)  # at its time the pair is that far
+            self.assertAlmostEqual(high, row.upper, delta=2e-5)
+            for t in numpy.linspace(0, 2, 41):
+                self.assertGreaterEqual(between(*self.pandas(t, delay, gap))[1], row.lower - 1e-6, t)
+
+    def test_contact_of_two_pandas_is_never_told_late(self):
+        response = self.contact(TimeOfContactRequest(query(trajectory=swing(-0.8, 0.8), moving_robots=[other(swing(-0.8, 0.8), 1.3)])))
+        self.assertTrue(response.success, response.message)
+        row, = response.results
+        self.assertEqual(row.verdict, 'violated')
+        self.assertGreater(row.t_contact_lower, 0.0)
+        # apart before, closer than what they move in a hundredth of a second after
+        for t in numpy.linspace(0, row.t_contact_lower, 12):
+            self.assertGreater(between(*self.pandas(t, 0.0, 1.3))[1], 0.0, t)
+        self.assertLess(between(*self.pandas(row.t_contact_lower + 0.01, 0.0, 1.3))[0], 1e-4)
+        verdict, = self.server.collision([], trajectory=swing(-0.8, 0.8), moving_robots=[other(swing(-0.8, 0.8), 1.3)]).results
+        self.assertEqual(verdict.verdict, 'violated')
+
+    def fall(self, **fields):
+        """A box of 0.2 x 0.1 x 0.3 is dropped past the front of the shelf, turning by 120 degrees about x."""
+        hulls = shelf_hulls()
+        points = numpy.vstack([p for _, p in hulls])
+        front = points[:, 1].min() if abs(points[:, 1].min()) < abs(points[:, 1].max()) else points[:, 1].max()
+        away = -0.22 if front == points[:, 1].min() else 0.22
+        x = points[:, 0].mean()
+        start, end = (x, front + away, 1.6), (x, front + away, 0.2)
+        half = math.radians(60)
+        thing = moving(box('box', (0.2, 0.1, 0.3)), waypoint(0, start), waypoint(0.8, end, (math.sin(half), 0, 0, math.cos(half))), **fields)
+
+        def at(t):
+            s = min(max(t / 0.8, 0.0), 1.0)
+            r = about((1, 0, 0), 2 * half * s)
+            return [('box', cube(numpy.array([0.1, 0.05, 0.15])) @ r.T + (1 - s) * numpy.array(start) + s * numpy.array(end))]
+        return thing, at, hulls
+
+    def load_shelf(self):
+        with open(SHELF) as file:
+            scene = yaml.safe_load(file)
+        things = []
+        for thing in scene['world']['collision_objects']:
+            for i, (shape, at) in enumerate(zip(thing['primitives'], thing['primitive_poses'])):
+                if shape['type'] == 'box':
+                    item = box('%s_%d' % (thing['id'], i), shape['dimensions'])
+                    item.pose = pose(at['position'], at['orientation'])
+                    things.append(item)
+        return things
+
+    def test_a_turning_box_is_dropped_past_a_bookshelf(self):
+        thing, at, hulls = self.fall()
+        self.server.replace(thing, *self.load_shelf())
+        response = self.server.distance([], movers=True)
+        self.assertTrue(response.success, response.message)
+        row, = response.results
+        self.assertEqual((row.id, row.kind, row.a), ('movers', 'movers', 'box'))
+        self.assertLessEqual(row.upper - row.lower, 1.01e-6)
+        self.assertGreater(row.lower, 0.0)
+        self.assertAlmostEqual(between(at(row.t), hulls)[1], row.upper, delta=2e-6)
+        samples = [between(at(t), hulls) for t in numpy.linspace(0, 0.8, 161)]
+        self.assertTrue(all(high >= row.lower - 1e-9 for _, high in samples))
+        self.assertLess(min(low for low, _ in samples) - row.upper, 2e-3)
+        contact, = self.contact(TimeOfContactRequest(query(movers=True))).results
+        self.assertEqual((contact.verdict, contact.t_contact_lower), ('clear', 0.8))
+        verdict, = self.server.tolerance([], row.upper + 1e-5, movers=True).results
+        self.assertEqual(verdict.verdict, 'violated')
+
+    def test_it_is_shown_at_the_moment_of_closest_approach(self):
+        thing, at, _ = self.fall()
+        self.server.replace(thing, *self.load_shelf())
+        received = []
+        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
+        self.addCleanup(subscriber.unregister)
+        row, = self.server.distance([], movers=True).results
+        shown = until(lambda: next((a for a in received if {'movers', 'movers_way', 'pairs'} <= {m.ns for m in a.markers}), None), 10)
+        self.assertTrue(shown)
+        drawn, = [m for m in shown.markers if m.ns == 'movers']
+        self.assertEqual(drawn.type, Marker.CUBE)
+        self.assertAlmostEqual(drawn.pose.position.z, at(row.t)[0][1].mean(0)[2], delta=1e-6)
+
+    def test_the_scene_keeps_what_moves(self):
+        thing, _, _ = self.fall(start=rospy.Time(1234, 567), turning='screw')
+        state = self.server.replace(thing).scene
+        self.assertEqual(state.objects, 1)
+        kept, = self.server.scene('box').objects
+        self.assertEqual((kept.trajectory.start, kept.trajectory.turning), (rospy.Time(1234, 567), 'screw'))
+        self.assertEqual([w.time for w in kept.trajectory.waypoints], [0.0, 0.8])
+        self.assertAlmostEqual(kept.trajectory.waypoints[1].pose.orientation.x, math.sin(math.radians(60)), delta=1e-15)
+        again = self.server.replace(*self.server.scene().objects)
+        self.assertEqual(again.scene.objects, 1)
+        self.assertTrue(self.server.apply(CollisionObject(id='box', operation=CollisionObject.REMOVE)).success)
+        self.assertEqual(len(self.server.scene().objects), 0)
+
+    def assertRefused(self, response, *parts):
+        self.assertFalse(response.success)
+        for part in parts:
+            self.assertIn(part, response.message)
+        self.assertNotIn('\n', response.message)
+
+    def test_stamps_that_do_not_overlap_are_refused_by_how_much(self):
+        ball = moving(sphere('ball', 0.1), waypoint(0, (2, 2, 0.5)), waypoint(1, (2, 3, 0.5)), start=rospy.Time(990))
+        self.server.replace(ball)
+        ask = self.server.distance
+        self.assertRefused(ask([], trajectory=swing(-0.8, 0.8, stamp=1000.0)), "object 'ball'", 'stale: it ends 9 s before')
+        self.assertRefused(ask([], trajectory=swing(-0.8, 0.8, stamp=900.0)), "object 'ball'", 'it begins 88 s after')
+        self.assertTrue(ask([], trajectory=swing(-0.8, 0.8, stamp=990.5)).success)
+        self.server.replace()
+        late = other(swing(-0.8, 0.8, stamp=1002.5))
+        self.assertRefused(ask([], trajectory=swing(-0.8, 0.8, stamp=1000.0), moving_robots=[late]), "robot 'right'", 'it begins 0.5 s after')
+
+    def test_bad_movers_are_refused_by_name(self):
+        half_turn = moving(sphere('ball', 0.1), waypoint(0, (0, 0, 0)), waypoint(1, (0, 0, 1), (0, 0, 1, 0)))
+        for thing, because in ((moving(sphere('ball', 0.1), waypoint(1, (0, 0, 0)), waypoint(1, (0, 0, 1))), 'waypoint 1 at 1 s'),
+                               (moving(sphere('ball', 0.1), waypoint(0, (0, 0, 0)), waypoint(1, (0, 0, 1), (0, 0, 0, 0))), 'waypoint 1: '),
+                               (moving(sphere('ball', 0.1), waypoint(math.nan, (0, 0, 0))), 'waypoint 0: the time is not finite'),
+                               (moving(sphere('ball', 0.1, (0, 0, 1)), waypoint(0, (0, 0, 0))), 'a pose and a trajectory'),
+                               (moving(sphere('ball', 0.1), waypoint(0, (0, 0, 0)), turning='fast'), "'fast' is none of slerp, screw"),
+                               (half_turn, 'half a turn')):
+            response = self.server.apply(thing)
+            self.assertRefused(response, "object 'ball'", because)
+        self.assertEqual(len(self.server.scene().objects), 0)
+        ask = lambda *robots: self.server.distance([], trajectory=swing(-0.8, 0.8), moving_robots=list(robots))
+        self.assertRefused(ask(other(swing(-0.8, 0.8), robot='otter')), "there is no 'otter' in ~robots", "'other'")
+        self.assertRefused(ask(other(swing(-0.8, 0.8)), other(swing(-0.8, 0.8))), "two movers are named 'right'")
+        self.assertRefused(ask(other(swing(-0.8, 0.8), name='panda')), "two movers are named 'panda'")
+        self.assertRefused(ask(other(swing(-0.8, 0.8), name='a/b')), "it contains '/'")
+        self.assertRefused(ask(other(JointTrajectory(joint_names=['elbow'], points=[JointTrajectoryPoint(positions=[0])]))), "robot 'right'", 'elbow')
+
+    def test_what_does_not_know_movers_says_so(self):
+        self.server.replace(moving(sphere('ball', 0.1), waypoint(0, (2, 2, 0.5)), waypoint(1, (2, 3, 0.5))), box('table', (1, 1, 0.1), (3, 0, 0)))
+        moves = "object 'ball' moves along a trajectory"
+        line = bezier((0, 0, 2), (1, 0, 2))
+        self.assertRefused(self.server.distance(line, joint_state=joints(**READY)), moves)
+        self.assertTrue(self.server.distance(line, objects=['table'], joint_state=joints(**READY)).success)
+        self.assertRefused(self.server.distance([], trajectory=swing(0, 1), per_object=True), 'per_object is not available')
+        self.assertRefused(self.profile(ClearanceProfileRequest(query=query(trajectory=swing(0, 1)))), 'clearance profiles are not available')
+        self.assertRefused(self.server.distance(line, moving_robots=[other(swing(0, 1))]), 'moving_robots')
+        self.assertTrue(self.server.distance([], robot_state=True, joint_state=joints(**READY)).success)
+        self.assertRefused(self.server.apply(CollisionObject(id='ball', operation=CollisionObject.MOVE, pose=pose())), 'it moves along a trajectory')
+
+
+if __name__ == '__main__':
+    run('movers')
