@@ -17,16 +17,18 @@ void complain(const std::string &why) {
   ROS_ERROR("gate: %s", why.c_str());
 }
 
-/** What is left after `elapsed` seconds: from the last point before that on, as a trajectory of its own. */
+/** What is left after `elapsed` seconds: from the last point before that on, as a trajectory of its own whose time 0 is
+ *  now: objects that move do so on that clock. */
 trajectory_msgs::JointTrajectory restOf(const trajectory_msgs::JointTrajectory &whole, double elapsed) {
   std::size_t first = 0;
   while (first + 1 < whole.points.size() && whole.points[first + 1].time_from_start.toSec() <= elapsed) ++first;
   trajectory_msgs::JointTrajectory rest = whole;
   rest.header.stamp = ros::Time();
-  if (first == 0) return rest;
   rest.points.erase(rest.points.begin(), rest.points.begin() + static_cast<std::ptrdiff_t>(first));
-  const ros::Duration start = rest.points.front().time_from_start;
-  for (auto &point : rest.points) point.time_from_start -= start;
+  const bool stands = rest.points.size() == 1 && rest.points.front().time_from_start.toSec() <= elapsed; // at its end
+  if (!stands && elapsed <= 0.0) return rest;
+  const ros::Duration now = stands ? rest.points.front().time_from_start : ros::Duration(elapsed);
+  for (auto &point : rest.points) point.time_from_start -= now;
   return rest;
 }
 
