@@ -153,6 +153,7 @@ static const char *check_section(section *c) {
   const char *fault = read_pieces(c->in, &c->set->curve, &target, &breaks);
   c->target = &target;
   if (!fault) fault = check_tree(c, (part){0.0, (double)c->mover->n}, (part){0.0, (double)target.n}, 0);
+  c->target = NULL;
   pieces_free(&target);
   free(breaks);
   return fault;

@@ -327,7 +327,7 @@ def compile_commands_once():
 
 
 def tidy():
-    files = [path for path in sources('src/core') if path.endswith('.c')]
+    files = [path for path in sources('src/core', 'src/fourier', 'check') if path.endswith('.c')]
     command = ['xargs', '-a', write_list(files), f'-P{RUNNERS}', '-n4', 'clang-tidy', '--quiet', '-p', compile_commands_once()]
     return run_one(command, 'clang-tidy', count_exit, limit=1800)
 

@@ -239,9 +239,10 @@ CASE(lagrange_curves_are_within_their_error) {
     cprox_curve *curve = NULL;
     assert_int_equal(curve_from(describe_lagrange(y, x, d.n, d.t0, d.t1), NULL, &curve), CPROX_OK);
     stays_within_its_error(curve, &d, by_values, &r, &all);
-    const double ratio = cprox_curve_get_info(curve).error / (U * largest_sum(&d) + 1e-149);
-    if (kind == 0 && d.n <= 21) worst_even = fmax(worst_even, ratio);
-    if (kind == 1) worst_chebyshev = fmax(worst_chebyshev, ratio);
+    if ((kind == 0 && d.n <= 21) || kind == 1) {
+      double *worst = kind == 0 ? &worst_even : &worst_chebyshev;
+      *worst = fmax(*worst, cprox_curve_get_info(curve).error / (U * largest_sum(&d) + 1e-149));
+    }
     cprox_curve_free(curve);
   }
   print_message(
