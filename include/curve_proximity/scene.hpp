@@ -67,8 +67,13 @@ struct SceneChange {
   /** First removes all objects (attached too), link paddings and scales, and all allowed pairs but those that the scene
    *  began with. */
   bool clear = false;
-  std::vector<Operation> operations;          /**< applied in order */
-  std::vector<Attachment> attachments;        /**< after the operations, in order */
+  bool clear_objects = false;          /**< First removes all objects of the scene but those in `kept`. */
+  std::vector<std::string> kept;       /**< ids that clear_objects leaves */
+  bool clear_attached = false;         /**< First removes all attached objects; they do not return into the scene. */
+  bool clear_allowed = false;          /**< First removes all allowed pairs, also those that the scene began with. */
+  std::vector<Operation> operations;   /**< applied in order */
+  std::vector<Attachment> attachments; /**< after the operations, in order */
+  bool attachments_first = false;      /**< the attachments come before the operations */
   std::map<std::string, double> link_padding; /**< [m] >= 0, by link */
   std::optional<double> default_link_padding; /**< [m] >= 0, of the links not named */
   std::map<std::string, double> link_scale;   /**< > 0, by link: see Snapshot::linkGeometry() */

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -398,15 +399,30 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
     next->link_scale_.clear();
     next->scaled_.clear();
   }
-
-  for (std::size_t i = 0; i < change.operations.size(); ++i) {
-    const Operation &operation = change.operations[i];
-    try {
-      applyOperation(operation, prepared[i], next->attached_, next->objects_, next->moving_);
-    } catch (const std::exception &error) {
-      faults.push_back("object '" + operation.object.id + "': " + error.what());
-    }
+  if (change.clear_objects) {
+    const auto clear = [&](auto &objects) {
+      for (auto it = objects.begin(); it != objects.end();) {
+        const bool kept = std::find(change.kept.begin(), change.kept.end(), it->first) != change.kept.end();
+        it = kept ? std::next(it) : objects.erase(it);
+      }
+    };
+    clear(next->objects_);
+    clear(next->moving_);
   }
+  if (change.clear_attached) next->attached_.clear();
+  if (change.clear_allowed) next->allowed_ = std::make_shared<const std::vector<AllowedPair>>();
+
+  const auto apply_operations = [&] {
+    for (std::size_t i = 0; i < change.operations.size(); ++i) {
+      const Operation &operation = change.operations[i];
+      try {
+        applyOperation(operation, prepared[i], next->attached_, next->objects_, next->moving_);
+      } catch (const std::exception &error) {
+        faults.push_back("object '" + operation.object.id + "': " + error.what());
+      }
+    }
+  };
+  if (!change.attachments_first) apply_operations();
   try {
     next->scaleLinks(change.link_scale, resources_);
   } catch (const std::exception &error) {
@@ -424,6 +440,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
       faults.push_back("object '" + attachment.object.id + "': " + error.what());
     }
   }
+  if (change.attachments_first) apply_operations();
   try {
     checkLinkPaddings(change.link_padding, next->robot_.get());
     if (change.default_link_padding) checkPadding(*change.default_link_padding);

@@ -209,6 +209,28 @@ TEST_F(Slider, an_object_of_the_scene_is_taken_up_and_put_down_where_it_is) {
   EXPECT_LT((at - Eigen::Vector3d(0.5, 2, 0)).norm(), 1e-12);
 }
 
+TEST_F(Slider, attachments_may_come_before_the_operations_and_be_cleared_apart) {
+  const Attachment up = attachment("box", "cart", {shape(ShapeType::BOX, {1, 1, 1})}, translation(0.5, 0, 0));
+  ASSERT_TRUE(attach(up).empty());
+  SceneChange put_elsewhere = change({add("box", {shape(ShapeType::SPHERE, {1})}, translation(7, 7, 7))});
+  put_elsewhere.attachments.push_back(up);
+  put_elsewhere.attachments[0].kind = Attachment::Kind::DETACH;
+  put_elsewhere.attachments[0].link_poses["cart"] = translation(0, 2, 0);
+  expectContains(scene.apply(put_elsewhere).at(0), "'cart' carries it"); /* its turn comes before the detaching */
+  ASSERT_TRUE(attach(up).empty());
+  put_elsewhere.attachments_first = true;
+  ASSERT_TRUE(scene.apply(put_elsewhere).empty());
+  EXPECT_TRUE(scene.snapshot()->attached().empty());
+  EXPECT_EQ(scene.snapshot()->objects().at("box")->description.pose.translation(), Eigen::Vector3d(7, 7, 7));
+
+  ASSERT_TRUE(attach(up).empty());
+  SceneChange away;
+  away.clear_attached = true;
+  ASSERT_TRUE(scene.apply(away).empty());
+  EXPECT_TRUE(scene.snapshot()->attached().empty());
+  EXPECT_EQ(scene.snapshot()->objects().count("box"), 0u);
+}
+
 TEST_F(Slider, what_is_carried_is_checked_against_links_that_one_joint_moves_unless_it_may_touch_them) {
   Attachment held = attachment("held", "arm", {shape(ShapeType::SPHERE, {0.1})}, translation(0.5, 0, 0));
   TrajectoryDescription t;

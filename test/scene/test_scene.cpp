@@ -245,6 +245,29 @@ TEST(Scene, clear_takes_everything_before_the_rest_of_the_change) {
   EXPECT_NE(scene.snapshot()->robot(), nullptr);
 }
 
+TEST(Scene, objects_and_allowed_pairs_are_cleared_apart) {
+  Scene scene(dataRobot("husky"), {}, {{"base_link", "", true}});
+  SceneChange first = change({add("a", {BOX}), add("b", {BOX})});
+  first.allowed = {{"a", "b", true}};
+  first.link_padding = {{"base_link", 0.1}};
+  ASSERT_TRUE(scene.apply(first).empty());
+  SceneChange objects = change({add("c", {BOX})});
+  objects.clear_objects = true;
+  objects.kept = {"b", "nobody"};
+  ASSERT_TRUE(scene.apply(objects).empty());
+  EXPECT_EQ(scene.snapshot()->objects().size(), 2u);
+  EXPECT_EQ(scene.snapshot()->objects().count("a"), 0u);
+  EXPECT_TRUE(scene.snapshot()->mayTouch("a", "b"));
+  SceneChange pairs;
+  pairs.clear_allowed = true;
+  pairs.allowed = {{"b", "c", true}};
+  ASSERT_TRUE(scene.apply(pairs).empty());
+  EXPECT_EQ(scene.snapshot()->allowed().size(), 1u);
+  EXPECT_TRUE(scene.snapshot()->mayTouch("b", "c"));
+  EXPECT_FALSE(scene.snapshot()->mayTouch("base_link", "b"));
+  EXPECT_EQ(scene.snapshot()->linkPadding("base_link"), 0.1);
+}
+
 TEST(Scene, a_snapshot_stays_as_it_was) {
   Scene scene;
   apply(scene, {add("o", {BALL}, translation(2, 0, 0))});
