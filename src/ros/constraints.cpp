@@ -255,7 +255,7 @@ MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work)
   const Eigen::Isometry3d base = on_joint ? work.lookup.toFixed(out.trajectory.base.front().parent_frame, stamp)
                                           : rootPose(*work.snapshot->robot(), live_.srdf, stamp, work.lookup);
   if (on_joint || !work.robot || work.base.matrix() != base.matrix()) {
-    out.robot = std::make_shared<const PreparedRobot>(work.snapshot, live_.srdf.disabled, out.trajectory.base,
+    out.robot = std::make_shared<const PreparedRobot>(work.snapshot, live_.disabled(), out.trajectory.base,
                                                       out.trajectory.base_joints, base);
     work.base = base;
     work.robot = on_joint ? nullptr : out.robot;
@@ -343,6 +343,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
   response.scene.transform_age = work.lookup.oldest();
   doubts.tell(response.warnings);
   const std::vector<std::string> &said = response.warnings;
+  for (std::string &remark : live_.remarks.get()) response.warnings.push_back(std::move(remark));
   if (live_.lost && std::find(said.begin(), said.end(), SCENE_LOST) == said.end())
     response.warnings.push_back(SCENE_LOST);
   response.success = failed == 0;

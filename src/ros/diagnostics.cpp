@@ -22,11 +22,13 @@ constexpr double QUIET_WARNING = 10.0; /* [s] between two log lines about the sa
 } // namespace
 
 Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, Turns &turns, const Pipeline &pipeline,
-                         const Sensors &sensors, const Frames &frames, const LiveScene &live)
+                         const Sensors &sensors, const PlanningSceneTopic &planning_scene, const Frames &frames,
+                         const LiveScene &live)
     : statistics_(statistics),
       turns_(turns),
       pipeline_(pipeline),
       sensors_(sensors),
+      planning_scene_(planning_scene),
       frames_(frames),
       live_(live),
       master_(handle.getNamespace() + "/distance"),
@@ -36,6 +38,7 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
   updater_.add("queries", this, &Diagnostics::queries);
   updater_.add("topics", this, &Diagnostics::topics);
   updater_.add("sensors", this, &Diagnostics::sensors);
+  updater_.add("planning_scene", this, &Diagnostics::planningScene);
   updater_.add("transforms", this, &Diagnostics::transforms);
   updater_.add("master", this, &Diagnostics::master);
 
@@ -114,6 +117,33 @@ void Diagnostics::sensors(Status &status) {
   } else {
     status.summary(DiagnosticStatus::OK, any ? "listening" : "nothing came");
   }
+}
+
+void Diagnostics::planningScene(Status &status) {
+  const PlanningSceneReport report = planning_scene_.report();
+  const auto joined = [](const std::vector<std::string> &sentences) {
+    std::string out;
+    for (const std::string &sentence : sentences) out += (out.empty() ? "" : "; ") + sentence;
+    return out;
+  };
+  const std::string differences = joined(report.differences);
+  if (!differences.empty()) {
+    status.summary(DiagnosticStatus::WARN, "the scene differs from that of ~get_planning_scene");
+  } else if (!report.unused.empty()) {
+    status.summary(DiagnosticStatus::WARN, "not all of the scene is used");
+  } else if (report.full == 0 && report.diffs > 0) {
+    status.summary(DiagnosticStatus::WARN, "diffs came, and no full scene");
+  } else {
+    status.summary(DiagnosticStatus::OK, report.full > 0 ? "following" : "nothing came");
+  }
+  if (report.full + report.diffs == 0 && report.unused.empty()) return;
+  status.add("full scenes", report.full);
+  status.addf("fingerprint of the last full scene", "%016lx", report.fingerprint);
+  status.add("diffs since then", report.diffs_since_full);
+  status.addf("fingerprint of the last diff", "%016lx", report.diff_fingerprint);
+  status.add("comparisons with ~get_planning_scene", report.checks);
+  if (!differences.empty()) status.add("differences", differences);
+  if (!report.unused.empty()) status.add("not used", joined(report.unused));
 }
 
 void Diagnostics::transforms(Status &status) {

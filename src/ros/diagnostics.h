@@ -13,20 +13,22 @@
 #include "frames.h"
 #include "master_watch.h"
 #include "pipeline.h"
+#include "planning_scene_topic.h"
 #include "sensors.h"
 #include "statistics.h"
 
 namespace curve_proximity {
 
-/** Five statuses: `queries` (rate, 50th and 99th percentile of the time of a request, undecided and failed rows),
+/** Six statuses: `queries` (rate, 50th and 99th percentile of the time of a request, undecided and failed rows),
  * `topics` (messages dropped), `sensors` (of ~cloud and ~octomap the rate, the age of the last message used, drops and
- * refusals), `transforms` (how old the robot's link poses in the fixed frame are), `master` (whether it still knows the
- * server). */
+ * refusals), `planning_scene` (what came of move_group's scene, and whether this one differs), `transforms` (how old
+ * the robot's link poses in the fixed frame are), `master` (whether it still knows the server). */
 class Diagnostics {
  public:
   /** handle: private; its callback queue runs the timer. The others are kept by reference. */
   Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, Turns &turns, const Pipeline &pipeline,
-              const Sensors &sensors, const Frames &frames, const LiveScene &live);
+              const Sensors &sensors, const PlanningSceneTopic &planning_scene, const Frames &frames,
+              const LiveScene &live);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
@@ -34,6 +36,7 @@ class Diagnostics {
   void queries(Status &status);
   void topics(Status &status);
   void sensors(Status &status);
+  void planningScene(Status &status);
   void transforms(Status &status);
   void master(Status &status);
 
@@ -41,6 +44,7 @@ class Diagnostics {
   Turns &turns_;
   const Pipeline &pipeline_;
   const Sensors &sensors_;
+  const PlanningSceneTopic &planning_scene_;
   const Frames &frames_;
   const LiveScene &live_;
   MasterWatch master_;

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "age.h"
@@ -30,7 +31,19 @@ class JointBoard {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (std::size_t i = 0; i < state.name.size() && i < state.position.size(); ++i) {
       const bool known = robot && robot->hasJoint(state.name[i]);
-      if (known && std::isfinite(state.position[i])) joints_[state.name[i]] = {state.position[i], age};
+      if (!known || !std::isfinite(state.position[i])) continue;
+      joints_[state.name[i]] = {state.position[i], age};
+      told_.insert(state.name[i]);
+    }
+  }
+
+  /** The same, only for joints that no message of take() has told. */
+  void suggest(const sensor_msgs::JointState &state, const Robot *robot) {
+    const Age age(state.header.stamp);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (std::size_t i = 0; i < state.name.size() && i < state.position.size(); ++i) {
+      const bool known = robot && robot->hasJoint(state.name[i]) && std::isfinite(state.position[i]);
+      if (known && told_.count(state.name[i]) == 0) joints_[state.name[i]] = {state.position[i], age};
     }
   }
 
@@ -42,6 +55,7 @@ class JointBoard {
  private:
   mutable std::mutex mutex_;
   std::map<std::string, Joint> joints_;
+  std::set<std::string> told_; /* by take() */
 };
 
 } // namespace curve_proximity

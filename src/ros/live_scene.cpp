@@ -30,6 +30,11 @@ SceneState LiveScene::state(const Snapshot &snapshot) const {
   return out;
 }
 
+const std::vector<std::array<std::string, 2>> &LiveScene::disabled() const {
+  static const std::vector<std::array<std::string, 2>> none;
+  return matrix_has_srdf ? none : srdf.disabled;
+}
+
 void LiveScene::demand(const Snapshot &snapshot, const ros::Time &epoch_wanted, std::uint64_t version_wanted) const {
   if (!epoch_wanted.isZero() && epoch_wanted != epoch) {
     std::ostringstream what;

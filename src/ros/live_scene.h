@@ -6,10 +6,13 @@
 #include <curve_proximity/SceneState.h>
 #include <ros/time.h>
 
+#include <array>
 #include <atomic>
 #include <curve_proximity/scene.hpp>
 #include <curve_proximity/srdf.hpp>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "frames.h"
@@ -17,6 +20,24 @@
 #include "sensor_board.h"
 
 namespace curve_proximity {
+
+/** Sentences about the scene that every answer repeats. Any number of threads. */
+class Remarks {
+ public:
+  void set(std::vector<std::string> sentences) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    sentences_ = std::move(sentences);
+  }
+
+  std::vector<std::string> get() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return sentences_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> sentences_;
+};
 
 /** What the services, the topics and the sensors share. */
 struct LiveScene {
@@ -30,8 +51,16 @@ struct LiveScene {
   Scene scene;
   SensorBoard sensors;
   JointBoard joints;
-  ros::Time epoch;               /**< when the server started */
+  ros::Time epoch; /**< when the server started */
+  /** The allowed collision matrix is one of MoveIt's: the SRDF's pairs are among its entries, so they do not count
+   * apart. */
+  std::atomic<bool> matrix_has_srdf{false};
+
+  Remarks remarks;
   std::atomic<bool> lost{false}; /**< the scene of the server before this one is gone, and none has been sent since */
+
+  /** The pairs of links that are not checked against each other, beside the allowed pairs of the scene. */
+  const std::vector<std::array<std::string, 2>> &disabled() const;
 
   /** The scene of a snapshot; what was measured and the ages of joints and transforms are left open. */
   SceneState state(const Snapshot &snapshot) const;

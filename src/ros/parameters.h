@@ -32,6 +32,8 @@ struct Parameters {
   double tf_timeout = 0.5;
   std::string scene_file;
   std::string state_file = "auto";
+  bool ask_planning_scene = false;
+  double check_planning_scene = 0.0;
   double epsilon = 1e-6;
   int max_nodes = 20000;
   std::string max_lod = "mesh";
@@ -85,6 +87,8 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("tf_timeout", parameters.tf_timeout, Range{0.0, false, 3600.0});
   visit("scene_file", parameters.scene_file);
   visit("state_file", parameters.state_file);
+  visit("ask_planning_scene", parameters.ask_planning_scene);
+  visit("check_planning_scene", parameters.check_planning_scene, Range{0.0, false, 1e6});
   visit("epsilon", parameters.epsilon, Range{0.0, true});
   visit("max_nodes", parameters.max_nodes, Range{1.0, false, count});
   visit("max_lod", parameters.max_lod);

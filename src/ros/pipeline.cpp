@@ -9,6 +9,7 @@
 
 #include "checked_stream.h"
 #include "guard.h"
+#include "robot_trajectory.h"
 #include "topics.h"
 
 namespace curve_proximity {
@@ -31,6 +32,24 @@ const char *topicOf(const trajectory_msgs::MultiDOFJointTrajectoryConstPtr &) {
 const char *topicOf(const nav_msgs::PathConstPtr &) {
   return "path";
 }
+const char *topicOf(const moveit::RobotTrajectoryConstPtr &) {
+  return "robot_trajectory";
+}
+const char *topicOf(const moveit::DisplayTrajectoryConstPtr &) {
+  return "display_trajectory";
+}
+
+template <class Message>
+ros::Time stampOf(const Message &message) {
+  return message.header.stamp;
+}
+ros::Time stampOf(const moveit::RobotTrajectory &message) {
+  const ros::Time stamp = message.joint_trajectory.header.stamp;
+  return stamp.isZero() ? message.multi_dof_joint_trajectory.header.stamp : stamp;
+}
+ros::Time stampOf(const moveit::DisplayTrajectory &message) {
+  return message.trajectory.empty() ? ros::Time() : stampOf(message.trajectory.front());
+}
 
 void ask(const Curve &message, QueryRequest &request) {
   request.curves = List<Curve>(&message, 1);
@@ -44,6 +63,9 @@ void ask(const trajectory_msgs::JointTrajectory &message, QueryRequest &request)
 void ask(const trajectory_msgs::MultiDOFJointTrajectory &message, QueryRequest &request) {
   request.multi_dof_trajectories = List<trajectory_msgs::MultiDOFJointTrajectory>(&message, 1);
 }
+/* What moveit_msgs packs is asked by askMotions(). */
+template <class Message>
+void ask(const Message &, QueryRequest &) {}
 
 std::string idOf(const Curve &curve) {
   return curve.id;
@@ -71,10 +93,13 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
   handle_.setCallbackQueue(&queue_);
   state_handle_.setCallbackQueue(&state_queue_);
   results_ = handle_.advertise<ProximityResults>("proximity", RESULTS_KEPT);
+  contacts_ = handle_.advertise<moveit::ContactInformation>("contacts", RESULTS_KEPT);
   listen<Curve>("curve");
   listen<trajectory_msgs::JointTrajectory>("trajectory");
   listen<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
   listen<nav_msgs::Path>("path");
+  listen<moveit::RobotTrajectory>("robot_trajectory");
+  listen<moveit::DisplayTrajectory>("display_trajectory");
   ros::SubscribeOptions joints = checkedSubscription<sensor_msgs::JointState>(
       "joint_states", RESULTS_KEPT, [this](const sensor_msgs::JointStateConstPtr &state) {
         guarded([&] { live_.joints.take(*state, live_.scene.snapshot()->robot().get()); },
@@ -140,7 +165,7 @@ void Pipeline::handle(const Job &job) {
   const auto results = boost::make_shared<ProximityResults>();
   std::visit(
       [&](const auto &message) {
-        results->header.stamp = message->header.stamp;
+        results->header.stamp = stampOf(*message);
         results->source = topicOf(message);
         results->id = idOf(*message);
         results->fingerprint = fingerprint(*message);
@@ -149,24 +174,58 @@ void Pipeline::handle(const Job &job) {
   describe(*results);
 
   const auto drawing = std::make_shared<Drawing>();
-  guarded(
-      [&] {
-        // Curves meet the robot where tf2 has it; joints that a trajectory leaves alone stand as they were last told.
-        ProximityQuery more;
-        const bool moves = movesRobot(job);
-        more.self_collision = parameters_.self_collision && moves;
-        more.current_joints = moves && !live_.joints.joints().empty();
-        QueryRequest request(query_type_, results->delta, more);
-        std::visit([&](const auto &message) { ask(*message, request); }, job);
-        answer(request, *results, *drawing);
-      },
-      [&](const std::string &why) {
-        results->success = false;
-        results->message = why;
-      });
+  guarded([&] { answerJob(job, *results, *drawing); },
+          [&](const std::string &why) {
+            results->success = false;
+            results->message = why;
+          });
   results->dropped = jobs_.dropped();
   results_.publish(ProximityResultsPtr(results));
+  tellContacts(*results);
   markers_.show(drawing);
+}
+
+void Pipeline::answerJob(const Job &job, ProximityResults &results, Drawing &drawing) {
+  // Curves meet the robot where tf2 has it; joints that a trajectory leaves alone stand as they were last told.
+  ProximityQuery more;
+  const bool moves = movesRobot(job);
+  more.self_collision = parameters_.self_collision && moves;
+  more.current_joints = moves && !live_.joints.joints().empty();
+  if (const auto *motion = std::get_if<moveit::RobotTrajectoryConstPtr>(&job))
+    return askMotions(**motion, more, results, drawing);
+  if (const auto *motions = std::get_if<moveit::DisplayTrajectoryConstPtr>(&job))
+    return askMotions(**motions, more, results, drawing);
+  QueryRequest request(query_type_, results.delta, more);
+  std::visit([&](const auto &message) { ask(*message, request); }, job);
+  answer(request, results, drawing);
+}
+
+/** What is not used of the message is told in the answer and in the log. */
+template <class Message>
+void Pipeline::askMotions(const Message &message, ProximityQuery &more, ProximityResults &results, Drawing &drawing) {
+  RobotMotions motions = toMotions(message, *live_.scene.snapshot(), live_.srdf);
+  more.joint_state = motions.start;
+  more.joint_state.header.stamp = ros::Time(); // when the trajectory was planned is no time to look transforms up for
+  QueryRequest request(query_type_, results.delta, more);
+  request.trajectories = List<trajectory_msgs::JointTrajectory>(motions.trajectories);
+  answer(request, results, drawing);
+  for (std::string &remark : motions.remarks) {
+    const std::string line = "~" + results.source + ": " + remark;
+    if (complaints_.isDue(line)) ROS_WARN_STREAM(line);
+    results.warnings.push_back(std::move(remark));
+  }
+}
+
+/** moveit_msgs has no list of contacts: a message each. */
+void Pipeline::tellContacts(const ProximityResults &results) {
+  if (contacts_.getNumSubscribers() == 0) return;
+  const SnapshotPtr snapshot = live_.scene.snapshot();
+  for (const Proximity &row : results.results) {
+    std::optional<moveit::ContactInformation> contact = toContact(row, results.epsilon, *snapshot);
+    if (!contact) continue;
+    contact->header = results.header;
+    contacts_.publish(*contact);
+  }
 }
 
 /** What is asked of every message. */
@@ -213,6 +272,8 @@ void Pipeline::tellState() {
 /** Is the message about the robot? */
 bool Pipeline::movesRobot(const Job &job) const {
   if (std::holds_alternative<trajectory_msgs::JointTrajectoryConstPtr>(job)) return true;
+  if (std::holds_alternative<moveit::RobotTrajectoryConstPtr>(job)) return true;
+  if (std::holds_alternative<moveit::DisplayTrajectoryConstPtr>(job)) return true;
   const auto *several = std::get_if<trajectory_msgs::MultiDOFJointTrajectoryConstPtr>(&job);
   return several && curve_proximity::movesRobot(**several, live_.scene.snapshot()->robot().get(), live_.srdf);
 }

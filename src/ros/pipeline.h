@@ -23,16 +23,19 @@
 #include <vector>
 
 #include "bounded_queue.h"
+#include "complaints.h"
 #include "markers.h"
+#include "moveit_messages.h"
 #include "parameters.h"
 #include "queries.h"
 
 namespace curve_proximity {
 
-/** Answers what comes on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, one message after the other, on
- * ~proximity. Messages are taken and results handed on by pointer: within one nodelet manager nothing is copied. While
- * one message is being answered ~queue_size others wait; what is older than these is dropped and counted. With
- * ~state_rate it also tells on ~state_proximity how close the robot is as it stands. */
+/** Answers what comes on ~curve, ~trajectory, ~multi_dof_trajectory, ~path, ~robot_trajectory and ~display_trajectory,
+ * one message after the other, on ~proximity, and tells contacts on ~contacts. Messages are taken and results handed on
+ * by pointer: within one nodelet manager nothing is copied. While one message is being answered ~queue_size others
+ * wait; what is older than these is dropped and counted. With ~state_rate it also tells on ~state_proximity how close
+ * the robot is as it stands. */
 class Pipeline {
  public:
   /** handle: the server's private one. All are kept by reference. stop: as that of Queries. */
@@ -48,7 +51,8 @@ class Pipeline {
 
  private:
   using Job = std::variant<CurveConstPtr, trajectory_msgs::JointTrajectoryConstPtr,
-                           trajectory_msgs::MultiDOFJointTrajectoryConstPtr, nav_msgs::PathConstPtr>;
+                           trajectory_msgs::MultiDOFJointTrajectoryConstPtr, nav_msgs::PathConstPtr,
+                           moveit::RobotTrajectoryConstPtr, moveit::DisplayTrajectoryConstPtr>;
 
   template <class Message>
   void listen(const char *topic);
@@ -57,6 +61,10 @@ class Pipeline {
   void handle(const Job &job);
   void describe(ProximityResults &results) const;
   void answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing);
+  void answerJob(const Job &job, ProximityResults &results, Drawing &drawing);
+  template <class Message>
+  void askMotions(const Message &message, ProximityQuery &more, ProximityResults &results, Drawing &drawing);
+  void tellContacts(const ProximityResults &results);
   void tellState();
 
   bool movesRobot(const Job &job) const;
@@ -74,7 +82,8 @@ class Pipeline {
   std::atomic<bool> ending_{false};
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
-  ros::Publisher results_, states_;
+  ros::Publisher results_, states_, contacts_;
+  Complaints complaints_{std::chrono::seconds(60)};
   ros::CallbackQueue state_queue_; /* with a thread of its own: it waits for no message */
   ros::NodeHandle state_handle_;
   ros::WallTimer state_timer_;

@@ -393,6 +393,7 @@ void Queries::describe(Work &work) const {
                                 (response.scene.objects == 0 ? ": there is no object" : ""));
   work.doubts.tell(response.warnings);
   const auto &said = response.warnings;
+  for (std::string &remark : live_.remarks.get()) response.warnings.push_back(std::move(remark));
   if (live_.lost && std::find(said.begin(), said.end(), SCENE_LOST) == said.end())
     response.warnings.push_back(SCENE_LOST);
 }
@@ -750,7 +751,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
                                        : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
     auto motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions,
-                                                      live_.srdf.disabled, base, work.query.links);
+                                                      live_.disabled(), base, work.query.links);
 
     const WorkspacePool::Lease workspace(workspaces_);
     Query environment = work.query;

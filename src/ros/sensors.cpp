@@ -12,10 +12,6 @@
 namespace curve_proximity {
 namespace {
 
-/** The same complaint is made once in this time, and no more than so many others. */
-constexpr std::chrono::seconds COMPLAIN_EVERY{5};
-constexpr std::size_t MOST_COMPLAINTS = 20;
-
 ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
   ros::NodeHandle own(handle);
   own.setCallbackQueue(&queue);
@@ -115,11 +111,7 @@ void Sensors::remove(const std::string &id) {
 }
 
 void Sensors::complain(const std::string &topic, const std::string &why) {
-  const auto now = std::chrono::steady_clock::now();
-  for (auto it = complained_.begin(); it != complained_.end();)
-    it = now - it->second >= COMPLAIN_EVERY ? complained_.erase(it) : ++it;
-  if (complained_.size() >= MOST_COMPLAINTS || !complained_.emplace(topic + why, now).second) return;
-  ROS_WARN_STREAM(topic + ": " + why + "; the object stays as it was");
+  if (complaints_.isDue(topic + why)) ROS_WARN_STREAM(topic + ": " + why + "; the object stays as it was");
 }
 
 } // namespace curve_proximity

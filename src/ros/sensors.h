@@ -12,11 +12,11 @@
 #include <chrono>
 #include <cstdint>
 #include <curve_proximity/scene.hpp>
-#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "complaints.h"
 #include "frames.h"
 #include "live_scene.h"
 #include "octomap_message.h"
@@ -68,8 +68,8 @@ class Sensors {
   std::vector<ros::Subscriber> subscribers_;
   mutable std::mutex mutex_; /* of the counts */
   SensorCounts cloud_, octomap_;
-  std::uint32_t cloud_seq_ = 0, octomap_seq_ = 0;                           /* of the last message */
-  std::map<std::string, std::chrono::steady_clock::time_point> complained_; /* when, by complaint; few at a time */
+  std::uint32_t cloud_seq_ = 0, octomap_seq_ = 0; /* of the last message */
+  Complaints complaints_{std::chrono::seconds(5)};
   ros::AsyncSpinner spinner_;
 };
 

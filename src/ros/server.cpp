@@ -189,10 +189,21 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       checkedSubscription<CollisionObject>("collision_object", OBJECTS_KEPT, take_object),
       checkedSubscription<AttachedCollisionObject>("attached_collision_object", OBJECTS_KEPT, take_attached)};
   for (ros::SubscribeOptions &topic : topics) objects_.push_back(handle_.subscribe(topic));
+  planning_scene_ = std::make_unique<PlanningSceneTopic>(
+      handle, parameters_, live_, frames_,
+      [this](SceneChange &change, const Snapshot &before) { return applyChange(change, before); },
+      [this](const std::string &link, const JointPositions &joints, const Snapshot &snapshot, FrameLookup &lookup) {
+        sensor_msgs::JointState given;
+        for (const auto &[name, position] : joints) {
+          given.name.push_back(name);
+          given.position.push_back(position);
+        }
+        return linkPose(link, ros::Time(), given, live_, snapshot, lookup);
+      });
   pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, live_, queries_, *markers_, stop_);
   batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, turns_, stop_);
-  diagnostics_ =
-      std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *sensors_, frames_, live_);
+  diagnostics_ = std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *sensors_,
+                                               *planning_scene_, frames_, live_);
   reconfigure_ = std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { setThreads(threads); });
   threads_ = std::make_unique<RequestThreads>(queue_, static_cast<std::size_t>(parameters_.max_waiting));
   control_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &control_queue_);
@@ -221,6 +232,7 @@ ProximityServer::~ProximityServer() {
   diagnostics_.reset();
   batches_.reset();
   pipeline_.reset();
+  planning_scene_.reset();
   sensors_.reset();
   markers_.reset();
   control_queue_.clear();
@@ -298,11 +310,19 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
   };
   SceneChange change = toSceneChange(request, to_fixed, faults);
   addAttachments(request, to_fixed, link_to_fixed, *before, change, faults);
+  for (std::string &fault : applyChange(change, *before)) faults.push_back(std::move(fault));
+  if (faults.empty()) live_.lost = false;
+  return faults;
+}
+
+/** Within ~scene_budget_ms; `before`: the scene that the change was made for. */
+std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const Snapshot &before) {
   const auto deadline =
       std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                              std::chrono::duration<double, std::milli>(parameters_.scene_budget_ms));
   change.stop = [&] { return stop_ || std::chrono::steady_clock::now() >= deadline; };
-  for (std::string &fault : live_.scene.apply(change)) faults.push_back(std::move(fault));
+  std::vector<std::string> faults = live_.scene.apply(change);
+  if (change.clear) live_.matrix_has_srdf = false; // the allowed pairs are those of the beginning
 
   // What somebody has set or removed by name is no sensor's until its next message.
   const SnapshotPtr after = live_.scene.snapshot();
@@ -312,9 +332,8 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
   };
   for (const Operation &operation : change.operations) {
     const std::string &id = operation.object.id;
-    if (faults.empty() || object(*before, id) != object(*after, id)) live_.sensors.forget(id);
+    if (faults.empty() || object(before, id) != object(*after, id)) live_.sensors.forget(id);
   }
-  if (faults.empty()) live_.lost = false;
   state_file_.changed();
   return faults;
 }

@@ -33,6 +33,7 @@
 #include "markers.h"
 #include "parameters.h"
 #include "pipeline.h"
+#include "planning_scene_topic.h"
 #include "queries.h"
 #include "reconfigure.h"
 #include "request_threads.h"
@@ -74,6 +75,7 @@ class ProximityServer {
   template <class Fill>
   void changeScene(const char *topic, Fill &&fill);
   std::vector<std::string> apply(const ApplyScene::Request &request);
+  std::vector<std::string> applyChange(SceneChange &change, const Snapshot &before);
   void loadScene();
   void restoreScene();
   void setThreads(int threads);
@@ -94,6 +96,7 @@ class ProximityServer {
   Constraints constraints_;
   std::unique_ptr<MarkerPublisher> markers_;
   std::unique_ptr<Sensors> sensors_;
+  std::unique_ptr<PlanningSceneTopic> planning_scene_;
   std::vector<ros::ServiceServer> services_;
   std::vector<ros::Subscriber> objects_;
   std::unique_ptr<Pipeline> pipeline_;

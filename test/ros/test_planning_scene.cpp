@@ -1,0 +1,419 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* moveit_msgs/PlanningScene as changes of a scene, by the rules of MoveIt's PlanningScene. Messages are the recorded
+ * ones of test/data/moveit, about the robot of data/arm.urdf, or made here. */
+#include "planning_scene.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <sstream>
+
+#include "moveit_data.h"
+
+namespace curve_proximity {
+namespace {
+
+using moveit::PlanningScene;
+using test::Bytes;
+using test::read;
+using test::recorded;
+
+std::string armUrdf() {
+  std::ifstream file(CURVE_PROXIMITY_ARM);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+Eigen::Isometry3d translation(double x, double y, double z) {
+  return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
+}
+
+geometry_msgs::Pose poseAt(double x, double y, double z) {
+  geometry_msgs::Pose pose;
+  pose.position.x = x;
+  pose.position.y = y;
+  pose.position.z = z;
+  pose.orientation.w = 1.0;
+  return pose;
+}
+
+moveit::CollisionObject ball(const std::string &id, double radius, const geometry_msgs::Pose &pose,
+                             std::int8_t operation = moveit::CollisionObject::ADD) {
+  moveit::CollisionObject object;
+  object.id = id;
+  object.header.frame_id = "world";
+  object.pose = pose;
+  object.operation = operation;
+  object.primitives.resize(1);
+  object.primitives[0].type = shape_msgs::SolidPrimitive::SPHERE;
+  object.primitives[0].dimensions.assign(1, radius);
+  return object;
+}
+
+moveit::CollisionObject named(const std::string &id, std::int8_t operation) {
+  moveit::CollisionObject object;
+  object.id = id;
+  object.header.frame_id = "world";
+  object.operation = operation;
+  return object;
+}
+
+PlanningScene diff(std::vector<moveit::CollisionObject> objects = {}) {
+  PlanningScene scene;
+  scene.is_diff = scene.robot_state.is_diff = 1;
+  scene.world.collision_objects = std::move(objects);
+  return scene;
+}
+
+/* A scene that follows. The arm stands in `world`, where its base is. */
+struct Planning : ::testing::Test {
+  const std::shared_ptr<const Robot> robot = Robot::fromUrdf(armUrdf());
+  Scene scene{robot};
+  PlanningSceneState state;
+  std::vector<std::string> kept;
+  std::vector<std::string> wrong;
+
+  PlanningSceneContext context(const Snapshot &before) {
+    PlanningSceneContext out{before, state, kept, false, {}, {}};
+    out.to_fixed = [](const std::string &frame) -> Eigen::Isometry3d {
+      if (frame.empty() || frame == "world") return Eigen::Isometry3d::Identity();
+      throw Error("no transform from frame '" + frame + "'");
+    };
+    out.link_to_fixed = [this](const std::string &link, const JointPositions &joints) {
+      return robot->linkPoses(joints).at(link);
+    };
+    return out;
+  }
+
+  PlanningSceneChange take(const PlanningScene &message) {
+    const SnapshotPtr before = scene.snapshot();
+    PlanningSceneChange change = toSceneChange(message, context(*before));
+    state = change.state;
+    wrong = change.wrong;
+    for (const std::string &fault : scene.apply(change.change)) wrong.push_back(fault);
+    return change;
+  }
+
+  /* Nothing is refused. */
+  PlanningSceneChange use(const PlanningScene &message) {
+    PlanningSceneChange change = take(message);
+    EXPECT_TRUE(wrong.empty()) << wrong.front();
+    return change;
+  }
+
+  /* The one sentence holds the words, and the object `good` of the message was used. */
+  void expectWrong(PlanningScene message, const std::vector<std::string> &words) {
+    message.world.collision_objects.push_back(ball("good", 1, poseAt(9, 9, 9)));
+    take(message);
+    ASSERT_EQ(wrong.size(), 1u);
+    for (const std::string &word : words) EXPECT_NE(wrong[0].find(word), std::string::npos) << wrong[0];
+    EXPECT_TRUE(has("good"));
+  }
+
+  bool has(const std::string &id) const {
+    return scene.snapshot()->objects().count(id) > 0;
+  }
+
+  const ObjectDescription &object(const std::string &id) const {
+    return scene.snapshot()->objects().at(id)->description;
+  }
+
+  void expectAt(const std::string &id, const Eigen::Isometry3d &pose) const {
+    ASSERT_TRUE(has(id)) << id;
+    EXPECT_TRUE(object(id).pose.isApprox(pose, 1e-12)) << id << "\n" << object(id).pose.matrix();
+  }
+};
+
+TEST_F(Planning, a_recorded_full_scene_is_all_there) {
+  const PlanningSceneChange change = use(read<PlanningScene>(recorded("planning_scene_full")));
+  const SnapshotPtr now = scene.snapshot();
+  EXPECT_EQ(now->objects().size(), 4u);
+  expectAt("table", translation(3, 0, 0));
+  EXPECT_EQ(object("table").shapes.size(), 4u);
+  expectAt("floor", translation(0, 0, -3));
+  expectAt("cup", translation(0, 0, 2)); // in the frame `shelf` of fixed_frame_transforms
+  EXPECT_TRUE(object("cup").shapes[0].pose.isApprox(translation(1, 0, 0)));
+  expectAt(MOVEIT_OCTOMAP, translation(0, 5, 0));
+
+  ASSERT_EQ(now->attached().count("tool"), 1u);
+  const AttachedObject &tool = *now->attached().at("tool");
+  EXPECT_EQ(tool.link, "arm");
+  EXPECT_EQ(tool.touch_links, (std::vector<std::string>{"slider", "base"}));
+  EXPECT_TRUE(tool.description.pose.isApprox(translation(0.5, 0, 0.2)));
+
+  EXPECT_TRUE(now->mayTouch("slider", "arm"));
+  EXPECT_TRUE(now->mayTouch("base", "table"));
+  EXPECT_FALSE(now->mayTouch("slider", "table")); // the entry, against slider's default
+  EXPECT_TRUE(now->mayTouch("slider", "cup"));    // by default
+  EXPECT_FALSE(now->mayTouch("table", "cup"));
+  EXPECT_TRUE(change.has_matrix);
+  EXPECT_EQ(now->linkPadding("arm"), 0.01);
+  EXPECT_EQ(now->linkScales().at("arm"), 1.5);
+  EXPECT_EQ(state.joints.at("turn"), 0.25);
+}
+
+TEST_F(Planning, a_recorded_diff_changes_what_it_names) {
+  use(read<PlanningScene>(recorded("planning_scene_full")));
+  use(read<PlanningScene>(recorded("planning_scene_diff")));
+  const SnapshotPtr now = scene.snapshot();
+  EXPECT_EQ(now->objects().size(), 4u);
+  EXPECT_FALSE(has("floor"));
+  EXPECT_FALSE(has(MOVEIT_OCTOMAP));
+  expectAt("table", translation(4, 0, 0));
+  expectAt("plate", translation(4, 0, 0.56)); // its one shape's pose, in the subframe table/top
+  EXPECT_EQ(object("cup").shapes.size(), 2u);
+  expectAt("tool", translation(0.5, 0.5, 0.7)); // detached, and then put elsewhere
+  EXPECT_TRUE(now->attached().empty());
+  EXPECT_TRUE(now->mayTouch("slider", "arm"));
+  EXPECT_EQ(now->linkPadding("arm"), 0.01);
+}
+
+TEST_F(Planning, a_full_scene_replaces_the_world_but_not_what_sensors_keep) {
+  use(diff({ball("cloud", 1, poseAt(0, 0, 9)), ball("old", 1, poseAt(0, 0, 5))}));
+  kept = {"cloud"};
+  PlanningScene full;
+  full.robot_state.joint_state.name = {"turn"};
+  full.robot_state.joint_state.position = {0.0};
+  use(full);
+  EXPECT_TRUE(has("cloud"));
+  EXPECT_FALSE(has("old"));
+  use(diff({named("", moveit::CollisionObject::REMOVE)}));
+  EXPECT_TRUE(has("cloud"));
+}
+
+TEST_F(Planning, attaching_and_detaching_follow_the_links) {
+  use(diff({ball("cup", 0.1, poseAt(0.5, 0, 1))}));
+  PlanningScene grasp = diff();
+  grasp.robot_state.attached_collision_objects.resize(1);
+  grasp.robot_state.attached_collision_objects[0].link_name = "arm";
+  grasp.robot_state.attached_collision_objects[0].object = named("cup", moveit::CollisionObject::ADD);
+  use(grasp);
+  EXPECT_FALSE(has("cup"));
+  EXPECT_TRUE(scene.snapshot()->attached().at("cup")->description.pose.isApprox(translation(0.5, 0, 0.5)));
+
+  // more shapes at the same pose; the joints have moved when it is put down: the link's frame has turned by 90 degrees
+  PlanningScene more = grasp;
+  more.robot_state.attached_collision_objects[0].object =
+      ball("cup", 0.2, geometry_msgs::Pose(), moveit::CollisionObject::APPEND);
+  more.robot_state.attached_collision_objects[0].object.header.frame_id = "arm";
+  more.robot_state.attached_collision_objects[0].touch_links = {"base"};
+  use(more);
+  EXPECT_EQ(scene.snapshot()->attached().at("cup")->description.shapes.size(), 2u);
+  EXPECT_TRUE(scene.snapshot()->attached().at("cup")->description.pose.isApprox(translation(0.5, 0, 0.5)));
+
+  PlanningScene release = diff();
+  release.robot_state.joint_state.name = {"turn"};
+  release.robot_state.joint_state.position = {M_PI / 2};
+  release.robot_state.attached_collision_objects.resize(1);
+  release.robot_state.attached_collision_objects[0].object = named("cup", moveit::CollisionObject::REMOVE);
+  use(release);
+  ASSERT_TRUE(has("cup"));
+  EXPECT_TRUE(object("cup").pose.translation().isApprox(Eigen::Vector3d(0, 0.5, 1), 1e-12));
+}
+
+TEST_F(Planning, a_full_state_lets_go_of_what_links_carry_and_a_diff_does_not) {
+  PlanningScene grasp = diff();
+  grasp.robot_state.attached_collision_objects.resize(1);
+  grasp.robot_state.attached_collision_objects[0].link_name = "arm";
+  grasp.robot_state.attached_collision_objects[0].object = ball("cup", 0.1, poseAt(0, 0, 0));
+  use(grasp);
+  PlanningScene moved = diff();
+  moved.robot_state.joint_state.name = {"turn"};
+  moved.robot_state.joint_state.position = {1.0};
+  use(moved);
+  EXPECT_EQ(scene.snapshot()->attached().size(), 1u);
+  moved.robot_state.is_diff = 0;
+  use(moved);
+  EXPECT_TRUE(scene.snapshot()->attached().empty());
+  EXPECT_FALSE(has("cup"));
+}
+
+TEST_F(Planning, moving_takes_poses_of_the_object_and_of_its_shapes) {
+  moveit::CollisionObject two = ball("two", 0.1, poseAt(1, 0, 0));
+  two.primitives.push_back(two.primitives[0]);
+  two.primitive_poses = {poseAt(0, 0, 0), poseAt(0, 1, 0)};
+  use(diff({two}));
+  moveit::CollisionObject there = named("two", moveit::CollisionObject::MOVE);
+  there.pose = poseAt(2, 0, 0);
+  use(diff({there}));
+  expectAt("two", translation(2, 0, 0));
+  EXPECT_TRUE(object("two").shapes[1].pose.isApprox(translation(0, 1, 0)));
+  there.primitive_poses = {poseAt(0, 0, 0), poseAt(0, 2, 0)};
+  use(diff({there}));
+  EXPECT_TRUE(object("two").shapes[1].pose.isApprox(translation(0, 2, 0)));
+  there.primitive_poses.pop_back();
+  expectWrong(diff({there}), {"'two'", "1 poses", "2 shapes"});
+}
+
+TEST_F(Planning, poses_that_are_left_out_mean_what_they_mean_to_moveit) {
+  // a single shape of an object without a pose gives the object its pose; missing poses are the identity
+  moveit::CollisionObject one = ball("one", 0.1, geometry_msgs::Pose());
+  one.primitive_poses = {poseAt(1, 2, 3)};
+  one.subframe_names = {"tip"};
+  one.subframe_poses = {poseAt(0, 0, 1)};
+  moveit::CollisionObject on_tip = ball("on_tip", 0.1, poseAt(0, 0, 1));
+  on_tip.header.frame_id = "/one/tip";
+  moveit::CollisionObject two = ball("two", 0.1, poseAt(0, 0, 0));
+  two.primitives.push_back(two.primitives[0]);
+  two.primitive_poses = {poseAt(0, 0, 5)};
+  two.pose.orientation.w = 0.0;
+  two.pose.position.x = 1.0; // a quaternion of zeros is no rotation
+  use(diff({one, on_tip, two}));
+  expectAt("one", translation(1, 2, 3));
+  expectAt("on_tip", translation(1, 2, 5));
+  expectAt("two", translation(1, 0, 0));
+  EXPECT_TRUE(object("two").shapes[1].pose.isApprox(Eigen::Isometry3d::Identity()));
+}
+
+TEST_F(Planning, the_matrix_replaces_the_one_before_and_forgets_removed_objects) {
+  PlanningScene first = diff({ball("cup", 0.1, poseAt(5, 0, 0))});
+  auto &matrix = first.allowed_collision_matrix;
+  matrix.entry_names = {"arm", "base", "cup"};
+  matrix.entry_values.resize(3);
+  for (auto &row : matrix.entry_values) row.enabled = {1, 1, 1};
+  use(first);
+  EXPECT_TRUE(scene.snapshot()->mayTouch("cup", "arm"));
+  use(diff({named("cup", moveit::CollisionObject::REMOVE)}));
+  EXPECT_FALSE(scene.snapshot()->mayTouch("cup", "arm"));
+  EXPECT_TRUE(scene.snapshot()->mayTouch("base", "arm"));
+  PlanningScene second = diff();
+  second.allowed_collision_matrix.entry_names = {"arm"};
+  second.allowed_collision_matrix.entry_values.resize(1);
+  second.allowed_collision_matrix.entry_values[0].enabled = {0};
+  use(second);
+  EXPECT_FALSE(scene.snapshot()->mayTouch("base", "arm"));
+}
+
+TEST_F(Planning, what_cannot_be_used_is_one_sentence_and_the_rest_is_used) {
+  PlanningScene padded = diff();
+  padded.link_padding.resize(2);
+  padded.link_padding[0].link_name = "wrist";
+  padded.link_padding[1].link_name = "arm";
+  padded.link_padding[1].padding = 0.5;
+  expectWrong(padded, {"links that the robot does not have", "'wrist'"});
+  EXPECT_EQ(scene.snapshot()->linkPadding("arm"), 0.5);
+  padded.link_padding = {padded.link_padding[1]};
+  padded.link_padding[0].padding = -1.0;
+  expectWrong(padded, {"'arm'", "-1", "not below 0"});
+  EXPECT_EQ(scene.snapshot()->linkPadding("arm"), 0.5);
+
+  PlanningScene scaled = diff();
+  scaled.link_scale.resize(1);
+  scaled.link_scale[0].link_name = "arm";
+  expectWrong(scaled, {"'arm'", "above 0"});
+
+  PlanningScene octomap = diff();
+  octomap.world.octomap.octomap.id = "CountingOcTree";
+  octomap.world.octomap.octomap.resolution = 0.1;
+  octomap.world.octomap.octomap.data = {1, 2, 3};
+  expectWrong(octomap, {"octomap", "'CountingOcTree'"});
+
+  PlanningScene joints = diff();
+  joints.robot_state.joint_state.name = {"elbow", "turn"};
+  joints.robot_state.joint_state.position = {1.0, 0.5};
+  expectWrong(joints, {"joints that the robot does not have", "'elbow'"});
+  EXPECT_EQ(state.joints.at("turn"), 0.5);
+  joints.robot_state.joint_state.position = {1.0};
+  expectWrong(joints, {"2 joints have 1 positions"});
+
+  PlanningScene attached = diff();
+  attached.robot_state.attached_collision_objects.resize(1);
+  auto &held = attached.robot_state.attached_collision_objects[0];
+  held.link_name = "wrist";
+  held.object = ball("cup", 0.1, poseAt(0, 0, 0));
+  expectWrong(attached, {"'cup'", "'wrist'"});
+  held.link_name = "arm";
+  held.object = named("cup", moveit::CollisionObject::REMOVE);
+  expectWrong(attached, {"'cup'", "no link carries"});
+  held.object = named("cup", moveit::CollisionObject::MOVE);
+  expectWrong(attached, {"'cup'", "operation"});
+
+  PlanningScene matrix = diff();
+  matrix.allowed_collision_matrix.entry_names = {"arm", "base"};
+  matrix.allowed_collision_matrix.entry_values.resize(2);
+  expectWrong(matrix, {"allowed_collision_matrix", "'arm'", "0 entries"});
+
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  moveit::CollisionObject shapeless = named("cup", moveit::CollisionObject::ADD),
+                          lost = ball("cup", 1, poseAt(0, 0, 0)), nowhere = ball("cup", 1, poseAt(none, 0, 0)),
+                          crowded = ball("cup", 1, poseAt(0, 0, 0)), odd = named("cup", 7),
+                          reserved = ball(MOVEIT_OCTOMAP, 1, poseAt(0, 0, 0));
+  lost.header.frame_id = "moon";
+  crowded.primitive_poses.assign(2, poseAt(0, 0, 0));
+  expectWrong(diff({shapeless}), {"'cup'", "no shapes"});
+  expectWrong(diff({lost}), {"'cup'", "'moon'"});
+  expectWrong(diff({nowhere}), {"'cup'", "finite"});
+  expectWrong(diff({crowded}), {"'cup'", "2 poses"});
+  expectWrong(diff({odd}), {"'cup'", "operation 7"});
+  expectWrong(diff({reserved}), {"reserved"});
+  expectWrong(diff({named("cup", moveit::CollisionObject::REMOVE)}), {"'cup'", "no object"});
+  expectWrong(diff({named("cup", moveit::CollisionObject::MOVE)}), {"'cup'", "no object"});
+  EXPECT_FALSE(has("cup"));
+
+  PlanningScene ring = diff({lost});
+  ring.fixed_frame_transforms.resize(2);
+  ring.fixed_frame_transforms[0].header.frame_id = ring.fixed_frame_transforms[1].child_frame_id = "moon";
+  ring.fixed_frame_transforms[1].header.frame_id = ring.fixed_frame_transforms[0].child_frame_id = "sun";
+  for (auto &transform : ring.fixed_frame_transforms) transform.transform.rotation.w = 1.0;
+  expectWrong(ring, {"'cup'", "ring"});
+
+  PlanningScene other = diff();
+  other.robot_model_name = "another";
+  expectWrong(other, {"'another'", "'arm'"});
+}
+
+TEST_F(Planning, differences_are_told_and_equal_scenes_have_none) {
+  const PlanningScene full = read<PlanningScene>(recorded("planning_scene_full"));
+  use(full);
+  const auto told = [&](const PlanningScene &message) {
+    const SnapshotPtr now = scene.snapshot();
+    return differences(message, context(*now), 9);
+  };
+  EXPECT_TRUE(told(full).empty()) << told(full).front();
+
+  PlanningScene other = full;
+  other.world.collision_objects[0].pose.position.x += 1e-5;
+  other.world.collision_objects.pop_back();
+  other.world.collision_objects.push_back(ball("new", 1, poseAt(0, 0, 0)));
+  other.robot_state.attached_collision_objects.clear();
+  other.link_padding[0].padding = 0.02;
+  other.allowed_collision_matrix.entry_values[0].enabled[3] = 1;
+  const std::vector<std::string> found = told(other);
+  ASSERT_EQ(found.size(), 6u);
+  EXPECT_EQ(found[0], "object 'new' is missing here");
+  EXPECT_EQ(found[1], "object 'table' stands elsewhere");
+  EXPECT_EQ(found[2], "object 'cup' is here alone");
+  EXPECT_EQ(found[3], "object 'tool' is carried here alone");
+  EXPECT_EQ(found[4], "link 'arm' has another padding");
+  EXPECT_EQ(found[5], "the allowed collision matrix is another one");
+  EXPECT_EQ(scene.snapshot()->version(), 1u) << "comparing changes nothing";
+}
+
+/* Recorded messages with random bytes: whatever they say by then, the scene stays one, and its poses finite. */
+TEST_F(Planning, damaged_messages_leave_a_sound_scene) {
+  std::uint64_t seed = 20260725;
+  const auto random = [&seed] {
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<std::uint32_t>(seed >> 33);
+  };
+  const Bytes sound[] = {recorded("planning_scene_full"), recorded("planning_scene_diff")};
+  int understood = 0;
+  for (int i = 0; i < 5000; ++i) {
+    Bytes bytes = sound[random() % 2];
+    const int flips = 1 + static_cast<int>(random() % 8);
+    for (int k = 0; k < flips; ++k) bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1u << (random() % 8));
+    try {
+      take(read<PlanningScene>(bytes));
+      ++understood;
+    } catch (const ros::serialization::StreamOverrunException &) {
+      continue;
+    }
+    for (const auto &[id, object] : scene.snapshot()->objects())
+      ASSERT_TRUE(object->description.pose.matrix().allFinite()) << id;
+  }
+  EXPECT_GT(understood, 1000);
+}
+
+} // namespace
+} // namespace curve_proximity
