@@ -48,7 +48,7 @@ if(CPROX_SCENE AND NOT CPROX_ROS)
   install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION include/${PROJECT_NAME} FILES_MATCHING PATTERN "*.hpp"
           PATTERN client.hpp EXCLUDE PATTERN "constraint_*.hpp" EXCLUDE)
   #catkin_lint: ignore_once wrong_install_destination
-  install(DIRECTORY src/python/cprox DESTINATION ${CPROX_PYTHON_DIR} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN py.typed)
+  install(DIRECTORY src/python/cprox src/python/cprox_dask DESTINATION ${CPROX_PYTHON_DIR} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN py.typed)
 endif()
 
 # The ROS side.

@@ -46,6 +46,7 @@ const std::map<std::string, Option> &options() {
       {"--dataset", {true, {Action::CERTIFY}}},
       {"--shards", {true, {Action::CERTIFY}}},
       {"--shard", {true, {Action::CERTIFY}}},
+      {"--failed", {true, {Action::CERTIFY}}},
       {"--progress", {true, {Action::CERTIFY}}},
       {"--epsilon", {true, {Action::CURVES, Action::PAIRS, Action::CERTIFY}}},
       {"--delta", {true, {Action::CURVES}}},
@@ -342,6 +343,8 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       required("--out", "FOLDER, where the shards go");
       if (words.has("--shards")) out.shards = static_cast<std::size_t>(readCount(words, "--shards", kMostShards));
       if (words.has("--shard")) out.shard = readShard(words, out.shards);
+      if (words.has("--failed") && !out.shard) throw BadUsage("--failed needs --shard I: it gives up one shard");
+      if (words.has("--failed")) out.failed = words.text("--failed");
       out.progress = words.has("--progress") ? words.text("--progress") : "line";
       if (out.progress != "line" && out.progress != "json")
         throw BadUsage("--progress is '" + out.progress + "'; it must be line or json");
@@ -486,6 +489,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --dataset FILE    JSON Lines, or CSV with a header: id, robot, srdf, scene, trajectory, query, delta, self a row
   --shards N        'certify': the dataset is cut into N parts of equal length (default 1)
   --shard I         'certify': part I alone, from 0 to N-1 (default: all of them). A part that is whole is skipped
+  --failed WHY      'certify', of --shard I: answers no row; each becomes a row 'failed' with this message. For whoever drives
+                    shards and has seen one crash: 'merge' then has no gap
   --progress P      'certify': line (default, on a terminal) or json, a line a second on standard error
   --skipped         tell on standard error what takes no part, and why
   --timings         tell on standard error how long loading the robot and the scene takes, mesh by mesh

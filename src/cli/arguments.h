@@ -60,10 +60,11 @@ struct Arguments {
   std::optional<bool> replace; /**< SEND: as the file's is_diff says, unless set */
   std::string dataset;         /**< CERTIFY: the manifest */
   std::size_t shards = 1;      /**< CERTIFY: into how many parts it is cut */
-  std::optional<std::size_t> shard; /**< CERTIFY: the one that is wanted; else all */
-  std::string progress;             /**< CERTIFY: "line" or "json" */
-  std::string shard_folder;         /**< MERGE */
-  std::string out;                  /**< file of the results; empty: standard output */
+  std::optional<std::size_t> shard;  /**< CERTIFY: the one that is wanted; else all */
+  std::string progress;              /**< CERTIFY: "line" or "json" */
+  std::optional<std::string> failed; /**< CERTIFY: why all rows of the shard are failed */
+  std::string shard_folder;          /**< MERGE */
+  std::string out;                   /**< file of the results; empty: standard output */
   std::size_t threads = 1;
   bool skipped = false; /**< tell on standard error what takes no part, and why */
   bool timings = false; /**< tell on standard error how long loading takes */

@@ -239,6 +239,7 @@ bool answerShard(const Dataset &dataset, const ShardHead &head, const Arguments 
     std::optional<ManifestRow> row = reader.next();
     if (!row) return std::nullopt;
     return [&, manifest = *std::move(row)](Workspace &workspace) {
+      if (arguments.failed) return unanswered(manifest.number, dataset.idOf(manifest), "failed", *arguments.failed);
       return answerRow(dataset, manifest, arguments.query, library, workspace);
     };
   };

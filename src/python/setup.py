@@ -36,6 +36,6 @@ def version():
         return re.search('<version>([^<]+)</version>', text.read()).group(1)
 
 
-setup(name='cprox', version=version(), license='BSD-3-Clause', packages=['cprox'], package_data={'cprox': ['*.pyi', 'py.typed']},
+setup(name='cprox', version=version(), license='BSD-3-Clause', packages=['cprox', 'cprox_dask'], package_data={'cprox': ['*.pyi', 'py.typed']},
       description='Certified proximity queries of continuous motions', install_requires=['numpy'], python_requires='>=3.8',
       ext_modules=[Extension('cprox._cprox', [])], cmdclass={'build_ext': CMakeBuild})

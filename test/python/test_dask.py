@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Datasets on Dask workers: nothing is lost, whatever is killed. And what is made of a table: arrays, histograms, manifests."""
+import csv
+import glob
+import json
+import os
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+CPROX = os.environ.get('CPROX', 'cprox')
+ROWS, SHARDS, SEED = 60, 6, 3
+sys.path.insert(0, HERE)
+
+import cprox_dask  # noqa: E402
+import dataset_campaign  # noqa: E402
+
+
+def table_of(folder):
+    done = subprocess.run([CPROX, 'merge', folder], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    if not done.stdout:
+        raise AssertionError(done.stderr.decode())
+    return done.stdout
+
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory()
+        cls.manifest = os.path.join(cls.place.name, 'edges.jsonl')
+        dataset_campaign.write_edges(cls.manifest, ROWS, SEED)
+        alone = os.path.join(cls.place.name, 'alone')
+        subprocess.run([CPROX, 'certify', '--dataset', cls.manifest, '--out', alone, '--threads', '1'], check=True)
+        cls.truth = table_of(alone)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.place.cleanup()
+
+    def out(self):
+        return os.path.join(self.place.name, self.id().rsplit('.', 1)[-1])
+
+
+class Workers(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        from distributed import Client, LocalCluster
+        cls.cluster = LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+        cls.client = Client(cls.cluster)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.client.close()
+        cls.cluster.close()
+        super().tearDownClass()
+
+    def program(self, before):
+        """cprox, with lines of a shell before it that see the shard's number as $shard, and whether it is only marked."""
+        path = self.out() + '.sh'
+        with open(path, 'w') as script:
+            script.write('#!/bin/sh\nshard=; marked=\nfor word; do\n'
+                         '  [ "$last" != --shard ] || shard=$word\n  [ "$word" != --failed ] || marked=1\n  last=$word\ndone\n'
+                         f'{before}\nexec "{CPROX}" "$@"\n')
+        os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
+        return path
+
+    def test_a_shard_that_crashes_three_times_is_named_and_marked(self):
+        told = []
+        program = self.program(f'if [ "$shard" = 3 ] && [ -z "$marked" ]; then echo x >> {self.out()}.tries; kill -SEGV $$; fi')
+        failures = cprox_dask.certify(self.client, self.manifest, self.out(), SHARDS, program, progress=lambda *done: told.append(done))
+        self.assertEqual([(failure.shard, failure.attempts) for failure in failures], [(3, 3)])
+        self.assertIn('signal 11', failures[0].message)
+        with open(self.out() + '.tries') as tries:
+            self.assertEqual(len(tries.readlines()), 3)
+        self.assertEqual(told[-1], (SHARDS, SHARDS))
+        lines, truth = table_of(self.out()).splitlines(), self.truth.splitlines()
+        first, last = 1 + 3 * ROWS // SHARDS, 1 + 4 * ROWS // SHARDS
+        self.assertEqual(lines[:first] + lines[last:], truth[:first] + truth[last:])
+        for line in lines[first:last]:
+            self.assertRegex(line.decode(), r'^\d+,edge\d+,,failed,.*given up after 3 attempts: signal 11')
+
+    def test_a_shard_that_stalls_is_tried_again(self):
+        once = self.out() + '.once'
+        program = self.program(f'if [ "$shard" = 2 ] && [ ! -e {once} ]; then touch {once}; exec sleep 100; fi')
+        failures = cprox_dask.certify(self.client, self.manifest, self.out(), SHARDS, program, timeout=20.0)
+        self.assertEqual(failures, [])
+        self.assertTrue(os.path.exists(once))
+        self.assertEqual(table_of(self.out()), self.truth)
+
+    def test_torn_and_lost_shards_alone_are_done_again(self):
+        self.assertEqual(cprox_dask.certify(self.client, self.manifest, self.out(), SHARDS, CPROX), [])
+        shards = sorted(glob.glob(os.path.join(self.out(), 'shard-*.csv')))
+        before = [os.stat(path).st_mtime_ns for path in shards]
+        os.remove(shards[1])
+        os.truncate(shards[4], os.path.getsize(shards[4]) - 30)
+        self.assertEqual(cprox_dask.certify(self.client, self.manifest, self.out(), SHARDS, CPROX), [])
+        changed = [i for i, path in enumerate(shards) if os.stat(path).st_mtime_ns != before[i]]
+        self.assertEqual(changed, [1, 4])
+        self.assertEqual(table_of(self.out()), self.truth)
+
+    def test_a_dataset_that_cannot_be_read_is_an_error(self):
+        with self.assertRaisesRegex(RuntimeError, 'shard 0: exit code 2: .*none.jsonl.* cannot be marked'):
+            cprox_dask.certify(self.client, os.path.join(self.place.name, 'none.jsonl'), self.out(), 1, CPROX, attempts=2)
+
+
+class Killed(Case):
+    def test_a_worker_killed_midway_loses_nothing(self):
+        failures, killed = dataset_campaign.certify_on_cluster(self.manifest, self.out(), SHARDS, 2, CPROX, SHARDS // 2)
+        self.assertEqual((failures, killed), ([], 1))
+        self.assertEqual(table_of(self.out()), self.truth)
+
+    def test_a_driver_killed_midway_is_resumed(self):
+        command = [sys.executable, '-m', 'cprox_dask', self.manifest, '--out', self.out(), '--shards', str(ROWS), '--workers', '2',
+                   '--cprox', CPROX]
+        driver = subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        whole = os.path.join(self.out(), 'shard-*.csv')
+        while len(glob.glob(whole)) < 3:
+            self.assertIsNone(driver.poll())
+            time.sleep(0.01)
+        os.killpg(driver.pid, signal.SIGKILL)
+        driver.wait()
+        self.assertLess(len(glob.glob(whole)), ROWS)
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f'{ROWS} of {ROWS} shards', done.stderr)
+        self.assertEqual(table_of(self.out()), self.truth)
+
+
+class Tables(Case):
+    def setUp(self):
+        self.results = os.path.join(self.place.name, 'results.csv')
+        with open(self.results, 'wb') as out:
+            out.write(self.truth)
+
+    def run_module(self, *words):
+        return subprocess.run([sys.executable, '-m', 'cprox.dataset', *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              universal_newlines=True)
+
+    def test_arrays_are_the_columns(self):
+        out = os.path.join(self.place.name, 'results.npz')
+        self.assertEqual(self.run_module('npz', self.results, out).returncode, 0)
+        with open(self.results, newline='') as stream:
+            lines = list(csv.DictReader(stream))
+        with np.load(out) as arrays:
+            self.assertEqual(arrays['row'].tolist(), list(range(ROWS)))
+            self.assertEqual(arrays['verdict'].tolist(), [line['verdict'] for line in lines])
+            self.assertEqual(arrays['lower'].tolist(), [float(line['lower']) for line in lines])
+            self.assertEqual(arrays['nodes'].dtype, np.int64)
+
+    def test_the_histogram_counts_every_row_once(self):
+        bins, picture = os.path.join(self.place.name, 'bins.csv'), os.path.join(self.place.name, 'bins.png')
+        done = self.run_module('summary', self.results, '--csv', bins, '--png', picture, '--bins', '7')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(bins) as stream:
+            lines = list(csv.DictReader(stream))
+        self.assertEqual(len(lines), 7)
+        for verdict in ('clear', 'violated'):
+            n = self.truth.decode().count(f',{verdict},')
+            self.assertGreater(n, 0)
+            self.assertEqual(sum(int(line[verdict]) for line in lines), n)
+            self.assertIn(f'{n} {verdict}', done.stdout)
+        with open(picture, 'rb') as stream:
+            self.assertEqual(stream.read(4), b'\x89PNG')
+
+    def test_no_table_is_an_error(self):
+        done = self.run_module('npz', self.manifest, os.path.join(self.place.name, 'no.npz'))
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r'^cprox.dataset: .*edges.jsonl: is no table of cprox merge')
+
+    def test_a_manifest_has_every_trajectory_with_every_scene(self):
+        examples = os.path.join(os.path.dirname(os.path.dirname(HERE)), 'examples', 'formats')
+        folder = os.path.join(self.place.name, 'paths')
+        os.makedirs(folder)
+        for name in ('a', 'b'):
+            os.symlink(os.path.join(examples, 'trajectory.yaml'), os.path.join(folder, name + '.yaml'))
+        manifest = os.path.join(self.place.name, 'product.jsonl')
+        done = self.run_module('manifest', '--robot', examples + '/arm.urdf', '--srdf', examples + '/arm.srdf', '--scene', examples + '/scen?.yaml',
+                               '--trajectory', folder, '--delta', '0.05', '--self', '--relative-to', self.place.name)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual([row['id'] for row in rows], ['scene:paths/a', 'scene:paths/b'])
+        self.assertEqual(rows[0]['trajectory'], 'paths/a.yaml')
+        with open(manifest, 'w') as out:
+            out.write(done.stdout)
+        subprocess.run([CPROX, 'certify', '--dataset', manifest, '--out', self.out()], check=True)
+        answers = list(csv.DictReader(table_of(self.out()).decode().splitlines()))
+        self.assertEqual([line['status'] for line in answers], ['ok'] * 4)
+        done = self.run_module('manifest', '--robot', 'r', '--trajectory', folder + '/none*')
+        self.assertEqual((done.returncode, done.stderr), (2, f'cprox.dataset: {folder}/none*: names no file\n'))
+
+
+if __name__ == '__main__':
+    program = unittest.main(exit=False, verbosity=2)
+    result = program.result
+    bad = len(result.failures) + len(result.errors) + len(result.skipped)
+    print(f'{max(result.testsRun - bad, 0)} passed, {bad} failed')
+    sys.exit(1 if bad or not result.testsRun else 0)
