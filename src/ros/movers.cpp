@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <curve_proximity/nearest_name.hpp>
+#include <set>
 
 #include "conversions.h"
 
@@ -56,6 +57,16 @@ std::int64_t originOf(const ProximityQuery &query, const Snapshot &snapshot, boo
   return stamps.empty() ? 0 : *std::min_element(stamps.begin(), stamps.end());
 }
 
+/** What the joined motion takes: each variable has a polynomial between any two times at which one of the motions has a
+ *  waypoint. points: of robots. */
+std::size_t bytesOf(const std::vector<MovingObject> &objects, std::size_t variables, std::size_t points) {
+  constexpr std::size_t POLYNOMIAL = 64, OF_OBJECT = 7;
+  std::set<double> times;
+  for (const MovingObject &object : objects)
+    for (const TimedPose &pose : object.poses) times.insert(pose.time + object.start);
+  return (OF_OBJECT * objects.size() + variables) * (times.size() + points) * POLYNOMIAL;
+}
+
 void checkAsked(const Query &query, const Asking &asking) {
   const std::string where = " while objects or further robots move";
   if (asking.kind == Asking::NEAREST) throw Error("nearest pairs are not available" + where);
@@ -71,11 +82,18 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot) {
 }
 
 Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
-                           std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, FrameLookup &lookup)
+                           std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, std::size_t points,
+                           FrameLookup &lookup, std::size_t most_bytes)
     : has_subject_(subject != nullptr) {
   const std::int64_t origin = originOf(query, *snapshot, has_subject_, stamp);
   const std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
-  for (const auto &message : query.moving_robots) robots_.push_back(toMovingRobot(message, robots, origin, lookup));
+  std::size_t variables = has_subject_ ? snapshot->robot()->links().size() : 0;
+  for (const RobotTrajectory &message : query.moving_robots) {
+    robots_.push_back(toMovingRobot(message, robots, origin, lookup));
+    variables += robots.at(message.robot).robot->links().size();
+    points += message.trajectory.points.size();
+  }
+  share_.emplace(bytesOf(objects, variables, points), most_bytes);
   if (subject) {
     const MovingRobot robot{snapshot->robot()->name(), std::move(subject), 0.0};
     checkClocks(robot, robots_, objects);

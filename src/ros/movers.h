@@ -9,11 +9,13 @@
 #include <curve_proximity/movers.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "asking.h"
 #include "frames.h"
+#include "memory_account.h"
 #include "robot_description.h"
 
 namespace curve_proximity {
@@ -27,10 +29,12 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot);
 /** Robots and objects on one clock, and how they are asked about. */
 class Surroundings {
  public:
-  /** subject: the robot that is asked about, with its stamp; null: nobody. Throws Error, which names the mover: a robot
-   *  that is not known, what RobotMotion and Movers refuse, a trajectory that is stale or in the future. */
+  /** subject: the robot that is asked about, with its stamp and the number of its points; null: nobody. most_bytes:
+   * what the joined motion may take. Throws Error, which names the mover: a robot that is not known, what RobotMotion
+   * and Movers refuse, a trajectory that is stale or in the future; and where it would take more memory. */
   Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
-               std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, FrameLookup &lookup);
+               std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, std::size_t points,
+               FrameLookup &lookup, std::size_t most_bytes);
 
   /** One answer: of the subject, else of all that moves; against_self: of that each robot against itself, too. Throws
    *  Error for what is not available of movers. query: its links are those of the subject. */
@@ -45,6 +49,7 @@ class Surroundings {
 
  private:
   bool has_subject_ = false;
+  std::optional<memory::Share> share_;
   std::vector<MovingRobot> robots_; /* the subject first */
   std::shared_ptr<const Movers> movers_;
 };

@@ -222,6 +222,10 @@ QueryType queryTypeFromName(const std::string &name) {
   throw Error("the query '" + name + "' is none of distance, tolerance, collision");
 }
 
+std::size_t Queries::mostBytes() const {
+  return static_cast<std::size_t>(parameters_.max_request_mb) << 20;
+}
+
 Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) const {
   const ProximityQuery &more = request.more;
   if (!(more.epsilon >= 0.0 && std::isfinite(more.epsilon)))
@@ -341,7 +345,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
   query.options.stop = TimeBudget::isOver;
   query.options.stop_user = &budget;
   const std::size_t rows = checkLimits(request, *snapshot);
-  const memory::Share share(rows * ROW_BYTES, static_cast<std::size_t>(parameters_.max_request_mb) << 20);
+  const memory::Share share(rows * ROW_BYTES, mostBytes());
   if (!snapshot->robot() && !request.more.joint_state.name.empty())
     throw Error("joint_state names '" + request.more.joint_state.name.front() + "', and this server has no robot");
 
@@ -709,7 +713,7 @@ void Queries::answerMovers(Work &work) {
   Proximity row;
   try {
     if (!work.query.links.empty()) throw Error("links and group do not apply to movers");
-    const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), work.lookup);
+    const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), 0, work.lookup, mostBytes());
     const WorkspacePool::Lease workspace(workspaces_);
     Answer answer = around.ask(work.query, request.more.self_collision != 0, request.asking, *workspace);
     answer.kind = Proximity::KIND_MOVERS;
@@ -758,7 +762,8 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     environment.links.clear(); // the motion has them
     MotionRows rows;
     if (movesBeside(request.more, *work.snapshot)) {
-      const Surroundings around(work.snapshot, request.more, robots_, motion, stamp, work.lookup);
+      const Surroundings around(work.snapshot, request.more, robots_, motion, stamp, trajectory.points.size(),
+                                work.lookup, mostBytes());
       Query among = environment;
       among.links = ownNames(*work.snapshot, work.query.links);
       rows.answers.push_back(around.ask(among, false, request.asking, *workspace));

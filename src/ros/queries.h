@@ -171,6 +171,7 @@ class Queries {
     std::unique_ptr<CurveSearch> search; /* null as long as there is no curve */
   };
 
+  std::size_t mostBytes() const; /* that a request may take */
   Query toQuery(const QueryRequest &request, const Snapshot &snapshot) const;
   std::size_t checkLimits(const QueryRequest &request, const Snapshot &snapshot) const;
   void answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing);

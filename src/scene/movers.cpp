@@ -118,8 +118,13 @@ class Joiner {
       : robots_(robots), objects_(objects), out_(out) {}
 
   void join() {
+    const bool moves = std::any_of(robots_.begin(), robots_.end(),
+                                   [](const MovingRobot &robot) { return robot.motion && !robot.motion->stands(); }) ||
+                       std::any_of(objects_.begin(), objects_.end(),
+                                   [](const MovingObject &object) { return object.poses.size() != 1; });
     for (const MovingRobot &robot : robots_) addRobot(robot);
     for (std::size_t i = 0; i < objects_.size(); ++i) addObject(objects_[i], *out_.objects[i]);
+    if (!moves) throw Error("nothing moves: each mover has one pose, '" + names_.front() + "' among them");
     Workspace workspace;
     cprox_robot *robot = nullptr;
     expect(cprox_robot_join(cores_.data(), nullptr, cores_.size(), workspace.get(), &robot), "the movers", workspace);

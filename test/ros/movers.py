@@ -345,6 +345,15 @@ class Movers(unittest.TestCase):
         self.assertRefused(ask(other(swing(-0.8, 0.8), name='a/b')), "it contains '/'")
         self.assertRefused(ask(other(JointTrajectory(joint_names=['elbow'], points=[JointTrajectoryPoint(positions=[0])]))), "robot 'right'", 'elbow')
 
+    def test_what_takes_too_much_memory_is_refused(self):
+        many = [moving(sphere('ball%d' % i, 0.1), waypoint(0.001 * i, (i, 2, 0.5)), waypoint(2 + 0.001 * i, (i, 3, 0.5)))
+                for i in range(200)]
+        self.server.replace(*many)
+        self.assertRefused(self.server.distance([], movers=True), 'too large', '~max_request_mb')
+        self.assertRefused(self.server.distance([], trajectory=swing(-0.8, 0.8)), 'too large')
+        self.server.replace(*many[:100])
+        self.assertTrue(self.server.distance([], movers=True).success)
+
     def test_what_does_not_know_movers_says_so(self):
         self.server.replace(moving(sphere('ball', 0.1), waypoint(0, (2, 2, 0.5)), waypoint(1, (2, 3, 0.5))), box('table', (1, 1, 0.1), (3, 0, 0)))
         moves = "object 'ball' moves along a trajectory"

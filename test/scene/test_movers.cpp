@@ -160,6 +160,7 @@ TEST_F(Movement, what_cannot_be_is_refused_by_name) {
   refuse({{"a/b", there}}, {}, "it contains '/'");
   refuse({{"a", nullptr}}, {}, "robot 'a' has no motion");
   refuse({}, {box("ball", {})}, "object 'ball': it has no poses");
+  refuse({}, {box("ball", {{0, here}})}, "nothing moves: each mover has one pose, 'ball' among them");
   refuse({}, {mover("ball", {}, {{0, here}})}, "object 'ball': it has no shapes");
   refuse({}, {box("ball", {{1, here}, {1, here}})}, "object 'ball': waypoint 0 is at 1 s, waypoint 1 at 1 s");
   refuse({}, {mover("floor", {shape(ShapeType::HALFSPACE, {0, 0, 1, 0})}, {{0, here}, {1, here}})}, "a halfspace");
