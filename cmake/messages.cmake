@@ -8,6 +8,7 @@ set(CURVE_PROXIMITY_MESSAGES
   ConstraintQuery.msg
   ConstraintResult.msg
   Curve.msg
+  CurvePiece.msg
   Hyperquadric.msg
   LinkPadding.msg
   LinkScale.msg

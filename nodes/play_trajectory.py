@@ -33,7 +33,7 @@ def read_trajectory(path):
 
 
 def read_curves(path):
-    """id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knot0,...]: a message a row."""
+    """id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knot0,...]: a message a row, of the bases without parameters."""
     curves = []
     with open(path) as text:
         for row in csv.reader(line for line in text if line.strip() and not line.startswith('#')):

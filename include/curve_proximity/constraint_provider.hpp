@@ -238,11 +238,13 @@ inline void curveWeights(const CurveDescription &curve, double t, double *weight
   static constexpr std::pair<const char *, cprox_curve_kind> kinds[] = {
       {"bezier", CPROX_CURVE_BEZIER},         {"bspline", CPROX_CURVE_BSPLINE},
       {"polynomial", CPROX_CURVE_POLYNOMIAL}, {"legendre", CPROX_CURVE_LEGENDRE},
-      {"lagrange", CPROX_CURVE_LAGRANGE},     {"trigonometric", CPROX_CURVE_TRIGONOMETRIC}};
+      {"lagrange", CPROX_CURVE_LAGRANGE},     {"trigonometric", CPROX_CURVE_TRIGONOMETRIC},
+      {"nurbs", CPROX_CURVE_NURBS},           {"rational_bezier", CPROX_CURVE_RATIONAL_BEZIER}};
   for (const auto &[name, kind] : kinds) {
     if (curve.basis != name) continue;
     cprox_curve_description d = detail::describe(kind, curve.points, curve.t0, curve.t1);
     d.degree = curve.degree, d.knots = curve.knots.data(), d.n_knots = curve.knots.size();
+    d.weights = curve.parameters.data();
     if (cprox_curve_weights(&d, t, weights) == CPROX_OK) return;
   }
   throw Error("no weights are known of the basis '" + curve.basis + "'");

@@ -131,19 +131,30 @@ struct ObjectTrajectory {
   std::int64_t start = 0;
 };
 
-/** A curve of a polynomial or trigonometric basis. */
+/** A curve of any basis that needs no functions. msg/Curve.msg says what points, knots and parameters of each basis
+ * mean.
+ */
 struct CurveDescription {
-  std::string id;               /**< names the curve in results */
-  std::string basis = "bezier"; /**< "bezier", "bspline", "polynomial", "legendre", "lagrange" or "trigonometric" */
-  std::size_t degree = 0;       /**< bezier: 0, or the number of points minus one */
-  double t0 = 0.0;              /**< the parameter range begins here */
-  double t1 = 1.0;              /**< and ends here, t0 < t1 */
-  double radius = 0.0;          /**< [m] >= 0, radius of the ball that moves along the curve */
-  /** [m] Control points, coefficients or values, one a column, in the fixed frame: degree + 1 columns; a bspline has
-   *  more, a trigonometric series has 2 degree + 1. */
+  std::string id; /**< names the curve in results */
+  /** "bezier", "bspline", "polynomial", "legendre", "lagrange", "trigonometric", "rational_bezier", "nurbs",
+   * "clothoid", "dubins" (with a word: "dubins_lsl" …), "involute", "pythagorean_hodograph" or "piecewise" */
+  std::string basis = "bezier";
+  std::size_t degree = 0; /**< bezier, rational_bezier: 0, or the number of points minus one */
+  double t0 = 0.0;        /**< the parameter range begins here; not read for dubins and piecewise */
+  double t1 = 1.0;        /**< and ends here, t0 < t1 */
+  double radius = 0.0;    /**< [m] >= 0, radius of the ball that moves along the curve */
+  /** [m] Control points, coefficients or values, one a column, in the fixed frame or in that of `pose`: degree + 1
+   *  columns; a bspline has more, a trigonometric series has 2 degree + 1. */
   Eigen::Matrix3Xd points;
-  /** bspline: points.cols() + degree + 1 knots, non-decreasing. lagrange: the nodes. Otherwise empty. */
+  /** bspline, nurbs: points.cols() + degree + 1 knots, non-decreasing. lagrange: the nodes. Otherwise empty. */
   std::vector<double> knots;
+  /** weights of a rational basis; the numbers of a curve that is known by more than points */
+  std::vector<double> parameters;
+  /** of a piecewise curve: curves end to end, none of them piecewise; their ids and radii are not read */
+  std::vector<CurveDescription> pieces;
+  double restrict_t0 = 0.0; /**< with restrict_t1: only this part of the curve, at the parameters that it has there */
+  double restrict_t1 = 0.0; /**< both 0: all of the curve */
+  std::optional<Eigen::Isometry3d> pose; /**< of the frame of the points in the fixed frame; none: the identity */
 };
 
 } // namespace curve_proximity

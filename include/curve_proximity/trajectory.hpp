@@ -33,6 +33,10 @@ struct TrajectoryDescription {
   std::vector<std::string> joints;                        /**< the joints that move */
   std::vector<TrajectoryPoint> points;                    /**< at least one */
   Interpolation interpolation = Interpolation::BY_POINTS; /**< between the points */
+  /** 0: waypoints. 1 … 9: the trajectory is a B-spline of this degree with the points' positions as control points;
+   *  their times, velocities and accelerations, and `interpolation`, are not read. */
+  std::size_t degree = 0;
+  std::vector<double> knots; /**< [s] of the B-spline: points.size() + degree + 1, non-decreasing */
 
   JointPositions fixed_joints;    /**< joints with a constant value */
   std::vector<VirtualJoint> base; /**< the joint above the root link, if the trajectory names it: none or one */

@@ -33,10 +33,12 @@ cprox_status search(const CompiledCurve &a, const CompiledCurve &b, const Query 
 }
 
 /* Reads and compiles one side; what is wrong with it is thrown with its place. */
-CompiledCurve curveOf(const std::optional<CsvRow> &row, const std::string &file) {
+CompiledCurve curveOf(const std::optional<CsvRow> &row, const std::string &file, bool with_proof) {
   if (!row) throw BadInput(file + ": has no row for it");
   try {
-    return compile(parseCurve(row->text));
+    const CurveDescription description = parseCurve(row->text);
+    if (with_proof) requireCheckable(description);
+    return compile(description);
   } catch (const std::bad_alloc &) {
     throw;
   } catch (const std::exception &e) {
@@ -57,7 +59,8 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Query 
   row.has_verdict = query.query_type != QueryType::DISTANCE;
   Outcome out;
   try {
-    const CompiledCurve a = curveOf(rows.first, arguments.curves), b = curveOf(rows.second, arguments.against);
+    const CompiledCurve a = curveOf(rows.first, arguments.curves, with_proof),
+                        b = curveOf(rows.second, arguments.against, with_proof);
     const Clock::time_point start = Clock::now();
     row.result.status = search(a, b, query, workspace, row.result);
     row.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();

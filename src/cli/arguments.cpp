@@ -452,9 +452,11 @@ cprox check     FILE  (the inputs of the query)  what the certificates in FILE p
 cprox certify   --dataset MANIFEST --out FOLDER [--shards N [--shard I]]   answers the rows of a dataset, shard by shard
 cprox merge     FOLDER                  all shards as one table; refuses gaps and shards of different runs
 
-  --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier, bspline,
-                    polynomial, legendre, lagrange (nodes for knots) or trigonometric; lines that begin with # and
-                    a header row are skipped
+  --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots][,parameters]
+                    [,restrict_t0,restrict_t1]; basis bezier, bspline, polynomial, legendre, lagrange (nodes for
+                    knots), trigonometric, rational_bezier, nurbs (weights for parameters), clothoid, dubins,
+                    involute, pythagorean_hodograph or piecewise (the next n rows); doc/formats.md has them all.
+                    Lines that begin with # and a header row are skipped
   --against FILE    curves, too: instead of a scene
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
   --robot FILE      a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)

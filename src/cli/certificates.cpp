@@ -89,6 +89,15 @@ std::string moverLine(const CurveDescription &curve) {
   return line + curveWords(curve) + "\n";
 }
 
+void requireCheckable(const CurveDescription &curve) {
+  static constexpr const char *bases[] = {"bezier", "bspline", "polynomial", "legendre", "lagrange", "trigonometric"};
+  if (curve.restrict_t0 != 0.0 || curve.restrict_t1 != 0.0)
+    throw BadInput("a curve that is restricted has no certificate; cut it by its t0 and t1 or its control points");
+  for (const char *basis : bases)
+    if (curve.basis == basis) return;
+  throw BadInput("a " + curve.basis + " curve has no certificate");
+}
+
 std::string noMoverLine(const std::string &id) {
   return "none " + wordOf(id) + "\n";
 }

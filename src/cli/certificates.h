@@ -33,6 +33,9 @@ void warnOfUnprovable(const std::vector<std::string> &sentences, Warnings &warni
 std::string problemHead();
 std::string curveTargetLines(const CurveDescription &curve);
 std::string moverLine(const CurveDescription &curve);
+
+/** Throws BadInput for a curve that cprox_check cannot read: bases other than the six of sums, and restrictions. */
+void requireCheckable(const CurveDescription &curve);
 std::string noMoverLine(const std::string &id);
 
 } // namespace curve_proximity::cli

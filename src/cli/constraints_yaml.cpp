@@ -30,19 +30,36 @@ ObjectDescription readSide(const YamlValue &value, bool rides, const Snapshot &s
   return object;
 }
 
-CurveDescription readCurve(const YamlValue &value, Warnings &warnings) {
-  value.warnOfOthers({"header", "id", "basis", "degree", "t0", "t1", "radius", "points", "knots"}, warnings);
-  if (const auto header = value.find("header"))
-    if (const auto frame = header->find("frame_id")) requireFixed(value, frame->text());
-  Curve message;
+/* What a curve and a piece have in common. */
+template <typename Message>
+void readBasis(const YamlValue &value, Message &message) {
   message.basis = value.at("basis").text();
   if (const auto degree = value.find("degree")) message.degree = static_cast<std::uint32_t>(degree->count());
   if (const auto t0 = value.find("t0")) message.t0 = t0->number();
   if (const auto t1 = value.find("t1")) message.t1 = t1->number();
-  if (const auto radius = value.find("radius")) message.radius = radius->number();
   if (const auto knots = value.find("knots")) message.knots = knots->numbers();
+  if (const auto parameters = value.find("parameters")) message.parameters = parameters->numbers();
+  if (message.basis == Curve::PIECEWISE) return;
   for (const YamlValue &point : value.at("points").items())
     message.points.push_back(toPointMessage(toVec3(point.vector())));
+}
+
+CurveDescription readCurve(const YamlValue &value, Warnings &warnings) {
+  value.warnOfOthers({"header", "id", "basis", "degree", "t0", "t1", "radius", "points", "knots", "parameters",
+                      "pieces", "restrict_t0", "restrict_t1"},
+                     warnings);
+  if (const auto header = value.find("header"))
+    if (const auto frame = header->find("frame_id")) requireFixed(value, frame->text());
+  Curve message;
+  readBasis(value, message);
+  if (const auto radius = value.find("radius")) message.radius = radius->number();
+  if (const auto from = value.find("restrict_t0")) message.restrict_t0 = from->number();
+  if (const auto to = value.find("restrict_t1")) message.restrict_t1 = to->number();
+  for (const YamlValue &piece : value.itemsOf("pieces")) {
+    piece.warnOfOthers({"basis", "degree", "t0", "t1", "points", "knots", "parameters"}, warnings);
+    message.pieces.emplace_back();
+    readBasis(piece, message.pieces.back());
+  }
   return toDescription(message, Eigen::Isometry3d::Identity());
 }
 

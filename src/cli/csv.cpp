@@ -2,8 +2,10 @@
 #include "csv.h"
 
 #include <algorithm>
+#include <curve_proximity/core.hpp>
 #include <filesystem>
 
+#include "../scene/curve_basis.h"
 #include "../scene/yaml/numbers.h"
 #include "failure.h"
 
@@ -11,6 +13,7 @@ namespace curve_proximity::cli {
 namespace {
 
 constexpr std::size_t kFirstPoint = 7; /* the column of x0 */
+constexpr std::size_t kMostPieces = 65536;
 
 bool isBlank(std::string_view text) {
   return trimmed(text).empty();
@@ -61,15 +64,23 @@ std::size_t count(const std::vector<std::string> &fields, std::size_t column) {
   return static_cast<std::size_t>(*value);
 }
 
-/* The number of knots that basis and degree ask for; what is wrong with the degree is said here. */
-std::size_t knotsNeeded(const CurveDescription &curve, std::size_t n) {
+/* The points, knots and parameters that basis and degree ask for; what is wrong with the degree is said here. */
+CurveCounts needed(const CurveDescription &curve, std::size_t n) {
+  if (isNamedBasis(curve.basis) || isRationalBasis(curve.basis)) {
+    const CurveCounts counts = countsOf(curve.basis, curve.degree, n);
+    if (counts.points != n) {
+      throw BadInput("a " + curve.basis + " curve has " + std::to_string(counts.points) + " points; n is " +
+                     std::to_string(n));
+    }
+    return counts;
+  }
   if (curve.basis == "bezier") {
     if (curve.degree < 1) throw BadInput("a curve of degree 0 is a point; the degree of a bezier is at least 1");
     if (n != curve.degree + 1) {
       throw BadInput("a bezier of degree " + std::to_string(curve.degree) + " has " + std::to_string(curve.degree + 1) +
                      " points; n is " + std::to_string(n));
     }
-    return 0;
+    return {n, 0, 0};
   }
   if (curve.basis == "bspline") {
     if (curve.degree < 1) throw BadInput("the degree of a bspline is at least 1");
@@ -77,19 +88,51 @@ std::size_t knotsNeeded(const CurveDescription &curve, std::size_t n) {
       throw BadInput("a bspline of degree " + std::to_string(curve.degree) + " needs at least " +
                      std::to_string(curve.degree + 1) + " points; n is " + std::to_string(n));
     }
-    return n + curve.degree + 1;
+    return {n, n + curve.degree + 1, 0};
   }
   const bool trigonometric = curve.basis == "trigonometric", lagrange = curve.basis == "lagrange";
   if (!trigonometric && !lagrange && curve.basis != "polynomial" && curve.basis != "legendre") {
     throw BadInput("column 2 (basis) is " + shown(curve.basis) +
-                   "; it must be bezier, bspline, polynomial, legendre, lagrange or trigonometric");
+                   "; it must be bezier, bspline, polynomial, legendre, lagrange, trigonometric, rational_bezier, "
+                   "nurbs, clothoid, dubins, involute, pythagorean_hodograph or piecewise");
   }
-  const std::size_t needed = trigonometric ? 2 * curve.degree + 1 : curve.degree + 1;
-  if (n != needed) {
+  const std::size_t points = trigonometric ? 2 * curve.degree + 1 : curve.degree + 1;
+  if (n != points) {
     throw BadInput("a " + curve.basis + " curve of degree " + std::to_string(curve.degree) + " has " +
-                   std::to_string(needed) + " points; n is " + std::to_string(n));
+                   std::to_string(points) + " points; n is " + std::to_string(n));
   }
-  return lagrange ? n : 0;
+  return {n, lagrange ? n : 0, 0};
+}
+
+/* n of a row `id,piecewise,…,n,…`: the next n rows are its pieces. 0 for other rows, and for those that cannot be read.
+ */
+std::size_t rowsOfPieces(const std::string &text) {
+  if (text.find("piecewise") == std::string::npos) return 0;
+  try {
+    const std::vector<std::string> fields = splitFields(text);
+    if (fields.size() < kFirstPoint || trimmed(fields[1]) != "piecewise") return 0;
+    const std::size_t n = static_cast<std::size_t>(parseCount(fields[kFirstPoint - 1]).value_or(0));
+    return n <= kMostPieces ? n : 0;
+  } catch (const BadInput &) {
+    return 0;
+  }
+}
+
+/* What is left of a row after `column`: one number or none, and two that restrict the curve or none. */
+void readRest(const std::vector<std::string> &fields, std::size_t column, std::size_t n, CurveDescription &curve) {
+  if (fields.size() < column + 2) return;
+  curve.restrict_t0 = number(fields, fields.size() - 2, n);
+  curve.restrict_t1 = number(fields, fields.size() - 1, n);
+  if (!(curve.restrict_t0 < curve.restrict_t1)) {
+    throw BadInput("the last two columns restrict the curve: " + shown(fields[fields.size() - 2]) + " is not below " +
+                   shown(fields.back()));
+  }
+}
+
+void checkOwnRange(const CurveDescription &curve) {
+  if (hasOwnRange(curve.basis) && (curve.t0 != 0.0 || curve.t1 != 0.0)) {
+    throw BadInput("a " + curve.basis + " curve has a range of its own: t0 and t1 must be 0");
+  }
 }
 
 } // namespace
@@ -104,6 +147,7 @@ CsvFile::CsvFile(const std::string &path) : path_(path), stream_(path, std::ios:
 
 std::optional<CsvRow> CsvFile::next() {
   std::string text;
+  CsvRow row{0, 0, ""}; // with the rows of its pieces, if it is piecewise
   while (std::getline(stream_, text)) {
     ++line_;
     read_ += text.size() + 1;
@@ -114,7 +158,18 @@ std::optional<CsvRow> CsvFile::next() {
     if (isBlank(text) || text.front() == '#' || isHeader(text)) continue;
 
     ++row_;
-    return CsvRow{row_, line_, std::move(text)};
+    if (pieces_ > 0) {
+      --pieces_;
+      row.text += '\n' + text;
+    } else {
+      row = CsvRow{row_, line_, std::move(text)};
+      pieces_ = rowsOfPieces(row.text);
+    }
+    if (pieces_ == 0) return row;
+  }
+  if (!row.text.empty() && !stream_.bad()) {
+    pieces_ = 0;
+    return row;
   }
   if (stream_.bad()) throw BadUsage(path_ + ": reading failed after line " + std::to_string(line_));
   return std::nullopt;
@@ -176,16 +231,16 @@ std::string rowId(const std::string &text) {
   }
 }
 
-CurveDescription parseCurve(const std::string &text) {
-  std::vector<std::string> fields = splitFields(text);
+namespace {
 
+/* The columns from `id` to `n`. */
+CurveDescription readHead(std::vector<std::string> &fields) {
   /* empty fields at the end: spreadsheets make all rows as long as the longest */
   while (!fields.empty() && isBlank(fields.back())) fields.pop_back();
   if (fields.size() < kFirstPoint) {
     throw BadInput("the row has " + std::to_string(fields.size()) +
                    " columns; at least id,basis,degree,t0,t1,radius,n are needed");
   }
-
   CurveDescription curve;
   curve.id = std::string(trimmed(fields[0]));
   curve.basis = std::string(trimmed(fields[1]));
@@ -193,22 +248,79 @@ CurveDescription parseCurve(const std::string &text) {
   curve.t0 = number(fields, 3, 0);
   curve.t1 = number(fields, 4, 0);
   curve.radius = number(fields, 5, 0);
+  return curve;
+}
+
+CurveDescription parseRow(const std::string &text) {
+  std::vector<std::string> fields = splitFields(text);
+  CurveDescription curve = readHead(fields);
+  if (curve.basis == "piecewise") throw BadInput("a piece cannot be piecewise itself");
 
   /* as many columns as basis, degree and n ask for, before anything is allocated by n */
   const std::size_t n = count(fields, 6);
-  const std::size_t n_knots = knotsNeeded(curve, n);
-  const std::size_t needed = kFirstPoint + 3 * n + n_knots;
-  if (fields.size() != needed) {
+  const CurveCounts counts = needed(curve, n);
+  const std::size_t columns = kFirstPoint + 3 * n + counts.knots + counts.parameters;
+  if (fields.size() != columns && fields.size() != columns + 2) {
+    const bool by_degree = counts.knots > 0 || counts.parameters > 0;
     throw BadInput("the row has " + std::to_string(fields.size()) + " columns; a " + curve.basis +
-                   " with n = " + std::to_string(n) + (n_knots ? " and degree " + std::to_string(curve.degree) : "") +
-                   " has " + std::to_string(needed));
+                   " with n = " + std::to_string(n) + (by_degree ? " and degree " + std::to_string(curve.degree) : "") +
+                   " has " + std::to_string(columns));
   }
+  checkOwnRange(curve);
 
   curve.points.resize(3, static_cast<Eigen::Index>(n));
   for (std::size_t k = 0; k < 3 * n; ++k) curve.points.data()[k] = number(fields, kFirstPoint + k, n);
-  curve.knots.resize(n_knots);
-  for (std::size_t k = 0; k < n_knots; ++k) curve.knots[k] = number(fields, kFirstPoint + 3 * n + k, n);
+  std::size_t column = kFirstPoint + 3 * n;
+  for (std::size_t k = 0; k < counts.knots; ++k) curve.knots.push_back(number(fields, column++, n));
+  for (std::size_t k = 0; k < counts.parameters; ++k) curve.parameters.push_back(number(fields, column++, n));
+  readRest(fields, column, n, curve);
   return curve;
+}
+
+/* id,piecewise,0,0,0,radius,n[,gap][,restrict_t0,restrict_t1], and n rows. */
+CurveDescription parsePieces(const std::vector<std::string> &rows) {
+  std::vector<std::string> fields = splitFields(rows.front());
+  CurveDescription curve = readHead(fields);
+  const std::size_t n = count(fields, 6), more = fields.size() - kFirstPoint;
+  if (rows.size() != n + 1) {
+    throw BadInput("a piecewise curve with n = " + std::to_string(n) + " is followed by so many rows; there are " +
+                   std::to_string(rows.size() - 1));
+  }
+  if (more > 3) {
+    throw BadInput("the row has " + std::to_string(fields.size()) +
+                   " columns; a piecewise curve has 7 to 10: gap, restrict_t0, restrict_t1 after n");
+  }
+  checkOwnRange(curve);
+  const std::size_t gaps = more % 2;
+  if (gaps > 0) curve.parameters.push_back(number(fields, kFirstPoint, 0));
+  readRest(fields, kFirstPoint + gaps, 0, curve);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    try {
+      curve.pieces.push_back(parseRow(rows[i]));
+    } catch (const Error &error) {
+      throw BadInput("piece " + std::to_string(i - 1) + ": " + error.what());
+    } catch (const BadInput &error) {
+      throw BadInput("piece " + std::to_string(i - 1) + ": " + error.what());
+    }
+    if (curve.pieces.back().radius != 0.0) {
+      throw BadInput("piece " + std::to_string(i - 1) + ": its radius must be 0; that of the piecewise row counts");
+    }
+  }
+  return curve;
+}
+
+} // namespace
+
+CurveDescription parseCurve(const std::string &text) {
+  std::vector<std::string> rows;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    rows.push_back(text.substr(from, end - from));
+    from = end + 1;
+  }
+  const std::vector<std::string> first = splitFields(rows.front());
+  const bool pieces = first.size() > 1 && trimmed(first[1]) == "piecewise";
+  return pieces ? parsePieces(rows) : parseRow(text);
 }
 
 } // namespace curve_proximity::cli

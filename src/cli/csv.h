@@ -15,7 +15,8 @@
 
 namespace curve_proximity::cli {
 
-/** A line of the file that is a row: neither blank, nor a comment, nor a header (id,basis,…). */
+/** A line of the file that is a row: neither blank, nor a comment, nor a header (id,basis,…). A piecewise row holds the
+ *  lines of its pieces, too. */
 struct CsvRow {
   std::size_t number = 0; /**< among the rows, from 1 */
   std::size_t line = 0;   /**< in the file, from 1 */
@@ -39,6 +40,7 @@ class CsvFile {
   std::ifstream stream_;
   std::uint64_t size_ = 0, read_ = 0;
   std::size_t row_ = 0, line_ = 0;
+  std::size_t pieces_ = 0; /* rows that still belong to the row before */
 };
 
 /** The fields of a line, split at commas; one that begins with a quote ends at the next quote (a doubled quote is one)
@@ -54,7 +56,8 @@ std::string placeOf(const CsvRow &row, const std::string &file);
 /** The id of a row, as far as it can be read: also of rows that are no curve. */
 std::string rowId(const std::string &text);
 
-/** The row as a curve: id,basis,degree,t0,t1,radius,n,x0,y0,z0,…[,knot0,…] (a lagrange curve's nodes stand as knots).
+/** The row as a curve: id,basis,degree,t0,t1,radius,n,x0,y0,z0,…[,knot0,…][,parameter0,…][,restrict_t0,restrict_t1] (a
+ * lagrange curve's nodes stand as knots); of a piecewise curve a line for it, and a line for each piece.
  * Empty fields at the end are left out. Throws BadInput, naming the column: a field that is not a finite number, too
  * few or too many columns, a degree that does not fit. What needs geometry to judge (knots that descend, t0 >= t1) is
  * left to compile(). */

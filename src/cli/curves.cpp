@@ -75,7 +75,9 @@ Outcome answerCurve(const CsvRow &csv, const std::vector<Side> &sides, const Arg
     return out;
   };
   try {
-    curve = compile(parseCurve(csv.text));
+    const CurveDescription description = parseCurve(csv.text);
+    if (!arguments.certificate.empty()) requireCheckable(description);
+    curve = compile(description);
     Outcome out;
     for (const Side &side : sides) {
       if (arguments.asking == Asking::SEARCH) {

@@ -110,12 +110,15 @@ class Checker {
     checkList("position", row.positions, &TrajectoryPoint::positions);
     checkList("velocity", row.velocities, &TrajectoryPoint::velocities);
     checkList("acceleration", row.accelerations, &TrajectoryPoint::accelerations);
-    const double start = asked_.motion->trajectory.points.front().time;
-    const double duration = asked_.motion->trajectory.points.back().time - start;
+    const TrajectoryDescription &asked = asked_.motion->trajectory;
+    const bool spline = asked.degree > 0;
+    const double start = spline ? asked.knots[asked.degree] : asked.points.front().time;
+    const double duration = (spline ? asked.knots[asked.points.size()] : asked.points.back().time) - start;
     if (!(duration > 10.0 * STEP)) return;
     compare("duration", row.duration, [&](ConstraintCase &moved, double step) {
-      for (TrajectoryPoint &point : moved.motion->trajectory.points)
-        point.time = start + (point.time - start) * ((duration + step) / duration);
+      const auto stretch = [&](double time) { return start + (time - start) * ((duration + step) / duration); };
+      for (TrajectoryPoint &point : moved.motion->trajectory.points) point.time = stretch(point.time);
+      for (double &knot : moved.motion->trajectory.knots) knot = stretch(knot);
     });
   }
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves: each as a kind of cprox_curve_description, with its points read in place. */
+#include <map>
+
 #include "conversion.h"
 
 namespace curve_proximity::python {
@@ -10,6 +12,30 @@ Curve make(cprox_curve_kind kind, const Array &points, double t0, double t1) {
   cprox_curve_description d = detail::describe(kind, t0, t1);
   d.points = p.data, d.n = p.size;
   return Curve{detail::makeCurve(d)};
+}
+
+std::vector<double> toNumbers(const Array &array, const char *name) {
+  if (array.ndim() != 1) throw Error(std::string(name) + " must be an array of shape (n,)");
+  return {array.data(), array.data() + array.size()};
+}
+
+Eigen::Map<const Eigen::Matrix3Xd> toColumns(const Array &points) {
+  const Points p(points, "points");
+  return {points.data(), 3, static_cast<Eigen::Index>(p.size)};
+}
+
+cprox_dubins_word toWord(const std::string &word) {
+  static const std::map<std::string, cprox_dubins_word> words = {{"shortest", CPROX_DUBINS_SHORTEST},
+                                                                 {"lsl", CPROX_DUBINS_LSL},
+                                                                 {"lsr", CPROX_DUBINS_LSR},
+                                                                 {"rsl", CPROX_DUBINS_RSL},
+                                                                 {"rsr", CPROX_DUBINS_RSR},
+                                                                 {"rlr", CPROX_DUBINS_RLR},
+                                                                 {"lrl", CPROX_DUBINS_LRL}};
+  const auto found = words.find(word);
+  if (found == words.end())
+    throw Error("'" + word + "' is no word of a Dubins path: shortest, lsl, lsr, rsl, rsr, rlr, lrl");
+  return found->second;
 }
 
 /* Point, first and second derivative at each t, as the caller wants them. */
@@ -38,12 +64,16 @@ void addCurves(py::module &module) {
           "t1", [](const Curve &c) { return cprox_curve_get_info(c.curve.get()).t1; }, "End.")
       .def_property_readonly(
           "n_pieces", [](const Curve &c) { return cprox_curve_get_info(c.curve.get()).n_pieces; }, "Polynomial pieces.")
+      .def(
+          "restrict", [](const Curve &c, double t0, double t1) { return Curve{restrictCurve(c.curve, t0, t1)}; },
+          py::arg("t0"), py::arg("t1"), "The part of the curve on [t0, t1]; its points keep their parameters.")
       .def("__call__", &evaluate, py::arg("t"), py::arg("derivative") = 0,
            "The point at t, or the first or second derivative: (3,) for a number, (n, 3) for an array (n,).");
 
   module.def(
       "bezier", [](const Array &points, double t0, double t1) { return make(CPROX_CURVE_BEZIER, points, t0, t1); },
-      py::arg("points"), py::arg("t0") = 0.0, py::arg("t1") = 1.0, "A Bézier curve; points (n, 3) [m].");
+      py::arg("points"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
+      "A Bézier curve; points (n, 3) [m]. It begins at t0 and ends at t1; Curve.restrict() makes parts.");
   module.def(
       "bspline",
       [](const Array &points, std::size_t degree, const Array &knots, std::optional<double> t0,
@@ -84,12 +114,63 @@ void addCurves(py::module &module) {
       "A clothoid in a plane z = const; heading [rad] and curvature [1/m] are those at t = 0, t is the arc length.");
   module.def(
       "dubins",
-      [](const Array &start, double start_heading, const Array &end, double end_heading, double radius) {
+      [](const Array &start, double start_heading, const Array &end, double end_heading, double radius,
+         const std::string &word) {
         return Curve{makeDubins(toEigen(toVector(start, "start")), start_heading, toEigen(toVector(end, "end")),
-                                end_heading, radius)};
+                                end_heading, radius, toWord(word))};
       },
       py::arg("start"), py::arg("start_heading"), py::arg("end"), py::arg("end_heading"), py::arg("radius"),
-      "The shortest Dubins path; t is the arc length.");
+      py::arg("word") = "shortest", "The shortest Dubins path, or that of a word ('lsl', …); t is the arc length.");
+  module.def(
+      "involute",
+      [](const Array &centre, double heading, double radius, double t0, double t1) {
+        return Curve{makeInvolute(toEigen(toVector(centre, "centre")), radius, heading, t0, t1)};
+      },
+      py::arg("centre"), py::arg("heading"), py::arg("radius"), py::arg("t0"), py::arg("t1"),
+      "The involute of a circle; it leaves the circle at t = 0 in the direction of the heading [rad].");
+  module.def(
+      "pythagorean_hodograph",
+      [](const Array &start, const Array &preimage, double t0, double t1) {
+        if (preimage.ndim() != 2 || preimage.shape(1) != 4) throw Error("preimage must be an array of shape (n, 4)");
+        std::vector<Eigen::Quaterniond> quaternions;
+        for (const double *q = preimage.data(); q != preimage.data() + preimage.size(); q += 4)
+          quaternions.emplace_back(q[0], q[1], q[2], q[3]);
+        return Curve{makePythagoreanHodograph(toEigen(toVector(start, "start")), quaternions, t0, t1)};
+      },
+      py::arg("start"), py::arg("preimage"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
+      "A Pythagorean-hodograph curve by the Bernstein coefficients of its preimage, quaternions (w, x, y, z): (n, 4).");
+  module.def(
+      "legendre",
+      [](const Array &coefficients, double t0, double t1) { return make(CPROX_CURVE_LEGENDRE, coefficients, t0, t1); },
+      py::arg("coefficients"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
+      "The sum of coefficients[k] P_k((2t - t0 - t1)/(t1 - t0)); (n, 3).");
+  module.def(
+      "lagrange",
+      [](const Array &points, const Array &nodes, double t0, double t1) {
+        return Curve{makeLagrange(toColumns(points), toNumbers(nodes, "nodes"), t0, t1)};
+      },
+      py::arg("points"), py::arg("nodes"), py::arg("t0"), py::arg("t1"),
+      "The polynomial that passes points[i] at nodes[i]; (n, 3) and (n,).");
+  module.def(
+      "rational_bezier",
+      [](const Array &points, const Array &weights, double t0, double t1) {
+        return Curve{makeRationalBezier(toColumns(points), toNumbers(weights, "weights"), t0, t1)};
+      },
+      py::arg("points"), py::arg("weights"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
+      "A rational Bézier curve; points (n, 3) [m], weights (n,) > 0.");
+  module.def(
+      "nurbs",
+      [](const Array &points, const Array &weights, std::size_t degree, const Array &knots, std::optional<double> t0,
+         std::optional<double> t1) {
+        const std::vector<double> k = toNumbers(knots, "knots");
+        const auto columns = toColumns(points);
+        const auto n = static_cast<std::size_t>(columns.cols());
+        const bool fits = degree < k.size() && n < k.size();
+        return Curve{makeNurbs(columns, toNumbers(weights, "weights"), degree, k, t0.value_or(fits ? k[degree] : 0.0),
+                               t1.value_or(fits ? k[n] : 1.0))};
+      },
+      py::arg("points"), py::arg("weights"), py::arg("degree"), py::arg("knots"), py::arg("t0") = py::none(),
+      py::arg("t1") = py::none(), "A NURBS curve: a B-spline with weights (n,) > 0.");
   module.def(
       "piecewise",
       [](const std::vector<Curve> &curves, const std::vector<double> &ends, double gap) {

@@ -419,32 +419,61 @@ CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &fram
   return out;
 }
 
-void toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed, CurveDescription &out) {
-  out.id = curve.id;
+/* t0 and t1 are not read. */
+static bool hasOwnRange(const std::string &basis) {
+  return basis.rfind(Curve::DUBINS, 0) == 0 || basis == Curve::PIECEWISE;
+}
+
+/* A frame moves it as a whole: its points do not say where it is. */
+static bool isMovedAsWhole(const std::string &basis) {
+  return hasOwnRange(basis) || basis == Curve::CLOTHOID || basis == Curve::INVOLUTE ||
+         basis == Curve::PYTHAGOREAN_HODOGRAPH;
+}
+
+/* What a curve and a piece have in common. */
+template <typename Message>
+static void fillBasis(const Message &curve, CurveDescription &out) {
   out.basis = curve.basis;
   out.degree = curve.degree;
   out.t0 = curve.t0;
   out.t1 = curve.t1;
-  out.radius = curve.radius;
   fillPoints(curve.points, out.points);
   out.knots = curve.knots;
-
-  // The identity leaves the points to the last bit as they are.
-  if (!frame_in_fixed.matrix().isIdentity(0.0)) {
-    out.points = frame_in_fixed.linear() * out.points;
-    const Eigen::Index moved = isSeries(out.basis) ? std::min<Eigen::Index>(1, out.points.cols()) : out.points.cols();
-    out.points.leftCols(moved).colwise() += frame_in_fixed.translation();
+  out.parameters = curve.parameters;
+  if (out.t0 != 0.0 || out.t1 != 0.0) {
+    if (hasOwnRange(out.basis)) throw Error("a " + out.basis + " curve has a range of its own: t0 and t1 must be 0");
+    return;
   }
 
   // The whole of the curve; where its knots are too few for that compile() says so.
-  if (out.t0 == 0.0 && out.t1 == 0.0) {
-    out.t1 = 1.0;
-    const std::size_t n = curve.points.size();
-    if (out.basis == "bspline" && curve.degree < n && n < curve.knots.size()) {
-      out.t0 = curve.knots[curve.degree];
-      out.t1 = curve.knots[n];
-    }
+  out.t1 = 1.0;
+  const std::size_t n = curve.points.size();
+  const bool spline = out.basis == Curve::BSPLINE || out.basis == Curve::NURBS;
+  if (spline && curve.degree < n && n < curve.knots.size()) {
+    out.t0 = curve.knots[curve.degree];
+    out.t1 = curve.knots[n];
   }
+}
+
+void toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed, CurveDescription &out) {
+  fillBasis(curve, out);
+  out.id = curve.id;
+  out.radius = curve.radius;
+  out.restrict_t0 = curve.restrict_t0;
+  out.restrict_t1 = curve.restrict_t1;
+  out.pieces.resize(curve.pieces.size());
+  for (std::size_t i = 0; i < out.pieces.size(); ++i) fillBasis(curve.pieces[i], out.pieces[i]);
+  out.pose.reset();
+
+  // The identity leaves the points to the last bit as they are.
+  if (frame_in_fixed.matrix().isIdentity(0.0)) return;
+  if (isMovedAsWhole(out.basis)) {
+    out.pose = frame_in_fixed;
+    return;
+  }
+  out.points = frame_in_fixed.linear() * out.points;
+  const Eigen::Index moved = isSeries(out.basis) ? std::min<Eigen::Index>(1, out.points.cols()) : out.points.cols();
+  out.points.leftCols(moved).colwise() += frame_in_fixed.translation();
 }
 
 /* ---- the scene ---- */

@@ -33,6 +33,7 @@ class NameLimits {
     check("a curve's id", curve.id);
     check("a curve's frame", curve.header.frame_id);
     check("a curve's basis", curve.basis);
+    for (const CurvePiece &piece : curve.pieces) check("a curve's basis", piece.basis);
   }
 
   void check(const nav_msgs::Path &path) const {

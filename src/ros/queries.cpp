@@ -276,6 +276,7 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   for (const Curve &curve : request.curves) {
     names.check(curve);
     points += curve.points.size();
+    for (const CurvePiece &piece : curve.pieces) points += piece.points.size() + piece.parameters.size();
   }
   for (const nav_msgs::Path &path : request.paths) {
     names.check(path);

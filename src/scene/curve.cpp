@@ -6,6 +6,7 @@
 #include <curve_proximity/query.hpp>
 
 #include "answering.h"
+#include "curve_basis.h"
 
 namespace curve_proximity {
 namespace {
@@ -62,9 +63,10 @@ std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::v
 }
 
 /* Boxes of a curve whose pieces are not the description's: each a few pieces, a single piece cut. */
-std::vector<Eigen::AlignedBox3d> pieceBoxes(const CurveDescription &description, const cprox_curve *curve) {
-  const std::size_t n = cprox_curve_get_info(curve).n_pieces;
-  if (n == 1) return cutBoxes(curve, {description.t0, description.t1}, BOXES);
+std::vector<Eigen::AlignedBox3d> pieceBoxes(const cprox_curve *curve) {
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  const std::size_t n = info.n_pieces;
+  if (n == 1) return cutBoxes(curve, {info.t0, info.t1}, BOXES);
   std::vector<Eigen::AlignedBox3d> boxes(std::min(n, MOST_BOXES));
   for (std::size_t i = 0; i < n; ++i) {
     const cprox_curve_piece_info piece = cprox_curve_get_piece_info(curve, i);
@@ -143,6 +145,97 @@ CurveHandle makeSeries(const CurveDescription &curve) {
   return legendre ? makeLegendre(curve.points, curve.t0, curve.t1) : makePolynomial(curve.points, curve.t0, curve.t1);
 }
 
+/* As many points, knots and parameters as the basis takes. */
+void checkCounts(const CurveDescription &curve) {
+  const CurveCounts needed = countsOf(curve.basis, curve.degree, static_cast<std::size_t>(curve.points.cols()));
+  const auto check = [&](const char *what, std::size_t wanted, std::size_t got) {
+    if (got != wanted)
+      throw Error("a " + curve.basis + " curve takes " + std::to_string(wanted) + " " + what + ", got " +
+                  std::to_string(got));
+  };
+  check("points", needed.points, static_cast<std::size_t>(curve.points.cols()));
+  check("knots", needed.knots, curve.knots.size());
+  check("parameters", needed.parameters, curve.parameters.size());
+}
+
+cprox_dubins_word wordOf(const std::string &basis) {
+  static constexpr std::pair<const char *, cprox_dubins_word> words[] = {
+      {"dubins", CPROX_DUBINS_SHORTEST}, {"dubins_lsl", CPROX_DUBINS_LSL}, {"dubins_lsr", CPROX_DUBINS_LSR},
+      {"dubins_rsl", CPROX_DUBINS_RSL},  {"dubins_rsr", CPROX_DUBINS_RSR}, {"dubins_rlr", CPROX_DUBINS_RLR},
+      {"dubins_lrl", CPROX_DUBINS_LRL}};
+  for (const auto &[name, word] : words)
+    if (basis == name) return word;
+  throw Error("basis '" + basis + "' is not available");
+}
+
+/* A curve that start, headings and lengths describe. */
+CurveHandle makeNamed(const CurveDescription &curve) {
+  const cprox_dubins_word word = hasOwnRange(curve.basis) ? wordOf(curve.basis) : CPROX_DUBINS_SHORTEST;
+  checkCounts(curve);
+  const Eigen::Vector3d start = curve.points.col(0);
+  const std::vector<double> &p = curve.parameters;
+  if (curve.basis == "clothoid") return makeClothoid(start, p[0], p[1], p[2], curve.t0, curve.t1);
+  if (curve.basis == "involute") return makeInvolute(start, p[1], p[0], curve.t0, curve.t1);
+  if (hasOwnRange(curve.basis)) return makeDubins(start, p[0], curve.points.col(1), p[1], p[2], word);
+  std::vector<Eigen::Quaterniond> preimage;
+  for (std::size_t i = 0; i < p.size(); i += 4) preimage.emplace_back(p[i], p[i + 1], p[i + 2], p[i + 3]);
+  return makePythagoreanHodograph(start, preimage, curve.t0, curve.t1);
+}
+
+CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace);
+
+CurveHandle makeWithPlace(const CurveDescription &curve, Workspace &workspace) {
+  CurveHandle whole = makeWhole(curve, workspace);
+  const bool restricts = curve.restrict_t0 != 0.0 || curve.restrict_t1 != 0.0;
+  if (!restricts && !curve.pose) return whole;
+  const cprox_curve_info info = cprox_curve_get_info(whole.get());
+  const double from = restricts ? curve.restrict_t0 : info.t0, to = restricts ? curve.restrict_t1 : info.t1;
+  return restrictCurve(whole, from, to, curve.pose.value_or(Eigen::Isometry3d::Identity()));
+}
+
+CurveHandle joinPieces(const CurveDescription &curve, Workspace &workspace) {
+  if (curve.parameters.size() > 1)
+    throw Error("a piecewise curve takes one parameter, the gap, or none; got " +
+                std::to_string(curve.parameters.size()));
+  if (curve.degree != 0 || curve.points.cols() != 0 || !curve.knots.empty())
+    throw Error("a piecewise curve has pieces, and no degree, points or knots of its own");
+  std::vector<CurveHandle> handles;
+  for (std::size_t i = 0; i < curve.pieces.size(); ++i) {
+    try {
+      if (curve.pieces[i].basis == "piecewise") throw Error("it is piecewise itself");
+      handles.push_back(makeWithPlace(curve.pieces[i], workspace));
+    } catch (const Error &error) {
+      throw Error("piece " + std::to_string(i) + ": " + error.what(), error.status());
+    }
+  }
+  return makePiecewise(handles, {}, curve.parameters.empty() ? 0.0 : curve.parameters.front());
+}
+
+/* Without restriction and pose. */
+CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
+  if (curve.basis != "piecewise" && !curve.pieces.empty())
+    throw Error("a " + curve.basis + " curve has no pieces, got " + std::to_string(curve.pieces.size()));
+  if (curve.basis == "piecewise") return joinPieces(curve, workspace);
+  if (isNamedBasis(curve.basis)) return makeNamed(curve);
+  if (isRationalBasis(curve.basis)) {
+    checkCounts(curve);
+    if (curve.basis == "nurbs")
+      return makeNurbs(curve.points, curve.parameters, curve.degree, curve.knots, curve.t0, curve.t1);
+    return makeRationalBezier(curve.points, curve.parameters, curve.t0, curve.t1);
+  }
+  if (!curve.parameters.empty())
+    throw Error("a " + curve.basis + " curve takes no parameters, got " + std::to_string(curve.parameters.size()));
+  if (curve.basis == "bspline") return makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
+  if (curve.basis != "bezier") return makeSeries(curve);
+  const auto n = static_cast<std::size_t>(curve.points.cols());
+  if (curve.degree != 0 && curve.degree + 1 != n) {
+    throw Error("a bezier curve of degree " + std::to_string(curve.degree) + " has " +
+                std::to_string(curve.degree + 1) + " points, got " + std::to_string(n));
+  }
+  if (!curve.knots.empty()) throw Error("a bezier curve takes no knots, got " + std::to_string(curve.knots.size()));
+  return detail::createCurve(detail::describe(CPROX_CURVE_BEZIER, curve.points, curve.t0, curve.t1), workspace);
+}
+
 } // namespace
 
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes) {
@@ -155,24 +248,12 @@ CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes, Workspace
   CompiledCurve out;
   out.id = curve.id;
   out.radius = curve.radius;
-
-  if (curve.basis == "bezier") {
-    const auto n = static_cast<std::size_t>(curve.points.cols());
-    if (curve.degree != 0 && curve.degree + 1 != n) {
-      throw Error("a bezier curve of degree " + std::to_string(curve.degree) + " has " +
-                  std::to_string(curve.degree + 1) + " points, got " + std::to_string(n));
-    }
-    if (!curve.knots.empty()) throw Error("a bezier curve takes no knots, got " + std::to_string(curve.knots.size()));
-    out.curve = detail::createCurve(detail::describe(CPROX_CURVE_BEZIER, curve.points, curve.t0, curve.t1), workspace);
-    if (boxes == CurveBoxes::MANY) out.boxes = cutBoxes(out.curve.get(), {curve.t0, curve.t1}, BOXES);
-  } else if (curve.basis == "bspline") {
-    out.curve = makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
-    if (boxes == CurveBoxes::MANY) out.boxes = splineBoxes(curve, out.curve.get());
-  } else {
-    out.curve = makeSeries(curve);
-    if (boxes == CurveBoxes::MANY) out.boxes = pieceBoxes(curve, out.curve.get());
+  out.curve = makeWithPlace(curve, workspace);
+  if (boxes == CurveBoxes::MANY) {
+    const bool whole = cprox_curve_get_info(out.curve.get()).kind == CPROX_CURVE_BSPLINE;
+    out.boxes = whole ? splineBoxes(curve, out.curve.get()) : pieceBoxes(out.curve.get());
+    if (out.boxes.empty()) out.boxes.push_back(boxOf(out.curve.get()));
   }
-  if (out.boxes.empty() && boxes == CurveBoxes::MANY) out.boxes.push_back(boxOf(out.curve.get()));
   return out;
 }
 

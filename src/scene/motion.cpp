@@ -75,6 +75,10 @@ TrajectoryShape shapeOf(const TrajectoryDescription &trajectory, const Columns &
     out.has_accelerations = out.has_accelerations || !point.accelerations.empty();
     out.times.push_back(point.time);
   }
+  if (trajectory.degree > 0) {
+    out.has_velocities = out.has_accelerations = false;
+    out.times = {trajectory.knots[trajectory.degree], trajectory.knots[out.n_points]};
+  }
   out.column = columns.column;
   out.variable = columns.variable;
   return out;
@@ -110,11 +114,30 @@ void makeState(const std::vector<double> &values, RobotMotion::Data &data) {
   createCore(description, data);
 }
 
+void makeSpline(const TrajectoryDescription &trajectory, const Columns &columns, const std::vector<double> &still,
+                RobotMotion::Data &data) {
+  std::vector<double> control;
+  for (const TrajectoryPoint &point : trajectory.points)
+    for (const std::size_t column : columns.column) control.push_back(point.positions[column]);
+  cprox_motion_description description{};
+  description.kind = CPROX_MOTION_BSPLINE;
+  description.variables = columns.variable.data();
+  description.n_variables = columns.variable.size();
+  description.rest = still.data();
+  description.control = control.data();
+  description.n_control = trajectory.points.size();
+  description.degree = trajectory.degree;
+  description.knots = trajectory.knots.data();
+  description.n_knots = trajectory.knots.size();
+  createCore(description, data);
+}
+
 void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &rest, RobotMotion::Data &data) {
   const Kinematics &kinematics = *data.kinematics;
   const Columns columns = columnsOf(kinematics, trajectory);
   std::vector<double> still = restOf(kinematics, rest);
   data.shape = shapeOf(trajectory, columns);
+  if (trajectory.degree > 0) return makeSpline(trajectory, columns, still, data);
   if (trajectory.points.size() == 1) {
     const TrajectoryPoint &point = trajectory.points.front();
     if (point.time > 0.0)

@@ -23,6 +23,18 @@ void checkList(const TrajectoryDescription &trajectory, std::size_t i, const cha
   }
 }
 
+/* Degree, knots and control points of a B-spline. */
+void checkSpline(const TrajectoryDescription &trajectory) {
+  const std::size_t n = trajectory.points.size(), degree = trajectory.degree;
+  for (std::size_t i = 0; i < n; ++i) checkList(trajectory, i, "positions", trajectory.points[i].positions, true);
+  if (n <= degree)
+    throw Error("a spline of degree " + std::to_string(degree) + " needs at least " + std::to_string(degree + 1) +
+                " control points, got " + std::to_string(n));
+  if (trajectory.knots.size() != n + degree + 1)
+    throw Error(std::to_string(n) + " control points of degree " + std::to_string(degree) + " need " +
+                std::to_string(n + degree + 1) + " knots, got " + std::to_string(trajectory.knots.size()));
+}
+
 } // namespace
 
 void adoptBase(const std::vector<VirtualJoint> &joints, TrajectoryDescription &trajectory) {
@@ -41,6 +53,8 @@ void checkTrajectory(const TrajectoryDescription &trajectory) {
     if (!names.insert(joint).second) throw Error("joint '" + joint + "' is named twice");
   }
 
+  if (trajectory.degree > 0) return checkSpline(trajectory);
+  if (!trajectory.knots.empty()) throw Error("a trajectory through waypoints has no knots");
   const Interpolation kind = trajectory.interpolation;
   for (std::size_t i = 0; i < trajectory.points.size(); ++i) {
     const TrajectoryPoint &point = trajectory.points[i];

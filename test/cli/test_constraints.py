@@ -211,6 +211,20 @@ class Gradients(Case):
 ''')
         self.assertEqual((answer.code, answer.row('two')['verdict'], answer.row('two')['derivatives']), (0, 'clear', '12'))
 
+    def gradients_of_rational_curves_by_their_points_agree(self):
+        """Weights, knots and a restriction pass through the message Curve."""
+        answer = self.check(CURVES, f'''
+- id: arc
+  curve: {{basis: rational_bezier, radius: 0.1, points: [[-1, 0.1, 1], [1, 0.2, 0.6], [3, 0, 1]], parameters: [1, 2.5, 0.7]}}
+  b: {{bodies: [{{type: ellipsoid, dimensions: [0.3, 0.2, 0.25]}}], pose: {{position: [1, 0, 0]}}}}
+- id: nurbs
+  curve: {{basis: nurbs, degree: 2, points: [[-1, 0.1, 1], [1, 0.2, 0.6], [3, 0, 1]], knots: [0, 0, 0, 4, 4, 4],
+           parameters: [1, 2.5, 0.7], restrict_t0: 1, restrict_t1: 3.5}}
+  b: {{bodies: [{{type: ellipsoid, dimensions: [0.3, 0.2, 0.25]}}], pose: {{position: [1, 0, 0]}}}}
+''')
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        self.assertEqual([(row['verdict'], row['derivatives']) for row in answer.rows], [('clear', '16'), ('clear', '15')])
+
     def where_there_is_no_gradient_nothing_is_decided(self):
         answer = self.check(CURVES, f'''
 - id: along

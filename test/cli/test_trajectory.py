@@ -41,6 +41,23 @@ class Trajectory(Case):
             words += ['--srdf', self.file('robot.srdf', srdf)]
         return cprox(*words, *more)
 
+    def a_joint_spline_is_a_bspline_of_the_joint_values(self):
+        """Degree 2 through 0, 4, 0 over [0, 2]: the cart reaches x = 2 at t = 1, the wall's face is at x = 3."""
+        spline = ('joint_spline: {joint_names: [slide], degree: 2, knots: [0, 0, 0, 2, 2, 2], '
+                  'control_points: [[0], [4], [0]]}')
+        row = self.robot('distance', spline).rows[0]
+        self.assertAnswer(row, 3 - 2 - 0.1)
+        self.assertAlmostEqual(float(row['t']), 1.0, delta=1e-3)
+        for wrong, words in (('knots: [0, 0, 0, 2, 2]', 'need 6 knots, got 5'), ('degree: 0', 'at least 1'),
+                             ('degree: 3', 'at least 4 control points'), ('knots: [0, 0, 0, -2, 2, 2]', 'knot')):
+            key = wrong.split(':')[0]
+            text = spline.replace({'knots': 'knots: [0, 0, 0, 2, 2, 2]', 'degree': 'degree: 2'}[key], wrong)
+            answer = self.robot('distance', text)
+            self.assertNotEqual(answer.code, 0, wrong)
+            self.assertIn(words, answer.err + answer.out, wrong)
+        both = spline + '\njoint_trajectory: {joint_names: [slide], points: []}'
+        self.assertIn('both a joint_trajectory and a joint_spline', self.robot('distance', both).err)
+
     def the_environment_row_names_link_object_and_time(self):
         answer = self.robot('distance', SLIDE)
         self.assertEqual((answer.code, answer.err), (0, ''))

@@ -53,6 +53,43 @@ class Curves(unittest.TestCase):
         spline = cprox.bspline(points, 2, [0, 0, 0, 1, 2, 2, 2])
         self.assertEqual((spline.t0, spline.t1, spline.n_pieces), (0, 2, 2))
 
+    def test_named_and_rational_curves_are_their_formulas(self):
+        t = numpy.linspace(0, 2, 9)
+        root = numpy.sqrt(.5)
+        points = [[1, 0, 0], [1, 1, 0], [0, 1, 0]]
+        arc = cprox.rational_bezier(points, [1, root, 1], 0, 2)
+        numpy.testing.assert_allclose(numpy.linalg.norm(arc(t), axis=1), 1, atol=1e-12)
+        nurbs = cprox.nurbs(points, [1, root, 1], 2, [0, 0, 0, 2, 2, 2])
+        numpy.testing.assert_allclose(nurbs(t), arc(t), atol=1e-12)
+        with self.assertRaisesRegex(Exception, 'weight 1 is -1'):
+            cprox.rational_bezier(points, [1, -1, 1])
+        unwound = cprox.involute([1, 2, 3], numpy.pi / 2, .5, 0, 2)
+        x, y = .5 * (numpy.cos(t) + t * numpy.sin(t)), .5 * (numpy.sin(t) - t * numpy.cos(t))
+        numpy.testing.assert_allclose(unwound(t), numpy.stack([1 - y, 2 + x, 3 + 0 * t], axis=1), atol=1e-12)
+        # the preimage 1 + 2 s k: dpsi/ds = (1 - 4 s^2, 4 s, 0)
+        hodograph = cprox.pythagorean_hodograph([0, 0, 1], [[1, 0, 0, 0], [1, 0, 0, 2]], 0, 2)
+        s = t / 2
+        numpy.testing.assert_allclose(hodograph(t), numpy.stack([s - 4 / 3 * s**3, 2 * s**2, 1 + 0 * s], axis=1), atol=1e-12)
+        legendre = cprox.legendre([[0, 0, 0], [1, 0, 0], [0, 1, 0]], 0, 2)
+        x = t - 1
+        numpy.testing.assert_allclose(legendre(t), numpy.stack([x, 1.5 * x * x - .5, 0 * x], axis=1), atol=1e-12)
+        lagrange = cprox.lagrange([[0, 0, 0], [1, 1, 0], [2, 0, 0]], [0, 1, 2], 0, 2)
+        numpy.testing.assert_allclose(lagrange(t), numpy.stack([t, t * (2 - t), 0 * t], axis=1), atol=1e-12)
+        self.assertAlmostEqual(cprox.dubins([0, 0, 0], 0, [0, 2, 0], numpy.pi, 1, 'lsl').t1, numpy.pi, places=9)
+        with self.assertRaisesRegex(Exception, "'xyz' is no word"):
+            cprox.dubins([0, 0, 0], 0, [1, 0, 0], 0, 1, word='xyz')
+
+    def test_a_restricted_curve_keeps_its_parameters(self):
+        points = numpy.array([[0, 0, 0], [1, 2, 0], [2, 0, 1], [3, 1, 1.]])
+        for curve in (cprox.bezier(points, 0, 3), cprox.legendre(points, 0, 3), cprox.clothoid([0, 0, 0], .1, .2, .3, 0, 3),
+                      cprox.rational_bezier(points, [1, 2, .5, 1], 0, 3)):
+            part = curve.restrict(.7, 2.2)
+            self.assertEqual((part.t0, part.t1), (.7, 2.2))
+            t = numpy.linspace(.7, 2.2, 11)
+            numpy.testing.assert_allclose(part(t), curve(t), atol=1e-12)
+            with self.assertRaisesRegex(Exception, 'leaves the curve'):
+                curve.restrict(1, 4)
+
     def test_arrays_of_other_types_and_orders_are_copied(self):
         points = numpy.asfortranarray(numpy.arange(12).reshape(4, 3)[::-1].astype(numpy.float32))
         numpy.testing.assert_allclose(cprox.bezier(points)(0.), points[0])

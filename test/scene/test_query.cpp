@@ -471,6 +471,45 @@ TEST(Compile, every_basis_describes_the_same_curve) {
                  std::hypot(3.0 * std::cos(-1.0), 1.0 + 3.0 * std::sin(-1.0)));
 }
 
+/* A half circle of radius 1 about (0, 1, 0) as Dubins path, rational curve and two pieces, turned upright by a pose and
+ * restricted to its later half: from (0, 0, 1) it is as near as its end or its middle. */
+TEST(Compile, named_curves_stand_where_their_pose_says) {
+  Scene scene;
+  ASSERT_TRUE(scene.apply(change({add("point", {shape(ShapeType::POINT, {})}, translation(0, 0, -1))})).empty());
+  const double h = std::sqrt(0.5), pi = std::acos(-1.0);
+  CurveDescription dubins;
+  dubins.basis = "dubins";
+  dubins.points.resize(3, 2);
+  dubins.points << 0, 0, 0, 2, 0, 0;
+  dubins.parameters = {0, pi, 1};
+  CurveDescription nurbs;
+  nurbs.basis = "nurbs";
+  nurbs.degree = 2;
+  nurbs.t1 = pi;
+  nurbs.points.resize(3, 5);
+  nurbs.points << 0, 1, 1, 1, 0, 0, 0, 1, 2, 2, 0, 0, 0, 0, 0;
+  nurbs.knots = {0, 0, 0, pi / 2, pi / 2, pi, pi, pi};
+  nurbs.parameters = {1, h, 1, h, 1};
+  CurveDescription pieces;
+  pieces.basis = "piecewise";
+  pieces.pieces.resize(2, nurbs);
+  pieces.pieces[0].restrict_t0 = 0.0, pieces.pieces[0].restrict_t1 = 1.0;
+  pieces.pieces[1].restrict_t0 = 1.0, pieces.pieces[1].restrict_t1 = pi;
+  for (CurveDescription d : {dubins, nurbs, pieces}) {
+    /* y becomes z: the circle is about (0, 0, 1), the point two below its middle and one below its start */
+    d.pose = Eigen::Isometry3d(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitX()));
+    const auto expectDistance = [&](double distance) {
+      const Answer answer = askOne(scene, {}, d, Query());
+      EXPECT_EQ(answer.status, "ok") << d.basis << ": " << answer.message;
+      EXPECT_LE(answer.result.lower, distance + 1e-12) << d.basis;
+      EXPECT_GE(answer.result.upper, distance - 1e-12) << d.basis;
+    };
+    expectDistance(1.0);
+    d.restrict_t0 = pi / 2, d.restrict_t1 = 3.0;
+    expectDistance(std::sqrt(5.0)); // from (1, 0, 1)
+  }
+}
+
 TEST(Compile, coefficients_that_do_not_fit_the_basis_are_told_in_a_sentence) {
   CurveDescription curve = UPRIGHT;
   curve.degree = 2;

@@ -73,14 +73,35 @@ void readBase(const YamlValue &value, TrajectoryDescription &out, Warnings &warn
   out.base.push_back(joint);
 }
 
+/* joint_spline: a B-spline of the joint values, by its control points. */
+void readSpline(const YamlValue &spline, TrajectoryDescription &out, Warnings &warnings) {
+  spline.warnOfOthers({"header", "joint_names", "degree", "knots", "control_points"}, warnings);
+  for (const YamlValue &name : spline.at("joint_names").items()) out.joints.push_back(name.text());
+  out.degree = spline.at("degree").count();
+  if (out.degree < 1) spline.at("degree").fail("the degree of a spline is at least 1");
+  out.knots = spline.at("knots").numbers();
+  for (const YamlValue &point : spline.at("control_points").items()) {
+    out.points.emplace_back();
+    out.points.back().positions = point.numbers();
+  }
+}
+
 TrajectoryDescription readFile(const YamlValue &root, Warnings &warnings) {
-  if (!root.isMap()) root.fail("must be a map with joint_trajectory");
-  root.warnOfOthers({"joint_trajectory", "interpolation", "fixed_joints", "virtual_joint", "robot", "scene"}, warnings);
+  if (!root.isMap()) root.fail("must be a map with joint_trajectory or joint_spline");
+  root.warnOfOthers(
+      {"joint_trajectory", "joint_spline", "interpolation", "fixed_joints", "virtual_joint", "robot", "scene"},
+      warnings);
   TrajectoryDescription out;
   if (const auto interpolation = root.find("interpolation")) out.interpolation = readInterpolation(*interpolation);
   if (const auto fixed = root.find("fixed_joints")) readFixed(*fixed, out.fixed_joints);
   if (const auto base = root.find("virtual_joint")) readBase(*base, out, warnings);
 
+  if (const auto spline = root.find("joint_spline")) {
+    if (root.find("joint_trajectory")) root.fail("has both a joint_trajectory and a joint_spline");
+    if (root.find("interpolation")) root.fail("a joint_spline has no interpolation");
+    readSpline(*spline, out, warnings);
+    return out;
+  }
   const YamlValue trajectory = root.at("joint_trajectory");
   trajectory.warnOfOthers({"header", "joint_names", "points"}, warnings);
   for (const YamlValue &name : trajectory.at("joint_names").items()) out.joints.push_back(name.text());

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve_basis.h"
+
+#include <curve_proximity/core.hpp>
+
+namespace curve_proximity {
+namespace {
+
+bool isDubins(const std::string &basis) {
+  return basis.rfind("dubins", 0) == 0;
+}
+
+} // namespace
+
+bool isNamedBasis(const std::string &basis) {
+  return basis == "clothoid" || isDubins(basis) || basis == "involute" || basis == "pythagorean_hodograph";
+}
+
+bool isRationalBasis(const std::string &basis) {
+  return basis == "rational_bezier" || basis == "nurbs";
+}
+
+bool hasOwnRange(const std::string &basis) {
+  return isDubins(basis) || basis == "piecewise";
+}
+
+CurveCounts countsOf(const std::string &basis, std::size_t degree, std::size_t n) {
+  if (degree > CPROX_MAX_DEGREE)
+    throw Error("the degree is " + std::to_string(degree) + ", above " + std::to_string(CPROX_MAX_DEGREE));
+  if (basis == "nurbs") {
+    if (degree < 1) throw Error("the degree of a nurbs is at least 1");
+    if (n <= degree)
+      throw Error("a nurbs of degree " + std::to_string(degree) + " needs at least " + std::to_string(degree + 1) +
+                  " points, got " + std::to_string(n));
+    return {n, n + degree + 1, n};
+  }
+  if (basis == "rational_bezier") return degree == 0 ? CurveCounts{n, 0, n} : CurveCounts{degree + 1, 0, degree + 1};
+  if (basis == "pythagorean_hodograph") return {1, 0, 4 * (degree + 1)};
+  if (degree != 0) throw Error("a " + basis + " curve has no degree: it must be 0, got " + std::to_string(degree));
+  if (basis == "clothoid") return {1, 0, 3};
+  if (basis == "involute") return {1, 0, 2};
+  if (isDubins(basis)) return {2, 0, 3};
+  return {};
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What each basis of a CurveDescription consists of: the one table that compilation, files and messages read. */
+#ifndef CURVE_PROXIMITY_SCENE_CURVE_BASIS_H
+#define CURVE_PROXIMITY_SCENE_CURVE_BASIS_H
+
+#include <cstddef>
+#include <string>
+
+namespace curve_proximity {
+
+/** How many points, knots and parameters a curve takes. */
+struct CurveCounts {
+  std::size_t points = 0, knots = 0, parameters = 0;
+};
+
+/** Of a basis that is known by more than control points, or is rational; n: the number of points that it has. Throws
+ *  Error: a degree that the basis cannot have. All counts 0 for `piecewise`. */
+CurveCounts countsOf(const std::string &basis, std::size_t degree, std::size_t n);
+
+/** clothoid, dubins (with a word or without), involute, pythagorean_hodograph: start, headings and lengths say where it
+ *  is. A frame moves such a curve, and piecewise ones, as a whole. */
+bool isNamedBasis(const std::string &basis);
+
+/** rational_bezier or nurbs. */
+bool isRationalBasis(const std::string &basis);
+
+/** dubins and piecewise: t0 and t1 are not read. */
+bool hasOwnRange(const std::string &basis);
+
+} // namespace curve_proximity
+#endif
