@@ -109,10 +109,10 @@ static inline cprox_curve_description describe_nurbs(const cprox_vec3 *points, c
   return d;
 }
 
-/* pose: NULL for none. The pointer to the whole is read while the part is made. */
+/* at: NULL for the identity. The pointer to the whole is read while the part is made. */
 static inline cprox_curve_description describe_part(const cprox_curve *const *whole, double t0, double t1,
-                                                    const cprox_pose *pose) {
-  return (cprox_curve_description){.kind = CPROX_CURVE_PART, .curves = whole, .n = 1, .t0 = t0, .t1 = t1, .pose = pose};
+                                                    const cprox_pose *at) {
+  return (cprox_curve_description){.kind = CPROX_CURVE_PART, .curves = whole, .n = 1, .t0 = t0, .t1 = t1, .pose = at};
 }
 
 static inline cprox_curve_description describe_smooth(const cprox_smooth_curve *functions, double t0, double t1) {
