@@ -192,7 +192,7 @@ class Rows(Case):
             'bad,bezier,1,0,0,0,2,3,-4,0,3,4,0': ['t0'],
             'bad,bezier,1,0,1,-0.5,2,3,-4,0,3,4,0': ['radius'],
             'bad,bezier,61,0,1,0,62,' + ','.join(['1'] * 186): ['60'],
-            'bad,nurbs,1,0,1,0,2,3,-4,0,3,4,0': ['nurbs', 'bezier'],
+            'bad,catmull,1,0,1,0,2,3,-4,0,3,4,0': ['catmull', 'bezier'],
             'bad,legendre,2,0,1,0,2,3,-4,0,3,4,0': ['degree 2', '3 points', 'n is 2'],
             'bad,trigonometric,1,0,1,0,2,3,-4,0,3,4,0': ['degree 1', '3 points', 'n is 2'],
             'bad,trigonometric,0,0,1,0,1,3,-4,0': ['no terms'],
