@@ -114,16 +114,22 @@ void makeState(const std::vector<double> &values, RobotMotion::Data &data) {
   createCore(description, data);
 }
 
+/* Of the columns' variables; all others stand still. What it is made of must outlive it. */
+cprox_motion_description describe(cprox_motion_kind kind, const Columns &columns, const std::vector<double> &still) {
+  cprox_motion_description description{};
+  description.kind = kind;
+  description.variables = columns.variable.data();
+  description.n_variables = columns.variable.size();
+  description.rest = still.data();
+  return description;
+}
+
 void makeSpline(const TrajectoryDescription &trajectory, const Columns &columns, const std::vector<double> &still,
                 RobotMotion::Data &data) {
   std::vector<double> control;
   for (const TrajectoryPoint &point : trajectory.points)
     for (const std::size_t column : columns.column) control.push_back(point.positions[column]);
-  cprox_motion_description description{};
-  description.kind = CPROX_MOTION_BSPLINE;
-  description.variables = columns.variable.data();
-  description.n_variables = columns.variable.size();
-  description.rest = still.data();
+  cprox_motion_description description = describe(CPROX_MOTION_BSPLINE, columns, still);
   description.control = control.data();
   description.n_control = trajectory.points.size();
   description.degree = trajectory.degree;
@@ -154,11 +160,7 @@ void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &r
     points.push_back({point.time, chosen(point.positions, columns, memory), chosen(point.velocities, columns, memory),
                       chosen(point.accelerations, columns, memory)});
   }
-  cprox_motion_description description{};
-  description.kind = CPROX_MOTION_WAYPOINTS;
-  description.variables = columns.variable.data();
-  description.n_variables = columns.variable.size();
-  description.rest = still.data();
+  cprox_motion_description description = describe(CPROX_MOTION_WAYPOINTS, columns, still);
   description.waypoints = points.data();
   description.n_waypoints = points.size();
   description.interpolation = toCore(trajectory.interpolation);
