@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "conversions.h"
 
+#include "../scene/curve_basis.h"
 #include "cloud.h"
 
 #include <algorithm>
@@ -419,17 +420,6 @@ CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &fram
   return out;
 }
 
-/* t0 and t1 are not read. */
-static bool hasOwnRange(const std::string &basis) {
-  return basis.rfind(Curve::DUBINS, 0) == 0 || basis == Curve::PIECEWISE;
-}
-
-/* A frame moves it as a whole: its points do not say where it is. */
-static bool isMovedAsWhole(const std::string &basis) {
-  return hasOwnRange(basis) || basis == Curve::CLOTHOID || basis == Curve::INVOLUTE ||
-         basis == Curve::PYTHAGOREAN_HODOGRAPH;
-}
-
 /* What a curve and a piece have in common. */
 template <typename Message>
 static void fillBasis(const Message &curve, CurveDescription &out) {
@@ -467,7 +457,7 @@ void toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed, 
 
   // The identity leaves the points to the last bit as they are.
   if (frame_in_fixed.matrix().isIdentity(0.0)) return;
-  if (isMovedAsWhole(out.basis)) {
+  if (isNamedBasis(out.basis) || out.basis == Curve::PIECEWISE) { // its points do not say where it is
     out.pose = frame_in_fixed;
     return;
   }
