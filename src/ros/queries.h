@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What a service call on curves does between its request and its response. */
+/** What a service call does between its request and its response: queries.cpp for curves, motion_queries.cpp for
+ * motions. */
 #ifndef CURVE_PROXIMITY_ROS_QUERIES_H
 #define CURVE_PROXIMITY_ROS_QUERIES_H
 
@@ -191,6 +192,7 @@ class Queries {
   void answerState(Work &work);
   void answerMovers(Work &work);
   static void tellProgress(Work &work);
+  static std::string numbered(const std::string &name, std::size_t i, std::size_t all); /* the name of one of several */
   void answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
                     const std::string &why_not, Work &work);
   void describe(Work &work) const;

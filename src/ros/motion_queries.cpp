@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a request asks of motions: trajectories of the robot, the robot where it stands, and all that moves. */
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "conversions.h"
+#include "queries.h"
+#include "topics.h"
+
+namespace curve_proximity {
+namespace {
+
+/** Links with geometry, and what they carry; none: all. */
+std::vector<std::string> ownNames(const Snapshot &snapshot, const std::vector<std::string> &links) {
+  std::vector<std::string> out;
+  for (const std::string &link : links) {
+    const auto found = snapshot.robot()->links().find(link);
+    if (found != snapshot.robot()->links().end() && !found->second.empty()) out.push_back(link);
+    for (const auto &entry : snapshot.attached())
+      if (entry.second->link == link && !entry.second->shapes.empty()) out.push_back(entry.first);
+  }
+  if (!links.empty() && out.empty()) throw Error("none of the links has collision geometry");
+  return out;
+}
+
+} // namespace
+
+void Queries::answerTrajectories(Work &work) {
+  const auto &trajectories = work.request.trajectories;
+  if (trajectories.size() == 0) return;
+  if (!work.snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
+  for (const auto &trajectory : trajectories) {
+    answerTrajectory(trajectory, work);
+    tellProgress(work);
+  }
+}
+
+/** Of the robot, or of what flies by itself. */
+void Queries::answerMultiDofTrajectories(Work &work) {
+  for (const auto &trajectory : work.request.multi_dof_trajectories) {
+    const Robot *robot = work.snapshot->robot().get();
+    if (movesRobot(trajectory, robot, live_.srdf)) {
+      trajectory_msgs::JointTrajectory joints;
+      std::string why_not;
+      try {
+        joints = toJointTrajectory(trajectory, *robot, live_.srdf);
+      } catch (const Error &error) {
+        why_not = error.what();
+      }
+      answerTrajectory(joints, work, why_not);
+    } else {
+      answerFlight(trajectory, work);
+    }
+    tellProgress(work);
+  }
+}
+
+void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work) {
+  CurveSearch &search = curveSearch(work);
+  try {
+    if (!work.request.more.moving_robots.empty())
+      throw Error("moving_robots do not apply to what flies by itself: ask about it without");
+    for (const Curve &curve : toCurves(trajectory, parameters_.path_radius)) answerCurve(curve, search, work);
+  } catch (const Error &error) {
+    refuseCurve(trajectory.joint_names.empty() ? "" : trajectory.joint_names.front(), error.what(), search, work);
+  }
+}
+
+/** why_not: what is wrong with it already. */
+void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not) {
+  const QueryRequest &request = work.request;
+  TrajectoryDescription trajectory;
+  std::string remark;
+  try {
+    if (why_not.empty()) trajectory = toDescription(message, work.joints.positions, remark);
+  } catch (const Error &error) {
+    why_not = error.what();
+  }
+  const auto &others = request.multi_dof_trajectories;
+  const auto moving = std::count_if(others.begin(), others.end(), [&](const auto &other) {
+    return movesRobot(other, work.snapshot->robot().get(), live_.srdf);
+  });
+  trajectory.id =
+      numbered("trajectory", work.trajectories++, request.trajectories.size() + static_cast<std::size_t>(moving));
+  answerMotion(std::move(trajectory), message.header.stamp, remark, why_not, work);
+}
+
+/** The robot where it stands: a trajectory of one point. */
+void Queries::answerState(Work &work) {
+  if (!work.request.more.robot_state) return;
+  if (!work.snapshot->robot()) throw Error("robot_state needs a robot, and this server has none");
+  TrajectoryDescription state;
+  state.id = "state";
+  state.points.emplace_back();
+  for (const auto &[joint, position] : work.joints.positions) {
+    state.joints.push_back(joint);
+    state.points.back().positions.push_back(position);
+  }
+  answerMotion(std::move(state), work.request.more.joint_state.header.stamp, "", "", work);
+}
+
+/** All that moves, with nobody in its middle. */
+void Queries::answerMovers(Work &work) {
+  const QueryRequest &request = work.request;
+  if (!request.more.movers) return;
+  Proximity row;
+  try {
+    if (!work.query.links.empty()) throw Error("links and group do not apply to movers");
+    const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), 0, work.lookup, mostBytes());
+    const WorkspacePool::Lease workspace(workspaces_);
+    Answer answer = around.ask(work.query, request.more.self_collision != 0, request.asking, *workspace);
+    answer.kind = Proximity::KIND_MOVERS;
+    row = toRow(answer, work.query, request.asking);
+    work.doubts.objects(work.query);
+    work.doubts.ages(work.lookup.age(), NAN);
+    work.doubts.apply(row);
+    if (!work.drawing.motion) {
+      work.drawing.movers = around.movers();
+      work.drawing.robots = around.robots();
+      work.drawing.motion_answers = {std::move(answer)};
+    }
+  } catch (const Error &error) {
+    row = toFailedRow("movers", Proximity::KIND_MOVERS, error.what());
+  }
+  if (std::isnan(row.lower) && work.response.success) {
+    work.response.success = false;
+    work.response.message = "movers: " + row.message;
+  }
+  work.response.results.push_back(std::move(row));
+  if (request.asking.kind == Asking::PROFILE) work.response.profiles.resize(work.response.results.size());
+}
+
+void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
+                           const std::string &why_not, Work &work) {
+  const QueryRequest &request = work.request;
+  QueryResponse &response = work.response;
+  const std::string id = trajectory.id;
+  const std::size_t before = response.results.size();
+  if (request.turn) request.turn->yield();
+
+  // The trajectory, the joints that it leaves alone, and where the robot stands.
+  work.lookup.begin();
+  try {
+    if (!why_not.empty()) throw Error(why_not);
+    const Robot &robot = *work.snapshot->robot();
+    adoptBase(live_.srdf.virtual_joints, trajectory);
+    const Eigen::Isometry3d base = trajectory.base.empty()
+                                       ? rootPose(robot, live_.srdf, stamp, work.lookup)
+                                       : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
+    auto motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions,
+                                                      live_.disabled(), base, work.query.links);
+
+    const WorkspacePool::Lease workspace(workspaces_);
+    Query environment = work.query;
+    environment.links.clear(); // the motion has them
+    MotionRows rows;
+    if (movesBeside(request.more, *work.snapshot)) {
+      const Surroundings around(work.snapshot, request.more, robots_, motion, stamp, trajectory.points.size(),
+                                work.lookup, mostBytes());
+      Query among = environment;
+      among.links = ownNames(*work.snapshot, work.query.links);
+      rows.answers.push_back(around.ask(among, false, request.asking, *workspace));
+      rows.answers.back().id = id;
+      work.drawing.movers = around.movers();
+      work.drawing.robots.assign(around.robots().begin() + 1, around.robots().end());
+    } else {
+      askMotion(*motion, environment, false, request.asking, *workspace, rows);
+    }
+    if (request.more.self_collision) {
+      Query self = environment; // of no objects
+      self.per_object = false;
+      self.objects.clear();
+      if (request.turn) request.turn->yield();
+      askMotion(*motion, self, true, request.asking, *workspace, rows);
+    }
+    std::vector<Answer> &answers = rows.answers;
+    std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(response.profiles));
+    for (const Answer &answer : answers) {
+      response.results.push_back(toRow(answer, environment, request.asking));
+      Proximity &row = response.results.back();
+      if (!remark.empty() && answer.result.status >= 0) row.message += (row.message.empty() ? "" : "; ") + remark;
+      work.doubts.objects(environment, answer.kind == Proximity::KIND_ENVIRONMENT);
+      work.doubts.ages(work.lookup.age(), work.joints.age);
+      work.doubts.apply(row);
+    }
+    work.drawing.motion = std::move(motion);
+    work.drawing.motion_answers = std::move(answers);
+  } catch (const Error &error) {
+    response.results.push_back(toFailedRow(id, Proximity::KIND_ENVIRONMENT, error.what()));
+    if (request.more.self_collision) response.results.push_back(toFailedRow(id, Proximity::KIND_SELF, error.what()));
+    if (request.asking.kind == Asking::PROFILE) response.profiles.resize(response.results.size());
+  }
+
+  // A row that failed fails the call, as a curve's does.
+  for (std::size_t i = before; i < response.results.size() && response.success; ++i) {
+    if (!std::isnan(response.results[i].lower)) continue;
+    response.success = false;
+    response.message = id + ": " + response.results[i].message;
+  }
+}
+
+} // namespace curve_proximity
