@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A part of a curve of every kind, at a pose, against the whole curve in 113 bits. */
 #include <math.h>
-#include <string.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
 #include "support/curves.h"
 #include "support/make_curve.h"
 #include "support/quad.h"
+#include "support/refused_curve.h"
 
 static void helix_jet(void *user, double t, cprox_vec3 jet[3]) {
   (void)user;
@@ -168,15 +168,6 @@ CASE(queries_of_a_part_are_about_the_part) {
   cprox_workspace_free(ws);
 }
 
-static void expect_refusal(cprox_curve_description d, const char *part) {
-  cprox_workspace *ws = cprox_workspace_create();
-  cprox_curve *curve = NULL;
-  assert_int_equal(curve_from(d, ws, &curve), CPROX_INVALID);
-  assert_null(curve);
-  if (!strstr(cprox_workspace_error(ws), part)) fail_msg("'%s' lacks '%s'", cprox_workspace_error(ws), part);
-  cprox_workspace_free(ws);
-}
-
 CASE(parts_that_do_not_exist_are_refused) {
   const cprox_vec3 points[2] = {{0, 0, 0}, {10, 0, 0}};
   const cprox_rectifiable_curve functions = {.point = line_point, .length = line_length, .error = 1e-15};
@@ -185,13 +176,13 @@ CASE(parts_that_do_not_exist_are_refused) {
   assert_int_equal(curve_from(describe_bezier(points, 2, 0, 10), NULL, &line), CPROX_OK);
   assert_int_equal(curve_from(describe_rectifiable(&functions, 0, 10), NULL, &arcs), CPROX_OK);
   const cprox_curve *whole = line, *by_length = arcs, *none = NULL;
-  expect_refusal(describe_part(&none, 0, 1, NULL), "one curve");
-  expect_refusal(describe_part(&whole, -1, 1, NULL), "leaves the curve's range [0, 10]");
-  expect_refusal(describe_part(&whole, 9, 11, NULL), "leaves the curve's range [0, 10]");
-  expect_refusal(describe_part(&whole, 2, 2, NULL), "not below");
-  expect_refusal(describe_part(&whole, NAN, 2, NULL), "not finite");
-  expect_refusal(describe_part(&whole, 1, 2, &bad), "norm is 0");
-  expect_refusal(describe_part(&by_length, 1, 2, &identity), "cannot have a pose");
+  refuses_curve(describe_part(&none, 0, 1, NULL), "one curve");
+  refuses_curve(describe_part(&whole, -1, 1, NULL), "leaves the curve's range [0, 10]");
+  refuses_curve(describe_part(&whole, 9, 11, NULL), "leaves the curve's range [0, 10]");
+  refuses_curve(describe_part(&whole, 2, 2, NULL), "not below");
+  refuses_curve(describe_part(&whole, NAN, 2, NULL), "not finite");
+  refuses_curve(describe_part(&whole, 1, 2, &bad), "norm is 0");
+  refuses_curve(describe_part(&by_length, 1, 2, &identity), "cannot have a pose");
   cprox_curve_free(line);
   cprox_curve_free(arcs);
 }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Rational Bézier curves and NURBS against their definition in 113 bits, and against circles. */
 #include <math.h>
-#include <string.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
 #include "support/curves.h"
 #include "support/make_curve.h"
 #include "support/quad.h"
+#include "support/refused_curve.h"
 
 enum { MOST = TEST_MAX_POINTS };
 
@@ -227,29 +227,20 @@ CASE(weights_make_the_point) {
   }
 }
 
-static void expect_refusal(cprox_curve_description d, const char *part) {
-  cprox_workspace *ws = cprox_workspace_create();
-  cprox_curve *curve = NULL;
-  assert_int_equal(curve_from(d, ws, &curve), CPROX_INVALID);
-  assert_null(curve);
-  if (!strstr(cprox_workspace_error(ws), part)) fail_msg("'%s' lacks '%s'", cprox_workspace_error(ws), part);
-  cprox_workspace_free(ws);
-}
-
 CASE(weights_that_cannot_be_used_are_refused) {
   const cprox_vec3 points[3] = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}};
   const double nan_weight[3] = {1, NAN, 1}, zero[3] = {1, 1, 0}, negative[3] = {1, -1, 1}, far[3] = {1, 1e-7, 1};
   const double fine[3] = {1, 2, 1}, knots[6] = {0, 0, 0, 1, 1, 1};
-  expect_refusal(describe_rational_bezier(points, NULL, 3, 0, 1), "the weights are NULL");
-  expect_refusal(describe_rational_bezier(points, nan_weight, 3, 0, 1), "weight 1 is");
-  expect_refusal(describe_rational_bezier(points, zero, 3, 0, 1), "weight 2 is 0; it must be positive");
-  expect_refusal(describe_rational_bezier(points, negative, 3, 0, 1), "weight 1 is -1");
-  expect_refusal(describe_rational_bezier(points, far, 3, 0, 1), "differ by a factor of more than 1e+06");
-  expect_refusal(describe_rational_bezier(points, fine, 3, 1, 1), "t0");
-  expect_refusal(describe_rational_bezier(points, fine, 3, 0, 1e-31), "long");
-  expect_refusal(describe_rational_bezier(points, fine, 1, 0, 1), "at least 2 control points");
-  expect_refusal(describe_nurbs(points, fine, 3, 2, knots, 5, 0, 1), "need 6 knots");
-  expect_refusal(describe_nurbs(points, fine, 3, 2, knots, 6, 0, 1.5), "leaves the spline's domain");
+  refuses_curve(describe_rational_bezier(points, NULL, 3, 0, 1), "the weights are NULL");
+  refuses_curve(describe_rational_bezier(points, nan_weight, 3, 0, 1), "weight 1 is");
+  refuses_curve(describe_rational_bezier(points, zero, 3, 0, 1), "weight 2 is 0; it must be positive");
+  refuses_curve(describe_rational_bezier(points, negative, 3, 0, 1), "weight 1 is -1");
+  refuses_curve(describe_rational_bezier(points, far, 3, 0, 1), "differ by a factor of more than 1e+06");
+  refuses_curve(describe_rational_bezier(points, fine, 3, 1, 1), "t0");
+  refuses_curve(describe_rational_bezier(points, fine, 3, 0, 1e-31), "long");
+  refuses_curve(describe_rational_bezier(points, fine, 1, 0, 1), "at least 2 control points");
+  refuses_curve(describe_nurbs(points, fine, 3, 2, knots, 5, 0, 1), "need 6 knots");
+  refuses_curve(describe_nurbs(points, fine, 3, 2, knots, 6, 0, 1.5), "leaves the spline's domain");
 }
 
 int main(void) {
