@@ -10,6 +10,7 @@
 #include "robot_query/oracle.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/of_list.h"
 #include "support/robots.h"
 
 enum { MOST_GEOMETRIES = 3 * TEST_MAX_LINKS, MOST_PAIRS = MOST_GEOMETRIES * MOST_GEOMETRIES, SAMPLES = 6 };
@@ -314,6 +315,79 @@ CASE(searches_by_groups_agree_with_searches_by_lists) {
   }
   print_message("%zu of %zu verdicts decided\n", decided, 2 * n);
   assert_true(decided > n);
+}
+
+/* ---- the tree of axes ---- */
+
+static bool is_above(const cprox_robot *robot, int32_t axis, int32_t other) {
+  while (other > axis) other = robot->axes[other].parent;
+  return other == axis;
+}
+
+/* By the definition: above both, and none under it is. */
+CASE(the_axis_above_two_others_is_the_nearest_that_carries_both) {
+  rng r = rng_seed(1804);
+  for (size_t i = 0; i < test_cases(300); i++) {
+    test_robot t;
+    robot_make(&r, 0.1, &t);
+    const int32_t n = (int32_t)t.robot->n_axes;
+    for (int32_t a = -1; a < n; a++)
+      for (int32_t b = -1; b < n; b++) {
+        int32_t nearest = -1;
+        for (int32_t axis = 0; axis < n; axis++)
+          if (is_above(t.robot, axis, a) && is_above(t.robot, axis, b)) nearest = axis;
+        assert_int_equal(robot_common_axis(t.robot, a, b), nearest);
+        assert_int_equal(robot_axis_carries(t.robot, a, b), a < 0 || is_above(t.robot, a, b));
+      }
+    robot_free(&t);
+  }
+}
+
+/* ---- what a long chain costs ---- */
+
+/* Far groups want a node cut only until they may be opened: finer pieces make all that is near be looked at again. */
+CASE(a_chain_of_96_links_takes_few_nodes) {
+  enum { LINKS = 96 };
+  static cprox_link links[LINKS];
+  static cprox_link_geometry bodies[LINKS];
+  static double values[3][LINKS];
+  int32_t variables[LINKS];
+  rng r = rng_seed(91);
+  cprox_body *capsule = NULL;
+  assert_int_equal(cprox_body_create_capsule(0.12, 0.03, ws, &capsule), CPROX_OK);
+  for (int32_t i = 0; i < LINKS; i++) {
+    links[i] = (cprox_link){.parent = i - 1,
+                            .origin = {.position = {0, 0, i > 0 ? 0.15 : 0.0}, .orientation = {.w = 1.0}},
+                            .type = CPROX_JOINT_REVOLUTE,
+                            .axis = {i % 2, 1 - i % 2, 0},
+                            .variable = i,
+                            .multiplier = 1.0};
+    bodies[i] = (cprox_link_geometry){
+        .link = i, .body = capsule, .pose = {.position = {0, 0, 0.075}, .orientation = {.w = 1.0}}};
+    for (int k = 0; k < 3; k++) values[k][i] = rng_uniform(&r, -0.3, 0.3);
+    variables[i] = i;
+  }
+  const cprox_waypoint points[3] = {
+      {.time = 0, .positions = values[0]}, {.time = 1, .positions = values[1]}, {.time = 2, .positions = values[2]}};
+  const cprox_motion_description d = {.variables = variables,
+                                      .n_variables = LINKS,
+                                      .waypoints = points,
+                                      .n_waypoints = 3,
+                                      .interpolation = CPROX_INTERPOLATION_LINEAR};
+  cprox_robot *robot = NULL;
+  cprox_motion *motion = NULL;
+  assert_int_equal(cprox_robot_create(links, LINKS, bodies, LINKS, LINKS, ws, &robot), CPROX_OK);
+  assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = 1e-4;
+  cprox_result found;
+  assert_int_equal(distance_of_list(cprox_robot_self(motion, NULL, 0), NULL, 0, &options, ws, &found, NULL), CPROX_OK);
+  print_message("%u nodes, %u distances\n", found.nodes, found.distance_queries);
+  assert_true(found.nodes <= 16);
+  assert_true(found.distance_queries <= 150);
+  cprox_motion_free(motion);
+  cprox_robot_free(robot);
+  cprox_body_free(capsule);
 }
 
 int main(void) {

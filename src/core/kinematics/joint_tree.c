@@ -82,17 +82,6 @@ void robot_place_axes(const cprox_robot *robot, const double *variables, placeme
   }
 }
 
-int32_t robot_common_axis(const cprox_robot *robot, int32_t a, int32_t b) {
-  /* parents come first: the larger number is never above the smaller one */
-  while (a != b) {
-    if (a > b)
-      a = robot->axes[a].parent;
-    else
-      b = robot->axes[b].parent;
-  }
-  return a;
-}
-
 void cprox_robot_link_frame(const cprox_robot *robot, const double *variables, size_t link, cprox_vec3 *position,
                             double rotation[9]) {
   /* up from the link: only the axes that carry it */

@@ -33,6 +33,7 @@ typedef struct robot_axis {
   int32_t parent;            /* axis, or -1 */
   int32_t variable;          /* balls: the first of the quaternion's four or of the vector's three */
   uint32_t depth;            /* so many axes from this one up to the base, both ends counted */
+  int32_t order, branch;     /* its place where all under an axis follow it; so many axes its branch has, with it */
   double multiplier, offset; /* the angle or shift is multiplier * variable + offset */
   placement at;              /* in the parent axis's moved frame */
   vec3 z;                    /* unit, in the axis's own frame */
@@ -106,8 +107,22 @@ static inline placement placement_under(const placement *frames, int32_t axis, c
   return axis < 0 ? *at : placement_compose(&frames[axis], at);
 }
 
+/* Is the axis (-1: the world) above the other one, or the same? */
+static inline bool robot_axis_carries(const cprox_robot *robot, int32_t axis, int32_t other) {
+  if (axis < 0) return true;
+  if (other < 0) return false;
+  const int32_t behind = robot->axes[other].order - robot->axes[axis].order;
+  return behind >= 0 && behind < robot->axes[axis].branch;
+}
+
 /* The nearest axis that is above both, or -1. */
-int32_t robot_common_axis(const cprox_robot *robot, int32_t a, int32_t b);
+static inline int32_t robot_common_axis(const cprox_robot *robot, int32_t a, int32_t b) {
+  /* parents come first: the larger number is never above the smaller one */
+  int32_t axis = a < b ? a : b;
+  const int32_t other = a < b ? b : a;
+  while (!robot_axis_carries(robot, axis, other)) axis = robot->axes[axis].parent;
+  return axis;
+}
 
 /* The axes from one up to the base; none for -1. */
 static inline uint32_t robot_axis_depth(const cprox_robot *robot, int32_t axis) {

@@ -16,10 +16,15 @@
 
 static cprox_status check_source(const motion_source *s) {
   if (s->n > 0 && !s->variables) return workspace_fail(s->workspace, CPROX_INVALID, "variables is NULL");
+  int32_t greatest = -1;
   for (size_t i = 0; i < s->n; i++) {
     if (s->variables[i] < 0 || (size_t)s->variables[i] >= s->robot->n_variables)
       return workspace_fail(s->workspace, CPROX_INVALID, "there is no variable %d: the robot has %zu",
                             (int)s->variables[i], s->robot->n_variables);
+    if (s->variables[i] > greatest) {
+      greatest = s->variables[i];
+      continue;
+    }
     for (size_t k = 0; k < i; k++)
       if (s->variables[k] == s->variables[i])
         return workspace_fail(s->workspace, CPROX_INVALID, "variable %d is named twice", (int)s->variables[i]);
@@ -272,36 +277,53 @@ static double value_error(const cprox_motion *m, int32_t i, double *value) {
   return fabs(axis->multiplier) * sum + 2.0 * ROUND_U * (*value + fabs(axis->offset));
 }
 
-/* From the part up: transforms that turn by ROUND_JOINT too much, and values that are off by theirs, about lever arms
- * of at most the lengths that are behind them; then what sums of places round. */
+/* What the transforms and values of an axis and of all above it do to what is at the axis, and to what is behind it. */
+typedef struct chain_error {
+  double shifts;    /* the most that prismatic axes add to the reach */
+  double turned;    /* by how much the transforms may turn it, in ROUND_JOINT, times the lengths behind them */
+  double values;    /* so far may axes shift it whose values are off, */
+  double rotations; /* and so far for each unit of length behind the axis */
+} chain_error;
+
+static const chain_error NO_ERROR = {.shifts = 0.0};
+
+static chain_error error_of_axis(const cprox_motion *m, int32_t i, const chain_error *chain) {
+  const robot_axis *axis = &m->robot->axes[i];
+  const bool shifts = axis->kind == AXIS_PRISMATIC;
+  const chain_error above = axis->parent < 0 ? NO_ERROR : chain[axis->parent];
+  double largest;
+  const double error = value_error(m, i, &largest), shift = shifts ? largest : 0.0;
+  const double length = axis->reach - (axis->parent < 0 ? 0.0 : m->robot->axes[axis->parent].reach) + shift;
+  return (chain_error){.shifts = above.shifts + shift,
+                       .turned = above.turned + (double)axis->steps * length,
+                       .values = above.values + above.rotations * length + (shifts ? error : 0.0),
+                       .rotations = above.rotations + (shifts ? 0.0 : error)};
+}
+
+/* Transforms that turn by ROUND_JOINT too much, and values that are off by theirs, about lever arms of at most the
+ * lengths that are behind them; then what sums of places round. Each axis adds its own length to what is behind all
+ * above it. */
 static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
-  const robot_axis *axes = m->robot->axes;
-  const size_t n_axes = m->robot->n_axes;
-  double *largest = calloc(2 * n_axes + 1, sizeof *largest), *errors = largest + n_axes;
-  if (!largest) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu axes", n_axes);
-  for (size_t i = 0; i < n_axes; i++) errors[i] = value_error(m, (int32_t)i, &largest[i]);
+  const cprox_robot *robot = m->robot;
+  chain_error *chain = calloc(robot->n_axes + 1, sizeof *chain);
+  if (!chain) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu axes", robot->n_axes);
+  for (size_t i = 0; i < robot->n_axes; i++) chain[i] = error_of_axis(m, (int32_t)i, chain);
   cprox_status status = CPROX_OK;
-  for (size_t p = 0; p < m->robot->n_parts && status == CPROX_OK; p++) {
-    const robot_part *part = &m->robot->parts[p];
-    double shifts = 0.0, turned = 0.0, values = 0.0;
-    uint32_t steps = part->steps;
-    for (int32_t i = part->axis; i >= 0; i = axes[i].parent) {
-      const double behind = part->reach - axes[i].reach + shifts;
-      turned += (double)(steps - axes[i].steps) * behind;
-      values += axes[i].kind == AXIS_PRISMATIC ? errors[i] : errors[i] * behind;
-      if (axes[i].kind == AXIS_PRISMATIC) shifts += largest[i];
-      steps = axes[i].steps;
-    }
-    const double reach = part->reach + shifts;
-    turned += (double)steps * reach;
+  for (size_t p = 0; p < robot->n_parts && status == CPROX_OK; p++) {
+    const robot_part *part = &robot->parts[p];
+    const chain_error above = part->axis < 0 ? NO_ERROR : chain[part->axis];
+    const double length = part->reach - (part->axis < 0 ? 0.0 : robot->axes[part->axis].reach);
+    const double reach = part->reach + above.shifts;
     if (!(reach <= LENGTH_MOST))
       status = workspace_fail(workspace, CPROX_INVALID,
                               "the motion takes geometry %d as far as %g m, at most %g m are possible",
                               (int)part->geometry, reach, LENGTH_MOST);
-    const double places = ROUND_PLACE * (1.0 + (double)part->steps) * reach;
+    const double turned = above.turned + (double)part->steps * length,
+                 places = ROUND_PLACE * (1.0 + (double)part->steps) * reach,
+                 values = above.values + above.rotations * length;
     m->part_error[p] = ROUND_UP * (ROUND_U * (ROUND_JOINT * turned + places) + values);
   }
-  free(largest);
+  free(chain);
   return status;
 }
 

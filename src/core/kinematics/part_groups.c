@@ -7,7 +7,7 @@
 
 /* A part under construction: where it comes in the order. */
 typedef struct place_key {
-  double by; /* the number of its axis, parents before children and each branch together; then a coordinate */
+  double by; /* the order of its axis; then a coordinate */
   int32_t part;
 } place_key;
 
@@ -25,21 +25,6 @@ static int compare_keys(const void *a, const void *b) {
 
 static int32_t axis_at(const plan *p, int32_t place) {
   return p->robot->parts[p->keys[place].part].axis;
-}
-
-/* Numbers the axes so that all under an axis follow it without a gap. next[i + 1]: of axis i; next[0]: of the world. */
-static void number_axes(const cprox_robot *robot, int32_t *number, int32_t *size, int32_t *next) {
-  const size_t n = robot->n_axes;
-  for (size_t i = 0; i < n; i++) size[i] = 1;
-  for (size_t i = n; i-- > 0;)
-    if (robot->axes[i].parent >= 0) size[robot->axes[i].parent] += size[i];
-  next[0] = 0;
-  for (size_t i = 0; i < n; i++) {
-    int32_t *from = &next[robot->axes[i].parent + 1];
-    number[i] = *from;
-    *from += size[i];
-    next[i + 1] = number[i] + 1;
-  }
 }
 
 static double coordinate(vec3 at, int along) {
@@ -116,16 +101,14 @@ bool part_groups_create(const cprox_robot *robot, part_groups *groups) {
   const size_t n = robot->n_parts;
   if (n == 0) return true;
   plan p = {.robot = robot, .keys = calloc(n, sizeof *p.keys), .common = calloc(n, sizeof *p.common)};
-  int32_t *numbers = calloc(3 * robot->n_axes + 1, sizeof *numbers);
   groups->at = calloc(2 * n, sizeof *groups->at);
   groups->part = calloc(n, sizeof *groups->part);
   groups->alone = calloc(n, sizeof *groups->alone);
-  const bool made = p.keys && p.common && numbers && groups->at && groups->part && groups->alone;
+  const bool made = p.keys && p.common && groups->at && groups->part && groups->alone;
   if (made) {
-    number_axes(robot, numbers, numbers + robot->n_axes, numbers + 2 * robot->n_axes);
     for (size_t i = 0; i < n; i++) {
       const int32_t axis = robot->parts[i].axis;
-      p.keys[i] = (place_key){.by = axis < 0 ? -1.0 : numbers[axis], .part = (int32_t)i};
+      p.keys[i] = (place_key){.by = axis < 0 ? -1.0 : robot->axes[axis].order, .part = (int32_t)i};
     }
     qsort(p.keys, n, sizeof *p.keys, compare_keys);
     for (int32_t i = 1; i < (int32_t)n; i++) p.common[i] = robot_common_axis(robot, axis_at(&p, i - 1), axis_at(&p, i));
@@ -135,7 +118,6 @@ bool part_groups_create(const cprox_robot *robot, part_groups *groups) {
   }
   free(p.keys);
   free(p.common);
-  free(numbers);
   return made;
 }
 

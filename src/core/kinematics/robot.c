@@ -186,6 +186,25 @@ static void add_link(cprox_robot *robot, const cprox_link *link) {
       (robot_link){.parent = link->parent, .axis = end.axis, .at = end.at, .steps = end.steps, .reach = end.reach};
 }
 
+/* Orders the axes so that all under an axis follow it without a gap. False where memory is out. */
+static bool order_axes(cprox_robot *robot) {
+  robot_axis *axes = robot->axes;
+  int32_t *next =
+      calloc(robot->n_axes + 1, sizeof *next); /* the first place free under the world, and under each axis */
+  if (!next) return false;
+  for (size_t i = 0; i < robot->n_axes; i++) axes[i].branch = 1;
+  for (size_t i = robot->n_axes; i-- > 0;)
+    if (axes[i].parent >= 0) axes[axes[i].parent].branch += axes[i].branch;
+  for (size_t i = 0; i < robot->n_axes; i++) {
+    int32_t *from = &next[axes[i].parent + 1];
+    axes[i].order = *from;
+    *from += axes[i].branch;
+    next[i + 1] = axes[i].order + 1;
+  }
+  free(next);
+  return true;
+}
+
 /* ---- parts ---- */
 
 static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *body, double margin, size_t geometry,
@@ -246,7 +265,7 @@ cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const c
   made->n_geometries = n_geometries;
   for (size_t i = 0; i < n_links; i++) add_link(made, &links[i]);
   for (size_t i = 0; i < n_geometries; i++) add_geometry(made, &geometries[i], i);
-  if (!part_groups_create(made, &made->groups)) {
+  if (!order_axes(made) || !part_groups_create(made, &made->groups)) {
     cprox_robot_free(made);
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot of %zu links", n_links);
   }

@@ -340,7 +340,7 @@ static bool bound_groups(robot_search *o, const search_node *node, open_groups *
   if (robot_is_pruned(o, pair->lower) || robot_groups_are_parts(&o->scene, pair->groups)) return false;
   const double size = greater(MOST_DISPLACEMENT * apart, robot_groups_radius(&o->scene, pair->groups));
   if (!(pair->displacement > GROUP_DISPLACEMENT * size) || robot_is_short(node)) return false;
-  want_pieces(o, pair->displacement / size);
+  want_pieces(o, pair->displacement / (GROUP_DISPLACEMENT * size));
   return true;
 }
 
