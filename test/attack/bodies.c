@@ -122,9 +122,10 @@ static long double power_at(const part *f, vec3l x) {
          power(fabsl(x.z) / f->size.z, f->exponents.z);
 }
 
-/* The same in double, where the search in long double begins. */
+/* The same in double, where the search in long double begins. The pull alone takes x at most to where it is 2 p. */
 static double roughly_shrunken(double p, double a, double e, double weight) {
-  double low = 0.0, high = p, x = p;
+  const double most = a * pow(2.0 * p * a / (weight * e), 1.0 / (e - 1.0));
+  double low = 0.0, high = most < p ? most : p, x = high;
   for (int i = 0; i < 100; i++) {
     const double pull = weight * e / a * pow(x / a, e - 1.0), value = 2.0 * (x - p) + pull;
     if (value > 0.0)
@@ -133,7 +134,7 @@ static double roughly_shrunken(double p, double a, double e, double weight) {
       low = x;
     const double step = x - value / (2.0 + (e - 1.0) * pull / x);
     const double next = step > low && step < high ? step : 0.5 * (low + high);
-    if (fabs(next - x) <= 1e-12 * x || next == 0.0) break;
+    if (fabs(next - x) <= 1e-6 * x || next == 0.0) break; /* two steps in long double make that 1e-18 */
     x = next;
   }
   return x;
@@ -158,34 +159,32 @@ static vec3l all_shrunken(const part *f, vec3l p, long double weight) {
                  copysignl(shrunken(fabsl(p.z), f->size.z, f->exponents.z, weight), p.z)};
 }
 
-/* By the multiplier of the constraint, in its logarithm, with false positions: the greater end is always inside the
- * body. */
+/* By the multiplier of the constraint, in its logarithm: secants, and where these leave the interval or are slow, its
+ * middle. The greater end is always inside the body. */
 static vec3l nearest_power(const part *f, vec3l p) {
   if (power_at(f, p) <= 1.0L) return p;
-  const long double far = ref_norm(p) + f->size.x + f->size.y + f->size.z, unit = far * far;
-  long double low = -90.0L, high = 0.0L, above = logl(power_at(f, p)), below = 1.0L;
+  const long double far = ref_norm(p) + f->size.x + f->size.y + f->size.z, unit = far * far, least = -90.0L;
+  long double low = least, high = HUGE_VALL, at = 0.0L, before = 0.0L, value_before = 0.0L;
   vec3l best = p;
-  while (below > 0.0L && high < 12000.0L) {
-    best = all_shrunken(f, p, unit * exp2l(high));
-    below = logl(power_at(f, best));
-    if (below > 0.0L) high = high > 0.0L ? 2.0L * high : 8.0L;
-  }
-  long double inside = below;
-  for (int i = 0; i < 120 && high - low > 0x1p-62L * (fabsl(low) + fabsl(high)) && inside < -0x1p-55L; i++) {
-    /* the Illinois rule: an end that stays is made lighter; every fourth step is a plain bisection */
-    const long double cut = i % 4 == 3 ? 0.5L : above / (above - below), at = low + cut * (high - low);
+  for (int i = 0; i < 200 && at < 12000.0L; i++) {
     const vec3l x = all_shrunken(f, p, unit * exp2l(at));
-    const long double value = logl(power_at(f, x));
-    if (value > 0.0L) {
+    const long double value = logl(power_at(f, x)), width = high - low;
+    if (value > 0.0L)
       low = at;
-      above = value;
-      below *= 0.5L;
-    } else {
-      high = at;
-      below = inside = value;
-      above *= 0.5L;
-      best = x;
-    }
+    else
+      high = at, best = x;
+    if (value <= 0.0L && (value >= -0x1p-55L || at <= least)) break;
+    if (high - low <= 0x1p-62L * (fabsl(low) + fabsl(high))) break;
+    const long double slope = (value - value_before) / (at - before);
+    long double next = at - value / slope + 0x1p-58L; /* a little to the inside */
+    if (isinf(high))
+      next = at > 0.0L ? 2.0L * at : 8.0L;
+    else if (low == least)
+      next = fmaxl(at - 8.0L, least);
+    else if (i % 3 == 2 && high - low > 0.5L * width)
+      next = 0.5L * (low + high);
+    if (!(next > low || low == least) || !(next < high)) next = 0.5L * (low + high);
+    before = at, value_before = value, at = next;
   }
   return best;
 }
@@ -258,10 +257,10 @@ static long double part_support(const part *f, vec3l d) {
     case FORM_CAPSULE: return half * fabsl(d.z) + radius;
     case FORM_CYLINDER: return half * fabsl(d.z) + radius * rho;
     case FORM_CONE: return fmaxl(half * d.z, radius * rho - half * d.z);
-    case FORM_POWER:
+    case FORM_POWER: /* an ellipsoid, or in the box of its sizes */
       if (f->exponents.x == 2.0 && f->exponents.y == 2.0 && f->exponents.z == 2.0)
         return ref_norm((vec3l){d.x * f->size.x, d.y * f->size.y, d.z * f->size.z});
-      return HUGE_VALL;
+      return fabsl(d.x) * f->size.x + fabsl(d.y) * f->size.y + fabsl(d.z) * f->size.z;
     default: return HUGE_VALL;
   }
 }

@@ -64,7 +64,8 @@ long double body_nearest(const random_body *b, const cprox_pose *pose, vec3l p, 
 /* How deep the point is in the posed body, least way out of its deepest part; 0 outside. Only where b->depth. */
 long double body_depth(const random_body *b, const cprox_pose *pose, vec3l p);
 
-/* The greatest d·x over the posed body, d a unit vector: INFINITY where it has none or it is not known. */
+/* The greatest d·x over the posed body, d a unit vector; of superquadrics that of the box about them; INFINITY where it
+ * has none. */
 long double body_support(const random_body *b, const cprox_pose *pose, vec3l d);
 
 #endif

@@ -14,7 +14,7 @@
 #include "support/reference.h"
 #include "support/robots.h"
 
-enum { MOST_TRIANGLES = 160, SAMPLES = 14 };
+enum { MOST_TRIANGLES = 160, SAMPLES = 14, BLOCK = 8, MOST_BLOCKS = MOST_TRIANGLES / BLOCK };
 
 static const long double ROOM = 1e-13L;
 
@@ -23,10 +23,14 @@ typedef struct surface {
   vec3 corner[MOST_TRIANGLES][3];
 } surface;
 
+typedef struct box {
+  vec3l low, high;
+} box;
+
 typedef struct placed_surface {
   size_t n;
-  vec3l corner[MOST_TRIANGLES][3], middle[MOST_TRIANGLES];
-  long double radius[MOST_TRIANGLES];
+  vec3l corner[MOST_TRIANGLES][3];
+  box triangle[MOST_TRIANGLES], block[MOST_BLOCKS]; /* about each triangle, and about BLOCK of them in turn */
 } placed_surface;
 
 /* ---- meshes ---- */
@@ -106,17 +110,15 @@ static bool make_body(attack *a, const surface *s, bool with_hull, const cprox_b
 
 /* ---- the truth ---- */
 
-static long double segments(vec3l p, vec3l q, vec3l a, vec3l b) {
-  /* the ends, and the common normal where its feet are inside both */
-  long double least = fminl(fminl(ref_point_segment(p, a, b), ref_point_segment(q, a, b)),
-                            fminl(ref_point_segment(a, p, q), ref_point_segment(b, p, q)));
+/* Two segments, where the feet of their common normal are inside both; elsewhere an end is nearest. */
+static long double inner_segments(vec3l p, vec3l q, vec3l a, vec3l b) {
   const vec3l u = ref_sub(q, p), v = ref_sub(b, a), w = ref_sub(p, a);
   const long double uu = ref_dot(u, u), uv = ref_dot(u, v), vv = ref_dot(v, v), det = uu * vv - uv * uv;
-  if (!(det > 0.0L)) return least;
+  if (!(det > 0.0L)) return INFINITY;
   const long double s = (uv * ref_dot(v, w) - vv * ref_dot(u, w)) / det,
                     t = (uu * ref_dot(v, w) - uv * ref_dot(u, w)) / det;
-  if (s < 0.0L || s > 1.0L || t < 0.0L || t > 1.0L) return least;
-  return fminl(least, ref_norm(ref_sub(ref_add(w, ref_scale(s, u)), ref_scale(t, v))));
+  if (s < 0.0L || s > 1.0L || t < 0.0L || t > 1.0L) return INFINITY;
+  return ref_norm(ref_sub(ref_add(w, ref_scale(s, u)), ref_scale(t, v)));
 }
 
 static bool crosses(vec3l p, vec3l q, const vec3l c[3]) {
@@ -135,30 +137,67 @@ static long double triangles_apart(const vec3l a[3], const vec3l b[3]) {
     if (crosses(a[i], a[(i + 1) % 3], b) || crosses(b[i], b[(i + 1) % 3], a)) return 0.0L;
     least = fminl(least, ref_point_triangle(a[i], b[0], b[1], b[2]));
     least = fminl(least, ref_point_triangle(b[i], a[0], a[1], a[2]));
-    for (int k = 0; k < 3; k++) least = fminl(least, segments(a[i], a[(i + 1) % 3], b[k], b[(k + 1) % 3]));
+    for (int k = 0; k < 3; k++) least = fminl(least, inner_segments(a[i], a[(i + 1) % 3], b[k], b[(k + 1) % 3]));
   }
   return least;
+}
+
+/* About n points. */
+static box box_about(const vec3l *points, size_t n) {
+  box about = {points[0], points[0]};
+  for (size_t i = 1; i < n; i++) {
+    about.low =
+        (vec3l){fminl(about.low.x, points[i].x), fminl(about.low.y, points[i].y), fminl(about.low.z, points[i].z)};
+    about.high =
+        (vec3l){fmaxl(about.high.x, points[i].x), fmaxl(about.high.y, points[i].y), fmaxl(about.high.z, points[i].z)};
+  }
+  return about;
+}
+
+static long double boxes_apart(const box *a, const box *b) {
+  const vec3l gap = {fmaxl(a->low.x - b->high.x, b->low.x - a->high.x),
+                     fmaxl(a->low.y - b->high.y, b->low.y - a->high.y),
+                     fmaxl(a->low.z - b->high.z, b->low.z - a->high.z)};
+  return ref_norm((vec3l){fmaxl(gap.x, 0.0L), fmaxl(gap.y, 0.0L), fmaxl(gap.z, 0.0L)});
 }
 
 static void place(const surface *s, const cprox_pose *offset, const ref_pose *link, placed_surface *out) {
   out->n = s->n;
   for (size_t i = 0; i < s->n; i++) {
-    vec3l sum = {0, 0, 0};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
       out->corner[i][k] = ref_pose_apply(link, ref_to_world(offset, ref_vec(s->corner[i][k])));
-      sum = ref_add(sum, ref_scale(1.0L / 3.0L, out->corner[i][k]));
-    }
-    out->middle[i] = sum, out->radius[i] = 0.0L;
-    for (int k = 0; k < 3; k++) out->radius[i] = fmaxl(out->radius[i], ref_norm(ref_sub(out->corner[i][k], sum)));
+    out->triangle[i] = box_about(out->corner[i], 3);
+  }
+  for (size_t i = 0; i < s->n; i += BLOCK) {
+    const size_t last = i + BLOCK < s->n ? i + BLOCK : s->n;
+    out->block[i / BLOCK] = box_about(out->corner[i], 3 * (last - i));
   }
 }
 
-static long double surfaces_apart(const placed_surface *a, const placed_surface *b) {
+/* Two triangles, by their numbers. */
+typedef struct triangle_pair {
+  size_t of_a, of_b;
+} triangle_pair;
+
+static void keep_nearer(const placed_surface *a, const placed_surface *b, triangle_pair pair, long double *least,
+                        triangle_pair *nearest) {
+  if (!(boxes_apart(&a->triangle[pair.of_a], &b->triangle[pair.of_b]) < *least)) return;
+  const long double apart = triangles_apart(a->corner[pair.of_a], b->corner[pair.of_b]);
+  if (apart < *least) *least = apart, *nearest = pair;
+}
+
+/* All pairs of triangles whose boxes come nearer than the least distance so far: first the pair that was the nearest
+ * one at another time, then all. */
+static long double surfaces_apart(const placed_surface *a, const placed_surface *b, triangle_pair *nearest) {
   long double least = INFINITY;
-  for (size_t i = 0; i < a->n; i++)
-    for (size_t k = 0; k < b->n; k++)
-      if (ref_norm(ref_sub(a->middle[i], b->middle[k])) - a->radius[i] - b->radius[k] < least)
-        least = fminl(least, triangles_apart(a->corner[i], b->corner[k]));
+  keep_nearer(a, b, *nearest, &least, nearest);
+  for (size_t i = 0; i < a->n; i += BLOCK)
+    for (size_t k = 0; k < b->n; k += BLOCK) {
+      if (!(boxes_apart(&a->block[i / BLOCK], &b->block[k / BLOCK]) < least)) continue;
+      for (size_t of_a = i; of_a < i + BLOCK && of_a < a->n; of_a++)
+        for (size_t of_b = k; of_b < k + BLOCK && of_b < b->n; of_b++)
+          keep_nearer(a, b, (triangle_pair){of_a, of_b}, &least, nearest);
+    }
   return least;
 }
 
@@ -170,9 +209,10 @@ typedef struct world {
   bool obstacle;        /* the other one stands in the world */
   cprox_pose at;
   surface surfaces[2];
+  triangle_pair nearest; /* at the time that was looked at last */
 } world;
 
-static long double truth_at(const world *w, double time) {
+static long double truth_at(world *w, double time) {
   static placed_surface a, b;
   const ref_pose world_frame = {.q = {0, 0, 0, 1}};
   long double values[TEST_MAX_VARIABLES];
@@ -185,7 +225,7 @@ static long double truth_at(const world *w, double time) {
     place(&w->surfaces[1], &w->at, &world_frame, &b);
   else
     place(&w->surfaces[1], &g[w->other].pose, &links[g[w->other].link], &b);
-  return surfaces_apart(&a, &b) - 2.0L * w->t.margin;
+  return surfaces_apart(&a, &b, &w->nearest) - 2.0L * w->t.margin;
 }
 
 typedef enum asked { DISTANCE, TOLERANCE, COLLISION, CONTACT } asked;
@@ -208,7 +248,7 @@ static cprox_status ask(attack *a, const world *w, const cprox_body *standing, a
 }
 
 /* The interval, the verdict and the witness's time against samples; true where it could be asked. */
-static void check(attack *a, rng *r, const world *w, const cprox_body *standing) {
+static void check(attack *a, rng *r, world *w, const cprox_body *standing) {
   static const char *const NAMES[] = {"distance", "tolerance", "collision", "time of contact"};
   static const double EPSILONS[] = {1e-2, 1e-3, 1e-4, 1e-6};
   const double t0 = cprox_motion_get_info(w->t.motion).t0, t1 = cprox_motion_get_info(w->t.motion).t1;
@@ -259,6 +299,7 @@ static void one_case(attack *a, rng *r) {
   w.moving = 1 + rng_index(r, w.t.n_links - 1), w.other = rng_index(r, w.moving);
   w.obstacle = rng_index(r, 3) == 0;
   w.at = rng_pose(r, 0.5);
+  w.nearest = (triangle_pair){0, 0};
   const bool with_hull = rng_index(r, 4) != 0;
   const cprox_body *made[2][3] = {{NULL}}, *before[2];
   const size_t geometry[2] = {w.moving, w.other};

@@ -5,8 +5,8 @@
  *
  * Held against poses in long double (support/robots.h) and nearest points by definition (bodies.h). Nearest points
  * taken in turns give two points, one of each body: their distance is an upper bound of the true one, so no lower bound
- * of the core may be above it, at any time. Supports along the line between them give a lower bound where both are
- * convex, which no upper bound may be below. Witness points must lie in their bodies and be as near as said. Verdicts
+ * of the core may be above it, at any time. Supports along the line between them give a lower bound, which no upper
+ * bound may be below. Witness points must lie in their bodies and be as near as said. Verdicts
  * and times of contact must follow. */
 #include <math.h>
 #include <stdio.h>
@@ -118,28 +118,48 @@ typedef struct gap {
   long double room; /* of the bodies that the core was given */
 } gap;
 
-static gap gap_at(const world *w, pair p, long double time) {
+/* The plane across the way from y to x: everything of a is so far from everything of b, at least. */
+static long double plane_between(const placed *a, const placed *b, vec3l x, vec3l y) {
+  const long double apart = ref_norm(ref_sub(x, y));
+  if (!(apart > 0.0L)) return -HUGE_VALL;
+  const vec3l n = ref_scale(1.0L / apart, ref_sub(x, y));
+  const long double low = -support_of(a, ref_scale(-1.0L, n)) - support_of(b, n) - a->margin - b->margin;
+  return isfinite(low) ? low : -HUGE_VALL;
+}
+
+/* The same of the balls about the frames of both. */
+static long double balls_between(const placed *a, const placed *b) {
+  const vec3l from = ref_pose_apply(&a->link, ref_vec(a->offset.position)),
+              to = ref_pose_apply(&b->link, ref_vec(b->offset.position));
+  return ref_norm(ref_sub(from, to)) - a->body->extent * (1.0L + 1e-12L) - b->body->extent * (1.0L + 1e-12L) -
+         a->margin - b->margin;
+}
+
+/* Where it is known that the upper bound will not be below `most`, that is infinite. */
+static gap gap_below(const world *w, pair p, long double time, long double most) {
   ref_pose links[MOST_GEOMETRIES];
   place_links(w, time, links);
   const placed a = place_geometry(w, links, p.geometry), b = place_other(w, links, p);
+  gap g = {
+      .upper = HUGE_VALL, .lower = -HUGE_VALL, .room = ROOM + (long double)a.body->slack + (long double)b.body->slack};
+  if (balls_between(&a, &b) >= most) return g;
   vec3l x = ref_pose_apply(&a.link, ref_vec(a.offset.position)), y = x;
   long double before = HUGE_VALL, apart = HUGE_VALL;
   for (int i = 0; i < TURNS; i++) {
     y = nearest_on(&b, x);
     x = nearest_on(&a, y);
     apart = ref_norm(ref_sub(x, y));
+    if (most < HUGE_VALL && plane_between(&a, &b, x, y) >= most) return g;
     if (!(apart < before * (1.0L - 1e-9L))) break;
     before = apart;
   }
-  gap g = {.upper = apart - a.margin - b.margin,
-           .lower = -HUGE_VALL,
-           .room = ROOM + (long double)a.body->slack + (long double)b.body->slack};
-  if (a.body->convex && b.body->convex && apart > 0.0L) {
-    const vec3l n = ref_scale(1.0L / apart, ref_sub(x, y));
-    const long double low = -support_of(&a, ref_scale(-1.0L, n)) - support_of(&b, n) - a.margin - b.margin;
-    if (isfinite(low)) g.lower = low;
-  }
+  g.upper = apart - a.margin - b.margin;
+  g.lower = plane_between(&a, &b, x, y);
   return g;
+}
+
+static gap gap_at(const world *w, pair p, long double time) {
+  return gap_below(w, p, time, HUGE_VALL);
 }
 
 /* ---- random worlds ---- */
@@ -301,14 +321,14 @@ static gap least_gap(const world *w, pair p, double t0, double t1, double begin,
   *where = begin;
   for (int i = 0; i <= SAMPLES; i++) {
     const double t = fmin(t0 + (t1 - t0) * (i + rng_uniform(w->r, 0.0, 1.0)) / SAMPLES, t1);
-    const gap g = gap_at(w, p, t);
+    const gap g = gap_below(w, p, t, best.upper);
     if (g.upper < best.upper) best = g, *where = t;
   }
   double step = (t1 - t0) / SAMPLES;
   for (int i = 0; i < REFINEMENTS; i++, step *= 0.5) {
     for (int side = -1; side <= 1; side += 2) {
       const double t = fmin(fmax(*where + side * step, t0), t1);
-      const gap g = gap_at(w, p, t);
+      const gap g = gap_below(w, p, t, best.upper);
       if (g.upper < best.upper) best = g, *where = t;
     }
   }
