@@ -47,6 +47,7 @@ CASE(the_nearest_pairs_are_those_of_single_queries) {
       assert_int_equal(nearest_pairs_of_list(mover, c.targets, targets, 3, INFINITY, NULL, ws, few, &fewer), CPROX_OK);
       assert_int_equal(fewer, 3);
       for (size_t k = 0; k < 3; k++) assert_true(few[k].lower <= all[k].upper + 1e-6 && all[k].lower <= few[k].upper);
+      for (size_t k = 3; k < count; k++) assert_true(all[k].upper >= few[2].upper - 2e-6);
       const double delta = 1.001 * all[5].upper + 1e-5;
       assert_int_equal(nearest_pairs_of_list(mover, c.targets, targets, MOST_PAIRS, delta, NULL, ws, few, &fewer),
                        CPROX_OK);
@@ -58,6 +59,97 @@ CASE(the_nearest_pairs_are_those_of_single_queries) {
     robot_case_free(&c);
   }
   fclose(f);
+}
+
+static bool is_among(const cprox_result *one, const cprox_result *results, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    if (results[i].mover_part == one->mover_part && results[i].obstacle_index == one->obstacle_index) return true;
+  return false;
+}
+
+/* Whatever the budget, k and delta: no pair twice, each interval true; and unless the budget ended it, every other pair
+ * as far as is said. */
+CASE(few_nodes_leave_true_intervals_of_the_nearest_pairs) {
+  FILE *f = fopen(TEST_DATA_DIR "/motion/cases.txt", "r");
+  assert_non_null(f);
+  size_t n;
+  assert_int_equal(fscanf(f, "%zu", &n), 1);
+  robot_case c;
+  assert_true(robot_case_read(f, TEST_DATA_DIR "/motion", &c));
+  fclose(f);
+  static cprox_result all[MOST_PAIRS], few[MOST_PAIRS];
+  size_t count, fewer, short_of = 0;
+  const cprox_mover movers[] = {cprox_robot_self(c.motion, c.self_pairs, c.n_self_pairs),
+                                cprox_robot_self(c.motion, NULL, 0), cprox_robot_along(c.motion, NULL, 0),
+                                cprox_robot_along(c.mesh_motion, NULL, 0)};
+  for (size_t m = 0; m < 4; m++) {
+    const size_t targets = m < 2 ? 0 : c.n_targets;
+    assert_int_equal(nearest_pairs_of_list(movers[m], c.targets, targets, MOST_PAIRS, INFINITY, NULL, ws, all, &count),
+                     CPROX_OK);
+    for (uint32_t nodes = 1; nodes <= 4096; nodes *= 4) {
+      for (int i = 0; i < 6; i++) {
+        const size_t k = (const size_t[]){1, 3, 10}[i % 3];
+        const double delta = i < 3 ? INFINITY : 1.001 * all[4].upper + 1e-5;
+        cprox_options options = CPROX_OPTIONS_DEFAULT;
+        options.max_nodes = nodes;
+        const cprox_status status =
+            nearest_pairs_of_list(movers[m], c.targets, targets, k, delta, &options, ws, few, &fewer);
+        assert_true(status == CPROX_OK || status == CPROX_BUDGET);
+        short_of += status == CPROX_BUDGET;
+        assert_true(fewer <= k && (isfinite(delta) || fewer == k));
+        for (size_t j = 0; j < fewer; j++) {
+          assert_false(is_among(&few[j], few, j));
+          assert_true(j == 0 || few[j - 1].upper <= few[j].upper);
+          assert_true(few[j].lower <= delta);
+          for (size_t a = 0; a < count; a++)
+            if (is_among(&all[a], &few[j], 1))
+              assert_true(few[j].lower <= all[a].upper && all[a].lower <= few[j].upper);
+        }
+        for (size_t a = 0; a < count && status == CPROX_OK; a++) {
+          if (is_among(&all[a], few, fewer)) continue;
+          const double nearest = fewer == k ? few[k - 1].upper - 1e-6 : INFINITY;
+          assert_true(all[a].upper > delta || all[a].upper >= nearest);
+        }
+      }
+    }
+  }
+  assert_true(short_of > 0);
+  robot_case_free(&c);
+}
+
+typedef struct poll_counter {
+  size_t polls;
+} poll_counter;
+
+/* Every search asks whether it shall stop when it begins, and after each 16 nodes. */
+static bool count_poll(void *user) {
+  ((poll_counter *)user)->polls++;
+  return false;
+}
+
+CASE(few_pairs_are_searched_for_the_nearest_ones) {
+  FILE *f = fopen(TEST_DATA_DIR "/motion/cases.txt", "r");
+  assert_non_null(f);
+  size_t n;
+  assert_int_equal(fscanf(f, "%zu", &n), 1);
+  robot_case c;
+  assert_true(robot_case_read(f, TEST_DATA_DIR "/motion", &c));
+  fclose(f);
+  static cprox_result nearest[MOST_PAIRS];
+  size_t count, polls[2];
+  for (int i = 0; i < 2; i++) {
+    poll_counter counter = {0};
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.stop = count_poll, options.stop_user = &counter;
+    assert_int_equal(nearest_pairs_of_list(cprox_robot_along(c.motion, NULL, 0), c.targets, c.n_targets,
+                                           i == 0 ? 3 : MOST_PAIRS, INFINITY, &options, ws, nearest, &count),
+                     CPROX_OK);
+    polls[i] = counter.polls;
+  }
+  print_message("3 nearest pairs: %zu polls; all %zu pairs: %zu\n", polls[0], count, polls[1]);
+  assert_true(polls[1] > count);
+  assert_true(3 * polls[0] < polls[1]);
+  robot_case_free(&c);
 }
 
 /* 100 random motions; 1e-8: nine digits of the largest coefficient, which is below 10. */

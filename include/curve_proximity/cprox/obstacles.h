@@ -119,7 +119,8 @@ CPROX_API cprox_status cprox_obstacles_within(const cprox_obstacles *obstacles, 
  *            away, w = max(epsilon, relative_epsilon * nearest[last].upper).
  *  count     receives their number.
  *
- *  Returns as cprox_obstacles_nearest(). Cost: a search a pair, which ends as soon as the pair cannot be among them. */
+ *  Returns as cprox_obstacles_nearest(). Cost: a look at the boxes of all pairs; a search for each of those that are
+ *  likely to be among them, which ends as soon as the pair cannot be; one search for all others together. */
 CPROX_API cprox_status cprox_obstacles_nearest_pairs(const cprox_obstacles *obstacles, cprox_mover mover, size_t k,
                                                      double delta, const cprox_options *options,
                                                      cprox_workspace *workspace, cprox_result *nearest, size_t *count);

@@ -33,6 +33,8 @@ typedef enum workspace_buffer {
   WORKSPACE_ROBOT_CLUSTER,
   WORKSPACE_ROBOT_GROUPS,
   WORKSPACE_ROBOT_SPOT,
+  WORKSPACE_ROBOT_RANKING,
+  WORKSPACE_ROBOT_REST,
   WORKSPACE_CALLER, /* cprox_workspace_reserve() */
   WORKSPACE_BUFFERS
 } workspace_buffer;

@@ -12,5 +12,6 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/pair_state.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_table.c
   ${CMAKE_CURRENT_LIST_DIR}/prove_contact.c
+  ${CMAKE_CURRENT_LIST_DIR}/rank.c
   ${CMAKE_CURRENT_LIST_DIR}/refine.c
 )

@@ -205,7 +205,8 @@ static cprox_status try_groups(robot_search *o, const list_entry *entry, nearest
 
 /* Measures the pair whose balls and boxes come closest where the scene is. */
 static cprox_status seed_here(robot_search *o, int32_t list) {
-  const double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
+  double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
+  if (o->best.pair >= 0) most = lesser(most, o->goal.cutoff); /* one distance is always measured */
   const size_t n = lists_count(&o->lists, list);
   nearest_pair nearest = {.apart = most, .pair = -1};
   for (size_t k = 0; k < n; k++) {
