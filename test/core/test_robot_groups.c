@@ -157,7 +157,7 @@ static long double time_within(const robot_scene *s, long double share) {
 
 static long double time_of_middle(const robot_scene *s) {
   const double *t = s->motion->times;
-  return t[s->segment] + (long double)s->u * ((long double)t[s->segment + 1] - t[s->segment]);
+  return t[s->centre.segment] + (long double)s->centre.u * ((long double)t[s->centre.segment + 1] - t[s->centre.segment]);
 }
 
 /* The link with an axis, -1 for the world. */

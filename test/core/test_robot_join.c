@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "kinematics/bound.h"
 #include "kinematics/motion.h"
+#include "shape/body.h"
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/of_list.h"
@@ -126,6 +128,138 @@ CASE(a_joined_motion_lasts_from_the_first_start_to_the_last_end) {
     assert_int_equal(info.n_variables, variables);
     assembly_free(&a);
   }
+}
+
+/* ---- bounds ---- */
+
+enum { SIDES = 12, SAMPLES = 16 };
+
+static motion_interval any_interval(rng *r, const cprox_motion *m) {
+  motion_interval over = {.a = 0.0, .b = 1.0};
+  over.first = rng_index(r, m->n_segments);
+  const size_t most = m->n_segments - over.first;
+  over.last = over.first + 1 + (rng_index(r, 3) ? rng_index(r, most) : 0);
+  if (rng_index(r, 2)) over.a = rng_uniform(r, 0, 0.5);
+  if (rng_index(r, 2)) over.b = rng_uniform(r, 0.5, 1);
+  return over;
+}
+
+/* A geometry of one robot seen from one of the same or of another robot, and what the core says of it. */
+typedef struct join_claim {
+  size_t member[2], geometry[2], part[2];
+  vec3 n, drift;
+  chain_motion motion;
+  double second, both;
+} join_claim;
+
+static void find_claim(rng *r, const assembly *a, const axis_state *axes, join_claim *c) {
+  for (int side = 0; side < 2; side++) {
+    c->member[side] = rng_index(r, MEMBERS);
+    c->geometry[side] = c->part[side] = rng_index(r, a->members[c->member[side]].n_links);
+    for (size_t m = 0; m < c->member[side]; m++) c->part[side] += a->members[m].n_links;
+  }
+  c->n = rng_unit(r);
+  c->n = vec_scale(1.0 / vec_norm(c->n), c->n);
+  c->drift = rng_index(r, 2) ? vec_scale(rng_log_uniform(r, 1e-3, 0.5), rng_unit(r)) : vec(0, 0, 0);
+  c->drift = vec_axpy(c->drift, -vec_dot(c->drift, c->n), c->n);
+
+  double scratch[MAX_AXES];
+  chain_axis chain[MAX_AXES];
+  placement frames[MAX_AXES + 1];
+  for (size_t i = 0; i < a->robot->n_axes; i++) frames[i] = axes[i].frame;
+  const robot_part *part = &a->robot->parts[c->part[0]], *other = &a->robot->parts[c->part[1]];
+  const placement at = placement_under(frames, part->axis, &part->at);
+  const double error = a->motion->part_error[c->part[0]];
+  const size_t length = motion_chain(a->motion, other->axis, part->axis, chain);
+  motion_of_part(axes, chain, length, at.p, part->model.radius + error, scratch, &c->motion);
+  cprox_body *origin;
+  assert_int_equal(cprox_body_create_point(vec(0, 0, 0), NULL, &origin), CPROX_OK);
+  const bound_side moving = {.shape = part->model.shape, .at = at, .margin = part->model.margin, .error = error};
+  const bound_side standing = {
+      .shape = &origin->shape, .at = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}}, .error = a->motion->part_error[c->part[1]]};
+  double slack;
+  const double heights[2] = {bound_height(&standing, vec_axpy(c->n, -0.5, c->drift)),
+                             bound_height(&standing, vec_axpy(c->n, 0.5, c->drift))};
+  const uint32_t steps = part->steps + other->steps;
+  c->second = motion_plane_bound(&c->motion, &moving, &standing, c->n, c->drift, heights, steps, -INFINITY, &slack);
+  c->both = motion_plane_bound(&c->motion, &moving, &standing, c->n, c->drift, heights, steps, INFINITY, &slack);
+  cprox_body_free(origin);
+}
+
+/* The links of a member at a time of the clock, in the frame of its base. */
+static void member_links(const assembly *a, size_t member, long double time, ref_pose *links) {
+  const test_robot *t = &a->members[member];
+  const cprox_motion_info info = cprox_motion_get_info(t->motion);
+  long double values[TEST_MAX_VARIABLES + 1];
+  robot_ref_values(t, fminl(fmaxl(time - a->starts[member], info.t0), info.t1), values);
+  robot_ref_links(t, values, links);
+}
+
+/* The vertices of the moving geometry as the standing one sees them. */
+static void seen_at(const assembly *a, const join_claim *c, long double time, vec3l *seen) {
+  ref_pose links[TEST_MAX_LINKS];
+  member_links(a, c->member[0], time, links);
+  robot_ref_vertices(&a->members[c->member[0]], links, c->geometry[0], seen);
+  member_links(a, c->member[1], time, links);
+  for (size_t v = 0; v < TEST_VERTICES; v++) {
+    const vec3l world = ref_to_world(&a->bases[c->member[0]], seen[v]);
+    const ref_pose standing = ref_pose_under(&a->bases[c->member[1]], &links[c->geometry[1]]);
+    seen[v] = ref_pose_undo(&standing, world);
+  }
+}
+
+static long double time_at(const cprox_motion *m, size_t segment, double u) {
+  return (1 - (long double)u) * m->times[segment] + (long double)u * m->times[segment + 1];
+}
+
+/* The standing side is held where it is in the middle. Intervals and spans of the clock are of other lengths for each
+ * of the robots: parts of a segment, many segments, and what stands before and after. */
+CASE(no_point_is_nearer_than_intervals_of_the_clock_say) {
+  rng r = rng_seed(7006);
+  static assembly a;
+  size_t checks = 0, told = 0, spans = 0;
+  double nearest = 0.0;
+  for (size_t i = 0; i < test_cases(120); i++) {
+    assembly_make(&r, &a);
+    for (int k = 0; k < 8; k++) {
+      const motion_interval over = any_interval(&r, a.motion);
+      static double rows[MOTION_ROWS * (MAX_VARIABLES + MEMBERS * MOTION_LANES)];
+      static axis_state axes[MAX_AXES + 1];
+      const span_centre centre = motion_span_node(a.motion, &over, rows, axes);
+      spans += motion_is_span(&over);
+      const long double t0 = time_at(a.motion, over.first, over.a), t1 = time_at(a.motion, over.last - 1, over.b);
+      const long double middle = time_at(a.motion, centre.segment, centre.u);
+      for (int side = 0; side < SIDES; side++) {
+        join_claim c;
+        find_claim(&r, &a, axes, &c);
+        vec3l before[TEST_VERTICES], x[TEST_VERTICES];
+        ref_pose links[TEST_MAX_LINKS];
+        member_links(&a, c.member[1], middle, links);
+        const ref_pose standing = ref_pose_under(&a.bases[c.member[1]], &links[c.geometry[1]]);
+        seen_at(&a, &c, middle, before);
+        for (int s = 0; s <= SAMPLES; s++, checks++) {
+          const long double share = (long double)s / SAMPLES;
+          seen_at(&a, &c, t0 + share * (t1 - t0), x);
+          const vec3l n = ref_add(ref_vec(c.n), ref_scale(share - 0.5L, ref_vec(c.drift)));
+          for (size_t v = 0; v < TEST_VERTICES; v++) {
+            const long double way = ref_norm(ref_sub(x[v], before[v]));
+            if (way > c.motion.displacement + 1e-14L)
+              fail_msg("assembly %zu: moves %.17Lg, said to be at most %.17g", i, way, c.motion.displacement);
+            if (c.motion.displacement > 1e-9) nearest = fmax(nearest, (double)(way / c.motion.displacement));
+            const long double height =
+                ref_dot(n, ref_pose_apply(&standing, x[v])) / ref_norm(n) - a.members[c.member[0]].margin;
+            if (height < c.second || height < c.both)
+              fail_msg("assembly %zu: height %.17Lg below the bounds %.17g, %.17g", i, height, c.second, c.both);
+            told += c.both > height - 0.1L * c.motion.displacement;
+          }
+        }
+      }
+    }
+    assembly_free(&a);
+  }
+  print_message("%zu checks, %zu spans; largest way / bound %.4f, %zu heights near their bound\n", checks, spans,
+                nearest, told);
+  assert_true(nearest > 0.9 && told > 1000);
 }
 
 /* ---- balls ---- */
@@ -305,6 +439,53 @@ CASE(obstacles_and_the_other_robot_are_asked_about_at_once) {
     pair_free(&p);
     cprox_body_free(box);
   }
+}
+
+/* ---- many ---- */
+
+enum { MANY = 300 };
+
+static bool stops_after(void *user) {
+  size_t *left = user;
+  return (*left)-- == 0;
+}
+
+/* Balls with times of their own: what is kept of each grows with its own waypoints and not with those of others. */
+CASE(a_joined_motion_is_as_large_as_its_members_together) {
+  rng r = rng_seed(7007);
+  static ball balls[MANY];
+  const cprox_robot *robots[MANY];
+  cprox_joined_motion joined[MANY];
+  for (size_t i = 0; i < MANY; i++) {
+    ball_make(&r, &balls[i]);
+    robots[i] = balls[i].robot, joined[i] = (cprox_joined_motion){balls[i].motion, balls[i].start};
+  }
+  cprox_robot *robot = NULL;
+  cprox_motion *motion = NULL;
+  assert_int_equal(cprox_robot_join(robots, NULL, MANY, ws, &robot), CPROX_OK);
+  assert_int_equal(join(robot, joined, MANY, &motion), CPROX_OK);
+  size_t numbers = 0;
+  for (size_t i = 0; i < motion->n_tracks; i++) {
+    const motion_track *t = &motion->tracks[i];
+    assert_true(t->times[0] == motion->times[0] && t->times[t->n_segments] == motion->times[motion->n_segments]);
+    numbers += t->n_segments * t->n_moving * t->stride;
+  }
+  assert_true(motion->n_segments > (BALL_POINTS - 1) * MANY);
+  assert_true(numbers <= (size_t)MANY * (BALL_POINTS + 1) * 7 * 6);
+  cprox_motion_free(motion);
+
+  /* whoever waits may end it at any time */
+  for (size_t calls = 0; calls < 2 * MANY; calls += MANY / 2) {
+    size_t left = calls;
+    cprox_motion *none = NULL;
+    cprox_workspace_set_stop(ws, stops_after, &left);
+    assert_int_equal(join(robot, joined, MANY, &none), CPROX_INVALID);
+    assert_non_null(strstr(cprox_workspace_error(ws), "stopped while"));
+    assert_null(none);
+  }
+  cprox_workspace_set_stop(ws, NULL, NULL);
+  cprox_robot_free(robot);
+  for (size_t i = 0; i < MANY; i++) ball_free(&balls[i]);
 }
 
 /* ---- what is refused ---- */

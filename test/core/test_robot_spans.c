@@ -278,8 +278,8 @@ CASE(no_point_is_nearer_than_spans_say) {
         const double u = k == 0 ? low : k == 1 || rng_index(&r, 4) == 0 ? high : rng_uniform(&r, low, high);
         path_values(&p, segment, u, values);
         robot_ref_links(&p.t, values, links);
-        for (size_t j = 0; j < p.motion->n_moving; j++) {
-          const long double way = fabsl(values[p.motion->moving[j]] - rows[j]);
+        for (size_t j = 0; j < p.motion->tracks->n_moving; j++) {
+          const long double way = fabsl(values[p.motion->tracks->moving[j]] - rows[j]);
           const double said = rows[MOTION_SHIFT * stride + j];
           if (way > said) fail_msg("path %zu: a variable goes %.17Lg, said to be %.17g at most", i, way, said);
           nearest = fmax(nearest, (double)way / said);

@@ -20,7 +20,7 @@ cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cpr
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
   const bool rows = gradient->positions || gradient->velocities || gradient->accelerations;
-  if (rows && (mover.motion->kind == CPROX_MOTION_JOINED || mover.motion->arcs))
+  if (rows && (mover.motion->kind == CPROX_MOTION_JOINED || mover.motion->arc_of))
     return workspace_fail(workspace, CPROX_INVALID,
                           "joined motions, slerp and screws have a gradient by their variables, not by their points");
   return motion_gradient_answer(&q, result, gradient);

@@ -52,9 +52,10 @@ void motion_add_gradient(const cprox_robot *robot, const double *values, const p
 
 /* Of slerp and screws, which turn at a constant rate: q' = omega q / 2. */
 static void add_arc_rates(const cprox_motion *m, size_t axis, size_t segment, double u, double *rates) {
-  const motion_arc *arc = &m->arcs[(size_t)m->arc_of[axis] * m->n_segments + segment];
+  const motion_track *t = motion_track_of(m, axis);
+  const motion_arc *arc = motion_arc_at(m, axis, segment);
   const double s = arc->from + (arc->to - arc->from) * u,
-               speed = (arc->to - arc->from) / (m->times[segment + 1] - m->times[segment]);
+               speed = (arc->to - arc->from) / (t->times[segment + 1] - t->times[segment]);
   double q[4];
   arc_orientation(arc, s, q);
   const vec3 half = vec_scale(0.5 * speed * arc->angle, arc->z), v = vec(q[0], q[1], q[2]);
@@ -66,28 +67,38 @@ static void add_arc_rates(const cprox_motion *m, size_t axis, size_t segment, do
   rates[-3] = speed * p[1].x, rates[-2] = speed * p[1].y, rates[-1] = speed * p[1].z;
 }
 
-void motion_rates(const cprox_motion *m, size_t segment, double u, double *rates) {
-  const size_t degree = m->degree[segment];
-  const double scale = (double)degree / (m->times[segment + 1] - m->times[segment]);
-  memset(rates, 0, m->robot->n_variables * sizeof *rates);
-  for (size_t k = 0; k < m->n_moving; k++) {
-    const double *root = m->coefficients + (segment * m->n_moving + k) * m->stride;
+static void add_polynomial_rates(const motion_track *t, size_t segment, double u, double *rates) {
+  const size_t degree = t->degree[segment];
+  const double scale = (double)degree / (t->times[segment + 1] - t->times[segment]);
+  for (size_t k = 0; k < t->n_moving; k++) {
+    const double *root = t->coefficients + (segment * t->n_moving + k) * t->stride;
     double c[MOTION_MAX_DEGREE + 1] = {0};
     for (size_t i = 0; i < degree; i++) c[i] = root[i + 1] - root[i];
     for (size_t r = 1; r < degree; r++)
       for (size_t i = 0; i + r < degree; i++) c[i] = (1.0 - u) * c[i] + u * c[i + 1];
-    rates[m->moving[k]] = scale * c[0];
+    rates[t->moving[k]] = scale * c[0];
   }
-  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++)
-    if (m->robot->axes[i].kind == AXIS_BALL && m->arc_of[i] >= 0 && m->axis_moves[i])
-      add_arc_rates(m, i, segment, u, rates + m->robot->axes[i].variable);
+}
+
+void motion_rates(const cprox_motion *m, size_t segment, double at, double *rates) {
+  memset(rates, 0, m->robot->n_variables * sizeof *rates);
+  for (size_t j = 0; j < m->n_tracks; j++) {
+    const motion_track *t = &m->tracks[j];
+    double u = at;
+    const size_t own = motion_track_place(m, t, segment, &u);
+    add_polynomial_rates(t, own, u, rates);
+    for (size_t k = 0; k < t->n_arcs; k++) {
+      const size_t i = (size_t)t->arc_axes[k];
+      if (m->axis_moves[i]) add_arc_rates(m, i, own, u, rates + m->robot->axes[i].variable);
+    }
+  }
 }
 
 bool motion_is_on_arc(const cprox_motion *m, int32_t variable) {
-  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++) {
+  for (size_t i = 0; i < m->robot->n_axes && m->arc_of; i++) {
     const int32_t first = m->robot->axes[i].variable;
     if (m->robot->axes[i].kind != AXIS_BALL || m->arc_of[i] < 0) continue;
-    const bool screw = m->arcs[(size_t)m->arc_of[i] * m->n_segments].screw;
+    const bool screw = motion_arc_at(m, i, 0)->screw;
     if (variable >= first - (screw ? 3 : 0) && variable < first + 4) return true;
   }
   return false;
@@ -106,7 +117,7 @@ static void bernstein(size_t degree, double u, double *b) {
 
 /* The Bernstein coefficients of a Hermite polynomial of degree 1, 3 or 5 over h seconds, taken apart. */
 static motion_weights weights_of_waypoints(const cprox_motion *m, size_t segment, double u) {
-  const size_t degree = m->degree[segment];
+  const size_t degree = m->tracks->degree[segment];
   const double h = m->times[segment + 1] - m->times[segment], n = (double)degree;
   motion_weights w = {.first = segment, .n = 2};
   double b[MOTION_MAX_DEGREE + 1] = {0};

@@ -97,25 +97,90 @@ static void fill_lanes(lane_row *c, size_t degree, double a, double b, const dou
   lanes_differentiate(c, degree - 2, 8.0 * n * (n - 1.0) * (n - 2.0), error, third);
 }
 
+/* ---- tracks ---- */
+
+static size_t segment_of(const double *times, size_t n_segments, double t) {
+  size_t first = 0, last = n_segments;
+  while (first + 1 < last) {
+    const size_t middle = first + (last - first) / 2;
+    if (times[middle] <= t)
+      first = middle;
+    else
+      last = middle;
+  }
+  return first;
+}
+
+/* A segment of the motion is a part of one of the track. Places are off by 6 u at most; the errors of a joined motion's
+ * tracks have room for that (doc/robot-bounds.md). */
+size_t motion_track_place(const cprox_motion *m, const motion_track *t, size_t segment, double *u) {
+  if (m->n_tracks == 1) return segment;
+  const double from = m->times[segment], to = m->times[segment + 1];
+  const size_t own = segment_of(t->times, t->n_segments, from);
+  const double begin = t->times[own], end = t->times[own + 1];
+  const double low = (from - begin) / (end - begin), high = to >= end ? 1.0 : (to - begin) / (end - begin);
+  *u = *u >= 1.0 ? high : lesser(low + (high - low) * *u, high);
+  return own;
+}
+
+motion_interval motion_track_interval(const cprox_motion *m, const motion_track *t, const motion_interval *over) {
+  motion_interval own = *over;
+  if (m->n_tracks == 1) return own;
+  own.first = motion_track_place(m, t, over->first, &own.a);
+  own.last = motion_track_place(m, t, over->last - 1, &own.b) + 1;
+  if (!motion_is_span(&own)) own.b = greater(own.a, own.b);
+  return own;
+}
+
 size_t motion_rows_stride(const cprox_motion *m) {
-  return (m->n_moving + MOTION_LANES - 1) / MOTION_LANES * MOTION_LANES;
+  const motion_track *last = &m->tracks[m->n_tracks - 1];
+  return last->first_slot + (last->n_moving + MOTION_LANES - 1) / MOTION_LANES * MOTION_LANES;
 }
 
 size_t motion_rows_size(const cprox_motion *m) {
   return MOTION_ROWS * motion_rows_stride(m);
 }
 
-void motion_fill_rows(const cprox_motion *m, size_t segment, double a, double b, double *rows) {
-  const size_t degree = m->degree[segment], stride = motion_rows_stride(m);
-  for (size_t first = 0; first < m->n_moving; first += MOTION_LANES) {
+static void fill_segment(const motion_track *t, const motion_interval *own, double *rows, size_t stride) {
+  const size_t segment = own->first, degree = t->degree[segment];
+  for (size_t first = 0; first < t->n_moving; first += MOTION_LANES) {
     lane_row c[MOTION_MAX_DEGREE + 1], error;
     for (size_t l = 0; l < MOTION_LANES; l++) {
-      const size_t slot = first + l < m->n_moving ? first + l : m->n_moving - 1, at = segment * m->n_moving + slot;
-      for (size_t i = 0; i <= degree; i++) c[i][l] = m->coefficients[at * m->stride + i];
-      error[l] = m->error[at];
+      const size_t k = first + l < t->n_moving ? first + l : t->n_moving - 1, at = segment * t->n_moving + k;
+      for (size_t i = 0; i <= degree; i++) c[i][l] = t->coefficients[at * t->stride + i];
+      error[l] = t->error[at];
     }
-    fill_lanes(c, degree, a, b, error, rows + first, stride);
+    fill_lanes(c, degree, own->a, own->b, error, rows + t->first_slot + first, stride);
   }
+}
+
+void motion_fill_track(const cprox_motion *m, size_t track, const motion_interval *over, const motion_interval *own,
+                       span_centre *centre, double *rows) {
+  const motion_track *t = &m->tracks[track];
+  if (motion_is_span(own))
+    motion_fill_span(m, t, over, own, centre, rows);
+  else
+    fill_segment(t, own, rows, motion_rows_stride(m));
+}
+
+/* Rounding may move it a little: any place of the interval will do that all tracks take for the same. */
+span_centre motion_middle(const cprox_motion *m, const motion_interval *over) {
+  if (!motion_is_span(over)) return (span_centre){.segment = over->first, .u = 0.5 * (over->a + over->b)};
+  const double *times = m->times, base = times[over->first];
+  const double from = over->a * (times[over->first + 1] - base);
+  const double to = (times[over->last - 1] - base) + over->b * (times[over->last] - times[over->last - 1]);
+  const double middle = 0.5 * (from + to);
+  size_t first = over->first, last = over->last;
+  while (first + 1 < last) {
+    const size_t half = first + (last - first) / 2;
+    if (times[half] - base <= middle)
+      first = half;
+    else
+      last = half;
+  }
+  const double u = (middle - (times[first] - base)) / (times[first + 1] - times[first]);
+  const double low = first == over->first ? over->a : 0.0, high = first + 1 == over->last ? over->b : 1.0;
+  return (span_centre){.segment = first, .u = lesser(greater(u, low), high)};
 }
 
 /* ---- one variable ---- */
@@ -134,20 +199,21 @@ static void differentiate(double *c, size_t degree) {
 }
 
 /* The coordinates of a ball over the interval, one a lane; returns the sum of their errors. */
-static double coordinates_over(const cprox_motion *m, size_t segment, const robot_axis *axis, double a, double b,
+static double coordinates_over(const cprox_motion *m, const motion_interval *own, const robot_axis *axis,
                                double c[4][MOTION_MAX_DEGREE + 1]) {
   const int32_t variable = axis->variable, count = axis_variables(axis->kind);
-  const size_t degree = m->degree[segment];
+  const motion_track *t = &m->tracks[m->track_of[variable]];
+  const size_t segment = own->first, degree = t->degree[segment];
   lane_row lanes[MOTION_MAX_DEGREE + 1] = {{0}};
   double error = 0.0;
   for (int32_t k = 0; k < count; k++) {
     const int32_t slot = m->slot[variable + k];
-    const size_t at = segment * m->n_moving + (size_t)(slot < 0 ? 0 : slot);
+    const size_t at = segment * t->n_moving + (slot < 0 ? 0 : (size_t)slot - t->first_slot);
     for (size_t i = 0; i <= degree; i++)
-      lanes[i][k] = slot < 0 ? m->rest[variable + k] : m->coefficients[at * m->stride + i];
-    error += slot < 0 ? 0.0 : m->error[at];
+      lanes[i][k] = slot < 0 ? m->rest[variable + k] : t->coefficients[at * t->stride + i];
+    error += slot < 0 ? 0.0 : t->error[at];
   }
-  section(degree, a, b, lanes);
+  section(degree, own->a, own->b, lanes);
   for (int k = 0; k < 4; k++)
     for (size_t i = 0; i <= degree; i++) c[k][i] = lanes[i][k];
   return error;
@@ -204,7 +270,7 @@ static void ball_over_span(const cprox_motion *m, size_t axis_index, const doubl
     shift += of[MOTION_SHIFT * stride] * of[MOTION_SHIFT * stride];
   }
   norm = (1.0 - 16.0 * ROUND_U) * sqrt(norm);
-  const double sagitta = m->arcs ? m->sagitta[axis_index] : 0.0;
+  const double sagitta = m->arc_of ? m->sagitta[axis_index] : 0.0;
   line = ROUND_UP * sqrt(line), stray = ROUND_UP * sqrt(stray) + sagitta, shift = ROUND_UP * sqrt(shift) + sagitta;
   const double least = norm - line, rate = 2.0 * line / greater(least, NEAREST_LINE * norm);
   state->w = 2.0 * rate;
@@ -220,13 +286,13 @@ static void ball_over_span(const cprox_motion *m, size_t axis_index, const doubl
 
 /* A quaternion of any norm turns at omega = 2 vec(p' p*) / |p|² and omega' = 2 vec(p'' p*) / |p|² - 2 omega (p·p') /
  * |p|². */
-static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, double a, double b,
-                      const placement *parent, const placement *before, axis_state *state) {
+static void ball_over(const cprox_motion *m, const motion_interval *own, size_t axis_index, const placement *parent,
+                      const placement *before, axis_state *state) {
   const robot_axis *axis = &m->robot->axes[axis_index];
-  const size_t degree = m->degree[segment];
+  const size_t degree = motion_track_of(m, axis_index)->degree[own->first];
   const double n = (double)degree;
   double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n;
-  const double error = coordinates_over(m, segment, axis, a, b, c);
+  const double error = coordinates_over(m, own, axis, c);
   for (int k = 0; k < 4; k++) p[0][k] = at_middle(c[k], degree);
   for (size_t order = 1; order <= 3 && order <= degree; order++) {
     for (int k = 0; k < 4; k++) {
@@ -300,12 +366,12 @@ static void place_vector(const robot_axis *axis, double values[3][4], const plac
 
 /* With bounds r1, r2, r3 on the derivatives of p: |omega| <= r1, |omega'| <= r2 + r1^2/2, |omega''| <= r3 + 3/2 r1 r2 +
  * r1^3/2. */
-static void vector_over(const cprox_motion *m, size_t segment, const robot_axis *axis, double a, double b,
+static void vector_over(const cprox_motion *m, const motion_interval *own, const robot_axis *axis,
                         const placement *parent, const placement *before, axis_state *state) {
-  const size_t degree = m->degree[segment];
+  const size_t degree = m->tracks[m->track_of[axis->variable]].degree[own->first];
   const double n = (double)degree;
   double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n, shift = 0.0;
-  const double error = coordinates_over(m, segment, axis, a, b, c);
+  const double error = coordinates_over(m, own, axis, c);
   for (int k = 0; k < 3; k++) p[0][k] = at_middle(c[k], degree);
   for (size_t i = 0; i <= degree; i++)
     shift = greater(vec_norm(vec(c[0][i] - p[0][0], c[1][i] - p[0][1], c[2][i] - p[0][2])), shift);
@@ -365,12 +431,12 @@ static vec3 world_axis(const robot_axis *axis, const placement *before) {
 }
 
 /* A screw's shift is all in the first of its three shifts; the ball's frame has the whole pose. */
-static void arc_over(const cprox_motion *m, const motion_interval *over, size_t i, const placement *before,
+static void arc_over(const cprox_motion *m, const motion_interval *own, size_t i, const placement *before,
                      axis_state *state) {
   const robot_axis *axis = &m->robot->axes[i];
-  const motion_arc *arc = &m->arcs[(size_t)m->arc_of[i] * m->n_segments + over->first];
-  const double part = arc->to - arc->from, s = arc->from + part * (0.5 * (over->a + over->b)),
-               ds = part * (over->b - over->a);
+  const motion_arc *arc = motion_arc_at(m, i, own->first);
+  const double part = arc->to - arc->from, s = arc->from + part * (0.5 * (own->a + own->b)),
+               ds = part * (own->b - own->a);
   vec3 p[3] = {vec(0, 0, 0), vec(0, 0, 0), vec(0, 0, 0)};
   if (arc->screw) arc_position(arc, s, p);
   *state = (axis_state){.kind = axis->kind, .frame = *before};
@@ -387,9 +453,8 @@ static void arc_over(const cprox_motion *m, const motion_interval *over, size_t 
   } else {
     double q[4];
     arc_orientation(arc, s, q);
-    placement own = axis_move(axis, NULL, 0.0, q);
-    placement here = {.p = p[0]};
-    for (int k = 0; k < 9; k++) here.r[k] = own.r[k];
+    placement here = axis_move(axis, NULL, 0.0, q);
+    here.p = p[0];
     state->frame = placement_compose(before, &here);
     state->velocity = vec_scale(ds * arc->angle, placement_turn(before, arc->z));
     state->w = ROUND_UP * ds * arc->angle;
@@ -398,12 +463,13 @@ static void arc_over(const cprox_motion *m, const motion_interval *over, size_t 
   state->error = 256.0 * ROUND_U * (state->w + state->a);
 }
 
-static void line_over(const cprox_motion *m, const motion_interval *over, const robot_axis *axis, const double *rows,
+static void line_over(const cprox_motion *m, const motion_interval *own, const robot_axis *axis, const double *rows,
                       const placement *before, axis_state *state) {
   const size_t stride = motion_rows_stride(m), slot = (size_t)m->slot[axis->variable];
+  const motion_track *t = &m->tracks[m->track_of[axis->variable]];
   const double *of = rows + slot;
-  const double n = (double)m->degree[over->first];
-  const double error = motion_is_span(over) ? 0.0 : m->error[over->first * m->n_moving + slot];
+  const double n = (double)t->degree[own->first];
+  const double error = motion_is_span(own) ? 0.0 : t->error[own->first * t->n_moving + slot - t->first_slot];
   const double factor = fabs(axis->multiplier), value = axis->multiplier * of[MOTION_VALUE] + axis->offset;
   state->w = factor * of[MOTION_W * stride], state->a = factor * of[MOTION_A * stride];
   state->g = factor * of[MOTION_G * stride];
@@ -416,7 +482,7 @@ static void line_over(const cprox_motion *m, const motion_interval *over, const 
   axis_advance(axis, before, value, &state->frame);
 }
 
-void motion_find_axis(const cprox_motion *m, const motion_interval *over, const double *rows, size_t i,
+void motion_find_axis(const cprox_motion *m, const motion_interval *own, const double *rows, size_t i,
                       axis_state *axes) {
   const robot_axis *axis = &m->robot->axes[i];
   axis_state *state = &axes[i];
@@ -428,31 +494,37 @@ void motion_find_axis(const cprox_motion *m, const motion_interval *over, const 
   }
   state->kind = axis->kind;
   const placement before = parent ? placement_compose(parent, &axis->at) : axis->at;
-  if (m->arcs && m->arc_of[i] >= 0 && !motion_is_span(over)) {
-    arc_over(m, over, i, &before, state);
+  if (m->arc_of && m->arc_of[i] >= 0 && !motion_is_span(own)) {
+    arc_over(m, own, i, &before, state);
   } else if (axis->kind < AXIS_BALL) {
-    line_over(m, over, axis, rows, &before, state);
-    if (m->arcs) state->shift += m->sagitta[i], state->stray += m->sagitta[i];
-  } else if (axis->kind == AXIS_VECTOR && motion_is_span(over))
+    line_over(m, own, axis, rows, &before, state);
+    if (m->arc_of) state->shift += m->sagitta[i], state->stray += m->sagitta[i];
+  } else if (axis->kind == AXIS_VECTOR && motion_is_span(own))
     vector_over_span(m, axis, rows, parent, &before, state);
   else if (axis->kind == AXIS_VECTOR)
-    vector_over(m, over->first, axis, over->a, over->b, parent, &before, state);
-  else if (motion_is_span(over))
+    vector_over(m, own, axis, parent, &before, state);
+  else if (motion_is_span(own))
     ball_over_span(m, i, rows, parent, &before, state);
   else
-    ball_over(m, over->first, i, over->a, over->b, parent, &before, state);
+    ball_over(m, own, i, parent, &before, state);
+}
+
+span_centre motion_span_node(const cprox_motion *m, const motion_interval *over, double *rows, axis_state *axes) {
+  span_centre centre = motion_middle(m, over);
+  for (size_t k = 0; k < m->n_tracks; k++) {
+    const motion_interval own = motion_track_interval(m, &m->tracks[k], over);
+    motion_fill_track(m, k, over, &own, &centre, rows);
+  }
+  for (size_t i = 0; i < m->robot->n_axes; i++) {
+    const motion_interval own = motion_track_interval(m, motion_track_of(m, i), over);
+    motion_find_axis(m, &own, rows, i, axes);
+  }
+  return centre;
 }
 
 void motion_node(const cprox_motion *m, size_t segment, double a, double b, double *rows, axis_state *axes) {
   const motion_interval over = {.a = a, .b = b, .first = segment, .last = segment + 1};
-  motion_fill_rows(m, segment, a, b, rows);
-  for (size_t i = 0; i < m->robot->n_axes; i++) motion_find_axis(m, &over, rows, i, axes);
-}
-
-span_centre motion_span_node(const cprox_motion *m, const motion_interval *over, double *rows, axis_state *axes) {
-  const span_centre centre = motion_fill_span(m, over->first, over->a, over->last, over->b, rows);
-  for (size_t i = 0; i < m->robot->n_axes; i++) motion_find_axis(m, over, rows, i, axes);
-  return centre;
+  motion_span_node(m, &over, rows, axes);
 }
 
 /* ---- one time ---- */
@@ -465,11 +537,19 @@ static double value_at(const double *root, size_t degree, double u) {
   return c[0];
 }
 
-static void values_at(const cprox_motion *m, size_t segment, double u, double *values) {
+static void values_at(const cprox_motion *m, size_t segment, double at, double *values) {
   memcpy(values, m->rest, m->robot->n_variables * sizeof *values);
-  for (size_t k = 0; k < m->n_moving; k++)
-    values[m->moving[k]] = value_at(m->coefficients + (segment * m->n_moving + k) * m->stride, m->degree[segment], u);
-  motion_place_arcs(m, segment, u, values);
+  for (size_t j = 0; j < m->n_tracks; j++) {
+    const motion_track *t = &m->tracks[j];
+    double u = at;
+    const size_t own = motion_track_place(m, t, segment, &u);
+    for (size_t k = 0; k < t->n_moving; k++)
+      values[t->moving[k]] = value_at(t->coefficients + (own * t->n_moving + k) * t->stride, t->degree[own], u);
+    for (size_t k = 0; k < t->n_arcs; k++) {
+      const size_t i = (size_t)t->arc_axes[k];
+      if (m->axis_moves[i]) motion_arc_values(m, i, own, u, values + m->robot->axes[i].variable - 3);
+    }
+  }
 }
 
 void motion_place(const cprox_motion *m, size_t segment, double u, double *values, placement *frames) {
@@ -488,7 +568,7 @@ double motion_time_below(const cprox_motion *m, size_t segment, double u) {
 bool motion_is_described(const cprox_motion *motion) {
   bool vectors = false;
   for (size_t i = 0; i < motion->robot->n_axes; i++) vectors = vectors || motion->robot->axes[i].kind == AXIS_VECTOR;
-  return motion->given.times && !motion->arcs && !vectors;
+  return motion->given.times && !motion->arc_of && !vectors;
 }
 
 cprox_motion_info cprox_motion_get_info(const cprox_motion *motion) {
@@ -500,15 +580,7 @@ cprox_motion_info cprox_motion_get_info(const cprox_motion *motion) {
 }
 
 size_t motion_segment_at(const cprox_motion *m, double t) {
-  size_t first = 0, last = m->n_segments;
-  while (first + 1 < last) {
-    const size_t middle = first + (last - first) / 2;
-    if (m->times[middle] <= t)
-      first = middle;
-    else
-      last = middle;
-  }
-  return first;
+  return segment_of(m->times, m->n_segments, t);
 }
 
 /* Fractions are rounded outwards by a little more than a division can be off. */
@@ -576,7 +648,7 @@ static void take_in(const double *root, size_t degree, value_range *range) {
 /* How far a variable is from its polynomial. */
 static double sagitta_of_variable(const cprox_motion *m, size_t variable) {
   double most = 0.0;
-  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++) {
+  for (size_t i = 0; i < m->robot->n_axes && m->arc_of; i++) {
     const size_t first = (size_t)m->robot->axes[i].variable, n = (size_t)axis_variables(m->robot->axes[i].kind);
     if (m->arc_of[i] >= 0 && variable >= first && variable < first + n) most = greater(m->sagitta[i], most);
   }
@@ -588,12 +660,12 @@ cprox_variable_info cprox_motion_get_variable_info(const cprox_motion *motion, s
   const double rest = motion->rest[variable];
   if (slot < 0) return (cprox_variable_info){.lowest = rest, .highest = rest};
   value_range range = {.low = INFINITY, .high = -INFINITY};
+  const motion_track *t = &motion->tracks[motion->track_of[variable]];
   for (int pass = 0; pass < 2; pass++) {
-    for (size_t segment = 0; segment < motion->n_segments; segment++) {
-      const double *c = motion->coefficients + (segment * motion->n_moving + (size_t)slot) * motion->stride;
-      for (size_t i = 0; pass == 0 && i <= motion->degree[segment]; i++)
-        range.room = fmax(range.room, 1e-9 * fabs(c[i]));
-      if (pass == 1) take_in(c, motion->degree[segment], &range);
+    for (size_t segment = 0; segment < t->n_segments; segment++) {
+      const double *c = t->coefficients + (segment * t->n_moving + (size_t)slot - t->first_slot) * t->stride;
+      for (size_t i = 0; pass == 0 && i <= t->degree[segment]; i++) range.room = fmax(range.room, 1e-9 * fabs(c[i]));
+      if (pass == 1) take_in(c, t->degree[segment], &range);
     }
   }
   const double arcs = sagitta_of_variable(motion, variable);

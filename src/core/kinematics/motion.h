@@ -12,27 +12,39 @@
 /* Variables are worked on so many at a time; rows are padded to whole lanes. */
 enum { MOTION_MAX_DEGREE = 9, MOTION_LANES = 8 };
 
-struct cprox_motion {
-  const cprox_robot *robot;
-  cprox_motion_kind kind;
+/* Variables that share their segments: all of a motion that was given at once. A joined motion has a track for each
+ * motion that was joined, and its own segments end wherever a track has a segment's end. */
+typedef struct motion_track {
   size_t n_segments, n_moving;
   size_t stride;        /* room for the coefficients of one polynomial */
+  size_t first_slot;    /* in rows; a multiple of MOTION_LANES */
   double *times;        /* n_segments + 1, ascending */
   uint8_t *degree;      /* of a segment */
   double *coefficients; /* [segment][moving variable][stride] */
-  double *error;   /* [segment][moving variable]: of what is computed from the coefficients anywhere, 1e-15 of them */
-  int32_t *moving; /* the variables that do not stand still */
-  int32_t *slot;   /* of a variable among those, or -1 */
-  double *rest;    /* the values of the others; of a state, room for another one behind them */
-  bool is_state;   /* nothing moves, and everything is asked about that could */
-  bool *axis_moves;
-  placement *still; /* of an axis that does not: as it stands in its parent's frame */
-  double *norm;     /* of a quaternion: at least this everywhere */
-  size_t n_arcs;    /* floating joints that turn by slerp or by screws */
-  motion_arc *arcs; /* [joint][segment] */
-  int32_t *arc_of;  /* of an axis, which of these joints; -1: none */
-  double *sagitta;  /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
+  double *error;     /* [segment][moving variable]: of what is computed from the coefficients anywhere, 1e-15 of them */
+  int32_t *moving;   /* the variables that do not stand still */
+  size_t n_arcs;     /* floating joints that turn by slerp or by screws, */
+  int32_t *arc_axes; /* their balls */
+  motion_arc *arcs;  /* [joint][segment] */
   motion_spans spans;
+  bool by_time; /* spans of it are followed by time, as those of other tracks are, and not by their chord */
+} motion_track;
+
+struct cprox_motion {
+  const cprox_robot *robot;
+  cprox_motion_kind kind;
+  size_t n_segments, n_tracks;
+  double *times; /* n_segments + 1, ascending; of one track its own */
+  motion_track *tracks;
+  int32_t *track_of; /* of a variable, its track */
+  int32_t *slot;     /* of a variable in rows, or -1: it stands still */
+  double *rest;      /* the values of those; of a state, room for another one behind them */
+  bool is_state;     /* nothing moves, and everything is asked about that could */
+  bool *axis_moves;
+  placement *still;   /* of an axis that does not: as it stands in its parent's frame */
+  double *norm;       /* of a quaternion: at least this everywhere */
+  int32_t *arc_of;    /* of an axis, which of its track's joints by arcs; -1: none. NULL: there are none at all */
+  double *sagitta;    /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
   motion_given given; /* of a joined one nothing */
   double *part_error; /* every point of a part is computed within this of where it is */
 };
@@ -78,28 +90,41 @@ typedef enum motion_row {
 /* Whether certificates can be about it. */
 bool motion_is_described(const cprox_motion *motion);
 
-/* The values at u of a segment that are no polynomials take the place of those that are. */
-void motion_place_arcs(const cprox_motion *motion, size_t segment, double u, double *values);
-/* The same of one joint, by its ball: its own seven; x, y and z only of a screw. */
+/* A place or an interval of the motion, in the segments of a track. */
+size_t motion_track_place(const cprox_motion *motion, const motion_track *track, size_t segment, double *u);
+motion_interval motion_track_interval(const cprox_motion *motion, const motion_track *track,
+                                      const motion_interval *over);
+
+/* That of an axis. */
+static inline const motion_track *motion_track_of(const cprox_motion *m, size_t axis) {
+  return &m->tracks[m->track_of[m->robot->axes[axis].variable]];
+}
+
+/* That of a joint that turns by arcs, by its ball, over a segment of its track. */
+static inline const motion_arc *motion_arc_at(const cprox_motion *m, size_t axis, size_t segment) {
+  const motion_track *track = motion_track_of(m, axis);
+  return &track->arcs[(size_t)m->arc_of[axis] * track->n_segments + segment];
+}
+
+/* The values of such a joint at u of that segment: its own seven; x, y and z only of a screw. */
 void motion_arc_values(const cprox_motion *motion, size_t axis, size_t segment, double u, double values[7]);
 
 /* The numbers in one row, and in all. */
 size_t motion_rows_stride(const cprox_motion *motion);
 size_t motion_rows_size(const cprox_motion *motion);
-void motion_fill_rows(const cprox_motion *motion, size_t segment, double a, double b, double *rows);
 
-/* From u = a of segment `first` to u = b of segment last - 1. */
-typedef struct motion_interval {
-  double a, b;
-  size_t first, last;
-} motion_interval;
+/* The part of the rows that belongs to a track; `own` is its interval of `over`. A span of one track has its centre
+ * where the track passes the middle of its chord, and *centre becomes that; of several it is given, by motion_middle().
+ * What the span looks like is added to it. */
+void motion_fill_track(const cprox_motion *motion, size_t track, const motion_interval *over,
+                       const motion_interval *own, span_centre *centre, double *rows);
 
-static inline bool motion_is_span(const motion_interval *over) {
-  return over->first + 1 < over->last;
-}
+/* The middle of an interval by time. */
+span_centre motion_middle(const cprox_motion *motion, const motion_interval *over);
 
-/* The state of one axis by them; that of its parent must be known. Of an axis that does not move, only the frame. */
-void motion_find_axis(const cprox_motion *motion, const motion_interval *over, const double *rows, size_t axis,
+/* The state of one axis by them, over its track's own interval; that of its parent must be known. Of an axis that does
+ * not move, only the frame. */
+void motion_find_axis(const cprox_motion *motion, const motion_interval *own, const double *rows, size_t axis,
                       axis_state *axes);
 
 /* Changes a motion of the kind CPROX_MOTION_STATE, which no query may be using, to these values of all variables.

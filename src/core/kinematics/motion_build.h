@@ -15,17 +15,22 @@ typedef struct motion_source {
   cprox_workspace *workspace;
 } motion_source;
 
-/* A motion of so many segments, all 0, for the variables of the source; NULL where memory is out. */
-cprox_motion *motion_allocate(const motion_source *source, size_t n_segments, size_t degree);
+/* A motion of so many tracks, all empty, and no times; NULL where memory is out. */
+cprox_motion *motion_allocate(const motion_source *source, size_t n_tracks);
 
-/* All that follows from times, degrees, coefficients and their errors. Frees the motion on failure. */
+/* Room for a track of so many segments and variables, all 0, and for the arcs of so many joints. */
+bool motion_allocate_track(motion_track *track, size_t n_segments, size_t n_variables, size_t degree);
+bool motion_allocate_track_arcs(motion_track *track, size_t n_arcs);
+
+/* All that follows from times, degrees, coefficients and their errors. Frees the motion on failure. Of one track the
+ * variables that move are found; of several they are known. */
 cprox_status motion_finish(cprox_motion *m, const motion_source *source, cprox_motion **motion);
 
 /* What cutting and evaluating adds to the error of coefficients of this size; doc/robot-bounds.md. */
 double motion_cutting_error(size_t degree, double largest);
 
-/* Room for so many joints that turn by arcs; false where memory is out. */
-bool motion_allocate_arcs(cprox_motion *m, size_t n);
+/* Room for which joints turn by arcs; false where memory is out. */
+bool motion_allocate_arcs(cprox_motion *m);
 
 /* Floating joints between waypoints that turn by slerp or by screws: arcs, straight lines in the place of their
  * polynomials, and the errors of both. */

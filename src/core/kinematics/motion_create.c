@@ -96,50 +96,76 @@ static cprox_status check_spline(const cprox_motion_description *d, cprox_worksp
 
 /* ---- memory ---- */
 
-cprox_motion *motion_allocate(const motion_source *s, size_t n_segments, size_t degree) {
+bool motion_allocate_track(motion_track *t, size_t n_segments, size_t n_variables, size_t degree) {
+  const size_t n = n_variables + 1, room = n_segments + 1;
+  t->n_segments = n_segments;
+  t->n_moving = n_variables;
+  t->stride = degree + 1;
+  t->times = calloc(room, sizeof *t->times);
+  t->degree = calloc(room, sizeof *t->degree);
+  t->coefficients = calloc(room * n * t->stride, sizeof *t->coefficients);
+  t->error = calloc(room * n, sizeof *t->error);
+  t->moving = calloc(n, sizeof *t->moving);
+  return t->times && t->degree && t->coefficients && t->error && t->moving;
+}
+
+cprox_motion *motion_allocate(const motion_source *s, size_t n_tracks) {
   cprox_motion *m = calloc(1, sizeof *m);
   if (!m) return NULL;
-  const size_t n = s->n + 1, n_variables = s->robot->n_variables + 1, room = n_segments + 1;
+  const size_t n_variables = s->robot->n_variables + 1;
   m->robot = s->robot;
   m->kind = s->description->kind;
-  m->n_segments = n_segments;
-  m->n_moving = s->n;
-  m->stride = degree + 1;
-  m->times = calloc(room, sizeof *m->times);
-  m->degree = calloc(room, sizeof *m->degree);
-  m->coefficients = calloc(room * n * m->stride, sizeof *m->coefficients);
-  m->error = calloc(room * n, sizeof *m->error);
-  m->moving = calloc(n, sizeof *m->moving);
+  m->tracks = calloc(n_tracks + 1, sizeof *m->tracks);
+  m->track_of = calloc(n_variables, sizeof *m->track_of);
   m->slot = calloc(n_variables, sizeof *m->slot);
   m->rest = calloc(2 * n_variables, sizeof *m->rest);
   m->axis_moves = calloc(s->robot->n_axes + 1, sizeof *m->axis_moves);
   m->still = calloc(s->robot->n_axes + 1, sizeof *m->still);
   m->norm = calloc(s->robot->n_axes + 1, sizeof *m->norm);
   m->part_error = calloc(s->robot->n_parts + 1, sizeof *m->part_error);
-  if (m->times && m->degree && m->coefficients && m->error && m->moving && m->slot && m->rest && m->axis_moves &&
-      m->still && m->norm && m->part_error)
-    return m;
+  if (m->tracks) m->n_tracks = n_tracks;
+  if (m->tracks && m->track_of && m->slot && m->rest && m->axis_moves && m->still && m->norm && m->part_error) return m;
   cprox_motion_free(m);
   return NULL;
 }
 
+/* A motion of one track. */
+static cprox_motion *allocate_one(const motion_source *s, size_t n_segments, size_t degree) {
+  cprox_motion *m = motion_allocate(s, 1);
+  if (!m) return NULL;
+  if (motion_allocate_track(m->tracks, n_segments, s->n, degree)) {
+    m->times = m->tracks->times, m->n_segments = n_segments;
+    return m;
+  }
+  cprox_motion_free(m);
+  return NULL;
+}
+
+static void free_track(motion_track *t) {
+  free(t->times);
+  free(t->degree);
+  free(t->coefficients);
+  free(t->error);
+  free(t->moving);
+  free(t->arc_axes);
+  free(t->arcs);
+  motion_spans_free(&t->spans);
+}
+
 void cprox_motion_free(cprox_motion *motion) {
   if (!motion) return;
-  free(motion->times);
-  free(motion->degree);
-  free(motion->coefficients);
-  free(motion->error);
-  free(motion->moving);
+  if (motion->n_tracks == 0 || motion->times != motion->tracks->times) free(motion->times);
+  for (size_t i = 0; i < motion->n_tracks; i++) free_track(&motion->tracks[i]);
+  free(motion->tracks);
+  free(motion->track_of);
   free(motion->slot);
   free(motion->rest);
   free(motion->axis_moves);
   free(motion->still);
   free(motion->norm);
   free(motion->part_error);
-  free(motion->arcs);
   free(motion->arc_of);
   free(motion->sagitta);
-  motion_spans_free(&motion->spans);
   motion_given_free(&motion->given);
   free(motion);
 }
@@ -151,17 +177,19 @@ static double largest_value(const cprox_motion *m, int32_t variable, double *err
   *error = 0.0;
   const int32_t slot = m->slot[variable];
   if (slot < 0) return fabs(m->rest[variable]);
+  const motion_track *t = &m->tracks[m->track_of[variable]];
   double largest = 0.0;
-  for (size_t s = 0; s < m->n_segments; s++) {
-    const size_t at = s * m->n_moving + (size_t)slot;
-    for (size_t i = 0; i <= m->degree[s]; i++) largest = fmax(largest, fabs(m->coefficients[at * m->stride + i]));
-    *error = fmax(*error, m->error[at]);
+  for (size_t s = 0; s < t->n_segments; s++) {
+    const size_t at = s * t->n_moving + (size_t)slot - t->first_slot;
+    for (size_t i = 0; i <= t->degree[s]; i++) largest = fmax(largest, fabs(t->coefficients[at * t->stride + i]));
+    *error = fmax(*error, t->error[at]);
   }
   return largest;
 }
 
-/* Variables that stand still are taken out of the list. */
+/* Variables that stand still are taken out of the list of the one track. */
 static void find_moving(cprox_motion *m, const motion_source *s) {
+  motion_track *t = m->tracks;
   const size_t n = s->n;
   size_t kept = 0;
   for (size_t v = 0; v < s->robot->n_variables; v++) {
@@ -169,25 +197,25 @@ static void find_moving(cprox_motion *m, const motion_source *s) {
     m->rest[v] = s->rest ? s->rest[v] : 0.0;
   }
   for (size_t k = 0; k < n; k++) {
-    const double first = m->coefficients[k * m->stride];
+    const double first = t->coefficients[k * t->stride];
     bool moves = motion_moves_by_arc(m, s->variables[k]);
-    for (size_t segment = 0; segment < m->n_segments; segment++)
-      for (size_t i = 0; i <= m->degree[segment]; i++)
-        moves = moves || m->coefficients[(segment * n + k) * m->stride + i] != first;
+    for (size_t segment = 0; segment < t->n_segments; segment++)
+      for (size_t i = 0; i <= t->degree[segment]; i++)
+        moves = moves || t->coefficients[(segment * n + k) * t->stride + i] != first;
     m->rest[s->variables[k]] = first;
     if (!moves) continue;
     m->slot[s->variables[k]] = (int32_t)kept;
-    m->moving[kept++] = (int32_t)k;
+    t->moving[kept++] = (int32_t)k;
   }
   /* rows move towards the front only */
-  for (size_t segment = 0; segment < m->n_segments; segment++)
+  for (size_t segment = 0; segment < t->n_segments; segment++)
     for (size_t k = 0; k < kept; k++) {
-      const size_t from = segment * n + (size_t)m->moving[k], to = segment * kept + k;
-      memmove(m->coefficients + to * m->stride, m->coefficients + from * m->stride, m->stride * sizeof(double));
-      m->error[to] = m->error[from];
+      const size_t from = segment * n + (size_t)t->moving[k], to = segment * kept + k;
+      memmove(t->coefficients + to * t->stride, t->coefficients + from * t->stride, t->stride * sizeof(double));
+      t->error[to] = t->error[from];
     }
-  for (size_t k = 0; k < kept; k++) m->moving[k] = s->variables[m->moving[k]];
-  m->n_moving = kept;
+  for (size_t k = 0; k < kept; k++) t->moving[k] = s->variables[t->moving[k]];
+  t->n_moving = kept;
 }
 
 /* The least norm of a quaternion over the interval, from below; 0 where it cannot be told from 0. */
@@ -215,27 +243,28 @@ static double least_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t degree, doub
 }
 
 static double least_norm_of(const cprox_motion *m, int32_t variable) {
+  const motion_track *t = &m->tracks[m->track_of[variable]];
   double least = INFINITY;
-  for (size_t s = 0; s < m->n_segments; s++) {
+  for (size_t s = 0; s < t->n_segments; s++) {
     double c[4][MOTION_MAX_DEGREE + 1] = {{0}}, error = 0.0;
     for (int k = 0; k < 4; k++) {
       const int32_t slot = m->slot[variable + k];
-      const size_t at = s * m->n_moving + (size_t)(slot < 0 ? 0 : slot);
-      for (size_t i = 0; i <= m->degree[s]; i++)
-        c[k][i] = slot < 0 ? m->rest[variable + k] : m->coefficients[at * m->stride + i];
-      error += slot < 0 ? 0.0 : m->error[at];
+      const size_t at = s * t->n_moving + (slot < 0 ? 0 : (size_t)slot - t->first_slot);
+      for (size_t i = 0; i <= t->degree[s]; i++)
+        c[k][i] = slot < 0 ? m->rest[variable + k] : t->coefficients[at * t->stride + i];
+      error += slot < 0 ? 0.0 : t->error[at];
     }
-    least = fmin(least, least_norm(c, m->degree[s], error, 12));
+    least = fmin(least, least_norm(c, t->degree[s], error, 12));
   }
   return least;
 }
 
 /* Of joints that turn by arcs: the axes that shift with a screw, and how far all are from straight lines. */
 static void finish_arcs(cprox_motion *m) {
-  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++) {
+  for (size_t i = 0; i < m->robot->n_axes && m->arc_of; i++) {
     if (m->arc_of[i] < 0 || m->robot->axes[i].kind != AXIS_BALL) continue;
-    const motion_arc *arcs = m->arcs + (size_t)m->arc_of[i] * m->n_segments;
-    for (size_t k = 0; k < m->n_segments; k++) {
+    const motion_arc *arcs = motion_arc_at(m, i, 0);
+    for (size_t k = 0; k < motion_track_of(m, i)->n_segments; k++) {
       double position;
       const double turned = arc_sagitta(&arcs[k], &position);
       m->sagitta[i] = fmax(m->sagitta[i], turned);
@@ -272,7 +301,7 @@ static double value_error(const cprox_motion *m, int32_t i, double *value) {
   double largest = 0.0, error, sum = 0.0;
   for (int32_t k = 0; k < count; k++) largest = largest_value(m, axis->variable + k, &error), sum += error;
   *value = fabs(axis->multiplier) * largest + fabs(axis->offset);
-  if (m->arcs) *value += m->sagitta[i];
+  if (m->arc_of) *value += m->sagitta[i];
   if (axis->kind == AXIS_BALL) return 2.0 * sum / m->norm[i];
   return fabs(axis->multiplier) * sum + 2.0 * ROUND_U * (*value + fabs(axis->offset));
 }
@@ -328,12 +357,18 @@ static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
 }
 
 cprox_status motion_finish(cprox_motion *m, const motion_source *s, cprox_motion **motion) {
-  find_moving(m, s);
+  if (m->kind != CPROX_MOTION_JOINED) find_moving(m, s);
   finish_arcs(m);
   cprox_status status = finish_axes(m, s);
   if (status == CPROX_OK) status = finish_parts(m, s->workspace);
-  if (status == CPROX_OK && !motion_spans_make(m))
-    status = workspace_fail(s->workspace, CPROX_MEMORY, "no memory for the spans of %zu segments", m->n_segments);
+  for (size_t i = 0; i < m->n_tracks && status == CPROX_OK; i++) {
+    if (!motion_spans_make(&m->tracks[i]))
+      status = workspace_fail(s->workspace, CPROX_MEMORY, "no memory for the spans of %zu segments",
+                              m->tracks[i].n_segments);
+    else if (workspace_stops(s->workspace))
+      status = workspace_fail(s->workspace, CPROX_INVALID, "stopped while a motion of %zu segments was being made",
+                              m->n_segments);
+  }
   if (status != CPROX_OK) {
     cprox_motion_free(m);
     return status;
@@ -391,23 +426,24 @@ static cprox_status create_waypoints(const motion_source *s, cprox_motion **moti
     status = check_waypoint(&points[i], i, n, interpolation, workspace);
   if (status != CPROX_OK) return status;
 
-  cprox_motion *m = motion_allocate(s, n_points - 1, 5);
+  cprox_motion *m = allocate_one(s, n_points - 1, 5);
   if (m && !motion_keep_waypoints(&m->given, s->description)) {
     cprox_motion_free(m);
     m = NULL;
   }
   if (!m) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu waypoints", n_points);
-  m->times[0] = points[0].time;
+  motion_track *t = m->tracks;
+  t->times[0] = points[0].time;
   for (size_t i = 0; i + 1 < n_points; i++) {
     const cprox_waypoint *p = &points[i];
-    m->times[i + 1] = p[1].time;
-    m->degree[i] = (uint8_t)degree_between(&p[0], &p[1], interpolation);
+    t->times[i + 1] = p[1].time;
+    t->degree[i] = (uint8_t)degree_between(&p[0], &p[1], interpolation);
     for (size_t k = 0; k < n; k++) {
       const size_t at = i * n + k;
       const double size =
-          hermite(&p[0], &p[1], k, m->degree[i], p[1].time - p[0].time, m->coefficients + at * m->stride);
-      m->error[at] =
-          motion_cutting_error(m->degree[i], size); /* the sums of hermite() are off by 8 u of their size at most */
+          hermite(&p[0], &p[1], k, t->degree[i], p[1].time - p[0].time, t->coefficients + at * t->stride);
+      t->error[at] =
+          motion_cutting_error(t->degree[i], size); /* the sums of hermite() are off by 8 u of their size at most */
     }
   }
   if (s->description->turning != CPROX_TURNING_POLYNOMIAL) {
@@ -444,22 +480,23 @@ static cprox_status create_bspline(const motion_source *s, cprox_motion **motion
 
   size_t n_segments = 0;
   for (size_t r = degree; r < n_control; r++) n_segments += knots[r] < knots[r + 1];
-  cprox_motion *m = motion_allocate(s, n_segments, degree);
+  cprox_motion *m = allocate_one(s, n_segments, degree);
   if (m && !motion_keep_spline(&m->given, s->description)) {
     cprox_motion_free(m);
     m = NULL;
   }
   if (!m) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu spans", n_segments);
-  m->times[0] = knots[degree];
+  motion_track *t = m->tracks;
+  t->times[0] = knots[degree];
   size_t i = 0;
   for (size_t r = degree; r < n_control; r++) {
     if (!(knots[r] < knots[r + 1])) continue;
-    m->times[i + 1] = knots[r + 1];
-    m->degree[i] = (uint8_t)degree;
+    t->times[i + 1] = knots[r + 1];
+    t->degree[i] = (uint8_t)degree;
     for (size_t k = 0; k < n; k++) {
       const size_t at = i * n + k;
-      const double size = convert_span(control + k, n, knots, degree, r, m->coefficients + at * m->stride);
-      m->error[at] = motion_cutting_error(degree, size) + ROUND_UP * ROUND_U * 5.0 * (double)degree * size;
+      const double size = convert_span(control + k, n, knots, degree, r, t->coefficients + at * t->stride);
+      t->error[at] = motion_cutting_error(degree, size) + ROUND_UP * ROUND_U * 5.0 * (double)degree * size;
     }
     i++;
   }
@@ -483,7 +520,7 @@ static cprox_status create_state(const motion_source *s, cprox_motion **motion) 
   const cprox_waypoint ends[2] = {{.time = 0.0, .positions = &NOTHING}, {.time = 1.0, .positions = &NOTHING}};
   const cprox_motion_description given = {
       .waypoints = ends, .n_waypoints = 2, .interpolation = CPROX_INTERPOLATION_LINEAR};
-  cprox_motion *m = motion_allocate(s, 1, 1);
+  cprox_motion *m = allocate_one(s, 1, 1);
   if (m && !motion_keep_waypoints(&m->given, &given)) {
     cprox_motion_free(m);
     m = NULL;
@@ -491,8 +528,8 @@ static cprox_status create_state(const motion_source *s, cprox_motion **motion) 
   if (!m)
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a state of %zu variables", s->robot->n_variables);
   m->is_state = true;
-  m->times[1] = 1.0;
-  m->degree[0] = 1;
+  m->tracks->times[1] = 1.0;
+  m->tracks->degree[0] = 1;
   return motion_finish(m, s, motion);
 }
 

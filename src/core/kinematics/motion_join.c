@@ -22,6 +22,10 @@ static double end_of(const cprox_joined_motion *one) {
   return on_clock(one, one->motion->n_segments);
 }
 
+static cprox_status no_memory(size_t n, cprox_workspace *workspace) {
+  return workspace_fail(workspace, CPROX_MEMORY, "no memory to join %zu motions", n);
+}
+
 /* ---- checks ---- */
 
 static cprox_status check_times(const cprox_joined_motion *one, size_t i, cprox_workspace *workspace) {
@@ -36,21 +40,33 @@ static cprox_status check_times(const cprox_joined_motion *one, size_t i, cprox_
   return CPROX_OK;
 }
 
+static int compare_begins(const void *a, const void *b) {
+  const double x = begin_of(*(const cprox_joined_motion *const *)a),
+               y = begin_of(*(const cprox_joined_motion *const *)b);
+  return (x > y) - (x < y);
+}
+
 /* Nothing may happen only after everything else has ended. */
 static cprox_status check_overlap(const cprox_joined_motion *joined, size_t n, cprox_workspace *workspace) {
-  for (size_t i = 0; i < n; i++) {
-    if (joined[i].motion->is_state) continue;
-    const double begin = begin_of(&joined[i]);
-    double before = -INFINITY; /* the last end of those that begin earlier */
-    for (size_t k = 0; k < n; k++)
-      if (!joined[k].motion->is_state && begin_of(&joined[k]) < begin) before = fmax(before, end_of(&joined[k]));
-    if (before > -INFINITY && before < begin)
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "the clocks do not overlap: motion %zu begins at %.15g s, %.3g s after all earlier ones "
-                            "have ended",
-                            i, begin, begin - before);
+  const cprox_joined_motion **by_begin = malloc((n + 1) * sizeof *by_begin);
+  if (!by_begin) return no_memory(n, workspace);
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++)
+    if (!joined[i].motion->is_state) by_begin[count++] = &joined[i];
+  qsort(by_begin, count, sizeof *by_begin, compare_begins);
+  cprox_status status = CPROX_OK;
+  double before = INFINITY; /* the last end of those that begin earlier */
+  for (size_t i = 0; i < count && status == CPROX_OK; i++) {
+    const double begin = begin_of(by_begin[i]), end = end_of(by_begin[i]);
+    if (before < begin)
+      status = workspace_fail(workspace, CPROX_INVALID,
+                              "the clocks do not overlap: motion %zu begins at %.15g s, %.3g s after all earlier ones "
+                              "have ended",
+                              (size_t)(by_begin[i] - joined), begin, begin - before);
+    before = i == 0 ? end : fmax(before, end);
   }
-  return CPROX_OK;
+  free(by_begin);
+  return status;
 }
 
 static cprox_status check_joined(const motion_source *s) {
@@ -98,25 +114,7 @@ static double *unite_times(const cprox_joined_motion *joined, size_t n, size_t *
   return times;
 }
 
-/* ---- coefficients ---- */
-
-/* What one motion does over a segment of all. */
-typedef struct joined_piece {
-  size_t segment;
-  double a, b; /* of it */
-  bool stands; /* at a, which is 0 or 1 */
-} joined_piece;
-
-/* *segment: the one before, or 0; times come in their order. */
-static joined_piece piece_over(const cprox_joined_motion *one, double t0, double t1, size_t *segment) {
-  const size_t last = one->motion->n_segments;
-  if (one->motion->is_state || t1 <= begin_of(one)) return (joined_piece){.stands = true};
-  if (t0 >= end_of(one)) return (joined_piece){.segment = last - 1, .a = 1.0, .b = 1.0, .stands = true};
-  while (*segment + 1 < last && on_clock(one, *segment + 1) <= t0) (*segment)++;
-  const double from = on_clock(one, *segment), to = on_clock(one, *segment + 1);
-  return (joined_piece){
-      .segment = *segment, .a = (t0 - from) / (to - from), .b = t1 >= to ? 1.0 : (t1 - from) / (to - from)};
-}
+/* ---- tracks ---- */
 
 static double largest_of(const double *c, size_t degree) {
   double largest = 0.0;
@@ -124,98 +122,91 @@ static double largest_of(const double *c, size_t degree) {
   return largest;
 }
 
-/* The part [a, b], in place. */
-static void cut(double *c, size_t degree, double a, double b) {
-  if (a > 0.0)
-    for (size_t r = 1; r <= degree; r++)
-      for (size_t i = 0; i + r <= degree; i++) c[i] = (1.0 - a) * c[i] + a * c[i + 1];
-  if (b >= 1.0) return;
-  const double s = (b - a) / (1.0 - a);
-  for (size_t r = 1; r <= degree; r++)
-    for (size_t i = degree; i >= r; i--) c[i] = (1.0 - s) * c[i - 1] + s * c[i];
-}
-
-static void elevate(double *c, size_t degree, size_t to) {
-  for (size_t n = degree; n < to; n++) {
-    c[n + 1] = c[n];
-    for (size_t i = n; i > 0; i--) {
-      const double s = (double)i / (double)(n + 1);
-      c[i] = s * c[i - 1] + (1.0 - s) * c[i];
-    }
+/* A segment over which everything stands as it does where the track begins, or ends. */
+static void stand(motion_track *t, size_t segment, const motion_track *from, bool at_end) {
+  const size_t source = at_end ? from->n_segments - 1 : 0, degree = from->degree[source];
+  t->degree[segment] = 1;
+  for (size_t k = 0; k < t->n_moving; k++) {
+    const size_t at = segment * t->n_moving + k, of = source * from->n_moving + k;
+    const double value = from->coefficients[of * from->stride + (at_end ? degree : 0)];
+    t->coefficients[at * t->stride] = t->coefficients[at * t->stride + 1] = value;
+    t->error[at] = from->error[of] + motion_cutting_error(1, fabs(value));
+  }
+  for (size_t j = 0; j < t->n_arcs; j++) {
+    motion_arc *arc = &t->arcs[j * t->n_segments + segment];
+    *arc = from->arcs[j * from->n_segments + source];
+    arc->from = arc->to = at_end ? arc->to : arc->from;
   }
 }
 
-/* All variables of one motion over a segment of all. Each elevation rounds by 4 u at most; the places that a and b
- * stand for are off by as much as those of two neighbouring nodes. */
-static void copy_piece(const cprox_motion *from, const joined_piece *piece, size_t degree, size_t stride, double *c,
-                       double *error) {
-  const size_t own = from->degree[piece->segment];
-  for (size_t k = 0; k < from->n_moving; k++, c += stride) {
-    const size_t at = piece->segment * from->n_moving + k;
-    memcpy(c, from->coefficients + at * from->stride, (own + 1) * sizeof *c);
-    const double largest = largest_of(c, own);
-    error[k] = from->error[at] + motion_cutting_error(own, largest) + motion_cutting_error(degree, largest);
-    if (piece->stands) {
-      const double still = piece->a > 0.0 ? c[own] : c[0];
-      for (size_t i = 0; i <= degree; i++) c[i] = still;
-      continue;
+/* The places of a track that places on the clock stand for are off by a few roundings, which costs as much as cutting
+ * there does. */
+static void copy_segments(motion_track *t, size_t first, const motion_track *from) {
+  const size_t n = t->n_moving;
+  for (size_t i = 0; i < from->n_segments; i++) {
+    t->degree[first + i] = from->degree[i];
+    for (size_t k = 0; k < n; k++) {
+      const double *c = from->coefficients + (i * n + k) * from->stride;
+      const size_t at = (first + i) * n + k;
+      memcpy(t->coefficients + at * t->stride, c, (from->degree[i] + 1u) * sizeof *c);
+      t->error[at] = from->error[i * n + k] + motion_cutting_error(from->degree[i], largest_of(c, from->degree[i]));
     }
-    cut(c, own, piece->a, piece->b);
-    elevate(c, own, degree);
-    error[k] += ROUND_UP * ROUND_U * 4.0 * (double)(degree - own) * largest;
+    for (size_t j = 0; j < t->n_arcs; j++)
+      t->arcs[j * t->n_segments + first + i] = from->arcs[j * from->n_segments + i];
   }
+}
+
+/* One track over the whole clock: before it begins and after it has ended everything of it stands. `variable` and
+ * `axis` are the first ones of its robot. */
+static bool copy_track(const cprox_motion *m, const motion_track *from, double start, size_t variable, size_t axis,
+                       motion_track *t) {
+  const double begin = m->times[0], end = m->times[m->n_segments];
+  const size_t before = from->times[0] + start > begin, after = from->times[from->n_segments] + start < end;
+  const size_t n = from->n_segments + before + after;
+  if (!motion_allocate_track(t, n, from->n_moving, from->stride - 1)) return false;
+  if (from->n_arcs > 0 && !motion_allocate_track_arcs(t, from->n_arcs)) return false;
+  for (size_t k = 0; k < from->n_moving; k++) t->moving[k] = (int32_t)variable + from->moving[k];
+  for (size_t k = 0; k < from->n_arcs; k++) t->arc_axes[k] = (int32_t)axis + from->arc_axes[k];
+  t->times[0] = begin, t->times[n] = end;
+  for (size_t i = 0; i <= from->n_segments; i++) t->times[before + i] = from->times[i] + start;
+  if (before) stand(t, 0, from, false);
+  copy_segments(t, before, from);
+  if (after) stand(t, n - 1, from, true);
+  return true;
 }
 
 /* ---- the whole ---- */
 
-static void fill(cprox_motion *m, const cprox_joined_motion *joined, size_t n, size_t *segments) {
-  for (size_t i = 0; i < m->n_segments; i++) {
-    size_t degree = 1;
-    for (int pass = 0; pass < 2; pass++) {
-      size_t first = 0;
-      for (size_t k = 0; k < n; k++) {
-        const cprox_motion *from = joined[k].motion;
-        const joined_piece piece = piece_over(&joined[k], m->times[i], m->times[i + 1], &segments[k]);
-        const size_t own = from->degree[piece.segment], at = i * m->n_moving + first;
-        if (pass == 0 && !piece.stands) degree = own > degree ? own : degree;
-        if (pass == 1) copy_piece(from, &piece, degree, m->stride, m->coefficients + at * m->stride, m->error + at);
-        first += from->n_moving;
-      }
-    }
-    m->degree[i] = (uint8_t)degree;
+/* What is known of the variables and axes of one motion, whose robot's begin with these; its first track is `track`. */
+static void copy_robot(cprox_motion *m, const cprox_motion *from, size_t variable, size_t axis, size_t track) {
+  const cprox_robot *robot = from->robot;
+  memcpy(m->rest + variable, from->rest, robot->n_variables * sizeof *m->rest);
+  for (size_t k = 0; k < robot->n_variables; k++) {
+    m->slot[variable + k] = -1;
+    if (!from->is_state) m->track_of[variable + k] = (int32_t)track + from->track_of[k];
   }
+  for (size_t i = 0; i < robot->n_axes && from->arc_of; i++)
+    if (from->robot->axes[i].kind == AXIS_BALL) m->arc_of[axis + i] = from->arc_of[i];
 }
 
-/* Joints that turn by arcs: over each segment of all, a part of one of their own. */
-static void fill_arcs(cprox_motion *m, const cprox_joined_motion *joined, size_t n, size_t *segments) {
-  size_t axes = 0, arcs = 0;
-  for (size_t k = 0; k < n; k++) {
-    const cprox_motion *from = joined[k].motion;
-    for (size_t i = 0; i < from->robot->n_axes && from->arcs; i++)
-      if (from->arc_of[i] >= 0) m->arc_of[axes + i] = (int32_t)arcs + from->arc_of[i];
-    segments[k] = 0;
-    for (size_t i = 0; i < m->n_segments && from->arcs && m->arcs; i++) {
-      const joined_piece piece = piece_over(&joined[k], m->times[i], m->times[i + 1], &segments[k]);
-      for (size_t j = 0; j < from->n_arcs; j++) {
-        motion_arc *arc = &m->arcs[(arcs + j) * m->n_segments + i];
-        *arc = from->arcs[j * from->n_segments + piece.segment];
-        const double begin = arc->from, part = arc->to - begin;
-        arc->from = begin + part * piece.a, arc->to = begin + part * piece.b;
-      }
+static bool copy_motions(cprox_motion *m, const motion_source *s) {
+  size_t variable = 0, axis = 0, track = 0, slot = 0;
+  for (size_t i = 0; i < s->description->n_joined; i++) {
+    const cprox_joined_motion *one = &s->description->joined[i];
+    const cprox_motion *from = one->motion;
+    copy_robot(m, from, variable, axis, track);
+    for (size_t k = 0; k < from->n_tracks && !from->is_state; k++, track++) {
+      motion_track *t = &m->tracks[track];
+      if (workspace_stops(s->workspace) || !copy_track(m, &from->tracks[k], one->start, variable, axis, t))
+        return false;
+      t->by_time = m->n_tracks > 1;
+      t->first_slot = slot;
+      for (size_t j = 0; j < t->n_moving; j++) m->slot[t->moving[j]] = (int32_t)(slot + j);
+      slot += (t->n_moving + MOTION_LANES - 1) / MOTION_LANES * MOTION_LANES;
     }
-    axes += from->robot->n_axes, arcs += from->n_arcs;
+    variable += from->robot->n_variables, axis += from->robot->n_axes;
   }
-}
-
-/* The variables that move, in the joined robot's numbers, and the rest values of all. */
-static void number_variables(const cprox_joined_motion *joined, size_t n, int32_t *variables, double *rest) {
-  size_t first = 0, count = 0;
-  for (size_t i = 0; i < n; i++) {
-    const cprox_motion *from = joined[i].motion;
-    for (size_t k = 0; k < from->n_moving; k++) variables[count++] = (int32_t)first + from->moving[k];
-    memcpy(rest + first, from->rest, from->robot->n_variables * sizeof *rest);
-    first += from->robot->n_variables;
-  }
+  return true;
 }
 
 cprox_status motion_create_joined(const motion_source *s, cprox_motion **motion) {
@@ -223,35 +214,19 @@ cprox_status motion_create_joined(const motion_source *s, cprox_motion **motion)
   if (status != CPROX_OK) return status;
   const cprox_joined_motion *joined = s->description->joined;
   const size_t n = s->description->n_joined;
-  size_t moving = 0, degree = 1, count = 0, arcs = 0;
+  size_t tracks = 0, arcs = 0, count = 0;
   for (size_t i = 0; i < n; i++) {
     const cprox_motion *from = joined[i].motion;
-    moving += from->n_moving, arcs += from->n_arcs;
-    for (size_t k = 0; k < from->n_segments; k++) degree = from->degree[k] > degree ? from->degree[k] : degree;
+    tracks += from->is_state ? 0 : from->n_tracks;
+    arcs += from->arc_of != NULL;
   }
-  int32_t *variables = calloc(moving + 1, sizeof *variables);
-  double *rest = calloc(s->robot->n_variables + 1, sizeof *rest), *times = unite_times(joined, n, &count);
-  size_t *segments = calloc(n + 1, sizeof *segments);
-  motion_source all = *s;
-  all.variables = variables, all.n = moving, all.rest = rest;
-  cprox_motion *m = variables && rest && times && segments ? motion_allocate(&all, count - 1, degree) : NULL;
-  cprox_status made;
-  if (m && arcs > 0 && !motion_allocate_arcs(m, arcs)) {
-    cprox_motion_free(m);
-    m = NULL;
-  }
-  if (m) {
-    number_variables(joined, n, variables, rest);
-    memcpy(m->times, times, count * sizeof *times);
-    fill(m, joined, n, segments);
-    if (arcs > 0) fill_arcs(m, joined, n, segments);
-    made = motion_finish(m, &all, motion);
-  } else {
-    made = workspace_fail(s->workspace, CPROX_MEMORY, "no memory to join %zu motions", n);
-  }
-  free(variables);
-  free(rest);
-  free(times);
-  free(segments);
-  return made;
+  double *times = unite_times(joined, n, &count);
+  cprox_motion *m = times ? motion_allocate(s, tracks) : NULL;
+  if (!m) free(times);
+  if (m) m->times = times, m->n_segments = count - 1;
+  if (m && (arcs == 0 || motion_allocate_arcs(m)) && copy_motions(m, s)) return motion_finish(m, s, motion);
+  cprox_motion_free(m);
+  if (workspace_has_stopped(s->workspace))
+    return workspace_fail(s->workspace, CPROX_INVALID, "stopped while %zu motions were being joined", n);
+  return no_memory(n, s->workspace);
 }

@@ -13,15 +13,20 @@ static const double NEAREST_HALF_TURN = 1e-9;
 /* Of what is computed of a quaternion, and of a position per unit of length (doc/robot-bounds.md, Poses). */
 #define ARC_ERROR (64.0 * ROUND_U)
 
-bool motion_allocate_arcs(cprox_motion *m, size_t n) {
+bool motion_allocate_arcs(cprox_motion *m) {
   const size_t n_axes = m->robot->n_axes;
-  m->n_arcs = n;
-  m->arcs = calloc(n * m->n_segments + 1, sizeof *m->arcs);
   m->arc_of = calloc(n_axes + 1, sizeof *m->arc_of);
   m->sagitta = calloc(n_axes + 1, sizeof *m->sagitta);
-  if (!m->arcs || !m->arc_of || !m->sagitta) return false;
+  if (!m->arc_of || !m->sagitta) return false;
   for (size_t i = 0; i < n_axes; i++) m->arc_of[i] = -1;
   return true;
+}
+
+bool motion_allocate_track_arcs(motion_track *t, size_t n) {
+  t->n_arcs = n;
+  t->arc_axes = calloc(n + 1, sizeof *t->arc_axes);
+  t->arcs = calloc(n * t->n_segments + 1, sizeof *t->arcs);
+  return t->arc_axes && t->arcs;
 }
 
 /* ---- which joints ---- */
@@ -70,28 +75,28 @@ static cprox_status unit_quaternion(const motion_source *s, size_t point, const 
 }
 
 /* A straight line in the place of the polynomial. */
-static void straighten(cprox_motion *m, size_t segment, size_t column, double from, double to, double error) {
-  const size_t at = segment * m->n_moving + column, degree = m->degree[segment];
-  double *c = m->coefficients + at * m->stride;
+static void straighten(motion_track *t, size_t segment, size_t column, double from, double to, double error) {
+  const size_t at = segment * t->n_moving + column, degree = t->degree[segment];
+  double *c = t->coefficients + at * t->stride;
   for (size_t i = 0; i <= degree; i++) c[i] = from + (double)i / (double)degree * (to - from);
   c[degree] = to;
-  m->error[at] = error;
+  t->error[at] = error;
 }
 
-static cprox_status turn_joint(const motion_source *s, cprox_motion *m, const int32_t columns[7], motion_arc *arcs) {
+static cprox_status turn_joint(const motion_source *s, motion_track *t, const int32_t columns[7], motion_arc *arcs) {
   const bool screw = s->description->turning == CPROX_TURNING_SCREW;
   const cprox_waypoint *points = s->description->waypoints;
   double q[2][4];
   cprox_status status = unit_quaternion(s, 0, columns, NULL, q[0]);
-  for (size_t i = 0; i < m->n_segments && status == CPROX_OK; i++) {
+  for (size_t i = 0; i < t->n_segments && status == CPROX_OK; i++) {
     status = unit_quaternion(s, i + 1, columns, q[0], q[1]);
     if (status != CPROX_OK) break;
     const double *a = points[i].positions, *b = points[i + 1].positions;
     double size = 0.0;
     for (int k = 0; k < 3 && screw; k++) size += fabs(a[columns[k]]) + 2.0 * fabs(b[columns[k]] - a[columns[k]]);
     for (int k = 0; k < 3 && screw; k++)
-      straighten(m, i, (size_t)columns[k], a[columns[k]], b[columns[k]], ARC_ERROR * size);
-    for (int k = 0; k < 4; k++) straighten(m, i, (size_t)columns[3 + k], q[0][k], q[1][k], ARC_ERROR);
+      straighten(t, i, (size_t)columns[k], a[columns[k]], b[columns[k]], ARC_ERROR * size);
+    for (int k = 0; k < 4; k++) straighten(t, i, (size_t)columns[3 + k], q[0][k], q[1][k], ARC_ERROR);
     arcs[i] = screw ? arc_screw(q[0], q[1], vec(a[columns[0]], a[columns[1]], a[columns[2]]),
                                 vec(b[columns[0]], b[columns[1]], b[columns[2]]))
                     : arc_between(q[0], q[1]);
@@ -102,11 +107,12 @@ static cprox_status turn_joint(const motion_source *s, cprox_motion *m, const in
 
 cprox_status motion_turn_by_arcs(const motion_source *s, cprox_motion *m) {
   const robot_axis *axes = s->robot->axes;
+  motion_track *t = m->tracks;
   size_t n = 0;
   for (size_t i = 0; i < s->robot->n_axes; i++) n += axes[i].kind == AXIS_BALL;
-  if (!motion_allocate_arcs(m, n))
+  if (!motion_allocate_arcs(m) || !motion_allocate_track_arcs(t, n))
     return workspace_fail(s->workspace, CPROX_MEMORY, "no memory for the arcs of %zu joints", n);
-  m->n_arcs = 0;
+  t->n_arcs = 0;
   for (size_t i = 0; i < s->robot->n_axes; i++) {
     if (axes[i].kind != AXIS_BALL) continue;
     int32_t columns[7];
@@ -115,8 +121,9 @@ cprox_status motion_turn_by_arcs(const motion_source *s, cprox_motion *m) {
     find_columns(s, first, columns);
     cprox_status status = check_columns(s, first, columns, &turns);
     if (status == CPROX_OK && turns) {
-      m->arc_of[i] = (int32_t)m->n_arcs++;
-      status = turn_joint(s, m, columns, m->arcs + (size_t)m->arc_of[i] * m->n_segments);
+      t->arc_axes[t->n_arcs] = (int32_t)i;
+      m->arc_of[i] = (int32_t)t->n_arcs++;
+      status = turn_joint(s, t, columns, t->arcs + (size_t)m->arc_of[i] * t->n_segments);
     }
     if (status != CPROX_OK) return status;
   }
@@ -126,29 +133,23 @@ cprox_status motion_turn_by_arcs(const motion_source *s, cprox_motion *m) {
 /* ---- what follows from the arcs ---- */
 
 bool motion_moves_by_arc(const cprox_motion *m, int32_t variable) {
-  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++) {
+  for (size_t i = 0; i < m->robot->n_axes && m->arc_of; i++) {
     if (m->arc_of[i] < 0 || m->robot->axes[i].kind != AXIS_BALL) continue;
-    const motion_arc *arcs = m->arcs + (size_t)m->arc_of[i] * m->n_segments;
+    const motion_arc *arcs = motion_arc_at(m, i, 0);
     const int32_t last = m->robot->axes[i].variable + 3, first = last - (arcs[0].screw ? 6 : 3);
     if (variable < first || variable > last) continue;
-    for (size_t k = 0; k < m->n_segments; k++)
+    for (size_t k = 0; k < motion_track_of(m, i)->n_segments; k++)
       if (arc_moves(&arcs[k])) return true;
   }
   return false;
 }
 
 void motion_arc_values(const cprox_motion *m, size_t axis, size_t segment, double u, double values[7]) {
-  const motion_arc *arc = &m->arcs[(size_t)m->arc_of[axis] * m->n_segments + segment];
+  const motion_arc *arc = motion_arc_at(m, axis, segment);
   const double s = arc->from + (arc->to - arc->from) * u;
   arc_orientation(arc, s, values + 3);
   if (!arc->screw) return;
   vec3 p[3];
   arc_position(arc, s, p);
   values[0] = p[0].x, values[1] = p[0].y, values[2] = p[0].z;
-}
-
-void motion_place_arcs(const cprox_motion *m, size_t segment, double u, double *values) {
-  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++)
-    if (m->arc_of[i] >= 0 && m->robot->axes[i].kind == AXIS_BALL && m->axis_moves[i])
-      motion_arc_values(m, i, segment, u, values + m->robot->axes[i].variable - 3);
 }

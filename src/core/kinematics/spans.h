@@ -9,6 +9,17 @@
 #include <stddef.h>
 
 struct cprox_motion;
+struct motion_track;
+
+/* From u = a of segment `first` to u = b of segment last - 1: of a motion, or of one of its tracks. */
+typedef struct motion_interval {
+  double a, b;
+  size_t first, last;
+} motion_interval;
+
+static inline bool motion_is_span(const motion_interval *over) {
+  return over->first + 1 < over->last;
+}
 
 enum { SPAN_MOST_LEVELS = 48 };
 
@@ -20,21 +31,22 @@ typedef struct motion_spans {
   double *error;                  /* [moving variable]: of the coefficients, the largest of all segments */
 } motion_spans;
 
-/* Linear in time and memory. False where memory is out. */
-bool motion_spans_make(struct cprox_motion *motion);
+/* Of a track whose segments are known. Linear in time and memory. False where memory is out. */
+bool motion_spans_make(struct motion_track *track);
 void motion_spans_free(motion_spans *spans);
 
 /* Where a span has its centre, and what it looks like. */
 typedef struct span_centre {
   size_t segment;
   double u;
-  bool bent; /* it strays from its chord by more than a small part of the chord's length: halves tell more */
+  double stray, chord; /* so far, at most, a variable strays from its chord; the length of the longest chord */
+  bool bent;           /* it strays by more than a small part of the chord's length: halves tell more */
 } span_centre;
 
-/* The rows of motion_fill_rows() over a span, from u = a of segment `first` to u = b of segment last - 1, which are at
- * least two. The values are those of the motion at the centre; the derivatives are those of a straight line through
- * it, which the motion follows at some pace, within MOTION_STRAY. */
-span_centre motion_fill_span(const struct cprox_motion *motion, size_t first, double a, size_t last, double b,
-                             double *rows);
+/* The rows of motion_fill_track() over a span of the track's own segments. The values are those of the motion at the
+ * centre; the derivatives are those of a straight line through it, which the motion follows at some pace, or by time,
+ * within MOTION_STRAY. */
+void motion_fill_span(const struct cprox_motion *motion, const struct motion_track *track, const motion_interval *over,
+                      const motion_interval *own, span_centre *centre, double *rows);
 
 #endif

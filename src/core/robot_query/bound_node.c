@@ -33,7 +33,7 @@ static const double ENOUGH_PIECES = 3.0;
  * none. */
 static vec3 known_normal(const robot_search *o, const robot_pair *pair) {
   if (!pair->normal_known) return vec(0, 0, 0);
-  const double here = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
+  const double here = robot_scene_place(&o->scene, o->scene.centre.segment, o->scene.centre.u);
   const double away = here >= pair->from && here <= pair->to ? here - pair->found : 0.0;
   const vec3 n = vec_axpy(pair->normal, away, pair->normal_rate);
   return vec_scale(1.0 / vec_norm(n), n);
@@ -76,7 +76,7 @@ static double plane_middle(const robot_search *o, const robot_pair *pair, const 
 /* What that normal says of the node. */
 static double bound_by_normal(robot_search *o, const robot_pair *pair, const robot_body *moving,
                               const robot_body *standing, const chain_motion *motion, double goal, double *slack) {
-  const double here = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
+  const double here = robot_scene_place(&o->scene, o->scene.centre.segment, o->scene.centre.u);
   const bool turning = here >= pair->from && here <= pair->to;
   const vec3 n = normal_in_middle(o, pair, standing);
   vec3 normal_rate = placement_turn(&standing->side.at, vec_scale(turning ? width_of_node(o) : 0.0, pair->normal_rate));
@@ -411,7 +411,7 @@ cprox_status robot_bound_node(robot_search *o, search_node *node) {
   for (size_t i = 0; i < o->n_next; i++) {
     list_entry entry = o->next[i];
     double slack = 0.0;
-    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !entry.bounded && !o->scene.bent) {
+    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !entry.bounded && !o->scene.centre.bent) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
       if (robot_is_answered(o)) {

@@ -28,8 +28,9 @@ static cprox_status refuse_callback(const robot_search *o) {
 
 /* What was measured may be the least so far, or a contact. */
 static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
-  const size_t segment = o->scene.segment;
-  const double u = o->scene.u, upper = fmax(gap->upper, 0.0), at = motion_time_below(o->scene.motion, segment, u);
+  const size_t segment = o->scene.centre.segment;
+  const double u = o->scene.centre.u, upper = fmax(gap->upper, 0.0),
+               at = motion_time_below(o->scene.motion, segment, u);
   const robot_sample sample = {.gap = *gap, .pair = index, .segment = segment, .u = u};
   if (is_better(o, upper, at)) {
     o->best = sample;
@@ -44,7 +45,7 @@ static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
 void robot_place_normal(const robot_search *o, robot_pair *pair, vec3 normal) {
   pair->normal = normal;
   pair->normal_rate = vec(0, 0, 0);
-  pair->found = pair->from = pair->to = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
+  pair->found = pair->from = pair->to = robot_scene_place(&o->scene, o->scene.centre.segment, o->scene.centre.u);
   pair->normal_known = true;
 }
 
@@ -241,10 +242,23 @@ size_t robot_knot_step(size_t segments) {
   return step;
 }
 
+/* How the motion of what is on a list looks over the node at hand. */
+static void look_at_list(robot_search *o, int32_t list) {
+  const size_t n = lists_count(&o->lists, list);
+  for (size_t k = 0; k < n; k++) {
+    const list_entry *entry = lists_at(&o->lists, list) + k;
+    if (entry->pair >= 0)
+      robot_scene_fill_pair(&o->scene, &o->scene.pairs[entry->pair]);
+    else
+      robot_scene_fill(&o->scene);
+  }
+}
+
 /* In the middle of a span, or where it is bent of its halves, `places` at most. */
 static cprox_status seed_span(robot_search *o, int32_t list, const motion_interval *over, size_t places) {
   robot_scene_enter_span(&o->scene, over);
-  if (!o->scene.bent || places < 2) return seed_here(o, list);
+  look_at_list(o, list);
+  if (!o->scene.centre.bent || places < 2) return seed_here(o, list);
   const cprox_motion *m = o->scene.motion;
   const double t0 = motion_time(m, over->first, over->a), t1 = motion_time(m, over->last - 1, over->b);
   const size_t knot =

@@ -72,7 +72,7 @@ static int split_span(const robot_search *o, const search_node *node, search_nod
   const motion_interval over = robot_interval(node);
   const size_t segments = over.last - over.first;
   const size_t wanted =
-      o->scene.bent || o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (size_t)ceil(o->pieces);
+      o->scene.centre.bent || o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (size_t)ceil(o->pieces);
   const double t0 = motion_time(m, over.first, over.a), t1 = motion_time(m, over.last - 1, over.b);
   const size_t step = robot_knot_step(2 * segments / wanted);
   size_t from = over.first;

@@ -199,19 +199,21 @@ bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last
   const size_t all_displacements = s->self && !s->groups && s->n_displacements * robot->n_parts <= MOST_DISPLACEMENTS
                                        ? s->n_displacements * robot->n_parts
                                        : 0;
-  const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts +
+  const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts + s->motion->n_tracks * sizeof *s->tracks +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
                        (motion_rows_size(s->motion) + all_displacements) * sizeof *s->rows;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
   s->parts = (part_state *)(void *)memory;
-  s->axes = (axis_state *)(void *)(s->parts + robot->n_parts + 1);
+  s->tracks = (track_state *)(void *)(s->parts + robot->n_parts + 1);
+  s->axes = (axis_state *)(void *)(s->tracks + s->motion->n_tracks);
   s->chain = (chain_axis *)(void *)(s->axes + n_axes);
   s->rows = (double *)(void *)(s->chain + n_axes);
   s->scratch = s->rows + motion_rows_size(s->motion);
   s->displacements = all_displacements ? s->scratch + n_axes : NULL;
   s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes + all_displacements);
   for (size_t i = 0; i < n_axes; i++) s->axis_placed[i] = 0;
+  for (size_t i = 0; i < s->motion->n_tracks; i++) s->tracks[i].filled = 0;
 
   const size_t listed = q->set ? q->set->n_unbounded : last - first;
   for (size_t i = 0; i < listed; i++)
@@ -256,23 +258,39 @@ int32_t robot_scene_open_pair(robot_scene *s, int32_t index, uint32_t *count) {
 /* ---- over a node ---- */
 
 void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
-  s->node++;
-  s->over = (motion_interval){.a = a, .b = b, .first = segment, .last = segment + 1};
-  s->segment = segment, s->u = 0.5 * (a + b);
-  s->bent = false;
-  motion_fill_rows(s->motion, segment, a, b, s->rows);
+  const motion_interval over = {.a = a, .b = b, .first = segment, .last = segment + 1};
+  robot_scene_enter_span(s, &over);
 }
 
+static void fill_track(robot_scene *s, size_t track) {
+  track_state *state = &s->tracks[track];
+  if (state->filled == s->node) return;
+  state->filled = s->node;
+  state->own = motion_track_interval(s->motion, &s->motion->tracks[track], &s->over);
+  motion_fill_track(s->motion, track, &s->over, &state->own, &s->centre, s->rows);
+}
+
+/* The one track says where the centre is. */
 void robot_scene_enter_span(robot_scene *s, const motion_interval *over) {
-  if (!motion_is_span(over)) {
-    robot_scene_enter(s, over->first, over->a, over->b);
-    return;
-  }
   s->node++;
   s->over = *over;
-  const span_centre centre = motion_fill_span(s->motion, over->first, over->a, over->last, over->b, s->rows);
-  s->segment = centre.segment, s->u = centre.u;
-  s->bent = centre.bent;
+  s->centre = motion_middle(s->motion, over);
+  if (s->motion->n_tracks == 1) fill_track(s, 0);
+}
+
+static void fill_part(robot_scene *s, int32_t part) {
+  const cprox_robot *robot = s->motion->robot;
+  for (int32_t axis = robot->parts[part].axis; axis >= 0; axis = robot->axes[axis].parent)
+    if (s->motion->axis_moves[axis]) fill_track(s, (size_t)s->motion->track_of[robot->axes[axis].variable]);
+}
+
+void robot_scene_fill_pair(robot_scene *s, const robot_pair *pair) {
+  fill_part(s, pair->moving);
+  if (pair->self) fill_part(s, pair->standing);
+}
+
+void robot_scene_fill(robot_scene *s) {
+  for (size_t k = 0; k < s->motion->n_tracks; k++) fill_track(s, k);
 }
 
 double robot_scene_place(const robot_scene *s, size_t segment, double u) {
@@ -287,7 +305,9 @@ static void place_axis(robot_scene *s, int32_t axis) {
   for (; axis >= 0 && s->axis_placed[axis] != s->node; axis = axes[axis].parent) s->chain[n++].axis = axis;
   while (n > 0) {
     const int32_t next = s->chain[--n].axis;
-    motion_find_axis(s->motion, &s->over, s->rows, (size_t)next, s->axes);
+    const size_t track = (size_t)s->motion->track_of[axes[next].variable];
+    if (s->motion->axis_moves[next]) fill_track(s, track);
+    motion_find_axis(s->motion, &s->tracks[track].own, s->rows, (size_t)next, s->axes);
     s->axis_placed[next] = s->node;
   }
 }

@@ -35,6 +35,12 @@ typedef struct part_state {
   chain_motion motion; /* seen from the world */
 } part_state;
 
+/* A track of the motion over the node at hand. */
+typedef struct track_state {
+  uint32_t filled;     /* the node for which its rows were found */
+  motion_interval own; /* of its own segments */
+} track_state;
+
 typedef struct robot_scene {
   const query *q;
   const cprox_motion *motion;
@@ -43,6 +49,7 @@ typedef struct robot_scene {
   part_state *parts;
   axis_state *axes;      /* those above the parts that were asked for on the present node, */
   uint32_t *axis_placed; /* which have its number here */
+  track_state *tracks;
   double *rows, *scratch;
   double *displacements; /* of each part over the node at hand, as motion_displacements() has them, so many a part; NULL
                             where those would be too many */
@@ -55,9 +62,8 @@ typedef struct robot_scene {
   robot_element element[2];    /* those of the pair that was placed last: moving, standing */
   uint32_t node;               /* counts the nodes, so that states know whether they are of the present one */
   motion_interval over;        /* that node; */
-  size_t segment; /* everything stands as it does at u of this segment: its middle, or near that of a span */
-  double u;
-  bool bent; /* a span that is only bounded by how far parts move */
+  span_centre centre; /* everything stands as it does here: in its middle, or near that of a span. A bent span is only
+                         bounded by how far parts move */
 } robot_scene;
 
 /* So many pairs of a robot with itself are listed one by one; groups of parts would cost more. */
@@ -86,6 +92,11 @@ int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
 /* A new node: of one segment, or of any number. */
 void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
 void robot_scene_enter_span(robot_scene *scene, const motion_interval *over);
+
+/* Looks at the tracks that move a pair, or at all: whether a span is bent is known of those that were looked at.
+ * Nothing is done twice on a node. */
+void robot_scene_fill_pair(robot_scene *scene, const robot_pair *pair);
+void robot_scene_fill(robot_scene *scene);
 
 /* Where a segment's u is along the motion, in [0, 1] by time: only to choose by. */
 double robot_scene_place(const robot_scene *scene, size_t segment, double u);
