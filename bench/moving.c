@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Bodies that move and turn: first contacts in the scenes of DART's comparative benchmark of continuous collision, a
- * box that turns along a cubic Bézier curve beside the same box that does not, and ten quadrotors on one clock. */
+ * box that turns along a cubic Bézier curve beside the same box that does not, a sphere that slides beside a box, two
+ * arms in one cell, and many movers on one clock. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 #include "solve/list.h"
 #include "support/measure.h"
 #include "support/random.h"
+#include "support/robot_case.h"
 
 enum { SCENES = 9, FLYERS = 10, SEGMENTS = 100, FLYER_PAIRS = FLYERS * (FLYERS - 1) / 2 };
 
@@ -232,6 +234,112 @@ static void quadrotors(const bench_size *size, cprox_workspace *ws) {
   for (int i = 0; i < FLYERS; i++) end(&s[i]);
 }
 
+/* hpp-core, pull request 334: a sphere slides beside a box at a clearance of 1e-6 m. Its answer is a verdict. */
+static void verdict(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const scene *s = (const scene *)problems + i;
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = 1e-7;
+  cprox_result r;
+  const cprox_status status = list_collision(s->mover, &s->target, 1, &options, state, &r, NULL);
+  answer_with(r.verdict == CPROX_VERDICT_CLEAR ? status : CPROX_INVALID, &r, r.lower, r.lower, answer);
+}
+
+static void sphere_beside_box(const bench_size *size, cprox_workspace *ws) {
+  const double y = 0.5 + 0.2 + 1e-6, from[7] = {-2, y, 0, 0, 0, 0, 1}, to[7] = {2, y, 0, 0, 0, 0.6, 0.8};
+  cprox_body *small = NULL;
+  cprox_body_create_sphere(0.2, NULL, &small);
+  scene s;
+  begin(&s, "sphere beside box", small, box(), HERE);
+  go(&s, from, to, CPROX_TURNING_SLERP);
+  const bench_workload w = {"moving", "sphere beside box", "clearance 1e-06", &s, 1, NULL, 0.0};
+  const bench_method ours = {"curve_proximity", verdict, ws};
+  bench_measure(&w, size, &ours, 1);
+  end(&s);
+}
+
+/* ---- two arms in one cell ---- */
+
+/* A saved Panda and its scene; the same pair back to back with it, 1 m away, which begins after a quarter of its time.
+ */
+typedef struct cell {
+  robot_case c;
+  cprox_robot *both;
+  cprox_motion *motion;
+  cprox_obstacle targets[2 * CASE_MAX_OBJECTS];
+  cprox_robot_pair pairs[2 * CASE_MAX_PAIRS + CASE_MAX_GEOMETRIES * CASE_MAX_GEOMETRIES];
+  size_t n_pairs;
+} cell;
+
+static bool make_cell(cell *p, cprox_workspace *ws) {
+  const robot_case *c = &p->c;
+  const cprox_pose bases[2] = {HERE, {.position = {-1, 0, 0}, .orientation = {.z = 1}}};
+  const cprox_robot *robots[2] = {c->robot, c->robot};
+  const cprox_motion_info info = cprox_motion_get_info(c->motion);
+  const cprox_joined_motion motions[2] = {{c->motion, 0.0}, {c->motion, 0.25 * (info.t1 - info.t0)}};
+  for (size_t i = 0; i < c->n_targets; i++) {
+    const cprox_pose *at = &c->targets[i].pose;
+    const cprox_quat q = at->orientation;
+    p->targets[i] = p->targets[c->n_targets + i] = c->targets[i];
+    p->targets[c->n_targets + i].pose = (cprox_pose){.position = {-1 - at->position.x, -at->position.y, at->position.z},
+                                                     .orientation = {.x = -q.y, .y = q.x, .z = q.w, .w = -q.z}};
+  }
+  const int32_t n = (int32_t)c->n_geometries;
+  p->n_pairs = 0;
+  for (size_t i = 0; i < c->n_self_pairs; i++) {
+    const cprox_robot_pair own = c->self_pairs[i];
+    p->pairs[p->n_pairs++] = own;
+    p->pairs[p->n_pairs++] = (cprox_robot_pair){own.geometry + n, own.other + n};
+  }
+  for (int32_t i = 0; i < n; i++)
+    for (int32_t k = 0; k < n; k++) p->pairs[p->n_pairs++] = (cprox_robot_pair){i, n + k};
+  const cprox_motion_description d = {.kind = CPROX_MOTION_JOINED, .joined = motions, .n_joined = 2};
+  return cprox_robot_join(robots, bases, 2, ws, &p->both) == CPROX_OK &&
+         cprox_motion_create(p->both, &d, ws, &p->motion) == CPROX_OK;
+}
+
+/* Both arms against the scenes, themselves and each other. */
+static void two_arms(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const cell *p = (const cell *)problems + i;
+  cprox_mover mover = cprox_robot_along(p->motion, NULL, 0);
+  mover.kind = CPROX_MOVER_ROBOT_WHOLE, mover.self_pairs = p->pairs, mover.n_self_pairs = p->n_pairs;
+  cprox_result r;
+  const cprox_status status = list_distance(mover, p->targets, 2 * p->c.n_targets, NULL, state, &r, NULL);
+  answer_with(status, &r, r.lower, r.upper, answer);
+}
+
+/* One arm against its scene, and then itself. */
+static void one_arm(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const robot_case *c = &((const cell *)problems + i)->c;
+  cprox_result world, self;
+  const cprox_status a =
+      list_distance(cprox_robot_along(c->motion, NULL, 0), c->targets, c->n_targets, NULL, state, &world, NULL);
+  const cprox_status b =
+      list_distance(cprox_robot_self(c->motion, c->self_pairs, c->n_self_pairs), NULL, 0, NULL, state, &self, NULL);
+  world.nodes += self.nodes, world.distance_queries += self.distance_queries;
+  answer_with(a < 0 ? a : b, &world, fmin(world.lower, self.lower), fmin(world.upper, self.upper), answer);
+}
+
+static void cells(const bench_size *size, cprox_workspace *ws) {
+  static const char FOLDER[] = BENCH_DATA_DIR "/motion";
+  FILE *f = fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
+  size_t n = 0;
+  if (!f || fscanf(f, "%zu", &n) != 1) exit(1);
+  for (size_t i = 0; i < n; i++) {
+    static cell p;
+    memset(&p, 0, sizeof p);
+    if (!robot_case_read(f, FOLDER, &p.c)) exit(1);
+    if (strncmp(p.c.name, "panda_", 6) == 0 && make_cell(&p, ws)) {
+      const bench_workload w = {"moving", "two arms in one cell", p.c.name, &p, 1, NULL, 0.0};
+      const bench_method methods[] = {{"curve_proximity", two_arms, ws}, {"one arm", one_arm, ws}};
+      bench_measure(&w, size, methods, 2);
+    }
+    cprox_motion_free(p.motion);
+    cprox_robot_free(p.both);
+    robot_case_free(&p.c);
+  }
+  fclose(f);
+}
+
 /* One box flies 4 m through a hall in which n others fall and turn. The hall grows with n: few of them are near. */
 static void among_many(const bench_size *size, cprox_workspace *ws) {
   static const int NUMBERS[] = {10, 32, 100, 316, 1000};
@@ -282,6 +390,8 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "contact")) contacts(&size, ws);
   if (bench_wanted(&size, "turning box")) turning_box(&size, ws);
   if (bench_wanted(&size, "quadrotors")) quadrotors(&size, ws);
+  if (bench_wanted(&size, "sphere beside box")) sphere_beside_box(&size, ws);
+  if (bench_wanted(&size, "two arms in one cell")) cells(&size, ws);
   if (bench_wanted(&size, "box among falling boxes")) among_many(&size, ws);
   cprox_workspace_free(ws);
   return 0;

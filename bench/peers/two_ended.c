@@ -188,7 +188,7 @@ static bool begin(search *s, query *q, const cprox_mover *mover, const cprox_obs
   *q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
   query_ask_whole(q);
   *s = (search){.upper = INFINITY, .dropped = INFINITY, .epsilon = epsilon};
-  return robot_scene_begin(&s->scene, q, 0, n, SIZE_MAX);
+  return robot_scene_begin(&s->scene, q, 0, n, SIZE_MAX, INFINITY);
 }
 
 void central_distance(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, int order, double epsilon,

@@ -220,7 +220,7 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
     query q = query_create(cprox_robot_along(motion, NULL, 0), targets, BALLS, -1.0, false, NULL, ws);
     q.set = set->bvh;
     robot_scene scene;
-    assert_true(robot_scene_begin(&scene, &q, 0, BALLS, SIZE_MAX));
+    assert_true(robot_scene_begin(&scene, &q, 0, BALLS, SIZE_MAX, INFINITY));
     robot_scene_enter(&scene, 0, 0.0, 1.0);
     const robot_pair any = {.moving = 0, .element = {-1, -1}};
     size_t seen = 0;

@@ -13,4 +13,5 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/part_groups.c
   ${CMAKE_CURRENT_LIST_DIR}/robot.c
   ${CMAKE_CURRENT_LIST_DIR}/spans.c
+  ${CMAKE_CURRENT_LIST_DIR}/sweeps.c
 )

@@ -8,6 +8,7 @@
 #include "kinematics/given.h"
 #include "kinematics/joint_tree.h"
 #include "kinematics/spans.h"
+#include "kinematics/sweeps.h"
 
 /* Variables are worked on so many at a time; rows are padded to whole lanes. */
 enum { MOTION_MAX_DEGREE = 9, MOTION_LANES = 8 };
@@ -47,6 +48,7 @@ struct cprox_motion {
   double *sagitta;    /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
   motion_given given; /* of a joined one nothing */
   double *part_error; /* every point of a part is computed within this of where it is */
+  part_sweep *sweeps; /* of each part, where there are several tracks; else NULL */
 };
 
 /* What a node, an interval [a, b] of a segment, says of one axis. Derivatives are by the node's own u in [0, 1]; all

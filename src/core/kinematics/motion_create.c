@@ -164,6 +164,7 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion->still);
   free(motion->norm);
   free(motion->part_error);
+  free(motion->sweeps);
   free(motion->arc_of);
   free(motion->sagitta);
   motion_given_free(&motion->given);
@@ -369,6 +370,8 @@ cprox_status motion_finish(cprox_motion *m, const motion_source *s, cprox_motion
       status = workspace_fail(s->workspace, CPROX_INVALID, "stopped while a motion of %zu segments was being made",
                               m->n_segments);
   }
+  if (status == CPROX_OK && m->n_tracks > 1 && !motion_sweeps_make(m))
+    status = workspace_fail(s->workspace, CPROX_MEMORY, "no memory for the parts of %zu motions", m->n_tracks);
   if (status != CPROX_OK) {
     cprox_motion_free(m);
     return status;

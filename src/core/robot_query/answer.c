@@ -38,7 +38,7 @@ static void report(const robot_search *o, const robot_sample *sample, cprox_resu
 }
 
 static cprox_lod lod_of(const robot_search *o) {
-  if (o->scene.n_pairs == 0 && !o->scene.groups) return CPROX_LOD_NONE;
+  if (o->scene.n_pairs == 0 && !o->scene.groups && isinf(o->scene.beyond)) return CPROX_LOD_NONE;
   if (o->refined) return CPROX_LOD_MESH;
   const bool by_balls = o->gaps + o->planes == 0 || o->scene.q->options.max_lod == CPROX_LOD_SPHERE;
   return by_balls ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;
@@ -52,7 +52,7 @@ void robot_search_report(const robot_search *o, cprox_result *result) {
 
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
   robot_search o;
-  if (!robot_scene_begin(&o.scene, q, first, last, ROBOT_MOST_LISTED))
+  if (!robot_scene_begin(&o.scene, q, first, last, ROBOT_MOST_LISTED, cutoff))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   search_goal goal = query_goal(q, query_order(q), cutoff);
   if (!query_wants_verdict(q)) goal.share = q->options.share, goal.share_user = q->options.share_user;
@@ -74,7 +74,7 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double cuto
 
 cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   robot_search o;
-  if (!robot_scene_begin(&o.scene, q, 0, q->n, ROBOT_MOST_LISTED))
+  if (!robot_scene_begin(&o.scene, q, 0, q->n, ROBOT_MOST_LISTED, INFINITY))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   const search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
   search_outcome found;

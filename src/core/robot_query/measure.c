@@ -213,6 +213,7 @@ static cprox_status seed_here(robot_search *o, int32_t list) {
   for (size_t k = 0; k < n; k++) {
     const list_entry entry = lists_at(&o->lists, list)[k];
     cprox_status status = CPROX_OK;
+    if (entry.lower >= nearest.apart) continue;
     if (entry.pair >= 0)
       try_pair(o, entry.pair, &nearest);
     else

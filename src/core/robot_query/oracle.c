@@ -29,7 +29,8 @@ bool robot_search_root(robot_search *o, const motion_interval *over, search_node
   if (slot < 0) return false;
   robot_own(root)->list = slot;
   list_entry *entry = lists_at(&o->lists, slot);
-  for (size_t i = 0; i < n_pairs; i++) entry[i] = (list_entry){.lower = -INFINITY, .pair = (int32_t)i};
+  for (size_t i = 0; i < n_pairs; i++)
+    entry[i] = (list_entry){.lower = robot_scene_apart(&o->scene, &o->scene.pairs[i]), .pair = (int32_t)i};
   size_t n = n_pairs;
   for (size_t i = 0; i < n_parts; i++)
     if (robot_scene_asks(&o->scene, i))
@@ -119,7 +120,7 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->goal = *goal;
   o->best = o->touch = (robot_sample){.pair = -1};
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
-  o->dropped = o->touch_at = INFINITY;
+  o->dropped = o->scene.beyond, o->touch_at = INFINITY;
   o->seeded = o->refined = false;
   o->gaps = o->planes = 0;
   lists_begin(&o->lists, o->scene.q->workspace);

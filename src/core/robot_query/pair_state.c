@@ -7,7 +7,8 @@
 #include "broadphase/obstacle_set.h"
 #include "robot_query/groups.h"
 
-enum { MOST_DISPLACEMENTS = 1 << 18 };
+/* Of pairs of several robots that may come near each other so many are listed one by one. */
+enum { MOST_DISPLACEMENTS = 1 << 18, MOST_NEAR = 4096 };
 
 /* ---- bodies ---- */
 
@@ -114,22 +115,67 @@ static size_t first_from(const robot_scene *s, int32_t (*number_of)(const robot_
   return low;
 }
 
-int32_t robot_scene_first_part(const robot_scene *s, int32_t geometry) {
-  return (int32_t)first_from(s, geometry_of_part, s->motion->robot->n_parts, geometry);
+static size_t first_part(const robot_scene *s, int32_t geometry) {
+  const cprox_robot *robot = s->motion->robot;
+  if (robot->n_parts == robot->n_geometries) return (size_t)geometry; /* each has one */
+  return first_from(s, geometry_of_part, robot->n_parts, geometry);
 }
 
-/* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no
- * room. */
-static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, bool self, robot_pair *pairs, size_t *n) {
+int32_t robot_scene_first_part(const robot_scene *s, int32_t geometry) {
+  return (int32_t)first_part(s, geometry);
+}
+
+/* Where pairs go that are asked about. */
+typedef struct pair_list {
+  robot_pair *pairs; /* NULL: they are only counted */
+  size_t n;
+  double apart; /* of the pair with itself that may come nearest, by sweeps, */
+  size_t nearest[2];
+  double beyond; /* the least of those that were left out */
+} pair_list;
+
+static double parts_apart(const robot_scene *s, size_t part, size_t other) {
+  const part_sweep *sweeps = s->motion->sweeps;
+  return sweeps ? part_sweeps_apart(&sweeps[part], &sweeps[other]) : -INFINITY;
+}
+
+double robot_scene_apart(const robot_scene *s, const robot_pair *pair) {
+  return pair->self ? parts_apart(s, (size_t)pair->moving, (size_t)pair->standing) : -INFINITY;
+}
+
+static void take_obstacle(const robot_scene *s, size_t part, size_t obstacle, pair_list *to) {
+  if (to->pairs) to->pairs[to->n] = pair_of(s, part, obstacle, false);
+  to->n++;
+}
+
+/* Whether two parts may come near enough to matter. */
+static bool may_be_near(const robot_scene *s, size_t part, size_t other, pair_list *to) {
+  const double apart = parts_apart(s, part, other);
+  if (apart > s->reach) {
+    to->beyond = lesser(apart, to->beyond);
+    return false;
+  }
+  if (apart < to->apart) to->apart = apart, to->nearest[0] = part, to->nearest[1] = other;
+  return true;
+}
+
+static void take_part(const robot_scene *s, size_t part, size_t other, pair_list *to) {
+  if (to->pairs) to->pairs[to->n] = pair_of(s, part, other, true);
+  to->n++;
+}
+
+/* The pairs of convex parts of a geometry and a target, or of two geometries. */
+static void list_geometry(const robot_scene *s, int32_t geometry, int32_t other, bool self, pair_list *to) {
   const cprox_robot *robot = s->motion->robot;
   const size_t others = self ? robot->n_parts : s->n_obstacles;
-  const size_t first = first_from(s, self ? geometry_of_part : target_of_obstacle, others, other);
-  for (size_t i = first_from(s, geometry_of_part, robot->n_parts, geometry);
-       i < robot->n_parts && robot->parts[i].geometry == geometry; i++) {
+  const size_t first = self ? first_part(s, other) : first_from(s, target_of_obstacle, others, other);
+  for (size_t i = first_part(s, geometry); i < robot->n_parts && robot->parts[i].geometry == geometry; i++) {
     for (size_t k = first; k < others; k++) {
       if ((self ? robot->parts[k].geometry : s->obstacles[k].index) != other) break;
-      if (pairs) pairs[*n] = pair_of(s, i, k, self);
-      (*n)++;
+      if (!self)
+        take_obstacle(s, i, k, to);
+      else if (may_be_near(s, i, k, to))
+        take_part(s, i, k, to);
     }
   }
 }
@@ -139,36 +185,61 @@ bool robot_scene_asks(const robot_scene *s, size_t part) {
 }
 
 /* All pairs that are worth asking for. */
-static void add_all_pairs(const robot_scene *s, bool self, robot_pair *pairs, size_t *n) {
+static void list_all(const robot_scene *s, bool self, pair_list *to) {
   const cprox_robot *robot = s->motion->robot;
-  const size_t others = self ? robot->n_parts : s->n_obstacles;
   for (size_t i = 0; i < robot->n_parts; i++) {
     const robot_part *part = &robot->parts[i];
-    if (!self && !robot_scene_asks(s, i)) continue;
-    for (size_t k = 0; k < others; k++) {
+    for (size_t k = 0; k < s->n_obstacles && !self && robot_scene_asks(s, i); k++) take_obstacle(s, i, k, to);
+    for (size_t k = 0; k < robot->n_parts && self; k++) {
       const robot_part *other = &robot->parts[k];
-      if (self && (other->geometry >= part->geometry || !motion_relates_links(s->motion, part->link, other->link)))
-        continue;
-      if (pairs) pairs[*n] = pair_of(s, i, k, self);
-      (*n)++;
+      if (other->geometry < part->geometry && may_be_near(s, i, k, to) &&
+          motion_relates_links(s->motion, part->link, other->link))
+        take_part(s, i, k, to);
     }
   }
 }
 
-/* Lists the pairs, or counts them where there is no room given. */
-static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
+/* Those that are not found by groups. */
+static pair_list list_pairs(const robot_scene *s, robot_pair *pairs) {
   const cprox_mover *mover = &s->q->mover;
-  size_t n = 0;
+  pair_list list = {.pairs = pairs, .apart = INFINITY, .beyond = INFINITY};
   const bool whole = mover_is_whole(mover);
   for (int self = mover_is_self(mover); self <= (mover_is_self(mover) || whole); self++) {
     if (self && s->groups) continue;
     const bool second = self && whole;
     const cprox_robot_pair *given = second ? mover->self_pairs : mover->pairs;
     const size_t count = second ? mover->n_self_pairs : mover->n_pairs;
-    if (!given) add_all_pairs(s, self, pairs, &n);
-    for (size_t i = 0; given && i < count; i++) add_pairs(s, given[i].geometry, given[i].other, self, pairs, &n);
+    if (!given) list_all(s, self, &list);
+    for (size_t i = 0; given && i < count; i++) list_geometry(s, given[i].geometry, given[i].other, self, &list);
   }
-  return n;
+  return list;
+}
+
+/* ---- far pairs ---- */
+
+/* So near two parts come at one of a few times, at most. */
+static double measured_apart(robot_scene *s, const size_t parts[2]) {
+  enum { PLACES = 8 };
+  const robot_pair pair = pair_of(s, parts[0], parts[1], true);
+  double least = INFINITY;
+  for (int k = 0; k <= PLACES; k++) {
+    const double t = s->q->t0 + (s->q->t1 - s->q->t0) * k / PLACES;
+    const motion_interval at = motion_interval_of(s->motion, t, t);
+    robot_scene_enter(s, at.first, at.a, at.a);
+    const robot_body *a = robot_scene_moving(s, &pair), *b = robot_scene_standing(s, &pair);
+    const double apart = vec_norm(vec_sub(a->side.at.p, b->side.at.p));
+    least = lesser(apart + a->radius + b->radius + a->side.error + b->side.error, least);
+  }
+  return ROUND_UP * least;
+}
+
+/* Two robots that stay farther apart do not matter to the query. */
+static double reach_of(robot_scene *s, double cutoff) {
+  const query *q = s->q;
+  if (q->is_signed) return INFINITY;
+  if (query_wants_verdict(q)) return q->limit + q->options.epsilon;
+  const pair_list all = list_pairs(s, NULL);
+  return all.apart < INFINITY ? lesser(measured_apart(s, all.nearest), cutoff) : cutoff;
 }
 
 /* ---- beginning ---- */
@@ -184,12 +255,14 @@ static size_t count_self_pairs(const robot_scene *s) {
   return given && count < all && n == s->motion->robot->n_geometries ? count : all;
 }
 
-bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last, size_t most_listed) {
+bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last, size_t most_listed, double cutoff) {
   const bool self = mover_is_self(&q->mover) || mover_is_whole(&q->mover);
-  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self};
+  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self, .reach = INFINITY};
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;
-  if (count_self_pairs(s) > most_listed && !robot_groups_begin(s)) return false;
+  const bool leaves_out = self && s->motion->sweeps && most_listed < SIZE_MAX;
+  const bool many = count_self_pairs(s) > most_listed;
+  if (many && !leaves_out && !robot_groups_begin(s)) return false;
   size_t deepest = 0;
   for (size_t i = 0; s->self && !s->groups && i < robot->n_parts; i++) {
     const size_t depth = robot_axis_depth(robot, robot->parts[i].axis);
@@ -220,7 +293,14 @@ bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last
     if (robot_scene_add_obstacles(s, q->set ? q->set->unbounded[i] : first + i) < 0) return false;
   for (size_t i = 0; i < robot->n_parts; i++) s->parts[i] = (part_state){.body = part_body(q, i)};
 
-  s->n_pairs = list_pairs(s, NULL);
+  if (leaves_out) s->reach = reach_of(s, cutoff);
+  pair_list listed_pairs = list_pairs(s, NULL);
+  if (many && leaves_out && listed_pairs.n > MOST_NEAR) {
+    if (!robot_groups_begin(s)) return false;
+    listed_pairs = list_pairs(s, NULL);
+  }
+  s->beyond = listed_pairs.beyond;
+  s->n_pairs = listed_pairs.n;
   s->pairs = workspace_reserve(q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *s->pairs);
   if (!s->pairs) return false;
   list_pairs(s, s->pairs);

@@ -57,6 +57,8 @@ typedef struct robot_scene {
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
+  double reach;                /* pairs with itself that stay farther apart than this are left out, */
+  double beyond;               /* which all stay farther apart than this */
   pair_table met;              /* what was made of targets of the set, and of groups */
   struct robot_groups *groups; /* of parts, where pairs with itself are found by them (robot_query/groups.h), or NULL */
   robot_element element[2];    /* those of the pair that was placed last: moving, standing */
@@ -73,11 +75,16 @@ typedef struct robot_scene {
 
 /* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the
  * rest come as they are needed. If the robot could have more than `most_listed` pairs with itself, these come as groups
- * of its parts come near each other. */
-bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last, size_t most_listed);
+ * of its parts come near each other; SIZE_MAX: every pair is listed. Otherwise those of several robots that stay too
+ * far apart to matter are left out; `cutoff`: an upper bound known from elsewhere, or infinity. */
+bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last, size_t most_listed,
+                       double cutoff);
 
 /* Of a geometry. */
 int32_t robot_scene_first_part(const robot_scene *scene, int32_t geometry);
+
+/* A pair is never nearer than this; -infinity where that is not known. */
+double robot_scene_apart(const robot_scene *scene, const robot_pair *pair);
 
 /* A pair of two parts of the robot, of which nothing is known. */
 robot_pair robot_scene_self_pair(const robot_scene *scene, int32_t moving, int32_t standing);

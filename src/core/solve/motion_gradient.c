@@ -328,7 +328,7 @@ static void fill_nothing(const gradient_search *g, cprox_motion_gradient *to) {
 cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox_result *result,
                                 cprox_motion_gradient *gradient) {
   gradient_search g = {.q = q, .lower = INFINITY, .previous = INFINITY};
-  if (!robot_scene_begin(&g.o.scene, q, first, last, SIZE_MAX))
+  if (!robot_scene_begin(&g.o.scene, q, first, last, SIZE_MAX, INFINITY))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   g.within = motion_interval_of(q->mover.motion, q->t0, q->t1);
   search_outcome found;
