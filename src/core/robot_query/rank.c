@@ -84,7 +84,7 @@ static int nearer_first(const void *a, const void *b) {
 pair_rank *robot_rank_pairs(const query *q) {
   ranking r = {.q = q, .n = q->mover.n_pairs};
   r.rank = workspace_reserve(q->workspace, WORKSPACE_ROBOT_RANKING, (r.n + 1) * sizeof *r.rank);
-  if (!r.rank || !robot_scene_begin(&r.scene, q, 0, q->n, SIZE_MAX)) return NULL;
+  if (!r.rank || !robot_scene_begin(&r.scene, q, 0, q->n, SIZE_MAX, INFINITY)) return NULL;
   for (size_t i = 0; i < r.n; i++) r.rank[i] = (pair_rank){.lower = INFINITY, .near = INFINITY, .pair = i};
 
   const motion_interval over = motion_interval_of(q->mover.motion, q->t0, q->t1);
