@@ -316,6 +316,57 @@ inline BodyHandle makeLod(const BodyHandle &hull, double excess, const BodyHandl
       std::make_pair(hull, mesh));
 }
 
+/** The distance of a point from a set [m]; inside, 0 or minus the depth. */
+using DistanceFunction = std::function<double(const Eigen::Vector3d &point)>;
+
+/** A set known by its distance function, which the body keeps: it lies within `radius` [m] of the centre; values are
+ *  within `error` [m] of the distance. See cprox_body_create_distance(). A function that throws answers NaN: the maker
+ *  and the queries then refuse it. It must be safe to call from all threads that ask. */
+inline BodyHandle makeDistance(DistanceFunction distance, const Eigen::Vector3d &centre, double radius,
+                               double lipschitz = 1.0, double error = 0.0) {
+  if (!distance) throw Error("the distance function is empty");
+  const auto kept = std::make_shared<const DistanceFunction>(std::move(distance));
+  const cprox_distance_fn call = [](const void *shape, const double point[3]) {
+    try {
+      return (*static_cast<const DistanceFunction *>(shape))(Eigen::Vector3d(point[0], point[1], point[2]));
+    } catch (...) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) {
+        return cprox_body_create_distance(call, kept.get(), toVec3(centre), radius, lipschitz, error, w, b);
+      },
+      kept);
+}
+
+/** A grid of distances (ESDF): n[0] n[1] n[2] values, x running fastest, from the origin of the frame on, `cell` [m]
+ *  apart. error: of the values [m]; truncated_at: values from here on say "at least so far". */
+inline BodyHandle makeDistanceGrid(const std::array<std::size_t, 3> &n, double cell, const std::vector<double> &values,
+                                   double error = 0.0, double truncated_at = std::numeric_limits<double>::infinity()) {
+  const double points = static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
+  if (points != static_cast<double>(values.size())) throw Error("a distance grid needs one value for each point");
+  const cprox_distance_grid grid = {{n[0], n[1], n[2]}, {0.0, 0.0, 0.0}, cell, values.data(), error, truncated_at};
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_distance_grid(&grid, w, b); });
+}
+
+/** The mesh of a height field: n[0] n[1] heights [m], x running fastest, from the origin of the frame on, `cell` [m]
+ *  apart. It is solid down to the floor; NaN: a surface. */
+inline BodyHandle makeHeightField(const std::array<std::size_t, 2> &n, const std::array<double, 2> &cell,
+                                  const std::vector<double> &heights,
+                                  double floor = std::numeric_limits<double>::quiet_NaN(),
+                                  std::size_t memory_limit = std::numeric_limits<std::size_t>::max(),
+                                  const Stop &stop = nullptr) {
+  if (static_cast<double>(n[0]) * static_cast<double>(n[1]) != static_cast<double>(heights.size()))
+    throw Error("a height field needs one height for each point");
+  const cprox_height_field field = {{n[0], n[1]}, {0.0, 0.0}, {cell[0], cell[1]}, heights.data(), floor};
+  const auto create = [&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_height_field(&field, memory_limit, w, b);
+  };
+  return detail::makeBody(create, nullptr, stop);
+}
+
 /** A planar convex polygon at z = 0; the vertices are columns, in order. */
 inline BodyHandle makePolygon(const Eigen::Matrix2Xd &vertices) {
   std::vector<std::array<double, 2>> points(static_cast<std::size_t>(vertices.cols()));

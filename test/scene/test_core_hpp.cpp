@@ -192,3 +192,35 @@ TEST(CoreHpp, a_set_answers_as_its_targets_do) {
   EXPECT_EQ(nearest[0].obstacle_index, all.obstacle_index);
   expectContains(errorOf([&] { Obstacles({cprox_obstacle{}}); }), "target 0");
 }
+
+TEST(CoreHpp, sets_by_their_distance_are_asked_like_bodies) {
+  const CurveHandle line = makeBezier((Eigen::Matrix3Xd(3, 2) << -1, 1, 0.8, 0.8, 0, 0).finished());
+  const auto distance = [&](const BodyHandle &body) {
+    Workspace workspace;
+    cprox_result result = {};
+    require(cprox_distance(along(line), at(body), nullptr, workspace.get(), &result), workspace);
+    return result;
+  };
+  const auto ball = [](const Eigen::Vector3d &x) { return x.norm() - 0.5; };
+  EXPECT_NEAR(distance(makeDistance(ball, {0, 0, 0}, 0.5)).upper, 0.3, 1e-6);
+  const BodyHandle off = makeDistance(ball, {0, 0, 0}, 0.6, 1.0, 0.01);
+  EXPECT_LE(distance(off).lower, 0.3 - 0.01 + 1e-6);
+  EXPECT_GE(distance(off).upper, 0.3 + 0.01 - 1e-6);
+  const auto throws = [](const Eigen::Vector3d &x) { return x.x() > 5.0 ? throw Error("mine") : x.norm() - 0.5; };
+  EXPECT_NEAR(distance(makeDistance(throws, {0, 0, 0}, 0.5)).upper, 0.3, 1e-6);
+  const auto always = [](const Eigen::Vector3d &) -> double { throw Error("mine"); };
+  expectContains(errorOf([&] { makeDistance(always, {0, 0, 0}, 0.5); }), "answered nan at");
+  expectContains(errorOf([&] { makeDistance(nullptr, {0, 0, 0}, 0.5); }), "empty");
+
+  // a point at the origin of a grid, and ground at height 0
+  std::vector<double> values;
+  for (int i = 0; i < 27; ++i) values.push_back(Eigen::Vector3d(i % 3, i / 3 % 3, i / 9).norm());
+  const cprox_result grid = distance(makeDistanceGrid({3, 3, 3}, 1.0, values));
+  EXPECT_LE(grid.lower, 0.8);
+  EXPECT_GE(grid.upper, 0.8);
+  expectContains(errorOf([&] { makeDistanceGrid({3, 3, 2}, 1.0, values); }), "one value for each point");
+  const BodyHandle ground = makeHeightField({2, 2}, {1.0, 0.5}, {0.0, 0.0, 0.0, 0.0}, -1.0);
+  EXPECT_NEAR(distance(ground).upper, 0.3, 1e-6);
+  EXPECT_TRUE(cprox_body_get_info(ground.get()).is_solid);
+  expectContains(errorOf([&] { makeHeightField({2, 2}, {1.0, 0.5}, {0.0}); }), "one height for each point");
+}

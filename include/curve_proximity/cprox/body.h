@@ -36,7 +36,9 @@ typedef enum cprox_body_kind {
   CPROX_BODY_MESH,
   CPROX_BODY_POINTS,
   CPROX_BODY_OCTREE,
-  CPROX_BODY_LOD
+  CPROX_BODY_LOD,
+  CPROX_BODY_DISTANCE,
+  CPROX_BODY_DISTANCE_GRID
 } cprox_body_kind;
 
 /** One point [m], finite. */
@@ -103,6 +105,54 @@ CPROX_API cprox_status cprox_body_create_support(cprox_support_fn support, const
                                                  double radius, double slack, double margin, cprox_workspace *workspace,
                                                  cprox_body **body);
 
+/** The callback of a set that is known by its distance alone: the distance from point[3] to the set [m]; inside, 0 or
+ *  minus the depth. */
+typedef double (*cprox_distance_fn)(const void *shape, const double point[3]);
+
+/** Any compact set, given by its distance function.
+ *
+ *  shape      handed to the callback, kept by reference: must outlive the body.
+ *  centre     [m]; radius: the set lies within it of the centre [m], > 0.
+ *  lipschitz  values at two points differ by at most this many times the way between them, > 0; 1 for true distances;
+ *             INFINITY where it is not known (values that are rounded to steps, for example).
+ *  error      how far a value may be from the distance [m], >= 0.
+ *
+ *  Answers are certified relative to `error`: the interval is wider by twice that, and where that is more than epsilon,
+ *  the status is CPROX_PRECISION. Contact is proven only by values below -error: a callback that answers 0 inside
+ * leaves it undecided. Balls on curves are held against such bodies, standing or on the clock; robots, carried bodies,
+ *  compounds, pairs, gradients and certificates are refused. A value that is not finite, or that contradicts another
+ *  one, `lipschitz`, or `radius`, gives CPROX_INVALID: 256 places are tried at once, and every value of a query is
+ *  compared with the one before. What no sample shows is not caught. Witness points on the set are suggestions.
+ *  cprox_body_support() is that of the ball. Thread safety: as the callback's. Source: doc/distance-functions.md. */
+CPROX_API cprox_status cprox_body_create_distance(cprox_distance_fn distance, const void *shape, cprox_vec3 centre,
+                                                  double radius, double lipschitz, double error,
+                                                  cprox_workspace *workspace, cprox_body **body);
+
+/** A grid of distances: an ESDF. */
+typedef struct cprox_distance_grid {
+  /** the points along x, y, z, each at least 2 */
+  size_t n[3];
+  /** [m] where the first one stands */
+  cprox_vec3 origin;
+  /** [m] the way from one to the next, > 0 */
+  double cell;
+  /** [m] n[0] n[1] n[2] distances, x running fastest, then y; negative inside; copied */
+  const double *values;
+  /** [m] how far a value may be from the distance of its point, >= 0 */
+  double error;
+  /** [m] values from here on say "at least so far", > 0; INFINITY: none does */
+  double truncated_at;
+} cprox_distance_grid;
+
+/** The set that a grid of distances knows, which lies in the grid's box: beyond the box nothing stands.
+ *
+ *  Between the points the value is trilinear, clipped to what the eight corners prove of a distance. The rest of what
+ *  that may be off by counts like the `error` of cprox_body_create_distance(): at most error + 0.87 cell, 0 more than
+ *  `error` at a grid point. Neighbours that differ by more than cell + 2 error are refused. What holds for bodies by a
+ *  distance function holds here, too. */
+CPROX_API cprox_status cprox_body_create_distance_grid(const cprox_distance_grid *grid, cprox_workspace *workspace,
+                                                       cprox_body **body);
+
 /** What the inside of a mesh is. */
 typedef enum cprox_mesh_fill {
   /** nothing: the mesh is its triangles */
@@ -128,6 +178,27 @@ typedef enum cprox_mesh_fill {
 CPROX_API cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3],
                                               size_t m, cprox_mesh_fill fill, size_t memory_limit,
                                               cprox_workspace *workspace, cprox_body **body);
+
+/** Heights over a grid: an elevation map. */
+typedef struct cprox_height_field {
+  /** the points along x and y, each at least 2 */
+  size_t n[2];
+  /** [m] where the first one stands in the plane z = 0 */
+  double origin[2];
+  /** [m] the way from one to the next along x and along y, > 0 */
+  double cell[2];
+  /** [m] n[0] n[1] heights, x running fastest; copied */
+  const double *heights;
+  /** [m] the ground reaches down to this height, which is below all others; NAN: it is the surface alone */
+  double floor;
+} cprox_height_field;
+
+/** The mesh of a height field: two triangles a cell, which meet along the diagonal from its least x and y. It is solid
+ *  down to the floor, if there is one. The BVH of the mesh is the pyramid of least and greatest heights. A bilinear
+ *  surface through the same heights is within |h00 - h01 - h10 + h11|/4 of it in each cell. A height that is not finite
+ *  is refused: give cells that are not known a height, or leave them out. memory_limit as for meshes. */
+CPROX_API cprox_status cprox_body_create_height_field(const cprox_height_field *field, size_t memory_limit,
+                                                      cprox_workspace *workspace, cprox_body **body);
 
 /** The surface of a mesh: the mesh without its inside. The triangles are shared, so `mesh` must outlive the body. */
 CPROX_API cprox_status cprox_body_create_surface(const cprox_body *mesh, cprox_workspace *workspace, cprox_body **body);

@@ -258,6 +258,56 @@ static cprox_status prove_contact_curve(curve_search *s, curve_finding *proven) 
   return CPROX_OK;
 }
 
+/* ---- a set known by its distance ---- */
+
+static cprox_status begin_field(curve_search *s) {
+  curve_distance *o = &s->state.distance;
+  const placed_pair *p = s->pair;
+  cprox_curve relative;
+  const cprox_curve *curve = curve_about(s->q, p, &relative);
+  if (!curve || !curve_distance_begin(o, curve, p->shape, p->frame, p->offset, s->q->options.epsilon, s->q->workspace))
+    return CPROX_MEMORY;
+  keep_curve(s->q, p, &relative, &o->relative, &o->side);
+  return CPROX_OK;
+}
+
+static cprox_status start_field(curve_search *s, curve_start *start) {
+  curve_distance *o = &s->state.distance;
+  start->oracle = curve_distance_oracle(o);
+  start->root = curve_distance_root(o);
+  return CPROX_OK;
+}
+
+static cprox_status start_contact_field(curve_search *s, curve_start *start) {
+  curve_distance_begin_contact(&s->state.distance);
+  return start_field(s, start);
+}
+
+static void find_sample(const curve_distance *o, const distance_sample *sample, curve_finding *seen) {
+  const frame *f = &o->side.frame;
+  vec3 normal;
+  const vec3 nearest = distance_field_nearest(o->body->field, &sample->seen, &normal);
+  seen->at_end = sample->s == 1.0;
+  seen->t = seen->t_contact = curve_side_parameter(&o->side, sample->piece, sample->s);
+  seen->centre = frame_to_world(f, sample->y);
+  seen->surface = frame_to_world(f, vec_sub(nearest, o->body->centre));
+  seen->normal = frame_turn_to_world(f, normal);
+  seen->distance = sample->seen.value;
+}
+
+static void found_field(const curve_search *s, curve_finding *seen) {
+  const curve_distance *o = &s->state.distance;
+  begin_finding(seen, o->found, &o->best_bound, o->distance_queries);
+  if (seen->found) find_sample(o, &o->best, seen);
+}
+
+static cprox_status prove_contact_field(curve_search *s, curve_finding *proven) {
+  const curve_distance *o = &s->state.distance;
+  begin_finding(proven, isfinite(o->proven_bound.at), &o->proven_bound, o->distance_queries);
+  if (proven->found) find_sample(o, &o->proven, proven);
+  return CPROX_OK;
+}
+
 /* ---- the rows ---- */
 
 static const curve_kernel convex_kernel = {.knows_depth = true,
@@ -281,8 +331,15 @@ static const curve_kernel two_curves_kernel = {.knows_depth = true,
                                                .prove_contact = prove_contact_curve,
                                                .best_found = found_curve};
 
+static const curve_kernel field_kernel = {.begin_state = begin_field,
+                                          .start_distance = start_field,
+                                          .start_contact = start_contact_field,
+                                          .prove_contact = prove_contact_field,
+                                          .best_found = found_field};
+
 const curve_kernel *curve_kernel_of(const placed_pair *p) {
   if (!p->shape) return &two_curves_kernel;
+  if (p->shape->field) return &field_kernel;
   return p->shape->tree ? &tree_kernel : &convex_kernel;
 }
 

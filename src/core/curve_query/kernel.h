@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The three kernels of a mover's curve against one obstacle: a convex shape, the elements of a BVH, another curve.
- * Searches for distances, for verdicts and for the time of contact are the same for all three; what differs between the
- * kernels is one row of operations each. */
+/* The four kernels of a mover's curve against one obstacle: a convex shape, the elements of a BVH, another curve, a set
+ * known by its distance. Searches for distances, for verdicts and for the time of contact are the same for all of them;
+ * what differs between the kernels is one row of operations each. */
 #ifndef CPROX_CURVE_QUERY_KERNEL_H
 #define CPROX_CURVE_QUERY_KERNEL_H
 
 #include "curve_query/contact_bvh.h"
 #include "curve_query/contact_convex.h"
 #include "curve_query/contact_curve.h"
+#include "curve_query/curve_distance.h"
 #include "problem/placed_pair.h"
 
 typedef struct curve_search curve_search;
@@ -67,6 +68,7 @@ struct curve_search {
     contact_convex convex;
     contact_tree tree;
     contact_curve curve;
+    curve_distance distance;
   } state;
 };
 

@@ -70,8 +70,8 @@ cprox_status report_finding(const query *q, const placed_pair *p, const curve_fi
     position = relative_position(obstacle->curve, &obstacle->pose, r->t, seen->at_end, q->workspace);
     r->t_obstacle = r->t;
   }
-  const bool has_elements = p->shape && p->shape->tree;
-  if (!has_elements && (q->mover.body || obstacle->synchronized)) {
+  const bool by_points = p->shape && (p->shape->tree || p->shape->field);
+  if (!by_points && (q->mover.body || obstacle->synchronized)) {
     const cprox_status status = report_pair(q, p, seen, position, r);
     if (status < 0) return status;
   } else {

@@ -55,6 +55,9 @@ static cprox_status check_link(const cprox_link *link, size_t i, size_t n_variab
 
 static cprox_status check_geometry(const cprox_link_geometry *g, size_t i, size_t n_links, cprox_workspace *workspace) {
   if (!g->body) return workspace_fail(workspace, CPROX_INVALID, "geometry %zu has no body", i);
+  if (g->body->field)
+    return workspace_fail(workspace, CPROX_INVALID, "geometry %zu is known by its distance alone: robots have shapes",
+                          i);
   if (g->link < 0 || (size_t)g->link >= n_links)
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: there is no link %d", i, (int)g->link);
   const char *support_failed = frame_pose_error(&g->pose);

@@ -27,6 +27,10 @@ typedef struct pair_reply {
 static cprox_status pair_check_target(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
   if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
   if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
+  if (target->body->field)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "%s is known by its distance alone: ask for the distance of a curve, or cprox_body_nearest()",
+                          name);
   const char *support_failed = frame_pose_error(&target->pose);
   if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, support_failed);
   if (!(target->margin >= 0.0) || !isfinite(target->margin))

@@ -24,7 +24,7 @@ model model_of(const cprox_body *body, cprox_lod finest) {
     m.body = by_hull ? body->hull : body->mesh;
     m.excess = by_hull ? body->excess : 0.0;
   }
-  m.lod = m.body->tree ? CPROX_LOD_MESH : CPROX_LOD_HULL;
+  m.lod = m.body->tree || m.body->field ? CPROX_LOD_MESH : CPROX_LOD_HULL;
   return m;
 }
 

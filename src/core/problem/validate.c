@@ -135,6 +135,9 @@ static cprox_status check_ride(const cprox_mover *mover, cprox_lod finest, cprox
   if (mover->curve && !curve_is_in_reach(mover->curve))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's curve reaches farther than %g m", LENGTH_MOST);
   if (!body) return CPROX_OK;
+  if (body->field)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "the mover's body is known by its distance alone: only convex bodies are carried");
   if (!isfinite(body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
   if (!body_is_in_reach(body))
@@ -180,6 +183,10 @@ static cprox_status check_robot(const cprox_mover *mover, size_t n, cprox_worksp
 /* Is the target one that the mover can be held against? */
 static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle *target, size_t index,
                                   cprox_lod finest, cprox_workspace *workspace) {
+  if (target->body && target->body->field && (mover->motion || mover->body))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "target %zu is known by its distance alone: balls on curves are held against it, not %s",
+                          index, mover->motion ? "robots" : "bodies");
   if (!mover->motion) {
     const cprox_status clock = check_clock(mover->curve, target, index, workspace);
     if (clock == CPROX_OK && mover->body && model_has_tree(target->body, finest))

@@ -13,6 +13,7 @@
 #include "convex/feature.h"
 #include "shape/cluster_hulls.h"
 #include "shape/construct.h"
+#include "shape/distance_field.h"
 #include "shape/elements.h"
 
 /* Lengths beyond these would lose their squares to underflow or overflow. */
@@ -340,6 +341,7 @@ void cprox_body_free(cprox_body *body) {
   if (!body->borrows_tree) tree_free(body->tree);
   winding_free(body->winding);
   cluster_hulls_free(body->clusters);
+  distance_field_free(body->field);
   free(body);
 }
 

@@ -26,6 +26,7 @@ struct cprox_body {
   bool borrows_tree;              /* the tree belongs to another body */
   struct winding *winding;        /* solid meshes: what tells inside from outside */
   const cprox_body *hull, *mesh;  /* level-of-detail bodies: the two models, */
+  struct distance_field *field;   /* sets known by their distance: the function, in the body's frame */
   double excess;                  /* how far the mesh may stick out of the hull, */
   struct cluster_hulls *clusters; /* and of a mesh of triangles what is between the two */
 };

@@ -47,6 +47,8 @@ cprox_status cprox_body_create_compound(const cprox_body *const *parts, const cp
     if (!parts[i]) return workspace_fail(workspace, CPROX_INVALID, "part %zu is NULL", i);
     if (parts[i]->kind == CPROX_BODY_COMPOUND)
       return workspace_fail(workspace, CPROX_INVALID, "part %zu is a compound itself: give its parts instead", i);
+    if (parts[i]->field)
+      return workspace_fail(workspace, CPROX_INVALID, "part %zu is known by its distance alone: give it by itself", i);
     const char *support_failed = frame_pose_error(&poses[i]);
     if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "the pose of part %zu: %s", i, support_failed);
   }

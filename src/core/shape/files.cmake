@@ -4,7 +4,9 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/boxes.c
   ${CMAKE_CURRENT_LIST_DIR}/cluster_hulls.c
   ${CMAKE_CURRENT_LIST_DIR}/compound.c
+  ${CMAKE_CURRENT_LIST_DIR}/distance_field.c
   ${CMAKE_CURRENT_LIST_DIR}/elements.c
+  ${CMAKE_CURRENT_LIST_DIR}/height_field.c
   ${CMAKE_CURRENT_LIST_DIR}/implicit_body.c
   ${CMAKE_CURRENT_LIST_DIR}/kinds.c
   ${CMAKE_CURRENT_LIST_DIR}/level_of_detail.c

@@ -5,6 +5,7 @@
 #include "convex/depth.h"
 #include "convex/feature.h"
 #include "shape/construct.h"
+#include "shape/distance_field.h"
 #include "shape/elements.h"
 
 /* ---- one convex shape ---- */
@@ -50,6 +51,23 @@ static double finest_support(const cprox_body *body, vec3 direction, vec3 *point
 
 static double finest_nearest(const cprox_body *body, vec3 point, vec3 *nearest) {
   return cprox_body_nearest(body->mesh, point, nearest);
+}
+
+/* ---- sets known by their distance: the support of the ball round them ---- */
+
+static double field_support(const cprox_body *body, vec3 direction, vec3 *point) {
+  vec3 unit;
+  const double norm = feature_unit(direction, &unit);
+  if (point) *point = vec_axpy(body->ball_centre, body->ball_radius, unit);
+  return vec_dot(direction, body->ball_centre) + norm * body->ball_radius;
+}
+
+static double field_nearest(const cprox_body *body, vec3 point, vec3 *nearest) {
+  distance_value seen;
+  vec3 normal;
+  if (distance_field_measure(body->field, point, NULL, NULL, &seen) != CPROX_OK) return NAN;
+  if (nearest) *nearest = distance_field_nearest(body->field, &seen, &normal);
+  return seen.value;
 }
 
 /* ---- balls inside ---- */
@@ -106,6 +124,8 @@ static const body_kind rows[] = {
     [CPROX_BODY_POINTS] = {ELEMENTS, .name = "points", .is_own_sphere = true},
     [CPROX_BODY_OCTREE] = {ELEMENTS, .name = "octree", .is_own_sphere = true},
     [CPROX_BODY_LOD] = {.support_of = finest_support, .nearest_of = finest_nearest, .name = "lod"},
+    [CPROX_BODY_DISTANCE] = {.support_of = field_support, .nearest_of = field_nearest, .name = "distance"},
+    [CPROX_BODY_DISTANCE_GRID] = {.support_of = field_support, .nearest_of = field_nearest, .name = "distance grid"},
 };
 
 const body_kind *body_kind_of(cprox_body_kind kind) {

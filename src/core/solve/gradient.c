@@ -431,10 +431,11 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, c
   const candidate c = {.part = result->obstacle_part, .mover_part = result->mover_part};
   if (result->obstacle_index < 0 || !isfinite(result->upper))
     return workspace_fail(workspace, CPROX_INVALID, "the result has no witness: ask for a distance");
-  const bool many = model_has_tree(target.body, q.options.max_lod);
+  const bool many = model_has_tree(target.body, q.options.max_lod) || (target.body && target.body->field);
   if (mover.curve->arcs || (target.curve && target.curve->arcs) || many)
-    return workspace_fail(workspace, CPROX_INVALID, "no gradient is known for %s",
-                          many ? "meshes, points and boxes" : "a curve without derivatives");
+    return workspace_fail(
+        workspace, CPROX_INVALID, "no gradient is known for %s",
+        many ? "meshes, points, boxes and sets known by their distance" : "a curve without derivatives");
   query_ask_whole(&q);
   if (!(q.t0 <= result->t && result->t <= q.t1))
     return workspace_fail(workspace, CPROX_INVALID, "the result's t = %.17g is not on the mover's curve", result->t);
