@@ -7,6 +7,7 @@
 #include "kinematics/motion.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/robot_case.h"
 #include "support/robots.h"
 
 enum { MOST_STATES = 8 };
@@ -214,6 +215,29 @@ CASE(a_state_that_is_refused_changes_nothing) {
   assert_int_equal(cprox_robot_ask_states(robot, &q, NULL, 0, ws, NULL, NULL), CPROX_OK);
   cprox_robot_free(robot);
   cprox_body_free(ball);
+}
+
+/* A UR5 by its own meshes: of surfaces that cross, the first two triangles that do end the search for a contact. */
+CASE(a_state_in_contact_measures_few_distances) {
+  static robot_case c;
+  assert_true(robot_case_read_robot(TEST_DATA_DIR "/motion", "ur5", &c));
+  rng r = rng_seed(93);
+  const cprox_state_query asked = {.self_pairs = c.self_pairs, .n_self_pairs = c.n_self_pairs};
+  uint32_t all = 0, most = 0;
+  size_t violated = 0;
+  for (int i = 0; i < 200; i++) {
+    double values[CASE_MAX_VARIABLES] = {0};
+    for (size_t k = 0; k < c.n_variables; k++) values[k] = rng_uniform(&r, -3.14159, 3.14159);
+    cprox_result found;
+    assert_int_equal(cprox_robot_ask_states(c.mesh_robot, &asked, values, 1, ws, &found, NULL), CPROX_OK);
+    violated += found.verdict == CPROX_VERDICT_VIOLATED;
+    all += found.distance_queries;
+    most = found.distance_queries > most ? found.distance_queries : most;
+  }
+  print_message("%zu of 200 states in contact: %u distances, %u of one\n", violated, all, most);
+  assert_true(violated > 20 && violated < 180);
+  assert_true(all < 1500 && most < 300);
+  robot_case_free(&c);
 }
 
 int main(void) {

@@ -342,6 +342,7 @@ cprox_status robot_measure_start(robot_search *o, const search_node *node) {
 cprox_status robot_seed(robot_search *o, const search_node *node) {
   const motion_interval over = robot_interval(node);
   const int32_t list = robot_known(node)->list;
+  if (o->scene.motion->is_state) return seed_span(o, list, &over, 1); /* it is the same everywhere */
   const size_t n =
       lists_count(&o->lists, list) + (o->scene.groups ? GROUP_SEED_TESTS * o->scene.motion->robot->n_parts : 0);
   size_t places = MOST_SEEDS;

@@ -63,7 +63,10 @@ static void keep(robot_refinement *c, const int32_t code[2], const robot_gap *ga
   const robot_found found = {.element = {code[0], code[1]}, .gap = *gap};
   if (gap->upper < c->nearest.gap.upper) c->nearest = found;
   c->reach = fmin(c->reach, fmax(gap->upper, 0.0) + c->room);
-  if (!c->listing) return;
+  if (!c->listing) {
+    if (gap->upper <= 0.0) abandon(c); /* nothing is nearer than what touches */
+    return;
+  }
   if (c->n_found == MOST_FOUND) {
     c->too_many = true;
     abandon(c);
