@@ -158,6 +158,58 @@ CPROX_API cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles,
                                                const double *breaks, size_t n_intervals, const cprox_options *options,
                                                cprox_workspace *workspace, cprox_profile_interval *intervals);
 
+/** An interval of the mover's parameter in which it is within delta of an obstacle. */
+typedef struct cprox_violation {
+  /** farther than delta before: from leave_upper of the violation before, or from the beginning */
+  double enter_lower;
+  /** violated: at most delta away from here … */
+  double enter_upper;
+  /** … to here, everywhere; where only one place is proven, both are that place */
+  double leave_lower;
+  /** farther than delta after: up to enter_lower of the next violation, or to the end */
+  double leave_upper;
+  /** violated, or undecided: nowhere proven, then enter_upper and leave_lower are the ends of the other side */
+  cprox_verdict verdict;
+  /** [m] the least distance that was measured in it, */
+  double upper;
+  /** there, */
+  double t;
+  /** from this obstacle, as in cprox_result; */
+  int32_t obstacle_index;
+  /** of a robot: by this geometry; else as in cprox_result */
+  int32_t mover_part;
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[2];
+} cprox_violation;
+
+/** Room for violations, and how many there are. */
+typedef struct cprox_violations {
+  /** `room` of them, of the caller */
+  cprox_violation *list;
+  /** at least 1 */
+  size_t room;
+  /** receives how many of them are written, in the order of the parameter */
+  size_t count;
+} cprox_violations;
+
+/** All intervals of the parameter in which the mover is at most delta [m] from an obstacle: when does it enter, when
+ *  does it leave? Outside of them it is proven to be farther; from enter_upper to leave_lower it is proven not to be.
+ *
+ *  resolution  in units of the parameter, > 0: what is neither proven is no longer than that at either end of a
+ *              violation, and between two of them, which may be one: then leave_upper is the next one's enter_upper.
+ *
+ *  Robots and movers with overlaps: delta > 0, as a distance of 0 does not say how deep; with delta = 0 single places
+ *  are proven. Convex bodies along curves: with options.signed_distance. Beside a synchronized obstacle likewise only
+ *  single places are.
+ *
+ *  Returns CPROX_OK; CPROX_BUDGET: there was no room for all, or options.max_nodes queries were not enough, and
+ *  CPROX_STOPPED: the last violation goes on to the end of what was asked, all else is true; a negative status as
+ *  cprox_distance(). Of robots options.interval applies. Cost: two searches for each halving towards an end.
+ *  Source: doc/time-of-contact.md, Enter and leave. */
+CPROX_API cprox_status cprox_obstacles_violations(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
+                                                  double resolution, const cprox_options *options,
+                                                  cprox_workspace *workspace, cprox_violations *violations);
+
 /** Distance of movers first … last - 1 from the union of the obstacles. Threads may answer ranges of the same movers,
  *  each with its own workspace. Each answer depends on its mover alone: results are the same for every split into
  *  ranges, every number of threads and every instruction set.

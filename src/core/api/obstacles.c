@@ -124,6 +124,13 @@ cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles, cprox_mov
                       workspace, intervals);
 }
 
+cprox_status cprox_obstacles_violations(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
+                                        double resolution, const cprox_options *options, cprox_workspace *workspace,
+                                        cprox_violations *violations) {
+  return list_violations(mover, obstacles_list(obstacles), obstacles_count(obstacles), delta, resolution, options,
+                         workspace, violations);
+}
+
 /* ---- many movers ---- */
 
 /* NULL, and the error message set, where there is no such index. */

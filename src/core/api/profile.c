@@ -3,9 +3,7 @@
 #include <math.h>
 
 #include "base/check.h"
-#include "base/round_down.h"
-#include "base/rounding.h"
-#include "curve/subcurve.h"
+#include "problem/section.h"
 #include "problem/validate.h"
 #include "solve/list.h"
 #include "solve/solve.h"
@@ -23,50 +21,6 @@ static cprox_status check_breaks(const query *q, const double *breaks, size_t n,
   return CPROX_OK;
 }
 
-/* The capsule round the control points of [t0, t1] of one piece, and a little more, or of the whole piece where there
- * are none. */
-static curve_capsule reach_of(const cprox_curve *curve, size_t piece, double t0, double t1,
-                              cprox_workspace *workspace) {
-  vec3 p[CPROX_MAX_DEGREE + 1];
-  if (cprox_curve_control_points(curve, t0, t1, workspace, p) != CPROX_OK)
-    return curve_capsule_at(curve, curve->n_leaves + piece);
-  curve_capsule c = {.a = p[0], .b = p[curve->degree]};
-  double largest = 0.0;
-  for (size_t i = 0; i <= curve->degree; i++) {
-    /* the capsule round a chord contains the hull of points that are near the chord */
-    const vec3 ab = vec_sub(c.b, c.a), ap = vec_sub(p[i], c.a);
-    const double length2 = vec_norm2(ab), along = vec_dot(ap, ab);
-    const double s = length2 > 0.0 ? fmin(fmax(along / length2, 0.0), 1.0) : 0.0;
-    c.radius = fmax(c.radius, vec_norm(vec_sub(p[i], vec_lerp(c.a, c.b, s))));
-    largest = fmax(largest, vec_norm(curve_piece(curve, piece)[i]));
-  }
-  const double degree = (double)curve->degree;
-  c.radius = ROUND_UP * (c.radius + curve->error[piece] + (44.0 * degree + 40.0) * ROUND_U * largest);
-  return c;
-}
-
-/* What the section's ends lie farther out than asked, as a fraction of the piece. */
-static const double SECTION_OUTWARD = 10.0 * ROUND_U;
-
-/* The part of a piece between two of its parameters, rounded outward: so that sections which share an end leave nothing
- * out. */
-static curve_interval section_between(const cprox_curve *curve, size_t piece, double t0, double t1) {
-  const double from = curve->breaks[piece], to = curve->breaks[piece + 1];
-  const double a =
-      fmin(round_fraction_below(from, to, t0), 1.0 - 0x1p-52);            /* at least one double before the end, and */
-  const double b = fmax(round_fraction_above(from, to, t1), a + 0x1p-52); /* one after the beginning */
-  return curve_side_section(curve, piece, a, b);
-}
-
-/* A point that is farther out than asked may be that much nearer: the curve is no faster than the ends of its
- * hodograph. */
-static double outward_motion(const cprox_curve *curve, size_t piece) {
-  const vec3 *p = curve_piece(curve, piece);
-  double longest = 0.0;
-  for (size_t i = 1; i <= curve->degree; i++) longest = fmax(longest, vec_norm(vec_sub(p[i], p[i - 1])));
-  return ROUND_UP * SECTION_OUTWARD * (double)curve->degree * longest;
-}
-
 /* The least clearance over [t0, t1], a piece at a time. */
 static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox_profile_interval *interval) {
   const cprox_curve *curve = q->mover.curve;
@@ -77,15 +31,13 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
   for (size_t i = *piece; i < curve->n_pieces && curve->breaks[i] < t1; i++) {
     const double from = fmax(t0, curve->breaks[i]), to = fmin(t1, curve->breaks[i + 1]);
     if (!(from < to)) continue;
-    q->part = section_between(curve, i, from, to);
-    q->t0 = from, q->t1 = to;
-    q->reach = reach_of(curve, i, from, to, q->workspace);
+    query_ask_section(q, i, from, to);
     cprox_result r;
     const cprox_status status = query_answer(q, 0, q->n, interval->upper, &r);
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
     interval->lower = fmin(interval->lower, r.lower);
-    r.upper += outward_motion(curve, i);
+    r.upper += section_outward(curve, i);
     if (r.upper < interval->upper) {
       interval->upper = r.upper;
       interval->t = fmin(fmax(r.t, t0), t1);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/rounding.h"
 #include "problem/problem.h"
 #include "robot_query/oracle.h"
 
@@ -50,7 +51,18 @@ void robot_search_report(const robot_search *o, cprox_result *result) {
   result->lod = lod_of(o);
 }
 
-cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
+/* Twice the way from the middle. */
+static double travel_of(robot_search *o, const motion_interval *over) {
+  if (o->best.pair < 0) return INFINITY;
+  robot_scene *s = &o->scene;
+  robot_scene_enter_span(s, over);
+  const robot_pair *pair = &s->pairs[o->best.pair];
+  const robot_body *moving = robot_scene_moving(s, pair), *standing = robot_scene_standing(s, pair);
+  return ROUND_UP * 2.0 * (robot_scene_displacement(s, pair, moving) + moving->side.error + standing->side.error);
+}
+
+static cprox_status answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
+                           double *travel) {
   robot_search o;
   if (!robot_scene_begin(&o.scene, q, first, last, ROBOT_MOST_LISTED, cutoff))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
@@ -66,8 +78,20 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double cuto
   r.nodes = found.nodes;
   if (goal.share) cutoff = lesser(cutoff, goal.share(goal.share_user, r.upper));
   query_conclude(q, cutoff, status, &r);
+  if (travel) {
+    const motion_interval over = motion_interval_of(q->mover.motion, q->t0, q->t1);
+    *travel = travel_of(&o, &over);
+  }
   *result = r;
   return r.status;
+}
+
+cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
+  return answer(q, first, last, cutoff, result, NULL);
+}
+
+cprox_status robot_answer_and_travel(const query *q, cprox_result *result, double *travel) {
+  return answer(q, 0, q->n, INFINITY, result, travel);
 }
 
 /* ---- time of contact ---- */

@@ -66,6 +66,13 @@ static inline cprox_status profile_of_list(cprox_mover moving, const cprox_obsta
           cprox_obstacles_profile(obstacles, moving, breaks, n_intervals, options, workspace, intervals));
 }
 
+static inline cprox_status violations_of_list(cprox_mover moving, const cprox_obstacle *targets, size_t n, double delta,
+                                              double resolution, const cprox_options *options,
+                                              cprox_workspace *workspace, cprox_violations *violations) {
+  OF_LIST(targets, n, workspace,
+          cprox_obstacles_violations(obstacles, moving, delta, resolution, options, workspace, violations));
+}
+
 static inline cprox_status certify_of_list(cprox_mover moving, const cprox_obstacle *targets, size_t n, double delta,
                                            const cprox_result *answer, const cprox_options *options,
                                            cprox_workspace *workspace, cprox_certificate *certificate) {
