@@ -263,9 +263,10 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "tolerance")) verdicts(problems, n, &size, ws);
   if (bench_wanted(&size, "thin obstacles")) thin_obstacles(cases, n_cases, &size, ws);
   if (bench_wanted(&size, "pairs measured")) bench_robot_pairs(cases, n_cases, ws);
-  if (bench_wanted(&size, "waypoints")) bench_robot_waypoints(cases, n_cases, &size, ws);
+  bench_robot_waypoints(cases, n_cases, &size, ws);
   bench_robot_scale(&cases[0], &size, ws);
   bench_robot_links(&size, ws);
+  bench_robot_states(cases, n_cases, &size, ws);
   for (size_t i = 0; i < n_cases; i++) {
     robot_fcl_free(fcl[i]);
     robot_case_free(&cases[i]);

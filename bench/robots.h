@@ -18,4 +18,7 @@ void bench_robot_pairs(const robot_case *cases, size_t n, cprox_workspace *works
 /* Arms against themselves by their own meshes, beside FCL at .05 rad. */
 void bench_robot_links(const bench_size *size, cprox_workspace *workspace);
 
+/* States without a motion, beside FCL. */
+void bench_robot_states(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
+
 #endif

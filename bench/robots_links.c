@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Arms against themselves by their own triangle meshes, along random paths of 2 to 8 waypoints: verdicts and distances
  * beside FCL at states between which no joint moves farther than .05 rad. FCL calls all of these states free, as the
- * planner of such a path does. */
+ * planner of such a path does. The UR5's forearm and second wrist, whose hulls reach into each other, alone. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -22,6 +22,8 @@ typedef struct problem {
   const robot_case *c;
   robot_fcl *fcl;
   cprox_motion *motion;
+  const cprox_robot_pair *pairs;
+  size_t n_pairs;
 } problem;
 
 typedef struct method_state {
@@ -33,8 +35,8 @@ static void verdict(const void *problems, size_t i, void *state, bench_answer *a
   const problem *p = (const problem *)problems + i;
   const method_state *s = state;
   cprox_result r;
-  const cprox_status status = list_collision(cprox_robot_self(p->motion, p->c->self_pairs, p->c->n_self_pairs), NULL, 0,
-                                             NULL, s->workspace, &r, NULL);
+  const cprox_status status =
+      list_collision(cprox_robot_self(p->motion, p->pairs, p->n_pairs), NULL, 0, NULL, s->workspace, &r, NULL);
   *answer = (bench_answer){.nodes = r.nodes, .distance_queries = r.distance_queries, .failed = status < 0};
 }
 
@@ -44,8 +46,8 @@ static void distance(const void *problems, size_t i, void *state, bench_answer *
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = s->epsilon;
   cprox_result r;
-  const cprox_status status = list_distance(cprox_robot_self(p->motion, p->c->self_pairs, p->c->n_self_pairs), NULL, 0,
-                                            &options, s->workspace, &r, NULL);
+  const cprox_status status =
+      list_distance(cprox_robot_self(p->motion, p->pairs, p->n_pairs), NULL, 0, &options, s->workspace, &r, NULL);
   *answer = (bench_answer){.lower = r.lower,
                            .upper = r.upper,
                            .nodes = r.nodes,
@@ -118,10 +120,32 @@ static size_t random_paths(const robot_case *c, robot_fcl *fcl, size_t joints, d
   rng r = rng_seed(18);
   size_t found = 0;
   for (int tries = 0; tries < MOST_TRIES && found < n; tries++) {
-    const problem p = {.c = c, .fcl = fcl, .motion = random_path(c, fcl, joints, range, &r)};
+    const problem p = {.c = c,
+                       .fcl = fcl,
+                       .motion = random_path(c, fcl, joints, range, &r),
+                       .pairs = c->self_pairs,
+                       .n_pairs = c->n_self_pairs};
     if (p.motion) problems[found++] = p;
   }
   return found;
+}
+
+/* The geometry of a link; -1: it has none. */
+static int32_t geometry_of(const robot_case *c, const char *link) {
+  for (size_t i = 0; i < c->n_geometries; i++)
+    if (strcmp(c->link_names[c->links[i]], link) == 0) return (int32_t)i;
+  return -1;
+}
+
+/* Two links whose hulls reach into each other, alone. */
+static void row_of_pair(const robot_case *c, const char *parameter, const char *link, const char *other,
+                        problem *problems, size_t n, const bench_size *size, const bench_method *method) {
+  const cprox_robot_pair pair = {geometry_of(c, link), geometry_of(c, other)};
+  if (pair.geometry < 0 || pair.other < 0 || !bench_wanted(size, "own meshes of a pair")) return;
+  for (size_t i = 0; i < n; i++) problems[i].pairs = &pair, problems[i].n_pairs = 1;
+  const bench_workload w = {"robots", "own meshes of a pair", parameter, problems, n, NULL, 0.0};
+  bench_measure(&w, size, method, 1);
+  for (size_t i = 0; i < n; i++) problems[i].pairs = c->self_pairs, problems[i].n_pairs = c->n_self_pairs;
 }
 
 static void rows(const char *robot, size_t joints, double range, const bench_size *size, cprox_workspace *ws) {
@@ -142,6 +166,8 @@ static void rows(const char *robot, size_t joints, double range, const bench_siz
   if (bench_wanted(size, w.name)) bench_measure(&w, size, fines, (size_t)peers);
   w.name = "own meshes distance 1e-3";
   if (bench_wanted(size, w.name)) bench_measure(&w, size, coarses, (size_t)peers);
+  row_of_pair(&c, "forearm and second wrist verdict", "forearm_link", "wrist_2_link", problems, n, size, verdicts);
+  row_of_pair(&c, "forearm and second wrist 1e-4", "forearm_link", "wrist_2_link", problems, n, size, fines);
   for (size_t i = 0; i < n; i++) cprox_motion_free(problems[i].motion);
   robot_fcl_free(fcl);
   robot_case_free(&c);
@@ -149,7 +175,7 @@ static void rows(const char *robot, size_t joints, double range, const bench_siz
 
 void bench_robot_links(const bench_size *size, cprox_workspace *ws) {
   if (!bench_wanted(size, "own meshes verdict") && !bench_wanted(size, "own meshes distance 1e-4") &&
-      !bench_wanted(size, "own meshes distance 1e-3"))
+      !bench_wanted(size, "own meshes distance 1e-3") && !bench_wanted(size, "own meshes of a pair"))
     return;
   rows("ur5", 6, 3.14159, size, ws);
   rows("panda", 7, 1.8, size, ws);

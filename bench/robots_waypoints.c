@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One straight motion of a robot, written with 2 to 100,000 waypoints: what the waypoints cost. In turns with each, the
- * same query of the motion with 2 waypoints. */
+ * same query of the motion with 2 waypoints. And what making the motion costs, all of its joints moving. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,36 +45,82 @@ static void ask(const void *problems, size_t i, void *state, bench_answer *answe
   if (p->asked == DISTANCE) answer->lower = r.lower, answer->upper = r.upper;
 }
 
-/* From where the arm begins to where it ends on its own trajectory, written with so many waypoints at unequal times. */
-static cprox_motion *straight(const robot_case *arm, size_t points, cprox_workspace *ws) {
-  double ends[2][CASE_MAX_VARIABLES];
+/* From where the arm begins to where it ends on its own trajectory, with so many waypoints at unequal times. */
+typedef struct waypoints {
+  cprox_motion_description description;
   int32_t variables[CASE_MAX_VARIABLES];
+  double *values;
+  cprox_waypoint *list;
+} waypoints;
+
+static void draw_waypoints(const robot_case *arm, size_t points, waypoints *w) {
+  double ends[2][CASE_MAX_VARIABLES];
   const size_t n = arm->n_variables;
   const cprox_motion_info info = cprox_motion_get_info(arm->motion);
   cprox_motion_evaluate(arm->motion, info.t0, ends[0]);
   cprox_motion_evaluate(arm->motion, info.t1, ends[1]);
-  double *values = malloc(points * n * sizeof *values);
-  cprox_waypoint *list = calloc(points, sizeof *list);
+  w->values = malloc(points * n * sizeof *w->values);
+  w->list = calloc(points, sizeof *w->list);
   rng r = rng_seed(92);
-  for (size_t i = 0; i < n; i++) variables[i] = (int32_t)i;
+  for (size_t i = 0; i < n; i++) w->variables[i] = (int32_t)i;
   for (size_t i = 0; i < points; i++) {
     const bool inside = i > 0 && i + 1 < points;
     const double s = ((double)i + (inside ? rng_uniform(&r, -0.3, 0.3) : 0.0)) / (double)(points - 1);
-    for (size_t k = 0; k < n; k++) values[i * n + k] = (1.0 - s) * ends[0][k] + s * ends[1][k];
-    list[i] = (cprox_waypoint){.time = s, .positions = values + i * n};
+    for (size_t k = 0; k < n; k++) w->values[i * n + k] = (1.0 - s) * ends[0][k] + s * ends[1][k];
+    w->list[i] = (cprox_waypoint){.time = s, .positions = w->values + i * n};
   }
+  w->description = (cprox_motion_description){.variables = w->variables,
+                                              .n_variables = n,
+                                              .waypoints = w->list,
+                                              .n_waypoints = points,
+                                              .interpolation = CPROX_INTERPOLATION_LINEAR};
+}
+
+static void free_waypoints(waypoints *w) {
+  free(w->values);
+  free(w->list);
+}
+
+static cprox_motion *straight(const robot_case *arm, size_t points, cprox_workspace *ws) {
+  waypoints w;
+  draw_waypoints(arm, points, &w);
   cprox_motion *motion = NULL;
-  const cprox_motion_description d = {.variables = variables,
-                                      .n_variables = n,
-                                      .waypoints = list,
-                                      .n_waypoints = points,
-                                      .interpolation = CPROX_INTERPOLATION_LINEAR};
-  if (cprox_motion_create(arm->robot, &d, ws, &motion) != CPROX_OK)
+  if (cprox_motion_create(arm->robot, &w.description, ws, &motion) != CPROX_OK)
     fprintf(stderr, "waypoints: %s\n", cprox_workspace_error(ws));
-  free(values);
-  free(list);
+  free_waypoints(&w);
   return motion;
 }
+
+/* ---- making a motion ---- */
+
+typedef struct making {
+  const cprox_robot *robot;
+  waypoints w;
+} making;
+
+static void make_motion(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const making *p = (const making *)problems + i;
+  cprox_motion *motion = NULL;
+  *answer = (bench_answer){.lower = NAN, .upper = NAN};
+  answer->failed = cprox_motion_create(p->robot, &p->w.description, state, &motion) != CPROX_OK;
+  cprox_motion_free(motion);
+}
+
+static void making_row(const robot_case *arm, size_t points, const bench_size *size, cprox_workspace *ws) {
+  making p = {.robot = arm->robot};
+  draw_waypoints(arm, points, &p.w);
+  size_t joints = 0;
+  for (size_t k = 0; k < arm->n_variables; k++)
+    joints += p.w.values[k] != p.w.values[(points - 1) * arm->n_variables + k];
+  char parameter[60];
+  snprintf(parameter, sizeof parameter, "waypoints %zu of %zu joints", points, joints);
+  const bench_workload w = {"robots", "making a motion", parameter, &p, 1, NULL, 0.0};
+  const bench_method method = {"curve_proximity", make_motion, ws};
+  bench_measure(&w, size, &method, 1);
+  free_waypoints(&p.w);
+}
+
+/* ---- queries ---- */
 
 /* Motions that reach contact are asked when; the others how near they come. */
 static double distance_of(const problem *p, cprox_workspace *ws) {
@@ -96,6 +142,9 @@ static void row(const char *name, size_t points, const problem *problems, size_t
 
 void bench_robot_waypoints(const robot_case *cases, size_t n_cases, const bench_size *size, cprox_workspace *ws) {
   static const size_t COUNTS[] = {2, 10, 100, 1000, 10000, MOST_POINTS};
+  for (size_t k = 2; k < sizeof COUNTS / sizeof *COUNTS && bench_wanted(size, "making a motion"); k++)
+    making_row(&cases[0], COUNTS[k], size, ws);
+  if (!bench_wanted(size, "waypoints")) return;
   cprox_motion *sparse[ARMS], *dense[ARMS];
   const robot_case *arms[ARMS];
   size_t n_arms = 0;

@@ -30,12 +30,12 @@ def matching(rows, target):
     return [row for row in rows if all(fnmatch.fnmatchcase(row[key], target[key]) for key in ('group', 'workload', 'parameter'))]
 
 
-def ratios(rows, baseline, column='median_us'):
+def ratios(rows, baseline, column='median_us', our_column=None):
     """baseline's time, or its count, over ours for each workload and parameter that has both."""
-    def times(method):
+    def times(method, column):
         return {(r['workload'], r['parameter']): float(r[column]) for r in rows
                 if r['method'] == method and r[column] not in ('', 'nan', '0')}
-    theirs, ours = times(baseline), times(OURS)
+    theirs, ours = times(baseline, column), times(OURS, our_column or column)
     return [theirs[key] / ours[key] for key in ours if key in theirs]
 
 
@@ -64,14 +64,15 @@ def figure(rows, target):
         if not values:
             return None
         return min(values) if kind == 'each' else geometric_mean(values)
+    if kind == 'tail':
+        values = ratios(found, target['baseline'] or OURS, 'median_us', 'p95_us')
+        return max(1.0 / value for value in values) if values else None
     ours = [row for row in found if (row['method'] == target['baseline'] if target['baseline'] else is_ours(row))]
     if not ours:
         return None
     if kind in ('growth', 'node growth'):
         by_accuracy, column = sorted(ours, key=lambda row: row['parameter']), 'median_us' if kind == 'growth' else 'nodes'
         return float(by_accuracy[-1][column]) / float(by_accuracy[0][column])
-    if kind == 'tail':
-        return max(float(row['p95_us']) / float(row['median_us']) for row in ours)
     if kind == 'exponent':
         return max(exponent([row for row in ours if row['workload'] == name]) for name in {row['workload'] for row in ours})
     if kind == 'microseconds':

@@ -350,8 +350,13 @@ static void fill_track(robot_scene *s, size_t track) {
   motion_fill_track(s->motion, track, &s->over, &state->own, &s->centre, s->rows);
 }
 
+static bool is_same(const motion_interval *a, const motion_interval *b) {
+  return a->first == b->first && a->last == b->last && a->a == b->a && a->b == b->b;
+}
+
 /* The one track says where the centre is. */
 void robot_scene_enter_span(robot_scene *s, const motion_interval *over) {
+  if (s->node > 0 && is_same(over, &s->over)) return; /* everything is known */
   s->node++;
   s->over = *over;
   s->centre = motion_middle(s->motion, over);
