@@ -370,6 +370,7 @@ static void fill_part(robot_scene *s, int32_t part) {
 }
 
 void robot_scene_fill_pair(robot_scene *s, const robot_pair *pair) {
+  if (s->motion->n_tracks == 1) return; /* it was filled when the node was entered */
   fill_part(s, pair->moving);
   if (pair->self) fill_part(s, pair->standing);
 }
