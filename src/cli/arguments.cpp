@@ -25,17 +25,17 @@ struct Option {
 
 const std::map<std::string, Option> &options() {
   static const std::map<std::string, Option> table = {
-      {"--curves", {true, {Action::CURVES, Action::CHECK}}},
+      {"--curves", {true, {Action::CURVES, Action::REPORT, Action::CHECK}}},
       {"--against", {true, {Action::CURVES, Action::CHECK}}},
-      {"--trajectory", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
+      {"--trajectory", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
       {"--movers", {false, {Action::CURVES}}},
-      {"--self", {false, {Action::CURVES, Action::CHECK}}},
+      {"--self", {false, {Action::CURVES, Action::REPORT, Action::CHECK}}},
       {"--signed", {false, {Action::CURVES}}},
-      {"--scene", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
-      {"--robot", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
-      {"--srdf", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
-      {"--state", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
-      {"--certificate", {true, {Action::CURVES}}},
+      {"--scene", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
+      {"--robot", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
+      {"--srdf", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
+      {"--state", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
+      {"--certificate", {true, {Action::CURVES, Action::REPORT}}},
       {"--in", {true, {Action::PAIRS, Action::CONSTRAINTS}}},
       {"--provider", {true, {Action::CONSTRAINTS}}},
       {"--parameters", {true, {Action::CONSTRAINTS}}},
@@ -48,20 +48,21 @@ const std::map<std::string, Option> &options() {
       {"--shard", {true, {Action::CERTIFY}}},
       {"--failed", {true, {Action::CERTIFY}}},
       {"--progress", {true, {Action::CERTIFY}}},
-      {"--epsilon", {true, {Action::CURVES, Action::PAIRS, Action::CERTIFY}}},
-      {"--delta", {true, {Action::CURVES}}},
-      {"--max-nodes", {true, {Action::CURVES, Action::PAIRS, Action::CERTIFY}}},
+      {"--epsilon", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
+      {"--delta", {true, {Action::CURVES, Action::REPORT}}},
+      {"--max-nodes", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
       {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::CHECK}}},
       {"--per-object", {false, {Action::CURVES}}},
-      {"--max-lod", {true, {Action::CURVES, Action::PAIRS, Action::CERTIFY}}},
+      {"--max-lod", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
       {"--timings", {false, {Action::CURVES}}},
       {"--per-link", {false, {Action::CURVES}}},
-      {"--intervals", {true, {Action::CURVES}}},
-      {"--breaks", {true, {Action::CURVES}}},
-      {"--pairs", {true, {Action::CURVES}}},
+      {"--intervals", {true, {Action::CURVES, Action::REPORT}}},
+      {"--breaks", {true, {Action::CURVES, Action::REPORT}}},
+      {"--pairs", {true, {Action::CURVES, Action::REPORT}}},
       {"--within", {true, {Action::CURVES}}},
-      {"--out", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::MERGE}}},
+      {"--out",
+       {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::MERGE}}},
   };
   return table;
 }
@@ -81,6 +82,7 @@ const Command kCommands[] = {
     {"time-of-contact", Action::CURVES, QueryType::COLLISION, Asking::CONTACT},
     {"pairs", Action::PAIRS, QueryType::DISTANCE},
     {"constraints", Action::CONSTRAINTS, QueryType::DISTANCE},
+    {"report", Action::REPORT, QueryType::DISTANCE},
     {"send", Action::SEND, QueryType::DISTANCE},
     {"check", Action::CHECK, QueryType::DISTANCE},
     {"certify", Action::CERTIFY, QueryType::DISTANCE},
@@ -209,8 +211,9 @@ void readQuery(const Words &words, const Command &command, Query &query) {
   }
 
   /* the limit of `tolerance` has no default: a clearance that nobody asked for means nothing */
-  if (words.has("--delta") && command.query_type != QueryType::TOLERANCE)
-    throw BadUsage("--delta is for 'tolerance': it is the clearance that is asked for");
+  const bool takes_delta = command.query_type == QueryType::TOLERANCE || command.action == Action::REPORT;
+  if (words.has("--delta") && !takes_delta)
+    throw BadUsage("--delta is for 'tolerance' and 'report': it is the clearance that is asked for");
   if (words.has("--delta")) query.delta = readNumber(words, "--delta", 0.0, true, "of at least 0 (metres)");
   if (command.action == Action::CURVES && command.query_type == QueryType::TOLERANCE && !words.has("--delta")) {
     throw BadUsage("'tolerance' needs --delta D, the clearance that is asked for, in metres");
@@ -227,11 +230,12 @@ void readQuery(const Words &words, const Command &command, Query &query) {
 /* Options that are for one command alone. */
 void readAsking(const Words &words, const Command &command, Arguments &out) {
   const auto only = [&](const char *name, const char *command_name, Asking asking) {
-    if (words.has(name) && command.asking != asking)
+    if (words.has(name) && command.asking != asking && command.action != Action::REPORT)
       throw BadUsage(std::string(name) + " is for '" + command_name + "'");
     return words.has(name);
   };
   out.asking = command.asking;
+  out.has_delta = words.has("--delta");
   if (only("--intervals", "profile", Asking::PROFILE)) {
     constexpr std::uint64_t kMostIntervals = 1000000;
     if (words.has("--breaks")) throw BadUsage("--intervals and --breaks exclude each other");
@@ -304,6 +308,16 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
     if (!words.has(name)) throw BadUsage("'" + std::string(command.word) + "' needs " + name + " " + what);
     return words.text(name);
   };
+  /* what curves are measured against */
+  const auto readSurroundings = [&] {
+    if (!words.has("--robot")) required("--scene", "SCENE.yaml");
+    out.scene = words.text("--scene");
+    out.robot = words.text("--robot");
+    out.srdf = words.text("--srdf");
+    out.state = words.text("--state");
+    if (out.robot.empty() && !out.state.empty()) throw BadUsage("--state needs --robot URDF");
+    if (out.robot.empty() && !out.srdf.empty()) throw BadUsage("--srdf needs --robot URDF");
+  };
   std::vector<std::string> plain = words.plain;
 
   switch (command.action) {
@@ -329,13 +343,17 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
         readAgainst(words, out);
         break;
       }
-      if (!words.has("--scene") && !words.has("--robot")) required("--scene", "SCENE.yaml");
-      out.scene = words.text("--scene");
-      out.robot = words.text("--robot");
-      out.srdf = words.text("--srdf");
-      out.state = words.text("--state");
-      if (out.robot.empty() && !out.state.empty()) throw BadUsage("--state needs --robot URDF");
-      if (out.robot.empty() && !out.srdf.empty()) throw BadUsage("--srdf needs --robot URDF");
+      readSurroundings();
+      break;
+    case Action::REPORT:
+      required("--out", "REPORT.html");
+      if (words.has("--trajectory")) {
+        readTrajectoryWords(words, out);
+        break;
+      }
+      if (words.has("--self")) throw BadUsage("--self needs --trajectory T.yaml");
+      out.curves = required("--curves", "CURVES.csv, or --trajectory T.yaml");
+      readSurroundings();
       break;
     case Action::CERTIFY: {
       constexpr std::uint64_t kMostShards = 1000000;
@@ -447,6 +465,8 @@ cprox constraints --provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parame
                                         value and gradient of clearance constraints by a plugin
                 (or --trajectory T.yaml --robot URDF [--srdf SRDF --state TEXT], instead of --in)   of a robot along a trajectory
                 --check-gradient        holds the gradients against central differences
+cprox report    (the inputs of distance, without --against) [--delta D] --out REPORT.html
+                                        one page to look at: verdict, clearance over time per link, closest pairs, 3-D view
 cprox send      SCENE.yaml [--replace | --add] [--node NAME]   hands a scene file to a running node
 cprox check     FILE  (the inputs of the query)  what the certificates in FILE prove
 cprox certify   --dataset MANIFEST --out FOLDER [--shards N [--shard I]]   answers the rows of a dataset, shard by shard
@@ -477,14 +497,14 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
                     The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that
                     it is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs
   --epsilon E       width of the intervals asked for, metres, above 0 (default 1e-06)
-  --delta D         the clearance asked of 'tolerance', metres
+  --delta D         the clearance asked of 'tolerance', and of 'report' if its verdict is wanted, metres
   --max-nodes N     budget of parameter intervals for each target (default 20000)
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
   --per-object      rows for each curve and object or link, not for the nearest alone
   --per-link        with --trajectory: rows for each link and each object that a link carries
-  --intervals N     'profile': N intervals of equal length (default 100)
-  --breaks LIST     'profile': where intervals begin and end instead, "0, 0.5, 2"
-  --pairs K         'nearest': at most K pairs for each curve or trajectory (default 10)
+  --intervals N     'profile', 'report': N intervals of equal length (default 100)
+  --breaks LIST     'profile', 'report': where intervals begin and end instead, "0, 0.5, 2"
+  --pairs K         'nearest', 'report': at most K pairs for each curve or trajectory (default 10)
   --within D        'nearest': only pairs that come within D metres
   --max-lod R       the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies
                     by their bounding spheres); a coarser one is never farther away
@@ -496,7 +516,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --progress P      'certify': line (default, on a terminal) or json, a line a second on standard error
   --skipped         tell on standard error what takes no part, and why
   --timings         tell on standard error how long loading the robot and the scene takes, mesh by mesh
-  --out FILE        the results, instead of standard output; of 'certify' the folder of the shards
+  --out FILE        the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page
   --replace         'send': the file takes the place of the node's scene (default, unless the file says is_diff: true)
   --add             'send': the file is added to the node's scene
   --node NAME       the node that 'send' talks to (default )" +

@@ -21,6 +21,7 @@ enum class Action {
   MOVERS,
   PAIRS,
   CONSTRAINTS,
+  REPORT,
   SEND,
   CHECK,
   CERTIFY,
@@ -38,7 +39,9 @@ enum class Asking {
 struct Arguments {
   Action action = Action::HELP;
   Asking asking = Asking::SEARCH; /**< of CURVES and TRAJECTORY */
-  Query query;                    /**< CURVES, AGAINST and PAIRS: the command, and how it is to be answered */
+  Query query;                    /**< CURVES, AGAINST, PAIRS and REPORT: the command, and how it is to be answered */
+
+  bool has_delta = false; /**< REPORT: ask for a verdict at query.delta, too */
 
   std::string curves, scene;   /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
   std::string against;         /**< file of AGAINST; of CHECK where it was given */

@@ -10,22 +10,6 @@
 namespace curve_proximity::cli {
 namespace {
 
-/* Ascending, the first and the last exactly those of the domain. */
-std::vector<double> breaksOf(const Arguments &arguments, const std::array<double, 2> &domain) {
-  if (!arguments.breaks.empty()) return arguments.breaks;
-  const std::size_t n = arguments.intervals;
-  std::vector<double> out;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double part = static_cast<double>(i) / static_cast<double>(n);
-    const double next = domain[0] * (1.0 - part) + domain[1] * part;
-    if (out.empty() || next > out.back()) out.push_back(next); // a domain may have fewer numbers than intervals
-  }
-  out.front() = domain[0];
-  while (out.size() > 1 && out.back() >= domain[1]) out.pop_back();
-  out.push_back(domain[1]);
-  return out;
-}
-
 void addAnswer(const Subject &subject, const Arguments &arguments, Answer answer, Outcome &out) {
   answer.id = subject.id;
   answer.kind = subject.kind;
@@ -93,6 +77,21 @@ std::vector<ClearanceInterval> MotionSubject::profile(const std::vector<double> 
 
 Answer MotionSubject::contact(const Query &query, Workspace &workspace) const {
   return timeOfContact(motion_, self_, named(query), workspace);
+}
+
+std::vector<double> breaksOf(const Arguments &arguments, const std::array<double, 2> &domain) {
+  if (!arguments.breaks.empty()) return arguments.breaks;
+  const std::size_t n = arguments.intervals;
+  std::vector<double> out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(n);
+    const double next = domain[0] * (1.0 - part) + domain[1] * part;
+    if (out.empty() || next > out.back()) out.push_back(next); // a domain may have fewer numbers than intervals
+  }
+  out.front() = domain[0];
+  while (out.size() > 1 && out.back() >= domain[1]) out.pop_back();
+  out.push_back(domain[1]);
+  return out;
 }
 
 Columns columnsOf(const Arguments &arguments) {

@@ -69,6 +69,10 @@ class MotionSubject : public Subject {
   const bool self_;
 };
 
+/** Where the intervals of a profile begin and end: --breaks, or --intervals of equal length, whose first and last are
+ *  exactly those of the domain. */
+std::vector<double> breaksOf(const Arguments &arguments, const std::array<double, 2> &domain);
+
 /** The first line of the results, with its newline. */
 std::string headerOf(const Arguments &arguments);
 

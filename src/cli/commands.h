@@ -37,6 +37,9 @@ int certifyDataset(const Arguments &arguments, Console &console);
 /** merge: the shards as one table. */
 int mergeShards(const Arguments &arguments, Console &console);
 
+/** report: a page that shows a trajectory, or curves, and what they come close to. */
+int writeReport(const Arguments &arguments, Console &console);
+
 /** send: a scene file to a running node. */
 int sendScene(const Arguments &arguments, Console &console);
 

@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* report: one page that shows how close a trajectory, or curves, come to what is around them. */
+#include <filesystem>
+#include <functional>
+#include <set>
+
+#include "../scene/digest.h"
+#include "asking.h"
+#include "certificates.h"
+#include "commands.h"
+#include "csv.h"
+#include "failure.h"
+#include "library.h"
+#include "report_drawing.h"
+#include "report_page.h"
+#include "results.h"
+#include "trajectory.h"
+#include "world.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+constexpr std::size_t kMostCurves = 50; /* more lines than a chart shows */
+constexpr int kMoments = 100;           /* at which the robot is drawn, beside those of the closest pairs */
+
+/* What is asked about as one: a curve against the scene, the robot against the scene, the robot against itself. */
+struct Asked {
+  std::unique_ptr<Subject> subject;
+  std::vector<std::string> links; /* that have a line of their own in the chart; one empty name: all in one line */
+  std::function<Answer(const Query &, Workspace &)> search;
+};
+
+/* The page's data as they are gathered, and the exit code that they deserve. */
+class Report {
+ public:
+  Report(const Arguments &arguments, Console &console) : arguments_(arguments), console_(console) {
+    for (const char *list : {"verdicts", "profiles", "pairs", "curves", "notes"}) data_[list] = Value::array();
+  }
+
+  /** Searches, profiles and pairs of one thing. A part that fails is a note on the page and a complaint. */
+  void ask(const Asked &asked, Workspace &workspace) {
+    attempt(asked, "", [&] { addVerdicts(asked, workspace); });
+    for (const std::string &link : asked.links) {
+      attempt(asked, link, [&] { addProfile(*asked.subject, link, workspace); });
+    }
+    asked.subject->link.clear();
+    attempt(asked, "closest pairs", [&] {
+      for (const Answer &answer : asked.subject->nearest(arguments_.limits, plainQuery(), workspace))
+        addPair(asked, answer);
+    });
+  }
+
+  void addCurve(const CompiledCurve &curve, Workspace &workspace) {
+    data_["curves"].push_back(drawCurve(curve, workspace));
+  }
+
+  void note(const std::string &sentence) {
+    data_["notes"].push_back(sentence);
+  }
+
+  void failed(const std::string &complaint) {
+    failed_ = true;
+    note(complaint);
+    console_.say(complaint);
+  }
+
+  /** The records of all certificates, in the order of the verdicts. */
+  const std::string &certificates() const {
+    return certificates_;
+  }
+
+  /** The moments at which the robot is drawn: evenly, and where a verdict or pair has its witness. */
+  std::vector<double> moments(const std::array<double, 2> &domain) const {
+    std::set<double> out = witnesses_;
+    for (int i = 0; i <= kMoments; ++i) {
+      const double share = static_cast<double>(i) / kMoments;
+      out.insert(domain[0] * (1.0 - share) + domain[1] * share);
+    }
+    return {out.lower_bound(domain[0]), out.upper_bound(domain[1])};
+  }
+
+  Value &data() {
+    return data_;
+  }
+
+  int exitCode() const {
+    if (failed_ || data_["verdicts"].empty()) return kUnanswered;
+    if (violated_) return kSomeViolated;
+    return undecided_ ? kSomeUndecided : kAllAnswered;
+  }
+
+ private:
+  /* The query of distances. */
+  Query plainQuery() const {
+    Query query = arguments_.query;
+    query.delta = 0.0;
+    query.options.stop = interrupted;
+    return query;
+  }
+
+  template <class Part>
+  void attempt(const Asked &asked, const std::string &what, Part part) {
+    try {
+      part();
+    } catch (const std::bad_alloc &) {
+      throw;
+    } catch (const std::exception &e) {
+      failed(asked.subject->place + ": " + (what.empty() ? "" : what + ": ") + e.what());
+    }
+  }
+
+  void addVerdicts(const Asked &asked, Workspace &workspace) {
+    const bool with_proof = !arguments_.certificate.empty();
+    std::vector<QueryType> types{QueryType::DISTANCE};
+    if (arguments_.has_delta) types.insert(types.begin(), QueryType::TOLERANCE);
+    for (const QueryType type : types) {
+      Query query = plainQuery();
+      query.query_type = type;
+      if (type == QueryType::TOLERANCE) query.delta = arguments_.query.delta;
+
+      // A certificate is about the first query: the verdict, if there is one.
+      const CertificateHandle proof = makeCertificate();
+      const bool proves = with_proof && type == types.front();
+      if (proves) query.options.certificate = proof.get();
+      const Answer answer = asked.search(query, workspace);
+      Value row = toValue(toRow(answer, type), asked);
+      row["query"] = type == QueryType::TOLERANCE ? "tolerance" : "distance";
+      if (proves) {
+        const std::string record = recordOf(proof);
+        certificates_ += record;
+        row["proof"] = proofOf(proof);
+        row["certificate"] = toHex(digestOf(record.data(), record.size()));
+        if (!answer.unproven.empty()) failedProof(asked, answer.unproven);
+      }
+      violated_ = violated_ || row["verdict"] == "violated";
+      undecided_ = undecided_ || row["verdict"] == "undecided";
+      if (answer.result.status < 0) failed(asked.subject->place + ": " + answer.message);
+      if (std::isinf(answer.result.lower)) note(asked.subject->place + ": there was nothing to measure against");
+      data_["verdicts"].push_back(std::move(row));
+    }
+  }
+
+  void failedProof(const Asked &asked, const std::string &why) {
+    failed(asked.subject->place + ": no certificate: " + why);
+  }
+
+  void addProfile(Subject &subject, const std::string &link, Workspace &workspace) {
+    subject.link = link;
+    Value t = Value::array(), lower = Value::array(), upper = Value::array(), against = Value::array();
+    std::string ended;
+    const std::vector<double> breaks = breaksOf(arguments_, subject.domain());
+    for (const ClearanceInterval &interval : subject.profile(breaks, plainQuery(), workspace)) {
+      t.push_back(interval.t0);
+      lower.push_back(numberOrNull(interval.lower));
+      upper.push_back(numberOrNull(interval.upper));
+      against.push_back(interval.b == link && !link.empty() ? interval.a : interval.b);
+      if (interval.status != CPROX_OK) ended = cprox_status_text(interval.status);
+    }
+    t.push_back(breaks.back());
+    const std::string name = link.empty() ? subject.id : link;
+    if (!ended.empty()) note(subject.place + ": " + name + ": the profile is wider than epsilon: " + ended);
+    data_["profiles"].push_back(Value{{"name", name},
+                                      {"kind", subject.kind},
+                                      {"t", std::move(t)},
+                                      {"lower", std::move(lower)},
+                                      {"upper", std::move(upper)},
+                                      {"against", std::move(against)}});
+  }
+
+  void addPair(const Asked &asked, const Answer &answer) {
+    data_["pairs"].push_back(toValue(toRow(answer, QueryType::DISTANCE), asked));
+  }
+
+  Value toValue(const ResultRow &row, const Asked &asked) {
+    const auto point = [](const cprox_vec3 &p) { return Value{p.x, p.y, p.z}; };
+    const bool answered = row.result.status >= 0;
+    Value out{{"id", asked.subject->id}, {"kind", asked.subject->kind}, {"a", row.a}, {"b", row.b}};
+    out["status"] = cprox_status_name(row.result.status);
+    out["verdict"] = row.has_verdict && answered ? Value(cprox_verdict_name(row.result.verdict)) : Value(nullptr);
+    out["lower"] = answered ? numberOrNull(row.result.lower) : Value(nullptr);
+    out["upper"] = answered ? numberOrNull(row.result.upper) : Value(nullptr);
+    out["t"] = answered && row.has_t ? numberOrNull(row.result.t) : Value(nullptr);
+    if (answered && row.has_points) {
+      out["points"] = {point(row.result.witness_mover), point(row.result.witness_obstacle)};
+      if (row.has_t && std::isfinite(row.result.t)) witnesses_.insert(row.result.t);
+    }
+    out["nodes"] = row.result.nodes;
+    out["microseconds"] = row.microseconds;
+    out["message"] = row.message;
+    return out;
+  }
+
+  const Arguments &arguments_;
+  Console &console_;
+  Value data_ = Value::object();
+  std::string certificates_;
+  std::set<double> witnesses_;
+  bool failed_ = false, violated_ = false, undecided_ = false;
+};
+
+std::string fileName(const std::string &path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+/* "panda.urdf along reach.yaml in shelf.yaml" */
+std::string titleOf(const Arguments &arguments) {
+  std::string out = fileName(arguments.curves);
+  if (!arguments.trajectory.empty()) out = fileName(arguments.robot) + " along " + fileName(arguments.trajectory);
+  if (!arguments.scene.empty()) out += " in " + fileName(arguments.scene);
+  return out;
+}
+
+/* What the answers rest on: the files by their content, and what was asked. */
+void addBasis(const Arguments &arguments, const World &world, Report &report) {
+  Value &data = report.data();
+  data["title"] = titleOf(arguments);
+  data["version"] = CPROX_VERSION;
+  data["epsilon"] = arguments.query.options.epsilon;
+  data["delta"] = arguments.has_delta ? Value(arguments.query.delta) : Value(nullptr);
+  data["unit"] = arguments.trajectory.empty() ? "" : "s";
+  data["self"] = arguments.self;
+  data["objects"] = world.snapshot->objects().size();
+  data["inputs"] = Value::array();
+  const std::pair<const char *, const std::string *> inputs[] = {{"robot", &arguments.robot},
+                                                                 {"SRDF", &arguments.srdf},
+                                                                 {"trajectory", &arguments.trajectory},
+                                                                 {"curves", &arguments.curves},
+                                                                 {"scene", &arguments.scene}};
+  for (const auto &[what, path] : inputs) {
+    if (path->empty()) continue;
+    data["inputs"].push_back(Value{{"what", what}, {"file", *path}, {"digest", digestOfFile(*path, true)}});
+  }
+  for (const std::string &sentence : world.skipped) report.note(sentence);
+}
+
+Asked askedOf(const RobotMotion &motion, bool self, const Arguments &arguments) {
+  Asked out;
+  out.subject = std::make_unique<MotionSubject>(motion, self);
+  out.subject->id = std::filesystem::path(arguments.trajectory).stem().string();
+  out.subject->place = arguments.trajectory + ": " + out.subject->kind;
+  out.links = askedNames(motion, self);
+  out.search = [&motion, self](const Query &query, Workspace &workspace) {
+    return self ? askSelf(motion, query, workspace) : askEnvironment(motion, query, workspace).at(0);
+  };
+  return out;
+}
+
+Asked askedOf(const Targets &targets, const CompiledCurve &curve, const std::string &place) {
+  Asked out;
+  out.subject = std::make_unique<CurveSubject>(targets, curve);
+  out.subject->place = place;
+  out.links.emplace_back();
+  out.search = [&targets, &curve](const Query &query, Workspace &workspace) {
+    return ask(targets, curve, query, workspace).at(0);
+  };
+  return out;
+}
+
+void askTrajectory(const Arguments &arguments, const World &world, Report &report, Warnings &warnings) {
+  const RobotMotion motion = readMotion(arguments, world, warnings);
+  for (const std::string &sentence : motion.warnings()) report.note(sentence);
+  for (const std::string &sentence : motion.skipped()) report.note(sentence);
+  Workspace workspace;
+  for (const bool self : {false, true}) {
+    if (self ? arguments.self : !world.snapshot->objects().empty())
+      report.ask(askedOf(motion, self, arguments), workspace);
+  }
+  report.data()["domain"] = motion.domain();
+  drawWorld(world, &motion, report.moments(motion.domain()), report.data());
+}
+
+void askCurves(const Arguments &arguments, const World &world, Report &report) {
+  const Targets targets(world.snapshot, world.links, arguments.query);
+  Workspace workspace;
+  CsvFile file(arguments.curves);
+  std::array<double, 2> all{INFINITY, -INFINITY};
+  std::size_t count = 0;
+  while (const std::optional<CsvRow> row = file.next()) {
+    if (++count > kMostCurves)
+      throw BadUsage(arguments.curves + ": a report shows at most " + std::to_string(kMostCurves) + " curves");
+    const std::string place = placeOf(*row, arguments.curves);
+    try {
+      const CurveDescription description = parseCurve(row->text);
+      if (!arguments.certificate.empty()) requireCheckable(description);
+      const CompiledCurve curve = compile(description);
+      const Asked asked = askedOf(targets, curve, place);
+      report.ask(asked, workspace);
+      report.addCurve(curve, workspace);
+      all = {std::min(all[0], asked.subject->domain()[0]), std::max(all[1], asked.subject->domain()[1])};
+    } catch (const Error &e) {
+      report.failed(place + ": " + e.what());
+    } catch (const BadInput &e) {
+      report.failed(place + ": " + e.what());
+    }
+  }
+  if (count == 0) throw BadUsage(arguments.curves + ": there is no curve in it");
+  if (all[0] > all[1]) all = {0.0, 1.0};
+  report.data()["domain"] = all;
+  drawWorld(world, nullptr, {all[0]}, report.data());
+}
+
+} // namespace
+
+int writeReport(const Arguments &arguments, Console &console) {
+  Warnings warnings;
+  const World world = readStandingWorld(arguments, "a report", warnings);
+  reportPage("", ""); /* before any search: is all there that the page needs? */
+  const std::vector<std::string> inputs{arguments.curves, arguments.trajectory, arguments.scene, arguments.robot,
+                                        arguments.srdf};
+  ResultsFile page(arguments.out, inputs);
+  std::optional<ResultsFile> certificates;
+  if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputs, "--certificate");
+
+  catchInterrupts();
+  Report report(arguments, console);
+  addBasis(arguments, world, report);
+  if (arguments.trajectory.empty()) {
+    askCurves(arguments, world, report);
+  } else {
+    askTrajectory(arguments, world, report, warnings);
+  }
+  console.warn(warnings);
+  for (const std::string &sentence : warnings.sentences()) report.note(sentence);
+  if (interrupted(nullptr)) {
+    console.say("interrupted: there is no page");
+    return kInterrupted;
+  }
+  if (certificates) certificates->write(report.certificates());
+  const std::string data = report.data().dump(-1, ' ', false, Value::error_handler_t::replace);
+  page.write(reportPage(titleOf(arguments), data));
+  return report.exitCode();
+}
+
+} // namespace curve_proximity::cli

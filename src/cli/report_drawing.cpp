@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "report_drawing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "../scene/surface.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+/* All objects together, and all of the robot: what a browser turns without effort. */
+constexpr std::size_t kMostTriangles = 40000, kMostOfABody = 2500, kLeastOfABody = 100;
+constexpr int kCurveSamples = 200;
+
+/* Ten micrometres: more than a picture shows. */
+double rounded(double x) {
+  constexpr double kSteps = 1e5;
+  return std::round(x * kSteps) / kSteps;
+}
+
+void addNumbers(const Eigen::Vector3d &p, Value &out) {
+  for (const double x : {p.x(), p.y(), p.z()}) out.push_back(rounded(x));
+}
+
+Value toBody(const Surface &surface, const Eigen::Isometry3d &pose) {
+  Value vertices = Value::array(), triangles = Value::array();
+  for (Eigen::Index i = 0; i < surface.vertices.cols(); ++i) addNumbers(pose * surface.vertices.col(i), vertices);
+  for (Eigen::Index i = 0; i < surface.triangles.size(); ++i) triangles.push_back(surface.triangles(i));
+  return Value{{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}};
+}
+
+/* Adds one body's surface, unless it has none. */
+void addBody(const std::string &name, const std::string &kind, const std::string &on, const Surface &surface,
+             const Eigen::Isometry3d &pose, Value &bodies) {
+  if (surface.triangles.cols() == 0 || !surface.vertices.allFinite()) return;
+  Value body{{"name", name}, {"kind", kind}, {"on", on}};
+  body.update(toBody(surface, pose));
+  bodies.push_back(std::move(body));
+}
+
+Value toPose(const Eigen::Isometry3d &pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  Value out = Value::array();
+  addNumbers(pose.translation(), out);
+  for (const double x : {q.x(), q.y(), q.z(), q.w()}) out.push_back(rounded(x));
+  return out;
+}
+
+/* [m] The planes of halfspaces are drawn as far as all else reaches. */
+double sizeOf(const World &world) {
+  Eigen::AlignedBox3d box(Eigen::Vector3d::Zero());
+  for (const auto &[id, object] : world.snapshot->objects()) {
+    for (const ObjectShape &shape : object->shapes) {
+      if (shape.geometry.body && shape.placed.box.sizes().allFinite()) box.extend(shape.placed.box);
+    }
+  }
+  for (const auto &[name, pose] : world.links) box.extend(Eigen::Vector3d(pose.translation()));
+  constexpr double kLeast = 2.0;
+  return std::max(kLeast, box.sizes().maxCoeff());
+}
+
+} // namespace
+
+Value numberOrNull(double x) {
+  return std::isfinite(x) ? Value(x) : Value(nullptr);
+}
+
+void drawWorld(const World &world, const RobotMotion *motion, const std::vector<double> &times, Value &out) {
+  const Snapshot &scene = *world.snapshot;
+  const bool with_robot = scene.robot() != nullptr;
+  std::size_t count = 0;
+  for (const auto &[id, object] : scene.objects()) count += object->shapes.size();
+  if (with_robot) {
+    for (const auto &[link, parts] : scene.robot()->links()) count += parts.size();
+  }
+  const std::size_t most = std::clamp(kMostTriangles / std::max<std::size_t>(count, 1), kLeastOfABody, kMostOfABody);
+  const double plane_size = sizeOf(world);
+
+  // The objects, where they stand.
+  Value bodies = Value::array();
+  for (const auto &[id, object] : scene.objects()) {
+    for (std::size_t i = 0; i < object->shapes.size(); ++i) {
+      const ShapeDescription &shape = object->description.shapes[i];
+      addBody(id, "object", "", surfaceOf(shape, object->shapes[i].geometry.body, {}, most, plane_size),
+              object->description.pose * shape.pose, bodies);
+    }
+  }
+
+  // The links and what they carry, each in its link's frame.
+  if (with_robot) {
+    for (const auto &[link, parts] : scene.robot()->links()) {
+      for (const LinkGeometry &part : scene.linkGeometry(link))
+        addBody(link, "link", link,
+                surfaceOf(part.description, part.geometry.body, scene.robot()->resources(), most, plane_size),
+                part.pose, bodies);
+    }
+    for (const auto &[id, object] : scene.attached()) {
+      for (const LinkGeometry &part : object->shapes)
+        addBody(id, "link", object->link, surfaceOf(part.description, part.geometry.body, {}, most, plane_size),
+                part.pose, bodies);
+    }
+  }
+  out["bodies"] = std::move(bodies);
+
+  // Where the links are.
+  Value frames{{"times", times}, {"poses", Value::object()}};
+  for (const double t : times) {
+    const LinkPoses poses = motion ? motion->linkPoses(t) : world.links;
+    for (const auto &[link, pose] : poses) frames["poses"][link].push_back(toPose(pose));
+  }
+  out["frames"] = std::move(frames);
+}
+
+Value drawCurve(const CompiledCurve &curve, Workspace &workspace) {
+  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  Value points = Value::array(), parameters = Value::array();
+  for (int i = 0; i <= kCurveSamples; ++i) {
+    const double share = static_cast<double>(i) / kCurveSamples;
+    const double t = info.t0 * (1.0 - share) + info.t1 * share;
+    cprox_vec3 point{};
+    if (cprox_curve_evaluate(curve.curve.get(), t, workspace.get(), &point, nullptr, nullptr) != CPROX_OK) continue;
+    parameters.push_back(t);
+    addNumbers({point.x, point.y, point.z}, points);
+  }
+  return Value{
+      {"name", curve.id}, {"radius", curve.radius}, {"t", std::move(parameters)}, {"points", std::move(points)}};
+}
+
+} // namespace curve_proximity::cli

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What the 3-D view of a report draws, as JSON: bodies, where they stand at some moments, curves. */
+#ifndef CURVE_PROXIMITY_CLI_REPORT_DRAWING_H
+#define CURVE_PROXIMITY_CLI_REPORT_DRAWING_H
+
+#include <nlohmann/json.hpp>
+
+#include <curve_proximity/motion.hpp>
+#include <vector>
+
+#include "world.h"
+
+namespace curve_proximity::cli {
+
+/** JSON whose members keep their order. */
+using Value = nlohmann::ordered_json;
+
+/** null where x is not finite: JSON has no other word for it. */
+Value numberOrNull(double x);
+
+/** Adds to `out`:
+ *    bodies: [{name, kind: "object" | "link", vertices: [x, y, z, …], triangles: [i, j, k, …]}], those of kind object
+ * in the fixed frame, those of kind link in the frame of link `on` frames: {times: [t, …], poses: {link: [[x, y, z, qx,
+ * qy, qz, qw], …]}}, a pose for each time motion: null where the robot stands, or there is none. times: ascending. */
+void drawWorld(const World &world, const RobotMotion *motion, const std::vector<double> &times, Value &out);
+
+/** A curve as {name, radius, t: [t, …], points: [x, y, z, …]}. */
+Value drawCurve(const CompiledCurve &curve, Workspace &workspace);
+
+} // namespace curve_proximity::cli
+#endif
