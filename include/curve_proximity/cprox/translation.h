@@ -21,12 +21,12 @@ typedef struct cprox_translating {
   cprox_vec3 velocity;
 } cprox_translating;
 
-/** The least distance over the times 0 … duration [s], duration > 0, of two superquadrics or implicit bodies.
+/** The least distance over the times 0 … duration [s], duration > 0, of two convex bodies (no compounds).
  *
  *  lower <= the least distance <= upper; t: when upper was attained; the points stand where the bodies are then. 0
  *  where they touch or overlap at some time: verdict violated where a common point is proven, clear where lower > 0.
- *  Returns as cprox_pair(), and CPROX_INVALID for other kinds of bodies. Cost: one interior point search; no allocation
- *  once the workspace has grown. */
+ *  Returns as cprox_pair(), and CPROX_INVALID for other kinds of bodies. Cost: of superquadrics and implicit bodies one
+ *  interior point search; of other kinds about ten pairs. */
 CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b, double duration,
                                                   const cprox_options *options, cprox_workspace *workspace,
                                                   cprox_result *result);
@@ -59,7 +59,8 @@ typedef struct cprox_growth {
   uint64_t reserved[2];
 } cprox_growth;
 
-/** The growth distance of two superquadrics or implicit bodies, to a relative width of options->epsilon (default 1e-6).
+/** The growth distance of two convex bodies, to a relative width of options->epsilon (default 1e-6). Each is bounded
+ * and has its centre inside (a polytope's: the middle of its box).
  *
  *  It measures penetration where there is some: the bodies overlap if and only if it is below 1. The centre is that of
  *  cprox_body_get_info(); margin is not scaled and must be 0. Returns as cprox_pair(). */

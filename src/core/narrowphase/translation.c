@@ -15,29 +15,26 @@ enum { TRANSLATION_STEPS = 200 };
 
 /* ---- arguments ---- */
 
-static cprox_status check_body(const char *name, const cprox_obstacle *target, bool implicit_only,
-                               cprox_workspace *workspace) {
+static bool is_implicit(const cprox_body *body) {
+  return body->kind == CPROX_BODY_SUPERQUADRIC || body->kind == CPROX_BODY_IMPLICIT;
+}
+
+static cprox_status check_body(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
   if (target->curve || !target->body) return workspace_fail(workspace, CPROX_INVALID, "%s is not a body", name);
-  const cprox_body_kind kind = target->body->kind;
-  const bool is_implicit = kind == CPROX_BODY_SUPERQUADRIC || kind == CPROX_BODY_IMPLICIT;
-  if (implicit_only && !is_implicit)
-    return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be a superquadric or an implicit body", name,
-                          cprox_body_kind_name(kind));
   if (!target->body->shape.ops)
-    return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be convex", name, cprox_body_kind_name(kind));
+    return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be convex", name,
+                          cprox_body_kind_name(target->body->kind));
   return CPROX_OK;
 }
 
 static cprox_status check_motion(const cprox_translating *a, const cprox_translating *b, double duration,
-                                 bool implicit_only, const cprox_options *options, arguments_query asked,
-                                 cprox_workspace *workspace) {
+                                 const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   cprox_status status;
   if (!workspace) return CPROX_INVALID;
   if ((status = arguments_check_options(options, asked, workspace)) ||
       (status = arguments_check_target(&a->from, 0, workspace)) ||
-      (status = arguments_check_target(&b->from, 1, workspace)) ||
-      (status = check_body("a", &a->from, implicit_only, workspace)) ||
-      (status = check_body("b", &b->from, implicit_only, workspace)))
+      (status = arguments_check_target(&b->from, 1, workspace)) || (status = check_body("a", &a->from, workspace)) ||
+      (status = check_body("b", &b->from, workspace)))
     return status;
   if (!vec_finite(a->velocity) || !vec_finite(b->velocity))
     return workspace_fail(workspace, CPROX_INVALID, "a velocity is not finite");
@@ -58,16 +55,12 @@ static cprox_status finish(cprox_status status, cprox_workspace *workspace) {
 
 /* ---- the least distance ---- */
 
-cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b, double duration,
-                                        const cprox_options *options, cprox_workspace *workspace,
-                                        cprox_result *result) {
-  workspace_clear(workspace);
-  const cprox_options asked = arguments_options(options);
-  const arguments_query kind = {"the distance of bodies that translate", ARGUMENTS_RELATIVE};
-  cprox_status status = check_motion(&a, &b, duration, true, &asked, kind, workspace);
-  if (status) return status;
-  if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
-
+/* Of two implicit bodies: one search over both bodies and the time. */
+static cprox_status distance_of_implicit(const cprox_translating *first, const cprox_translating *second,
+                                         double duration, const cprox_options *options, cprox_workspace *workspace,
+                                         cprox_result *result) {
+  const cprox_translating a = *first, b = *second;
+  const cprox_options asked = *options;
   const pair_side x = pair_place_side(&a.from, 0), y = pair_place_side(&b.from, 0);
   const pair_placement place = pair_place(&x, &y);
   implicit_query query = {
@@ -104,11 +97,102 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
   if (result->lower > 0.0) result->verdict = CPROX_VERDICT_CLEAR;
   if (found.overlap || found.upper - margins + rounding <= 0.0) result->verdict = CPROX_VERDICT_VIOLATED;
   const double width = result->upper - result->lower;
-  status = width <= width_allowed(asked.epsilon, asked.relative_epsilon, result->upper) ? CPROX_OK
-           : found.steps >= asked.max_nodes                                             ? CPROX_BUDGET
-                                                                                        : CPROX_PRECISION;
+  const cprox_status status = width <= width_allowed(asked.epsilon, asked.relative_epsilon, result->upper) ? CPROX_OK
+                              : found.steps >= asked.max_nodes ? CPROX_BUDGET
+                                                               : CPROX_PRECISION;
   result->status = status;
   return finish(status, workspace);
+}
+
+/* A plane that separates the two at one time, and so bounds their distance at all times: value + slope (t - at). */
+typedef struct time_cut {
+  double at, value, slope;
+} time_cut;
+
+/* The pair at a time: its cut, and the least distance so far in *result. */
+static cprox_status cut_at(const cprox_translating *a, const cprox_translating *b, double t,
+                           const cprox_options *options, cprox_workspace *workspace, time_cut *cut,
+                           cprox_result *result) {
+  const vec3 relative = vec_sub(b->velocity, a->velocity);
+  cprox_obstacle moved = b->from;
+  moved.pose.position = vec_axpy(moved.pose.position, t, relative);
+  cprox_result r;
+  const cprox_status status = cprox_pair(a->from, moved, options, workspace, &r);
+  if (status < 0) return status;
+  const double rounding = ROUND_UP * 8.0 * ROUND_U * (vec_norm(b->from.pose.position) + vec_norm(relative) * t);
+  *cut = (time_cut){.at = t, .value = r.lower - rounding, .slope = -vec_dot(r.normal, relative)};
+  if (!(r.lower > 0.0)) cut->slope = 0.0; /* nothing separates them there; a distance is never below that value */
+  r.upper += rounding;
+  const uint32_t pairs = result->distance_queries + 1;
+  if (r.upper < result->upper) {
+    *result = r;
+    result->t = t;
+    result->witness_mover = vec_axpy(r.witness_mover, t, a->velocity);
+    result->witness_obstacle = vec_axpy(r.witness_obstacle, t, a->velocity);
+  }
+  result->distance_queries = pairs;
+  return CPROX_OK;
+}
+
+/* Of any two convex bodies: the distance is a convex function of time. A cut that falls and one that rises leave the
+ * least value where they meet, and the pair there replaces one of them. */
+static cprox_status distance_of_convex(const cprox_translating *a, const cprox_translating *b, double duration,
+                                       const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
+  cprox_options asked = *options;
+  asked.epsilon = 0.25 * options->epsilon;
+  cprox_result best = {.upper = INFINITY};
+  time_cut falling, rising, cut;
+  cprox_status status = cut_at(a, b, 0.0, &asked, workspace, &falling, &best);
+  if (status >= 0) status = cut_at(a, b, duration, &asked, workspace, &rising, &best);
+  if (status < 0) return status;
+  const double room = 1e-14 * vec_norm(vec_sub(b->velocity, a->velocity)) * duration;
+  double lower = 0.0;
+  for (int i = 0; i < TRANSLATION_STEPS; i++) {
+    const bool inner = falling.slope < 0.0 && rising.slope > 0.0;
+    double meet = falling.slope >= 0.0 ? 0.0 : duration;
+    if (inner)
+      meet = (rising.slope * rising.at - falling.slope * falling.at + falling.value - rising.value) /
+             (rising.slope - falling.slope);
+    meet = fmin(fmax(meet, 0.0), duration);
+    lower = fmax(falling.value + falling.slope * (meet - falling.at), rising.value + rising.slope * (meet - rising.at));
+    lower -= room;
+    if (!inner) lower = falling.slope >= 0.0 ? falling.value - room : rising.value - room;
+    const double width = width_allowed(options->epsilon, options->relative_epsilon, best.upper);
+    if (!inner || best.upper <= 0.0 || best.upper - fmax(lower, 0.0) <= width || meet == falling.at ||
+        meet == rising.at)
+      break;
+    if ((status = cut_at(a, b, meet, &asked, workspace, &cut, &best)) < 0) return status;
+    if (cut.slope < 0.0)
+      falling = cut;
+    else
+      rising = cut;
+    if (cut.slope == 0.0) falling = rising = cut; /* the least value is the cut's own */
+  }
+  best.verdict = best.upper <= 0.0 ? CPROX_VERDICT_VIOLATED
+                 : lower > 0.0     ? CPROX_VERDICT_CLEAR
+                                   : CPROX_VERDICT_UNDECIDED;
+  best.upper = fmax(best.upper, 0.0);
+  best.lower = fmin(fmax(lower, 0.0), best.upper);
+  best.t_obstacle = NAN;
+  best.status = best.upper - best.lower <= width_allowed(options->epsilon, options->relative_epsilon, best.upper)
+                    ? CPROX_OK
+                    : CPROX_PRECISION;
+  workspace_clear(workspace);
+  *result = best;
+  return finish(best.status, workspace);
+}
+
+cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b, double duration,
+                                        const cprox_options *options, cprox_workspace *workspace,
+                                        cprox_result *result) {
+  workspace_clear(workspace);
+  const cprox_options asked = arguments_options(options);
+  const arguments_query kind = {"the distance of bodies that translate", ARGUMENTS_RELATIVE};
+  const cprox_status status = check_motion(&a, &b, duration, &asked, kind, workspace);
+  if (status) return status;
+  if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
+  const bool implicit_both = is_implicit(a.from.body) && is_implicit(b.from.body);
+  return (implicit_both ? distance_of_implicit : distance_of_convex)(&a, &b, duration, &asked, workspace, result);
 }
 
 /* ---- time of contact ---- */
@@ -197,7 +281,7 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
   workspace_clear(workspace);
   const cprox_options asked = arguments_options(options);
   const arguments_query kind = {"contact of bodies that translate", ARGUMENTS_STOP};
-  cprox_status status = check_motion(&a, &b, duration, false, &asked, kind, workspace);
+  cprox_status status = check_motion(&a, &b, duration, &asked, kind, workspace);
   if (status) return status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
 
@@ -226,6 +310,18 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
 
 /* ---- growth ---- */
 
+/* The radius of a ball about the centre that lies in the body; 0: none is known. */
+static double inner_radius(const cprox_body *body) {
+  if (is_implicit(body)) return body->shape.implicit->inner;
+  return isfinite(body->ball_radius) ? fmax(-0.999 * cprox_body_nearest(body, body->centre, NULL), 0.0) : 0.0;
+}
+
+static cprox_status check_growing(const char *name, const cprox_body *body, cprox_workspace *workspace) {
+  if (inner_radius(body) > 1e-12 * body->ball_radius) return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be bounded and have its centre inside", name,
+                        cprox_body_kind_name(body->kind));
+}
+
 /* Both scaled by g about their centres touch where, unscaled, they would touch with the centres 1/g times as far apart:
  * b approaches along the line of the centres from where it is free for certain. */
 cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
@@ -234,23 +330,25 @@ cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cpr
   const cprox_options asked = arguments_options(options);
   const cprox_translating still_a = {.from = a}, still_b = {.from = b};
   const arguments_query kind = {"the growth distance", ARGUMENTS_STOP};
-  cprox_status status = check_motion(&still_a, &still_b, 1.0, true, &asked, kind, workspace);
+  cprox_status status = check_motion(&still_a, &still_b, 1.0, &asked, kind, workspace);
   if (status) return status;
   if (!growth) return workspace_fail(workspace, CPROX_INVALID, "growth is NULL: nowhere to put the answer");
   if (a.margin > 0.0 || b.margin > 0.0)
     return workspace_fail(workspace, CPROX_INVALID, "margin is not scaled: it must be 0");
+  if ((status = check_growing("a", a.body, workspace)) || (status = check_growing("b", b.body, workspace)))
+    return status;
 
   const frame fa = frame_create(&a.pose, a.body->centre), fb = frame_create(&b.pose, b.body->centre);
   const vec3 apart = vec_sub(frame_to_world(&fb, vec(0, 0, 0)), frame_to_world(&fa, vec(0, 0, 0)));
   const double reach = a.body->ball_radius + b.body->ball_radius, far = vec_norm(apart);
   *growth = (cprox_growth){.status = CPROX_OK};
   if (far <= 1e-12 * reach) {
-    growth->upper = far / fmin(a.body->shape.implicit->inner, b.body->shape.implicit->inner);
+    growth->upper = far / fmin(inner_radius(a.body), inner_radius(b.body));
     return CPROX_OK;
   }
 
   /* time runs from `most` centre distances down to 0; an error of the distance costs its part of the time */
-  const double most = 1.01 * reach / far + 1e-6, inner = a.body->shape.implicit->inner + b.body->shape.implicit->inner;
+  const double most = 1.01 * reach / far + 1e-6, inner = inner_radius(a.body) + inner_radius(b.body);
   approach p = {.a = a, .b = b, .velocity = vec_neg(apart), .duration = most};
   p.b.pose.position = vec_axpy(b.pose.position, most - 1.0, apart);
   cprox_options fine = asked;
