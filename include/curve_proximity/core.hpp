@@ -256,6 +256,21 @@ inline BodyHandle makeImplicit(const std::vector<std::vector<std::array<double, 
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_implicit(&description, nullptr, w, b); });
 }
 
+/** A superquadric or implicit body deformed: the image under x -> linear x + translation, and with other exponents, one
+ *  for each term; none: as they are. Both sides of a pair may be deformed from query to query. */
+inline BodyHandle makeDeformed(const BodyHandle &body, const Eigen::Matrix3d &linear,
+                               const Eigen::Vector3d &translation = Eigen::Vector3d::Zero(),
+                               const std::vector<double> &exponents = {}) {
+  cprox_implicit_description description = {};
+  description.deformed = body.get();
+  description.exponents = exponents.empty() ? nullptr : exponents.data();
+  description.n_exponents = exponents.size();
+  cprox_affine map = {{}, toVec3(translation)};
+  for (Eigen::Index i = 0; i < 9; ++i) map.linear[i] = linear(i / 3, i % 3);
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_implicit(&description, &map, w, b); });
+}
+
 /** The convex hull of points, one a column, in any order and of any dimension. */
 inline BodyHandle makePolytope(const Eigen::Matrix3Xd &vertices) {
   const std::vector<cprox_vec3> points = toVec3s(vertices);
@@ -647,6 +662,35 @@ inline cprox_result pair(const cprox_obstacle &a, const cprox_obstacle &b, const
   cprox_result result{};
   require(cprox_pair(a, b, &options, workspace.get(), &result), workspace);
   return result;
+}
+
+/** A body that moves on from where it stands, without turning; velocity [m/s], world frame. */
+inline cprox_translating translating(const cprox_obstacle &from, const Eigen::Vector3d &velocity) {
+  return {from, toVec3(velocity)};
+}
+
+/** The least distance of two convex bodies that translate for the duration [s], as cprox_translating_distance(). */
+inline cprox_result translatingDistance(const cprox_translating &a, const cprox_translating &b, double duration,
+                                        const cprox_options &options, Workspace &workspace) {
+  cprox_result result{};
+  require(cprox_translating_distance(a, b, duration, &options, workspace.get(), &result), workspace);
+  return result;
+}
+
+/** When two convex bodies that translate first touch, as cprox_translating_contact(). */
+inline cprox_result translatingContact(const cprox_translating &a, const cprox_translating &b, double duration,
+                                       const cprox_options &options, Workspace &workspace) {
+  cprox_result result{};
+  require(cprox_translating_contact(a, b, duration, &options, workspace.get(), &result), workspace);
+  return result;
+}
+
+/** The least factor by which two convex bodies, each scaled about its centre, touch, as cprox_growth_distance(). */
+inline cprox_growth growthDistance(const cprox_obstacle &a, const cprox_obstacle &b, const cprox_options &options,
+                                   Workspace &workspace) {
+  cprox_growth growth{};
+  require(cprox_growth_distance(a, b, &options, workspace.get(), &growth), workspace);
+  return growth;
 }
 
 namespace detail {

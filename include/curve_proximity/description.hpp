@@ -36,7 +36,11 @@ using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
  *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`. A hollow surface; with
  *               `solid` its interior too
  *    POINTS     none, or [radius] >= 0: a ball of that radius about each of `vertices` (a point cloud)
- *    OCTREE     none; the occupied cells of `octree`, or of the .bt or .ot file `resource` */
+ *    OCTREE     none; the occupied cells of `octree`, or of the .bt or .ot file `resource`
+ *    HEIGHT_FIELD   [cell_x, cell_y, n_x, n_y] or with a floor; n_x n_y heights in `values`, x running fastest, the
+ * first one above the frame's origin. The ground is solid down to the floor; without one it is a surface DISTANCE_GRID
+ * [cell, n_x, n_y, n_z], then the error of the values and where they are truncated; n_x n_y n_z signed distances in
+ * `values`, x running fastest, from the frame's origin on (an ESDF). For curves only */
 enum class ShapeType {
   POINT,
   SPHERE,
@@ -52,7 +56,9 @@ enum class ShapeType {
   SUPERQUADRIC,
   IMPLICIT,
   POINTS,
-  OCTREE
+  OCTREE,
+  HEIGHT_FIELD,
+  DISTANCE_GRID
 };
 
 /** "point", "sphere", …, "mesh". */
@@ -87,9 +93,10 @@ struct ShapeDescription {
   std::vector<std::array<double, 4>> planes;    /**< IMPLICIT: [b1, b2, b3, c] for b·x + c <= 0 */
   /** IMPLICIT: [q11, q12, q13, q22, q23, q33, b1, b2, b3, c] for x'Qx + b·x + c <= 0. */
   std::vector<std::array<double, 10>> quadrics;
-  bool solid = false;   /**< MESH: its interior belongs to it, if it is closed; results say if it is not */
-  std::string resource; /**< URI or path of a MESH or OCTREE file; replaces vertices, triangles, octree */
-  OctreeData octree;    /**< OCTREE that is given by its bytes */
+  std::vector<double> values; /**< [m] HEIGHT_FIELD: heights; DISTANCE_GRID: distances */
+  bool solid = false;         /**< MESH: its interior belongs to it, if it is closed; results say if it is not */
+  std::string resource;       /**< URI or path of a MESH or OCTREE file; replaces vertices, triangles, octree */
+  OctreeData octree;          /**< OCTREE that is given by its bytes */
   /** OCTREE: unmeasured cells inside the bounding box of the measured cells count as occupied; otherwise as free. */
   bool unknown_is_occupied = false;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */

@@ -26,49 +26,84 @@ cprox_obstacle place(const Geometry &geometry, const PlacedShape &shape) {
   return cprox_obstacle_at(geometry.body.get(), shape.pose);
 }
 
-/* The signed distance; throws Error where there is none. */
+/* What is asked of two bodies, without the time that it takes. */
+cprox_result ask(const PairDescription &pair, const cprox_obstacle &a, const cprox_obstacle &b,
+                 const cprox_options &options, Workspace &workspace) {
+  const auto moving = [&](const auto &query, const cprox_options &with) {
+    return query(translating(a, pair.velocity_a), translating(b, pair.velocity_b), pair.duration, with, workspace);
+  };
+  cprox_options unstopped = options; /* it is short and does not poll */
+  unstopped.stop = nullptr;
+  switch (pair.asked) {
+    case PairDescription::TRANSLATING_DISTANCE: return moving(translatingDistance, unstopped);
+    case PairDescription::TRANSLATING_CONTACT: return moving(translatingContact, options);
+    case PairDescription::DISTANCE: return curve_proximity::pair(a, b, options, workspace);
+    case PairDescription::GROWTH: break;
+  }
+  const cprox_growth growth = growthDistance(a, b, options, workspace);
+  cprox_result out{};
+  out.status = growth.status, out.lower = growth.lower, out.upper = growth.upper;
+  out.distance_queries = growth.pairs;
+  return out;
+}
+
+const char *kindOf(PairDescription::Asked asked) {
+  switch (asked) {
+    case PairDescription::GROWTH: return "growth";
+    case PairDescription::TRANSLATING_DISTANCE: return "translating_distance";
+    case PairDescription::TRANSLATING_CONTACT: return "translating_contact";
+    case PairDescription::DISTANCE: break;
+  }
+  return "pair";
+}
+
+/* The answer; throws Error where there is none. */
 ResultRow measure(const PairDescription &pair, const Query &query, const ResourceOptions &resources,
                   Workspace &workspace) {
   const Geometry a = makeGeometry(pair.a.shape, resources), b = makeGeometry(pair.b.shape, resources);
   ResultRow row;
-  row.kind = "pair";
+  row.kind = kindOf(pair.asked);
   row.id = row.a = row.b = pair.id;
-  row.has_points = true;
+  row.has_points = pair.asked != PairDescription::GROWTH;
+  row.has_t = row.has_verdict =
+      pair.asked == PairDescription::TRANSLATING_DISTANCE || pair.asked == PairDescription::TRANSLATING_CONTACT;
   const auto begin = std::chrono::steady_clock::now();
-  row.result = curve_proximity::pair(place(a, pair.a), place(b, pair.b), query.options, workspace);
+  row.result = ask(pair, place(a, pair.a), place(b, pair.b), query.options, workspace);
   row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
   if (row.result.status != CPROX_OK) row.message = cprox_status_text(row.result.status);
   return row;
 }
 
-Outcome failedPair(const PairRow &pair, const std::string &place, const std::string &why, cprox_status status) {
+Outcome failedPair(const PairRow &pair, const std::string &place, const std::string &why, cprox_status status,
+                   const Columns &columns) {
   ResultRow row;
   row.kind = "pair";
   row.id = row.a = row.b = pair.id;
   row.result.status = status;
   row.message = why;
   Outcome out;
-  out.text = resultsLine(row);
+  out.text = resultsLine(row, columns);
   out.complaints.push_back(place + ": " + why);
   return out;
 }
 
 Outcome answerPair(const PairRow &pair, const std::string &file, const Query &query, const ResourceOptions &resources,
-                   Workspace &workspace) {
+                   const Columns &columns, Workspace &workspace) {
   const std::string place = file + ": row " + std::to_string(pair.number) + " (id '" + pair.id + "')";
   try {
-    if (const auto *why = std::get_if<std::string>(&pair.pair)) return failedPair(pair, place, *why, CPROX_INVALID);
+    if (const auto *why = std::get_if<std::string>(&pair.pair))
+      return failedPair(pair, place, *why, CPROX_INVALID, columns);
     const ResultRow row = measure(std::get<PairDescription>(pair.pair), query, resources, workspace);
     Outcome out;
     out.stopped = row.result.status == CPROX_STOPPED;
-    out.text = resultsLine(row);
+    out.text = resultsLine(row, columns);
     return out;
   } catch (const Error &e) {
-    return failedPair(pair, place, e.what(), e.status());
+    return failedPair(pair, place, e.what(), e.status(), columns);
   } catch (const std::bad_alloc &) {
-    return failedPair(pair, place, cprox_status_text(CPROX_MEMORY), CPROX_MEMORY);
+    return failedPair(pair, place, cprox_status_text(CPROX_MEMORY), CPROX_MEMORY, columns);
   } catch (const std::exception &e) {
-    return failedPair(pair, place, e.what(), CPROX_INVALID);
+    return failedPair(pair, place, e.what(), CPROX_INVALID, columns);
   }
 }
 
@@ -89,6 +124,11 @@ PairRow toPlain(const YamlValue &entry, std::size_t number, Warnings &warnings) 
 
 int answerPairs(const Arguments &arguments, Console &console) {
   const std::vector<YamlValue> entries = readPairs(arguments.pairs);
+  Columns columns; /* t_contact_lower where an entry asks for contact */
+  for (const YamlValue &entry : entries) {
+    const auto asked = entry.isMap() ? entry.find("ask") : std::nullopt;
+    columns.contact = columns.contact || (asked && asked->isScalar() && asked->text() == "translating_contact");
+  }
   ResourceOptions resources;
   resources.base_dir = folderOf(arguments.pairs);
   resources.find_package = packageFinder(resources.base_dir);
@@ -100,7 +140,7 @@ int answerPairs(const Arguments &arguments, Console &console) {
 
   /* pair by pair; a warning is told when it first comes up */
   catchInterrupts();
-  results.write(resultsHeader());
+  results.write(resultsHeader(columns));
   Warnings warnings;
   std::size_t given = 0, warned = 0;
   Rows rows;
@@ -110,7 +150,7 @@ int answerPairs(const Arguments &arguments, Console &console) {
     ++given;
     for (; warned < warnings.sentences().size(); ++warned) console.say("warning: " + warnings.sentences()[warned]);
     return [&, pair = std::move(pair)](Workspace &workspace) {
-      return answerPair(pair, arguments.pairs, query, resources, workspace);
+      return answerPair(pair, arguments.pairs, query, resources, columns, workspace);
     };
   };
   rows.write = [&](const std::string &text) { results.write(text); };

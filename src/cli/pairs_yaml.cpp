@@ -14,6 +14,15 @@ PlacedShape readPlaced(const YamlValue &value, Warnings &warnings) {
   return out;
 }
 
+PairDescription::Asked readAsked(const YamlValue &value) {
+  const std::string name = value.text();
+  if (name == "distance") return PairDescription::DISTANCE;
+  if (name == "growth") return PairDescription::GROWTH;
+  if (name == "translating_distance") return PairDescription::TRANSLATING_DISTANCE;
+  if (name == "translating_contact") return PairDescription::TRANSLATING_CONTACT;
+  value.fail("ask '" + name + "' is unknown; it must be distance, growth, translating_distance or translating_contact");
+}
+
 } // namespace
 
 std::vector<YamlValue> readPairs(const std::string &path) {
@@ -30,11 +39,21 @@ std::string pairId(const YamlValue &entry) {
 
 PairDescription parsePair(const YamlValue &entry, Warnings &warnings) {
   const YamlValue value(entry.named(pairId(entry)));
-  value.warnOfOthers({"id", "a", "b"}, warnings);
+  value.warnOfOthers({"id", "a", "b", "ask", "velocity_a", "velocity_b", "duration"}, warnings);
   PairDescription out;
   out.id = value.at("id").text();
   out.a = readPlaced(value.at("a"), warnings);
   out.b = readPlaced(value.at("b"), warnings);
+  if (const auto asked = value.find("ask")) out.asked = readAsked(*asked);
+  const bool moves =
+      out.asked == PairDescription::TRANSLATING_DISTANCE || out.asked == PairDescription::TRANSLATING_CONTACT;
+  for (const char *key : {"velocity_a", "velocity_b", "duration"})
+    if (!moves && value.find(key))
+      value.fail(std::string("has a ") + key + ": bodies move with ask: translating_distance");
+  if (!moves) return out;
+  if (const auto velocity = value.find("velocity_a")) out.velocity_a = velocity->vector();
+  if (const auto velocity = value.find("velocity_b")) out.velocity_b = velocity->vector();
+  out.duration = value.at("duration").number();
   return out;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** PAIRS.yaml: a list of {id, a: BODY, b: BODY}. */
+/** PAIRS.yaml: a list of {id, a: BODY, b: BODY}, and what is asked of them. */
 #ifndef CURVE_PROXIMITY_CLI_PAIRS_YAML_H
 #define CURVE_PROXIMITY_CLI_PAIRS_YAML_H
 
@@ -22,8 +22,13 @@ struct PlacedShape {
 };
 
 struct PairDescription {
+  /** DISTANCE: signed, of bodies that stand; GROWTH: the factor at which they touch; the others: bodies that translate
+   */
+  enum Asked { DISTANCE, GROWTH, TRANSLATING_DISTANCE, TRANSLATING_CONTACT } asked = DISTANCE;
   std::string id;
   PlacedShape a, b;
+  Eigen::Vector3d velocity_a = Eigen::Vector3d::Zero(), velocity_b = Eigen::Vector3d::Zero(); /**< [m/s] */
+  double duration = 0.0;                                                                      /**< [s] */
 };
 
 /** The entries of the list, each still as YAML. Throws BadUsage where the file is no list. */

@@ -70,7 +70,8 @@ ConstraintBody toBody(const ObjectDescription &object, const char *name, const R
     const ShapeDescription &shape = object.shapes[i];
     try {
       if (!shape.pose.matrix().allFinite()) throw Error("its pose is not finite");
-      if (shape.type == ShapeType::POINTS || shape.type == ShapeType::OCTREE)
+      if (shape.type == ShapeType::POINTS || shape.type == ShapeType::OCTREE || shape.type == ShapeType::HEIGHT_FIELD ||
+          shape.type == ShapeType::DISTANCE_GRID)
         throw Error(std::string(shapeTypeName(shape.type)) + ": constraints are about convex bodies and meshes");
       const Geometry geometry = makeGeometry(shape, resources);
       side.parts.push_back({shape, geometry.hull, geometry.hull_excess});

@@ -407,6 +407,44 @@ void addQueries(py::module &module) {
       },
       py::arg("a"), py::arg("b"), "The signed distance of two shapes that stand [m].");
   module.def(
+      "translating_distance",
+      [](const Obstacle &a, const Obstacle &b, const Array &velocity_a, const Array &velocity_b, double duration,
+         const py::kwargs &given) {
+        const cprox_options options = optionsOf(given);
+        const cprox_translating first = {a.obstacle, toVector(velocity_a, "velocity_a")},
+                                second = {b.obstacle, toVector(velocity_b, "velocity_b")};
+        return translatingDistance(first, second, duration, options, threadWorkspace());
+      },
+      py::arg("a"), py::arg("b"), py::arg("velocity_a"), py::arg("velocity_b"), py::arg("duration"),
+      "The least distance [m] of two convex shapes that move at constant velocities (3,) [m/s] for the duration [s].");
+  module.def(
+      "translating_contact",
+      [](const Obstacle &a, const Obstacle &b, const Array &velocity_a, const Array &velocity_b, double duration,
+         const py::kwargs &given) {
+        cprox_options options = optionsOf(given);
+        const cprox_translating first = {a.obstacle, toVector(velocity_a, "velocity_a")},
+                                second = {b.obstacle, toVector(velocity_b, "velocity_b")};
+        return unlocked(options,
+                        [&] { return translatingContact(first, second, duration, options, threadWorkspace()); });
+      },
+      py::arg("a"), py::arg("b"), py::arg("velocity_a"), py::arg("velocity_b"), py::arg("duration"),
+      "When two convex shapes that translate first touch: in [t_contact_lower, t]. Never late.");
+  module.def(
+      "growth_distance",
+      [](const Obstacle &a, const Obstacle &b, const py::kwargs &given) {
+        const cprox_options options = optionsOf(given);
+        const cprox_growth growth = growthDistance(a.obstacle, b.obstacle, options, threadWorkspace());
+        py::dict out;
+        out["status"] = cprox_status_name(growth.status);
+        out["lower"] = growth.lower;
+        out["upper"] = growth.upper;
+        out["normal"] = fromVector(growth.normal);
+        return out;
+      },
+      py::arg("a"), py::arg("b"),
+      "The least factor by which two convex shapes, each scaled about its centre, touch: a dict of status, lower, "
+      "upper,\nnormal. Below 1 they overlap.");
+  module.def(
       "distance_gradient",
       [](const py::object &mover, const Obstacle &obstacle, const py::kwargs &given) {
         return gradientOf(*moverOf(mover), obstacle, optionsOf(given));

@@ -39,6 +39,56 @@ BodyHandle cloudOf(const Array &points, double radius) {
   });
 }
 
+std::vector<double> numbersOf(const Array &values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+std::size_t extent(const Array &values, py::ssize_t axis) {
+  return static_cast<std::size_t>(values.shape(axis));
+}
+
+Eigen::Matrix3d linearOf(const Array &matrix) {
+  if (matrix.ndim() != 2 || matrix.shape(0) != 3 || matrix.shape(1) != 3)
+    throw Error("linear must be an array of shape (3, 3)");
+  Eigen::Matrix3d out;
+  for (int i = 0; i < 9; ++i) out(i / 3, i % 3) = matrix.at(i / 3, i % 3);
+  return out;
+}
+
+/* Rows run along y, as of an image. */
+BodyHandle heightFieldOf(const Array &heights, const Array &cell, const std::optional<double> &floor) {
+  if (heights.ndim() != 2) throw Error("heights must be an array of shape (n_y, n_x)");
+  if (cell.ndim() != 1 || cell.shape(0) != 2) throw Error("cell must be two lengths, along x and along y");
+  return makeHeightField({extent(heights, 1), extent(heights, 0)}, {cell.at(0), cell.at(1)}, numbersOf(heights),
+                         floor ? *floor : std::numeric_limits<double>::quiet_NaN());
+}
+
+BodyHandle distanceGridOf(const Array &values, double cell, double error, double truncated_at) {
+  if (values.ndim() != 3) throw Error("values must be an array of shape (n_z, n_y, n_x)");
+  return makeDistanceGrid({extent(values, 2), extent(values, 1), extent(values, 0)}, cell, numbersOf(values), error,
+                          truncated_at);
+}
+
+/* What the function raised is printed; a value that is no number is refused by the core. Queries let other threads run,
+ * so that the lock is taken for each value; the function itself goes under the lock, too. */
+BodyHandle distanceOf(py::function function, const Array &centre, double radius, double lipschitz, double error) {
+  const std::shared_ptr<py::function> kept(new py::function(std::move(function)), [](py::function *f) {
+    const py::gil_scoped_acquire lock;
+    delete f;
+  });
+  const auto call = [kept](const Eigen::Vector3d &x) {
+    const py::gil_scoped_acquire lock;
+    try {
+      return (*kept)(py::make_tuple(x.x(), x.y(), x.z())).cast<double>();
+    } catch (py::error_already_set &raised) {
+      raised.discard_as_unraisable("a distance function");
+    } catch (const py::cast_error &) {
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  return makeDistance(call, toEigen(toVector(centre, "centre")), radius, lipschitz, error);
+}
+
 BodyHandle polygonOf(const Array &vertices) {
   if (vertices.ndim() != 2 || vertices.shape(1) != 2) throw Error("vertices must be an array of shape (n, 2)");
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
@@ -95,6 +145,26 @@ void addShapes(py::module &module) {
       },
       py::arg("semi_axes"), py::arg("exponents"), "The sum of |x_i/semi_axes_i|^exponents_i is <= 1; exponents >= 1.");
   module.def(
+      "implicit",
+      [](const std::vector<std::vector<std::array<double, 5>>> &hyperquadrics,
+         const std::vector<std::array<double, 4>> &planes, const std::vector<std::array<double, 10>> &quadrics) {
+        return Shape{makeImplicit(hyperquadrics, planes, quadrics)};
+      },
+      py::arg("hyperquadrics") = py::list(), py::arg("planes") = py::list(), py::arg("quadrics") = py::list(),
+      "An intersection: hyperquadrics, each a list of terms [a, b, c, d, n]; planes [b1, b2, b3, c]; quadrics [q11, "
+      "q12, "
+      "q13,\nq22, q23, q33, b1, b2, b3, c]. Bounded, with an interior.");
+  module.def(
+      "deformed",
+      [](const Shape &shape, const Array &linear, const Array &translation, const std::vector<double> &exponents) {
+        return Shape{
+            makeDeformed(shape.body, linearOf(linear), toEigen(toVector(translation, "translation")), exponents)};
+      },
+      py::arg("shape"), py::arg("linear"), py::arg("translation") = py::make_tuple(0.0, 0.0, 0.0),
+      py::arg("exponents") = py::list(),
+      "A superquadric or implicit shape under x -> linear x + translation, with other exponents, one a term; none: as "
+      "they\nare.");
+  module.def(
       "polytope", [](const Array &vertices) { return Shape{polytopeOf(vertices)}; }, py::arg("vertices"),
       "The convex hull of vertices (n, 3) [m], in any order and of any dimension.");
   module.def(
@@ -111,6 +181,34 @@ void addShapes(py::module &module) {
   module.def(
       "point_cloud", [](const Array &points, double radius) { return Shape{cloudOf(points, radius)}; },
       py::arg("points"), py::arg("radius") = 0.0, "A ball of the radius >= 0 about each of points (n, 3) [m].");
+  module.def(
+      "height_field",
+      [](const Array &heights, const Array &cell, const std::optional<double> &floor) {
+        return Shape{heightFieldOf(heights, cell, floor)};
+      },
+      py::arg("heights"), py::arg("cell"), py::arg("floor") = py::none(),
+      "The ground below heights (n_y, n_x) [m] that stand cell = (along x, along y) [m] apart, the first one above the "
+      "origin:\ntwo triangles a cell. Solid down to the floor; without one, a surface.");
+  module.def(
+      "distance_grid",
+      [](const Array &values, double cell, double error, double truncated_at) {
+        return Shape{distanceGridOf(values, cell, error, truncated_at)};
+      },
+      py::arg("values"), py::arg("cell"), py::arg("error") = 0.0,
+      py::arg("truncated_at") = std::numeric_limits<double>::infinity(),
+      "The set whose signed distances at grid points are values (n_z, n_y, n_x) [m], cell [m] apart, from the origin "
+      "on (an\nESDF); each within error of the distance; those from truncated_at on say \"at least so far\". Nothing "
+      "stands beyond the\ngrid. For curves.");
+  module.def(
+      "distance_function",
+      [](const py::function &function, const Array &centre, double radius, double lipschitz, double error) {
+        return Shape{distanceOf(function, centre, radius, lipschitz, error)};
+      },
+      py::arg("function"), py::arg("centre"), py::arg("radius"), py::arg("lipschitz") = 1.0, py::arg("error") = 0.0,
+      "The set whose distance from a point (x, y, z) is function(point) [m], negative or 0 inside. It lies within "
+      "radius "
+      "of\ncentre. Values differ by at most lipschitz times the way, and are within error [m] of the distance: answers "
+      "are\ncertified relative to error. Values that contradict this are refused. For curves.");
   module.def(
       "compound",
       [](const std::vector<Shape> &parts, const std::vector<Array> &poses) { return Shape{compoundOf(parts, poses)}; },

@@ -244,6 +244,25 @@ bool Canvas::addMesh(const std::string &space, const ShapeDescription &shape, co
   return true;
 }
 
+/** The heights of a height field as a mesh. */
+static ShapeDescription surfaceOf(const ShapeDescription &field) {
+  ShapeDescription out;
+  out.type = ShapeType::MESH;
+  const auto wide = static_cast<Eigen::Index>(field.dimensions[2]),
+             deep = static_cast<Eigen::Index>(field.dimensions[3]);
+  out.vertices.resize(3, wide * deep);
+  for (Eigen::Index i = 0; i < wide * deep; ++i)
+    out.vertices.col(i) << field.dimensions[0] * static_cast<double>(i % wide),
+        field.dimensions[1] * static_cast<double>(i / wide), field.values[static_cast<std::size_t>(i)];
+  out.triangles.resize(3, 2 * (wide - 1) * (deep - 1));
+  for (Eigen::Index k = 0; k < (wide - 1) * (deep - 1); ++k) {
+    const int at = static_cast<int>(k / (wide - 1) * wide + k % (wide - 1)), above = at + static_cast<int>(wide);
+    out.triangles.col(2 * k) << at, at + 1, above + 1;
+    out.triangles.col(2 * k + 1) << at, above + 1, above;
+  }
+  return out;
+}
+
 void Canvas::addShape(const std::string &space, const ShapeDescription &shape, const BodyHandle &body,
                       const ResourceOptions &resources, const Eigen::Isometry3d &pose,
                       const std_msgs::ColorRGBA &tint) {
@@ -266,6 +285,9 @@ void Canvas::addShape(const std::string &space, const ShapeDescription &shape, c
     case ShapeType::CAPSULE: addLathe(solid(Marker::TRIANGLE_LIST, 1, 1, 1), capsuleProfile(d[0], d[1])); break;
     case ShapeType::MESH:
       if (!addMesh(space, shape, resources, pose, tint)) addConvex(space, body.get(), pose, tint);
+      break;
+    case ShapeType::HEIGHT_FIELD:
+      if (!addMesh(space, surfaceOf(shape), resources, pose, tint)) addConvex(space, body.get(), pose, tint);
       break;
     case ShapeType::POLYGON: addPolygon(space, shape, pose, tint); break;
     case ShapeType::POINTS: addPoints(space, shape, pose, tint); break;

@@ -156,6 +156,7 @@ ShapeDescription toShape(const Body &body) {
   for (const Hyperquadric &h : body.hyperquadrics) shape.hyperquadrics.push_back(toRows<5>(h.terms, "terms"));
   shape.planes = toRows<4>(body.planes, "planes");
   shape.quadrics = toRows<10>(body.quadrics, "quadrics");
+  shape.values = body.values;
   return shape;
 }
 
@@ -341,6 +342,7 @@ void addBody(CollisionObject &message, const ShapeDescription &shape) {
   }
   body.planes = toNumbers(shape.planes);
   body.quadrics = toNumbers(shape.quadrics);
+  body.values = shape.values;
   message.bodies.push_back(body);
   message.body_poses.push_back(toMessage(shape.pose));
 }

@@ -82,6 +82,8 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
   for (const std::size_t k : asked.items) {
     number[k] = static_cast<std::int32_t>(asked.targets.size());
     const PlacedShape &shape = *items[k].shape;
+    if (cprox_body_get_info(shape.target.body).kind == CPROX_BODY_DISTANCE_GRID)
+      throw Error("object '" + *items[k].owner + "' is a distance_grid: it is asked about curves, not about robots");
     const bool by_hull = shape.is_mesh && cprox_body_get_info(shape.target.body).is_solid;
     asked.targets.push_back(by_hull ? shape.hull : shape.target);
     asked.proven.push_back(shape.surface);

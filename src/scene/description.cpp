@@ -7,21 +7,24 @@
 namespace curve_proximity {
 namespace {
 
-constexpr std::array<std::pair<ShapeType, const char *>, 15> SHAPE_TYPES = {{{ShapeType::POINT, "point"},
-                                                                             {ShapeType::SPHERE, "sphere"},
-                                                                             {ShapeType::BOX, "box"},
-                                                                             {ShapeType::CAPSULE, "capsule"},
-                                                                             {ShapeType::CYLINDER, "cylinder"},
-                                                                             {ShapeType::CONE, "cone"},
-                                                                             {ShapeType::ELLIPSOID, "ellipsoid"},
-                                                                             {ShapeType::HALFSPACE, "halfspace"},
-                                                                             {ShapeType::POLYTOPE, "polytope"},
-                                                                             {ShapeType::POLYGON, "polygon"},
-                                                                             {ShapeType::MESH, "mesh"},
-                                                                             {ShapeType::SUPERQUADRIC, "superquadric"},
-                                                                             {ShapeType::IMPLICIT, "implicit"},
-                                                                             {ShapeType::POINTS, "points"},
-                                                                             {ShapeType::OCTREE, "octree"}}};
+constexpr std::array<std::pair<ShapeType, const char *>, 17> SHAPE_TYPES = {
+    {{ShapeType::POINT, "point"},
+     {ShapeType::SPHERE, "sphere"},
+     {ShapeType::BOX, "box"},
+     {ShapeType::CAPSULE, "capsule"},
+     {ShapeType::CYLINDER, "cylinder"},
+     {ShapeType::CONE, "cone"},
+     {ShapeType::ELLIPSOID, "ellipsoid"},
+     {ShapeType::HALFSPACE, "halfspace"},
+     {ShapeType::POLYTOPE, "polytope"},
+     {ShapeType::POLYGON, "polygon"},
+     {ShapeType::MESH, "mesh"},
+     {ShapeType::SUPERQUADRIC, "superquadric"},
+     {ShapeType::IMPLICIT, "implicit"},
+     {ShapeType::POINTS, "points"},
+     {ShapeType::OCTREE, "octree"},
+     {ShapeType::HEIGHT_FIELD, "height_field"},
+     {ShapeType::DISTANCE_GRID, "distance_grid"}}};
 
 } // namespace
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -37,7 +38,9 @@ Expected expectedDimensions(ShapeType type) {
     case ShapeType::POLYTOPE:
     case ShapeType::POLYGON:
     case ShapeType::IMPLICIT:
-    case ShapeType::OCTREE: break;
+    case ShapeType::OCTREE:
+    case ShapeType::HEIGHT_FIELD:
+    case ShapeType::DISTANCE_GRID: break;
   }
   return {0, ""};
 }
@@ -48,7 +51,35 @@ std::string number(double x) {
   return text;
 }
 
+bool isGrid(ShapeType type) {
+  return type == ShapeType::HEIGHT_FIELD || type == ShapeType::DISTANCE_GRID;
+}
+
+/* The counts of a grid are whole numbers, and there is a value for each point. */
+void checkGrid(const ShapeDescription &shape) {
+  const std::string name = shapeTypeName(shape.type);
+  const bool heights = shape.type == ShapeType::HEIGHT_FIELD;
+  const std::string names = heights ? "[cell_x, cell_y, n_x, n_y] or with a floor"
+                                    : "[cell, n_x, n_y, n_z], or with an error, and where values are truncated";
+  const std::size_t n = shape.dimensions.size(), most = heights ? 5 : 6, first = heights ? 2 : 1;
+  if (n < 4 || n > most) throw Error(name + " needs dimensions " + names + ", got " + std::to_string(n));
+  double points = 1.0;
+  for (std::size_t i = first; i < 4; ++i) {
+    const double count = shape.dimensions[i];
+    if (!(count >= 2.0 && count <= 1e9 && count == std::floor(count)))
+      throw Error(name + " dimension " + std::to_string(i) + " of " + names + " is " + number(count) +
+                  ": it must be a whole number from 2 on");
+    points *= count;
+  }
+  if (points != static_cast<double>(shape.values.size()))
+    throw Error(name + " has " + std::to_string(shape.values.size()) + " values, but " + number(points) + " points");
+  if (heights && n == 5 && !std::isfinite(shape.dimensions[4]))
+    throw Error(name + " has a floor of " + number(shape.dimensions[4]) + ": it must be finite");
+}
+
 void checkDimensions(const ShapeDescription &shape) {
+  if (isGrid(shape.type)) return checkGrid(shape);
+  if (!shape.values.empty()) throw Error(std::string(shapeTypeName(shape.type)) + " takes no values");
   const std::string name = shapeTypeName(shape.type);
   const Expected expected = expectedDimensions(shape.type);
   const std::size_t n = shape.dimensions.size();
@@ -142,6 +173,38 @@ BodyHandle makeCells(const ShapeDescription &shape, const ResourceOptions &optio
   return ofOctree(shape, [&] { return makeBoxes(cells.low, cells.high, options.memory_limit, options.stop); });
 }
 
+std::size_t count(double dimension) {
+  return static_cast<std::size_t>(dimension);
+}
+
+BodyHandle makeDistances(const ShapeDescription &shape, const ResourceOptions &options) {
+  const std::vector<double> &d = shape.dimensions;
+  if (shape.values.size() > options.memory_limit / sizeof(double))
+    throw Error(std::to_string(shape.values.size()) + " distances are above the limit of memory", CPROX_MEMORY);
+  return makeDistanceGrid({count(d[1]), count(d[2]), count(d[3])}, d[0], shape.values, d.size() > 4 ? d[4] : 0.0,
+                          d.size() > 5 ? d[5] : std::numeric_limits<double>::infinity());
+}
+
+/* The ground's box stands for it where that is enough. */
+Geometry makeGround(const ShapeDescription &shape, const ResourceOptions &options) {
+  const std::vector<double> &d = shape.dimensions;
+  const double floor = d.size() > 4 ? d[4] : std::numeric_limits<double>::quiet_NaN();
+  const BodyHandle mesh = makeHeightField({count(d[2]), count(d[3])}, {d[0], d[1]}, shape.values, floor,
+                                          options.memory_limit, options.stop);
+  const auto range = std::minmax_element(shape.values.begin(), shape.values.end());
+  const double low = d.size() > 4 ? floor : *range.first;
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(0.0, 0.0, low),
+                                Eigen::Vector3d(d[0] * (d[2] - 1.0), d[1] * (d[3] - 1.0), *range.second));
+  Eigen::Matrix3Xd corners(3, 8);
+  for (int i = 0; i < 8; ++i) corners.col(i) = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+  Geometry out;
+  out.hull = makePolytope(corners);
+  out.body = makeLod(out.hull, 0.0, mesh);
+  out.surface = d.size() > 4 ? makeLod(out.hull, 0.0, makeSurface(mesh)) : out.body;
+  out.is_mesh = true;
+  return out;
+}
+
 BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &options) {
   const std::vector<double> &d = shape.dimensions;
   switch (shape.type) {
@@ -161,6 +224,8 @@ BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &option
     case ShapeType::POINTS:
       return makePoints(shape.vertices, d.empty() ? 0.0 : d[0], options.memory_limit, options.stop);
     case ShapeType::OCTREE: return makeCells(shape, options);
+    case ShapeType::DISTANCE_GRID: return makeDistances(shape, options);
+    case ShapeType::HEIGHT_FIELD:
     case ShapeType::MESH: break;
   }
   throw Error("a shape's type is not known");
@@ -251,6 +316,7 @@ Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &opti
   checkVertices(shape);
   checkConstraints(shape);
   if (shape.type == ShapeType::MESH) return makeMesh(shape, options, loader);
+  if (shape.type == ShapeType::HEIGHT_FIELD) return makeGround(shape, options);
   Geometry out;
   out.body = out.hull = out.surface = makeBody(shape, options);
   return out;

@@ -47,6 +47,9 @@ ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const 
       for (double &radius : out.dimensions) radius *= scale;
       break;
     case ShapeType::OCTREE: throw Error("an octree has no other size than its own");
+    case ShapeType::HEIGHT_FIELD:
+    case ShapeType::DISTANCE_GRID:
+      throw Error(std::string("a ") + shapeTypeName(shape.type) + " has no other size than its own");
     case ShapeType::IMPLICIT: scaleConstraints(out, scale); break;
     case ShapeType::HALFSPACE: /* [a, b, c, d] */
       if (out.dimensions.size() == 4) out.dimensions[3] *= scale;

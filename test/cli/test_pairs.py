@@ -146,6 +146,34 @@ class Pairs(Case):
                 self.assertAnswer(answer.row(f'good{i}'), 2)
         self.assertIn(f'{len(bad)} of {2 * len(bad)} rows failed', answer.err)
 
+    def convex_bodies_grow_and_translate(self):
+        box = '{type: box, dimensions: [1, 1, 1]'
+        placed = box + ', pose: {position: [4, 3, 0]}}'
+        text = ''.join(entry[:-2] + more + '}\n' for entry, more in (
+            (pair('grow', box + '}', placed), ', ask: growth'),
+            (pair('pass', box + '}', placed), ', ask: translating_distance, velocity_a: [1, 0, 0], velocity_b: [-1, 0, 0], duration: 5'),
+            (pair('touch', box + '}', placed), ', ask: translating_contact, velocity_b: [-4, -3, 0], duration: 2'),
+            (pair('apart', box + '}', placed), ', ask: translating_contact, velocity_b: [4, 3, 0], duration: 2')))
+        answer = self.pairs(text)
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        grow, passing, touch, apart = (answer.row(name) for name in ('grow', 'pass', 'touch', 'apart'))
+        self.assertEqual([row['kind'] for row in answer.rows],
+                         ['growth', 'translating_distance', 'translating_contact', 'translating_contact'])
+        self.assertLessEqual(float(grow['lower']), 4)
+        self.assertLess(abs(float(grow['upper']) - 4), 1e-5)
+        self.assertEqual(passing['verdict'], 'clear')
+        self.assertLess(abs(float(passing['upper']) - 2), 1e-6)
+        # the boxes' x ranges meet last: 4 - 4 t = 1
+        self.assertLessEqual(float(touch['t_contact_lower']), .75)
+        self.assertLess(abs(float(touch['t']) - .75), 1e-6)
+        self.assertEqual((touch['verdict'], apart['verdict']), ('violated', 'clear'))
+
+    def what_is_asked_wrongly_is_told(self):
+        for more, words in ((', ask: growth, duration: 5', 'duration'), (', ask: meet', "'meet'"), (', ask: translating_contact', "'duration'"),
+                            (', ask: translating_distance, duration: -1', 'duration is -1'), (', velocity_a: [1, 0, 0]', 'velocity_a')):
+            with self.subTest(more=more):
+                self.assertFailedRow(self.pairs(pair('p', UNIT_BALL, UNIT_BALL)[:-2] + more + '}\n'), 'p', words)
+
     def two_halfspaces_have_no_distance(self):
         self.assertFailedRow(self.pairs(pair('h', '{type: halfspace, dimensions: [0, 0, 1, 0]}', '{type: halfspace, dimensions: [0, 0, -1, 1]}')), 'h', 'halfspace')
 

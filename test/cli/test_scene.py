@@ -99,6 +99,32 @@ class Shapes(Case):
                 row = self.distance_to_origin(one(f'bodies: [{body}], body_poses: [{{position: [10, 0, 0]}}]'))
                 self.assertAnswer(row, distance, epsilon=1e-6 + 2e-9, slack=2e-9)
 
+    def ground_and_grids_of_distances_are_bodies(self):
+        ground = ('bodies: [{type: height_field, dimensions: [1, 1, 3, 2], values: [-3, -2, -3, -3, -2, -3]}], '
+                  'body_poses: [{position: [-1, -0.5, 0]}]')
+        self.assertAnswer(self.distance_to_origin(one(ground)), 2, slack=2e-9)
+        # by triangles, the slopes are the planes z = -2 - |x|; with a floor, the origin is inside
+        below = ground.replace('[1, 1, 3, 2]', '[1, 1, 3, 2, -4]').replace('-0.5, 0]', '-0.5, 2.5]')
+        self.assertAnswer(self.distance_to_origin(one(below)), 0, slack=2e-9)
+        values = [math.sqrt(x * x + y * y + z * z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+        grid = 'bodies: [{type: distance_grid, dimensions: [1, 2, 2, 2], values: %s}], body_poses: [{position: [3, 0, 0]}]'
+        answer = self.ask('distance', [ORIGIN], one(grid % values), '--epsilon', '0.1')
+        row = answer.row('o')
+        self.assertLessEqual(float(row['lower']), 3)  # from outside the grid, whose first point is the set
+        self.assertGreaterEqual(float(row['upper']), 3 - 2e-9)  # the curve ends there
+
+    def grids_that_are_wrong_are_told(self):
+        for body, words in (('type: height_field, dimensions: [1, 1, 2, 2], values: [0, 0, 0]', '3 values, but 4 points'),
+                            ('type: height_field, dimensions: [1, 1, 2.5, 2], values: [0]', 'whole number'),
+                            ('type: height_field, dimensions: [1, 1, 2], values: [0]', 'got 3'),
+                            ('type: height_field, dimensions: [1, -1, 2, 2], values: [0, 0, 0, 0]', 'cell is -1'),
+                            ('type: height_field, dimensions: [1, 1, 2, 2, 0], values: [0, 0, 0, 0]', 'above the floor'),
+                            ('type: distance_grid, dimensions: [1, 2, 2, 2], values: [0, 0, 0, 0, 0, 0, 0, 3]', 'neighbour'),
+                            ('type: box, dimensions: [1, 2, 2], values: [0]', 'values')):
+            with self.subTest(body=body):
+                answer = self.ask('distance', [ORIGIN], one('bodies: [{%s}]' % body))
+                self.assertIn(words, answer.err)
+
     def padding_enlarges_an_object(self):
         row = self.distance_to_origin(one('padding: 0.5, primitives: [{type: box, dimensions: [2, 2, 2]}], '
                                           'primitive_poses: [{position: [10, 0, 0]}]'))

@@ -43,6 +43,86 @@ class Curves(unittest.TestCase):
             apart = numpy.linalg.norm(answer.witness_mover - answer.witness_obstacle)
             self.assertAlmostEqual(apart, answer.upper, places=9)
 
+    def test_sets_by_their_distance_hold_dense_samples(self):
+        random = numpy.random.default_rng(7)
+        t = numpy.linspace(0, 1, 4001)
+        for k in range(10):
+            centres, radii = random.uniform(-.4, .4, (3, 3)), random.uniform(.05, .2, 3)
+
+            def exact(p):
+                return (numpy.linalg.norm(numpy.atleast_2d(p)[:, None] - centres, axis=2) - radii).min(axis=1)
+
+            error = 0 if k % 2 else .01
+            shape = cprox.distance_function(lambda p: exact(p)[0] + error * numpy.sin(40 * p[0]), [0, 0, 0], 1,
+                                            lipschitz=1 + 40 * error, error=error)
+            points = random.uniform(-1, 1, (4, 3))
+            answer = cprox.distance(cprox.bezier(points), cprox.Obstacle(shape))
+            sampled = max(exact(de_casteljau(points, t)).min(), 0)
+            self.assertLessEqual(answer.lower, sampled + 1e-12)
+            self.assertGreaterEqual(answer.upper, sampled - 1e-3)
+            self.assertLessEqual(answer.upper - answer.lower, 1e-6 + 4 * error)
+
+            axes = [numpy.arange(-1, 1.05, .1)] * 3
+            z, y, x = numpy.meshgrid(*axes, indexing='ij')
+            values = exact(numpy.stack([x, y, z], axis=-1).reshape(-1, 3)).reshape(x.shape)
+            grid = cprox.distance_grid(values, .1)
+            answer = cprox.distance(cprox.bezier(points), cprox.Obstacle(grid, cprox.transform([-1, -1, -1])))
+            self.assertLessEqual(answer.lower, sampled + 1e-12)
+            self.assertGreaterEqual(answer.upper, sampled - 1e-3)
+
+        ground = cprox.height_field([[0, 0, 0], [0, .3, 0]], [1, 2], floor=-1)
+        answer = cprox.distance(cprox.bezier([[.5, 1, .6], [1.5, 1, .6]]), cprox.Obstacle(ground))
+        self.assertGreater(answer.lower, .4)  # above the slope's middle, at .15
+        self.assertLess(answer.upper, .45)
+
+    def test_convex_shapes_translate_grow_and_deform(self):
+        box, here = cprox.Obstacle(cprox.box([1, 1, 1])), cprox.transform([4, 3, 0])
+        other = cprox.Obstacle(cprox.box([1, 1, 1]), here)
+        answer = cprox.translating_distance(box, other, [1, 0, 0], [-1, 0, 0], 5)
+        self.assertAlmostEqual(answer.upper, 2, places=6)  # past each other, 3 - 1 apart
+        contact = cprox.translating_contact(box, cprox.Obstacle(cprox.box([1, 1, 1]), cprox.transform([4, 0, 0])),
+                                            [1, 0, 0], [0, 0, 0], 5)
+        self.assertLessEqual(contact.t_contact_lower, 3)
+        self.assertAlmostEqual(contact.t, 3, places=5)
+        growth = cprox.growth_distance(box, other)
+        self.assertLessEqual(growth['lower'], 4)
+        self.assertGreaterEqual(growth['upper'], 4 - 1e-12)
+        self.assertLess(growth['upper'], 4 + 1e-5)
+
+        # Table III: both bodies scaled by .5, 3, .67 are the superquadrics of the scaled semi-axes
+        scale = numpy.array([.5, 3, .67])
+        axes, exponents, pose = [.3, .2, .4], [4, 6, 3], cprox.transform([3, 2.5, 1])
+        round_one = cprox.superquadric(axes, exponents)
+        flat = cprox.deformed(round_one, numpy.diag(scale))
+        anew = cprox.superquadric(scale * axes, exponents)
+        a, b = (cprox.pair(cprox.Obstacle(s), cprox.Obstacle(s, pose)) for s in (flat, anew))
+        self.assertAlmostEqual(a.upper, b.upper, places=6)
+        pointed = cprox.deformed(round_one, numpy.eye(3), exponents=[2, 2, 2])
+        ball = cprox.pair(cprox.Obstacle(pointed), cprox.Obstacle(cprox.point([1, 0, 0])))
+        self.assertAlmostEqual(ball.upper, .7, places=6)
+        planes = [[1, 0, 0, -.5], [-1, 0, 0, -.5], [0, 1, 0, -.5], [0, -1, 0, -.5], [0, 0, 1, -.5], [0, 0, -1, -.5]]
+        cube = cprox.pair(cprox.Obstacle(cprox.implicit(planes=planes)), other)
+        self.assertAlmostEqual(cube.upper, numpy.hypot(3, 2), places=6)
+        with self.assertRaisesRegex(ValueError, 'superquadric or implicit'):
+            cprox.deformed(cprox.box([1, 1, 1]), numpy.eye(3))
+        with self.assertRaisesRegex(ValueError, '3, 3'):
+            cprox.deformed(round_one, numpy.eye(2))
+
+    def test_distance_functions_that_lie_are_refused(self):
+        def raises(p):
+            raise RuntimeError('mine')
+
+        for function, words in ((lambda p: 2 * p[0], 'Lipschitz|lies within'), (lambda p: float('nan'), 'answered nan'),
+                                (raises, 'answered nan'), (lambda p: 'word', 'answered nan')):
+            with self.assertRaisesRegex(ValueError, words):
+                cprox.distance_function(function, [0, 0, 0], 1)
+        with self.assertRaisesRegex(ValueError, 'n_z, n_y, n_x'):
+            cprox.distance_grid([[1, 2]], 1)
+        with self.assertRaisesRegex(ValueError, 'neighbour'):
+            cprox.distance_grid([[[0, 0], [0, 0]], [[0, 0], [0, 3]]], 1)
+        with self.assertRaisesRegex(ValueError, 'height at'):
+            cprox.height_field([[0, 0], [0, float('nan')]], [1, 1])
+
     def test_curves_are_evaluated_for_numbers_and_arrays(self):
         points = numpy.array([[0, 0, 0], [1, 2, 0], [2, 0, 1], [3, 1, 1.]])
         curve = cprox.bezier(points, 2, 4)

@@ -7,7 +7,7 @@ import unittest
 
 from curve_proximity.msg import AllowedContact, Body, CollisionObject, LinkPadding, SceneState
 from geometry_msgs.msg import Pose
-from helpers import (BOX, CONE, CYLINDER, SPHERE, Server, bezier, body, box, bspline, implicit, mesh, plane, point, pose,
+from helpers import (BOX, CONE, CYLINDER, SPHERE, Server, bezier, body, box, bspline, grid, implicit, mesh, plane, point, pose,
                      run, solid, sphere, thing)
 
 EPSILON = 1e-9  # [m] asked for in each query that is compared
@@ -98,6 +98,20 @@ class Answers(TestCase):
             with self.subTest(thing_.bodies or thing_.primitives or thing_.planes or 'mesh'):
                 self.server.replace(thing_)
                 self.assertContains(self.distance(line), true_distance)
+
+    def test_ground_and_grids_of_distances_are_bodies(self):
+        line = bezier((-1, 0, 2), (1, 0, 2))
+        self.server.replace(grid('ground', 'height_field', [1, 1, 3, 3, -1], [0, 0, 0, 0, .5, 0, 0, 0, 0], (-1, -1, 0)))
+        self.assertContains(self.distance(line), 1.5)
+        values = [math.sqrt(x * x + y * y + z * z) for z in (-1, 0, 1) for y in (-1, 0, 1) for x in (-1, 0, 1)]
+        self.server.replace(grid('point', 'distance_grid', [1, 3, 3, 3], values, (-1, -1, -1)))
+        row = self.distance(line)
+        self.assertLessEqual(row.lower, 2.0)
+        self.assertGreaterEqual(row.upper, 2.0)
+        values[0] = 9.0
+        told = self.server.apply(grid('point', 'distance_grid', [1, 3, 3, 3], values))
+        self.assertFalse(told.success)
+        self.assertIn('neighbour', told.message)
 
     def test_a_polygon_has_an_inside_to_curves_in_its_plane(self):
         self.server.replace(body('square', 'polygon', vertices=[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]))

@@ -91,6 +91,12 @@ def body(name, kind, dimensions=(), vertices=(), position=(0, 0, 0), **fields):
                                               vertices=[point(v) for v in vertices])], **fields)
 
 
+def grid(name, kind, dimensions, values, position=(0, 0, 0), **fields):
+    """A height field or a grid of distances."""
+    return thing(name, position, bodies=[Body(type=kind, dimensions=[float(d) for d in dimensions],
+                                              values=[float(v) for v in values])], **fields)
+
+
 def implicit(name, hyperquadrics=(), planes=(), quadrics=(), position=(0, 0, 0), **fields):
     """The intersection of hyperquadrics, each a list of terms of five, planes of four and quadrics of ten numbers."""
     def flat(rows):

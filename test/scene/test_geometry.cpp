@@ -292,3 +292,37 @@ TEST(Resources, a_mesh_has_a_file_or_vertices_not_both) {
   s.vertices = Eigen::Matrix3Xd::Zero(3, 3);
   expectContains(refusal(s), "give one of the two");
 }
+
+static double distanceFrom(const ShapeDescription &s, const Eigen::Vector3d &p) {
+  return cprox_body_nearest(makeGeometry(s).body.get(), toVec3(p), nullptr);
+}
+
+TEST(Grids, ground_is_as_far_as_its_triangles) {
+  ShapeDescription field = shape(ShapeType::HEIGHT_FIELD, {1.0, 1.0, 3, 2});
+  field.values = {0.0, 0.5, 0.0, 0.0, 0.5, 0.0};
+  EXPECT_NEAR(distanceFrom(field, {1.0, 0.5, 1.5}), 1.0, 1e-12);
+  EXPECT_NEAR(distanceFrom(field, {1.0, 0.5, 0.0}), 0.5 * 2.0 / std::sqrt(5.0), 1e-12);
+  EXPECT_TRUE(makeGeometry(field).is_mesh);
+  field.dimensions.push_back(-1.0);
+  EXPECT_LE(distanceFrom(field, {1.0, 0.5, 0.0}), 0.0);
+  EXPECT_FALSE(makeGeometry(field).is_open);
+  field.dimensions.back() = 0.0;
+  expectContains(refusal(field), "above the floor");
+  field.values.pop_back();
+  expectContains(refusal(field), "5 values, but 6 points");
+  ShapeDescription box = shape(ShapeType::BOX, {1, 1, 1});
+  box.values = {1.0};
+  expectContains(refusal(box), "takes no values");
+}
+
+TEST(Grids, distances_are_certified_relative_to_their_error) {
+  ShapeDescription grid = shape(ShapeType::DISTANCE_GRID, {0.5, 2, 2, 2, 0.01});
+  for (int i = 0; i < 8; ++i)
+    grid.values.push_back(0.5 * Eigen::Vector3d(i % 2, i / 2 % 2, i / 4).norm()); // from the first grid point
+  EXPECT_NEAR(distanceFrom(grid, {0.5, 0.0, 0.0}), 0.5, 0.02);
+  EXPECT_NEAR(distanceFrom(grid, {0.25, 0.0, 0.0}), 0.25, 0.02);
+  grid.values[7] = 2.0;
+  expectContains(refusal(grid), "neighbour");
+  grid.dimensions[1] = 1;
+  expectContains(refusal(grid), "whole number");
+}

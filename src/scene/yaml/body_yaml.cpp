@@ -51,6 +51,12 @@ void readOctree(const YamlValue &value, ShapeDescription &shape, Warnings &warni
   if (const auto occupied = value.find("unknown_is_occupied")) shape.unknown_is_occupied = occupied->truth();
 }
 
+void readGrid(const YamlValue &value, ShapeDescription &shape, Warnings &warnings) {
+  value.warnOfOthers({"type", "dimensions", "values", "pose"}, warnings);
+  shape.dimensions = value.at("dimensions").numbers();
+  shape.values = value.at("values").numbers();
+}
+
 } // namespace
 
 Eigen::Matrix3Xd readVertices(const YamlValue &value) {
@@ -93,8 +99,9 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   const std::string name = type.text();
   const std::optional<ShapeType> known = shapeTypeFromName(name);
   if (!known) {
-    type.fail("type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
-              "halfspace, polytope, polygon, mesh, points, octree, superquadric or implicit");
+    type.fail(
+        "type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
+        "halfspace, polytope, polygon, mesh, points, octree, superquadric, implicit, height_field or distance_grid");
   }
   shape.type = *known;
 
@@ -114,6 +121,11 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
 
   if (shape.type == ShapeType::OCTREE) {
     readOctree(value, shape, warnings);
+    return shape;
+  }
+
+  if (shape.type == ShapeType::HEIGHT_FIELD || shape.type == ShapeType::DISTANCE_GRID) {
+    readGrid(value, shape, warnings);
     return shape;
   }
 
