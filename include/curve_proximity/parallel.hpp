@@ -298,8 +298,15 @@ class SharedQuery {
       return k == n ? info.t1 : info.t0 + part * (info.t1 - info.t0);
     };
     Known known;
-    std::vector<cprox_result> results(n);
-    std::vector<char> asked(n, 0); // an interval that is shorter than double tells has no inside
+    std::vector<cprox_result> results(n + 1); // the last one: a look at the whole
+    std::vector<char> asked(n + 1, 0);        // an interval that is shorter than double tells has no inside
+    if (n > 1 && delta < 0.0) {
+      pool.run(1, 1, [&](std::size_t, std::size_t, Workspace &workspace) { results[n] = look(known, workspace); });
+      if (results[n].status == CPROX_OK || results[n].status < 0) return results[n];
+      // the intervals say how near anything comes; this one only where
+      results[n].lower = results[n].upper, results[n].status = CPROX_OK;
+      asked[n] = 1;
+    }
     pool.run(n, 1, [&](std::size_t first, std::size_t, Workspace &workspace) {
       const std::array<double, 2> interval = {end(first), end(first + 1)};
       if (!(interval[0] < interval[1])) return;
@@ -314,6 +321,16 @@ class SharedQuery {
       if (results[first].verdict == CPROX_VERDICT_VIOLATED) known.violated = true;
     });
     return join(results, asked, delta);
+  }
+
+  /** One node of a search of the whole motion: an upper bound for all intervals to begin with. Without it each of them
+   *  looks for the least distance of its own. */
+  cprox_result look(Known &known, Workspace &workspace) const {
+    cprox_options options = options_;
+    options.max_nodes = 1;
+    const cprox_result found = obstacles_.distance(robot_, options, workspace);
+    Known::share(&known, found.upper);
+    return found;
   }
 
   /** The union: the least of both ends, with the witness of the upper one. */
