@@ -50,13 +50,15 @@ class Movers {
    *  objects    those of movingObjects() among them.
    *  allowed    pairs of names that may touch: movers, links of moving robots ("name/link"), objects.
    *  resources  for shapes of moving objects that come from files.
+   *  stop       asked now and then while all are being joined: true ends that, by an Error.
    *
    *  Throws Error: no mover; names that are empty, contain '/' or clash with another mover or an object that stands; an
    *  object that moves in the snapshot and is not among `objects`; a moving object without shapes or poses; what
    *  makeGeometry() refuses, and halfspaces; times that do not ascend; orientations that are half a turn apart; clocks
    *  that leave a pause in which nothing moves. The message names the mover. */
   Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, const std::vector<MovingObject> &objects,
-         const std::vector<std::array<std::string, 2>> &allowed = {}, const ResourceOptions &resources = {});
+         const std::vector<std::array<std::string, 2>> &allowed = {}, const ResourceOptions &resources = {},
+         const Stop &stop = nullptr);
   ~Movers();
   /** Moves. */
   Movers(Movers &&) noexcept;

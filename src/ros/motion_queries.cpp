@@ -24,6 +24,12 @@ std::vector<std::string> ownNames(const Snapshot &snapshot, const std::vector<st
   return out;
 }
 
+/** What ends a query ends what is made for it. */
+Stop stopOf(const Query &query) {
+  const cprox_options &options = query.options;
+  return [stop = options.stop, user = options.stop_user] { return stop != nullptr && stop(user); };
+}
+
 } // namespace
 
 void Queries::answerTrajectories(Work &work) {
@@ -107,7 +113,8 @@ void Queries::answerMovers(Work &work) {
   Proximity row;
   try {
     if (!work.query.links.empty()) throw Error("links and group do not apply to movers");
-    const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), 0, work.lookup, mostBytes());
+    const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), 0, work.lookup, mostBytes(),
+                              stopOf(work.query));
     const WorkspacePool::Lease workspace(workspaces_);
     Answer answer = around.ask(work.query, request.more.self_collision != 0, request.asking, *workspace);
     answer.kind = Proximity::KIND_MOVERS;
@@ -157,7 +164,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     MotionRows rows;
     if (movesBeside(request.more, *work.snapshot)) {
       const Surroundings around(work.snapshot, request.more, robots_, motion, stamp, trajectory.points.size(),
-                                work.lookup, mostBytes());
+                                work.lookup, mostBytes(), stopOf(work.query));
       Query among = environment;
       among.links = ownNames(*work.snapshot, work.query.links);
       rows.answers.push_back(around.ask(among, false, request.asking, *workspace));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <curve_proximity/nearest_name.hpp>
-#include <set>
 
 #include "conversions.h"
 
@@ -57,14 +56,13 @@ std::int64_t originOf(const ProximityQuery &query, const Snapshot &snapshot, boo
   return stamps.empty() ? 0 : *std::min_element(stamps.begin(), stamps.end());
 }
 
-/** What the joined motion takes: each variable has a polynomial between any two times at which one of the motions has a
- *  waypoint. points: of robots. */
-std::size_t bytesOf(const std::vector<MovingObject> &objects, std::size_t variables, std::size_t points) {
-  constexpr std::size_t POLYNOMIAL = 64, OF_OBJECT = 7;
-  std::set<double> times;
-  for (const MovingObject &object : objects)
-    for (const TimedPose &pose : object.poses) times.insert(pose.time + object.start);
-  return (OF_OBJECT * objects.size() + variables) * (times.size() + points) * POLYNOMIAL;
+/** What the joined motion takes: each variable of an object or robot has a polynomial between any two of its waypoints,
+ *  and stands before and after. robots: variables times waypoints. Any two objects are a pair. */
+std::size_t bytesOf(const std::vector<MovingObject> &objects, std::size_t robots) {
+  constexpr std::size_t POLYNOMIAL = 128, OF_OBJECT = 7;
+  std::size_t polynomials = robots;
+  for (const MovingObject &object : objects) polynomials += OF_OBJECT * (object.poses.size() + 2);
+  return polynomials * POLYNOMIAL + objects.size() * objects.size() * sizeof(cprox_robot_pair);
 }
 
 void checkAsked(const Query &query, const Asking &asking) {
@@ -83,23 +81,23 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot) {
 
 Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
                            std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, std::size_t points,
-                           FrameLookup &lookup, std::size_t most_bytes)
+                           FrameLookup &lookup, std::size_t most_bytes, const Stop &stop)
     : has_subject_(subject != nullptr) {
   const std::int64_t origin = originOf(query, *snapshot, has_subject_, stamp);
   const std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
-  std::size_t variables = has_subject_ ? snapshot->robot()->links().size() : 0;
+  std::size_t polynomials = has_subject_ ? snapshot->robot()->links().size() * (points + 2) : 0;
   for (const RobotTrajectory &message : query.moving_robots) {
     robots_.push_back(toMovingRobot(message, robots, origin, lookup));
-    variables += robots.at(message.robot).robot->links().size();
-    points += message.trajectory.points.size();
+    polynomials += robots.at(message.robot).robot->links().size() * (message.trajectory.points.size() + 2);
   }
-  share_.emplace(bytesOf(objects, variables, points), most_bytes);
+  share_.emplace(bytesOf(objects, polynomials), most_bytes);
   if (subject) {
     const MovingRobot robot{snapshot->robot()->name(), std::move(subject), 0.0};
     checkClocks(robot, robots_, objects);
     robots_.insert(robots_.begin(), robot);
   }
-  movers_ = std::make_shared<const Movers>(snapshot, robots_, objects);
+  const std::vector<std::array<std::string, 2>> none;
+  movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, ResourceOptions(), stop);
 }
 
 Answer Surroundings::ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace) const {

@@ -30,11 +30,12 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot);
 class Surroundings {
  public:
   /** subject: the robot that is asked about, with its stamp and the number of its points; null: nobody. most_bytes:
-   * what the joined motion may take. Throws Error, which names the mover: a robot that is not known, what RobotMotion
-   * and Movers refuse, a trajectory that is stale or in the future; and where it would take more memory. */
+   * what the joined motion may take. stop: asked while it is made, ends that. Throws Error, which names the mover: a
+   * robot that is not known, what RobotMotion and Movers refuse, a trajectory that is stale or in the future; and where
+   * it would take more memory. */
   Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
                std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, std::size_t points,
-               FrameLookup &lookup, std::size_t most_bytes);
+               FrameLookup &lookup, std::size_t most_bytes, const Stop &stop);
 
   /** One answer: of the subject, else of all that moves; against_self: of that each robot against itself, too. Throws
    *  Error for what is not available of movers. query: its links are those of the subject. */

@@ -83,11 +83,19 @@ void checkNames(const Snapshot &snapshot, const std::vector<MovingRobot> &robots
     if (known.count(id) == 0) throw Error("object '" + id + "' moves in the scene, and is none of the movers");
 }
 
+std::string moverOf(const std::string &name) {
+  return name.substr(0, name.find('/'));
+}
+
 /* Which pairs of names may touch: of movers, or of what belongs to them. */
 class Allowed {
  public:
   explicit Allowed(const std::vector<Names> &pairs) {
     for (const Names &pair : pairs) pairs_.insert(ordered(pair[0], pair[1]));
+  }
+
+  void addNames(std::set<std::string> &names) const {
+    for (const auto &pair : pairs_) names.insert(pair.begin(), pair.end());
   }
 
   bool has(const std::string &a, const std::string &b) const {
@@ -102,10 +110,6 @@ class Allowed {
     return a < b ? Names{a, b} : Names{b, a};
   }
 
-  static std::string moverOf(const std::string &name) {
-    return name.substr(0, name.find('/'));
-  }
-
   std::set<Names> pairs_;
 };
 
@@ -114,8 +118,9 @@ class Allowed {
 /* The parts of the joined robot, robots first, in the order of their geometries. */
 class Joiner {
  public:
-  Joiner(const std::vector<MovingRobot> &robots, const std::vector<MovingObject> &objects, Movers::Data &out)
-      : robots_(robots), objects_(objects), out_(out) {}
+  Joiner(const std::vector<MovingRobot> &robots, const std::vector<MovingObject> &objects, const Stop &stop,
+         Movers::Data &out)
+      : robots_(robots), objects_(objects), stop_(stop), out_(out) {}
 
   void join() {
     const bool moves = std::any_of(robots_.begin(), robots_.end(),
@@ -126,6 +131,10 @@ class Joiner {
     for (std::size_t i = 0; i < objects_.size(); ++i) addObject(objects_[i], *out_.objects[i]);
     if (!moves) throw Error("nothing moves: each mover has one pose, '" + names_.front() + "' among them");
     Workspace workspace;
+    if (stop_) {
+      const auto call = [](void *user) { return (*static_cast<const Stop *>(user))(); };
+      cprox_workspace_set_stop(workspace.get(), call, const_cast<Stop *>(&stop_));
+    }
     cprox_robot *robot = nullptr;
     expect(cprox_robot_join(cores_.data(), nullptr, cores_.size(), workspace.get(), &robot), "the movers", workspace);
     out_.robot.reset(robot);
@@ -134,7 +143,9 @@ class Joiner {
     description.joined = motions_.data();
     description.n_joined = motions_.size();
     cprox_motion *motion = nullptr;
-    expect(cprox_motion_create(robot, &description, workspace.get(), &motion), names(), workspace);
+    const cprox_status made = cprox_motion_create(robot, &description, workspace.get(), &motion);
+    if (made != CPROX_OK && stop_ && stop_()) throw Error("stopped while the movers were being joined");
+    expect(made, names(), workspace);
     out_.motion.reset(motion);
   }
 
@@ -175,6 +186,7 @@ class Joiner {
 
   const std::vector<MovingRobot> &robots_;
   const std::vector<MovingObject> &objects_;
+  const Stop &stop_;
   Movers::Data &out_;
   std::vector<const cprox_robot *> cores_;
   std::vector<cprox_joined_motion> motions_;
@@ -196,7 +208,25 @@ bool ownMayTouch(const Movers::Data &data, std::size_t i, std::size_t object) {
   return other.mover >= data.robots.size() && mayTouchInOwn(data, data.geometries[i], other.name);
 }
 
-void choosePairs(const Allowed &allowed, Movers::Data &data) {
+/* Of each geometry whether some list of allowed pairs has a name of it: two of which none has may not touch. */
+std::vector<bool> namedAnywhere(const Allowed &allowed, const Movers::Data &data) {
+  std::set<std::string> names;
+  allowed.addNames(names);
+  const auto add = [&](const Snapshot &snapshot) {
+    for (const AllowedPair &pair : snapshot.allowed()) names.insert(pair.a), names.insert(pair.b);
+  };
+  add(*data.snapshot);
+  for (const auto &robot : data.robots) add(*robot->data().snapshot);
+  std::vector<bool> out;
+  for (const MoverGeometry &geometry : data.geometries) {
+    const std::string mover = moverOf(geometry.name);
+    const std::string link = geometry.name.substr(std::min(mover.size() + 1, geometry.name.size()));
+    out.push_back(names.count(geometry.name) + names.count(mover) + names.count(link) > 0);
+  }
+  return out;
+}
+
+void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
   const std::vector<MoverGeometry> &geometries = data.geometries;
   const std::vector<Item> &items = data.snapshot->world().items();
   double most = 0.0, rounding = 0.0;
@@ -206,7 +236,9 @@ void choosePairs(const Allowed &allowed, Movers::Data &data) {
     data.targets.push_back(by_hull ? shape.hull : shape.target);
     rounding = std::max(rounding, shape.rounding + (by_hull ? shape.hull_excess : 0.0));
   }
+  const std::vector<bool> named = namedAnywhere(allowed, data);
   for (std::size_t i = 0; i < geometries.size(); ++i) {
+    if (stop && stop()) throw Error("stopped while the pairs of the movers were being listed");
     most = std::max(most, geometries[i].excess);
     const std::size_t mover = geometries[i].mover;
     const std::string &name = geometries[i].name;
@@ -217,8 +249,10 @@ void choosePairs(const Allowed &allowed, Movers::Data &data) {
         data.environment.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
     for (std::size_t k = i + 1; k < geometries.size(); ++k) {
-      if (geometries[k].mover == mover || allowed.has(name, geometries[k].name)) continue;
-      if (data.snapshot->mayTouch(name, geometries[k].name) || ownMayTouch(data, i, k) || ownMayTouch(data, k, i))
+      if (geometries[k].mover == mover) continue;
+      if ((named[i] || named[k]) &&
+          (allowed.has(name, geometries[k].name) || data.snapshot->mayTouch(name, geometries[k].name) ||
+           ownMayTouch(data, i, k) || ownMayTouch(data, k, i)))
         continue;
       data.among.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
@@ -349,7 +383,7 @@ Answer answerOf(const Movers &movers, Against asked, const Query &query, const s
 } // namespace
 
 Movers::Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, const std::vector<MovingObject> &objects,
-               const std::vector<Names> &allowed, const ResourceOptions &resources) {
+               const std::vector<Names> &allowed, const ResourceOptions &resources, const Stop &stop) {
   checkNames(*snapshot, robots, objects);
   auto data = std::make_unique<Data>();
   data->snapshot = std::move(snapshot);
@@ -358,8 +392,8 @@ Movers::Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, con
     data->object_names.push_back(object.object.id);
     data->object_starts.push_back(object.start);
   }
-  Joiner(robots, objects, *data).join();
-  choosePairs(Allowed(allowed), *data);
+  Joiner(robots, objects, stop, *data).join();
+  choosePairs(Allowed(allowed), stop, *data);
   data_ = std::move(data);
 }
 

@@ -349,10 +349,18 @@ class Movers(unittest.TestCase):
         many = [moving(sphere('ball%d' % i, 0.1), waypoint(0.001 * i, (i, 2, 0.5)), waypoint(2 + 0.001 * i, (i, 3, 0.5)))
                 for i in range(200)]
         self.server.replace(*many)
+        self.assertTrue(self.server.distance([], movers=True).success)
+        self.assertTrue(self.server.distance([], trajectory=swing(-0.8, 0.8)).success)
+        long = moving(sphere('long', 0.1), *[waypoint(0.001 * i, (0.001 * i, 2, 0.5)) for i in range(20000)])
+        self.server.replace(long)
         self.assertRefused(self.server.distance([], movers=True), 'too large', '~max_request_mb')
         self.assertRefused(self.server.distance([], trajectory=swing(-0.8, 0.8)), 'too large')
-        self.server.replace(*many[:100])
-        self.assertTrue(self.server.distance([], movers=True).success)
+
+    def test_a_budget_ends_the_joining_of_many(self):
+        self.server.replace(*[moving(sphere('ball%d' % i, 0.1), waypoint(0.001 * i, (i, 2, 0.5)), waypoint(2 + 0.001 * i, (i, 3, 0.5)))
+                              for i in range(100)])
+        self.assertRefused(self.server.distance([], movers=True, budget_ms=1e-6), 'stopped while the movers were being joined')
+        self.assertTrue(self.server.distance([], movers=True, budget_ms=60000).success)
 
     def test_what_does_not_know_movers_says_so(self):
         self.server.replace(moving(sphere('ball', 0.1), waypoint(0, (2, 2, 0.5)), waypoint(1, (2, 3, 0.5))), box('table', (1, 1, 0.1), (3, 0, 0)))

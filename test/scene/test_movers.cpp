@@ -115,6 +115,30 @@ TEST_F(Movement, an_object_that_falls_and_turns_passes_a_shelf) {
   EXPECT_EQ(ask(twisting, Against::OBJECTS, collision(), workspace).result.verdict, CPROX_VERDICT_VIOLATED);
 }
 
+/* Whoever waits may end the joining of many; names that may touch are left out, and only these. */
+TEST_F(Movement, the_joining_of_many_can_be_stopped) {
+  std::vector<MovingObject> balls;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.001 * i, x = i < 2 ? 0.3 * i : 10.0 * i;
+    balls.push_back(mover("ball" + std::to_string(i), {shape(ShapeType::SPHERE, {0.1})},
+                          {{t, translation(x, 0, 0)}, {t + 1.0, translation(x, 1, 0)}}));
+  }
+  int asked = 0;
+  const Movers movers(world.snapshot(), {}, balls, {}, {}, [&] { return ++asked > 1000000; });
+  EXPECT_GT(asked, 60);
+  const Answer nearest = ask(movers, Against::MOVERS, Query(), workspace);
+  EXPECT_EQ(nearest.a, "ball0");
+  EXPECT_EQ(nearest.b, "ball1");
+  const Movers others(world.snapshot(), {}, balls, {{"ball0", "ball1"}});
+  EXPECT_GT(ask(others, Against::MOVERS, Query(), workspace).result.lower, 9.0);
+  const int all = asked;
+  for (const int last : {0, 1, 30, all - 2}) {
+    asked = 0;
+    expectContains(errorOf([&] { Movers(world.snapshot(), {}, balls, {}, {}, [&] { return ++asked > last; }); }),
+                   "stopped while");
+  }
+}
+
 /* Ten metres apart, two arms are as near to themselves as each is alone; beside each other they are nearer to the other
  * one. */
 TEST_F(Movement, two_arms_far_apart_are_as_near_as_each_to_itself) {
