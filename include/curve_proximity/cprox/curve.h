@@ -362,6 +362,24 @@ CPROX_API cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, 
 CPROX_API cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, double b,
                                                   cprox_workspace *workspace, cprox_vec3 *points);
 
+/** An ellipsoid of revolution: all x with |x - foci[0]| + |x - foci[1]| <= axis. */
+typedef struct cprox_curve_ellipsoid {
+  /** [m] the ends of the part, as they are computed */
+  cprox_vec3 foci[2];
+  /** [m] at least the arc length of the part, and what its ends may be off */
+  double axis;
+  /** [m] half the minor axis: the ellipsoid lies within this of the segment between the foci */
+  double radius;
+} cprox_curve_ellipsoid;
+
+/** An ellipsoid that contains the curve's points over [a, b] (Lakshmanan et al. 2019, Theorem 1).
+ *
+ *  The axis is a bound of the arc length: of a curve that is known by its arc length what its function says, or u_psi
+ * of Lemma 1; of any other the length of its control polygon. Hulls of control points are smaller: queries use those
+ * where there are any. CPROX_INVALID if a >= b, if [a, b] leaves the domain, or where a function of the curve fails. */
+CPROX_API cprox_status cprox_curve_get_ellipsoid(const cprox_curve *curve, double a, double b,
+                                                 cprox_workspace *workspace, cprox_curve_ellipsoid *ellipsoid);
+
 /** What is known of one polynomial piece of a curve. */
 typedef struct cprox_curve_piece_info {
   /** the start of the piece */

@@ -9,6 +9,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/create.c
   ${CMAKE_CURRENT_LIST_DIR}/curve.c
   ${CMAKE_CURRENT_LIST_DIR}/dubins.c
+  ${CMAKE_CURRENT_LIST_DIR}/ellipsoid.c
   ${CMAKE_CURRENT_LIST_DIR}/evaluate.c
   ${CMAKE_CURRENT_LIST_DIR}/heading.c
   ${CMAKE_CURRENT_LIST_DIR}/involute.c
