@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Robots, scenes, and robots along joint trajectories. Queries release the GIL. */
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include <curve_proximity/files.hpp>
@@ -239,6 +240,32 @@ py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
   return answerOf(answer);
 }
 
+/* An answer with its proof, and the query that it is about as cprox_check reads it. */
+py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, bool self, double epsilon,
+                       std::uint32_t max_nodes) {
+  using Handle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
+  const Handle certificate(cprox_certificate_create(), cprox_certificate_free);
+  if (!certificate) throw std::bad_alloc();
+  Query query = queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes);
+  query.options.certificate = certificate.get();
+  Answer answer;
+  std::string text;
+  {
+    const py::gil_scoped_release release;
+    answer =
+        self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
+    text = "cprox-problem 1\n" + describeQuery(motion, self, query);
+  }
+  py::dict out = answerOf(answer);
+  if (!answer.unproven.empty()) throw Error("no certificate: " + answer.unproven);
+  const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
+  if (info.claim == CPROX_CLAIM_NONE) throw Error("no certificate: the answer is not decided");
+  out["claim"] = info.claim == CPROX_CLAIM_APART ? "apart" : "near";
+  out["record"] = py::bytes(static_cast<const char *>(info.bytes), info.size);
+  out["query"] = text;
+  return out;
+}
+
 py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon) {
   std::vector<ClearanceInterval> intervals;
   {
@@ -362,6 +389,11 @@ void addRobots(py::module &module) {
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
           "Does the robot touch or overlap an object, or itself? As distance().")
+      .def("certificate", &certificateOf, py::arg("delta") = py::none(), py::arg("self_collision") = false,
+           py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+           "A proof of tolerance(delta), or without delta of distance(): their dict with claim ('apart' or 'near'), "
+           "record\n"
+           "(bytes) and query (str), which check() verifies. ValueError where there is no proof, with the cause.")
       .def("profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,) and lists a, b.")
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),

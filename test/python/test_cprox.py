@@ -395,6 +395,27 @@ class Robots(unittest.TestCase):
                 ask()
             self.assertIn("object 'ball' moves along a trajectory", str(caught.exception))
 
+    def test_a_certificate_proves_its_answer_and_no_other(self):
+        scene = cprox.Scene(self.robot)
+        scene.add('ball', 'sphere', [0.1], cprox.transform([0.6, 0.5, 1.2]))
+        motion = self.motion(scene)
+        least = motion.distance()['result'].lower
+        self.assertGreater(least, 0.01)
+        for delta, claim in ((0.5 * least, 'apart'), (None, 'apart')):
+            proof = motion.certificate(delta=delta)
+            self.assertEqual(proof['claim'], claim)
+            self.assertIn('proven: farther than', cprox.check(proof))
+        proof = motion.certificate(delta=0.5 * least)
+        for record in (b'', proof['record'][:20], proof['record'][::-1]):
+            with self.assertRaises(ValueError):
+                cprox.check(dict(proof, record=record))
+        other = cprox.Scene(self.robot)  # the same ball, nearer than the proof says
+        other.add('ball', 'sphere', [0.1 + 0.75 * least], cprox.transform([0.6, 0.5, 1.2]))
+        with self.assertRaisesRegex(ValueError, 'refused'):
+            cprox.check(dict(proof, query=self.motion(other).certificate(delta=0.1 * least)['query']))
+        with self.assertRaises(FileNotFoundError):
+            cprox.check(proof, program='no_such_program')
+
     def test_self_collision_and_changes_of_the_scene(self):
         scene = cprox.Scene(self.robot)
         motion = self.motion(scene)

@@ -10,5 +10,29 @@ in metres, angles in radians, poses are homogeneous matrices of shape (4, 4). A 
     answer = cprox.distance(cprox.tube(curve, 0.2), wall)
     print(answer.lower, answer.upper, answer.t)
 """
+import os as _os
+import struct as _struct
+import subprocess as _subprocess
+import tempfile as _tempfile
+
 from ._cprox import *  # noqa: F401,F403
 from ._cprox import __version__  # noqa: F401
+
+
+def check(certificate, program='cprox_check'):
+    """What the certificate of a motion proves: the line that the program cprox_check prints.
+
+    certificate: what Motion.certificate() returned, or a dict with its record (bytes) and query (str). The program shares no
+    code with this package. Raises ValueError with its line where nothing is proven, and FileNotFoundError where the program
+    is neither on the PATH nor at the path given."""
+    record = certificate['record']
+    with _tempfile.TemporaryDirectory(prefix='cprox-') as folder:
+        path = _os.path.join(folder, 'certificate')
+        with open(path, 'wb') as file:
+            file.write(_struct.pack('<I', len(record)) + record)
+        done = _subprocess.run([program, '-', path], input=certificate['query'].encode(), stdout=_subprocess.PIPE,
+                               stderr=_subprocess.PIPE)
+    line = (done.stdout or done.stderr).decode(errors='replace').strip()
+    if done.returncode != 0:
+        raise ValueError(line or f'{program} ended with the exit code {done.returncode}')
+    return line
