@@ -40,32 +40,37 @@ static cprox_status check_times(const cprox_joined_motion *one, size_t i, cprox_
   return CPROX_OK;
 }
 
+/* From when to when a motion goes on. */
+typedef struct clock_range {
+  double begin, end;
+  size_t motion;
+} clock_range;
+
 static int compare_begins(const void *a, const void *b) {
-  const double x = begin_of(*(const cprox_joined_motion *const *)a),
-               y = begin_of(*(const cprox_joined_motion *const *)b);
+  const double x = ((const clock_range *)a)->begin, y = ((const clock_range *)b)->begin;
   return (x > y) - (x < y);
 }
 
 /* Nothing may happen only after everything else has ended. */
 static cprox_status check_overlap(const cprox_joined_motion *joined, size_t n, cprox_workspace *workspace) {
-  const cprox_joined_motion **by_begin = malloc((n + 1) * sizeof *by_begin);
-  if (!by_begin) return no_memory(n, workspace);
+  clock_range *ranges = malloc((n + 1) * sizeof *ranges);
+  if (!ranges) return no_memory(n, workspace);
   size_t count = 0;
   for (size_t i = 0; i < n; i++)
-    if (!joined[i].motion->is_state) by_begin[count++] = &joined[i];
-  qsort(by_begin, count, sizeof *by_begin, compare_begins);
+    if (!joined[i].motion->is_state) ranges[count++] = (clock_range){begin_of(&joined[i]), end_of(&joined[i]), i};
+  qsort(ranges, count, sizeof *ranges, compare_begins);
   cprox_status status = CPROX_OK;
   double before = INFINITY; /* the last end of those that begin earlier */
   for (size_t i = 0; i < count && status == CPROX_OK; i++) {
-    const double begin = begin_of(by_begin[i]), end = end_of(by_begin[i]);
-    if (before < begin)
+    const clock_range *one = &ranges[i];
+    if (before < one->begin)
       status = workspace_fail(workspace, CPROX_INVALID,
                               "the clocks do not overlap: motion %zu begins at %.15g s, %.3g s after all earlier ones "
                               "have ended",
-                              (size_t)(by_begin[i] - joined), begin, begin - before);
-    before = i == 0 ? end : fmax(before, end);
+                              one->motion, one->begin, one->begin - before);
+    before = i == 0 ? one->end : fmax(before, one->end);
   }
-  free(by_begin);
+  free(ranges);
   return status;
 }
 

@@ -43,12 +43,11 @@ static cprox_status compare(const distance_field *field, const distance_value *a
 cprox_status distance_field_measure(const distance_field *field, vec3 x, const distance_value *other,
                                     cprox_workspace *workspace, distance_value *measured) {
   double error = 0.0;
-  const double value = field->value(field, x, &error);
+  const double value = field->value(field, x, &error), rounding = rounding_at(field, x, value);
+  *measured = (distance_value){.at = x, .value = value, .error = error + rounding, .rounding = rounding};
   if (!isfinite(value))
     return workspace_fail(workspace, CPROX_INVALID, "%s answered %g at (%g, %g, %g)", field->source, value, x.x, x.y,
                           x.z);
-  const double rounding = rounding_at(field, x, value);
-  *measured = (distance_value){.at = x, .value = value, .error = error + rounding, .rounding = rounding};
   const double from_centre = vec_norm(vec_sub(x, field->centre)), slack = ROUND_UP * measured->error;
   if (value < from_centre - field->radius - slack || value > from_centre + field->radius + slack)
     return workspace_fail(workspace, CPROX_INVALID,
@@ -97,7 +96,8 @@ static vec3 direction_by_trial(const distance_field *field, vec3 x, double dista
   vec3 best = vec(0, 0, 0);
   double least = INFINITY;
   for (int i = 0; i < 27; i++) {
-    const vec3 d = vec(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    const int dx = i % 3 - 1, dy = i / 3 % 3 - 1, dz = i / 9 - 1;
+    const vec3 d = vec(dx, dy, dz);
     const double length = vec_norm(d);
     if (!(length > 0.0)) continue;
     const vec3 unit = vec_scale(1.0 / length, d);

@@ -8,44 +8,63 @@
 
 static const double MOST_LENGTH = 1e60;
 
-static cprox_status check_axis(const cprox_height_field *field, int k, cprox_workspace *workspace) {
+/* These tell the workspace what is wrong. */
+static bool check_axis(const cprox_height_field *field, int k, cprox_workspace *workspace) {
   const char axis = k == 0 ? 'x' : 'y';
-  if (field->n[k] < 2)
-    return workspace_fail(workspace, CPROX_INVALID, "the height field has %zu points along %c, at least 2 are needed",
-                          field->n[k], axis);
-  if (!(field->cell[k] > 0.0 && field->cell[k] <= MOST_LENGTH))
-    return workspace_fail(workspace, CPROX_INVALID, "the height field's cell is %g along %c, must be > 0 and finite",
-                          field->cell[k], axis);
-  if (!(fabs(field->origin[k]) <= MOST_LENGTH))
-    return workspace_fail(workspace, CPROX_INVALID, "the height field's origin is %g along %c, must be finite",
-                          field->origin[k], axis);
-  return CPROX_OK;
+  if (field->n[k] < 2) {
+    workspace_fail(workspace, CPROX_INVALID, "the height field has %zu points along %c, at least 2 are needed",
+                   field->n[k], axis);
+    return false;
+  }
+  if (!(field->cell[k] > 0.0 && field->cell[k] <= MOST_LENGTH)) {
+    workspace_fail(workspace, CPROX_INVALID, "the height field's cell is %g along %c, must be > 0 and finite",
+                   field->cell[k], axis);
+    return false;
+  }
+  if (!(fabs(field->origin[k]) <= MOST_LENGTH)) {
+    workspace_fail(workspace, CPROX_INVALID, "the height field's origin is %g along %c, must be finite",
+                   field->origin[k], axis);
+    return false;
+  }
+  return true;
 }
 
-static cprox_status check_heights(const cprox_height_field *field, cprox_workspace *workspace) {
+static bool check_heights(const cprox_height_field *field, cprox_workspace *workspace) {
   const size_t n = field->n[0];
   for (size_t i = 0; i < n * field->n[1]; i++) {
     const double h = field->heights[i];
-    if (!(fabs(h) <= MOST_LENGTH))
-      return workspace_fail(workspace, CPROX_INVALID, "the height at (%zu, %zu) is %g, must be finite", i % n, i / n,
-                            h);
-    if (h <= field->floor)
-      return workspace_fail(workspace, CPROX_INVALID, "the height at (%zu, %zu) is %g, must be above the floor at %g",
-                            i % n, i / n, h, field->floor);
+    if (!(fabs(h) <= MOST_LENGTH)) {
+      workspace_fail(workspace, CPROX_INVALID, "the height at (%zu, %zu) is %g, must be finite", i % n, i / n, h);
+      return false;
+    }
+    if (h <= field->floor) {
+      workspace_fail(workspace, CPROX_INVALID, "the height at (%zu, %zu) is %g, must be above the floor at %g", i % n,
+                     i / n, h, field->floor);
+      return false;
+    }
   }
-  return CPROX_OK;
+  return true;
 }
 
-static cprox_status check_field(const cprox_height_field *field, cprox_workspace *workspace) {
-  cprox_status status;
-  if (!field) return workspace_fail(workspace, CPROX_INVALID, "the height field is NULL");
-  if ((status = check_axis(field, 0, workspace)) || (status = check_axis(field, 1, workspace))) return status;
-  if (field->n[0] > UINT32_MAX / 8 / field->n[1])
-    return workspace_fail(workspace, CPROX_INVALID, "the height field has too many points: %zu x %zu", field->n[0],
-                          field->n[1]);
-  if (!field->heights) return workspace_fail(workspace, CPROX_INVALID, "heights is NULL");
-  if (isinf(field->floor))
-    return workspace_fail(workspace, CPROX_INVALID, "the floor is %g, must be finite, or NaN for none", field->floor);
+static bool check_field(const cprox_height_field *field, cprox_workspace *workspace) {
+  if (!field) {
+    workspace_fail(workspace, CPROX_INVALID, "the height field is NULL");
+    return false;
+  }
+  if (!check_axis(field, 0, workspace) || !check_axis(field, 1, workspace)) return false;
+  if (field->n[0] > UINT32_MAX / 8 / field->n[1]) {
+    workspace_fail(workspace, CPROX_INVALID, "the height field has too many points: %zu x %zu", field->n[0],
+                   field->n[1]);
+    return false;
+  }
+  if (!field->heights) {
+    workspace_fail(workspace, CPROX_INVALID, "heights is NULL");
+    return false;
+  }
+  if (isinf(field->floor)) {
+    workspace_fail(workspace, CPROX_INVALID, "the floor is %g, must be finite, or NaN for none", field->floor);
+    return false;
+  }
   return check_heights(field, workspace);
 }
 
@@ -91,16 +110,18 @@ static void add_walls(triangle_list *list, const size_t n[2], size_t rim) {
 
 cprox_status cprox_body_create_height_field(const cprox_height_field *field, size_t memory_limit,
                                             cprox_workspace *workspace, cprox_body **body) {
-  cprox_status status = check_field(field, workspace);
-  if (status != CPROX_OK) return status;
+  if (!check_field(field, workspace)) return CPROX_INVALID;
   const size_t *n = field->n, count = n[0] * n[1];
   const size_t rim = isnan(field->floor) ? 0 : 2 * (n[0] - 1 + n[1] - 1);
   vec3 *vertices = malloc((count + rim) * sizeof *vertices);
+  cprox_status status;
   triangle_list list = {.of = malloc((2 * count + 3 * rim) * sizeof *list.of)};
   if (vertices && list.of) {
-    for (size_t i = 0; i < count; i++)
-      vertices[i] = vec(field->origin[0] + field->cell[0] * (double)(i % n[0]),
-                        field->origin[1] + field->cell[1] * (double)(i / n[0]), field->heights[i]);
+    for (size_t i = 0; i < count; i++) {
+      const size_t column = i % n[0], row = i / n[0];
+      vertices[i] = vec(field->origin[0] + field->cell[0] * (double)column,
+                        field->origin[1] + field->cell[1] * (double)row, field->heights[i]);
+    }
     for (size_t i = 0; i < rim; i++) {
       vertices[count + i] = vertices[rim_point(n, i)];
       vertices[count + i].z = field->floor;
