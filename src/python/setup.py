@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python package cprox without ROS: CMake builds the extension module with the library inside, and the program that reads
-meshes for it. In the environment, CPROX_BUILD names a build folder that is kept, and CMAKE_ARGS has further options of CMake."""
+"""The Python package cprox without ROS: CMake builds the extension module with the library inside, the program that reads
+meshes for it, and where MPFR is found the checker of certificates. In the environment, CPROX_BUILD names a build folder that
+is kept, and CMAKE_ARGS has further options of CMake."""
 import os
 import re
 import shlex
@@ -24,11 +25,12 @@ class CMakeBuild(build_ext):
         subprocess.check_call(['cmake', '--build', build, '--target', 'cprox_python', 'curve_proximity_mesh_reader',
                                '--', '-j%d' % (os.cpu_count() or 1)])
         with open(os.path.join(build, 'python_files.txt')) as text:
-            built, reader = text.read().split('\n')[:2]
+            built, *beside = text.read().splitlines()
         programs = os.path.join(os.path.dirname(module), 'curve_proximity')
         os.makedirs(programs, exist_ok=True)
         shutil.copy2(built, module)
-        shutil.copy2(reader, programs)
+        for program in beside:
+            shutil.copy2(program, programs)
 
 
 def version():

@@ -19,12 +19,15 @@ from ._cprox import *  # noqa: F401,F403
 from ._cprox import __version__  # noqa: F401
 
 
-def check(certificate, program='cprox_check'):
+def check(certificate, program=None):
     """What the certificate of a motion proves: the line that the program cprox_check prints.
 
     certificate: what Motion.certificate() returned, or a dict with its record (bytes) and query (str). The program shares no
     code with this package. Raises ValueError with its line where nothing is proven, and FileNotFoundError where the program
-    is neither on the PATH nor at the path given."""
+    is not there. program: its path; None: that of this package, else the PATH is searched."""
+    if program is None:
+        beside = _os.path.join(_os.path.dirname(_os.path.abspath(__file__)), 'curve_proximity', 'cprox_check')
+        program = beside if _os.path.exists(beside) else 'cprox_check'
     record = certificate['record']
     with _tempfile.TemporaryDirectory(prefix='cprox-') as folder:
         path = _os.path.join(folder, 'certificate')
