@@ -160,6 +160,11 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
 std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
                                                 const Query &query, Workspace &workspace);
 
+/** All intervals of time [s] in which the robot is within query.delta of an object, or with `self` of itself: as
+ *  violations() of query.hpp, without signed_distance. */
+Violations violations(const RobotMotion &motion, bool self, double resolution, const Query &query,
+                      Workspace &workspace);
+
 /* ---- gradients ---- */
 
 /** Which pairs of a robot in motion are measured. */

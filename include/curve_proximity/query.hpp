@@ -169,6 +169,34 @@ std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const Co
                                                 const std::vector<double> &breaks, const Query &query,
                                                 Workspace &workspace);
 
+/** An interval of the parameter in which what moves is within delta of something (cprox_obstacles_violations()). */
+struct Violation {
+  double enter_lower = 0.0; /**< farther than delta before, back to leave_upper of the violation before */
+  double enter_upper = 0.0; /**< violated: within delta from here */
+  double leave_lower = 0.0; /**< to here, everywhere; equal where only one place is proven */
+  double leave_upper = 0.0; /**< farther than delta after, up to enter_lower of the next one */
+  cprox_verdict verdict = CPROX_VERDICT_UNDECIDED; /**< violated; undecided: it may be none */
+  double upper = 0.0;                              /**< [m] the least distance that was measured in it */
+  double t = 0.0;                                  /**< there */
+  std::string a;                                   /**< the curve's id, or the link or attached object */
+  std::string b;                                   /**< object or link */
+};
+
+/** All of them, in the order of the parameter. */
+struct Violations {
+  std::vector<Violation> list;
+  cprox_status status = CPROX_OK; /**< CPROX_BUDGET, CPROX_STOPPED: the last one goes on to the end, all else is true */
+  std::string message;            /**< why the status is not CPROX_OK */
+};
+
+/** All intervals in which the curve is within query.delta of something: where does it enter, where does it leave?
+ *  Outside of them it is proven to be farther. Within enter_upper … leave_lower it is proven not to be, but for the
+ *  rounding of poses outside the core. resolution > 0, in units of the parameter: as cprox_obstacles_violations() has
+ *  it. Takes no other query than TOLERANCE, no per_object and no certificate; throws Error for those, and where the
+ *  core refuses. */
+Violations violations(const Targets &targets, const CompiledCurve &curve, double resolution, const Query &query,
+                      Workspace &workspace);
+
 /** The time of contact: where the curve first touches what it is tested against. The query is COLLISION.
  *  result.t_contact_lower: no contact at any smaller parameter, the rounding outside the core included. Verdict
  *  violated: contact at result.t, within that rounding. clear: no contact at all. undecided: closer than epsilon at

@@ -61,6 +61,7 @@ const std::map<std::string, Option> &options() {
       {"--breaks", {true, {Action::CURVES, Action::REPORT}}},
       {"--pairs", {true, {Action::CURVES, Action::REPORT}}},
       {"--within", {true, {Action::CURVES}}},
+      {"--resolution", {true, {Action::CURVES}}},
       {"--out",
        {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::MERGE}}},
   };
@@ -80,6 +81,7 @@ const Command kCommands[] = {
     {"profile", Action::CURVES, QueryType::DISTANCE, Asking::PROFILE},
     {"nearest", Action::CURVES, QueryType::DISTANCE, Asking::NEAREST},
     {"time-of-contact", Action::CURVES, QueryType::COLLISION, Asking::CONTACT},
+    {"violations", Action::CURVES, QueryType::TOLERANCE, Asking::VIOLATIONS},
     {"pairs", Action::PAIRS, QueryType::DISTANCE},
     {"constraints", Action::CONSTRAINTS, QueryType::DISTANCE},
     {"report", Action::REPORT, QueryType::DISTANCE},
@@ -213,10 +215,10 @@ void readQuery(const Words &words, const Command &command, Query &query) {
   /* the limit of `tolerance` has no default: a clearance that nobody asked for means nothing */
   const bool takes_delta = command.query_type == QueryType::TOLERANCE || command.action == Action::REPORT;
   if (words.has("--delta") && !takes_delta)
-    throw BadUsage("--delta is for 'tolerance' and 'report': it is the clearance that is asked for");
+    throw BadUsage("--delta is for 'tolerance', 'violations' and 'report': it is the clearance that is asked for");
   if (words.has("--delta")) query.delta = readNumber(words, "--delta", 0.0, true, "of at least 0 (metres)");
   if (command.action == Action::CURVES && command.query_type == QueryType::TOLERANCE && !words.has("--delta")) {
-    throw BadUsage("'tolerance' needs --delta D, the clearance that is asked for, in metres");
+    throw BadUsage("'" + std::string(command.word) + "' needs --delta D, the clearance that is asked for, in metres");
   }
 
   /* the finest model that may answer */
@@ -246,6 +248,8 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
     out.limits.count = static_cast<std::size_t>(readCount(words, "--pairs", std::numeric_limits<std::uint32_t>::max()));
   if (only("--within", "nearest", Asking::NEAREST))
     out.limits.within = readNumber(words, "--within", 0.0, true, "of at least 0 (metres)");
+  if (only("--resolution", "violations", Asking::VIOLATIONS))
+    out.resolution = readNumber(words, "--resolution", 0.0, false, "above 0, in units of the parameter");
   if (command.asking == Asking::SEARCH) return;
   const bool contact = command.asking == Asking::CONTACT;
   for (const char *name : {"--against", "--certificate", "--movers"}) {
@@ -459,6 +463,7 @@ cprox tolerance --delta D  (as above)   verdict: clear (farther than D everywher
 cprox collision            (as above)   verdict: clear (no common point), violated (a common point) or undecided
 cprox time-of-contact      (as distance, without --against)   where along the curve or trajectory the first contact is
 cprox profile              (as distance, without --against)   the clearance on each interval of the parameter
+cprox violations --delta D (as distance, without --against)   all intervals of the parameter within D of something
 cprox nearest              (as distance, without --against)   the pairs that come closest, nearest first
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
 cprox constraints --provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parameters "name: value, ..."]
@@ -497,7 +502,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
                     The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that
                     it is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs
   --epsilon E       width of the intervals asked for, metres, above 0 (default 1e-06)
-  --delta D         the clearance asked of 'tolerance', and of 'report' if its verdict is wanted, metres
+  --delta D         the clearance asked of 'tolerance' and 'violations', and of 'report' if its verdict is wanted, metres
   --max-nodes N     budget of parameter intervals for each target (default 20000)
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
   --per-object      rows for each curve and object or link, not for the nearest alone
@@ -505,6 +510,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --intervals N     'profile', 'report': N intervals of equal length (default 100)
   --breaks LIST     'profile', 'report': where intervals begin and end instead, "0, 0.5, 2"
   --pairs K         'nearest', 'report': at most K pairs for each curve or trajectory (default 10)
+  --resolution R    'violations': how finely the ends are searched, in units of the parameter (default: a thousandth of
+                    all of it)
   --within D        'nearest': only pairs that come within D metres
   --max-lod R       the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies
                     by their bounding spheres); a coarser one is never farther away
@@ -525,7 +532,9 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
 
 Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,
 t_b,lod,message. Of 'time-of-contact' also t_contact_lower: there is no contact at any smaller parameter. Of 'profile':
-id,kind,status,t0,t1,lower,upper,t,a,b,message, a row an interval. Of 'constraints': id,provider,status,value,lower,upper,valid,t,
+id,kind,status,t0,t1,lower,upper,t,a,b,message, a row an interval. Of 'violations':
+id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message, a row each: farther than D before
+enter_lower and after leave_upper, within D from enter_upper to leave_lower; or one row 'clear' without numbers. Of 'constraints': id,provider,status,value,lower,upper,valid,t,
 gradients ga_ and gb_ by a step of side a and b (v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,
 microseconds,message,n,g0x,g0y,g0z,... by the curve's points. Of trajectories: t0,t1,kind,a,b (as above), g_duration, and a
 column for each number of each point: q0_JOINT, v0_JOINT, a0_JOINT by its position, velocity and acceleration; ga_ is by a step of the

@@ -30,10 +30,11 @@ enum class Action {
 
 /** What is asked about curves and trajectories. */
 enum class Asking {
-  SEARCH,  /**< one interval: distance, tolerance, collision */
-  PROFILE, /**< an interval for each interval of the parameter */
-  NEAREST, /**< the pairs that come closest */
-  CONTACT  /**< the time of contact */
+  SEARCH,    /**< one interval: distance, tolerance, collision */
+  PROFILE,   /**< an interval for each interval of the parameter */
+  NEAREST,   /**< the pairs that come closest */
+  CONTACT,   /**< the time of contact */
+  VIOLATIONS /**< the intervals within delta */
 };
 
 struct Arguments {
@@ -51,6 +52,7 @@ struct Arguments {
   std::size_t intervals = 100; /**< PROFILE: so many of equal length, unless there are breaks */
   std::vector<double> breaks;  /**< PROFILE: where intervals begin and end; empty: see intervals */
   PairLimits limits;           /**< NEAREST */
+  double resolution = 0.0;     /**< VIOLATIONS: in units of the parameter; 0: a thousandth of the domain */
   std::string certificate;     /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
   std::string robot, srdf;     /**< files of the robot; empty: none */
   std::string state;           /**< "joint: value, …" */

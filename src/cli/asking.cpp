@@ -35,6 +35,22 @@ void addProfile(const Subject &subject, std::vector<ClearanceInterval> intervals
   }
 }
 
+void addViolations(const Subject &subject, const Violations &found, Outcome &out) {
+  out.stopped = out.stopped || found.status == CPROX_STOPPED;
+  if (found.list.empty()) out.text += clearLine(subject.id, subject.kind, found.status, found.message);
+  for (Violation one : found.list) {
+    if (!subject.link.empty() && one.b == subject.link) std::swap(one.a, one.b);
+    out.violated = out.violated || one.verdict == CPROX_VERDICT_VIOLATED;
+    out.undecided = out.undecided || one.verdict == CPROX_VERDICT_UNDECIDED;
+    out.text += violationLine(subject.id, subject.kind, found.status, one, found.message);
+  }
+}
+
+double resolutionOf(const Arguments &arguments, const std::array<double, 2> &domain) {
+  constexpr double kPart = 1e-3;
+  return arguments.resolution > 0.0 ? arguments.resolution : kPart * (domain[1] - domain[0]);
+}
+
 } // namespace
 
 std::array<double, 2> CurveSubject::domain() const {
@@ -53,6 +69,10 @@ std::vector<ClearanceInterval> CurveSubject::profile(const std::vector<double> &
 
 Answer CurveSubject::contact(const Query &query, Workspace &workspace) const {
   return timeOfContact(targets_, curve_, query, workspace);
+}
+
+Violations CurveSubject::violations(double resolution, const Query &query, Workspace &workspace) const {
+  return curve_proximity::violations(targets_, curve_, resolution, query, workspace);
 }
 
 std::array<double, 2> MotionSubject::domain() const {
@@ -79,6 +99,10 @@ Answer MotionSubject::contact(const Query &query, Workspace &workspace) const {
   return timeOfContact(motion_, self_, named(query), workspace);
 }
 
+Violations MotionSubject::violations(double resolution, const Query &query, Workspace &workspace) const {
+  return curve_proximity::violations(motion_, self_, resolution, named(query), workspace);
+}
+
 std::vector<double> breaksOf(const Arguments &arguments, const std::array<double, 2> &domain) {
   if (!arguments.breaks.empty()) return arguments.breaks;
   const std::size_t n = arguments.intervals;
@@ -102,7 +126,11 @@ Columns columnsOf(const Arguments &arguments) {
 }
 
 std::string headerOf(const Arguments &arguments) {
-  return arguments.asking == Asking::PROFILE ? profileHeader() : resultsHeader(columnsOf(arguments));
+  switch (arguments.asking) {
+    case Asking::PROFILE: return profileHeader();
+    case Asking::VIOLATIONS: return violationsHeader();
+    default: return resultsHeader(columnsOf(arguments));
+  }
 }
 
 void putLinkFirst(const std::string &link, Answer &answer) {
@@ -120,6 +148,10 @@ void addFailure(const Subject &subject, const Arguments &arguments, cprox_status
   out.complaints.push_back(subject.place + ": " + why);
   if (arguments.asking == Asking::PROFILE) {
     out.text += failedProfileLine(subject.id, subject.kind, status, why);
+    return;
+  }
+  if (arguments.asking == Asking::VIOLATIONS) {
+    out.text += clearLine(subject.id, subject.kind, status, why);
     return;
   }
   ResultRow row;
@@ -150,6 +182,9 @@ void answer(const Subject &subject, const Arguments &arguments, const Query &que
         break;
       }
       case Asking::CONTACT: addAnswer(subject, arguments, subject.contact(one, workspace), out); break;
+      case Asking::VIOLATIONS:
+        addViolations(subject, subject.violations(resolutionOf(arguments, subject.domain()), one, workspace), out);
+        break;
     }
   } catch (const Error &e) {
     addFailure(subject, arguments, e.status(), e.what(), out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Profiles, nearest pairs and times of contact, of curves and of robots alike. */
+/** Profiles, nearest pairs, times of contact and violations, of curves and of robots alike. */
 #ifndef CURVE_PROXIMITY_CLI_ASKING_H
 #define CURVE_PROXIMITY_CLI_ASKING_H
 
@@ -30,6 +30,7 @@ class Subject {
   virtual std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, const Query &query,
                                                  Workspace &workspace) const = 0;
   virtual Answer contact(const Query &query, Workspace &workspace) const = 0;
+  virtual Violations violations(double resolution, const Query &query, Workspace &workspace) const = 0;
 };
 
 /** A curve; both arguments are kept by reference. */
@@ -44,6 +45,7 @@ class CurveSubject : public Subject {
   std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, const Query &query,
                                          Workspace &workspace) const override;
   Answer contact(const Query &query, Workspace &workspace) const override;
+  Violations violations(double resolution, const Query &query, Workspace &workspace) const override;
 
  private:
   const Targets &targets_;
@@ -61,6 +63,7 @@ class MotionSubject : public Subject {
   std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, const Query &query,
                                          Workspace &workspace) const override;
   Answer contact(const Query &query, Workspace &workspace) const override;
+  Violations violations(double resolution, const Query &query, Workspace &workspace) const override;
 
  private:
   Query named(const Query &query) const;

@@ -24,6 +24,7 @@ void checkAsked(const Arguments &arguments) {
   };
   if (arguments.asking == Asking::PROFILE) refuse("'profile'");
   if (arguments.asking == Asking::NEAREST) refuse("'nearest'");
+  if (arguments.asking == Asking::VIOLATIONS) refuse("'violations'");
   if (!arguments.certificate.empty()) refuse("--certificate");
   if (arguments.query.per_object) refuse("--per-object");
   if (arguments.per_link) refuse("--per-link");

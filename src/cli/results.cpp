@@ -125,6 +125,26 @@ std::string failedProfileLine(const std::string &id, const std::string &kind, cp
   return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ",,,,,,,," + quotedField(message) + '\n';
 }
 
+std::string violationsHeader() {
+  return "id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message\n";
+}
+
+std::string violationLine(const std::string &id, const std::string &kind, cprox_status status, const Violation &found,
+                          const std::string &message) {
+  std::string line =
+      quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ',' + cprox_verdict_name(found.verdict);
+  for (const double value :
+       {found.enter_lower, found.enter_upper, found.leave_lower, found.leave_upper, found.upper, found.t})
+    append(line, value);
+  return line + ',' + quotedField(found.a) + ',' + quotedField(found.b) + ',' + quotedField(message) + '\n';
+}
+
+std::string clearLine(const std::string &id, const std::string &kind, cprox_status status, const std::string &message) {
+  const std::string verdict = status < 0 ? "" : cprox_verdict_name(CPROX_VERDICT_CLEAR);
+  return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ',' + verdict + ",,,,,,,,," +
+         quotedField(message) + '\n';
+}
+
 ResultsFile::ResultsFile(const std::string &path, const std::vector<std::string> &inputs, const std::string &option)
     : path_(path.empty() ? "standard output" : path), file_(path.empty() ? stdout : nullptr) {
   if (file_) {

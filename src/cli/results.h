@@ -48,6 +48,12 @@ std::string profileLine(const std::string &id, const std::string &kind, const Cl
 std::string failedProfileLine(const std::string &id, const std::string &kind, cprox_status status,
                               const std::string &message);
 
+/** The same of violations: a line each. Without any: the line that all is clear. */
+std::string violationsHeader();
+std::string violationLine(const std::string &id, const std::string &kind, cprox_status status, const Violation &found,
+                          const std::string &message);
+std::string clearLine(const std::string &id, const std::string &kind, cprox_status status, const std::string &message);
+
 /** Where results go: standard output, or a file that is written anew. */
 class ResultsFile {
  public:

@@ -266,6 +266,29 @@ py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, b
   return out;
 }
 
+py::list violationsOf(const RobotMotion &motion, double delta, std::optional<double> resolution, bool self,
+                      double epsilon) {
+  constexpr double PART = 1e-3;
+  const std::array<double, 2> domain = motion.domain();
+  Violations found;
+  {
+    const py::gil_scoped_release release;
+    found = violations(motion, self, resolution.value_or(PART * (domain[1] - domain[0])),
+                       queryOf("tolerance", delta, epsilon, 20000), threadWorkspace());
+  }
+  if (found.status != CPROX_OK) throw std::runtime_error(found.message);
+  py::list out;
+  for (const Violation &v : found.list) {
+    py::dict one;
+    one["enter_lower"] = v.enter_lower, one["enter_upper"] = v.enter_upper;
+    one["leave_lower"] = v.leave_lower, one["leave_upper"] = v.leave_upper;
+    one["verdict"] = cprox_verdict_name(v.verdict), one["upper"] = v.upper, one["t"] = v.t;
+    one["a"] = v.a, one["b"] = v.b;
+    out.append(one);
+  }
+  return out;
+}
+
 py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon) {
   std::vector<ClearanceInterval> intervals;
   {
@@ -394,6 +417,15 @@ void addRobots(py::module &module) {
            "A proof of tolerance(delta), or without delta of distance(): their dict with claim ('apart' or 'near'), "
            "record\n"
            "(bytes) and query (str), which check() verifies. ValueError where there is no proof, with the cause.")
+      .def("violations", &violationsOf, py::arg("delta"), py::arg("resolution") = py::none(),
+           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
+           "All intervals of time within delta [m] of an object, or of the robot itself: a list of dicts of "
+           "enter_lower,\n"
+           "enter_upper, leave_lower, leave_upper [s], verdict, upper, t, a, b. Farther than delta before enter_lower "
+           "and\n"
+           "after leave_upper, within it from enter_upper to leave_lower. resolution [s]: how finely the ends are "
+           "searched,\n"
+           "a thousandth of the motion if None. RuntimeError where the budget ends.")
       .def("profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,) and lists a, b.")
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),

@@ -53,6 +53,9 @@ std::string faultOfContact(const Query &query);
 /* How far rounding can have moved any point of a shape that a curve can be near to. */
 double roundingOf(const CompiledCurve &curve, const PlacedShape &shape);
 
+/* The same of any shape of the items. */
+double roundingOf(const CompiledCurve &curve, const std::vector<Item> &items);
+
 /* Names the shape that a curve's answer is about, and what of it has answered. */
 void nameItem(const Item &item, cprox_lod max_lod, Answer &answer);
 

@@ -16,12 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
-double roundingOf(const CompiledCurve &curve, const std::vector<Item> &items) {
-  double most = 0.0;
-  for (const Item &item : items) most = std::max(most, curve_proximity::roundingOf(curve, *item.shape));
-  return most;
-}
-
 Answer answerOf(const CompiledCurve &curve, const cprox_result &result, Clock::time_point start) {
   Answer answer;
   answer.id = answer.a = curve.id;
@@ -38,6 +32,12 @@ void requireDistances(const Query &query) {
 }
 
 } // namespace
+
+double roundingOf(const CompiledCurve &curve, const std::vector<Item> &items) {
+  double most = 0.0;
+  for (const Item &item : items) most = std::max(most, roundingOf(curve, *item.shape));
+  return most;
+}
 
 std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &curve, const PairLimits &limits,
                                  const Query &query, Workspace &workspace) {

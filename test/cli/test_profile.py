@@ -7,6 +7,7 @@ import subprocess
 from support import BOX_SCENE, HEADER, LIMIT, PASSING, Answer, Case, bezier, cprox
 from test_trajectory import SLIDE, SLIDER, WALL
 
+VIOLATION = 'id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message'
 PROFILE = 'id,kind,status,t0,t1,lower,upper,t,a,b,message'
 TWO = '''
 world:
@@ -47,6 +48,24 @@ class Curves(Case):
             self.assertEqual((row['id'], row['kind'], row['a'], row['b']), ('over', 'curve', 'over', 'near'))
             self.assertTrue(float(row['t0']) <= float(row['t']) <= float(row['t1']))
         self.assertEqual((float(answer.rows[0]['t0']), float(answer.rows[-1]['t1'])), (0.0, 1.0))
+
+    def violations_are_the_intervals_within_delta(self):
+        """A ball of .5 at x = -3 + 6 t, z = 2 is within .6 of a ball of 1 at the origin where |x| <= sqrt(2.1^2 - 4)."""
+        answer = self.ask('violations', [OVER, bezier('off', (-3, 0, 50), (3, 0, 50))], TWO, '--delta', '0.6', '--resolution', '1e-6')
+        self.assertEqual((answer.code, answer.err, answer.header), (1, '', VIOLATION))
+        row, clear = answer.rows
+        half = math.sqrt(2.1 ** 2 - 4) / 6
+        names = ('enter_lower', 'enter_upper', 'leave_lower', 'leave_upper')
+        enter_lower, enter_upper, leave_lower, leave_upper = (float(row[name]) for name in names)
+        self.assertTrue(enter_lower <= 0.5 - half + 1e-12 and 0.5 - half <= enter_upper + 1e-12, row)
+        self.assertTrue(leave_lower <= 0.5 + half + 1e-12 and 0.5 + half <= leave_upper + 1e-12, row)
+        self.assertLess(max(enter_upper - enter_lower, leave_upper - leave_lower), 1e-4)
+        self.assertEqual((row['verdict'], row['a'], row['b']), ('violated', 'over', 'near'))
+        self.assertTrue(enter_upper <= float(row['t']) <= leave_lower)
+        self.assertEqual((clear['id'], clear['verdict'], clear['enter_lower']), ('off', 'clear', ''))
+        self.assertEqual(self.ask('violations', [OVER], TWO, '--delta', '0.4').code, 0)
+        for words, part in ((['--delta', '-1'], '--delta'), ([], '--delta'), (['--delta', '1', '--resolution', '0'], '--resolution')):
+            self.assertRefused(self.ask('violations', [OVER], TWO, *words), part)
 
     def a_profile_takes_the_breaks_that_it_is_given(self):
         answer = self.ask('profile', [OVER], TWO, '--breaks', '0.5, 0.75,1')
@@ -97,6 +116,18 @@ class Curves(Case):
 
 
 class Robots(Case):
+    def violations_of_a_robot_end_with_its_motion(self):
+        """The cart goes from 0 to 2 in 4 s, its front from .1 to 2.1; the wall begins at 3: within 1 from t = 3.8 on."""
+        words = robot_files(self)
+        answer = cprox('violations', *words, '--self', '--delta', '1', '--resolution', '1e-5')
+        self.assertEqual((answer.code, answer.err), (1, ''))
+        row, clear = answer.rows
+        self.assertEqual((row['kind'], row['verdict'], row['b']), ('environment', 'violated', 'wall'))
+        self.assertTrue(float(row['enter_lower']) <= 3.8 + 1e-9 and 3.8 - 1e-9 <= float(row['enter_upper']), row)
+        self.assertLess(float(row['enter_upper']) - float(row['enter_lower']), 1e-4)
+        self.assertEqual((float(row['leave_lower']), float(row['leave_upper'])), (4.0, 4.0))
+        self.assertEqual((clear['kind'], clear['verdict']), ('self', 'clear'))
+
     def a_profile_follows_the_motion(self):
         wall = '\n'.join(line for line in WALL.splitlines() if 'post' not in line)
         answer = cprox('profile', *robot_files(self, scene=wall), '--intervals', '4')

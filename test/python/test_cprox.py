@@ -416,6 +416,30 @@ class Robots(unittest.TestCase):
         with self.assertRaises(FileNotFoundError):
             cprox.check(proof, program='no_such_program')
 
+    def test_violations_are_where_the_profile_is_below_delta(self):
+        scene = cprox.Scene(self.robot)
+        scene.add('ball', 'sphere', [0.1], cprox.transform([0.6, 0.5, 1.2]))
+        motion = self.motion(scene)
+        breaks = numpy.linspace(*motion.domain, 301)
+        profile = motion.profile(breaks, epsilon=1e-5)
+        delta = float(numpy.median(profile['upper']))
+        found = motion.violations(delta)
+        self.assertTrue(found)
+        for first, second in zip(found, found[1:]):
+            self.assertLessEqual(first['leave_upper'], second['enter_lower'])
+        for t0, t1, lower, upper in zip(breaks, breaks[1:], profile['lower'], profile['upper']):
+            if lower > delta:
+                self.assertFalse([v for v in found if v['enter_upper'] <= t1 and v['leave_lower'] >= t0
+                                  and v['verdict'] == 'violated'], (t0, t1))
+            if upper < delta:
+                self.assertTrue([v for v in found if v['enter_lower'] <= t1 and v['leave_upper'] >= t0], (t0, t1))
+        self.assertEqual(motion.violations(0.5 * motion.distance()['result'].lower), [])
+        for bad in (-1.0, float('nan')):
+            with self.assertRaises(ValueError):
+                motion.violations(bad)
+        with self.assertRaises(ValueError):
+            motion.violations(delta, resolution=0.0)
+
     def test_self_collision_and_changes_of_the_scene(self):
         scene = cprox.Scene(self.robot)
         motion = self.motion(scene)
