@@ -184,7 +184,7 @@ struct Violation {
 
 /** All of them, in the order of the parameter. */
 struct Violations {
-  std::vector<Violation> list;
+  std::vector<Violation> list;    /**< none: farther than delta everywhere */
   cprox_status status = CPROX_OK; /**< CPROX_BUDGET, CPROX_STOPPED: the last one goes on to the end, all else is true */
   std::string message;            /**< why the status is not CPROX_OK */
 };
