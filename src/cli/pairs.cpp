@@ -65,8 +65,8 @@ ResultRow measure(const PairDescription &pair, const Query &query, const Resourc
   row.kind = kindOf(pair.asked);
   row.id = row.a = row.b = pair.id;
   row.has_points = pair.asked != PairDescription::GROWTH;
-  row.has_t = row.has_verdict =
-      pair.asked == PairDescription::TRANSLATING_DISTANCE || pair.asked == PairDescription::TRANSLATING_CONTACT;
+  row.has_contact = pair.asked == PairDescription::TRANSLATING_CONTACT;
+  row.has_t = row.has_verdict = row.has_contact || pair.asked == PairDescription::TRANSLATING_DISTANCE;
   const auto begin = std::chrono::steady_clock::now();
   row.result = ask(pair, place(a, pair.a), place(b, pair.b), query.options, workspace);
   row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
@@ -97,6 +97,7 @@ Outcome answerPair(const PairRow &pair, const std::string &file, const Query &qu
     Outcome out;
     out.stopped = row.result.status == CPROX_STOPPED;
     out.text = resultsLine(row, columns);
+    noteVerdict(row, out);
     return out;
   } catch (const Error &e) {
     return failedPair(pair, place, e.what(), e.status(), columns);

@@ -57,6 +57,7 @@ ResultRow toRow(const Answer &answer, QueryType query_type) {
   row.b = answer.b;
   row.microseconds = answer.microseconds;
   row.has_verdict = query_type != QueryType::DISTANCE;
+  row.has_contact = query_type == QueryType::COLLISION; /* printed where the time of contact is asked for */
   row.has_t = row.has_points = answer.result.obstacle_index >= 0;
   row.message = answer.message;
   return row;
@@ -98,7 +99,7 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
   }
   line += ',' + quotedField(row.message);
   if (columns.proof) line += ',' + row.proof;
-  if (columns.contact && answered)
+  if (columns.contact && answered && row.has_contact)
     append(line, result.t_contact_lower);
   else if (columns.contact)
     line += ',';

@@ -18,6 +18,7 @@ struct ResultRow {
   std::string a, b;
   double microseconds = 0.0;
   bool has_verdict = false; /**< tolerance and collision */
+  bool has_contact = false; /**< a time of contact was asked for */
   bool has_t = false;       /**< the witness has a parameter: there is a curve, and something to measure against */
   bool has_t_b = false;     /**< so has that of a second curve */
   bool has_points = false;  /**< there is something to measure against */

@@ -155,7 +155,7 @@ class Pairs(Case):
             (pair('touch', box + '}', placed), ', ask: translating_contact, velocity_b: [-4, -3, 0], duration: 2'),
             (pair('apart', box + '}', placed), ', ask: translating_contact, velocity_b: [4, 3, 0], duration: 2')))
         answer = self.pairs(text)
-        self.assertEqual((answer.code, answer.err), (0, ''))
+        self.assertEqual((answer.code, answer.err), (1, ''))  # they touch: a verdict is violated
         grow, passing, touch, apart = (answer.row(name) for name in ('grow', 'pass', 'touch', 'apart'))
         self.assertEqual([row['kind'] for row in answer.rows],
                          ['growth', 'translating_distance', 'translating_contact', 'translating_contact'])
@@ -167,6 +167,7 @@ class Pairs(Case):
         self.assertLessEqual(float(touch['t_contact_lower']), .75)
         self.assertLess(abs(float(touch['t']) - .75), 1e-6)
         self.assertEqual((touch['verdict'], apart['verdict']), ('violated', 'clear'))
+        self.assertEqual((grow['t_contact_lower'], passing['t_contact_lower'], apart['t_contact_lower']), ('', '', '2'))
 
     def what_is_asked_wrongly_is_told(self):
         for more, words in ((', ask: growth, duration: 5', 'duration'), (', ask: meet', "'meet'"), (', ask: translating_contact', "'duration'"),
