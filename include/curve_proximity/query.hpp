@@ -187,6 +187,7 @@ struct Violations {
   std::vector<Violation> list;    /**< none: farther than delta everywhere */
   cprox_status status = CPROX_OK; /**< CPROX_BUDGET, CPROX_STOPPED: the last one goes on to the end, all else is true */
   std::string message;            /**< why the status is not CPROX_OK */
+  bool measured = true;           /**< false: there was nothing to measure against */
 };
 
 /** All intervals in which the curve is within query.delta of something: where does it enter, where does it leave?

@@ -37,6 +37,7 @@ void addProfile(const Subject &subject, std::vector<ClearanceInterval> intervals
 
 void addViolations(const Subject &subject, const Violations &found, Outcome &out) {
   out.stopped = out.stopped || found.status == CPROX_STOPPED;
+  out.against_nothing = out.against_nothing || !found.measured;
   if (found.list.empty()) out.text += clearLine(subject.id, subject.kind, found.status, found.message);
   for (Violation one : found.list) {
     if (!subject.link.empty() && one.b == subject.link) std::swap(one.a, one.b);

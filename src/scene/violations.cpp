@@ -19,6 +19,12 @@ void checkQuery(const Query &query, double resolution) {
   if (!(resolution > 0.0)) throw Error("the resolution must be above 0");
 }
 
+Violations againstNothing() {
+  Violations out;
+  out.measured = false;
+  return out;
+}
+
 /* Writes the names of both sides of what the core found. */
 using Namer = std::function<void(const cprox_violation &, Violation &)>;
 
@@ -56,7 +62,7 @@ Violations violations(const Targets &targets, const CompiledCurve &curve, double
   const std::string fault = faultOf(query);
   if (!fault.empty()) throw Error(fault);
   const std::vector<Item> &items = targets.data().items;
-  if (items.empty()) return {};
+  if (items.empty()) return againstNothing();
   const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
   const auto name = [&](const cprox_violation &found, Violation &out) {
     out.a = curve.id;
@@ -73,7 +79,7 @@ Violations violations(const RobotMotion &motion, bool self, double resolution, c
   const std::string fault = faultInAll(against, query);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, against, query);
-  if (asked.pairs.empty()) return {};
+  if (asked.pairs.empty()) return againstNothing();
   const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
   const auto name = [&](const cprox_violation &found, Violation &out) {
     Answer names;
