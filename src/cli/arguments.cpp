@@ -239,9 +239,10 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
   out.asking = command.asking;
   out.has_delta = words.has("--delta");
   if (only("--intervals", "profile", Asking::PROFILE)) {
-    constexpr std::uint64_t kMostIntervals = 1000000;
+    constexpr std::uint64_t kMostIntervals = 1000000, kMostDrawn = 2000; /* a chart has no more pixels */
     if (words.has("--breaks")) throw BadUsage("--intervals and --breaks exclude each other");
-    out.intervals = static_cast<std::size_t>(readCount(words, "--intervals", kMostIntervals));
+    out.intervals = static_cast<std::size_t>(
+        readCount(words, "--intervals", command.action == Action::REPORT ? kMostDrawn : kMostIntervals));
   }
   if (only("--breaks", "profile", Asking::PROFILE)) out.breaks = readBreaks(words.text("--breaks"));
   if (only("--pairs", "nearest", Asking::NEAREST))

@@ -156,6 +156,7 @@ class Report(Case):
         self.assertRefused(cprox('report', *out), 'needs --curves')
         self.assertRefused(cprox('report', *words, *out, '--movers'), "'report' takes no --movers")
         self.assertRefused(cprox('report', *words, *out, '--delta', '-1'), '--delta')
+        self.assertRefused(cprox('report', *words, *out, '--intervals', '2001'), 'from 1 to 2000')
         self.assertRefused(cprox('report', *words, '--out', words[1]), 'is an input of this run')
         many = self.file('many.csv', '\n'.join([OVER] * 51) + '\n')
         self.assertRefused(cprox('report', '--curves', many, '--scene', words[5], *out), 'at most 50 curves')
