@@ -14,7 +14,14 @@ from fourier import charts as fourier_charts  # noqa: E402
 OURS = 'curve_proximity'
 COLOURS = {OURS: '#0b6e99', 'paper': '#c2571a'}
 OTHERS = ['#6b8e23', '#7b4ea3', '#8c6d3f', '#4d4d4d', '#b03060']
-LABELS = {OURS: 'curve_proximity (certified)', 'paper': "Lakshmanan et al. 2019, as published"}
+MARKERS = ['o', 's', 'D', '^', 'v', 'P', 'X']
+LABELS = {OURS: 'curve_proximity (certified)', 'paper': 'Lakshmanan et al. 2019, as published',
+          'two-ended bound': 'certified, by both ends of an interval', 'bound M2': 'certified, by its middle and the speed',
+          'bound M3': 'certified, by its middle and the acceleration', 'bound M4': 'certified, by its middle and the third derivative',
+          'sampling': 'samples (nothing proven)', 'sampling .05': 'samples at .05 rad (nothing proven)',
+          'naive': 'interior point, as published', 'supports': 'support functions alone', 'interior_point': 'interior point alone', 'ipopt': 'Ipopt'}
+# The objects of Fig. 5 of Chakraborty et al.
+OBJECTS = {'I': 'I diamond', 'II': 'II column', 'III': 'III rounded box', 'IV': 'IV mouse', 'V': 'V nut', 'VI': 'VI pyramid'}
 
 
 def style():
@@ -31,16 +38,31 @@ def colour_of(method, seen):
     return OTHERS[seen.index(method) % len(OTHERS)]
 
 
-def save(figure, out, name):
-    for suffix in ('svg', 'png'):
-        figure.savefig(os.path.join(out, f'{name}.{suffix}'), bbox_inches='tight')
-    plt.close(figure)
-    return name
+def corner_below(figure, gap):
+    """The lower left corner of all that is drawn, and below it by a gap [inches]; in fractions of the figure."""
+    box = figure.get_tightbbox(figure.canvas.get_renderer())
+    width, height = figure.get_size_inches()
+    return box.x0 / width, (box.y0 - gap) / height
 
 
-def beside(axes):
-    """The legend, where it hides nothing."""
-    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
+class Saver:
+    """Writes figures to a folder, each with a line below it that says how its rows were made."""
+
+    def __init__(self, out, made):
+        self.out, self.made = out, made.replace('`', '')
+
+    def __call__(self, figure, name):
+        figure.text(*corner_below(figure, 0.12), self.made, va='top', fontsize=7, color='#777777')
+        for suffix in ('svg', 'png'):
+            figure.savefig(os.path.join(self.out, f'{name}.{suffix}'), bbox_inches='tight')
+        plt.close(figure)
+        return name
+
+
+def legend_below(axes):
+    """The legend, where it hides nothing and takes no width."""
+    handles, labels = axes.get_legend_handles_labels()
+    axes.figure.legend(handles, labels, loc='upper left', bbox_to_anchor=corner_below(axes.figure, 0.05), ncol=2)
 
 
 def readable(axis):
@@ -59,113 +81,138 @@ def methods_of(rows):
     return sorted(names, key=lambda name: (not name.startswith(OURS), names.index(name)))
 
 
-def work_precision(rows, out, group, workload, parameter, title, name, x_label='width of the interval asked for [m]', reverse=True, reached=None):
-    """Time against the accuracy asked, or another number: rows whose parameter matches the pattern, whose one group is that number. Rows that
-    match `reached` have no such number: they stand at the error that they made."""
+def points_of(rows, parameter, reached):
+    """Method, number, median and p95 of the rows whose parameter matches a pattern, whose one group is the number. Methods without such a row
+    may have some that match `reached`: these stand at the error that they made."""
     points = []
     for row in rows:
-        if row['group'] != group or row['workload'] != workload:
-            continue
         match = re.fullmatch(parameter, row['parameter'])
-        if match or (reached and re.fullmatch(reached, row['parameter'])):
-            x = float(match.group(1)) if match else max(float(row['error'] or 'nan'), 1e-16)
-            points.append((row['method'], x, float(row['median_us']), float(row['p95_us'])))
+        if match:
+            points.append((row['method'], float(match.group(1)), float(row['median_us']), float(row['p95_us'])))
+    with_number = {point[0] for point in points}
+    for row in rows:
+        if reached and row['method'] not in with_number and re.fullmatch(reached, row['parameter']):
+            points.append((row['method'], max(float(row['error'] or 'nan'), 1e-16), float(row['median_us']), float(row['p95_us'])))
+    return points
+
+
+def work_precision(rows, save, group, workload, parameter, title, name, x_label='width of the interval asked for [m]', reached=None):
+    """Time against the accuracy asked; see points_of()."""
+    points = points_of([row for row in rows if (row['group'], row['workload']) == (group, workload)], parameter, reached)
     if not points:
         return None
+    figure, axes = time_against(points)
+    axes.set_xscale('log')
+    readable(axes.xaxis)
+    axes.invert_xaxis()
+    without = ';\nof methods without: error made [m]' if reached and any(re.fullmatch(reached, row['parameter']) for row in rows) else ''
+    axes.set_xlabel(f'more accurate →\n{x_label}{without}')
+    axes.set_title(title)
+    legend_below(axes)
+    return save(figure, name)
+
+
+def growth(rows, save, group, workload, parameter, title, name, x_label):
+    """Time against a size, both logarithmic, so that a power is a straight line."""
+    points = points_of([row for row in rows if (row['group'], row['workload']) == (group, workload)], parameter, None)
+    if not points:
+        return None
+    figure, axes = time_against(points)
+    ours = sorted(point[1:3] for point in points if point[0].startswith(OURS))
+    if len(ours) > 1:
+        (x, y), last = ours[0], ours[-1][0]
+        axes.plot([x, last], [y, y * last / x], ':', color='#999999', linewidth=1, label='in proportion to the size')
+    axes.set_xscale('log')
+    axes.set_xticks(sorted({point[1] for point in points}))
+    axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f'{value:,.12g}'))
+    axes.xaxis.set_minor_locator(ticker.NullLocator())
+    axes.set_xlabel(x_label)
+    axes.set_title(title)
+    legend_below(axes)
+    return save(figure, name)
+
+
+def time_against(points):
+    """Lines of the medians of (method, x, median, p95), and bands up to p95."""
     figure, axes = plt.subplots()
     seen = []
     for method in methods_of([{'method': p[0]} for p in points]):
-        mine = sorted(p[1:] for p in points if p[0] == method)
-        x, median, p95 = zip(*mine)
+        x, median, p95 = zip(*sorted(p[1:] for p in points if p[0] == method))
         colour = colour_of(method, seen)
         axes.semilogy(x, median, 'o-', color=colour, label=LABELS.get(method, method))
         axes.fill_between(x, median, p95, color=colour, alpha=0.13, linewidth=0)
-    values = [p[1] for p in points]
-    if reverse or max(values) >= 30.0 * min(values):
-        axes.set_xscale('log')
-        readable(axes.xaxis)
-    if reverse:
-        axes.invert_xaxis()
     readable(axes.yaxis)
-    axes.set_xlabel(x_label + ('; without one: error made [m]' if reached else ''))
-    axes.set_ylabel('time a query [µs]; band: to 95 %')
-    axes.set_title(title)
-    beside(axes)
-    return save(figure, out, name)
+    has_band = any(p95 > 1.001 * median for _, _, median, p95 in points)
+    axes.set_ylabel('median time a query [µs]' + ('; band: to 95 %' if has_band else ''))
+    return figure, axes
 
 
-def bars(rows, out, group, select, title, name, label=lambda row: f"{row['workload']}\n{row['parameter']}",
-         time='median time a query [µs]'):
-    """Time of each method, one cluster for each workload and parameter that select(row) takes."""
+def dots(rows, save, group, select, title, name, label=lambda row: f"{row['workload']}, {row['parameter']}", time='median time a query [µs]'):
+    """Time of each method: one line of dots for each workload and parameter that select(row) takes. A dot on a logarithmic axis says where it
+    is; a bar would say by its length what depends on where the axis begins."""
     rows = [row for row in rows if row['group'] == group and select(row)]
     keys = list(dict.fromkeys(label(row) for row in rows))
     if not keys:
         return None
-    methods, seen = methods_of(rows), []
-    figure, axes = plt.subplots(figsize=(max(7.2, 0.75 * len(keys) + 2), 4.4))
-    width = 0.8 / len(methods)
-    for k, method in enumerate(methods):
+    figure, axes = plt.subplots(figsize=(7.2, 1.2 + 0.27 * len(keys)))
+    seen = []
+    for k, method in enumerate(methods_of(rows)):
         values = {label(row): float(row['median_us']) for row in rows if row['method'] == method}
-        x = [i + (k - (len(methods) - 1) / 2) * width for i, key in enumerate(keys) if key in values]
-        axes.bar(x, [values[key] for key in keys if key in values], width * 0.92, color=colour_of(method, seen),
-                 label=LABELS.get(method, method))
-    axes.set_yscale('log')
-    axes.set_xticks(range(len(keys)))
-    axes.set_xticklabels(keys, fontsize=8)
-    axes.set_ylabel(time)
+        y = [i for i, key in enumerate(keys) if key in values]
+        axes.plot([values[keys[i]] for i in y], y, MARKERS[k % len(MARKERS)], color=colour_of(method, seen), label=LABELS.get(method, method))
+    axes.set_xscale('log')
+    axes.set_yticks(range(len(keys)))
+    axes.set_yticklabels(keys)
+    axes.set_ylim(len(keys) - 0.5, -0.5)
+    axes.set_xlabel(time)
     axes.set_title(title)
-    axes.grid(axis='x', visible=False)
-    beside(axes)
-    readable(axes.yaxis)
-    return save(figure, out, name)
+    readable(axes.xaxis)
+    legend_below(axes)
+    return save(figure, name)
 
 
-def stacked(words):
-    return words.replace(' ', '\n')
-
-
-def curves(rows, out):
+def curves(rows, save):
     pattern = r'order \d+ eps (1e-\d+)'
     for workload, name in (('polytope 3-D distance', 'polytope'), ('polygon 2-D distance', 'polygon'), ('point 2-D distance', 'point'),
                            ('curves 3-D distance', 'curve_curve')):
         order = '5' if name == 'curve_curve' else '15'
-        yield work_precision(rows, out, 'curves', workload, pattern.replace(r'\d+ eps', order + ' eps', 1),
+        yield work_precision(rows, save, 'curves', workload, pattern.replace(r'\d+ eps', order + ' eps', 1),
                              f'{workload}, order {order}: time against accuracy', f'work_precision_{name}',
                              reached=rf'order {order} (samples \d+|as it is)')
-    yield bars(rows, out, 'curves', lambda row: row['workload'].endswith('distance') and row['parameter'].endswith('eps 1e-10'),
-               'Distance to 1e-10', 'distance_by_order', lambda row: f"{stacked(row['workload'][:-9])}\n{row['parameter'][:8]}")
-    yield bars(rows, out, 'curves', lambda row: 'tolerance' in row['workload'] and 'order 15' in row['parameter'],
+    yield dots(rows, save, 'curves', lambda row: row['workload'].endswith('distance') and row['parameter'].endswith('eps 1e-10'),
+               'Distance to 1e-10', 'distance_by_order', lambda row: f"{row['workload'][:-9]}, {row['parameter'][:8]}")
+    yield dots(rows, save, 'curves', lambda row: 'tolerance' in row['workload'] and 'order 15' in row['parameter'],
                'Farther than delta? Order 15, delta as a fraction of the distance', 'tolerance',
-               lambda row: f"{stacked(row['workload'].split(' tolerance')[0])}\n{row['parameter'][14:]}")
+               lambda row: f"{row['workload'].split(' tolerance')[0]}, {row['parameter'][9:]}")
 
 
-def splines(rows, out):
+def splines(rows, save):
     for space in ('2-D', '3-D'):
-        yield work_precision(rows, out, 'splines', f'B-spline {space} distance', r'(\d+) segments', f'Cubic B-splines, {space}: distance to 1e-10',
-                             f'splines_{space[0]}', 'segments', reverse=False)
+        yield growth(rows, save, 'splines', f'B-spline {space} distance', r'(\d+) segments', f'Cubic B-splines, {space}: distance to 1e-10',
+                     f'splines_{space[0]}', 'segments')
     for curve, title in (('B-spline', 'Cubic B-splines of 100 segments'), ('trigonometric', 'Trigonometric series')):
-        yield work_precision(rows, out, 'splines', f'{curve} 3-D accuracy', r'eps (1e-\d+)', f'{title} and a polytope: time against accuracy',
+        yield work_precision(rows, save, 'splines', f'{curve} 3-D accuracy', r'eps (1e-\d+)', f'{title} and a polytope: time against accuracy',
                              f'work_precision_{curve.lower()}', reached=r'samples \d+')
-    yield bars(rows, out, 'splines', lambda row: row['workload'].startswith('trigonometric') and 'accuracy' not in row['workload'], 'Compiled trigonometric series', 'trigonometric',
-               lambda row: row['workload'][14:].replace(' ', '\n'))
+    yield dots(rows, save, 'splines', lambda row: row['workload'].startswith('trigonometric') and 'accuracy' not in row['workload'], 'Compiled trigonometric series', 'trigonometric',
+               lambda row: row['workload'][14:])
 
 
-def peers(rows, out):
+def peers(rows, save):
     for workload, name in (('point and curve', 'points'), ('curve and curve', 'curves'), ('path distance', 'paths'),
                            ('time of contact', 'time_of_contact')):
-        yield bars(rows, out, 'peers', lambda row: row['workload'] == workload, workload[0].upper() + workload[1:], f'peers_{name}',
+        yield dots(rows, save, 'peers', lambda row: row['workload'] == workload, workload[0].upper() + workload[1:], f'peers_{name}',
                    lambda row: row['parameter'])
 
 
-def batches(rows, out):
-    yield bars(rows, out, 'batches', lambda row: row['workload'].startswith(('polygons', 'boxes')), 'A thousand quintic Bézier curves', 'batches',
-               lambda row: f"{row['workload'].replace(' ', chr(10))}\n{row['parameter'].split()[0]}", 'median time of all curves [µs]')
+def batches(rows, save):
+    yield dots(rows, save, 'batches', lambda row: row['workload'].startswith(('polygons', 'boxes')), 'A thousand quintic Bézier curves', 'batches',
+               lambda row: f"{row['workload']}, {row['parameter']}", 'median time of all curves [µs]')
     for query_type in ('distance', 'tolerance', 'collision'):
-        yield rates(rows, out, f'boxes {query_type}', f'Batches of a thousand quintics, {query_type}', f'batches_rate_{query_type}')
-    yield threads(rows, out)
+        yield rates(rows, save, f'boxes {query_type}', f'Batches of a thousand quintics, {query_type}', f'batches_rate_{query_type}')
+    yield threads(rows, save)
 
 
-def rates(rows, out, workload, title, name):
+def rates(rows, save, workload, title, name):
     """Curves a second against the number of obstacles."""
     rows = [row for row in rows if row['group'] == 'batches' and row['workload'] == workload]
     if not rows:
@@ -180,11 +227,11 @@ def rates(rows, out, workload, title, name):
     axes.set_xlabel('obstacles')
     axes.set_ylabel('curves a second, one thread')
     axes.set_title(title)
-    beside(axes)
-    return save(figure, out, name)
+    legend_below(axes)
+    return save(figure, name)
 
 
-def threads(rows, out):
+def threads(rows, save):
     """Curves a second against threads."""
     rows = [row for row in rows if row['group'] == 'threads' and row['workload'].startswith('growth threads')]
     if not rows:
@@ -199,55 +246,55 @@ def threads(rows, out):
     axes.set_xlabel('threads; dotted: in proportion')
     axes.set_ylabel('curves a second')
     axes.set_title('A thousand quintics against a hundred boxes, over threads')
-    beside(axes)
-    return save(figure, out, 'batches_threads')
+    legend_below(axes)
+    return save(figure, 'batches_threads')
 
 
-def worlds(rows, out):
+def worlds(rows, save):
     for what, unit, title in (('mesh distance', 'triangles', 'Quintic curves against a mesh: certified to 1e-6, and 100 samples'),
                               ('set distance', 'targets', 'One curve against many boxes at one density')):
-        yield work_precision(rows, out, 'worlds', what, unit + r' (\d+)', title, 'worlds_' + what.replace(' ', '_'), x_label=unit, reverse=False)
+        yield growth(rows, save, 'worlds', what, unit + r' (\d+)', title, 'worlds_' + what.replace(' ', '_'), unit)
 
 
-def robots(rows, out):
+def robots(rows, save):
     for workload in ('environment', 'self'):
         bounded = [row for row in rows if row['method'] != 'sampling .05']  # which knows no epsilon; "sampling" stands at its error
-        yield work_precision(bounded, out, 'robots', workload, r'epsilon ([0-9.e-]+)', f'Robots, {workload}: time against accuracy',
+        yield work_precision(bounded, save, 'robots', workload, r'epsilon ([0-9.e-]+)', f'Robots, {workload}: time against accuracy',
                              f'robots_{workload}', reached=r'step .*')
-    yield bars(rows, out, 'robots', lambda row: row['workload'] == 'tolerance', 'Robots: farther than delta?', 'robots_verdicts',
+    yield dots(rows, save, 'robots', lambda row: row['workload'] == 'tolerance', 'Robots: farther than delta?', 'robots_verdicts',
                lambda row: row['parameter'].replace('delta ', ''))
-    yield bars(rows, out, 'robots', lambda row: row['workload'] == 'planning',
+    yield dots(rows, save, 'robots', lambda row: row['workload'] == 'planning',
                'A Panda in seven scenes: certified minimum to 1 mm, and checks of states', 'robots_planning',
-               lambda row: row['parameter'].replace('panda_', '').replace('_0001_rrt', '').replace('_', '\n'))
+               lambda row: row['parameter'].replace('panda_', '').replace('_0001_rrt', '').replace('_', ' '))
     for what in dict.fromkeys(row['workload'] for row in rows if row['group'] == 'robots' and row['workload'].startswith('growth')):
-        yield work_precision(rows, out, 'robots', what, r'\D*(\d+).*', f'Robots: {what}', 'robots_' + what.replace(' ', '_'), what.split()[1], reverse=False)
+        yield growth(rows, save, 'robots', what, r'\D*(\d+).*', f'Robots: time over the number of {what.split()[1]}', 'robots_' + what.replace(' ', '_'), what.split()[1])
 
 
-def implicit(rows, out):
+def implicit(rows, save):
     """Table I of Chakraborty et al. as bars, and its Fig. 2."""
-    yield bars(rows, out, 'implicit', lambda row: row['workload'] == 'table I', 'Pairs of implicit bodies to 1e-8 of their size', 'implicit_pairs',
-               lambda row: row['parameter'])
+    yield dots(rows, save, 'implicit', lambda row: row['workload'] == 'table I', 'Pairs of implicit bodies to 1e-8 of their size', 'implicit_pairs',
+               lambda row: ' and '.join(OBJECTS[name] for name in row['parameter'].split('-')))
     for kind in ('planes', 'quadrics', 'superquadrics'):
-        yield work_precision(rows, out, 'implicit', f'figure 2 {kind}', r'(\d+)', f'Bodies of many {kind}', f'seeds_figure_2_{kind}',
-                             'constraints of both bodies', reverse=False)
+        yield growth(rows, save, 'implicit', f'figure 2 {kind}', r'(\d+)', f'Bodies of many {kind}', f'seeds_figure_2_{kind}',
+                     'constraints of both bodies')
 
 
-def fourier(rows, out):
-    yield from fourier_charts.draw(rows, out, save)
-    yield bars(rows, out, 'fourier', lambda row: row['workload'] == 'boxes', 'Two boxes: a gap beside a distance', 'fourier_boxes')
+def fourier(rows, save):
+    yield from fourier_charts.draw(rows, save, legend_below)
+    yield dots(rows, save, 'fourier', lambda row: row['workload'] == 'boxes', 'Two boxes: a gap beside a distance', 'fourier_boxes')
 
 
-def seeds(rows, out):
+def seeds(rows, save):
     """Fig. 7 and 10 of Lakshmanan et al., and its Table II as bars."""
-    yield narrowing(rows, out)
+    yield narrowing(rows, save)
     for query_type in ('distance', 'tolerance', 'collision'):
-        yield work_precision(rows, out, 'seeds', f'figure 10 {query_type}', r'order (\d+)', f'Bézier curves and a point, {query_type}',
-                             f'seeds_figure_10_{query_type}', 'order of the curve', reverse=False)
-    yield bars(rows, out, 'seeds', lambda row: row['workload'].startswith('table II'), 'The pairs of Table II', 'seeds_table_2',
-               lambda row: f"{row['parameter'][0]}\n{row['workload'][9:]}")
+        yield growth(rows, save, 'seeds', f'figure 10 {query_type}', r'order (\d+)', f'Bézier curves and a point, {query_type}',
+                     f'seeds_figure_10_{query_type}', 'order of the curve')
+    yield dots(rows, save, 'seeds', lambda row: row['workload'].startswith('table II'), 'The pairs of Table II', 'seeds_table_2',
+               lambda row: f"{row['parameter'][2:].replace(' | ', ' and ')}: {row['workload'][9:]}")
 
 
-def narrowing(rows, out):
+def narrowing(rows, save):
     figure, axes = plt.subplots()
     found = [row for row in rows if row['group'] == 'seeds' and row['workload'] == 'figure 7']
     for method in methods_of(found):
@@ -257,19 +304,15 @@ def narrowing(rows, out):
     axes.set_xlabel('intervals examined')
     axes.set_ylabel('upper - lower [m]')
     axes.set_title('A curve of order 13 and a polygon: how the interval narrows')
-    beside(axes)
-    return save(figure, out, 'seeds_figure_7') if found else plt.close(figure)
+    legend_below(axes)
+    return save(figure, 'seeds_figure_7') if found else plt.close(figure)
 
 
-def present(out):
-    """The charts that are there from an earlier run."""
-    return sorted(name[:-4] for name in os.listdir(out) if name.endswith('.png'))
-
-
-def draw_all(rows, out):
-    """All charts for which there are rows; their names."""
+def draw_all(rows, out, made):
+    """All charts for which there are rows; their names. made: how the rows were made."""
+    save = Saver(out, made)
     style()
     drawn = []
     for draw in (curves, splines, peers, seeds, batches, worlds, robots, implicit, fourier):
-        drawn += [name for name in draw(rows, out) if name]
+        drawn += [name for name in draw(rows, save) if name]
     return drawn

@@ -121,7 +121,7 @@ def main():
     parser.add_argument('--out', required=True, help='folder for results.csv and the charts')
     parser.add_argument('--quick', action='store_true', help='smaller problems, fewer rounds: within five minutes')
     parser.add_argument('--only', action='append', metavar='GROUP', help='this group only; may be given more than once')
-    parser.add_argument('--pages', action='store_true', help='measure nothing: write the pages of DIR/results.csv again')
+    parser.add_argument('--pages', action='store_true', help='measure nothing: draw the charts and write the pages of DIR/results.csv again')
     parser.add_argument('--check', action='store_true', help='end with 1 where a target of bench/targets.csv is missed')
     parser.add_argument('--compare', metavar='OTHER', help="measure nothing: hold DIR's ratios and counts against another run's, in DIR/repeat.md")
     arguments = parser.parse_args()
@@ -132,7 +132,7 @@ def main():
     failed = [] if earlier else measure(parser, arguments)
     rows = read_results(os.path.join(arguments.out, 'results.csv'))
     made = how_made(arguments.out)
-    drawn = charts.present(arguments.out) if earlier else charts.draw_all(rows, arguments.out)
+    drawn = charts.draw_all(rows, arguments.out, made)
 
     # Does another run say the same?
     differing = 0

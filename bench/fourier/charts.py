@@ -13,7 +13,7 @@ COLOURS = {'curve_proximity': '#0b6e99', 'curve_proximity tuned': '#6b8e23', 'cu
            'exact': '#333333'}
 
 
-def over_reach(rows, out, save):
+def over_reach(rows, save, legend_below):
     """Mean over the pairs, with the band of all pairs: the paper's Fig. 3."""
     found = collections.defaultdict(lambda: collections.defaultdict(list))
     for row in rows:
@@ -30,11 +30,11 @@ def over_reach(rows, out, save):
     axes.set_xlabel('samples an axis n')
     axes.set_ylabel('largest clearance called colliding, over the period')
     axes.set_title('Over-reach of Fourier gaps: four pairs of planar shapes')
-    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
-    return save(figure, out, 'fourier_over_reach')
+    legend_below(axes)
+    return save(figure, 'fourier_over_reach')
 
 
-def cost(rows, out, save):
+def cost(rows, save, legend_below):
     """Over-reach against the time of value and gradient, a point for each n."""
     found = collections.defaultdict(lambda: collections.defaultdict(list))
     for row in rows:
@@ -48,15 +48,15 @@ def cost(rows, out, save):
         means = [[sum(values) / len(values) for values in zip(*by_n[n])] for n in sorted(by_n)]
         axes.loglog(*zip(*means), 'o-', color=COLOURS[method], label=NAMES[method])
         for n, (x, y) in zip(sorted(by_n), means):
-            axes.annotate(f'n = {n}', (x, y), textcoords='offset points', xytext=(5, 4), fontsize=7, color=COLOURS[method])
+            axes.annotate(f'n = {n}', (x, y), textcoords='offset points', xytext=(5, 4), fontsize=8, color=COLOURS[method])
     axes.set_xlabel('time of value and gradient [ns]')
     axes.set_ylabel('largest clearance called colliding, over the period')
     axes.set_title('What accuracy costs: mean of four pairs of planar shapes')
-    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
-    return save(figure, out, 'fourier_cost')
+    legend_below(axes)
+    return save(figure, 'fourier_cost')
 
 
-def gradients(rows, out, save):
+def gradients(rows, save, legend_below):
     """Median cosine to the gradient of the distance, against the clearance."""
     found = collections.defaultdict(list)
     for row in rows:
@@ -71,11 +71,11 @@ def gradients(rows, out, save):
     axes.set_xlabel('clearance [m]; the shapes have circumradii of about 1 m')
     axes.set_ylabel('median cosine to the gradient of the distance')
     axes.set_title('Gradients of gap functions of an L and a T, n = 33')
-    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
-    return save(figure, out, 'fourier_gradients')
+    legend_below(axes)
+    return save(figure, 'fourier_gradients')
 
 
-def tables(rows, out, save):
+def tables(rows, save, legend_below):
     """A box's gap: the error of value against the time, by the closed form and by tables of its spectrum."""
     found = collections.defaultdict(list)
     for row in rows:
@@ -88,12 +88,12 @@ def tables(rows, out, save):
         colour = list(COLOURS.values())[k]
         axes.loglog(*zip(*(point[:2] for point in points)), 'o', color=colour, label=method)
         for x, y, parameter in points:
-            axes.annotate(parameter, (x, y), textcoords='offset points', xytext=(5, 4), fontsize=7, color=colour)
+            axes.annotate(parameter, (x, y), textcoords='offset points', xytext=(5, 4), fontsize=8, color=colour)
     axes.set_xlabel('time of value and gradient [µs]')
     axes.set_ylabel('largest error of V/t')
     axes.set_title('Two boxes: closed-form spectrum, and tables with tricubic interpolation')
-    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
-    return save(figure, out, 'fourier_tables')
+    legend_below(axes)
+    return save(figure, 'fourier_tables')
 
 
 def outlines(rows):
@@ -112,7 +112,7 @@ def outlines(rows):
     return found
 
 
-def convergence(rows, out, save):
+def convergence(rows, save, legend_below):
     """The outline of one obstacle for several n around the exact one: the paper's Fig. 5."""
     found = outlines(rows)
     if not found:
@@ -124,45 +124,59 @@ def convergence(rows, out, save):
     axes.plot(*found[0, theta], color=COLOURS['exact'], label='exact', linewidth=1.2)
     axes.set_aspect('equal')
     axes.set_title('Outline of the obstacle of an L and a T, one rotation (certified)')
-    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
-    return save(figure, out, 'fourier_convergence')
+    legend_below(axes)
+    return save(figure, 'fourier_convergence')
 
 
-def obstacle(rows, out, save):
+def obstacle(rows, save, legend_below):
     """Slices of the SE(2) obstacle at n = 17, rotation upwards: the paper's Fig. 6."""
     slices = {key[1]: value for key, value in outlines(rows).items() if key[0] == 17}
     if not slices:
         return None
-    figure = plt.figure(figsize=(5.8, 6.2))
-    axes = figure.add_subplot(projection='3d')
-    for theta, (x, y) in sorted(slices.items()):
-        axes.plot(x, y, [theta] * len(x), color=plt.cm.twilight(theta / 7.0))
-    axes.set_zlabel('relative rotation [rad]')
-    axes.set_title('SE(2) obstacle of an L and a T, n = 17')
-    return save(figure, out, 'fourier_obstacle')
+    columns = 4
+    lines = -(-len(slices) // columns)
+    figure, grid = plt.subplots(lines, columns, figsize=(2.1 * columns, 2.3 * lines), sharex=True, sharey=True, squeeze=False)
+    for axes in grid.flat[len(slices):]:
+        axes.set_visible(False)
+    for axes, (theta, (x, y)) in zip(grid.flat, sorted(slices.items())):
+        axes.fill(x, y, color=COLOURS['curve_proximity'], alpha=0.25, linewidth=0)
+        axes.plot(x, y, color=COLOURS['curve_proximity'], linewidth=1.2)
+        axes.plot(0.0, 0.0, '+', color=COLOURS['exact'])
+        axes.set_aspect('equal')
+        axes.set_title(f'{theta:.2f} rad', fontsize=10)
+    for axes in grid[-1]:
+        axes.set_xlabel('x of the T [m]')
+    for axes in grid[:, 0]:
+        axes.set_ylabel('y of the T [m]')
+    figure.suptitle('Where a T may not stand beside an L at the origin, by its rotation (certified, n = 17)')
+    return save(figure, 'fourier_obstacle')
 
 
-def nesting(rows, out, save):
+def nesting(rows, save, legend_below):
     rows = [row for row in rows if row['workload'].startswith('nesting')]
     keys = list(dict.fromkeys(row['workload'][len('nesting: '):] for row in rows))
     if not keys:
         return None
     methods = list(dict.fromkeys(row['method'] for row in rows))
-    figure, axes = plt.subplots()
+    figure, axes = plt.subplots(figsize=(7.2, 3.2))
     for k, method in enumerate(methods):
         values = {row['workload'][len('nesting: '):]: float(row['nodes']) for row in rows if row['method'] == method}
-        axes.bar([i + (k - 1) * 0.26 for i in range(len(keys))], [values[key] for key in keys], 0.24, color=list(COLOURS.values())[k],
-                 label=method.replace('curve_proximity', 'certified gap, coarse to fine'))
-    axes.set_xticks(range(len(keys)))
-    axes.set_xticklabels(keys)
-    axes.set_ylabel('of random starts [%]')
+        y = [i + (k - (len(methods) - 1) / 2) * 0.26 for i in range(len(keys))]
+        of_it = axes.barh(y, [values[key] for key in keys], 0.24, color=list(COLOURS.values())[k],
+                          label=method.replace('curve_proximity', 'certified gap, coarse to fine'))
+        axes.bar_label(of_it, fmt='%.0f %%', padding=3)
+    axes.set_yticks(range(len(keys)))
+    axes.set_yticklabels(keys)
+    axes.invert_yaxis()
+    axes.set_xlim(0.0, 112.0)
+    axes.set_xlabel('of 100 random starts [%]')
     axes.set_title('Nesting an L in an E by SLSQP')
-    axes.grid(axis='x', visible=False)
-    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
-    return save(figure, out, 'fourier_nesting')
+    axes.grid(axis='y', visible=False)
+    legend_below(axes)
+    return save(figure, 'fourier_nesting')
 
 
-def draw(rows, out, save):
+def draw(rows, save, legend_below):
     rows = [row for row in rows if row['group'] == 'fourier']
     for chart in (over_reach, cost, gradients, tables, convergence, obstacle, nesting):
-        yield chart(rows, out, save)
+        yield chart(rows, save, legend_below)

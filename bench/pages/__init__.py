@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The pages that stand beside the charts, written from results.csv."""
+import datetime
 import os
 import subprocess
 
 from pages import choosing, hulls, readme, seeds, stability
 from pages.figures import Figures
 
-NEEDS = {'stability.md': {'stability'}, 'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit'}}
+NEEDS = {'stability.md': {'stability'}, 'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit', 'worlds', 'certificates'}}
 
 
 def how_made(command, commit):
     """The sentence that says where the figures come from."""
     with open('/proc/cpuinfo') as text:
         model = next((line.split(':', 1)[1].strip() for line in text if line.startswith('model name')), 'an unnamed processor')
-    return f'Made by `{command}` at commit {commit} on {os.cpu_count()} cores ({model}).'
+    return f'Made by `{command}` at commit {commit}, {datetime.date.today()}, on {os.cpu_count()} cores ({model}).'
 
 
 def commit_of(repository):

@@ -3,7 +3,16 @@
 import statistics
 
 import targets
-from pages.figures import microseconds, short
+from pages.figures import OURS, microseconds, short, table
+
+ENTRIES = [
+    ['a planner in C or C++', '`curve_proximity/cprox.h`, `core.hpp`, `motion.hpp`', 'no copy, no lock; [c-api.md](../c-api.md)'],
+    ['scripts, learning, plots', 'Python `cprox`, no ROS', 'NumPy arrays, batches on all cores; [python.md](../python.md)'],
+    ['files, datasets, reviews', 'the command line `cprox`', 'CSV, certificates, a report page; [command-line.md](../command-line.md)'],
+    ['a robot that runs', 'the node or nodelet', 'scene and joints by topic, services, gate; [ros.md](../ros.md)'],
+    ['MoveIt', "the node on move_group's scene", '[moveit.md](../moveit.md)'],
+    ['an optimiser', 'a constraint provider', 'value and gradient; [constraint-providers.md](../constraint-providers.md)'],
+]
 
 
 def superquadric_pairs(figures):
@@ -32,10 +41,19 @@ def page(figures):
     missed = figures.row('batches', 'boxes collision', '100 obstacles', 'FCL at 100 points')['unsound']
     robot = figures.time('robots', 'environment', 'epsilon 1e-06')
     robot_loose = figures.time('robots', 'environment', 'epsilon 0.001')
+    robot_clear, robot_near = (figures.time('robots', 'tolerance', f'delta {part} D') for part in ('0.5', '0.99'))
+    sampled = figures.row('robots', 'tolerance', 'delta 1.01 D', 'sampling .05')['unsound']
     superquadrics = superquadric_pairs(figures)
+    few, many = (figures.time('worlds', 'set distance', f'targets {n}') for n in (10, 10000))
+    proofs = [[name, *(figures.time('certificates', workload, 'delta 0.9 d', method=method) for method in (OURS, f'{OURS} with certificate', 'cprox_check'))]
+              for name, workload in (('curve and polytope', 'Bezier and polytope'), ('robot along a trajectory', 'robot trajectory'))]
     return f'''# Choosing
 
-Five minutes for whoever plans motions. All times are medians of one run ([README.md](README.md) says of which), one core; what counts is how they relate.
+Five minutes for whoever plans motions. All times are medians over the problems of a group, of one run ([README.md](README.md) says of which), on one core; what
+counts is how they relate.
+
+## Which entry
+{table(['for', 'take', 'because'], ENTRIES)}
 
 ## Which query
 - **Only "is it farther than Δ?"**: ask `tolerance`. Against a 3-D polytope, for a curve of order 15, it takes {clear} when Δ is half of the distance, {near} when it is
@@ -48,17 +66,28 @@ Five minutes for whoever plans motions. All times are medians of one run ([READM
 
 ## Which epsilon
 An answer to 1e-2 m takes {loose}, to 1e-10 m {tight}; to 1e-14 it takes {growth} times what 1e-2 takes. So do not save on ε for curves: the default, 1e-6 m, is already
-below what a robot can be controlled to. Robots along joint splines against a scene take {robot_loose} at 1e-3, {robot} at 1e-6 (medians over the reference cases).
+below what a robot can be controlled to.
+
+## Robots
+Arms along joint splines against a scene take {robot_loose} for the distance to 1e-3, {robot} to 1e-6 (medians over the reference cases). The verdict "farther than Δ"
+takes {robot_clear} where Δ is half of the distance, {robot_near} where it is 99 % of it. States every .05 rad gave {sampled} wrong verdicts where Δ is 1 % above the
+distance. Ask for the distance only if you need the number.
 
 ## Which model
 - Boxes, spheres, capsules, cylinders, cones, polytopes: give them as they are; they are closed forms or support functions.
 - Meshes: leave them meshes. Their hull answers first, the triangles only where the hull cannot decide (`max_lod` stops at the hull).
 - Superquadrics and implicit bodies: certified to 1e-8. {superquadrics}
 - What a sensor sees: point clouds and octrees, rebuilt at sensor rate.
+- Many obstacles: one set of them, not a loop. A curve's distance to 10 boxes takes {few}, to 10,000 of the same density {many}.
 
 ## One or many
 A batch of a thousand quintics against a hundred boxes takes {tolerance_batch} for all tolerances, {distance_batch} for all distances. Sampling a hundred points of each
 curve gave {missed} wrong verdicts about the same collisions; no ε makes up for that.
+
+## A certificate?
+Take one where somebody else must believe the answer: `cprox_check` proves it again by arithmetic of its own. It costs, at Δ = 90 % of the distance (medians):
+
+{table(['', 'the verdict', 'with its certificate', 'the check'], proofs)}
 
 ## When an answer is not `ok`
 `undecided` means within ε of the limit: count it as unsafe, or ask for a smaller ε. `budget` means that the interval is true but wide: a continuum of nearest points (an
