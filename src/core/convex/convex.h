@@ -41,6 +41,8 @@ typedef struct convex_near {
   double hessian[6];
   bool height_known; /* height is the core's support function at `normal`, from above: no need to ask again */
   double height;
+  bool parts_known; /* Minkowski differences: the points of both that make `point`, in the frame of what stands */
+  vec3 on_standing, on_carried;
 } convex_near;
 
 /* A ball about `centre`, or a cylinder of infinite length about the line through `centre` along the unit `axis`, that
@@ -113,8 +115,10 @@ struct convex {
   const convex_ops *ops;
   double size[4]; /* what the kind needs: half extents; radius and half height; semi-axes; unit normal and offset */
   double margin;
-  double scale; /* bound on |x| over the shape, about the origin of this frame; a halfspace's distance from it */
-  double slack; /* support callbacks: how far their answers may be off; else 0 */
+  double scale;   /* bound on |x| over the shape, about the origin of this frame; a halfspace's distance from it */
+  double slack;   /* how far support values and distances may be off: support callbacks and implicit bodies; else 0 */
+  double outside; /* how far nearest points may be off the core: as slack, but 0 of implicit bodies */
+  double drawn; /* implicit bodies: what was computed lies in the body once it is drawn to 0 by this part of its way */
   /* polytopes and polygons: vertices about the origin, one array a coordinate, padded to a multiple of 8 with the last
    * one */
   int32_t n, padded;
@@ -130,6 +134,17 @@ struct convex {
   double r[9];               /* row-major */
   struct implicit *implicit; /* superquadrics and implicit bodies: the constraints, about the shape's origin */
 };
+
+/* A point that a search ended at, drawn into the body. Searches themselves go on with the points as they are: what they
+ * may be off counts at both ends of their intervals, and drawn points would leave a gap between these. */
+static inline vec3 convex_drawn(const convex *shape, vec3 x) {
+  return vec_axpy(x, -shape->drawn, x);
+}
+
+/* What an upper bound need not have of the slack where nearest() has told a distance. */
+static inline double convex_sure(const convex *shape, double distance) {
+  return distance > 0.0 ? shape->slack - shape->outside : 0.0;
+}
 
 /* The error where a support function answered NaN: a callback, or an implicit body whose solver failed. */
 #define CONVEX_NO_SUPPORT \

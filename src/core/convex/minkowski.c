@@ -76,8 +76,10 @@ static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, c
     return;
   }
   near->normal = vec_neg(answer.normal);
-  near->distance = answer.overlap ? -(answer.depth + shape->margin) : answer.upper - answer.rounding;
+  near->distance = answer.overlap ? -(answer.depth + shape->margin) : answer.upper - answer.above;
   near->point = vec_axpy(y, -near->distance, near->normal);
+  near->parts_known = answer.upper > 0.0;
+  near->on_standing = answer.on_a, near->on_carried = answer.on_b;
   if (!answer.overlap) depth_describe(&answer.feature, shape->margin, y, near);
 }
 
@@ -101,6 +103,7 @@ static bool make_halfspace(const convex *standing, const convex *carried, const 
   difference->scale = fabs(difference->size[3]);
   difference->slack = ROUND_UP * (turning * carried->scale + carried->slack +
                                   ROUND_U * (12.0 * carried->scale + fabs(standing->size[3]) + difference->scale));
+  difference->outside = difference->slack;
   return isfinite(reach);
 }
 
@@ -109,7 +112,7 @@ static void make_box(const convex *standing, const convex *carried, convex *diff
   *difference = *standing;
   for (int i = 0; i < 3; i++) difference->size[i] = standing->size[i] + carried->size[i];
   difference->scale = (standing->scale + carried->scale) * (1.0 + 4.0 * ROUND_U);
-  difference->slack = ROUND_UP * ROUND_U * difference->scale;
+  difference->slack = difference->outside = ROUND_UP * ROUND_U * difference->scale;
 }
 
 bool difference_make(const convex *standing, const convex *carried, const double r[9], bool turned,
@@ -121,11 +124,12 @@ bool difference_make(const convex *standing, const convex *carried, const double
     make_box(standing, carried, difference);
     return true;
   }
+  const double rounding = turning * carried->scale + 4.0 * ROUND_U * (standing->scale + carried->scale);
   *difference = (convex){.ops = &convex_difference,
                          .margin = standing->margin + carried->margin,
                          .scale = ROUND_UP * (standing->scale + carried->scale),
-                         .slack = ROUND_UP * (2.0 * (standing->slack + carried->slack) + turning * carried->scale +
-                                              4.0 * ROUND_U * (standing->scale + carried->scale)),
+                         .slack = ROUND_UP * (2.0 * (standing->slack + carried->slack) + rounding),
+                         .outside = ROUND_UP * (2.0 * (standing->outside + carried->outside) + rounding),
                          .standing = standing,
                          .carried = carried};
   for (int i = 0; i < 9; i++) difference->r[i] = r[i];

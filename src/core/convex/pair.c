@@ -344,23 +344,33 @@ static void pair_core_points(const pair *p, vec3 *a, vec3 *b) {
   *b = vec_add(rotate(p->r, *b), p->t);
 }
 
-/* Those points, and the margins beyond them. */
-static void pair_points(const pair *p, double margin_a, double margin_b, pair_answer *answer) {
+/* Draws what belongs to implicit cores into them; the distance of the two points, which is not less than the cores'. */
+static double pair_draw(const pair *p, vec3 *a, vec3 *b) {
+  if (p->a->drawn == 0.0 && p->b->drawn == 0.0) return p->nearest.distance;
+  *a = convex_drawn(p->a, *a);
+  *b = vec_axpy(*b, -p->b->drawn, vec_sub(*b, p->t));
+  return vec_norm(vec_sub(*a, *b));
+}
+
+/* Those points, and the margins beyond them; how far apart the cores' are. */
+static double pair_points(const pair *p, double margin_a, double margin_b, pair_answer *answer) {
   vec3 a, b, along;
   pair_core_points(p, &a, &b);
+  const double apart = p->nearest.inside ? 0.0 : pair_draw(p, &a, &b);
   const vec3 core = a;
   if (p->nearest.inside) { /* 0 = sum of weight (a - b): the same point but for rounding, of both */
     a = b = vec_axpy(vec_scale(0.5, a), 0.5, b);
   } else { /* out of the cores along the line between the two, so that what is left of it is upper */
-    if (feature_unit(p->nearest.v, &along) == 0.0) along = p->u;
+    if (feature_unit(apart == p->nearest.distance ? p->nearest.v : vec_sub(a, b), &along) == 0.0) along = p->u;
     a = vec_axpy(a, -margin_a, along);
     b = vec_axpy(b, margin_b, along);
   }
   answer->on_a = a;
   answer->on_b = b;
   /* the ball round b reaches a, or the two balls reach each other */
-  answer->common = p->nearest.inside || p->nearest.distance > margin_b ? b : core;
+  answer->common = p->nearest.inside || apart > margin_b ? b : core;
   answer->normal = p->nearest.inside ? vec(0, 0, 0) : p->u;
+  return apart;
 }
 
 /* The distance d has the second derivative (K + d)^-1 in the tangent plane, and none along a ridge or a face. */
@@ -582,9 +592,11 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   p.curved = a->ops->curvature || b->ops->curvature;
   const double margins = margin_a + margin_b, distance = vec_norm(p.t);
   const double size = a->scale + b->scale + distance + margins;
-  p.rounding = ROUND_UP * (PAIR_ROUNDING * ROUND_U * size + placement->error + 2.0 * (a->slack + b->slack));
+  const double rounding = PAIR_ROUNDING * ROUND_U * size + placement->error;
+  p.rounding = ROUND_UP * (rounding + 2.0 * (a->slack + b->slack));
   p.contact_tolerance = 4.0 * ROUND_U * size;
   if (goal->plain) p.rounding = p.contact_tolerance + 2.0 * (a->slack + b->slack);
+  answer->above = lesser(ROUND_UP * (rounding + 2.0 * (a->outside + b->outside)), p.rounding);
 
   /* from what is known on, or the line of the centres */
   vec3 u = goal->start;
@@ -593,7 +605,7 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   pair_find(&p, u, margins, goal, &answer->feature);
   answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
   answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
-  pair_points(&p, margin_a, margin_b, answer);
+  const double apart = pair_points(&p, margin_a, margin_b, answer);
   pair_go_inside(&p, margin_a, margin_b, size, goal, answer);
 
   answer->support_failed = p.support_failed;
@@ -601,7 +613,8 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   answer->supports = p.supports;
   answer->rounding = p.rounding;
   answer->depth = p.nearest.inside ? p.nearest.depth : 0.0;
-  answer->upper = (p.nearest.inside ? 0.0 : p.nearest.distance) - margins + p.rounding;
+  if (p.nearest.inside) answer->above = p.rounding;
+  answer->upper = (p.nearest.inside ? 0.0 : apart) - margins + answer->above;
   if (answer->overlap) answer->upper = answer->measured ? fmin(p.rounding - p.nearest.depth - margins, 0.0) : 0.0;
   answer->lower = fmin(p.lower - margins - p.rounding, answer->upper);
 }

@@ -43,7 +43,8 @@ typedef struct pair_answer {
   bool overlap;         /* the cores overlap, proven */
   bool measured;        /* then: lower and upper are those of minus the depth; else upper is 0 */
   double lower, upper;  /* of the signed distance, margins and rounding included */
-  double rounding;      /* how much of each end is rounding */
+  double rounding;      /* how much the ends may be off by rounding */
+  double above;         /* how much of upper is rounding, where the cores are apart */
   vec3 on_a, on_b;      /* a's frame, margins included: the points that attain upper */
   vec3 common;          /* a's frame: where they overlap or touch, a point of both but for rounding */
   vec3 normal;          /* a's frame, unit, from b to a; (0,0,0) where there is none */

@@ -169,7 +169,7 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
 
   /* the surface point is attained, so the distance to it is an upper bound but for rounding */
   bound->slack = ROUND_UP * (rounding + 2.0 * ROUND_U * (fabs(d) + o->offset));
-  bound->upper = d - o->offset + bound->slack;
+  bound->upper = d - o->offset + bound->slack - convex_sure(o->shape, d);
 
   /* any direction near the normal will do for the lower bounds, as long as its length is 1 */
   sample->normal = sample->near.normal;

@@ -113,7 +113,7 @@ static void measure_carried(curve_curve *o, curve_meeting *m, double error, sear
   const double sizes = vec_norm(apart) + 2.0 * vec_norm(o->shift) + shape->scale + shape->margin;
   bound->slack = ROUND_UP * (error + shape->ops->near_rounding * ROUND_U * sizes + shape->slack +
                              ROUND_U * (8.0 * fabs(m->distance) + 2.0 * o->offset));
-  bound->upper = m->distance - o->offset + bound->slack;
+  bound->upper = m->distance - o->offset + bound->slack - convex_sure(shape, m->distance);
 }
 
 /* The distance between two points of the curves, each within its error of the exact one, is an upper bound. */

@@ -43,7 +43,7 @@ static void keep_curve(const query *q, const placed_pair *p, const cprox_curve *
 
 static void begin_finding(curve_finding *seen, bool found, const search_best *bound, uint32_t distance_queries) {
   seen->found = found;
-  seen->is_contact = seen->at_end = false;
+  seen->is_contact = seen->at_end = seen->parts_known = false;
   seen->t_obstacle = NAN;
   seen->bound = *bound;
   seen->distance_queries = distance_queries;
@@ -55,7 +55,7 @@ static void begin_finding(curve_finding *seen, bool found, const search_best *bo
 static bool begin_carried(const query *q, const placed_pair *p, const cprox_curve *curve, curve_convex *o) {
   carried_shape joined = {.placed = p->frame};
   if (!carried_join(p->shape, &p->pose, p->carried, &p->carried_pose, &joined)) return false;
-  joined.shape.slack += p->position_error;
+  joined.shape.slack += p->position_error, joined.shape.outside += p->position_error;
   const double offset = p->offset + joined.offset;
   if (!curve_convex_begin(o, curve, &p->shape->shape, joined.placed, offset, q->workspace)) return false;
   o->joined = joined.shape;
@@ -137,6 +137,9 @@ void curve_convex_finding(const curve_convex *o, curve_finding *seen) {
   seen->surface = frame_to_world(f, best->near.point);
   seen->normal = is_normal ? frame_turn_to_world(f, best->normal) : vec(0, 0, 0);
   seen->distance = best->near.distance;
+  seen->parts_known = best->near.parts_known;
+  seen->on_standing = seen->parts_known ? best->near.on_standing : best->near.point;
+  seen->on_carried = seen->parts_known ? best->near.on_carried : best->y;
 }
 
 static void found_convex(const curve_search *s, curve_finding *seen) {

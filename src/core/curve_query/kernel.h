@@ -16,14 +16,16 @@ typedef struct curve_search curve_search;
 /* The place where a search found the two nearest, in the world. An obstacle on the mover's clock stands as if its curve
  * were at the origin. */
 typedef struct curve_finding {
-  bool found;           /* false: nothing was measured, and only `bound` and `distance_queries` are set */
-  bool is_contact;      /* the mover's witness point is proven to lie on the obstacle, too */
-  bool at_end;          /* at the end of a piece of the mover's curve */
-  double t, t_obstacle; /* the parameters of both curves; t_obstacle: NAN but for the kernel of two curves */
-  double t_contact;     /* time of contact: contact is proven here, at t or a little later */
-  vec3 centre, surface; /* the point of the mover's curve, and that of the obstacle */
-  vec3 normal;          /* unit, from the obstacle to the mover; (0,0,0) where there is none */
-  double distance;      /* between the two points, without margins */
+  bool found;                   /* false: nothing was measured, and only `bound` and `distance_queries` are set */
+  bool is_contact;              /* the mover's witness point is proven to lie on the obstacle, too */
+  bool at_end;                  /* at the end of a piece of the mover's curve */
+  double t, t_obstacle;         /* the parameters of both curves; t_obstacle: NAN but for the kernel of two curves */
+  double t_contact;             /* time of contact: contact is proven here, at t or a little later */
+  vec3 centre, surface;         /* the point of the mover's curve, and that of the obstacle */
+  vec3 normal;                  /* unit, from the obstacle to the mover; (0,0,0) where there is none */
+  double distance;              /* between the two points, without margins */
+  bool parts_known;             /* a Minkowski difference: the points of both bodies, in the frame of what stands, */
+  vec3 on_standing, on_carried; /* else the point of what stands, and the curve's or the carried ball's centre */
   search_best bound;
   uint32_t distance_queries;
 } curve_finding;

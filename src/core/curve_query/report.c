@@ -32,6 +32,24 @@ static void report_points(const query *q, double margin, const curve_finding *se
   }
 }
 
+/* A carried body that the search has seen apart from what stands: it has kept the two points. False where it has not,
+ * as of boxes with the same axes. */
+static bool report_parts(const query *q, const placed_pair *p, const curve_finding *seen, vec3 position,
+                         cprox_result *r) {
+  if (!p->shape || !p->carried || !q->mover.body) return false;
+  const bool ball = p->carried->kind == CPROX_BODY_POINT || p->carried->kind == CPROX_BODY_SPHERE;
+  const double radius = p->offset - p->margin + (ball ? p->carried->shape.margin : 0.0);
+  if (!(ball || seen->parts_known) || !(seen->distance > p->margin + radius)) return false;
+  const vec3 on_standing = frame_to_world(&p->frame, seen->on_standing),
+             on_carried = frame_to_world(&p->frame, seen->on_carried);
+  const vec3 between = vec_sub(on_carried, on_standing), along = vec_scale(1.0 / vec_norm(between), between);
+  r->normal = seen->normal;
+  r->mover_part = p->which.mover_part;
+  r->witness_obstacle = vec_add(vec_axpy(on_standing, p->margin, along), position);
+  r->witness_mover = vec_add(vec_axpy(on_carried, -radius, along), position);
+  return true;
+}
+
 /* The same where a body is carried, its curve at the centre, or what stands is on the clock: asked of the pair that
  * both make there. */
 static cprox_status report_pair(const query *q, const placed_pair *p, const curve_finding *seen, vec3 position,
@@ -72,7 +90,7 @@ cprox_status report_finding(const query *q, const placed_pair *p, const curve_fi
   }
   const bool by_points = p->shape && (p->shape->tree || p->shape->field);
   if (!by_points && (q->mover.body || obstacle->synchronized)) {
-    const cprox_status status = report_pair(q, p, seen, position, r);
+    const cprox_status status = report_parts(q, p, seen, position, r) ? CPROX_OK : report_pair(q, p, seen, position, r);
     if (status < 0) return status;
   } else {
     report_points(q, p->margin, seen, position, r);

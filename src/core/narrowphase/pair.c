@@ -66,11 +66,15 @@ static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_pl
   answer->rounding =
       ROUND_UP * (32.0 * ROUND_U * (vec_norm(place->t) + fabs(h->size[3]) + b->shape->scale + a->margin + b->margin) +
                   place->error + 2.0 * b->shape->slack);
+  answer->above = answer->rounding - ROUND_UP * 2.0 * (b->shape->slack - b->shape->outside);
   answer->lower = distance - answer->rounding;
-  answer->upper = distance + answer->rounding;
 
-  answer->on_b = answer->common = vec_axpy(vec_add(rotate(place->r, at), place->t), -b->margin, n);
-  answer->on_a = vec_axpy(answer->on_b, -distance, n);
+  /* the lowest point, drawn into the body */
+  const double reached = b->shape->drawn > 0.0 ? -vec_dot(down, convex_drawn(b->shape, at)) - lowest : 0.0;
+  answer->upper = distance + reached + answer->above;
+  answer->on_b = answer->common =
+      vec_axpy(vec_add(rotate(place->r, convex_drawn(b->shape, at)), place->t), -b->margin, n);
+  answer->on_a = vec_axpy(answer->on_b, -(distance + reached), n);
   answer->normal = vec_neg(n);
 }
 
@@ -108,17 +112,26 @@ static bool is_implicit(const convex *shape) {
 }
 
 /* Takes over what a search of two implicit cores found: their margins and the pose's error on top. */
-static void pair_take(const implicit_answer *found, const pair_side *a, const pair_side *b, double rounding,
-                      pair_answer *answer) {
+static void pair_take(const implicit_answer *found, const pair_side *a, const pair_side *b, const pair_placement *place,
+                      double rounding, pair_answer *answer) {
   const double margins = a->margin + b->margin;
   answer->overlap = found->overlap;
   answer->lower = found->lower - margins - rounding;
-  answer->upper = found->upper - margins + (found->overlap ? 0.0 : rounding);
-  answer->normal = found->overlap ? vec(0, 0, 0) : found->normal;
+  answer->rounding = answer->above = rounding;
+  if (found->overlap) {
+    answer->upper = found->upper - margins;
+    answer->normal = vec(0, 0, 0);
+    answer->common = answer->on_a = answer->on_b = found->x;
+    return;
+  }
+  const vec3 x = convex_drawn(a->shape, found->x), y = convex_drawn(b->shape, found->y);
+  const vec3 on_b = vec_add(rotate(place->r, y), place->t);
+  const double sizes = a->shape->scale + b->shape->scale + vec_norm(place->t) + margins;
+  answer->upper = vec_norm(vec_sub(x, on_b)) - margins + rounding + ROUND_UP * 16.0 * ROUND_U * sizes;
+  answer->normal = found->normal;
   answer->common = found->x;
-  answer->on_a = vec_axpy(found->x, -a->margin, answer->normal);
-  answer->on_b = answer->on_a;
-  answer->rounding = rounding;
+  answer->on_a = vec_axpy(x, -a->margin, answer->normal);
+  answer->on_b = vec_axpy(on_b, b->margin, answer->normal);
 }
 
 /* Two implicit bodies: their support functions where that does not stall, else the interior point method. How deep they
@@ -146,11 +159,7 @@ static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_pla
     if (answer->overlap) return true;
   }
   *answer = (pair_answer){.steps = steps + found.steps, .exhausted = found.steps >= goal->max_steps};
-  pair_take(&found, a, b, rounding, answer);
-  if (!found.overlap) {
-    /* y in a's frame, its margin towards a */
-    answer->on_b = vec_axpy(vec_add(rotate(place->r, found.y), place->t), b->margin, answer->normal);
-  }
+  pair_take(&found, a, b, place, rounding, answer);
   return true;
 }
 

@@ -34,6 +34,6 @@ bool carried_join(const cprox_body *standing, const cprox_pose *pose, const cpro
     }
     if (!difference_make(&standing->shape, &carried->shape, r, turned, &joined->shape)) return false;
   }
-  joined->shape.slack += ROUND_UP * ROUND_U * moved;
+  joined->shape.slack += ROUND_UP * ROUND_U * moved, joined->shape.outside += ROUND_UP * ROUND_U * moved;
   return true;
 }

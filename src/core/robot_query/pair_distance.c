@@ -62,19 +62,24 @@ static void measure_halfspace(const robot_body *moving, const robot_body *standi
   const vec3 n = placement_turn(&standing->side.at, vec(h[0], h[1], h[2]));
   vec3 at;
   const convex *shape = moving->side.shape;
-  const double low = -shape->ops->support(shape, placement_turn_back(&moving->side.at, vec_neg(n)), NULL, &at);
+  const vec3 down = placement_turn_back(&moving->side.at, vec_neg(n));
+  const double low = -shape->ops->support(shape, down, NULL, &at);
   const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
   const double distance = along + h[3] + low - moving->side.margin - standing->side.margin;
   const double sizes =
       vec_norm(vec_sub(moving->side.at.p, standing->side.at.p)) + fabs(h[3]) + moving->radius + standing->side.margin;
   const double rounding =
       ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes + 2.0 * shape->slack);
-  const vec3 lowest = vec_axpy(placement_apply(&moving->side.at, at), -moving->side.margin, n);
+  /* the lowest point, drawn into the body */
+  const vec3 drawn = convex_drawn(shape, at);
+  const double reached = shape->drawn > 0.0 ? -vec_dot(down, drawn) - low : 0.0;
+  const vec3 lowest = vec_axpy(placement_apply(&moving->side.at, drawn), -moving->side.margin, n);
+  const double above = distance + reached;
   *gap = (robot_gap){.lower = distance - rounding,
-                     .upper = distance + rounding,
+                     .upper = above + rounding - ROUND_UP * 2.0 * (shape->slack - shape->outside),
                      .slack = rounding,
                      .on_moving = lowest,
-                     .on_standing = distance > 0.0 ? vec_axpy(lowest, -distance, n) : lowest,
+                     .on_standing = above > 0.0 ? vec_axpy(lowest, -above, n) : lowest,
                      .normal = n,
                      .support_failed = isnan(distance)};
 }

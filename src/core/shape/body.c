@@ -326,7 +326,7 @@ cprox_status cprox_body_create_support(cprox_support_fn support, const void *sha
   cprox_body *made = *body;
   made->centre = made->ball_centre = made->shape.user_centre = centre;
   /* the callback's points are taken about the centre: so much may be lost of them */
-  made->shape.slack = slack + ROUND_U * radius;
+  made->shape.slack = made->shape.outside = slack + ROUND_U * radius;
   made->shape.callback = support;
   made->shape.user = shape;
   return CPROX_OK;

@@ -59,8 +59,8 @@ static void implicit_nearest(const convex *shape, vec3 y, convex_hint *hint, con
   implicit_answer answer;
   const double width = goal.epsilon + goal.relative_epsilon * vec_norm(y) + shape->slack;
   if (!body->orthogonal || !implicit_closed_nearest(body, y, width, &answer)) solve_on_stack(&query, &goal, &answer);
-  near->point = answer.x;
-  near->distance = vec_norm(vec_sub(y, answer.x));
+  near->point = convex_drawn(shape, answer.x);
+  near->distance = vec_norm(vec_sub(y, near->point));
   near->normal = vec_neg(answer.normal);
   near->height = answer.height;
   near->height_known = true;
@@ -151,6 +151,7 @@ static cprox_status wrap(implicit *made, bool superquadric, vec3 centre, cprox_w
   handle->shape.slack = made->closed ? made->give + 32.0 * ROUND_U * made->radius
                                      : 2.0 * made->give + 4.0 * IMPLICIT_SUPPORT * made->radius;
   handle->centre = handle->ball_centre = centre;
+  handle->shape.drawn = made->give / made->radius + 32.0 * ROUND_U;
   *body = handle;
   return CPROX_OK;
 }
