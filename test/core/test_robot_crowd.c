@@ -160,7 +160,9 @@ CASE(time_of_contact_with_a_set_is_the_earliest_of_its_targets) {
  * what they are made of. */
 static double lanes_below(robot_scene *scene, uint32_t at, double travel, const double *truth, size_t *seen) {
   cluster_lanes lanes;
-  cluster_measure(scene, 0, at, travel, &lanes);
+  cluster_view view = cluster_see(scene, 0, false);
+  view.displacement = travel;
+  cluster_measure(&view, at, INFINITY, &lanes);
   double least = INFINITY;
   for (uint32_t l = 0; l < TREE_LANES; l++) {
     if (!(lanes.live >> l & 1u)) continue;
@@ -173,6 +175,96 @@ static double lanes_below(robot_scene *scene, uint32_t at, double travel, const 
     least = fmin(least, below);
   }
   return least;
+}
+
+/* The same by the box round a part, which stands askew: specks, whose boxes are no larger than they are, are as far
+ * from it as a box in long double says, neither nearer nor farther. Specks are 1e-7 m wide. */
+static void turned_lanes_below(const cluster_view *view, uint32_t at, double bar, const long double *truth,
+                               const query *q, size_t *seen, size_t *raised, double *least) {
+  cluster_lanes lanes;
+  cluster_measure(view, at, bar, &lanes);
+  if (at & TREE_LEAF) {
+    const cluster_lanes ball = lanes;
+    cluster_measure_boxes(view, at, bar, &lanes);
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      const long double exact = truth[q->set->of_box[lanes.under[l]]];
+      if (lanes.live >> l & 1u) *seen += 1, *least = fmin(*least, (double)exact);
+      *raised += lanes.lower[l] > ball.lower[l] + 1e-3;
+      assert_true(lanes.lower[l] <= exact + 1e-12L);
+      assert_true(lanes.lower[l] >= exact - 1e-6L);
+    }
+  }
+  /* what is dropped is neither below the bar nor below what was seen of it */
+  assert_true(lanes.dropped >= bar);
+  for (uint32_t l = 0; l < TREE_LANES; l++) {
+    assert_true((lanes.live >> l & 1u) == 0 || lanes.lower[l] < bar);
+    if (!(at & TREE_LEAF) && lanes.live >> l & 1u)
+      turned_lanes_below(view, lanes.under[l], bar, truth, q, seen, raised, least);
+  }
+}
+
+CASE(the_box_round_a_part_bounds_specks_exactly) {
+  enum { SPECKS = 200 };
+  rng r = rng_seed(6605);
+  size_t raised = 0;
+  for (size_t round = 0; round < test_cases(100); round++) {
+    const vec3 half = vec(rng_log_uniform(&r, 0.01, 0.5), rng_log_uniform(&r, 0.01, 0.5), rng_uniform(&r, 0.01, 0.5));
+    const double margin = round % 2 ? 0.03 : 0.0;
+    cprox_body *box = NULL, *speck = NULL;
+    assert_int_equal(cprox_body_create_box(vec_scale(2.0, half), ws, &box), CPROX_OK);
+    assert_int_equal(cprox_body_create_sphere(5e-8, ws, &speck), CPROX_OK);
+    const cprox_link link = {.parent = -1,
+                             .type = CPROX_JOINT_REVOLUTE,
+                             .origin = rng_pose(&r, 1.0),
+                             .axis = rng_unit(&r),
+                             .multiplier = 1.0};
+    const cprox_link_geometry geometry = {.body = box, .pose = rng_pose(&r, 0.5), .margin = margin};
+    cprox_robot *robot = NULL;
+    assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
+    const double begin = -0.5, end = 0.5; /* the middle is the link's own frame */
+    const int32_t variable = 0;
+    const cprox_waypoint points[2] = {{.time = 0, .positions = &begin}, {.time = 1, .positions = &end}};
+    const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                        .variables = &variable,
+                                        .n_variables = 1,
+                                        .waypoints = points,
+                                        .n_waypoints = 2,
+                                        .interpolation = CPROX_INTERPOLATION_LINEAR};
+    cprox_motion *motion = NULL;
+    assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
+
+    cprox_obstacle targets[SPECKS];
+    long double truth[SPECKS];
+    double nearest = INFINITY;
+    for (size_t i = 0; i < SPECKS; i++) {
+      const cprox_pose pose = {.position = rng_in_cube(&r, 2.0), .orientation = {.w = 1.0}};
+      targets[i] = cprox_obstacle_at(speck, pose);
+      const vec3l at = ref_to_local(&geometry.pose, ref_to_local(&link.origin, ref_vec(pose.position)));
+      truth[i] = ref_point_box(at, half) - margin;
+      nearest = fmin(nearest, (double)truth[i]);
+    }
+    cprox_obstacles *set = NULL;
+    assert_int_equal(cprox_obstacles_create(targets, SPECKS, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
+    query q = query_create(cprox_robot_along(motion, NULL, 0), targets, SPECKS, -1.0, false, NULL, ws);
+    q.set = set->bvh;
+    robot_scene scene;
+    assert_true(robot_scene_begin(&scene, &q, 0, SPECKS, SIZE_MAX, INFINITY));
+    robot_scene_enter(&scene, 0, 0.0, 1.0);
+    const cluster_view view = cluster_see(&scene, 0, false);
+    for (int k = 0; k < 2; k++) { /* all of them, and those below a bar */
+      size_t seen = 0;
+      double least = INFINITY;
+      turned_lanes_below(&view, 0, k == 0 ? INFINITY : nearest + 0.2, truth, &q, &seen, &raised, &least);
+      assert_true(least == nearest);
+      if (k == 0) assert_int_equal(seen, SPECKS);
+    }
+    cprox_obstacles_free(set);
+    cprox_motion_free(motion);
+    cprox_robot_free(robot);
+    cprox_body_free(box);
+    cprox_body_free(speck);
+  }
+  assert_true(raised > 1000);
 }
 
 CASE(lanes_bound_what_is_under_them_over_the_whole_node) {

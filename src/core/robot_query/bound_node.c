@@ -282,31 +282,38 @@ static cprox_status open_box(robot_search *o, const search_node *node, const lis
   return status;
 }
 
+/* From this bound on what is under a node of the set's tree does not matter. */
+static double pruning_bar(const robot_search *o) {
+  const double bound = robot_pruning_bound(o);
+  return o->goal.limit >= 0.0 ? nextafter(bound, INFINITY) : bound;
+}
+
 /* What is under a node of the set's tree and within reach of a part: pairs, or, where the part moves too far for these
  * to be measured, nodes that hold them. */
-static cprox_status open_cluster(robot_search *o, const search_node *node, const list_entry *entry) {
-  const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
-  const double radius = robot_scene_moving(&o->scene, &any)->radius,
-               displacement = robot_scene_coarse_displacement(&o->scene, &any);
-  uint32_t stack[TREE_LANES * TREE_DEEPEST] = {entry->under};
+static cprox_status open_cluster(robot_search *o, const search_node *node, const list_entry *entry,
+                                 const cluster_view *view) {
+  const bool is_short = robot_is_short(node);
+  const double bar = pruning_bar(o);
+  uint32_t stack[TREE_LANES * TREE_DEEPEST];
+  stack[0] = entry->under;
   size_t n = 1;
   cprox_status status = CPROX_OK;
   while (n > 0 && status == CPROX_OK) {
     const uint32_t at = stack[--n];
     cluster_lanes lanes;
-    cluster_measure(&o->scene, entry->part, at, displacement, &lanes);
-    for (uint32_t l = 0; l < TREE_LANES && status == CPROX_OK; l++) {
+    cluster_measure(view, at, bar, &lanes);
+    if (lanes.live && (at & TREE_LEAF)) cluster_measure_boxes(view, at, bar, &lanes);
+    o->dropped = lesser(lanes.dropped, o->dropped);
+    for (uint32_t l = 0; lanes.live >> l && status == CPROX_OK; l++) {
       if (!(lanes.live >> l & 1u)) continue;
+      const double size = greater(MOST_DISPLACEMENT * lanes.apart[l], view->radius);
       list_entry lane = *entry;
       lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
-      const double size = greater(MOST_DISPLACEMENT * lanes.apart[l], radius);
-      lane.needs_split = displacement > size && !robot_is_short(node);
-      if (robot_is_pruned(o, lane.lower)) {
-        o->dropped = lesser(lane.lower, o->dropped);
-      } else if (at & TREE_LEAF) {
+      lane.needs_split = view->displacement > size && !is_short;
+      if (at & TREE_LEAF) {
         status = open_box(o, node, &lane);
       } else if (lane.needs_split) {
-        want_pieces(o, displacement / size);
+        want_pieces(o, view->displacement / size);
         status = keep_open(o, &lane);
       } else {
         stack[n++] = lane.under;
@@ -378,13 +385,17 @@ static cprox_status open_groups_of(robot_search *o, const search_node *node, con
 static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   const int32_t list = robot_known(node)->list;
   const size_t n = lists_count(&o->lists, list);
+  cluster_view view = {.part = -1};
   cprox_status status = CPROX_OK;
   for (size_t i = 0; i < n && status == CPROX_OK; i++) {
     list_entry entry = lists_at(&o->lists, list)[i];
     if (robot_is_pruned(o, entry.lower)) {
       o->dropped = lesser(entry.lower, o->dropped);
+    } else if (entry.pair == LIST_CLUSTER) {
+      if (view.part != entry.part) view = cluster_see(&o->scene, entry.part, true);
+      status = open_cluster(o, node, &entry, &view);
     } else if (entry.pair < 0) {
-      status = entry.pair == LIST_CLUSTER ? open_cluster(o, node, &entry) : open_groups_of(o, node, &entry);
+      status = open_groups_of(o, node, &entry);
     } else {
       bound_pair_roughly(o, node, &entry);
       status = keep_open(o, &entry);

@@ -143,12 +143,13 @@ cprox_status robot_no_memory(const robot_search *o) {
 
 /* The same of all that is under a node of the set's tree. */
 static cprox_status try_cluster(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
+  const cluster_view view = cluster_see(&o->scene, entry->part, false);
   cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
   while (stack.count > 0) {
     const uint32_t at = stack.at[--stack.count];
     if (stack.apart[stack.count] >= nearest->apart) continue;
     cluster_lanes lanes;
-    cluster_measure(&o->scene, entry->part, at, 0.0, &lanes);
+    cluster_measure(&view, at, INFINITY, &lanes);
     if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, nearest->apart);
     for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
       if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < nearest->apart)) continue;
@@ -283,6 +284,7 @@ cprox_status robot_measure_if_near(robot_search *o, int32_t index) {
 
 /* The same of all that is under a node of the set's tree, until contact is proven. */
 static cprox_status measure_near_cluster(robot_search *o, const list_entry *entry) {
+  const cluster_view view = cluster_see(&o->scene, entry->part, false);
   const double known = o->touch_at;
   cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
   cprox_status status = CPROX_OK;
@@ -290,7 +292,7 @@ static cprox_status measure_near_cluster(robot_search *o, const list_entry *entr
     const uint32_t at = stack.at[--stack.count];
     const double near = nextafter(o->goal.epsilon, INFINITY);
     cluster_lanes lanes;
-    cluster_measure(&o->scene, entry->part, at, 0.0, &lanes);
+    cluster_measure(&view, at, INFINITY, &lanes);
     if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, near);
     for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
       if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < near)) continue;
