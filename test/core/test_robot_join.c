@@ -182,7 +182,12 @@ static void find_claim(rng *r, const assembly *a, const axis_state *axes, join_c
   motion_of_part(axes, chain, length, at.p, part->model.radius + error, scratch, &c->motion);
   cprox_body *origin;
   assert_int_equal(cprox_body_create_point(vec(0, 0, 0), NULL, &origin), CPROX_OK);
-  const bound_side moving = {.shape = part->model.shape, .at = at, .margin = part->model.margin, .error = error};
+  const bound_side moving = {.shape = part->model.shape,
+                             .at = at,
+                             .margin = part->model.margin,
+                             .error = error,
+                             .middle = part->model.middle,
+                             .half = part->model.half};
   const bound_side standing = {
       .shape = &origin->shape, .at = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}}, .error = a->motion->part_error[c->part[1]]};
   double slack;

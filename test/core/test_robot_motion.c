@@ -125,7 +125,12 @@ static bound_claim claim_of(const test_robot *t, const bound_case *c, vec3 n, ve
   /* against the origin of the world: a point that stands there */
   cprox_body *origin;
   assert_int_equal(cprox_body_create_point(vec(0, 0, 0), NULL, &origin), CPROX_OK);
-  const bound_side moving = {.shape = part->model.shape, .at = at, .margin = part->model.margin, .error = error};
+  const bound_side moving = {.shape = part->model.shape,
+                             .at = at,
+                             .margin = part->model.margin,
+                             .error = error,
+                             .middle = part->model.middle,
+                             .half = part->model.half};
   const bound_side standing = {.shape = &origin->shape,
                                .at = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}},
                                .error = c->standing < 0 ? 0.0 : t->motion->part_error[c->standing]};

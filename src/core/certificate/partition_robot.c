@@ -59,10 +59,10 @@ static outcome settle(const robot_cover *c, const view *v, double width, vec3 *w
 
   /* from the box to the centre */
   const vec3 apart = vec_sub(v->moving->side.at.p, v->standing->side.at.p);
-  const vec3 y = vec_sub(placement_turn_back(&v->standing->side.at, apart), v->standing->middle);
+  const vec3 y = vec_sub(placement_turn_back(&v->standing->side.at, apart), v->standing->side.middle);
   const bool rounded = v->standing->side.shape->ops->kind == CPROX_BODY_ELLIPSOID; /* the box is that of its core */
   const double more = rounded ? v->standing->side.shape->margin : 0.0;
-  const vec3 h = vec_add(v->standing->half, vec(more, more, more));
+  const vec3 h = vec_add(v->standing->side.half, vec(more, more, more));
   vec3 out = vec(copysign(fmax(fabs(y.x) - h.x, 0.0), y.x), copysign(fmax(fabs(y.y) - h.y, 0.0), y.y),
                  copysign(fmax(fabs(y.z) - h.z, 0.0), y.z));
   const double *normal = v->standing->side.shape->size;

@@ -145,6 +145,20 @@ double bound_height(const bound_side *side, vec3 n) {
          vec_norm(n) * side->margin;
 }
 
+/* Polytopes of more vertices, triangles and the like apart, are asked by their boxes first. */
+enum { FEW_VERTICES = 4 };
+
+static bool has_quick_box(const bound_side *side) {
+  return side->shape->n > FEW_VERTICES && vec_norm2(side->half) > 0.0;
+}
+
+/* min over the moving side of d·(x - c) at least, by the box round it; rounding included. */
+static double lowest_of_box(const bound_side *side, vec3 d) {
+  const vec3 e = placement_turn_back(&side->at, d), half = side->half;
+  return vec_dot(e, side->middle) - fabs(e.x) * half.x - fabs(e.y) * half.y - fabs(e.z) * half.z -
+         vec_norm(d) * (side->margin + 64.0 * ROUND_U * side->shape->scale);
+}
+
 /* min over the moving side of d·(x - c). */
 static double lowest(const bound_side *side, vec3 d) {
   const vec3 down = placement_turn_back(&side->at, vec_neg(d));
@@ -187,17 +201,19 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
   /* second order: the ends of tau, the node's half-width being 1/2 */
   const vec3 turn = vec_add(vec_cross(n, m->omega), normal_rate);
   const double along = vec_dot(n, m->v) + vec_dot(normal_rate, apart), start = vec_dot(n, apart);
-  double first[2], least = INFINITY;
-  for (int end = 0; end < 2; end++) {
-    const double tau = end == 0 ? -0.5 : 0.5;
-    const vec3 d = vec_axpy(n, tau, turn);
-    if (!usable(d)) return -INFINITY;
-    first[end] = start + tau * along + lowest(moving, d) - heights[end];
-    least = fmin(least, first[end]);
+  const vec3 ends[2] = {vec_axpy(n, -0.5, turn), vec_axpy(n, 0.5, turn)};
+  if (!usable(ends[0]) || !usable(ends[1])) return -INFINITY;
+  double first[2], second = -INFINITY, rounding = 0.0;
+  for (int quick = has_quick_box(moving); quick >= 0; quick--) {
+    for (int end = 0; end < 2; end++) {
+      const double low = quick ? lowest_of_box(moving, ends[end]) : lowest(moving, ends[end]);
+      first[end] = start + (end == 0 ? -0.5 : 0.5) * along + low - heights[end];
+    }
+    const double least = lesser(first[0], first[1]);
+    rounding = *slack + 16.0 * ROUND_U * fabs(least);
+    second = least_quotient(least - 0.125 * m->second - 0.25 * speed * m->rate - rounding, 0.0, k) - m->stray;
+    if (second > goal) break;
   }
-  const double rounding = *slack + 16.0 * ROUND_U * fabs(least);
-  const double second =
-      least_quotient(least - 0.125 * m->second - 0.25 * speed * m->rate - rounding, 0.0, k) - m->stray;
   *slack = rounding;
   if (second > goal) return second;
 
@@ -211,7 +227,7 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
   double third = INFINITY;
   for (int end = 0; end < 2; end++) {
     const double tau = end == 0 ? -0.5 : 0.5;
-    const vec3 d = vec_add(vec_axpy(n, tau, turn), bent);
+    const vec3 d = vec_add(ends[end], bent);
     if (!usable(d)) return second;
     const double far = start + tau * along + curve + lowest(moving, d) - heights[end];
     third = fmin(third, least_quotient(first[end] - rest, far - first[end], k));

@@ -52,6 +52,9 @@ typedef struct bound_side {
   placement at;  /* of the shape's frame, world */
   double margin; /* of the shape, and margin */
   double error;  /* every point is within this of where it is exactly */
+  /* of a box, axes those of the shape, that contains the core; half is infinite for halfspaces, 0 where no box is known
+   */
+  vec3 middle, half;
 } bound_side;
 
 /* The support of a side along n, seen from its own origin, its margin included. */

@@ -21,12 +21,13 @@ static void find_box(robot_element *e, int n) {
   }
   robot_body *body = &e->body;
   const double grow = ROUND_U * e->shape.scale;
-  body->middle = vec(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]));
-  body->half = vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
+  body->side.middle = vec(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]));
+  body->side.half =
+      vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
   if (n != 2) return;
-  body->middle = vec(0, 0, 0);
+  body->side.middle = vec(0, 0, 0);
   for (int k = 0; k < 3; k++) e->shape.size[k] = greater(fabs(low[k]), fabs(high[k]));
-  body->half = vec(e->shape.size[0] + grow, e->shape.size[1] + grow, e->shape.size[2] + grow);
+  body->side.half = vec(e->shape.size[0] + grow, e->shape.size[1] + grow, e->shape.size[2] + grow);
 }
 
 /* Lengths that enter the place of what is at `at` from the owner's shape and reaches so far round there. */
@@ -45,8 +46,8 @@ static const robot_body *cluster_make(const robot_body *owner, int32_t code, rob
   body->side.error += placing_error(owner, hull->radius, body->side.at.p);
   body->radius = hull->radius + owner->tree_margin;
   const double grow = ROUND_U * hull->radius;
-  body->middle = vec(0, 0, 0);
-  body->half = vec_add(hull->half, vec(grow, grow, grow));
+  body->side.middle = vec(0, 0, 0);
+  body->side.half = vec_add(hull->half, vec(grow, grow, grow));
   return body;
 }
 

@@ -10,11 +10,10 @@
 /* Something convex somewhere, with what the cheap tests need; and what it is made of. */
 typedef struct robot_body {
   bound_side side;
-  vec3 middle, half;   /* of a box, axes those of the shape, that contains the core; half is infinite for halfspaces */
-  double radius;       /* of a ball about the shape's origin that contains the part, margin included */
-  uint32_t steps;      /* transforms that its place went through */
-  int32_t index, part; /* target and part of it; or geometry and its number among the robot's parts */
-  const tree *tree;    /* the elements under the shape, NULL for none; the tree's axes are the shape's, */
+  double radius;                 /* of a ball about the shape's origin that contains the part, margin included */
+  uint32_t steps;                /* transforms that its place went through */
+  int32_t index, part;           /* target and part of it; or geometry and its number among the robot's parts */
+  const tree *tree;              /* the elements under the shape, NULL for none; the tree's axes are the shape's, */
   const cluster_hulls *clusters; /* those of the tree, NULL for none */
   vec3 tree_at;                  /* its origin stands here in the shape's frame, */
   double tree_margin;            /* and elements are thickened by this */

@@ -17,9 +17,9 @@ static double from_box(const robot_body *body, vec3 point) {
     const double *h = body->side.shape->size;
     return h[0] * y.x + h[1] * y.y + h[2] * y.z + h[3];
   }
-  const vec3 z = vec_sub(y, body->middle);
-  const vec3 out = vec(greater(fabs(z.x) - body->half.x, 0.0), greater(fabs(z.y) - body->half.y, 0.0),
-                       greater(fabs(z.z) - body->half.z, 0.0));
+  const vec3 z = vec_sub(y, body->side.middle);
+  const vec3 out = vec(greater(fabs(z.x) - body->side.half.x, 0.0), greater(fabs(z.y) - body->side.half.y, 0.0),
+                       greater(fabs(z.z) - body->side.half.z, 0.0));
   return vec_norm(out);
 }
 
@@ -42,8 +42,8 @@ double robot_pair_ball_distance(const robot_body *moving, const robot_body *stan
 
 vec3 robot_pair_guess(const robot_body *moving, const robot_body *standing) {
   if (robot_body_is_halfspace(standing)) return vec(0, 0, 0);
-  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p), half = standing->half;
-  const vec3 y = vec_sub(placement_turn_back(&standing->side.at, apart), standing->middle);
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p), half = standing->side.half;
+  const vec3 y = vec_sub(placement_turn_back(&standing->side.at, apart), standing->side.middle);
   const vec3 out = vec(copysign(greater(fabs(y.x) - half.x, 0.0), y.x), copysign(greater(fabs(y.y) - half.y, 0.0), y.y),
                        copysign(greater(fabs(y.z) - half.z, 0.0), y.z));
   const double length = vec_norm(out);

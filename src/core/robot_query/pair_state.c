@@ -49,7 +49,7 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
   if (robot_body_is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
   const double sizes = vec_norm(m.centre) + placed.radius;
   placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
-  placed.middle = m.middle, placed.half = m.half;
+  placed.side.middle = m.middle, placed.side.half = m.half;
   return placed;
 }
 
@@ -72,7 +72,7 @@ static robot_body part_body(const query *q, size_t i) {
   body.side = (bound_side){.shape = m.shape, .margin = m.margin, .error = motion->part_error[i]};
   body.tree = m.tree, body.clusters = m.tree ? m.clusters : NULL, body.tree_at = m.tree_at,
   body.tree_margin = m.tree_margin;
-  body.middle = m.middle, body.half = m.half;
+  body.side.middle = m.middle, body.side.half = m.half;
   return body;
 }
 
