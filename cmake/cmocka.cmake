@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What the core's own tests stand on: cprox_cmocka, and cprox_ccd as a second opinion beside our pair solver.
-if(NOT CPROX_ROS)
+if(NOT TARGET cprox_ccd)
   pkg_check_modules(PC_CCD REQUIRED ccd)
   add_library(cprox_ccd INTERFACE)
   target_include_directories(cprox_ccd SYSTEM INTERFACE ${PC_CCD_INCLUDEDIR} ${PC_CCD_INCLUDE_DIRS})

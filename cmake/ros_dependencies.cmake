@@ -3,10 +3,6 @@
 
 find_package(catkin REQUIRED COMPONENTS
   actionlib actionlib_msgs diagnostic_msgs diagnostic_updater dynamic_reconfigure geometric_shapes geometry_msgs message_generation
-  nav_msgs nodelet pluginlib roscpp roslib sensor_msgs shape_msgs std_msgs tf2 tf2_eigen tf2_ros trajectory_msgs urdf
+  nav_msgs nodelet pluginlib roscpp roslib sensor_msgs shape_msgs std_msgs tf2 tf2_ros trajectory_msgs
   visualization_msgs)
-# libccd: by pkg-config, as an absolute library file.
-pkg_check_modules(PC_CCD REQUIRED ccd)
-set(CPROX_CCD_LIBRARIES ${PC_CCD_LINK_LIBRARIES})
-set(CPROX_CCD_INCLUDE_DIRS ${PC_CCD_INCLUDEDIR} ${PC_CCD_INCLUDE_DIRS})
 pkg_check_modules(PC_JSON REQUIRED nlohmann_json)

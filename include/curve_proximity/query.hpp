@@ -13,6 +13,7 @@
 #include <curve_proximity/description.hpp>
 #include <curve_proximity/robot.hpp>
 #include <curve_proximity/scene.hpp>
+#include <curve_proximity/second_opinion.hpp>
 
 namespace curve_proximity {
 
@@ -34,6 +35,9 @@ struct Query {
    *  name. An unknown name, or a link without geometry, is an error that names it. */
   std::vector<std::string> objects;
   std::vector<std::string> links; /**< the links to test; of a robot in motion: see motion.hpp */
+
+  /** Who measures the pair of each answer again; null: nobody. Profiles and violations name no pair: they have none. */
+  std::shared_ptr<const SecondOpinions> second_opinion;
 };
 
 /** "sphere", "hull" or "mesh" for options.max_lod; nothing for any other word. */
@@ -61,6 +65,9 @@ struct Answer {
   std::string status;      /**< cprox_status_name(result.status) */
   std::string message;     /**< the error message, or a remark; often empty */
   std::string unproven;    /**< why a requested certificate is empty; else empty */
+
+  /** What Query::second_opinion says of it; its message is a part of `message`, too. */
+  SecondOpinion second_opinion;
 };
 
 /** A compiled curve for any number of queries by any number of threads. */

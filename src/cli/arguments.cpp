@@ -53,6 +53,7 @@ const std::map<std::string, Option> &options() {
       {"--max-nodes", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
       {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::CHECK}}},
       {"--per-object", {false, {Action::CURVES}}},
+      {"--second-opinion", {true, {Action::CURVES, Action::PAIRS}}},
       {"--max-lod", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
       {"--timings", {false, {Action::CURVES}}},
@@ -229,6 +230,16 @@ void readQuery(const Words &words, const Command &command, Query &query) {
   }
 }
 
+/* Who measures the pairs again. */
+void readSecondOpinion(const Words &words, const Command &command, Arguments &out) {
+  if (!words.has("--second-opinion")) return;
+  out.second_opinion = peerFromName(words.text("--second-opinion"));
+  if (!out.second_opinion)
+    throw BadUsage("--second-opinion is '" + words.text("--second-opinion") + "'; it must be fcl or libccd");
+  if (command.asking == Asking::PROFILE || command.asking == Asking::VIOLATIONS)
+    throw BadUsage("'" + std::string(command.word) + "' takes no --second-opinion: its rows name no pair");
+}
+
 /* Options that are for one command alone. */
 void readAsking(const Words &words, const Command &command, Arguments &out) {
   const auto only = [&](const char *name, const char *command_name, Asking asking) {
@@ -262,7 +273,7 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
 /* Curves against curves: there is no scene, and a row has one answer. */
 void readAgainst(const Words &words, Arguments &out) {
   for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings",
-                           "--max-lod", "--per-link"}) {
+                           "--max-lod", "--per-link", "--second-opinion"}) {
     if (words.has(name))
       throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
   }
@@ -290,7 +301,7 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
 /* What moves in the scene, without a robot of the command line. */
 void readMoversWords(const Words &words, Arguments &out) {
   for (const char *name : {"--curves", "--against", "--trajectory", "--signed", "--robot", "--srdf", "--state",
-                           "--per-object", "--per-link", "--certificate"}) {
+                           "--per-object", "--per-link", "--certificate", "--second-opinion"}) {
     if (words.has(name)) throw BadUsage("--movers takes no " + std::string(name));
   }
   if (!words.has("--scene")) throw BadUsage("--movers needs --scene SCENE.yaml: what moves in it is asked about");
@@ -436,6 +447,7 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   const Words split = splitWords(words, command);
   out.action = command.action;
   readQuery(split, command, out.query);
+  readSecondOpinion(split, command, out);
   readAsking(split, command, out);
   readFiles(split, command, out);
   readStandardInput(out);
@@ -514,6 +526,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --resolution R    'violations': how finely the ends are searched, in units of the parameter (default: a thousandth of
                     all of it)
   --within D        'nearest': only pairs that come within D metres
+  --second-opinion PEER  fcl or libccd: the pair of each row is measured again by this library, at the row's t and at both
+                    ends; the columns second_opinion (agrees, disagrees or unknown) and second_distance are added
   --max-lod R       the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies
                     by their bounding spheres); a coarser one is never farther away
   --dataset FILE    JSON Lines, or CSV with a header: id, robot, srdf, scene, trajectory, query, delta, self a row
@@ -532,7 +546,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --help, --version
 
 Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,
-t_b,lod,message. Of 'time-of-contact' also t_contact_lower: there is no contact at any smaller parameter. Of 'profile':
+t_b,lod,message. With --second-opinion also
+second_opinion,second_distance. Of 'time-of-contact' also t_contact_lower: there is no contact at any smaller parameter. Of 'profile':
 id,kind,status,t0,t1,lower,upper,t,a,b,message, a row an interval. Of 'violations':
 id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message, a row each: farther than D before
 enter_lower and after leave_upper, within D from enter_upper to leave_lower; or one row 'clear' without numbers. Of 'constraints': id,provider,status,value,lower,upper,valid,t,
@@ -545,7 +560,7 @@ difference), violated (one does not, by more than four times what a smaller step
 and its column message says why.
 Exit code of every command: 0 everything is answered, and nothing of it is violated, undecided or unproven; 1 a verdict is
 violated, or 'check' finds a certificate that does not prove its answer; 2 a row has no answer, there is no row, or the
-command line or a file cannot be used; 3 a verdict is undecided; 130 interrupted. Of several, 2 comes before 1, and 1 before
+command line or a file cannot be used; 3 a verdict is undecided, or a second opinion disagrees; 130 interrupted. Of several, 2 comes before 1, and 1 before
 3. Only 0 says that all is well, so that a shell can gate on it. Of 'certify' 0 says that its shards are whole, whatever their
 rows say: 'merge' tells.
 )";

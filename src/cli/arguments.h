@@ -42,6 +42,8 @@ struct Arguments {
   Asking asking = Asking::SEARCH; /**< of CURVES and TRAJECTORY */
   Query query;                    /**< CURVES, AGAINST, PAIRS and REPORT: the command, and how it is to be answered */
 
+  std::optional<Peer> second_opinion; /**< CURVES, TRAJECTORY and PAIRS: who measures pairs again */
+
   bool has_delta = false; /**< REPORT: ask for a verdict at query.delta, too */
 
   std::string curves, scene;   /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */

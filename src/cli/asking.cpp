@@ -123,6 +123,7 @@ Columns columnsOf(const Arguments &arguments) {
   Columns columns;
   columns.proof = !arguments.certificate.empty();
   columns.contact = arguments.asking == Asking::CONTACT;
+  columns.opinion = arguments.second_opinion.has_value();
   return columns;
 }
 

@@ -107,6 +107,7 @@ int answerCurves(const Arguments &arguments, Console &console) {
   const World world = readStandingWorld(arguments, "a query of curves", warnings);
   Query query = arguments.query;
   query.options.stop = interrupted;
+  query.second_opinion = secondOpinions(arguments, world.resources);
   const std::vector<Side> sides = sidesOf(world, arguments, query);
 
   CsvFile file(arguments.curves);

@@ -18,6 +18,7 @@ void tellTimings(const std::vector<std::string> &sentences, Console &console) {
 
 void noteVerdict(const ResultRow &row, Outcome &outcome) {
   outcome.against_nothing = outcome.against_nothing || (row.result.status >= 0 && std::isinf(row.result.lower));
+  outcome.disputed = outcome.disputed || row.second_opinion.verdict == SecondOpinion::DISAGREES;
   if (!row.has_verdict || row.result.status < 0) return;
   outcome.violated = outcome.violated || row.result.verdict == CPROX_VERDICT_VIOLATED;
   outcome.undecided = outcome.undecided || row.result.verdict == CPROX_VERDICT_UNDECIDED;
@@ -33,10 +34,13 @@ int finish(const Tally &tally, Console &console) {
   if (tally.against_nothing)
     console.say("warning: " + std::to_string(tally.against_nothing) + " of " + std::to_string(tally.rows) +
                 " rows were measured against nothing");
+  if (tally.disputed)
+    console.say("warning: the second opinion disagrees in " + std::to_string(tally.disputed) + " of " +
+                std::to_string(tally.rows) + " rows (column second_opinion)");
   if (!tally.rows) console.say("warning: the input has no rows");
   if (tally.failed || !tally.rows) return kUnanswered;
   if (tally.violated) return kSomeViolated;
-  return tally.undecided ? kSomeUndecided : kAllAnswered;
+  return tally.undecided || tally.disputed ? kSomeUndecided : kAllAnswered;
 }
 
 } // namespace curve_proximity::cli

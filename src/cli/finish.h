@@ -18,11 +18,11 @@ void tellTimings(const std::vector<std::string> &sentences, Console &console);
 /** --skipped: what takes no part. */
 void tellSkipped(const std::vector<std::string> &sentences, Console &console);
 
-/** Notes the verdict of a row of the results, so that finish() can count it. */
+/** Notes the verdict of a row of the results, and its second opinion, so that finish() can count it. */
 void noteVerdict(const ResultRow &row, Outcome &outcome);
 
 /** The exit code that a run deserves, see ExitCode; says how many rows failed, and that it was interrupted. Warns of an
- *  input without rows, and of rows that were measured against nothing. */
+ *  input without rows, of rows that were measured against nothing, and of second opinions that disagree. */
 int finish(const Tally &tally, Console &console);
 
 } // namespace curve_proximity::cli

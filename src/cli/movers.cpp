@@ -109,6 +109,7 @@ int answer(const Arguments &arguments, const World &world, const std::optional<O
   const Movers movers = gather(arguments, world, subject);
   Query query = arguments.query;
   query.options.stop = interrupted;
+  query.second_opinion = secondOpinions(arguments, world.resources);
   const std::string place = subject ? arguments.trajectory : arguments.scene;
   ResultsFile results(arguments.out, {arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf});
   console.warn(warnings);

@@ -11,6 +11,7 @@
 #include "results.h"
 #include "robot_file.h"
 #include "run.h"
+#include "world.h"
 
 namespace curve_proximity::cli {
 namespace {
@@ -57,6 +58,20 @@ const char *kindOf(PairDescription::Asked asked) {
   return "pair";
 }
 
+/* What a peer says of bodies that stand. */
+void addOpinion(const PairDescription &pair, const Query &query, ResultRow &row) {
+  if (!query.second_opinion || row.result.status < 0) return;
+  if (pair.asked == PairDescription::DISTANCE) {
+    row.second_opinion = query.second_opinion->ofPair(pair.a.shape, toIsometry(pair.a.pose), pair.b.shape,
+                                                      toIsometry(pair.b.pose), row.result.lower, row.result.upper);
+  } else {
+    row.second_opinion.verdict = SecondOpinion::UNKNOWN;
+    row.second_opinion.message = "no second opinion: peers are asked about bodies that stand";
+  }
+  if (!row.second_opinion.message.empty())
+    row.message += (row.message.empty() ? "" : "; ") + row.second_opinion.message;
+}
+
 /* The answer; throws Error where there is none. */
 ResultRow measure(const PairDescription &pair, const Query &query, const ResourceOptions &resources,
                   Workspace &workspace) {
@@ -71,6 +86,7 @@ ResultRow measure(const PairDescription &pair, const Query &query, const Resourc
   row.result = ask(pair, place(a, pair.a), place(b, pair.b), query.options, workspace);
   row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
   if (row.result.status != CPROX_OK) row.message = cprox_status_text(row.result.status);
+  addOpinion(pair, query, row);
   return row;
 }
 
@@ -135,6 +151,8 @@ int answerPairs(const Arguments &arguments, Console &console) {
   resources.find_package = packageFinder(resources.base_dir);
   Query query = arguments.query;
   query.options.stop = interrupted;
+  query.second_opinion = secondOpinions(arguments, resources);
+  columns.opinion = query.second_opinion != nullptr;
 
   ResultsFile results(arguments.out, {arguments.pairs});
   if (arguments.skipped) tellSkipped({}, console);

@@ -59,6 +59,7 @@ ResultRow toRow(const Answer &answer, QueryType query_type) {
   row.has_verdict = query_type != QueryType::DISTANCE;
   row.has_contact = query_type == QueryType::COLLISION; /* printed where the time of contact is asked for */
   row.has_t = row.has_points = answer.result.obstacle_index >= 0;
+  row.second_opinion = answer.second_opinion;
   row.message = answer.message;
   return row;
 }
@@ -67,7 +68,8 @@ std::string resultsHeader(const Columns &columns) {
   return std::string(
              "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,t_b,"
              "lod,message") +
-         (columns.proof ? ",proof" : "") + (columns.contact ? ",t_contact_lower" : "") + "\n";
+         (columns.proof ? ",proof" : "") + (columns.contact ? ",t_contact_lower" : "") +
+         (columns.opinion ? ",second_opinion,second_distance" : "") + "\n";
 }
 
 std::string resultsLine(const ResultRow &row, const Columns &columns) {
@@ -103,6 +105,13 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
     append(line, result.t_contact_lower);
   else if (columns.contact)
     line += ',';
+  if (columns.opinion) {
+    line += std::string(",") + secondOpinionName(row.second_opinion.verdict);
+    if (std::isfinite(row.second_opinion.distance))
+      append(line, row.second_opinion.distance);
+    else
+      line += ',';
+  }
   return line + '\n';
 }
 

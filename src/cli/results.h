@@ -17,19 +17,21 @@ struct ResultRow {
   cprox_result result{};
   std::string a, b;
   double microseconds = 0.0;
-  bool has_verdict = false; /**< tolerance and collision */
-  bool has_contact = false; /**< a time of contact was asked for */
-  bool has_t = false;       /**< the witness has a parameter: there is a curve, and something to measure against */
-  bool has_t_b = false;     /**< so has that of a second curve */
-  bool has_points = false;  /**< there is something to measure against */
-  std::string proof;        /**< where certificates are asked for: what is proven (proofOf()) */
-  std::string message;      /**< why there is no answer, or a remark */
+  bool has_verdict = false;     /**< tolerance and collision */
+  bool has_contact = false;     /**< a time of contact was asked for */
+  bool has_t = false;           /**< the witness has a parameter: there is a curve, and something to measure against */
+  bool has_t_b = false;         /**< so has that of a second curve */
+  bool has_points = false;      /**< there is something to measure against */
+  std::string proof;            /**< where certificates are asked for: what is proven (proofOf()) */
+  SecondOpinion second_opinion; /**< where one is asked for */
+  std::string message;          /**< why there is no answer, or a remark */
 };
 
 /** Which columns the results have beyond those that all have. */
 struct Columns {
   bool proof = false;   /**< of certificates */
   bool contact = false; /**< t_contact_lower */
+  bool opinion = false; /**< second_opinion, second_distance */
 };
 
 /** What the scene says, as a row. */

@@ -22,6 +22,7 @@ struct Outcome {
   std::string certificate;             /**< its record, where certificates are wanted */
   bool violated = false;               /**< a verdict is violated */
   bool undecided = false;              /**< a verdict is undecided */
+  bool disputed = false;               /**< a second opinion disagrees */
   bool against_nothing = false;        /**< there was nothing to measure against */
   std::vector<std::string> complaints; /**< for standard error: why there is no answer */
   std::vector<std::string> unproven;   /**< likewise, of an answer: why the certificate that is wanted is empty */
@@ -37,6 +38,7 @@ struct Tally {
   std::size_t unproven = 0;         /**< answers without the certificate that was wanted */
   std::size_t violated = 0;         /**< rows of the input with a violated verdict */
   std::size_t undecided = 0;        /**< and without one, but with an undecided verdict */
+  std::size_t disputed = 0;         /**< rows of the input with a second opinion that disagrees */
   std::size_t against_nothing = 0;  /**< rows of the input that had nothing to measure against */
   bool interrupted = false;
 };

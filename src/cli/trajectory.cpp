@@ -114,6 +114,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
   Query query = arguments.query;
   query.options.stop = interrupted;
+  query.second_opinion = secondOpinions(arguments, world.resources);
 
   const std::vector<std::string> inputs{arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf};
   ResultsFile results(arguments.out, inputs);

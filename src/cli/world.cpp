@@ -136,7 +136,13 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
           robot.srdf,
           skippedOf(file, robot),
           timingsOf(robot, robot_seconds, since(start)),
-          file.moving_robots};
+          file.moving_robots,
+          resources};
+}
+
+std::shared_ptr<const SecondOpinions> secondOpinions(const Arguments &arguments, const ResourceOptions &resources) {
+  if (!arguments.second_opinion) return nullptr;
+  return std::make_shared<const SecondOpinions>(*arguments.second_opinion, resources);
 }
 
 World readStandingWorld(const Arguments &arguments, const std::string &what, Warnings &warnings,

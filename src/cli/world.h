@@ -28,6 +28,7 @@ struct World {
   std::vector<std::string> skipped;           /**< what takes no part, a sentence each */
   std::vector<std::string> timings;           /**< how long loading took, a sentence each */
   std::vector<MovingRobotFile> moving_robots; /**< of the scene file */
+  ResourceOptions resources;                  /**< where files of the scene's objects are */
 
   /** Does anything move beside the robot of the command line? */
   bool moves() const {
@@ -44,6 +45,9 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
 /** The same, and BadUsage where anything moves in the scene. what: the query that does not take it. */
 World readStandingWorld(const Arguments &arguments, const std::string &what, Warnings &warnings,
                         const RobotSource &robots = {});
+
+/** Who measures the pairs again; null: nobody. resources: where files of objects are. */
+std::shared_ptr<const SecondOpinions> secondOpinions(const Arguments &arguments, const ResourceOptions &resources);
 
 } // namespace curve_proximity::cli
 #endif

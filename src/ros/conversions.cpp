@@ -620,6 +620,8 @@ Proximity toMessage(const Answer &answer, QueryType query_type) {
   message.upper = result.upper;
   message.t = result.t;
   message.t_contact_lower = std::numeric_limits<double>::quiet_NaN();
+  message.second_opinion = secondOpinionName(answer.second_opinion.verdict);
+  message.second_distance = answer.second_opinion.distance;
   message.witness_a = toPointMessage(result.witness_mover);
   message.witness_b = toPointMessage(result.witness_obstacle);
   message.normal.x = result.normal.x;
@@ -641,7 +643,7 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   message.id = id;
   message.kind = kind;
   message.status = cprox_status_name(CPROX_INVALID);
-  message.lower = message.upper = message.t = message.t_contact_lower = none;
+  message.lower = message.upper = message.t = message.t_contact_lower = message.second_distance = none;
   message.witness_a.x = message.witness_a.y = message.witness_a.z = none;
   message.witness_b = message.witness_a;
   message.normal.x = message.normal.y = message.normal.z = none;

@@ -53,7 +53,9 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
 void Diagnostics::queries(Status &status) {
   const Summary s = statistics_.take();
   const double seconds = std::max(s.seconds, 1e-3);
-  if (s.failed_calls > 0) {
+  if (s.disputed > 0) {
+    status.summary(DiagnosticStatus::WARN, "second opinions disagree: the log says of what");
+  } else if (s.failed_calls > 0) {
     status.summary(DiagnosticStatus::WARN, "requests failed");
   } else if (s.undecided > 0) {
     status.summary(DiagnosticStatus::WARN, "verdicts are undecided");
@@ -70,6 +72,8 @@ void Diagnostics::queries(Status &status) {
   status.add("undecided rows", s.undecided);
   status.add("failed rows", s.failed);
   status.add("failed requests", s.failed_calls);
+  status.add("rows with a second opinion", s.opinions);
+  status.add("second opinions that disagree, ever", s.all_disputed);
 }
 
 void Diagnostics::topics(Status &status) {

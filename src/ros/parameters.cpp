@@ -204,6 +204,9 @@ Parameters readParameters(const ros::NodeHandle &handle) {
                          parameters.query_type + "'");
   if (parameters.fixed_frame.empty()) throw ParameterError("parameter ~fixed_frame: the name of a frame is expected");
   if (!lodFromName(parameters.max_lod)) throw ParameterError("parameter ~max_lod: sphere, hull or mesh is expected");
+  if (!parameters.second_opinion.empty() && !peerFromName(parameters.second_opinion))
+    throw ParameterError("parameter ~second_opinion: fcl, libccd or nothing is expected, not '" +
+                         parameters.second_opinion + "'");
   if (parameters.cloud_id.empty()) throw ParameterError("parameter ~cloud_id: the name of an object is expected");
   if (parameters.octomap_id.empty() || parameters.octomap_id == parameters.cloud_id)
     throw ParameterError("parameter ~octomap_id: the name of an object is expected, another than ~cloud_id");

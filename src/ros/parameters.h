@@ -37,6 +37,7 @@ struct Parameters {
   double epsilon = 1e-6;
   int max_nodes = 20000;
   std::string max_lod = "mesh";
+  std::string second_opinion;
   double budget_ms = 5000.0;
   double max_wait_ms = 5000.0;
   double scene_budget_ms = 30000.0;
@@ -92,6 +93,7 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("epsilon", parameters.epsilon, Range{0.0, true});
   visit("max_nodes", parameters.max_nodes, Range{1.0, false, count});
   visit("max_lod", parameters.max_lod);
+  visit("second_opinion", parameters.second_opinion);
   visit("budget_ms", parameters.budget_ms, Range{0.0, true, 1e9});
   visit("max_wait_ms", parameters.max_wait_ms, Range{0.0, true, 1e9});
   visit("scene_budget_ms", parameters.scene_budget_ms, Range{0.0, true, 1e9});

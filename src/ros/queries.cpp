@@ -241,6 +241,7 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   query.options.epsilon = more.epsilon != 0.0 ? more.epsilon : tuning_.epsilon.load();
   query.options.max_nodes = more.max_nodes != 0 ? more.max_nodes : static_cast<std::uint32_t>(tuning_.max_nodes);
   query.options.max_lod = *lodFromName(parameters_.max_lod);
+  query.second_opinion = second_opinions_;
   query.per_object = more.per_object != 0;
   query.objects = more.objects;
   query.links = more.links;

@@ -135,16 +135,19 @@ struct Drawing {
 /** Answers requests, from any number of threads at once. */
 class Queries {
  public:
-  /** All but robots are kept by reference. stop: set, it ends running queries with the intervals that they have. */
+  /** All but robots and second_opinions are kept by reference. stop: set, it ends running queries with the intervals
+   * that they have. */
   Queries(const Parameters &parameters, const Tuning &tuning, const LiveScene &live, const Frames &frames,
-          Statistics &statistics, const std::atomic<bool> &stop, FurtherRobots robots = {})
+          Statistics &statistics, const std::atomic<bool> &stop, FurtherRobots robots = {},
+          std::shared_ptr<const SecondOpinions> second_opinions = {})
       : parameters_(parameters),
         tuning_(tuning),
         live_(live),
         frames_(frames),
         statistics_(statistics),
         stop_(stop),
-        robots_(std::move(robots)) {}
+        robots_(std::move(robots)),
+        second_opinions_(std::move(second_opinions)) {}
 
   /** Fills the response and the drawing. Throws Error where nothing can be answered at all; what is
    *  wrong with one curve becomes its row. */
@@ -204,6 +207,7 @@ class Queries {
   Statistics &statistics_;
   const std::atomic<bool> &stop_;
   const FurtherRobots robots_;
+  const std::shared_ptr<const SecondOpinions> second_opinions_; /* null: none are asked for */
   WorkspacePool workspaces_;
   Crew crew_{std::max(1u, std::thread::hardware_concurrency()) - 1};
 };

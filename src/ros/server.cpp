@@ -127,6 +127,11 @@ std::string joined(const std::vector<std::string> &sentences) {
   return text;
 }
 
+std::shared_ptr<const SecondOpinions> secondOpinions(const Parameters &parameters) {
+  const std::optional<Peer> peer = peerFromName(parameters.second_opinion);
+  return peer ? std::make_shared<const SecondOpinions>(*peer, resourceOptions("", parameters.max_shape_mb)) : nullptr;
+}
+
 } // namespace
 
 ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters &parameters)
@@ -141,7 +146,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
             resourceOptions("", parameters_.max_shape_mb)),
       state_file_(handle, parameters_, live_),
       queries_(parameters_, tuning_, live_, frames_, statistics_, stop_,
-               loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf)),
+               loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf),
+               secondOpinions(parameters_)),
       constraints_(parameters_, live_, frames_, stop_) {
   memory::setLimit(static_cast<std::size_t>(parameters_.memory_limit_mb) << 20);
   warnOfOtherLinks(live_);

@@ -5,16 +5,21 @@
 #include <cmath>
 
 #include <curve_proximity/cprox.h>
+#include <ros/console.h>
 
 namespace curve_proximity {
 
 void Statistics::record(Clock::duration took, bool success, const std::vector<Proximity> &results) {
   const double us = std::chrono::duration<double, std::micro>(took).count();
   const double place = std::floor(std::log2(std::max(1.0, us)) * static_cast<double>(PER_OCTAVE));
-  std::uint64_t undecided = 0, failed = 0;
+  std::uint64_t undecided = 0, failed = 0, opinions = 0, disputed = 0;
   for (const Proximity &row : results) {
     undecided += row.verdict == cprox_verdict_name(CPROX_VERDICT_UNDECIDED);
     failed += row.lower != row.lower;
+    opinions += row.second_opinion == Proximity::OPINION_AGREES || row.second_opinion == Proximity::OPINION_DISAGREES;
+    if (row.second_opinion != Proximity::OPINION_DISAGREES) continue;
+    ++disputed;
+    ROS_WARN_THROTTLE(1.0, "%s: %s and %s: %s", row.id.c_str(), row.a.c_str(), row.b.c_str(), row.message.c_str());
   }
 
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -24,6 +29,9 @@ void Statistics::record(Clock::duration took, bool success, const std::vector<Pr
   now_.rows += results.size();
   now_.undecided += undecided;
   now_.failed += failed;
+  now_.opinions += opinions;
+  now_.disputed += disputed;
+  disputed_ += disputed;
 }
 
 /** The middle of the bucket in which that share of the calls is reached. */
@@ -42,6 +50,7 @@ Summary Statistics::take() {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Clock::time_point now = Clock::now();
   Summary out = now_;
+  out.all_disputed = disputed_;
   out.seconds = std::chrono::duration<double>(now - since_).count();
   out.p50_us = percentile(0.5);
   out.p99_us = percentile(0.99);

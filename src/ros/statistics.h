@@ -19,6 +19,8 @@ struct Summary {
   double seconds = 0.0;                              /**< how long the window was */
   std::uint64_t calls = 0, failed_calls = 0;         /**< requests answered; those with success false */
   std::uint64_t rows = 0, undecided = 0, failed = 0; /**< rows answered; without a verdict; without an answer */
+  std::uint64_t opinions = 0, disputed = 0;          /**< rows with a second opinion; where it disagrees */
+  std::uint64_t all_disputed = 0;                    /**< rows ever where it disagreed */
   double p50_us = 0.0, p99_us = 0.0;                 /**< of the time of a request, to 10 %; 0 without requests */
 };
 
@@ -40,6 +42,7 @@ class Statistics {
   std::mutex mutex_;
   Clock::time_point since_ = Clock::now();
   Summary now_;
+  std::uint64_t disputed_ = 0;                                /* ever */
   std::array<std::uint64_t, PER_OCTAVE * OCTAVES> buckets_{}; /* of 1 us times 2^(i / PER_OCTAVE) */
 };
 

@@ -8,6 +8,7 @@
 #include <curve_proximity/nearest_name.hpp>
 
 #include "answering.h"
+#include "second_opinion.h"
 
 namespace curve_proximity {
 namespace {
@@ -161,6 +162,7 @@ Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &que
     nameSides(asked, query, answer);
   }
   finish(asked.data, answer, start);
+  addSecondOpinion(asked.data, query, answer);
   return answer;
 }
 

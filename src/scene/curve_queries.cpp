@@ -7,6 +7,7 @@
 #include <curve_proximity/query.hpp>
 
 #include "answering.h"
+#include "second_opinion.h"
 #include "targets.h"
 
 namespace curve_proximity {
@@ -62,6 +63,7 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
     if (answer.result.lower > limits.within) continue;
     nameItem(items[static_cast<std::size_t>(answer.result.obstacle_index)], query.options.max_lod, answer);
     finishAnswer(workspace, answer);
+    addSecondOpinion(targets.data(), curve, query, answer);
     answers.push_back(std::move(answer));
   }
   return answers;
@@ -122,6 +124,7 @@ Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Q
       nameItem(items[static_cast<std::size_t>(result.obstacle_index)], query.options.max_lod, answer);
   }
   finishAnswer(workspace, answer);
+  addSecondOpinion(targets.data(), curve, query, answer);
   return answer;
 }
 

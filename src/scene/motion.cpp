@@ -241,10 +241,10 @@ bool RobotMotion::stands() const {
   return data_->stands;
 }
 
-LinkPoses RobotMotion::linkPoses(double t) const {
-  const Kinematics &kinematics = *data_->kinematics;
+LinkPoses linkPosesOf(const RobotMotion::Data &data, double t) {
+  const Kinematics &kinematics = *data.kinematics;
   std::vector<double> values(kinematics.rest.size());
-  cprox_motion_evaluate(data_->core.get(), t, values.data());
+  cprox_motion_evaluate(data.core.get(), t, values.data());
   LinkPoses out;
   for (const auto &[name, link] : kinematics.links) {
     cprox_vec3 position;
@@ -256,6 +256,10 @@ LinkPoses RobotMotion::linkPoses(double t) const {
     out.emplace(name, pose);
   }
   return out;
+}
+
+LinkPoses RobotMotion::linkPoses(double t) const {
+  return linkPosesOf(*data_, t);
 }
 
 const std::vector<std::string> &RobotMotion::skipped() const {

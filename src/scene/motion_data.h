@@ -63,6 +63,9 @@ struct RobotMotion::Data {
   mutable std::vector<std::string> skipped;
 };
 
+/* The poses of all links at the time t [s]. */
+LinkPoses linkPosesOf(const RobotMotion::Data &data, double t);
+
 /* Fills wanted, self and environment; `links` are the links wanted (empty: all). */
 void choosePairs(const std::vector<std::string> &links, RobotMotion::Data &data);
 

@@ -11,6 +11,7 @@
 #include "answering.h"
 #include "motion_data.h"
 #include "moving_body.h"
+#include "second_opinion.h"
 
 namespace curve_proximity {
 namespace {
@@ -377,6 +378,7 @@ Answer answerOf(const Movers &movers, Against asked, const Query &query, const s
   if (answer.result.status != CPROX_OK && answer.message.empty())
     answer.message = cprox_status_text(answer.result.status);
   answer.status = cprox_status_name(answer.result.status);
+  refuseSecondOpinion(query, "the peers are not asked about what moves beside the robot", answer);
   return answer;
 }
 

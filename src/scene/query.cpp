@@ -9,6 +9,7 @@
 #include "answering.h"
 #include "placing.h"
 #include "proving.h"
+#include "second_opinion.h"
 #include "targets.h"
 
 namespace curve_proximity {
@@ -215,6 +216,7 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
     answers.resize(1);
     answerOf(search, answers.back());
     answers.back().microseconds = microsecondsSince(start);
+    addSecondOpinion(data, curve, query, answers.back());
     return answers;
   }
 
@@ -232,6 +234,7 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
       answers.back().b_is_link = items[first].is_link;
     }
     answers.back().microseconds = microsecondsSince(start);
+    addSecondOpinion(data, curve, query, answers.back());
     first = last;
   }
   return answers;

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""With ~second_opinion another library measures each row's pair again; disagreement is told, logged and counted."""
+import os
+import tempfile
+import unittest
+
+import rospy
+from curve_proximity.msg import Body
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from helpers import Server, bezier, body, run, sphere, thing, until
+
+LINE = bezier((-1, 0, 1), (1, 0, 1), id='line')
+FACET = 'facet normal 0 0 1\nouter loop\nvertex -1 -1 {z}\nvertex 1 -1 {z}\nvertex 0 1 {z}\nendloop\nendfacet\n'
+
+
+class SecondOpinion(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.seen = []
+        rospy.Subscriber('/diagnostics', DiagnosticArray, cls.seen.append)
+
+    def queries(self, condition):
+        """The status `queries` for which the condition holds, and its values."""
+        def look():
+            for array in list(self.seen):
+                for status in array.status:
+                    values = {v.key: v.value for v in status.values}
+                    if status.name == 'curve_proximity: queries' and condition(values):
+                        return status, values
+        found = until(look, 8)
+        self.assertTrue(found, 'no such status: ' + str(self.seen[-1:]))
+        return found
+
+    def row(self):
+        response = self.server.distance(LINE)
+        self.assertTrue(response.success, response.message)
+        self.assertEqual(len(response.results), 1)
+        return response.results[0]
+
+    def test_1_rows_say_that_it_agrees(self):
+        self.server.replace(sphere('ball', 0.25))
+        row = self.row()
+        self.assertEqual((row.second_opinion, row.message), ('agrees', ''))
+        self.assertAlmostEqual(row.second_distance, 0.75, delta=1e-5)
+        _, values = self.queries(lambda v: int(v['rows with a second opinion']) > 0)
+        self.assertEqual(values['second opinions that disagree, ever'], '0')
+
+    def test_2_rows_say_what_it_does_not_know(self):
+        self.server.replace(body('odd', 'superquadric', (0.5, 0.5, 0.5, 4, 4, 4)))
+        row = self.row()
+        self.assertEqual(row.second_opinion, 'unknown')
+        self.assertIn('superquadric', row.message)
+        self.assertNotEqual(row.second_distance, row.second_distance)
+
+    def test_3_disagreement_is_told_and_counted(self):
+        """The node has read the mesh at z = 0; before the peer reads it the file says z = 0.5."""
+        with tempfile.NamedTemporaryFile('w', suffix='.stl', delete=False) as file:
+            self.addCleanup(os.remove, file.name)
+        for z in (0.0, 0.5):
+            with open(file.name, 'w', encoding='ascii') as out:
+                out.write('solid s\n' + FACET.format(z=z) + 'endsolid s\n')
+            if z == 0.0:
+                self.server.replace(thing('sheet', bodies=[Body(type='mesh', resource='file://' + file.name)]))
+        row = self.row()
+        self.assertEqual(row.second_opinion, 'disagrees', row.message)
+        self.assertAlmostEqual(row.second_distance, 0.5, delta=1e-5)
+        self.assertIn('fcl disagrees: it measures 0.5', row.message)
+        self.assertAlmostEqual(row.upper, 1.0, delta=1e-5)
+        status, _ = self.queries(lambda v: int(v['second opinions that disagree, ever']) > 0)
+        self.assertEqual((status.level, status.message),
+                         (DiagnosticStatus.WARN, 'second opinions disagree: the log says of what'))
+
+
+if __name__ == '__main__':
+    run('second_opinion')
