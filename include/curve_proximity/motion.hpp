@@ -108,10 +108,11 @@ class RobotMotion {
   std::unique_ptr<const Data> data_;
 };
 
-/** Queries about a robot in motion take no signed_distance: such a query is refused. askSelf(), nearestPairs(),
- *  clearanceProfile() and timeOfContact() take no per_object, none about the robot itself takes query.objects.
- *  nearestPairs() and clearanceProfile() take no other query than DISTANCE, timeOfContact() none but COLLISION, and
- * these three no certificate.
+/** Queries about a robot in motion: askEnvironment(), askSelf() and the gradients take signed_distance, meshes then
+ *  answer by their hulls, and Answer::by_hull says so; points, boxes and meshes without a hull are refused with it. All
+ *  others refuse signed_distance. askSelf(), nearestPairs(), clearanceProfile() and timeOfContact() take no per_object,
+ * none about the robot itself takes query.objects. nearestPairs() and clearanceProfile() take no other query than
+ * DISTANCE, timeOfContact() none but COLLISION, and these three no certificate.
  *
  *  query.links restricts all of these queries to pairs of the links or attached objects that it names (of the robot
  *  itself: either of the pair). Here a link does not stand for what it carries: an attached object has a name of its
@@ -209,8 +210,9 @@ struct ClearanceRow {
 
 /** The least distance of the robot along its motion and its derivatives, by one search
  *  (cprox_robot_distance_gradient()). The guarantees of askEnvironment() and askSelf(). Without anything to measure
- *  lower and upper are infinity and valid is false. Takes no other query than DISTANCE, no signed_distance, no
- *  per_object and no certificate; throws Error for those, and where the core refuses. Cost: about 1.5 distances. */
+ *  lower and upper are infinity and valid is false. With signed_distance overlaps have a gradient, too: it leads out.
+ *  Takes no other query than DISTANCE, no per_object and no certificate; throws Error for those, and where the core
+ *  refuses. Cost: about 1.5 distances. */
 ClearanceRow clearanceGradient(const RobotMotion &motion, RobotPairs pairs, const Query &query, Workspace &workspace);
 
 /** What rows clearanceRows() gives. */

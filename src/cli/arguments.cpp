@@ -283,9 +283,11 @@ void readAgainst(const Words &words, Arguments &out) {
 
 /* The robot along a trajectory, instead of curves. */
 void readTrajectoryWords(const Words &words, Arguments &out) {
-  for (const char *name : {"--curves", "--against", "--signed"}) {
+  for (const char *name : {"--curves", "--against"}) {
     if (words.has(name)) throw BadUsage("--trajectory takes no " + std::string(name));
   }
+  if (words.has("--signed") && out.asking != Asking::SEARCH)
+    throw BadUsage("'nearest' takes no --signed with --trajectory: ask for the 'distance'");
   if (!words.has("--robot")) throw BadUsage("--trajectory needs --robot URDF");
   if (out.action == Action::CURVES) out.action = Action::TRAJECTORY;
   out.trajectory = words.text("--trajectory");
@@ -501,7 +503,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --trajectory FILE a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint
   --movers          what moves in the scene, instead of curves or a robot: against what stands there, and against each other
   --self            how close the robot comes to itself, too
-  --signed          distances of curves inside a body are negative: minus the deepest penetration
+  --signed          distances inside a body are negative: minus the deepest penetration (a robot's meshes by their hulls)
   --srdf FILE       links that are not checked against each other, and the frame in which the robot stands
                     (its virtual joint's parent_frame)
   --state TEXT      joint values in radians or metres; others as in the scene's robot_state, else 0

@@ -89,7 +89,7 @@ class RobotDistanceConstraint : public MotionConstraint {
       out.upper = std::min(out.upper, row.upper);
     }
     out.value = std::min(out.value, out.upper);
-    if (out.status != CPROX_OK) out.lower = -parameters_.margin;
+    if (out.status != CPROX_OK) out.lower = parameters_.query.options.signed_distance ? -INFINITE : -parameters_.margin;
   }
 
   const RobotDistanceParameters parameters_;
@@ -111,6 +111,7 @@ class RobotDistance : public ConstraintProvider {
     parameters_.query.options.epsilon = reader.number("epsilon", 1e-6, 0.0, true);
     parameters_.query.options.max_nodes = static_cast<std::uint32_t>(reader.count("max_nodes", 20000, 1, 2000000000));
     parameters_.margin = reader.number("margin", 0.0, 0.0);
+    parameters_.query.options.signed_distance = reader.truth("signed", false);
     reader.end();
   }
 

@@ -391,13 +391,16 @@ void addRobots(py::module &module) {
           py::arg("t"), "The pose (4, 4) of each link at the time t [s].")
       .def(
           "distance",
-          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes) {
-            return ask(m, self, queryOf("distance", 0.0, epsilon, max_nodes));
+          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, bool is_signed) {
+            Query query = queryOf("distance", 0.0, epsilon, max_nodes);
+            query.options.signed_distance = is_signed;
+            return ask(m, self, query);
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("signed") = false,
           "The least distance to the objects, or of the robot to itself: a dict of result, kind, a (link), b (object "
           "or\n"
-          "link), by_hull, message.")
+          "link), by_hull, message. With signed overlaps are negative: minus the deepest one, meshes by their hulls.")
       .def(
           "tolerance",
           [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes) {

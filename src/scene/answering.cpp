@@ -70,8 +70,6 @@ std::string faultOf(const Query &query) {
 }
 
 std::string faultOfMotion(const Query &query, bool in_all) {
-  if (query.options.signed_distance)
-    return "signed_distance does not apply to robots: how deep they overlap is not measured";
   if (in_all && query.per_object) return "per_object does not apply: there is no answer for each object here";
   return faultOf(query);
 }

@@ -72,9 +72,8 @@ cprox_mover Asked::mover() const {
 }
 
 /* Robots are asked about surfaces: solid meshes are answered by their hulls, which contain their inside. */
-Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
-                 const std::vector<std::string> &links) {
-  const Named named(data, links);
+Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted, const Query &query) {
+  const Named named(data, query.links);
   Asked asked{data, RobotPairs::ENVIRONMENT, std::move(wanted), {}, {}, {}, mostExcess(data.kinematics->geometries),
               {}};
   const std::vector<Item> &items = data.snapshot->world().items();
@@ -83,8 +82,13 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
   for (const std::size_t k : asked.items) {
     number[k] = static_cast<std::int32_t>(asked.targets.size());
     const PlacedShape &shape = *items[k].shape;
-    if (cprox_body_get_info(shape.target.body).kind == CPROX_BODY_DISTANCE_GRID)
+    const cprox_body_kind kind = cprox_body_get_info(shape.target.body).kind;
+    if (kind == CPROX_BODY_DISTANCE_GRID)
       throw Error("object '" + *items[k].owner + "' is a distance_grid: it is asked about curves, not about robots");
+    const bool has_hull = kind != CPROX_BODY_MESH && kind != CPROX_BODY_POINTS && kind != CPROX_BODY_OCTREE;
+    if (query.options.signed_distance && !has_hull)
+      throw Error("signed_distance: object '" + *items[k].owner +
+                  "' is a mesh without a hull, points or boxes: how deep a robot overlaps these is not measured");
     const bool by_hull = shape.is_mesh && cprox_body_get_info(shape.target.body).is_solid;
     asked.targets.push_back(by_hull ? shape.hull : shape.target);
     asked.proven.push_back(shape.surface);
@@ -129,7 +133,7 @@ void nameSides(const Asked &asked, const Query &query, Answer &answer) {
   const auto other = static_cast<std::size_t>(result.obstacle_index);
   answer.a = moving.owner();
   result.mover_part = moving.part;
-  const bool coarse = query.options.max_lod != CPROX_LOD_MESH;
+  const bool coarse = query.options.max_lod != CPROX_LOD_MESH || query.options.signed_distance;
   answer.by_hull = coarse && moving.is_mesh;
   if (asked.isSelf(result)) {
     const MovingGeometry &standing =
@@ -181,7 +185,7 @@ void checkDistances(RobotPairs against, const Query &query) {
 Asked askedOf(const RobotMotion &motion, RobotPairs against, const Query &query) {
   const RobotMotion::Data &data = motion.data();
   if (against == RobotPairs::SELF) return askedSelf(data, query.links);
-  Asked asked = askedItems(data, namedItems(data, query.objects), query.links);
+  Asked asked = askedItems(data, namedItems(data, query.objects), query);
   if (against == RobotPairs::ENVIRONMENT) return asked;
   Asked self = askedSelf(data, query.links);
   if (self.pairs.empty()) return asked;

@@ -37,7 +37,7 @@ struct Asked {
 std::vector<std::size_t> namedItems(const RobotMotion::Data &data, const std::vector<std::string> &names);
 
 /* Whom a query is about; of both at once the other one where one has no pairs. Throws Error for a name that is none. */
-Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted, const std::vector<std::string> &links);
+Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted, const Query &query);
 Asked askedSelf(const RobotMotion::Data &data, const std::vector<std::string> &links);
 Asked askedOf(const RobotMotion &motion, RobotPairs against, const Query &query);
 

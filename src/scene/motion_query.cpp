@@ -76,7 +76,7 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query
   const std::string fault = faultOfMotion(query, false);
   if (!fault.empty()) return {refusal(data.id, "environment", fault)};
   const std::vector<std::size_t> named = namedItems(data, query.objects);
-  if (!query.per_object || named.empty()) return {answerOf(askedItems(data, named, query.links), query, workspace)};
+  if (!query.per_object || named.empty()) return {answerOf(askedItems(data, named, query), query, workspace)};
 
   /* one for each run of items of the same object */
   const std::vector<Item> &items = data.snapshot->world().items();
@@ -85,7 +85,7 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query
   for (std::size_t i = 0; i < named.size(); ++i) {
     wanted.push_back(named[i]);
     if (i + 1 < named.size() && items[named[i + 1]].owner == items[named[i]].owner) continue;
-    answers.push_back(answerOf(askedItems(data, wanted, query.links), query, workspace));
+    answers.push_back(answerOf(askedItems(data, wanted, query), query, workspace));
     answers.back().b = *items[named[i]].owner;
     wanted.clear();
   }
@@ -189,6 +189,8 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
                                                 const Query &query, Workspace &workspace) {
   if (breaks.size() < 2) throw Error("a clearance profile needs at least two breaks");
   checkDistances(againstOf(self), query);
+  if (query.options.signed_distance)
+    throw Error("signed_distance does not apply: a clearance profile does not measure depths");
   const Asked asked = askedOf(motion, againstOf(self), query);
   std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
   for (std::size_t i = 0; i < intervals.size(); ++i)

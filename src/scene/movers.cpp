@@ -266,6 +266,7 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
 std::string faultOfMovers(const Query &query) {
   if (!query.objects.empty()) return "objects do not apply to movers, '" + query.objects.front() + "' among them";
   if (query.options.certificate) return "a certificate does not apply: movers on one clock have none";
+  if (query.options.signed_distance) return "signed_distance does not apply: movers on one clock have no depth";
   return faultOfMotion(query, true);
 }
 

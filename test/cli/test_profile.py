@@ -128,6 +128,18 @@ class Robots(Case):
         self.assertEqual((float(row['leave_lower']), float(row['leave_upper'])), (4.0, 4.0))
         self.assertEqual((clear['kind'], clear['verdict']), ('self', 'clear'))
 
+    def the_depth_of_an_overlap_is_negative(self):
+        """The cart is a cube of .2 whose top passes the centre of a ball of .3: the way out is .3 long."""
+        ball = ('world: {collision_objects: [{id: ball, primitives: [{type: sphere, dimensions: [0.3]}],'
+                ' primitive_poses: [{position: [1, 0, 0.1]}]}]}')
+        words = robot_files(self, scene=ball)
+        row, = cprox('distance', *words, '--signed').rows
+        self.assertEqual((row['status'], row['b']), ('ok', 'ball'))
+        self.assertLessEqual(float(row['lower']), -0.3 + 1e-9)
+        self.assertAlmostEqual(float(row['upper']), -0.3, delta=1e-6)
+        self.assertEqual(float(cprox('distance', *words).rows[0]['upper']), 0.0)
+        self.assertIn("'nearest' takes no --signed with --trajectory", cprox('nearest', *words, '--signed').err)
+
     def a_profile_follows_the_motion(self):
         wall = '\n'.join(line for line in WALL.splitlines() if 'post' not in line)
         answer = cprox('profile', *robot_files(self, scene=wall), '--intervals', '4')

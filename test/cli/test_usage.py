@@ -73,7 +73,7 @@ class Usage(Case):
             rows += [(command, start + ['--curves', 'c', '--robot', 'r'],
                       run | own | {'--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-lod', '--skipped', '--against', '--second-opinion'}),
                      (command, start + ['--curves', 'c', '--against', 'd'], run | own | {'--certificate', '--scene', '--robot'}),
-                     (command, start + ['--trajectory', 't', '--robot', 'r'], run | own - {'--signed'} | {
+                     (command, start + ['--trajectory', 't', '--robot', 'r'], run | own | {
                          '--scene', '--srdf', '--state', '--certificate', '--per-object', '--per-link', '--max-lod', '--skipped', '--self', '--second-opinion'})]
         for command, own in (('profile', {'--intervals', '--breaks'}), ('nearest', {'--pairs', '--within', '--signed'}), ('time-of-contact', set())):
             both = run | (set() if command == 'profile' else {'--second-opinion'}) | own | {'--scene', '--srdf', '--state', '--per-object', '--max-lod', '--skipped'}

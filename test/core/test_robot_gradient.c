@@ -21,7 +21,7 @@ typedef struct problem {
   test_robot robot;
   cprox_obstacle targets[TARGETS];
   cprox_mover_kind kind;
-  bool indexed;
+  bool indexed, is_signed;
   const cprox_robot_pair *pair; /* asked about alone, between two breaks; NULL: all pairs, all the time */
   double breaks[2];
 } problem;
@@ -42,6 +42,7 @@ static double ask(const problem *p, answer *a) {
   mover.kind = p->kind;
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = a ? 1e-6 : 0.0;
+  options.signed_distance = p->is_signed;
   const cprox_obstacles *against = p->kind == CPROX_MOVER_ROBOT_SELF ? NULL : obstacles;
   cprox_result r;
   cprox_status status;
@@ -172,9 +173,9 @@ static double misfit(const problem *p, const answer *a, const step *d, double ex
 static const cprox_body_kind SOLID[] = {CPROX_BODY_SPHERE, CPROX_BODY_BOX,  CPROX_BODY_CAPSULE,  CPROX_BODY_CYLINDER,
                                         CPROX_BODY_POINT,  CPROX_BODY_CONE, CPROX_BODY_POLYTOPE, CPROX_BODY_ELLIPSOID};
 
-/* Convex, or one in nine times the surface of a torus with bumps. */
-static cprox_body *body_random(rng *r, double scale) {
-  if (rng_index(r, 9) == 0) {
+/* Convex, or one in nine times the surface of a torus with bumps, where that is allowed. */
+static cprox_body *body_random(rng *r, double scale, bool no_mesh) {
+  if (rng_index(r, 9) == 0 && !no_mesh) {
     test_mesh mesh = mesh_torus(7, 5, 0.7 * scale, 0.2 * scale, 0.2);
     cprox_body *surface = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
     mesh_free(&mesh);
@@ -185,9 +186,11 @@ static cprox_body *body_random(rng *r, double scale) {
   return s.body;
 }
 
-static void problem_make(rng *r, problem *p) {
+static void problem_make(rng *r, bool is_signed, problem *p) {
   test_robot *t = &p->robot;
-  *p = (problem){.kind = (cprox_mover_kind)(CPROX_MOVER_ROBOT + rng_index(r, 3)), .indexed = rng_index(r, 2)};
+  *p = (problem){.kind = (cprox_mover_kind)(CPROX_MOVER_ROBOT + rng_index(r, 3)),
+                 .indexed = rng_index(r, 2),
+                 .is_signed = is_signed};
   const double speed = rng_log_uniform(r, 0.1, 1.5);
   if (rng_index(r, 4) > 0)
     robot_make(r, speed, t);
@@ -196,11 +199,11 @@ static void problem_make(rng *r, problem *p) {
   for (size_t i = 0; i < t->n_links; i++) {
     if (rng_index(r, 2)) continue;
     cprox_body_free((cprox_body *)t->geometries[i].body);
-    t->geometries[i].body = body_random(r, 0.2);
+    t->geometries[i].body = body_random(r, 0.2, is_signed);
   }
   robot_rebuild(t);
   for (int i = 0; i < TARGETS; i++) {
-    p->targets[i] = cprox_obstacle_at(body_random(r, 0.5), rng_pose(r, 2.0));
+    p->targets[i] = cprox_obstacle_at(body_random(r, 0.5, is_signed), rng_pose(r, is_signed ? 1.0 : 2.0));
     p->targets[i].margin = 0.05;
   }
 }
@@ -215,20 +218,21 @@ static void problem_free(problem *p) {
 /* Seed 4701, 80 problems: 1e-6 (1 + |derivative|). By hand 17,597 passed; then one differs by 3.3e-6, whose distance is
  * known to 3e-7 only, so that short differences are noise. A step of 6e-4 agrees to 2e-8.
  * Problems whose distance is below 0.01, or infinite, are left out. Where there is no gradient, the slopes to either
- * side differ by 1e-4 of one, or it counts as missed: at most 1 %. */
-CASE(gradients_are_the_limits_of_differences) {
-  rng r = rng_seed(4701);
+ * side differ by 1e-4 of one, or it counts as missed: at most most_missed percent. */
+static void hold_against_differences(uint64_t seed, bool is_signed, size_t most_missed) {
+  rng r = rng_seed(seed);
   size_t valid = 0, near = 0, tied = 0, missed = 0;
   double worst = 0.0;
   for (size_t i = 0; i < test_cases(80); i++) {
     problem p;
     answer a;
-    problem_make(&r, &p);
+    problem_make(&r, is_signed, &p);
     ask(&p, &a);
     char why[160];
     snprintf(why, sizeof why, "%s", cprox_workspace_error(ws));
     const step d = step_random(&r, &p);
-    if (a.result.upper > 0.01 && isfinite(a.result.upper)) {
+    const bool measured = (is_signed ? a.result.upper < -0.01 : a.result.upper > 0.01) && isfinite(a.result.upper);
+    if (measured) {
       double kink, one_sided;
       const double expected = derivative(&p, &a, &d), off = misfit(&p, &a, &d, expected, &kink, &one_sided);
       if (a.gradient.valid && kink > 1e-4 && one_sided < 1e-5) {
@@ -249,7 +253,17 @@ CASE(gradients_are_the_limits_of_differences) {
   }
   print_message("%zu have a gradient, off by %g at most; %zu are tied, %zu have none for another reason\n", valid,
                 worst, tied, missed);
-  assert_true(100 * missed <= valid + tied + missed + 100);
+  assert_true(100 * missed <= most_missed * (valid + tied + missed) + 100);
+}
+
+CASE(gradients_are_the_limits_of_differences) {
+  hold_against_differences(4701, false, 1);
+}
+
+/* The same of the deepest overlap, for all problems that overlap by 0.01: often two ways out cross there. By hand 223
+ * of 1040 problems passed, 7 have none and are no ties. */
+CASE(gradients_of_depths_are_the_limits_of_differences) {
+  hold_against_differences(4711, true, 4);
 }
 
 /* ---- rows ---- */
@@ -297,7 +311,7 @@ CASE(rows_say_what_each_pair_does_on_each_interval) {
   size_t found = 0, missing = 0, compared = 0;
   for (size_t i = 0; i < test_cases(40); i++) {
     problem p;
-    problem_make(&r, &p);
+    problem_make(&r, false, &p);
     if (p.kind == CPROX_MOVER_ROBOT_WHOLE) p.kind = CPROX_MOVER_ROBOT;
     const test_robot *t = &p.robot;
     const bool self = p.kind == CPROX_MOVER_ROBOT_SELF, by_points = t->turning == CPROX_TURNING_POLYNOMIAL;
@@ -456,7 +470,7 @@ CASE(states_have_gradients_by_their_variables) {
   size_t valid = 0, all = 0;
   for (size_t i = 0; i < test_cases(60); i++) {
     problem p;
-    problem_make(&r, &p);
+    problem_make(&r, false, &p);
     test_robot *t = &p.robot;
     double slope = 0.0, expected = 0.0, by[TEST_MAX_VARIABLES] = {0}, d[TEST_MAX_VARIABLES] = {0}, far = 0.0;
     for (size_t k = 0; k < t->n_variables; k++) d[k] = rng_uniform(&r, -1, 1);
@@ -497,7 +511,7 @@ CASE(what_has_no_gradient_is_refused) {
   assert_non_null(strstr(cprox_workspace_error(ws), "the mover is no robot"));
   rng random = rng_seed(4703);
   problem p;
-  problem_make(&random, &p);
+  problem_make(&random, false, &p);
   const cprox_mover mover = cprox_robot_along(p.robot.motion, NULL, 0);
   assert_int_equal(cprox_robot_distance_gradient(NULL, mover, NULL, ws, &r, NULL), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "gradient is NULL");

@@ -94,7 +94,7 @@ TEST_F(Slider, options_that_do_not_apply_to_a_robot_are_refused_and_named) {
     }
   };
   expect("nothing", true, true, true, [](Query &) {});
-  expect("signed_distance", false, false, false, [](Query &q) { q.options.signed_distance = true; });
+  expect("signed_distance", true, true, false, [](Query &q) { q.options.signed_distance = true; });
   expect("links", true, true, true, [](Query &q) { q.links = {"cart"}; });
   expect("delta", false, false, false, [](Query &q) { q.delta = 0.1; });
   expect("per_object", true, false, false, [](Query &q) { q.per_object = true; });

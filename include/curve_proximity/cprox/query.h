@@ -127,10 +127,10 @@ CPROX_API const char *cprox_lod_name(cprox_lod lod);
  *  CPROX_INVALID, and the reason names the option. What applies:
  *
  *    query                                     relative_epsilon  stop  max_lod  certificate  signed_distance
- *    distance                                  yes               yes   yes       yes          yes, not for robots
+ *    distance                                  yes               yes   yes       yes          yes
  *    tolerance, collision                      yes               yes   yes       yes          no
  *    time of contact                             no                yes   yes       no           no
- *    nearest, within, profile, gradient        yes               yes   yes       no           yes, not for robots
+ *    nearest, within, profile, gradient, rows  yes               yes   yes       no           yes
  *    nearest pairs of a robot                  yes               yes   yes       no           no
  *    CPROX_INDEX_BVH, and batches              as above, but no certificate
  *    pair                                      yes               yes   yes       no           yes: always signed
@@ -159,8 +159,9 @@ typedef struct cprox_options {
   cprox_certificate *certificate;
   /** distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve: the shortest
    *  way by which the mover, there, could leave the target (a part of it, for compounds). Curves have no inside
-   *  beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP, and lower only bounds it. Refused
-   *  for robots: how deep they overlap is not measured. Default false: distances are 0 at least */
+   *  beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP, and lower only bounds it. Of robots
+   *  meshes answer by their hulls (as max_lod HULL); points, octrees and meshes without a hull are refused. Default
+   *  false: distances are 0 at least */
   bool signed_distance;
   /** the finest model of targets that may answer, CPROX_LOD_MESH (or NONE): any. HULL: level-of-detail bodies by their
    *  hulls. SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they

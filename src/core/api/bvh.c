@@ -24,7 +24,8 @@ cprox_status bvh_begin(const obstacle_bvh *set, query *q, arguments_query asked)
   /* the targets were checked when the set was made, but for what the mover must go with */
   const bool robot = q->mover.motion && (set->has_curves || set->has_solids || mover_is_self(&q->mover) ||
                                          mover_is_whole(&q->mover) || q->mover.pairs);
-  const bool all = set->has_clock || (q->mover.body && set->has_elements) || robot;
+  const bool by_hulls = q->mover.body || (q->mover.motion && q->options.signed_distance);
+  const bool all = set->has_clock || (by_hulls && set->has_elements) || robot;
   const cprox_status checked =
       arguments_check_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, asked, workspace);
   if (checked != CPROX_OK) return checked;

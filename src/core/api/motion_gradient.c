@@ -9,9 +9,11 @@
 cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cprox_mover mover,
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *result, cprox_motion_gradient *gradient) {
-  static const arguments_query ASKED = {"the gradient of a robot's distance", ARGUMENTS_SEARCH | ARGUMENTS_WHOLE};
+  static const arguments_query ASKED = {"the gradient of a robot's distance",
+                                        ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_SIGNED};
   const obstacle_bvh *set = obstacles ? obstacles->bvh : NULL;
   query q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance;
   const cprox_status begun = set ? bvh_begin(set, &q, ASKED) : query_begin(&q, ASKED);
   if (begun != CPROX_OK) return begun;
   if (!mover.motion)

@@ -123,7 +123,8 @@ cprox_status cprox_robot_rows(const cprox_obstacles *obstacles, cprox_mover move
   row_search s = {.rows = rows, .room = room, .failure = CPROX_OK};
   s.q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
   query *q = &s.q;
-  cprox_status status = query_begin(q, (arguments_query){"the rows of a robot", ARGUMENTS_SEARCH});
+  q->is_signed = q->options.signed_distance;
+  cprox_status status = query_begin(q, (arguments_query){"the rows of a robot", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
   if (status != CPROX_OK) return status;
   if (!mover.motion)
     return workspace_fail(workspace, CPROX_INVALID, "rows are those of a robot's motion, and the mover is none");

@@ -240,6 +240,22 @@ static cprox_status check_part(const cprox_mover *mover, const cprox_options *op
   return CPROX_OK;
 }
 
+/* Depths are those of convex bodies and hulls. */
+static cprox_status check_depths(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
+                                 cprox_workspace *workspace) {
+  static const char *const WHY =
+      "signed_distance: %s %zu is a mesh without a hull, points or boxes, or has such a part: "
+      "how deep a robot overlaps these is not measured";
+  const cprox_robot *robot = mover->motion->robot;
+  for (size_t i = 0; i < robot->n_parts; i++)
+    if (robot->parts[i].model.by_ball)
+      return workspace_fail(workspace, CPROX_INVALID, WHY, "geometry", (size_t)robot->parts[i].geometry);
+  for (size_t i = 0; i < n; i++)
+    if (model_has_tree(targets[i].body, CPROX_LOD_HULL))
+      return workspace_fail(workspace, CPROX_INVALID, WHY, "target", i);
+  return CPROX_OK;
+}
+
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                                    const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
@@ -256,14 +272,13 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacl
     return workspace_fail(
         workspace, CPROX_INVALID,
         "the mover has pairs, but no motion: that is for robots (cprox_robot_along, cprox_robot_self)");
-  if (mover->motion && options->signed_distance)
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "signed_distance does not apply to robots: how deep they overlap is not measured");
   checked = check_robot(mover, n, workspace);
   if (checked == CPROX_OK) checked = check_part(mover, options, workspace);
   if (checked == CPROX_OK) checked = check_ride(mover, options->max_lod, workspace);
   if (checked == CPROX_OK) checked = arguments_check_targets(targets, n, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)
     checked = check_against(mover, &targets[i], i, options->max_lod, workspace);
+  if (checked == CPROX_OK && mover->motion && options->signed_distance)
+    checked = check_depths(mover, targets, n, workspace);
   return checked;
 }

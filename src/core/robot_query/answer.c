@@ -74,7 +74,8 @@ static cprox_status answer(const query *q, size_t first, size_t last, double cut
 
   cprox_result r = {.t_obstacle = NAN, .obstacle_index = -1, .mover_part = -1, .upper = o.best_bound.upper};
   robot_search_report(&o, &r);
-  r.lower = fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
+  r.lower = fmin(found.lower, o.dropped);
+  r.lower = fmin(q->is_signed ? r.lower : fmax(r.lower, 0.0), r.upper);
   r.nodes = found.nodes;
   if (goal.share) cutoff = lesser(cutoff, goal.share(goal.share_user, r.upper));
   query_conclude(q, cutoff, status, &r);

@@ -237,11 +237,11 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   if (o->cut) return CPROX_OK;
   robot_gap gap;
   const robot_accuracy accuracy = {ROBOT_GAP_FRACTION * o->goal.epsilon, robot_pruning_bound(o), EXCESS_FRACTION,
-                                   known_normal(o, pair)};
+                                   known_normal(o, pair), o->goal.is_signed};
   const cprox_status status = robot_measure(o, entry->pair, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - displacement);
-  if (pair->normal_known && gap.upper > 0.0)
+  if (pair->normal_known && (gap.upper > 0.0 || o->goal.is_signed))
     entry->lower = fmax(entry->lower, bound_by_gap(o, pair, moving, standing, motion, &gap, slack));
   if (robot_is_pruned(o, entry->lower)) return CPROX_OK;
   const double pieces = pieces_for(o, gap.lower, entry->lower);

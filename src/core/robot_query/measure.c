@@ -29,14 +29,14 @@ static cprox_status refuse_callback(const robot_search *o) {
 /* What was measured may be the least so far, or a contact. */
 static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
   const size_t segment = o->scene.centre.segment;
-  const double u = o->scene.centre.u, upper = fmax(gap->upper, 0.0),
+  const double u = o->scene.centre.u, upper = o->goal.is_signed ? gap->upper : fmax(gap->upper, 0.0),
                at = motion_time_below(o->scene.motion, segment, u);
   const robot_sample sample = {.gap = *gap, .pair = index, .segment = segment, .u = u};
   if (is_better(o, upper, at)) {
     o->best = sample;
     o->best_bound = (search_best){.upper = upper, .slack = gap->slack, .at = at};
   }
-  if (upper <= o->goal.limit && at < o->touch_at) {
+  if (o->goal.limit >= 0.0 && upper <= o->goal.limit && at < o->touch_at) {
     o->touch = sample;
     o->touch_at = at;
   }
@@ -90,11 +90,13 @@ cprox_status robot_refine_elements(robot_search *o, robot_refinement *c) {
 
 cprox_status robot_measure_whole(robot_search *o, int32_t index) {
   robot_gap gap;
-  const double floor = fmax(o->goal.limit, 0.0);
-  const cprox_status status = robot_measure(
-      o, index,
-      (robot_accuracy){.epsilon = ROBOT_GAP_FRACTION * o->goal.epsilon, .floor = floor, .fraction = SEED_FRACTION},
-      &gap);
+  const double floor = o->goal.is_signed ? robot_pruning_bound(o) : fmax(o->goal.limit, 0.0);
+  const cprox_status status = robot_measure(o, index,
+                                            (robot_accuracy){.epsilon = ROBOT_GAP_FRACTION * o->goal.epsilon,
+                                                             .floor = floor,
+                                                             .fraction = SEED_FRACTION,
+                                                             .depth = o->goal.is_signed},
+                                            &gap);
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   /* a verdict is not about what is farther than its limit */

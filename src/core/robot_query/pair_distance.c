@@ -6,21 +6,22 @@
 #include "base/rounding.h"
 #include "convex/pair.h"
 
-enum { GAP_STEPS = 128 };
+enum { GAP_STEPS = 128, DEPTH_STEPS = 400 };
 
 /* ---- cheap distances ---- */
 
-/* Of a point from the box round a body, or from its halfspace. */
+/* Of a point from the box round a body, or from its halfspace; inside minus the way out. */
 static double from_box(const robot_body *body, vec3 point) {
   const vec3 y = placement_turn_back(&body->side.at, vec_sub(point, body->side.at.p));
   if (robot_body_is_halfspace(body)) {
     const double *h = body->side.shape->size;
     return h[0] * y.x + h[1] * y.y + h[2] * y.z + h[3];
   }
-  const vec3 z = vec_sub(y, body->side.middle);
-  const vec3 out = vec(greater(fabs(z.x) - body->side.half.x, 0.0), greater(fabs(z.y) - body->side.half.y, 0.0),
-                       greater(fabs(z.z) - body->side.half.z, 0.0));
-  return vec_norm(out);
+  const vec3 z = vec_sub(y, body->side.middle), half = body->side.half;
+  const vec3 out = vec(fabs(z.x) - half.x, fabs(z.y) - half.y, fabs(z.z) - half.z);
+  const double inside = greater(out.x, greater(out.y, out.z));
+  if (inside <= 0.0) return inside;
+  return vec_norm(vec(greater(out.x, 0.0), greater(out.y, 0.0), greater(out.z, 0.0)));
 }
 
 double robot_pair_balls(const robot_body *moving, const robot_body *standing) {
@@ -57,7 +58,7 @@ double robot_pair_height(const robot_body *standing, vec3 normal) {
 
 /* ---- the distance ---- */
 
-static void measure_halfspace(const robot_body *moving, const robot_body *standing, robot_gap *gap) {
+static void measure_halfspace(const robot_body *moving, const robot_body *standing, bool depth, robot_gap *gap) {
   const double *h = standing->side.shape->size;
   const vec3 n = placement_turn(&standing->side.at, vec(h[0], h[1], h[2]));
   vec3 at;
@@ -79,7 +80,7 @@ static void measure_halfspace(const robot_body *moving, const robot_body *standi
                      .upper = above + rounding - ROUND_UP * 2.0 * (shape->slack - shape->outside),
                      .slack = rounding,
                      .on_moving = lowest,
-                     .on_standing = above > 0.0 ? vec_axpy(lowest, -above, n) : lowest,
+                     .on_standing = depth || above > 0.0 ? vec_axpy(lowest, -above, n) : lowest,
                      .normal = n,
                      .support_failed = isnan(distance)};
 }
@@ -100,7 +101,7 @@ static pair_placement seen_from(const robot_body *standing, const robot_body *mo
 
 void robot_pair_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap) {
   if (robot_body_is_halfspace(standing)) {
-    measure_halfspace(moving, standing, gap);
+    measure_halfspace(moving, standing, accuracy.depth, gap);
     return;
   }
   const pair_placement seen = seen_from(standing, moving);
@@ -108,15 +109,16 @@ void robot_pair_measure(const robot_body *moving, const robot_body *standing, ro
                           .floor = accuracy.floor,
                           .fraction = accuracy.fraction,
                           .start = vec_neg(accuracy.start),
-                          .max_steps = GAP_STEPS,
-                          .wants_feature = true};
+                          .max_steps = accuracy.depth ? DEPTH_STEPS : GAP_STEPS,
+                          .wants_feature = true,
+                          .wants_depth = accuracy.depth};
   pair_answer answer;
   pair_separate(standing->side.shape, standing->side.margin, moving->side.shape, moving->side.margin, &seen, &goal,
                 &answer);
   *gap = (robot_gap){
       .support_failed = answer.support_failed, .lower = answer.lower, .upper = answer.upper, .slack = answer.rounding};
   if (answer.support_failed) return;
-  const bool apart = answer.upper > 0.0;
+  const bool apart = answer.upper > 0.0 || accuracy.depth;
   gap->on_standing = placement_apply(&standing->side.at, apart ? answer.on_a : answer.common);
   gap->on_moving = placement_apply(&standing->side.at, apart ? answer.on_b : answer.common);
   gap->normal = vec_neg(placement_turn(&standing->side.at, answer.normal));

@@ -34,6 +34,7 @@ typedef struct robot_gap {
 typedef struct robot_accuracy {
   double epsilon, floor, fraction;
   vec3 start; /* standing frame, unit: near the normal; (0,0,0): nothing is known */
+  bool depth; /* how deep the two overlap, not only that they do; the points are then the ends of the way out */
 } robot_accuracy;
 
 void robot_pair_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap);

@@ -134,9 +134,11 @@ typedef struct pair_list {
   double beyond; /* the least of those that were left out */
 } pair_list;
 
+/* How deep two may overlap sweeps do not say. */
 static double parts_apart(const robot_scene *s, size_t part, size_t other) {
   const part_sweep *sweeps = s->motion->sweeps;
-  return sweeps ? part_sweeps_apart(&sweeps[part], &sweeps[other]) : -INFINITY;
+  const double apart = sweeps ? part_sweeps_apart(&sweeps[part], &sweeps[other]) : -INFINITY;
+  return s->q->is_signed && apart <= 0.0 ? -INFINITY : apart;
 }
 
 double robot_scene_apart(const robot_scene *s, const robot_pair *pair) {

@@ -47,6 +47,9 @@ typedef struct gradient_search {
   double lower;    /* the least bound of nodes that were set aside */
   spot_pair pair;
   motion_spot spot;
+  motion_spot side[SPOT_SIDES]; /* where two ways out cross there: the derivative is a sum of those at these places */
+  double part[SPOT_SIDES];
+  bool crosses;
   double apart;
   double from, to; /* the neighbourhood of the minimiser, in time; */
   size_t widest;   /* the widest that was tried */
@@ -114,6 +117,10 @@ static cprox_status find_neighbourhood(gradient_search *g, size_t first) {
   return CPROX_OK;
 }
 
+static bool is_zero(const gradient_search *g, double distance, double rounding) {
+  return !((g->q->is_signed ? fabs(distance) : distance) > rounding);
+}
+
 /* The distance is known: where exactly is it least, and is it least there alone? */
 static cprox_status settle(gradient_search *g) {
   robot_search *o = &g->o;
@@ -123,7 +130,7 @@ static cprox_status settle(gradient_search *g) {
     end(g, "nothing was measured");
     return CPROX_OK;
   }
-  if (!(o->best_bound.upper > APART_ROUNDINGS * o->best_bound.slack)) {
+  if (is_zero(g, o->best_bound.upper, APART_ROUNDINGS * o->best_bound.slack)) {
     end(g, "the distance is 0");
     return CPROX_OK;
   }
@@ -140,9 +147,10 @@ static cprox_status settle(gradient_search *g) {
   const robot_gap *gap = &g->spot.gap;
   if (gap->upper < o->best_bound.upper) {
     o->best = (robot_sample){.gap = *gap, .pair = o->best.pair, .segment = g->spot.segment, .u = g->spot.u};
-    o->best_bound = (search_best){.upper = fmax(gap->upper, 0.0), .slack = gap->slack};
+    o->best_bound = (search_best){.upper = g->q->is_signed ? gap->upper : fmax(gap->upper, 0.0), .slack = gap->slack};
   }
-  if (vec_norm2(gap->normal) == 0.0 || !(gap->lower > 0.0)) {
+  const bool known = gap->lower > 0.0 || (g->q->is_signed && gap->upper < 0.0);
+  if (vec_norm2(gap->normal) == 0.0 || !known) {
     end(g, "the distance is 0");
     return CPROX_OK;
   }
@@ -151,8 +159,13 @@ static cprox_status settle(gradient_search *g) {
     return CPROX_OK;
   }
   status = spot_is_alone(&g->pair, &g->spot, g->apart, &good);
+  g->crosses = false;
+  if (status >= 0 && !good && gap->upper < 0.0 && is_moved(g)) {
+    status = spot_find_crossing(&g->pair, &g->within, &g->spot, g->apart, g->side, g->part, &good);
+    g->crosses = good;
+  }
   if (status < 0) return status;
-  if (!good) end(g, "the nearest points are not the only ones");
+  if (!good) end(g, gap->upper < 0.0 ? "there is more than one way out" : "the nearest points are not the only ones");
   g->from = -INFINITY, g->to = INFINITY, g->widest = 0, g->nodes = 0;
   return is_moved(g) && !g->ended ? find_neighbourhood(g, 0) : CPROX_OK;
 }
@@ -291,25 +304,38 @@ static void fill_given(const cprox_motion *m, const motion_spot *spot, const dou
   }
 }
 
-/* The minimiser has been measured last. */
-static void fill(const gradient_search *g, cprox_motion_gradient *to) {
+/* A part of the derivative is that of the distance at a spot. */
+static cprox_status add_spot(gradient_search *g, const motion_spot *spot, double part, cprox_motion_gradient *to) {
+  motion_spot at;
+  const cprox_status status = spot_measure(&g->pair, spot->segment, spot->u, &at);
+  if (status < 0) return status;
   const robot_scene *scene = &g->o.scene;
+  for (size_t v = 0; v < scene->motion->robot->n_variables; v++) g->pair.sum[v] += part * g->pair.by_variable[v];
   const robot_pair *pair = &g->pair.pair;
-  const robot_gap *gap = &g->spot.gap;
-  const vec3 none = vec(0, 0, 0);
+  if (pair->self) return CPROX_OK;
+  const vec3 n = at.gap.normal;
+  const cprox_obstacle *target = &g->q->targets[scene->obstacles[pair->standing].index];
+  to->base_position = vec_axpy(to->base_position, part, n);
+  to->base_rotation = vec_axpy(to->base_rotation, part, vec_cross(at.gap.on_moving, n));
+  to->position = vec_axpy(to->position, -part, n);
+  to->rotation = vec_axpy(to->rotation, part, vec_cross(n, vec_sub(at.gap.on_standing, target->pose.position)));
+  return CPROX_OK;
+}
+
+static cprox_status fill(gradient_search *g, cprox_motion_gradient *to) {
+  const cprox_motion *motion = g->o.scene.motion;
+  const size_t all = motion->robot->n_variables * sizeof(double);
+  to->base_position = to->base_rotation = to->position = to->rotation = vec(0, 0, 0);
+  memset(g->pair.sum, 0, all);
+  cprox_status status = CPROX_OK;
+  if (!g->crosses) status = add_spot(g, &g->spot, 1.0, to);
+  for (int k = 0; k < SPOT_SIDES && g->crosses && status >= 0; k++) status = add_spot(g, &g->side[k], g->part[k], to);
+  if (status < 0) return status;
   to->t = spot_time(&g->pair, &g->spot);
-  to->base_position = pair->self ? none : gap->normal;
-  to->base_rotation = pair->self ? none : vec_cross(gap->on_moving, gap->normal);
-  to->position = to->rotation = none;
-  if (!pair->self) {
-    const cprox_obstacle *target = &g->q->targets[scene->obstacles[pair->standing].index];
-    to->position = vec_neg(gap->normal);
-    to->rotation = vec_cross(gap->normal, vec_sub(gap->on_standing, target->pose.position));
-  }
   to->margin = -1.0;
-  if (to->variables)
-    memcpy(to->variables, g->pair.by_variable, scene->motion->robot->n_variables * sizeof *to->variables);
-  fill_given(scene->motion, &g->spot, g->pair.by_variable, to);
+  if (to->variables) memcpy(to->variables, g->pair.sum, all);
+  fill_given(motion, &g->spot, g->pair.sum, to);
+  return CPROX_OK;
 }
 
 /* Without a minimiser: all numbers are 0. */
@@ -343,16 +369,16 @@ cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox
   /* the least of all that left the search, whatever for */
   cprox_result r = {.t_obstacle = NAN, .obstacle_index = -1, .mover_part = -1, .upper = g.o.best_bound.upper};
   robot_search_report(&g.o, &r);
-  r.lower = fmin(fmax(fmin(fmin(found.lower, g.o.dropped), g.lower), 0.0), r.upper);
+  r.lower = fmin(fmin(found.lower, g.o.dropped), g.lower);
+  r.lower = fmin(q->is_signed ? r.lower : fmax(r.lower, 0.0), r.upper);
   r.nodes = found.nodes, r.distance_queries += g.pair.gaps;
   query_conclude(q, INFINITY, status, &r);
 
   if (!g.ended && !(g.previous > g.spot.gap.upper + g.apart))
     end(&g, "the distance is as small elsewhere along the motion, or of another pair");
   if (g.settled && g.pair.scene) {
-    const cprox_status measured = spot_measure(&g.pair, g.spot.segment, g.spot.u, &g.spot);
-    if (measured < 0) return measured;
-    fill(&g, gradient);
+    const cprox_status filled = fill(&g, gradient);
+    if (filled < 0) return filled;
   } else {
     fill_nothing(&g, gradient);
   }

@@ -10,13 +10,22 @@
 #include "solve/gradient_ties.h"
 
 /* Distances are measured as exactly as arithmetic allows. */
-static const robot_accuracy EXACT = {.epsilon = 0.0, .floor = 0.0, .fraction = 0.0};
+static robot_accuracy exactly(const spot_pair *p) {
+  return (robot_accuracy){.depth = p->scene->q->is_signed};
+}
 
 /* A step along a segment after which the minimum along it is found: the next one would be as much smaller again. */
 static const double STILL = 1e-10;
 
 /* In sizes: how far apart two nearest points are that count as two. */
 static const double TWO_POINTS = 1e-6;
+
+/* How far apart two normals are that count as two: those of curved sides are known to the root of what depths are. */
+static const double TWO_NORMALS = 2e-5;
+
+/* In sizes: by so much the other way out is longer where one is looked at; and how much its normal and slope (as a
+ * fraction) may change in as long a step. */
+static const double CLEAR_OF_OTHER = 3e-5, SAME_WAY = 1e-3, SAME_SLOPE = 0.05;
 
 bool spot_begin(robot_scene *scene, int32_t index, spot_pair *p) {
   const cprox_robot *robot = scene->motion->robot;
@@ -25,12 +34,13 @@ bool spot_begin(robot_scene *scene, int32_t index, spot_pair *p) {
   p->pair.element[0] = p->pair.element[1] = -1;
   if (p->element[0] >= 0 || p->element[1] >= 0) p->index = robot_scene_add_pair(scene, &p->pair);
   const size_t frames = (robot->n_axes + 1) * sizeof(placement), rows = (robot->n_variables + 1) * sizeof(double);
-  char *memory = workspace_reserve(scene->q->workspace, WORKSPACE_ROBOT_SPOT, frames + 3 * rows);
+  char *memory = workspace_reserve(scene->q->workspace, WORKSPACE_ROBOT_SPOT, frames + 4 * rows);
   if (p->index < 0 || !memory) return false;
   p->frames = (placement *)(void *)memory;
   p->values = (double *)(void *)(memory + frames);
   p->rates = p->values + robot->n_variables + 1;
   p->by_variable = p->rates + robot->n_variables + 1;
+  p->sum = p->by_variable + robot->n_variables + 1;
   return true;
 }
 
@@ -48,7 +58,7 @@ static void measure_elements(spot_pair *p, const int32_t element[2], robot_gap *
   robot_pair pair = p->pair;
   pair.element[0] = element[0], pair.element[1] = element[1];
   const robot_body *moving = robot_scene_moving(p->scene, &pair), *standing = robot_scene_standing(p->scene, &pair);
-  robot_pair_measure(moving, standing, EXACT, gap);
+  robot_pair_measure(moving, standing, exactly(p), gap);
   p->gaps++;
 }
 
@@ -144,7 +154,7 @@ cprox_status spot_measure(spot_pair *p, size_t segment, double u, motion_spot *s
     const cprox_status status = measure_trees(p, &spot->gap);
     if (status < 0) return status;
   } else {
-    robot_pair_measure(moving, standing, EXACT, &spot->gap);
+    robot_pair_measure(moving, standing, exactly(p), &spot->gap);
     p->gaps++;
     if (spot->gap.support_failed) return refuse(p);
     sharpen(moving, standing, &spot->gap);
@@ -280,7 +290,7 @@ static cprox_status spread_of(spot_pair *p, const robot_body *moving, const robo
     robot_gap seen[2];
     for (int k = 0; k < 2; k++) {
       const robot_body turned = turned_about(standing, here->on_standing, vec_scale(k ? turn : -turn, axis[i]));
-      robot_pair_measure(moving, &turned, EXACT, &seen[k]);
+      robot_pair_measure(moving, &turned, exactly(p), &seen[k]);
       p->gaps++;
       if (seen[k].support_failed) return refuse(p);
     }
@@ -289,15 +299,51 @@ static cprox_status spread_of(spot_pair *p, const robot_body *moving, const robo
   return CPROX_OK;
 }
 
+/* Of the larger side: a point in a body has a depth, too. */
+static double depth_size(const robot_body *moving, const robot_body *standing) {
+  return robot_body_is_halfspace(standing) ? moving->radius : fmax(moving->radius, standing->radius);
+}
+
+/* How far apart the ways out are when the moving side has shifted to one side and to the other. */
+static cprox_status lean_of(spot_pair *p, const robot_body *moving, const robot_body *standing, double step,
+                            double *lean) {
+  *lean = 0.0;
+  for (int i = 0; i < 3; i++) {
+    robot_gap seen[2];
+    for (int k = 0; k < 2; k++) {
+      robot_body shifted = *moving;
+      shifted.side.at.p = vec_axpy(moving->side.at.p, k ? step : -step, vec(i == 0, i == 1, i == 2));
+      robot_pair_measure(&shifted, standing, exactly(p), &seen[k]);
+      p->gaps++;
+      if (seen[k].support_failed) return refuse(p);
+    }
+    *lean = fmax(vec_norm(vec_sub(seen[1].normal, seen[0].normal)), *lean);
+  }
+  return CPROX_OK;
+}
+
+/* Two that overlap may have more than one shortest way out. */
+static cprox_status way_out_is_alone(spot_pair *p, const robot_body *moving, const robot_body *standing, bool *alone) {
+  const double size = depth_size(moving, standing);
+  double near, far = 0.0;
+  cprox_status status = lean_of(p, moving, standing, TIES_NEAR * size, &near);
+  if (status >= 0 && near > TWO_NORMALS) status = lean_of(p, moving, standing, TIES_FAR * size, &far);
+  *alone = !ties_is_jump(near, far, TWO_NORMALS);
+  return status;
+}
+
 /* Two convex sides may be nearest along an edge or a face. */
 static cprox_status convex_is_alone(spot_pair *p, const robot_body *moving, const robot_body *standing,
                                     const robot_gap *gap, bool *alone) {
   *alone = true;
+  if (vec_norm2(gap->normal) == 0.0) return CPROX_OK;
   const bool halfspace = robot_body_is_halfspace(standing);
-  if (is_round(moving) || (!halfspace && is_round(standing)) || vec_norm2(gap->normal) == 0.0) return CPROX_OK;
   const double size = halfspace ? moving->radius : fmin(moving->radius, standing->radius);
+  cprox_status status = CPROX_OK;
+  if (gap->upper < 0.0) status = way_out_is_alone(p, moving, standing, alone);
+  if (status < 0 || !*alone || is_round(moving) || (!halfspace && is_round(standing))) return status;
   double near, far = 0.0;
-  cprox_status status = spread_of(p, moving, standing, gap, TIES_NEAR, &near);
+  status = spread_of(p, moving, standing, gap, TIES_NEAR, &near);
   if (status >= 0 && near > TWO_POINTS * size) status = spread_of(p, moving, standing, gap, TIES_FAR, &far);
   *alone = !ties_is_jump(near, far, TWO_POINTS * size);
   return status;
@@ -338,4 +384,56 @@ cprox_status spot_is_alone(spot_pair *p, const motion_spot *spot, double apart, 
     moving = robot_scene_moving(p->scene, &pair), standing = robot_scene_standing(p->scene, &pair);
   }
   return convex_is_alone(p, moving, standing, &spot->gap, alone);
+}
+
+/* ---- two ways out ---- */
+
+/* What is known at one, two and three steps is continued to where there was none: a parabola. */
+enum { SIDE_PLACES = SPOT_SIDES / 2 };
+static const double CONTINUED[SIDE_PLACES] = {3.0, -3.0, 1.0};
+
+/* At u of the spot's segment, where there is one. */
+static cprox_status measure_beside(spot_pair *p, const motion_interval *within, const motion_spot *spot, double u,
+                                   motion_spot *beside, bool *inside) {
+  *inside = u > first_u(within, spot->segment) && u < last_u(within, spot->segment);
+  return *inside ? spot_measure(p, spot->segment, u, beside) : CPROX_OK;
+}
+
+/* On one side of the spot (sign), where the other way out is clearly longer, twice and thrice as far: it is the only
+ * one. */
+static cprox_status find_side(spot_pair *p, const motion_interval *within, const motion_spot *spot, double apart,
+                              double sign, motion_spot side[SIDE_PLACES], bool *found) {
+  const cprox_motion *m = p->scene->motion;
+  motion_spot next;
+  cprox_status status = measure_beside(p, within, spot, spot->u + sign * 2.0 * STILL, &next, found);
+  if (status < 0 || !*found) return status;
+  const robot_body *moving = robot_scene_moving(p->scene, &p->pair),
+                   *standing = robot_scene_standing(p->scene, &p->pair);
+  const double speed = sign * next.slope * (m->times[spot->segment + 1] - m->times[spot->segment]);
+  *found = speed > 0.0;
+  for (int k = 0; k < SIDE_PLACES && *found; k++) {
+    const double step = (k + 1) * CLEAR_OF_OTHER * depth_size(moving, standing) / speed;
+    status = measure_beside(p, within, spot, spot->u + sign * step, &side[k], found);
+    if (status < 0) return status;
+  }
+  *found = *found && sign * side[0].slope > 0.0 &&
+           vec_norm(vec_sub(side[0].gap.normal, side[SIDE_PLACES - 1].gap.normal)) < SAME_WAY &&
+           fabs(side[0].slope - side[SIDE_PLACES - 1].slope) < SAME_SLOPE * fabs(side[0].slope);
+  return *found ? spot_is_alone(p, &side[0], apart, found) : CPROX_OK;
+}
+
+cprox_status spot_find_crossing(spot_pair *p, const motion_interval *within, const motion_spot *spot, double apart,
+                                motion_spot side[SPOT_SIDES], double part[SPOT_SIDES], bool *found) {
+  *found = true;
+  double slope[2] = {0.0, 0.0};
+  for (int k = 0; k < 2 && *found; k++) {
+    motion_spot *of = side + SIDE_PLACES * k;
+    const cprox_status status = find_side(p, within, spot, apart, k ? 1.0 : -1.0, of, found);
+    if (status < 0) return status;
+    for (int i = 0; i < SIDE_PLACES; i++) slope[k] += CONTINUED[i] * of[i].slope; /* at the spot */
+  }
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < SIDE_PLACES; i++)
+      part[SIDE_PLACES * k + i] = CONTINUED[i] * (k ? -slope[0] : slope[1]) / (slope[1] - slope[0]);
+  return CPROX_OK;
 }

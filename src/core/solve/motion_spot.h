@@ -21,6 +21,7 @@ typedef struct spot_pair {
   int32_t element[2];                   /* the elements that were nearest last; -1: none */
   uint32_t gaps;                        /* distances measured */
   double *values, *rates, *by_variable; /* of all variables, at the spot measured last */
+  double *sum;                          /* room for as many */
   placement *frames;
 } spot_pair;
 
@@ -38,6 +39,13 @@ double spot_time(const spot_pair *p, const motion_spot *spot);
 
 /* Moves a spot to the local minimum near it within the interval. *found: there is one. */
 cprox_status spot_refine(spot_pair *p, const motion_interval *within, motion_spot *spot, bool *found);
+
+/* Two shortest ways out where the motion passes from one to the other. The derivative at the spot is a sum of those at
+ * three places before it and three behind it, with these factors. *found: that is so, and either way is the only one
+ * where it is clear of the other. */
+enum { SPOT_SIDES = 6 };
+cprox_status spot_find_crossing(spot_pair *p, const motion_interval *within, const motion_spot *spot, double apart,
+                                motion_spot side[SPOT_SIDES], double part[SPOT_SIDES], bool *found);
 
 /* *alone: at the spot the pair has one pair of nearest points only; elements that are nearest within `apart` count. */
 cprox_status spot_is_alone(spot_pair *p, const motion_spot *spot, double apart, bool *alone);
