@@ -267,6 +267,59 @@ CASE(the_box_round_a_part_bounds_specks_exactly) {
   assert_true(raised > 1000);
 }
 
+/* A box with a margin of its own size or more swings by +-0.1. Its corners move by the chord of the angle, in long
+ * double; the margin about them adds nothing, and of the bound nothing may be missing either. */
+CASE(no_corner_of_a_core_moves_farther_than_is_said_and_margins_add_nothing) {
+  rng r = rng_seed(6606);
+  double tightest = 0.0;
+  for (size_t round = 0; round < test_cases(300); round++) {
+    const double swing = 0.1, margin = rng_uniform(&r, 0.5, 2.0);
+    const vec3 half = vec(rng_log_uniform(&r, 0.001, 0.5), rng_log_uniform(&r, 0.001, 0.5), rng_uniform(&r, 0.1, 0.5));
+    const vec3 axis = rng_unit(&r);
+    cprox_body *box = NULL;
+    assert_int_equal(cprox_body_create_box(vec_scale(2.0, half), ws, &box), CPROX_OK);
+    const cprox_link link = {
+        .parent = -1, .type = CPROX_JOINT_REVOLUTE, .origin = CPROX_POSE_IDENTITY, .axis = axis, .multiplier = 1.0};
+    const cprox_link_geometry geometry = {.body = box, .pose = rng_pose(&r, round % 2 ? 0.5 : 0.0), .margin = margin};
+    cprox_robot *robot = NULL;
+    assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
+    const double begin = -swing, end = swing;
+    const int32_t variable = 0;
+    const cprox_waypoint points[2] = {{.time = 0, .positions = &begin}, {.time = 1, .positions = &end}};
+    const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                        .variables = &variable,
+                                        .n_variables = 1,
+                                        .waypoints = points,
+                                        .n_waypoints = 2,
+                                        .interpolation = CPROX_INTERPOLATION_LINEAR};
+    cprox_motion *motion = NULL;
+    assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
+    const query q = query_create(cprox_robot_along(motion, NULL, 0), NULL, 0, -1.0, false, NULL, ws);
+    robot_scene scene;
+    assert_true(robot_scene_begin(&scene, &q, 0, 0, SIZE_MAX, INFINITY));
+    robot_scene_enter(&scene, 0, 0.0, 1.0);
+    const robot_pair any = {.moving = 0, .element = {-1, -1}};
+    robot_scene_moving(&scene, &any);
+    const long double said = robot_scene_coarse_displacement(&scene, &any);
+
+    long double moved = 0.0L;
+    for (int k = 0; k < 8; k++) {
+      const vec3 corner = vec(k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z);
+      const vec3l x = ref_to_world(&geometry.pose, ref_vec(corner));
+      const long double arm = ref_norm(ref_cross(ref_vec(axis), x)) / ref_norm(ref_vec(axis));
+      moved = fmaxl(moved, 2.0L * arm * sinl(0.5L * swing));
+    }
+    assert_true(said >= moved);
+    const long double reach = ref_norm(ref_vec(geometry.pose.position)) + ref_norm(ref_vec(half));
+    assert_true(said <= swing * reach * (1.0L + 1e-6L)); /* margins are larger than that */
+    tightest = fmax(tightest, (double)(moved / said));
+    cprox_motion_free(motion);
+    cprox_robot_free(robot);
+    cprox_body_free(box);
+  }
+  assert_true(tightest > 0.98);
+}
+
 CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
   enum { BALLS = 60 };
   rng r = rng_seed(6604);

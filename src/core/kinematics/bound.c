@@ -152,17 +152,17 @@ static bool has_quick_box(const bound_side *side) {
   return side->shape->n > FEW_VERTICES && vec_norm2(side->half) > 0.0;
 }
 
-/* min over the moving side of d·(x - c) at least, by the box round it; rounding included. */
+/* min over the core of d·(x - c) at least, by the box round it; rounding included. */
 static double lowest_of_box(const bound_side *side, vec3 d) {
   const vec3 e = placement_turn_back(&side->at, d), half = side->half;
   return vec_dot(e, side->middle) - fabs(e.x) * half.x - fabs(e.y) * half.y - fabs(e.z) * half.z -
-         vec_norm(d) * (side->margin + 64.0 * ROUND_U * side->shape->scale);
+         vec_norm(d) * 64.0 * ROUND_U * side->shape->scale;
 }
 
-/* min over the moving side of d·(x - c). */
+/* min over the moving side's core of d·(x - c). */
 static double lowest(const bound_side *side, vec3 d) {
   const vec3 down = placement_turn_back(&side->at, vec_neg(d));
-  return -side->shape->ops->support(side->shape, down, NULL, NULL) - vec_norm(d) * side->margin;
+  return -side->shape->ops->support(side->shape, down, NULL, NULL);
 }
 
 /* The support functions do not take 0. */
@@ -203,11 +203,15 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
   const double along = vec_dot(n, m->v) + vec_dot(normal_rate, apart), start = vec_dot(n, apart);
   const vec3 ends[2] = {vec_axpy(n, -0.5, turn), vec_axpy(n, 0.5, turn)};
   if (!usable(ends[0]) || !usable(ends[1])) return -INFINITY;
-  double first[2], second = -INFINITY, rounding = 0.0;
+  /* the margin does not turn: at either end the plane's own normal reaches through it */
+  const double turning = moving->margin_turns ? moving->margin : 0.0,
+               margin = (moving->margin - turning) * sqrt(1.0 + k);
+  double first[2] = {0.0, 0.0}, second = -INFINITY, rounding = 0.0;
   for (int quick = has_quick_box(moving); quick >= 0; quick--) {
     for (int end = 0; end < 2; end++) {
       const double low = quick ? lowest_of_box(moving, ends[end]) : lowest(moving, ends[end]);
-      first[end] = start + (end == 0 ? -0.5 : 0.5) * along + low - heights[end];
+      first[end] = start + (end == 0 ? -0.5 : 0.5) * along + low - margin - heights[end];
+      if (turning > 0.0) first[end] -= turning * vec_norm(ends[end]);
     }
     const double least = lesser(first[0], first[1]);
     rounding = *slack + 16.0 * ROUND_U * fabs(least);
@@ -229,7 +233,8 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
     const double tau = end == 0 ? -0.5 : 0.5;
     const vec3 d = vec_add(ends[end], bent);
     if (!usable(d)) return second;
-    const double far = start + tau * along + curve + lowest(moving, d) - heights[end];
+    const double low = lowest(moving, d) - margin - (turning > 0.0 ? turning * vec_norm(d) : 0.0);
+    const double far = start + tau * along + curve + low - heights[end];
     third = fmin(third, least_quotient(first[end] - rest, far - first[end], k));
   }
   return fmax(second, third - m->stray);

@@ -49,9 +49,11 @@ void motion_displacements_up(const cprox_motion *motion, const axis_state *axes,
 /* The two sides of a pair in the middle of the node. */
 typedef struct bound_side {
   const convex *shape;
-  placement at;  /* of the shape's frame, world */
-  double margin; /* of the shape, and margin */
-  double error;  /* every point is within this of where it is exactly */
+  placement at;      /* of the shape's frame, world */
+  double margin;     /* of the shape, and margin: a ball about each point of the core, which does not turn */
+  double error;      /* every point is within this of where it is exactly */
+  bool margin_turns; /* bounds are to hold as if the margin turned with the core: the certificate checker has no cores
+                      */
   /* of a box, axes those of the shape, that contains the core; half is infinite for halfspaces, 0 where no box is known
    */
   vec3 middle, half;

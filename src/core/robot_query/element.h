@@ -19,6 +19,13 @@ typedef struct robot_body {
   double tree_margin;            /* and elements are thickened by this */
 } robot_body;
 
+/* Of a ball round the core: a margin does not turn. Elements may have a smaller margin than what contains them. */
+static inline double robot_core_radius(const robot_body *body) {
+  const double least = body->tree ? lesser(body->side.margin, body->tree_margin) : body->side.margin;
+  const double margin = body->side.margin_turns ? 0.0 : least;
+  return greater(body->radius - margin, 0.0) + ROUND_UP * 2.0 * ROUND_U * body->radius + body->side.error;
+}
+
 /* A place in a tree as a number; -1 stands for none. */
 static inline int32_t robot_element_code(tree_place at) {
   return (int32_t)(at.pack * TREE_LANES + at.lane);

@@ -445,7 +445,7 @@ static int32_t seen_from_axis(const robot_scene *s, const robot_pair *pair) {
 static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body *body, chain_motion *m) {
   const size_t n =
       motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
-  motion_of_part(s->axes, s->chain, n, body->side.at.p, body->radius + body->side.error, s->scratch, m);
+  motion_of_part(s->axes, s->chain, n, body->side.at.p, robot_core_radius(body), s->scratch, m);
 }
 
 /* How far a whole part moves, seen from the world; its displacements are known then. */
@@ -458,7 +458,7 @@ static double displacement_of_part(robot_scene *s, int32_t index) {
   state->displaced = s->node;
   state->displacement =
       motion_displacements(s->motion, s->axes, axis, displacements ? robot_axis_depth(s->motion->robot, axis) : 0,
-                           body->side.at.p, body->radius + body->side.error, displacements);
+                           body->side.at.p, robot_core_radius(body), displacements);
   return state->displacement;
 }
 
@@ -474,7 +474,7 @@ double robot_scene_coarse_displacement(robot_scene *s, const robot_pair *pair) {
 double robot_scene_displacement(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
   if (!pair->self && pair->element[0] == ROBOT_WHOLE) return displacement_of_part(s, pair->moving);
   return motion_displacement(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
-                             moving->side.at.p, moving->radius + moving->side.error);
+                             moving->side.at.p, robot_core_radius(moving));
 }
 
 const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
