@@ -355,6 +355,39 @@ inline BodyHandle makeDistance(DistanceFunction distance, const Eigen::Vector3d 
       kept);
 }
 
+/** The value of a convex function at a point, and what it writes there: its gradient and its Hessian. */
+using ConvexFunction =
+    std::function<double(const Eigen::Vector3d &point, Eigen::Vector3d &gradient, Eigen::Matrix3d &hessian)>;
+
+/** The convex body of all points where a convex function, which the body keeps, is <= 0: it lies within `radius` [m] of
+ *  `interior`, a point where the function is negative; values are within `error` of the function. planar: of x and y
+ *  alone, and the body is flat, at z = 0. margin: a ball that is added [m]. See cprox_body_create_convex_function(). A
+ *  function that throws answers NaN: the maker and the queries then refuse it. It must be safe to call from all threads
+ *  that ask. */
+inline BodyHandle makeConvexFunction(ConvexFunction function, const Eigen::Vector3d &interior, double radius,
+                                     double error = 0.0, bool planar = false, double margin = 0.0) {
+  if (!function) throw Error("the convex function is empty");
+  const auto kept = std::make_shared<const ConvexFunction>(std::move(function));
+  const cprox_convex_fn call = [](const void *user, const double point[3], double gradient[3], double hessian[6]) {
+    try {
+      Eigen::Vector3d g = Eigen::Vector3d::Zero();
+      Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+      const double value =
+          (*static_cast<const ConvexFunction *>(user))(Eigen::Vector3d(point[0], point[1], point[2]), g, h);
+      for (int i = 0; i < 3; ++i) gradient[i] = g[i];
+      for (int i = 0, next = 0; i < 3; ++i)
+        for (int k = i; k < 3; ++k) hessian[next++] = 0.5 * (h(i, k) + h(k, i));
+      return value;
+    } catch (...) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  const cprox_convex_function described = {call, kept.get(), toVec3(interior), radius, error, planar};
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_convex_function(&described, margin, w, b); },
+      kept);
+}
+
 /** A grid of distances (ESDF): n[0] n[1] n[2] values, x running fastest, from the origin of the frame on, `cell` [m]
  *  apart. error: of the values [m]; truncated_at: values from here on say "at least so far". */
 inline BodyHandle makeDistanceGrid(const std::array<std::size_t, 3> &n, double cell, const std::vector<double> &values,

@@ -89,6 +89,35 @@ BodyHandle distanceOf(py::function function, const Array &centre, double radius,
   return makeDistance(call, toEigen(toVector(centre, "centre")), radius, lipschitz, error);
 }
 
+/* function(point) is (value, gradient, Hessian). */
+BodyHandle convexOf(py::function function, const Array &interior, double radius, double error, bool planar,
+                    double margin) {
+  const std::shared_ptr<py::function> kept(new py::function(std::move(function)), [](py::function *f) {
+    const py::gil_scoped_acquire lock;
+    delete f;
+  });
+  const auto call = [kept](const Eigen::Vector3d &x, Eigen::Vector3d &gradient, Eigen::Matrix3d &hessian) {
+    const py::gil_scoped_acquire lock;
+    try {
+      const auto [value, slope, curvature] =
+          (*kept)(py::make_tuple(x.x(), x.y(), x.z())).cast<std::tuple<double, Array, Array>>();
+      if (slope.ndim() == 1 && slope.shape(0) == 3 && curvature.ndim() == 2 && curvature.shape(0) == 3 &&
+          curvature.shape(1) == 3) {
+        for (py::ssize_t i = 0; i < 3; ++i) {
+          gradient[i] = slope.at(i);
+          for (py::ssize_t k = 0; k < 3; ++k) hessian(i, k) = curvature.at(i, k);
+        }
+        return value;
+      }
+    } catch (py::error_already_set &raised) {
+      raised.discard_as_unraisable("a convex function");
+    } catch (const py::cast_error &) {
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  return makeConvexFunction(call, toEigen(toVector(interior, "interior")), radius, error, planar, margin);
+}
+
 BodyHandle polygonOf(const Array &vertices) {
   if (vertices.ndim() != 2 || vertices.shape(1) != 2) throw Error("vertices must be an array of shape (n, 2)");
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
@@ -209,6 +238,18 @@ void addShapes(py::module &module) {
       "radius "
       "of\ncentre. Values differ by at most lipschitz times the way, and are within error [m] of the distance: answers "
       "are\ncertified relative to error. Values that contradict this are refused. For curves.");
+  module.def(
+      "convex_function",
+      [](const py::function &function, const Array &interior, double radius, double error, bool planar, double margin) {
+        return Shape{convexOf(function, interior, radius, error, planar, margin)};
+      },
+      py::arg("function"), py::arg("interior"), py::arg("radius"), py::arg("error") = 0.0, py::arg("planar") = false,
+      py::arg("margin") = 0.0,
+      "The convex body of all points (x, y, z) where a convex function is at most 0. function(point) is a tuple: its "
+      "value,\nits gradient (3,) and its Hessian (3, 3). The body lies within radius [m] of interior, where the "
+      "function "
+      "is\nnegative. Values are within error of the function. planar: of x and y alone, the body is flat, at z = 0. A "
+      "function\nthat is seen not to be convex is refused with the places that show it.");
   module.def(
       "compound",
       [](const std::vector<Shape> &parts, const std::vector<Array> &poses) { return Shape{compoundOf(parts, poses)}; },

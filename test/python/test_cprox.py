@@ -123,6 +123,61 @@ class Curves(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, 'height at'):
             cprox.height_field([[0, 0], [0, float('nan')]], [1, 1])
 
+    def test_convex_functions_are_the_bodies_that_they_describe(self):
+        """An ellipsoid beside its own kind, a smooth box that ends where its function is 0, a disc in the plane."""
+        axes = numpy.array([.5, .4, .3])
+
+        def ellipsoid(p):
+            p = numpy.array(p)
+            return (p / axes) @ (p / axes) - 1, 2 * p / axes ** 2, numpy.diag(2 / axes ** 2)
+
+        random = numpy.random.default_rng(9)
+        same = cprox.Obstacle(cprox.ellipsoid(axes))
+        shape = cprox.Obstacle(cprox.convex_function(ellipsoid, [0, 0, 0], 1))
+        for _ in range(10):
+            curve = cprox.bezier(random.uniform(-1.5, 1.5, (3, 3)))
+            one, other = cprox.distance(curve, shape), cprox.distance(curve, same)
+            self.assertLessEqual(max(one.lower, other.lower), min(one.upper, other.upper))
+            self.assertLessEqual(one.upper - one.lower, 1e-5)
+
+        sharp, faces = 20., numpy.vstack([numpy.eye(3), -numpy.eye(3)])
+
+        def smooth_box(p):
+            weights = numpy.exp(sharp * (faces @ p - 1))
+            value, weights = numpy.log(weights.sum()) / sharp, weights / weights.sum()
+            slope = weights @ faces
+            return value, slope, sharp * ((faces.T * weights) @ faces - numpy.outer(slope, slope))
+
+        box = cprox.Obstacle(cprox.convex_function(smooth_box, [.1, 0, 0], 3))
+        answer = cprox.distance(cprox.bezier([[2, 0, 0], [3, 0, 0]]), box)
+        at = 2 - answer.upper
+        self.assertLessEqual(smooth_box([at, 0, 0])[0], 1e-9)
+        self.assertGreaterEqual(smooth_box([at + 1e-5, 0, 0])[0], 0)
+        self.assertLess(at, 1)
+
+        def disc(p):
+            return p[0] ** 2 + p[1] ** 2 - .25, [2 * p[0], 2 * p[1], 0], numpy.diag([2., 2, 0])
+
+        flat = cprox.Obstacle(cprox.convex_function(disc, [0, 0, 0], 1, planar=True))
+        answer = cprox.distance(cprox.bezier([[-2, 1, 0], [2, 1, 0]]), flat)
+        self.assertAlmostEqual(answer.upper, .5, places=6)
+
+    def test_functions_that_are_not_convex_are_refused(self):
+        def raises(p):
+            raise RuntimeError('mine')
+
+        def saddle(p):
+            return p[0] ** 2 - p[1] ** 2 + p[2] ** 2 - .1, [2 * p[0], -2 * p[1], 2 * p[2]], numpy.diag([2., -2, 2])
+
+        def ring(p):
+            v = numpy.dot(p, p) - .75
+            return v * v - .7, 4 * v * numpy.array(p), 4 * v * numpy.eye(3) + 8 * numpy.outer(p, p)
+
+        for function, words in ((raises, 'not finite'), (lambda p: 1., 'not finite'), (saddle, 'within the radius'),
+                                (lambda p: (0., [0, 0], numpy.eye(3)), 'not finite'), (ring, 'not convex.* at least')):
+            with self.assertRaisesRegex(ValueError, words):
+                cprox.convex_function(function, [0, 0, 0], 1.5)
+
     def test_curves_are_evaluated_for_numbers_and_arrays(self):
         points = numpy.array([[0, 0, 0], [1, 2, 0], [2, 0, 1], [3, 1, 1.]])
         curve = cprox.bezier(points, 2, 4)

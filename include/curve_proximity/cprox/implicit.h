@@ -74,6 +74,38 @@ CPROX_API cprox_status cprox_body_create_implicit(const cprox_implicit_descripti
                                                   const cprox_affine *map, cprox_workspace *workspace,
                                                   cprox_body **body);
 
+/** Evaluates a convex function f at point[3]: returns its value, and writes its gradient and its Hessian (xx, xy, xz,
+ *  yy, yz, zz). In the plane z is 0, and what is written for z is not read. */
+typedef double (*cprox_convex_fn)(const void *user, const double point[3], double gradient[3], double hessian[6]);
+
+/** The convex body of all x with f(x) <= 0. */
+typedef struct cprox_convex_function {
+  /** f: convex and twice continuously differentiable within the radius; values in any unit */
+  cprox_convex_fn evaluate;
+  /** handed to `evaluate`, kept by reference: must outlive the body */
+  const void *user;
+  /** [m] a point with f < 0 */
+  cprox_vec3 interior;
+  /** [m] the body lies within it of the interior point, > 0 */
+  double radius;
+  /** how far a value may be from f, in its unit, >= 0 */
+  double error;
+  /** f is a function of x and y, and the body is flat, at z = 0 */
+  bool planar;
+} cprox_convex_function;
+
+/** A convex body that is known by its function alone, enlarged by a margin [m] >= 0. A body of kind CPROX_BODY_SUPPORT.
+ *
+ *  Answers are certified for a convex f with the gradient that it is said to have, relative to `error`: each support
+ *  point lies inside, and a tangent of f proves how much it may be short of the farthest one. That is measured when the
+ *  body is made, at most 1e-6 of the radius, and widens every interval; a wrong Hessian costs time alone.
+ *  CPROX_INVALID: f >= 0 at the interior point; f <= 0 at the radius; a value that is not finite; 97 places of which
+ * one lies below the tangent of another, which are named. The same in a query: CPROX_INVALID. What no sample shows is
+ * not caught. Cost: about 100 values of f a support point. Thread safety: as the callback's. Source: doc/implicit.md.
+ */
+CPROX_API cprox_status cprox_body_create_convex_function(const cprox_convex_function *function, double margin,
+                                                         cprox_workspace *workspace, cprox_body **body);
+
 #ifdef __cplusplus
 }
 #endif

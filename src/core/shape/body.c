@@ -13,6 +13,7 @@
 #include "convex/feature.h"
 #include "shape/cluster_hulls.h"
 #include "shape/construct.h"
+#include "shape/convex_function.h"
 #include "shape/distance_field.h"
 #include "shape/elements.h"
 
@@ -342,6 +343,7 @@ void cprox_body_free(cprox_body *body) {
   winding_free(body->winding);
   cluster_hulls_free(body->clusters);
   distance_field_free(body->field);
+  free(body->function);
   free(body);
 }
 

@@ -23,12 +23,13 @@ struct cprox_body {
   size_t n_parts;
   struct tree
       *tree; /* meshes, points, boxes: the elements, about `centre`; the shape has the margin and the scale alone */
-  bool borrows_tree;              /* the tree belongs to another body */
-  struct winding *winding;        /* solid meshes: what tells inside from outside */
-  const cprox_body *hull, *mesh;  /* level-of-detail bodies: the two models, */
-  struct distance_field *field;   /* sets known by their distance: the function, in the body's frame */
-  double excess;                  /* how far the mesh may stick out of the hull, */
-  struct cluster_hulls *clusters; /* and of a mesh of triangles what is between the two */
+  bool borrows_tree;                /* the tree belongs to another body */
+  struct winding *winding;          /* solid meshes: what tells inside from outside */
+  const cprox_body *hull, *mesh;    /* level-of-detail bodies: the two models, */
+  struct distance_field *field;     /* sets known by their distance: the function, in the body's frame */
+  struct convex_function *function; /* convex bodies by a function: it, what the support callback is given */
+  double excess;                    /* how far the mesh may stick out of the hull, */
+  struct cluster_hulls *clusters;   /* and of a mesh of triangles what is between the two */
 };
 
 /* A compound's convex parts; any other body is the one part of its own, and so is no body at all. */

@@ -4,6 +4,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/boxes.c
   ${CMAKE_CURRENT_LIST_DIR}/cluster_hulls.c
   ${CMAKE_CURRENT_LIST_DIR}/compound.c
+  ${CMAKE_CURRENT_LIST_DIR}/convex_function.c
   ${CMAKE_CURRENT_LIST_DIR}/distance_field.c
   ${CMAKE_CURRENT_LIST_DIR}/elements.c
   ${CMAKE_CURRENT_LIST_DIR}/height_field.c
