@@ -30,6 +30,10 @@ struct RobotOptions {
 
   /** How many threads load mesh files; 0: as many as the machine has. */
   unsigned threads = 0;
+
+  /** Links whose collision elements are in memory: these replace the elements of the URDF, whose files are not read.
+   *  A mesh is solid only if its description says so. Names that the robot does not have are an error. */
+  std::map<std::string, std::vector<ShapeDescription>> link_shapes = {};
 };
 
 /** One collision element of a link. */

@@ -124,6 +124,21 @@ struct AttachedObject {
   std::vector<LinkGeometry> shapes;     /**< in the link's frame, at the link's scale */
 };
 
+/** Attached objects by id. */
+using AttachedObjects = std::map<std::string, std::shared_ptr<const AttachedObject>>;
+
+/** An attached object that belongs to a state of the robot and not to a scene (SceneVariant, RobotPlacement).
+ *  given.object.pose is in the link's frame; given.kind and given.link_poses are not read. link_scale: as in
+ *  Snapshot::linkGeometry(). Throws Error as Scene::apply() reports. */
+std::shared_ptr<const AttachedObject> attachedObject(const Attachment &given, double link_scale = 1.0,
+                                                     const ResourceOptions &resources = {});
+
+/** What a variant of a snapshot has in place of what the snapshot has. Absent members are those of the snapshot. */
+struct SceneVariant {
+  std::optional<AttachedObjects> attached;         /**< all attached objects */
+  std::optional<std::vector<AllowedPair>> allowed; /**< all entries of the allowed collision matrix */
+};
+
 /** The scene at one moment. Immutable; any number of threads may read it. */
 class Snapshot {
  public:
@@ -151,7 +166,7 @@ class Snapshot {
   }
 
   /** Attached objects by id; no object of the scene has the same id. They have the padding and scale of their link. */
-  const std::map<std::string, std::shared_ptr<const AttachedObject>> &attached() const {
+  const AttachedObjects &attached() const {
     return attached_;
   }
 
@@ -190,6 +205,11 @@ class Snapshot {
    *  counts; if both names have a default, both must be true. Otherwise false. Cost: a search in allowed(). */
   bool mayTouch(const std::string &a, const std::string &b) const;
 
+  /** The same scene with other attached objects, or another allowed collision matrix: of one query, or of one state of
+   *  the robot. Objects and their BVH are shared. Throws Error for a link that the robot does not have, an attached
+   *  object with the id of an object, and an allowed pair without a first name. Cost: microseconds. */
+  std::shared_ptr<const Snapshot> variant(const SceneVariant &variant) const;
+
   /** The shapes of the objects with their broadphase. Internal. */
   const World &world() const {
     return *world_;
@@ -205,12 +225,12 @@ class Snapshot {
   std::map<std::string, std::shared_ptr<const SceneObject>> objects_;
   std::map<std::string, std::shared_ptr<const MovingSceneObject>> moving_;
   std::shared_ptr<const Robot> robot_;
-  std::map<std::string, std::shared_ptr<const AttachedObject>> attached_;
+  AttachedObjects attached_;
   std::map<std::string, double> link_padding_, link_scale_;
   std::map<std::string, std::shared_ptr<const std::vector<LinkGeometry>>> scaled_; /* of the links in link_scale_ */
   double default_link_padding_ = 0.0;
   std::shared_ptr<const std::vector<AllowedPair>> allowed_; /* shared by the snapshots that do not change it */
-  std::unique_ptr<const World> world_;
+  std::shared_ptr<const World> world_;                      /* shared by the variants */
 };
 
 /** A shared snapshot. */
@@ -226,6 +246,10 @@ class Scene {
    *  Throws Error for an entry without a first name. */
   explicit Scene(std::shared_ptr<const Robot> robot = nullptr, ResourceOptions resources = {},
                  const std::vector<AllowedPair> &allowed = {});
+
+  /** A scene that begins as a snapshot, with its robot; so it is again what it allows, after a change that clears the
+   *  scene. Throws Error for null. */
+  explicit Scene(const SnapshotPtr &begin, ResourceOptions resources = {});
 
   /** The current scene. */
   SnapshotPtr snapshot() const;

@@ -84,6 +84,18 @@ std::shared_ptr<const AttachedObject> carried(const Attachment &given, double li
   return out;
 }
 
+std::shared_ptr<const AttachedObject> attachedObject(const Attachment &given, double link_scale,
+                                                     const ResourceOptions &resources) {
+  try {
+    if (given.object.id.empty()) throw Error("it has no id");
+    checkPose(given.object.pose, "its pose");
+    checkPadding(given.object.padding);
+    return carried(given, link_scale, resources);
+  } catch (const Error &error) {
+    throw Error("object '" + given.object.id + "': " + error.what(), error.status());
+  }
+}
+
 std::shared_ptr<const AttachedObject> rescaled(const AttachedObject &object, double link_scale,
                                                const ResourceOptions &resources) {
   const auto out = std::make_shared<AttachedObject>(object);

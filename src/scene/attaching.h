@@ -12,8 +12,6 @@
 
 namespace curve_proximity {
 
-using AttachedObjects = std::map<std::string, std::shared_ptr<const AttachedObject>>;
-
 /* The object on its link at the link's scale. Throws Error, without naming the object. */
 std::shared_ptr<const AttachedObject> carried(const Attachment &given, double link_scale,
                                               const ResourceOptions &resources);

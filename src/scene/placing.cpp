@@ -45,6 +45,19 @@ void checkPose(const Eigen::Isometry3d &pose, const std::string &who) {
   if (!(skew <= RIGID) || !(r.determinant() > 0.0)) throw Error(who + " is no rotation and translation");
 }
 
+void checkPadding(double padding) {
+  if (!std::isfinite(padding) || padding < 0.0) throw Error("its padding must be finite and not below 0");
+}
+
+double placingError(const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner, double reach) {
+  const double a = outer.translation().norm(), b = inner.translation().norm();
+  const bool rotated = isRotated(outer) || isRotated(inner);
+  double out = 0.0;
+  if (rotated || (a > 0.0 && b > 0.0)) out += COMPOSING * (a + b);
+  if (rotated) out += COMPOSING * reach;
+  return out;
+}
+
 PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner,
                   double padding) {
   const Eigen::Isometry3d pose = outer * inner;
@@ -66,12 +79,9 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
   const double reach = toEigen(centre).norm() + radius;
 
   // Rounding: sums of two translations, and the turn of what is rotated.
-  const double a = outer.translation().norm(), b = inner.translation().norm();
-  const bool rotated = isRotated(outer) || isRotated(inner);
-  out.rounding = geometry.excess;
-  if (rotated || (a > 0.0 && b > 0.0)) out.rounding += COMPOSING * (a + b);
-  if (rotated && std::isfinite(reach)) out.rounding += COMPOSING * reach;
-  if (rotated && !std::isfinite(reach)) out.turning = COMPOSING;
+  const bool bounded = std::isfinite(reach);
+  out.rounding = geometry.excess + placingError(outer, inner, bounded ? reach : 0.0);
+  if (!bounded && (isRotated(outer) || isRotated(inner))) out.turning = COMPOSING;
 
   const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   out.box = std::isfinite(reach) ? boxOf(body.get(), pose, padding + out.rounding + out.hull_excess, reach)

@@ -10,6 +10,13 @@ namespace curve_proximity {
 /* Throws Error, with `who` before the reason, for a transform that is not finite or does not keep lengths. */
 void checkPose(const Eigen::Isometry3d &pose, const std::string &who);
 
+/* Throws Error for a padding that is not finite and >= 0. */
+void checkPadding(double padding);
+
+/* How far rounding can move a point of a body that is placed at outer * inner; reach: the body's largest distance from
+ * its own origin, finite. */
+double placingError(const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner, double reach);
+
 /* The geometry at outer * inner, padded. Both poses finite, padding >= 0. Throws Error where the composed pose is not
  * finite. */
 PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner,

@@ -25,10 +25,6 @@ constexpr const char *IT_MOVES = "it moves along a trajectory: ADD replaces it, 
 /* APPEND's pose must be the object's own, within what a conversion of frames costs. */
 constexpr double SAME_POSE = 1e-9;
 
-void checkPadding(double padding) {
-  if (!std::isfinite(padding) || padding < 0.0) throw Error("its padding must be finite and not below 0");
-}
-
 std::string shapeName(std::size_t number, std::size_t of) {
   return of > 1 ? "shape " + std::to_string(number + 1) + ": " : "";
 }
@@ -295,7 +291,7 @@ World::World(const Objects &objects) {
       const PlacedShape &shape = object->shapes[i].placed;
       if (!object->shapes[i].geometry.body) continue;
       const auto index = static_cast<std::uint32_t>(items_.size());
-      items_.push_back({&shape, &id, false, static_cast<int>(i)});
+      items_.push_back({&shape, &object->description.id, false, static_cast<int>(i)});
       if (curve_proximity::unbounded(shape)) {
         unbounded_.push_back(index);
       } else {
@@ -359,6 +355,21 @@ void Snapshot::scaleLinks(const std::map<std::string, double> &scales, const Res
   for (auto it = link_scale_.begin(); it != link_scale_.end();) it = it->second == 1.0 ? link_scale_.erase(it) : ++it;
 }
 
+SnapshotPtr Snapshot::variant(const SceneVariant &variant) const {
+  const std::shared_ptr<Snapshot> out(new Snapshot(*this));
+  out->world_ = world_;
+  if (variant.allowed)
+    out->allowed_ = std::make_shared<const std::vector<AllowedPair>>(mergeAllowed({}, *variant.allowed));
+  if (!variant.attached) return out;
+  for (const auto &[id, object] : *variant.attached) {
+    checkLink(object->link, robot_.get());
+    if (objects_.count(id) > 0 || moving_.count(id) > 0)
+      throw Error("attached object '" + id + "': an object of the scene has the same id");
+  }
+  out->attached_ = *variant.attached;
+  return out;
+}
+
 /* ---- Scene ---- */
 
 Scene::Scene(std::shared_ptr<const Robot> robot, ResourceOptions resources, const std::vector<AllowedPair> &allowed)
@@ -367,8 +378,13 @@ Scene::Scene(std::shared_ptr<const Robot> robot, ResourceOptions resources, cons
   const std::shared_ptr<Snapshot> first(new Snapshot);
   first->allowed_ = first_allowed_;
   first->robot_ = std::move(robot);
-  first->world_ = std::make_unique<const World>(first->objects_);
+  first->world_ = std::make_shared<const World>(first->objects_);
   snapshot_ = first;
+}
+
+Scene::Scene(const SnapshotPtr &begin, ResourceOptions resources)
+    : resources_(std::move(resources)), first_allowed_(begin ? begin->allowed_ : nullptr), snapshot_(begin) {
+  if (!begin) throw Error("a scene cannot begin as no snapshot");
 }
 
 SnapshotPtr Scene::snapshot() const {
@@ -458,7 +474,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   }
 
   // Made in full before it becomes visible.
-  next->world_ = std::make_unique<const World>(next->objects_);
+  next->world_ = std::make_shared<const World>(next->objects_);
   const std::lock_guard<std::mutex> lock(current_);
   snapshot_ = next;
   return faults;

@@ -15,10 +15,11 @@
 #include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <curve_proximity/robot.hpp>
+#include <curve_proximity/urdf_model.hpp>
 
 #include "joint_parts.h"
 #include "mesh.h"
+#include "placing.h"
 
 namespace curve_proximity {
 namespace {
@@ -240,17 +241,37 @@ class RobotReader {
     // Parsed by urdfdom.
     tinyxml2::XMLPrinter printer;
     document.Print(&printer);
-    const urdf::ModelInterfaceSharedPtr model = parse(printer.CStr());
-    robot_->name_ = model->getName();
-    robot_->resources_ = options_.resources;
-    robot_->root_link_ = model->getRoot()->name;
+    return read(*parse(printer.CStr()), std::move(inventory));
+  }
 
-    readJoints(*model);
-    readLinks(*model, inventory);
-    return robot_;
+  std::shared_ptr<const Robot> read(const urdf::ModelInterface &model) {
+    if (!model.getRoot()) throw Error("robot '" + model.getName() + "': the model has no root link");
+    Inventory inventory;
+    for (const auto &[name, link] : model.links_) {
+      inventory[name].resize(link->collision_array.size());
+      for (const urdf::CollisionSharedPtr &collision : link->collision_array)
+        if (!collision || !collision->geometry) throw Error("link '" + name + "': a collision element has no geometry");
+    }
+    return read(model, std::move(inventory));
   }
 
  private:
+  std::shared_ptr<const Robot> read(const urdf::ModelInterface &model, Inventory inventory) {
+    robot_->name_ = model.getName();
+    robot_->resources_ = options_.resources;
+    robot_->root_link_ = model.getRoot()->name;
+    readJoints(model);
+    for (const auto &[link, shapes] : options_.link_shapes) {
+      if (inventory.erase(link) == 0)
+        throw Error("link_shapes: robot '" + robot_->name_ + "' has no link '" + link + "'");
+      std::vector<LinkGeometry> &geometry = robot_->links_[link];
+      for (std::size_t i = 0; i < shapes.size(); ++i)
+        addGeometry([&] { return shapes[i]; }, elementName(link, i, shapes.size()), geometry);
+    }
+    readLinks(model, inventory);
+    return robot_;
+  }
+
   static urdf::ModelInterfaceSharedPtr parse(const char *xml) {
     urdf::ModelInterfaceSharedPtr model;
     try {
@@ -413,17 +434,20 @@ class RobotReader {
       if (!link) throw Error("link '" + name + "' was not understood");
       std::vector<LinkGeometry> &geometry = robot_->links_[name];
       for (std::size_t i = 0; i < link->collision_array.size(); ++i) {
-        addGeometry(*link->collision_array[i], elementName(name, i, faults.size()), geometry);
+        addGeometry([&] { return describe(*link->collision_array[i], ""); }, elementName(name, i, faults.size()),
+                    geometry);
       }
       reportDropped(name, faults, link->collision_array.size());
     }
   }
 
-  void addGeometry(const urdf::Collision &collision, const std::string &who, std::vector<LinkGeometry> &to) {
+  template <class Description>
+  void addGeometry(Description description, const std::string &who, std::vector<LinkGeometry> &to) {
     try {
       LinkGeometry out;
-      out.description = describe(collision, "");
+      out.description = description();
       out.pose = out.description.pose;
+      checkPose(out.pose, "its pose");
       out.geometry = makeGeometry(out.description, options_.resources,
                                   [this](const MeshRequest &request) { return loadedMesh(request); });
       to.push_back(std::move(out));
@@ -458,6 +482,10 @@ class RobotReader {
 
 std::shared_ptr<const Robot> Robot::fromUrdf(const std::string &xml, const RobotOptions &options) {
   return RobotReader(options).read(xml);
+}
+
+std::shared_ptr<const Robot> fromModel(const urdf::ModelInterface &model, const RobotOptions &options) {
+  return RobotReader(options).read(model);
 }
 
 } // namespace curve_proximity
