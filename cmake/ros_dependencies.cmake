@@ -6,3 +6,11 @@ find_package(catkin REQUIRED COMPONENTS
   nav_msgs nodelet pluginlib roscpp roslib sensor_msgs shape_msgs std_msgs tf2 tf2_ros trajectory_msgs
   visualization_msgs)
 pkg_check_modules(PC_JSON REQUIRED nlohmann_json)
+
+# MoveIt, where it is there: the plugins of src/moveit.
+find_package(moveit_core QUIET)
+if(moveit_core_FOUND)
+  message(STATUS "MoveIt ${moveit_core_VERSION}: adapter and collision plugin are built")
+else()
+  message(STATUS "MoveIt not found: adapter and collision plugin are not built")
+endif()

@@ -1,0 +1,459 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "collision_env.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <ros/console.h>
+
+namespace curve_proximity {
+namespace {
+
+namespace cd = collision_detection;
+
+constexpr char LOG[] = "collision_detection.curve_proximity";
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+constexpr double COMPLAIN_PERIOD = 5.0; /* [s] */
+
+Workspace &workspace() {
+  thread_local Workspace own;
+  return own;
+}
+
+cd::BodyType typeOf(BodyOwner owner) {
+  switch (owner) {
+    case BodyOwner::LINK: return cd::BodyTypes::ROBOT_LINK;
+    case BodyOwner::ATTACHED: return cd::BodyTypes::ROBOT_ATTACHED;
+    case BodyOwner::OBJECT: break;
+  }
+  return cd::BodyTypes::WORLD_OBJECT;
+}
+
+std::pair<std::string, std::string> keyOf(const std::string &a, const std::string &b) {
+  return a < b ? std::make_pair(a, b) : std::make_pair(b, a);
+}
+
+bool touches(const NearPair &near) {
+  return near.result.verdict != CPROX_VERDICT_CLEAR;
+}
+
+/* MoveIt's normals go from the first body to the second one, ours back. */
+cd::Contact toContact(const NearPair &near) {
+  const cprox_result &result = near.result;
+  cd::Contact out;
+  out.nearest_points[0] = toEigen(result.witness_mover);
+  out.nearest_points[1] = toEigen(result.witness_obstacle);
+  out.pos = 0.5 * (out.nearest_points[0] + out.nearest_points[1]);
+  out.normal = -toEigen(result.normal);
+  out.depth = std::max(0.0, -result.lower);
+  out.percent_interpolation = 0.0;
+  out.body_name_1 = *near.a.name;
+  out.body_type_1 = typeOf(near.a.owner);
+  out.body_name_2 = *near.b.name;
+  out.body_type_2 = typeOf(near.b.owner);
+  return out;
+}
+
+cd::DistanceResultsData toDistance(const NearPair &near) {
+  const cprox_result &result = near.result;
+  cd::DistanceResultsData out;
+  out.distance = result.lower;
+  out.nearest_points[0] = toEigen(result.witness_mover);
+  out.nearest_points[1] = toEigen(result.witness_obstacle);
+  out.normal = -toEigen(result.normal);
+  out.link_names[0] = *near.a.name;
+  out.link_names[1] = *near.b.name;
+  out.body_types[0] = typeOf(near.a.owner);
+  out.body_types[1] = typeOf(near.b.owner);
+  return out;
+}
+
+/* Does the matrix let these two touch here? */
+bool isAllowedContact(const cd::AllowedCollisionMatrix *acm, cd::Contact &contact) {
+  cd::DecideContactFn decide;
+  return acm && acm->getAllowedCollision(contact.body_name_1, contact.body_name_2, decide) && decide(contact);
+}
+
+/* Takes contacts as the request wants them, and says when it has enough. */
+class Collector {
+ public:
+  Collector(const cd::CollisionRequest &req, cd::CollisionResult &res) : req_(req), res_(res) {}
+
+  /* Is another contact wanted? */
+  bool add(const cd::Contact &contact) {
+    res_.collision = true;
+    if (req_.contacts && res_.contact_count < req_.max_contacts) {
+      std::vector<cd::Contact> &of_pair = res_.contacts[keyOf(contact.body_name_1, contact.body_name_2)];
+      if (of_pair.size() < req_.max_contacts_per_pair) {
+        of_pair.push_back(contact);
+        ++res_.contact_count;
+      }
+    }
+    if (req_.verbose)
+      ROS_INFO_STREAM_NAMED(LOG, "'" << contact.body_name_1 << "' touches '" << contact.body_name_2 << "'");
+    return req_.contacts && res_.contact_count < req_.max_contacts && !(req_.is_done && req_.is_done(res_));
+  }
+
+ private:
+  const cd::CollisionRequest &req_;
+  cd::CollisionResult &res_;
+};
+
+/* What cannot be answered counts as a collision. */
+void fail(const std::string &why, cd::CollisionResult &res) {
+  ROS_ERROR_STREAM_THROTTLE_NAMED(COMPLAIN_PERIOD, LOG, why << ": the state counts as in collision");
+  res.collision = true;
+  res.distance = std::min(res.distance, 0.0);
+}
+
+void fail(const std::string &why, cd::DistanceResult &res) {
+  ROS_ERROR_STREAM_THROTTLE_NAMED(COMPLAIN_PERIOD, LOG, why << ": the distance counts as 0");
+  res.collision = true;
+  res.minimum_distance.distance = std::min(res.minimum_distance.distance, 0.0);
+}
+
+bool sameAllowed(const std::vector<AllowedPair> &a, const std::vector<AllowedPair> &b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const AllowedPair &x, const AllowedPair &y) {
+    return x.allowed == y.allowed && x.a == y.a && x.b == y.b;
+  });
+}
+
+bool samePoses(const ObjectDescription &object, const cd::World::Object &world) {
+  if (object.shapes.size() != world.shape_poses_.size()) return false;
+  for (std::size_t i = 0; i < object.shapes.size(); ++i)
+    if (object.shapes[i].pose.matrix() != world.shape_poses_[i].matrix()) return false;
+  return true;
+}
+
+} // namespace
+
+/* ---- the scene ---- */
+
+CollisionEnvCurveProximity::CollisionEnvCurveProximity(const moveit::core::RobotModelConstPtr &model, double padding,
+                                                       double scale)
+    : CollisionEnvCurveProximity(model, std::make_shared<cd::World>(), padding, scale) {}
+
+CollisionEnvCurveProximity::CollisionEnvCurveProximity(const moveit::core::RobotModelConstPtr &model,
+                                                       const cd::WorldPtr &world, double padding, double scale)
+    : CollisionEnv(model, world, padding, scale),
+      robot_(toRobot(*model)),
+      links_(linksInOrder(*robot_, *model)),
+      base_(virtualJoints(*model)),
+      scene_(std::make_unique<Scene>(robot_)) {
+  observe();
+  getWorld()->notifyObserverAllObjects(observer_, cd::World::CREATE);
+}
+
+CollisionEnvCurveProximity::CollisionEnvCurveProximity(const CollisionEnvCurveProximity &other,
+                                                       const cd::WorldPtr &world)
+    : CollisionEnv(other, world), robot_(other.robot_), links_(other.links_), base_(other.base_) {
+  {
+    const std::lock_guard<std::mutex> lock(other.mutex_);
+    other.applyChanges();
+    scene_ = std::make_unique<Scene>(other.scene_->snapshot());
+    faults_ = other.faults_;
+    resized_ = false;
+    standing_ = other.standing_;
+  }
+  observe();
+}
+
+CollisionEnvCurveProximity::~CollisionEnvCurveProximity() {
+  getWorld()->removeObserver(observer_);
+}
+
+void CollisionEnvCurveProximity::observe() {
+  observer_ = getWorld()->addObserver([this](const cd::World::ObjectConstPtr &object, cd::World::Action action) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const bool only_moved = action == cd::World::MOVE_SHAPE && changed_.count(object->id_) == 0;
+    (only_moved ? moved_ : changed_).insert(object->id_);
+  });
+}
+
+void CollisionEnvCurveProximity::setWorld(const cd::WorldPtr &world) {
+  if (world == getWorld()) return;
+  getWorld()->removeObserver(observer_);
+  CollisionEnv::setWorld(world);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    changed_.clear();
+    moved_.clear();
+    faults_.clear();
+    SceneChange none;
+    none.clear_objects = true;
+    scene_->apply(none);
+  }
+  observe();
+  getWorld()->notifyObserverAllObjects(observer_, cd::World::CREATE);
+}
+
+void CollisionEnvCurveProximity::updatedPaddingOrScaling(const std::vector<std::string> &) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  resized_ = true;
+}
+
+/* One change for all that has come since the last query. An object that cannot be taken over leaves a fault. */
+void CollisionEnvCurveProximity::applyChanges() const {
+  if (!resized_ && changed_.empty() && moved_.empty()) return;
+  const SnapshotPtr before = scene_->snapshot();
+  SceneChange change;
+  if (resized_) {
+    faults_.erase("");
+    change.link_padding = getLinkPadding();
+    for (const auto &[link, scale] : getLinkScale()) {
+      const auto known = before->linkScales().find(link);
+      if (scale != (known == before->linkScales().end() ? 1.0 : known->second)) change.link_scale[link] = scale;
+    }
+  }
+  for (const std::string &id : moved_)
+    if (changed_.count(id) == 0) changeObject(id, true, *before, change);
+  for (const std::string &id : changed_) changeObject(id, false, *before, change);
+  changed_.clear();
+  moved_.clear();
+  resized_ = false;
+  standing_.reset();
+  if (scene_->apply(change).empty()) return;
+
+  /* One by one, to tell whose fault it is; what cannot be taken over must not stay as it was before. */
+  for (const Operation &operation : change.operations) {
+    SceneChange one;
+    one.operations = {operation};
+    const std::vector<std::string> faults = scene_->apply(one);
+    if (faults.empty()) continue;
+    faults_[operation.object.id] = faults.front();
+    one.operations.front().kind = Operation::Kind::REMOVE;
+    scene_->apply(one);
+  }
+  change.operations.clear();
+  const std::vector<std::string> faults = scene_->apply(change);
+  if (!faults.empty()) faults_[""] = faults.front();
+}
+
+void CollisionEnvCurveProximity::changeObject(const std::string &id, bool only_moved, const Snapshot &before,
+                                              SceneChange &change) const {
+  faults_.erase(id);
+  const cd::World::ObjectConstPtr object = getWorld()->getObject(id);
+  const auto known = before.objects().find(id);
+  Operation operation;
+  operation.object.id = id;
+  if (!object || object->shapes_.empty()) {
+    operation.kind = Operation::Kind::REMOVE;
+    if (known != before.objects().end()) change.operations.push_back(operation);
+    return;
+  }
+  if (only_moved && known != before.objects().end() && samePoses(known->second->description, *object)) {
+    operation.kind = Operation::Kind::MOVE;
+    operation.object.pose = object->pose_;
+    change.operations.push_back(operation);
+    return;
+  }
+  try {
+    operation.object = toObject(*object);
+    change.operations.push_back(operation);
+  } catch (const Error &error) {
+    faults_[id] = "object '" + id + "': " + error.what();
+  }
+}
+
+/* ---- one query ---- */
+
+CollisionEnvCurveProximity::Current CollisionEnvCurveProximity::current(const State &state) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  applyChanges();
+  const SnapshotPtr scene = scene_->snapshot();
+  if (!standing_) standing_ = std::make_shared<const StandingRobot>(scene);
+  Current out{standing_, bodies_.of(state, *scene), {}};
+  for (const auto &[id, fault] : faults_) out.fault += (out.fault.empty() ? "" : "; ") + fault;
+  return out;
+}
+
+RobotPlacement CollisionEnvCurveProximity::placement(const State &state, AttachedObjects attached) const {
+  RobotPlacement out;
+  out.links.reserve(links_.size());
+  for (const moveit::core::LinkModel *link : links_) out.links.push_back(state.getGlobalLinkTransform(link));
+  out.attached = std::move(attached);
+  return out;
+}
+
+std::set<std::string> CollisionEnvCurveProximity::linksOf(const std::string &group) const {
+  std::set<std::string> out;
+  if (!robot_model_->hasJointModelGroup(group)) return out;
+  for (const moveit::core::LinkModel *link : robot_model_->getJointModelGroup(group)->getUpdatedLinkModelsSet())
+    out.insert(link->getName());
+  return out;
+}
+
+void CollisionEnvCurveProximity::check(const Request &req, Result &res, const State &state, const Matrix *acm,
+                                       RobotPairs pairs) const {
+  try {
+    Current now = current(state);
+    if (!now.fault.empty() && pairs != RobotPairs::SELF) fail(now.fault, res);
+    const RobotPlacement robot = placement(state, std::move(now.attached));
+    NearPairsQuery query;
+    query.pairs = pairs;
+    query.links = linksOf(req.group_name);
+    query.carriers = true;
+    query.verdicts_only = !req.contacts;
+    query.may_touch = [acm](const std::string &a, const std::string &b) { return acm && alwaysAllowed(*acm, a, b); };
+    Collector collector(req, res);
+    now.robot->visit(robot, query, workspace(), [&](const NearPair &near) {
+      if (!touches(near)) return 0.0;
+      cd::Contact contact = toContact(near);
+      return isAllowedContact(acm, contact) || collector.add(contact) ? 0.0 : -1.0;
+    });
+  } catch (const std::exception &error) {
+    fail(error.what(), res);
+  }
+  if (!req.distance) return;
+  cd::DistanceRequest distance;
+  cd::DistanceResult found;
+  distance.group_name = req.group_name;
+  distance.acm = acm;
+  distance.enableGroup(robot_model_);
+  distances(distance, found, state, pairs);
+  res.distance = std::min(res.distance, found.minimum_distance.distance);
+  if (req.detailed_distance) res.distance_result = found;
+}
+
+void CollisionEnvCurveProximity::distances(const cd::DistanceRequest &req, cd::DistanceResult &res, const State &state,
+                                           RobotPairs pairs) const {
+  const bool global = req.type == cd::DistanceRequestType::GLOBAL;
+  const std::size_t of_pair = req.type == cd::DistanceRequestType::SINGLE ? 1 : req.max_contacts_per_body;
+  try {
+    Current now = current(state);
+    if (!now.fault.empty() && pairs != RobotPairs::SELF) fail(now.fault, res);
+    const RobotPlacement robot = placement(state, std::move(now.attached));
+    NearPairsQuery query;
+    query.pairs = pairs;
+    query.reach = req.distance_threshold >= std::numeric_limits<double>::max() ? INFINITE : req.distance_threshold;
+    query.carriers = true;
+    if (req.active_components_only)
+      for (const moveit::core::LinkModel *link : *req.active_components_only) query.links.insert(link->getName());
+    query.may_touch = [&req](const std::string &a, const std::string &b) {
+      return req.acm && alwaysAllowed(*req.acm, a, b);
+    };
+    now.robot->visit(robot, query, workspace(), [&](const NearPair &near) {
+      const cd::DistanceResultsData found = toDistance(near);
+      if (found.distance < res.minimum_distance.distance) res.minimum_distance = found;
+      res.collision = res.collision || touches(near);
+      if (global) return std::max(0.0, res.minimum_distance.distance);
+      std::vector<cd::DistanceResultsData> &list = res.distances[keyOf(found.link_names[0], found.link_names[1])];
+      list.insert(std::upper_bound(list.begin(), list.end(), found,
+                                   [](cd::DistanceResultsData a, const cd::DistanceResultsData &b) { return a < b; }),
+                  found);
+      if (list.size() > of_pair) list.pop_back();
+      return query.reach;
+    });
+  } catch (const std::exception &error) {
+    fail(error.what(), res);
+  }
+}
+
+void CollisionEnvCurveProximity::checkSelfCollision(const Request &req, Result &res, const State &state) const {
+  check(req, res, state, nullptr, RobotPairs::SELF);
+}
+
+void CollisionEnvCurveProximity::checkSelfCollision(const Request &req, Result &res, const State &state,
+                                                    const Matrix &acm) const {
+  check(req, res, state, &acm, RobotPairs::SELF);
+}
+
+void CollisionEnvCurveProximity::checkRobotCollision(const Request &req, Result &res, const State &state) const {
+  check(req, res, state, nullptr, RobotPairs::ENVIRONMENT);
+}
+
+void CollisionEnvCurveProximity::checkRobotCollision(const Request &req, Result &res, const State &state,
+                                                     const Matrix &acm) const {
+  check(req, res, state, &acm, RobotPairs::ENVIRONMENT);
+}
+
+void CollisionEnvCurveProximity::distanceSelf(const cd::DistanceRequest &req, cd::DistanceResult &res,
+                                              const State &state) const {
+  distances(req, res, state, RobotPairs::SELF);
+}
+
+void CollisionEnvCurveProximity::distanceRobot(const cd::DistanceRequest &req, cd::DistanceResult &res,
+                                               const State &state) const {
+  distances(req, res, state, RobotPairs::ENVIRONMENT);
+}
+
+/* ---- motions ---- */
+
+/* Planners ask about many motions in one scene with one matrix: the robot of the last one is kept. */
+std::shared_ptr<const PreparedRobot> CollisionEnvCurveProximity::prepared(const Current &now, const Matrix *acm) const {
+  const SnapshotPtr &scene = now.robot->snapshot();
+  const std::vector<AllowedPair> allowed = acm ? allowedPairs(*acm, *scene, now.attached) : std::vector<AllowedPair>();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (prepared_ && prepared_->snapshot()->version() == scene->version() &&
+      &prepared_->snapshot()->world() == &scene->world() && prepared_->snapshot()->attached() == now.attached &&
+      sameAllowed(prepared_allowed_, allowed))
+    return prepared_;
+  prepared_ = std::make_shared<const PreparedRobot>(scene->variant({now.attached, allowed}),
+                                                    std::vector<std::array<std::string, 2>>(), base_);
+  prepared_allowed_ = allowed;
+  return prepared_;
+}
+
+void CollisionEnvCurveProximity::checkMotion(const Request &req, Result &res, const State &from, const State &to,
+                                             const Matrix *acm) const {
+  try {
+    const TrajectoryDescription path = straight(from, to);
+    if (path.joints.empty()) return check(req, res, from, acm, RobotPairs::ENVIRONMENT);
+    const Current now = current(from);
+    if (!now.fault.empty()) return fail(now.fault, res);
+    const std::set<std::string> links = linksOf(req.group_name);
+    const RobotMotion motion(*prepared(now, acm), path, jointPositions(from), {links.begin(), links.end()});
+    Query query;
+    if (req.distance) {
+      const Answer answer = askEnvironment(motion, query, workspace()).front();
+      if (answer.result.status < 0) throw Error(answer.message);
+      res.distance = std::min(res.distance, answer.result.lower);
+    }
+    query.query_type = QueryType::COLLISION;
+    const Answer answer = req.contacts ? timeOfContact(motion, false, query, workspace())
+                                       : askEnvironment(motion, query, workspace()).front();
+    if (answer.result.status < 0) throw Error(answer.message);
+    if (answer.result.verdict == CPROX_VERDICT_CLEAR) return;
+    res.collision = true;
+    if (!req.contacts) return;
+    cd::Contact contact;
+    contact.nearest_points[0] = toEigen(answer.result.witness_mover);
+    contact.nearest_points[1] = toEigen(answer.result.witness_obstacle);
+    contact.pos = 0.5 * (contact.nearest_points[0] + contact.nearest_points[1]);
+    contact.normal = -toEigen(answer.result.normal);
+    contact.depth = 0.0;
+    contact.percent_interpolation = answer.result.t;
+    contact.body_name_1 = answer.a;
+    contact.body_type_1 = now.attached.count(answer.a) > 0 ? cd::BodyTypes::ROBOT_ATTACHED : cd::BodyTypes::ROBOT_LINK;
+    contact.body_name_2 = answer.b;
+    contact.body_type_2 = cd::BodyTypes::WORLD_OBJECT;
+    Collector(req, res).add(contact);
+  } catch (const std::exception &error) {
+    fail(error.what(), res);
+  }
+}
+
+void CollisionEnvCurveProximity::checkRobotCollision(const Request &req, Result &res, const State &state1,
+                                                     const State &state2, const Matrix &acm) const {
+  checkMotion(req, res, state1, state2, &acm);
+}
+
+void CollisionEnvCurveProximity::checkRobotCollision(const Request &req, Result &res, const State &state1,
+                                                     const State &state2) const {
+  checkMotion(req, res, state1, state2, nullptr);
+}
+
+std::vector<Answer> CollisionEnvCurveProximity::ask(const TrajectoryDescription &trajectory, const State &at,
+                                                    const Matrix &acm, const Query &query) const {
+  const Current now = current(at);
+  if (!now.fault.empty()) throw Error(now.fault);
+  const RobotMotion motion(*prepared(now, &acm), trajectory, jointPositions(at));
+  return {askEnvironment(motion, query, workspace()).front(), askSelf(motion, query, workspace())};
+}
+
+const std::string &CollisionDetectorAllocatorCurveProximity::getName() const {
+  static const std::string name = "CurveProximity";
+  return name;
+}
+
+} // namespace curve_proximity

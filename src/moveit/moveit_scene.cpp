@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "moveit_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <moveit/robot_model/planar_joint_model.h>
+#include <moveit/robot_model/revolute_joint_model.h>
+
+#include <curve_proximity/geometric_shapes.hpp>
+#include <curve_proximity/urdf_model.hpp>
+
+namespace curve_proximity {
+namespace {
+
+using collision_detection::AllowedCollisionMatrix;
+using moveit::core::JointModel;
+using moveit::core::LinkModel;
+using moveit::core::PlanarJointModel;
+using moveit::core::RevoluteJointModel;
+using moveit::core::RobotModel;
+using moveit::core::RobotState;
+
+ShapeDescription shapeAt(const shapes::Shape &shape, const Eigen::Isometry3d &pose) {
+  ShapeDescription out = fromShape(shape);
+  out.pose = pose;
+  return out;
+}
+
+/* A variable of a joint that is an angle without limits; a planar joint has it behind x and y. */
+bool goesRound(const JointModel &joint, std::size_t variable) {
+  if (joint.getType() == JointModel::REVOLUTE) return static_cast<const RevoluteJointModel &>(joint).isContinuous();
+  return joint.getType() == JointModel::PLANAR && variable == 2;
+}
+
+/* The angle that is `to` and not more than half a turn from `from`. */
+double nearest(double from, double to) {
+  return from + std::remainder(to - from, 2.0 * M_PI);
+}
+
+void checkInterpolation(const JointModel &joint) {
+  if (joint.getType() == JointModel::PLANAR &&
+      static_cast<const PlanarJointModel &>(joint).getMotionModel() == PlanarJointModel::DIFF_DRIVE)
+    throw Error("joint '" + joint.getName() +
+                "' is a differential drive: how it goes from one pose to another is not known here");
+}
+
+/* Appends the joint's values, angles beside those of the point before. */
+void appendJoint(const JointModel &joint, const RobotState &state, const TrajectoryPoint *before,
+                 TrajectoryPoint &point) {
+  const double *values = state.getJointPositions(&joint);
+  for (std::size_t i = 0; i < joint.getVariableCount(); ++i) {
+    const std::size_t k = point.positions.size();
+    point.positions.push_back(before && goesRound(joint, i) ? nearest(before->positions[k], values[i]) : values[i]);
+  }
+}
+
+bool sameJoint(const JointModel &joint, const RobotState &a, const RobotState &b) {
+  const double *x = a.getJointPositions(&joint), *y = b.getJointPositions(&joint);
+  return std::equal(x, x + joint.getVariableCount(), y);
+}
+
+void appendNames(const JointModel &joint, std::vector<std::string> &names) {
+  const std::vector<std::string> &variables = joint.getVariableNames();
+  names.insert(names.end(), variables.begin(), variables.end());
+}
+
+} // namespace
+
+std::shared_ptr<const Robot> toRobot(const RobotModel &model) {
+  RobotOptions options;
+  for (const LinkModel *link : model.getLinkModels()) {
+    std::vector<ShapeDescription> &shapes = options.link_shapes[link->getName()];
+    for (std::size_t i = 0; i < link->getShapes().size(); ++i)
+      shapes.push_back(shapeAt(*link->getShapes()[i], link->getCollisionOriginTransforms()[i]));
+  }
+  return fromModel(*model.getURDF(), options);
+}
+
+std::vector<const LinkModel *> linksInOrder(const Robot &robot, const RobotModel &model) {
+  std::vector<const LinkModel *> out;
+  for (const auto &[name, geometries] : robot.links()) out.push_back(model.getLinkModel(name));
+  return out;
+}
+
+std::vector<VirtualJoint> virtualJoints(const RobotModel &model) {
+  const JointModel &root = *model.getRootJoint();
+  if (root.getVariableCount() == 0) return {};
+  const std::string type = root.getType() == JointModel::PLANAR ? "planar" : "floating";
+  return {{root.getName(), type, model.getModelFrame(), model.getRootLinkName()}};
+}
+
+ObjectDescription toObject(const collision_detection::World::Object &object) {
+  ObjectDescription out;
+  out.id = object.id_;
+  out.pose = object.pose_;
+  for (std::size_t i = 0; i < object.shapes_.size(); ++i)
+    out.shapes.push_back(shapeAt(*object.shapes_[i], object.shape_poses_[i]));
+  return out;
+}
+
+bool alwaysAllowed(const AllowedCollisionMatrix &matrix, const std::string &a, const std::string &b) {
+  collision_detection::AllowedCollision::Type type;
+  return matrix.getAllowedCollision(a, b, type) && type == collision_detection::AllowedCollision::ALWAYS;
+}
+
+std::vector<AllowedPair> allowedPairs(const AllowedCollisionMatrix &matrix, const Snapshot &scene,
+                                      const AttachedObjects &attached) {
+  std::vector<const std::string *> moving;
+  for (const auto &[link, geometries] : scene.robot()->links())
+    if (!geometries.empty()) moving.push_back(&link);
+  for (const auto &[id, object] : attached) moving.push_back(&id);
+  std::vector<AllowedPair> out;
+  const auto ask = [&](const std::string &a, const std::string &b) {
+    if (alwaysAllowed(matrix, a, b)) out.push_back({a, b, true});
+  };
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    for (std::size_t k = i + 1; k < moving.size(); ++k) ask(*moving[i], *moving[k]);
+    for (const auto &[id, object] : scene.objects()) ask(*moving[i], id);
+  }
+  return out;
+}
+
+AttachedObjects AttachedBodies::of(const RobotState &state, const Snapshot &scene) {
+  std::vector<const moveit::core::AttachedBody *> bodies;
+  state.getAttachedBodies(bodies);
+  std::map<std::string, Known> now;
+  AttachedObjects out;
+  for (const moveit::core::AttachedBody *body : bodies) {
+    const std::string &id = body->getName(), &link = body->getAttachedLinkName();
+    const auto scale = scene.linkScales().find(link);
+    Known known{link,
+                body->getTouchLinks(),
+                body->getShapes(),
+                body->getShapePosesInLinkFrame(),
+                scale == scene.linkScales().end() ? 1.0 : scale->second,
+                nullptr};
+    const auto same_pose = [](const Eigen::Isometry3d &a, const Eigen::Isometry3d &b) {
+      return a.matrix() == b.matrix();
+    };
+    const auto before = known_.find(id);
+    if (before != known_.end() && before->second.link == link && before->second.touch_links == known.touch_links &&
+        before->second.shapes == known.shapes && before->second.scale == known.scale &&
+        std::equal(known.poses.begin(), known.poses.end(), before->second.poses.begin(), before->second.poses.end(),
+                   same_pose)) {
+      known.object = before->second.object;
+    } else {
+      Attachment given;
+      given.link = link;
+      given.touch_links.assign(known.touch_links.begin(), known.touch_links.end());
+      given.object.id = id;
+      for (std::size_t i = 0; i < known.shapes.size(); ++i)
+        given.object.shapes.push_back(shapeAt(*known.shapes[i], known.poses[i]));
+      known.object = attachedObject(given, known.scale);
+    }
+    out[id] = known.object;
+    now[id] = std::move(known);
+  }
+  known_ = std::move(now);
+  return out;
+}
+
+JointPositions jointPositions(const RobotState &state) {
+  JointPositions out;
+  for (const std::string &name : state.getVariableNames()) out[name] = state.getVariablePosition(name);
+  return out;
+}
+
+TrajectoryDescription straight(const RobotState &from, const RobotState &to) {
+  TrajectoryDescription out;
+  out.points.resize(2);
+  out.points[1].time = 1.0;
+  for (const JointModel *joint : from.getRobotModel()->getActiveJointModels()) {
+    if (joint->getMimic() || sameJoint(*joint, from, to)) continue;
+    checkInterpolation(*joint);
+    appendNames(*joint, out.joints);
+    appendJoint(*joint, from, nullptr, out.points[0]);
+    appendJoint(*joint, to, &out.points[0], out.points[1]);
+  }
+  return out;
+}
+
+TrajectoryDescription timed(const robot_trajectory::RobotTrajectory &trajectory) {
+  TrajectoryDescription out;
+  out.id = trajectory.getGroupName().empty() ? "trajectory" : trajectory.getGroupName();
+  const std::size_t n = trajectory.getWayPointCount();
+  if (n == 0) throw Error("the trajectory has no waypoint");
+  if (n > 1 && !(trajectory.getDuration() > 0.0)) throw Error("the trajectory is not timed");
+  std::vector<const JointModel *> joints;
+  for (const JointModel *joint : trajectory.getGroup() ? trajectory.getGroup()->getActiveJointModels()
+                                                       : trajectory.getRobotModel()->getActiveJointModels()) {
+    if (joint->getMimic()) continue;
+    checkInterpolation(*joint);
+    joints.push_back(joint);
+    appendNames(*joint, out.joints);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const RobotState &state = trajectory.getWayPoint(i);
+    TrajectoryPoint point;
+    point.time = trajectory.getWayPointDurationFromStart(i);
+    for (const JointModel *joint : joints) {
+      appendJoint(*joint, state, i > 0 ? &out.points[i - 1] : nullptr, point);
+      for (const std::string &variable : joint->getVariableNames()) {
+        if (state.hasVelocities()) point.velocities.push_back(state.getVariableVelocity(variable));
+        if (state.hasVelocities() && state.hasAccelerations())
+          point.accelerations.push_back(state.getVariableAcceleration(variable));
+      }
+    }
+    out.points.push_back(std::move(point));
+  }
+  return out;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* MoveIt's model, world, states and trajectories in the scene library's terms. */
+#ifndef CURVE_PROXIMITY_MOVEIT_MOVEIT_SCENE_H
+#define CURVE_PROXIMITY_MOVEIT_MOVEIT_SCENE_H
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <moveit/collision_detection/collision_matrix.h>
+#include <moveit/collision_detection/world.h>
+#include <moveit/robot_state/robot_state.h>
+#include <moveit/robot_trajectory/robot_trajectory.h>
+
+#include <curve_proximity/motion.hpp>
+#include <curve_proximity/near_pairs.hpp>
+
+namespace curve_proximity {
+
+/* The model with the shapes that MoveIt has loaded: no file is read again. */
+std::shared_ptr<const Robot> toRobot(const moveit::core::RobotModel &model);
+
+/* Its links in the order of Robot::links(). */
+std::vector<const moveit::core::LinkModel *> linksInOrder(const Robot &robot, const moveit::core::RobotModel &model);
+
+/* Its root joint where that moves: no or one virtual joint. */
+std::vector<VirtualJoint> virtualJoints(const moveit::core::RobotModel &model);
+
+/* An object of the world with its shapes. Throws Error. */
+ObjectDescription toObject(const collision_detection::World::Object &object);
+
+/* Does the matrix always let them touch? A conditional entry does not. */
+bool alwaysAllowed(const collision_detection::AllowedCollisionMatrix &matrix, const std::string &a,
+                   const std::string &b);
+
+/* What the matrix always lets touch, of the links with geometry, attached objects and objects of the scene. */
+std::vector<AllowedPair> allowedPairs(const collision_detection::AllowedCollisionMatrix &matrix, const Snapshot &scene,
+                                      const AttachedObjects &attached);
+
+/* What states attach, made once for as long as it stays the same. Not for several threads. */
+class AttachedBodies {
+ public:
+  /* Throws Error for a shape that has no counterpart. */
+  AttachedObjects of(const moveit::core::RobotState &state, const Snapshot &scene);
+
+ private:
+  struct Known {
+    std::string link;
+    std::set<std::string> touch_links;
+    std::vector<shapes::ShapeConstPtr> shapes;
+    EigenSTL::vector_Isometry3d poses;
+    double scale;
+    std::shared_ptr<const AttachedObject> object;
+  };
+  std::map<std::string, Known> known_; /* of the last state */
+};
+
+/* The values of all joints of a state that have values of their own. */
+JointPositions jointPositions(const moveit::core::RobotState &state);
+
+/* The straight motion from one state to another, from time 0 to 1: as RobotState::interpolate(), the shorter way round
+ * for joints without limits. Throws Error where MoveIt's interpolation is another curve (a differential drive). */
+TrajectoryDescription straight(const moveit::core::RobotState &from, const moveit::core::RobotState &to);
+
+/* A timed trajectory as a controller executes it: cubic where all waypoints have velocities, quintic where they have
+ * accelerations too. Joints without limits go the shorter way from waypoint to waypoint. Throws Error. */
+TrajectoryDescription timed(const robot_trajectory::RobotTrajectory &trajectory);
+
+} // namespace curve_proximity
+#endif

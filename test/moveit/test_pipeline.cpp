@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* MoveIt's planning pipeline with and without the adapter, and its plugin loader with the collision detector. */
+#include <gtest/gtest.h>
+#include <moveit/collision_detection/collision_plugin_cache.h>
+#include <moveit/planning_pipeline/planning_pipeline.h>
+#include <moveit/planning_scene/planning_scene.h>
+#include <moveit/utils/robot_model_test_utils.h>
+#include <ros/ros.h>
+
+namespace {
+
+const std::string TIMING = "default_planner_request_adapters/AddTimeParameterization";
+const std::string OURS = "curve_proximity/CertifyTrajectory";
+
+moveit::core::RobotModelPtr panda() {
+  static const moveit::core::RobotModelPtr model = moveit::core::loadTestingRobotModel("panda");
+  return model;
+}
+
+moveit::core::RobotState turned(double angle) {
+  moveit::core::RobotState state(panda());
+  state.setToDefaultValues();
+  state.setToDefaultValues(panda()->getJointModelGroup("panda_arm"), "ready");
+  state.setVariablePosition("panda_joint1", angle);
+  state.update();
+  return state;
+}
+
+/* A post that the hand of a Panda turned to `angle` is in the middle of, moved outwards by `aside` [m]. */
+planning_scene::PlanningScenePtr sceneWithPost(double angle, double aside) {
+  auto scene = std::make_shared<planning_scene::PlanningScene>(panda());
+  scene->setCurrentState(turned(-0.8));
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const Eigen::Vector3d hand = turned(angle).getGlobalLinkTransform("panda_hand").translation();
+  pose.translation() = hand + aside * Eigen::Vector3d(hand.x(), hand.y(), 0.0).normalized();
+  scene->getWorldNonConst()->addToObject("post", std::make_shared<shapes::Box>(0.01, 0.01, 0.3), pose);
+  return scene;
+}
+
+/* Does a pipeline with these adapters give a plan from -.8 rad to .8 rad? */
+bool plans(const planning_scene::PlanningScenePtr &scene, const std::vector<std::string> &adapters, double clearance,
+           planning_interface::MotionPlanResponse &res) {
+  ros::NodeHandle node("~pipeline");
+  node.setParam("certify_clearance", clearance);
+  const planning_pipeline::PlanningPipeline pipeline(panda(), node, "straight_planner/StraightPlanner", adapters);
+  planning_interface::MotionPlanRequest req;
+  req.group_name = "panda_arm";
+  req.max_velocity_scaling_factor = req.max_acceleration_scaling_factor = 1.0;
+  req.goal_constraints.resize(1);
+  const moveit::core::RobotState goal = turned(0.8);
+  for (const std::string &joint : panda()->getJointModelGroup("panda_arm")->getActiveJointModelNames()) {
+    moveit_msgs::JointConstraint constraint;
+    constraint.joint_name = joint;
+    constraint.position = goal.getVariablePosition(joint);
+    req.goal_constraints[0].joint_constraints.push_back(constraint);
+  }
+  return pipeline.generatePlan(scene, req, res);
+}
+
+} // namespace
+
+TEST(Pipeline, accepts_a_spline_through_a_post_and_rejects_it_with_the_adapter) {
+  const auto scene = sceneWithPost(0.3, 0.0);
+  planning_interface::MotionPlanResponse without, with;
+  EXPECT_TRUE(plans(scene, {TIMING}, 0.0, without)) << "MoveIt looks at the waypoints";
+  ASSERT_TRUE(without.trajectory_);
+  EXPECT_GT(without.trajectory_->getDuration(), 0.1) << "the spline is timed";
+  EXPECT_FALSE(plans(scene, {OURS, TIMING}, 0.0, with));
+  EXPECT_EQ(with.error_code_.val, moveit_msgs::MoveItErrorCodes::INVALID_MOTION_PLAN);
+}
+
+TEST(Pipeline, accepts_what_is_proven_free_and_keeps_the_clearance_asked_for) {
+  const auto scene = sceneWithPost(0.3, 0.3);
+  planning_interface::MotionPlanResponse res;
+  EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.0, res));
+  EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.05, res));
+  EXPECT_FALSE(plans(scene, {OURS, TIMING}, 0.5, res)) << "the post stands .3 m beside the hand's middle";
+}
+
+TEST(Pipeline, is_answered_alike_in_a_scene_of_our_detector) {
+  for (const double aside : {0.0, 0.3}) {
+    const auto scene = sceneWithPost(0.3, aside);
+    collision_detection::CollisionPluginCache cache;
+    ASSERT_TRUE(cache.activate("CurveProximity", scene, true));
+    EXPECT_EQ(scene->getActiveCollisionDetectorName(), "CurveProximity");
+    EXPECT_TRUE(scene->isStateColliding(turned(0.3), "panda_arm") == (aside == 0.0));
+    EXPECT_FALSE(scene->diff()->isStateColliding(turned(-0.8), "panda_arm"));
+    planning_interface::MotionPlanResponse res;
+    EXPECT_TRUE(plans(scene, {TIMING}, 0.0, res));
+    EXPECT_EQ(plans(scene, {OURS, TIMING}, 0.0, res), aside > 0.0);
+  }
+}
+
+TEST(Pipeline, refuses_a_trajectory_without_times) {
+  planning_interface::MotionPlanResponse res;
+  EXPECT_FALSE(plans(sceneWithPost(0.3, 0.3), {OURS}, 0.0, res));
+}
+
+int main(int argc, char **argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_pipeline");
+  ros::NodeHandle node; // keeps the node alive between pipelines
+  return RUN_ALL_TESTS();
+}
