@@ -26,8 +26,8 @@ constexpr double INFINITE = std::numeric_limits<double>::infinity();
  * (doc/second-opinion.md). */
 constexpr double ACCURACY = 1e-5;
 
-/* So many pairs of pieces are looked at. */
-constexpr std::size_t MOST_PAIRS = 10000000;
+/* So many pairs of pieces are looked at, and so many are measured: a second or two of either library. */
+constexpr std::size_t MOST_PAIRS = 10000000, MOST_MEASURED = 20000;
 
 /* So many meshes of files are kept. */
 constexpr std::size_t MOST_MESHES = 256;
@@ -197,7 +197,7 @@ double gapOf(const Piece &a, const Piece &b) {
 }
 
 /* The least distance of a piece of one side and a piece of the other, margins included. */
-double distanceOf(Side a, Side b, Peer peer) {
+double distanceOf(Side a, Side b, Peer peer, const Stop &stop) {
   if (a.plane && b.plane) throw Error("two halfspaces have no distance");
   if (a.plane) a.pieces = {boxOf(*a.plane, ballOf(b))};
   if (b.plane) b.pieces = {boxOf(*b.plane, ballOf(a))};
@@ -208,7 +208,12 @@ double distanceOf(Side a, Side b, Peer peer) {
 
   /* the pair whose balls are nearest first, then all that may be nearer */
   double nearest = INFINITE;
+  std::size_t measured = 0;
   const auto look = [&](const Piece &one, const Piece &other) {
+    if (stop && stop()) throw Error("the query was ended");
+    if (++measured > MOST_MEASURED)
+      throw Error("more than " + std::to_string(MOST_MEASURED) +
+                  " pairs of triangles, points or cells may be the nearest");
     const double found =
         peer == Peer::FCL ? fclDistance(one, other) : ccdDistance(one, other, std::min(nearest, 1e300));
     nearest = std::min(nearest, found);
@@ -249,15 +254,15 @@ std::string numberOf(double x) {
 /* Both sides at the times that are looked at: the witness time first. */
 using SidesAt = std::function<std::pair<Side, Side>(double t)>;
 
-SecondOpinion opinionOf(Peer peer, const std::vector<double> &times, const SidesAt &sidesAt, double lower,
-                        double upper) {
+SecondOpinion opinionOf(Peer peer, const std::vector<double> &times, const SidesAt &sidesAt, double lower, double upper,
+                        const Stop &stop = nullptr) {
   SecondOpinion out;
   const double least = std::max(0.0, lower), most = std::max(0.0, upper);
   try {
     for (const double t : times) {
       const std::pair<Side, Side> sides = sidesAt(t);
       const bool at_witness = t == times.front();
-      const double found = distanceOf(sides.first, sides.second, peer);
+      const double found = distanceOf(sides.first, sides.second, peer, stop);
       const double accuracy = ACCURACY * std::max(sizeOf(sides.first), sizeOf(sides.second));
       if (at_witness && found > accuracy && most == 0.0 && (sides.first.is_solid || sides.second.is_solid))
         throw Error(std::string(peerName(peer)) + " knows meshes as surfaces: it measures " + numberOf(found) +
@@ -287,6 +292,11 @@ bool isWanted(const Query &query, const Answer &answer) {
 void tell(SecondOpinion opinion, Answer &answer) {
   if (!opinion.message.empty()) answer.message += (answer.message.empty() ? "" : "; ") + opinion.message;
   answer.second_opinion = std::move(opinion);
+}
+
+/* What ends the query ends the opinion. */
+Stop stopOf(const Query &query) {
+  return [options = query.options] { return options.stop != nullptr && options.stop(options.stop_user); };
 }
 
 /* Whether there is a pair to measure; a closest pair that nobody measured is unknown. */
@@ -415,7 +425,7 @@ void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, 
   const auto item = std::find_if(targets.items.begin(), targets.items.end(), [&](const Item &i) {
     return i.is_link == answer.b_is_link && i.part == answer.result.obstacle_index && *i.owner == answer.b;
   });
-  if (item == targets.items.end()) return;
+  if (item == targets.items.end()) return refuseSecondOpinion(query, "the pair is not known", answer);
   const auto object = snapshot.objects().find(answer.b);
   const bool stands = !answer.b_is_link && object != snapshot.objects().end();
   const ShapeDescription &shape = stands ? object->second->description.shapes.at(part)
@@ -435,7 +445,8 @@ void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, 
     return std::make_pair(std::move(ball),
                           sideOf(shape, toIsometry(placed.pose), placed.margin, hullsAnswer(query), resources, data));
   };
-  tell(opinionOf(data.peer, timesOf(answer, info.t0, info.t1), sidesAt, answer.result.lower, answer.result.upper),
+  tell(opinionOf(data.peer, timesOf(answer, info.t0, info.t1), sidesAt, answer.result.lower, answer.result.upper,
+                 stopOf(query)),
        answer);
 }
 
@@ -464,7 +475,8 @@ void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answe
     return std::make_pair(sideOfRobot(mover, poses),
                           sideOf(shape, toIsometry(placed.pose), placed.margin, by_hull || solid, data.objects, data));
   };
-  tell(opinionOf(data.peer, timesOf(answer, info.t0, info.t1), sidesAt, answer.result.lower, answer.result.upper),
+  tell(opinionOf(data.peer, timesOf(answer, info.t0, info.t1), sidesAt, answer.result.lower, answer.result.upper,
+                 stopOf(query)),
        answer);
 }
 

@@ -131,6 +131,24 @@ TEST(SecondOpinion, what_a_library_does_not_know_is_unknown_and_said) {
   }
 }
 
+/* Needles of 10 m whose balls all overlap: libccd, without a tree, would measure each pair of them. */
+TEST(SecondOpinion, nobody_waits_for_meshes_that_take_too_long) {
+  ShapeDescription needles = shape(ShapeType::MESH, {});
+  needles.vertices.resize(3, 600);
+  needles.triangles.resize(3, 200);
+  for (int i = 0; i < 200; ++i) {
+    const double y = 0.001 * i;
+    needles.vertices.block<3, 3>(0, 3 * i) << 0, 10, 5, /* */ y, y, y, /* */ 0, 0, 0.0005;
+    needles.triangles.col(i) << 3 * i, 3 * i + 1, 3 * i + 2;
+  }
+  const auto said = [&](Peer peer) {
+    return SecondOpinions(peer).ofPair(needles, Eigen::Isometry3d::Identity(), needles, translation(0, 0, 1), 0.9, 1.1);
+  };
+  EXPECT_EQ(said(Peer::FCL).verdict, SecondOpinion::AGREES);
+  EXPECT_EQ(said(Peer::LIBCCD).verdict, SecondOpinion::UNKNOWN);
+  expectContains(said(Peer::LIBCCD).message, "more than 20000 pairs");
+}
+
 /* The curve passes at .5 from the face of the padded box at t = .5, and begins farther away. */
 TEST(SecondOpinion, answers_about_curves_carry_it) {
   Scene scene;
@@ -162,6 +180,27 @@ TEST(SecondOpinion, answers_about_curves_carry_it) {
     expectContains(askOne(scene, {}, curve, query).message, "bounding balls have answered");
     query.options.max_lod = CPROX_LOD_MESH;
   }
+}
+
+/* The time is over after the search, and before the opinion. */
+TEST(SecondOpinion, what_ends_the_query_ends_the_opinion) {
+  struct Polls {
+    int n = 0, most = 1000000;
+  } polls;
+  Scene scene;
+  ASSERT_TRUE(scene.apply(change({add("box", {shape(ShapeType::BOX, {2, 2, 2})})})).empty());
+  Query query;
+  query.options.stop_user = &polls;
+  query.options.stop = [](void *user) { return ++static_cast<Polls *>(user)->n > static_cast<Polls *>(user)->most; };
+  const CurveDescription curve = line({-2, 0, 1.7}, {2, 0, 1.7});
+  askOne(scene, {}, curve, query);
+  polls.most = polls.n;
+  polls.n = 0;
+  query.second_opinion = std::make_shared<const SecondOpinions>(Peer::LIBCCD);
+  const Answer answer = askOne(scene, {}, curve, query);
+  EXPECT_EQ(answer.result.status, CPROX_OK);
+  EXPECT_EQ(answer.second_opinion.verdict, SecondOpinion::UNKNOWN);
+  expectContains(answer.message, "the query was ended");
 }
 
 /* A Panda among boxes and a mesh: the pairs of the scene, and those of the robot with itself, link meshes from files.
