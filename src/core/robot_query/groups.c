@@ -13,6 +13,7 @@ typedef struct group_state {
   uint32_t placed; /* the node for which all this was found */
   vec3 centre;     /* of a ball, in the middle of the node, that contains the parts where they are exactly */
   double radius;
+  double core;   /* of one about the same centre that contains their cores: margins do not turn */
   double within; /* so far they move as the group's axis sees them */
   int32_t from;  /* so far as this axis above it sees them, */
   double displacement;
@@ -221,6 +222,8 @@ static void unite_balls(const group_state *a, const group_state *b, group_state 
   both->centre = vec_axpy(a->centre, along, vec_sub(b->centre, a->centre));
   both->radius = ROUND_UP * greater(vec_norm(vec_sub(a->centre, both->centre)) + a->radius,
                                     vec_norm(vec_sub(b->centre, both->centre)) + b->radius);
+  both->core = ROUND_UP * greater(vec_norm(vec_sub(a->centre, both->centre)) + a->core,
+                                  vec_norm(vec_sub(b->centre, both->centre)) + b->core);
 }
 
 static void place_group(robot_scene *s, int32_t group);
@@ -244,6 +247,7 @@ static void place_group(robot_scene *s, int32_t group) {
     const robot_body *body = robot_scene_moving(s, &any);
     state->centre = body->side.at.p;
     state->radius = ROUND_UP * (body->radius + body->side.error);
+    state->core = ROUND_UP * robot_core_radius(body);
     state->within = state->displacement = 0.0;
     return;
   }
@@ -262,13 +266,13 @@ double robot_group_displacement(robot_scene *s, int32_t group, int32_t from) {
   if (g->seen) {
     double *seen = g->seen + (size_t)group * g->depths;
     if (depth >= known) return seen[depth];
-    motion_displacements_up(s->motion, s->axes, state->from, from, state->centre, state->radius, seen);
+    motion_displacements_up(s->motion, s->axes, state->from, from, state->centre, state->core, seen);
     state->displacement = seen[depth];
   } else {
     if (depth > known) state->from = g->of->at[group].axis, state->displacement = state->within;
     if (state->from != from)
       state->displacement = ROUND_UP * (state->displacement + motion_displacement(s->motion, s->axes, from, state->from,
-                                                                                  state->centre, state->radius));
+                                                                                  state->centre, state->core));
   }
   state->from = from;
   return state->displacement;
