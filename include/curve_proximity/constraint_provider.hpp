@@ -151,6 +151,14 @@ class MotionConstraint {
 
 /* ---- providers ---- */
 
+/** What prepare() and prepareMotion() throw where the provider is about something else altogether: trajectories, curves
+ *  or standing pairs. A request that names no providers leaves these out; others fail with the line. */
+class DoesNotApply : public Error {
+ public:
+  /** The line that a request which names the provider is answered with. */
+  explicit DoesNotApply(const std::string &reason) : Error(reason) {}
+};
+
 /** A prepared pair for any number of evaluations. It must not outlive its provider.
  *
  *  Immutable: any number of threads may evaluate at once, each with its own workspace and its own value. */
@@ -217,7 +225,7 @@ class LayoutProvider {
   /** Prepares a robot in its scene for trajectories. Throws Error; without an implementation of one's own always. Any
    *  number of threads at once. */
   virtual std::unique_ptr<const MotionConstraint> prepareMotion(const PreparedRobot & /*robot*/) const {
-    throw Error("this provider answers for curves and standing bodies, not for joint trajectories");
+    throw DoesNotApply("this provider answers for curves and standing bodies, not for joint trajectories");
   }
 
   /** prepare() and Constraint::evaluate() in one step, for a pair that is evaluated once. */

@@ -178,7 +178,8 @@ ConstraintRow failedRow(const std::string &id, const std::string &why, cprox_sta
 std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCase &described,
                                       const ResourceOptions &resources, Workspace &workspace) {
   std::vector<std::string> names = described.providers;
-  if (names.empty())
+  const bool all = names.empty();
+  if (all)
     for (const LoadedProvider &loaded : providers.all()) names.push_back(loaded.spec.name);
   if (names.empty()) return {failedRow(described.id, "there are no constraint providers")};
 
@@ -193,18 +194,27 @@ std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCa
     row.id = described.id;
     row.provider = name;
     const LoadedProvider *loaded = providers.find(name);
+    bool applies = true;
     row.message = sentenceOf(
         [&] {
           if (!loaded) throw Error("there is no provider '" + name + "' here");
-          askProvider(providers, *loaded, described, resources, asked, workspace, row);
+          try {
+            askProvider(providers, *loaded, described, resources, asked, workspace, row);
+          } catch (const DoesNotApply &) {
+            applies = false;
+            throw;
+          }
         },
         &row.status);
+    if (all && !applies) continue;
     if (row.status >= 0) {
       row.status = row.value.status;
       row.message = row.value.reason;
     }
     rows.push_back(std::move(row));
   }
+  if (rows.empty())
+    return {failedRow(described.id, "no constraint provider applies to this case: name the one that you mean")};
   return rows;
 }
 

@@ -27,7 +27,7 @@ struct MotionCase {
 /** What is asked, all poses in the fixed frame. */
 struct ConstraintCase {
   std::string id;
-  std::vector<std::string> providers;    /**< by name; none: every one that there is */
+  std::vector<std::string> providers;    /**< by name; none: every one that applies */
   ObjectDescription a, b;                /**< shapes, pose, padding */
   std::optional<CurveDescription> curve; /**< a rides it; a may then have no shape */
   std::optional<MotionCase> motion;      /**< this, and neither a, b nor curve */

@@ -17,7 +17,7 @@ class CurveDistanceConstraint : public Constraint {
  public:
   CurveDistanceConstraint(const CurveDistanceParameters &parameters, const ConstraintPair &pair)
       : parameters_(parameters), pair_(pair), excess_(excessOf(pair.a) + excessOf(pair.b)) {
-    if (!pair.along_curve) throw Error("CurveDistance is about curves: give one, or ask SuperquadricDistance");
+    if (!pair.along_curve) throw DoesNotApply("CurveDistance is about curves: give one, or ask SuperquadricDistance");
     if (!pair.a.parts.empty()) carried_ = joinedBody(pair.a);
     target_ = joinedBody(pair.b);
   }

@@ -21,7 +21,7 @@ struct Parameters {
 class FourierGapConstraint : public Constraint {
  public:
   FourierGapConstraint(const Parameters &parameters, const ConstraintPair &pair) : parameters_(parameters) {
-    if (pair.along_curve) throw Error("FourierGap is about standing bodies: ask CurveDistance about curves");
+    if (pair.along_curve) throw DoesNotApply("FourierGap is about standing bodies: ask CurveDistance about curves");
     const SolidHandle a = side(pair.a, "a"), b = side(pair.b, "b");
     const Workspace workspace;
     cprox_gap *gap = nullptr;

@@ -259,7 +259,8 @@ class SuperquadricDistance : public ConstraintProvider {
   }
 
   std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {
-    if (pair.along_curve) throw Error("SuperquadricDistance is about standing bodies: ask CurveDistance about curves");
+    if (pair.along_curve)
+      throw DoesNotApply("SuperquadricDistance is about standing bodies: ask CurveDistance about curves");
     return std::make_unique<SuperquadricConstraint>(parameters_, pair);
   }
 

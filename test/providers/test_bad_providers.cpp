@@ -115,13 +115,26 @@ TEST(Cases, that_are_wrong_become_rows_and_the_others_are_answered) {
   asked.a.shapes = asked.b.shapes = {shape(ShapeType::SPHERE, {0.5})};
   asked.b.pose.translation().x() = 3.0;
 
-  // All providers, one of which cannot.
+  // By name, one of which is about something else.
+  asked.providers = {"curves", "pairs"};
   std::vector<ConstraintRow> rows = answerCase(set, asked, {}, workspace);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].status, CPROX_INVALID);
   EXPECT_SAYS(rows[0].message, "CurveDistance is about curves");
   EXPECT_EQ(rows[1].status, CPROX_OK);
   EXPECT_NEAR(rows[1].value.value, 2.0, 1e-9);
+
+  // Without names those that apply; what is wrong with the case is told by them.
+  asked.providers.clear();
+  rows = answerCase(set, asked, {}, workspace);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].provider, "pairs");
+  EXPECT_EQ(rows[0].status, CPROX_OK);
+  ProviderSet curves(std::vector<ProviderSpec>{{"curves", "curve_proximity/CurveDistance", {}}});
+  rows = answerCase(curves, asked, {}, workspace);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].status, CPROX_INVALID);
+  EXPECT_SAYS(rows[0].message, "no constraint provider applies");
 
   asked.providers = {"nobody", "pairs"};
   rows = answerCase(set, asked, {}, workspace);

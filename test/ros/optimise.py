@@ -143,6 +143,9 @@ class Optimise(unittest.TestCase):
         self.assertIn('joint_state', self.refused(ConstraintQuery(
             providers=['least'], a=sphere('', 0.1), b=sphere('', 0.1), joint_state=joints(panda_joint1=0.0))))
 
+    def test_without_names_those_about_trajectories_are_asked(self):
+        self.assertEqual({row.provider for row in self.results(query(trajectory()))}, {'least', 'exact', 'scene', 'near', 'rows'})
+
     def test_providers_about_something_else_say_so(self):
         for name in ('curve_proximity/CurveDistance', 'balls'):
             self.assertIn('not for joint trajectories', self.refused(query(trajectory(), name)))
