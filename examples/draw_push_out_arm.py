@@ -43,7 +43,7 @@ def joints(path):
 
 def main(robot, srdf, scene, before, after, out):
     figure, axes = plt.subplots(2, 2, figsize=(10, 5.4), sharex=True, sharey='row')
-    for column, path, colour, title in ((0, before, HIT, "before: the planner's path"), (1, after, CLEAR, 'after: smooth, more than 10 mm clear, proven')):
+    for column, path, colour, title in ((0, before, HIT, "before"), (1, after, CLEAR, 'after: smooth, more than 10 mm clear, proven')):
         found = clearance(robot, srdf, scene, path)
         axes[0, column].plot(*found['environment'].T, color=colour, label='to the objects')
         axes[0, column].plot(*found['self'].T, color=INK, linewidth=0.8, label='to itself')

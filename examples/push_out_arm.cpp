@@ -2,13 +2,15 @@
 /** Makes the way of a Panda through a shelf smooth and 10 mm clear: NLopt's SLSQP, with the rows and gradients of the
  * provider curve_proximity/RobotDistance.
  *
- *      push_out_arm PANDA.urdf PANDA.srdf SCENE.yaml TRAJECTORY.yaml [BEFORE.yaml AFTER.yaml]
+ *      push_out_arm [--straight] PANDA.urdf PANDA.srdf SCENE.yaml TRAJECTORY.yaml [BEFORE.yaml AFTER.yaml]
  *
- *  TRAJECTORY.yaml is the path of a planner. It becomes a cubic B-spline of all joints, which begins and ends at rest.
- *  The variables are the inner control points; the objective is the square of the jerk, the bounds are the joint
- * limits. The constraints are, for each span of the spline, the pairs of links and objects, or of two links, that come
- * nearest. At the end the whole spline is asked about once more: its clearance is then proven, not sampled. BEFORE.yaml
- * and AFTER.yaml get the spline before and after, for `cprox tolerance --trajectory` and for draw_push_out_arm.py. */
+ *  TRAJECTORY.yaml is the path of a planner; with --straight only its ends are taken, and the way between them may be
+ * in contact: distances are signed, so that the gradient leads out. It becomes a cubic B-spline of all joints, which
+ * begins and ends at rest. The variables are the inner control points; the objective is the square of the jerk, the
+ * bounds are the joint limits. The constraints are, for each span of the spline, the pairs of links and objects, or of
+ * two links, that come nearest. At the end the whole spline is asked about once more: its clearance is then proven, not
+ * sampled. BEFORE.yaml and AFTER.yaml get the spline before and after, for `cprox tolerance --trajectory` and for
+ * draw_push_out_arm.py. */
 #include <nlopt.h>
 #include <yaml-cpp/yaml.h>
 #include <pluginlib/class_loader.hpp>
@@ -180,7 +182,7 @@ SnapshotPtr readScene(const std::string &urdf, const Srdf &srdf, const std::stri
 }
 
 /* The planner's path, evenly spaced in time: control points of the spline. */
-void readPath(const std::string &path, Problem &problem) {
+void readPath(const std::string &path, bool straight, Problem &problem) {
   const YAML::Node file = YAML::LoadFile(path);
   problem.joints = file["joint_trajectory"]["joint_names"].as<std::vector<std::string>>();
   if (file["fixed_joints"]) problem.rest = file["fixed_joints"].as<JointPositions>();
@@ -193,6 +195,7 @@ void readPath(const std::string &path, Problem &problem) {
     given.points.push_back(std::move(point));
   }
   checkTrajectory(given);
+  if (straight) given.points = {given.points.front(), given.points.back()};
   problem.control.resize(kControls, static_cast<Eigen::Index>(problem.joints.size()));
   std::size_t k = 0;
   for (int i = 0; i < kControls; ++i) {
@@ -261,15 +264,16 @@ void setLimits(const Problem &problem, const Robot &robot) {
   nlopt_set_upper_bounds(problem.optimiser, upper.data());
 }
 
-int run(char **arguments, const char *before_file, const char *after_file) {
+int run(char **arguments, bool straight, const char *before_file, const char *after_file) {
   Problem problem;
   const Srdf srdf = parseSrdf(readText(arguments[2]));
   const SnapshotPtr snapshot = readScene(arguments[1], srdf, arguments[3]);
   problem.robot = std::make_unique<PreparedRobot>(snapshot, srdf.disabled);
-  readPath(arguments[4], problem);
+  readPath(arguments[4], straight, problem);
   pluginlib::ClassLoader<ConstraintProvider> plugins("curve_proximity", "curve_proximity::ConstraintProvider");
   const auto provider = plugins.createUniqueInstance("curve_proximity/RobotDistance");
-  provider->initialise({{"horizon", kHorizon}, {"per_pair", kSpans}, {"margin", kClear + kMargin}, {"epsilon", 1e-6}});
+  provider->initialise(
+      {{"horizon", kHorizon}, {"per_pair", kSpans}, {"margin", kClear + kMargin}, {"epsilon", 1e-6}, {"signed", true}});
   problem.constraint = provider->prepareMotion(*problem.robot);
 
   // From the planner's path to the smoothest spline that is clear.
@@ -281,7 +285,7 @@ int run(char **arguments, const char *before_file, const char *after_file) {
   nlopt_set_min_objective(optimiser.get(), jerk, &problem);
   nlopt_add_inequality_mconstraint(optimiser.get(), m, tooNear, &problem, tolerances.data());
   setLimits(problem, *snapshot->robot());
-  nlopt_set_maxeval(optimiser.get(), 30);
+  nlopt_set_maxeval(optimiser.get(), 200);
   nlopt_set_ftol_rel(optimiser.get(), 1e-3);
   std::vector<double> x(n);
   putInner(problem.control, x.data());
@@ -304,15 +308,18 @@ int run(char **arguments, const char *before_file, const char *after_file) {
 } // namespace
 
 int main(int argc, char **argv) {
+  const bool straight = argc > 1 && std::string(argv[1]) == "--straight";
+  if (straight) ++argv, --argc;
   if (argc != 5 && argc != 7) {
-    std::fprintf(stderr, "usage: %s PANDA.urdf PANDA.srdf SCENE.yaml TRAJECTORY.yaml [BEFORE.yaml AFTER.yaml]\n",
-                 argv[0]);
+    std::fprintf(stderr,
+                 "usage: push_out_arm [--straight] PANDA.urdf PANDA.srdf SCENE.yaml TRAJECTORY.yaml "
+                 "[BEFORE.yaml AFTER.yaml]\n");
     return 2;
   }
   try {
-    return run(argv, argc == 7 ? argv[5] : nullptr, argc == 7 ? argv[6] : nullptr);
+    return run(argv, straight, argc == 7 ? argv[5] : nullptr, argc == 7 ? argv[6] : nullptr);
   } catch (const std::exception &error) {
-    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    std::fprintf(stderr, "push_out_arm: %s\n", error.what());
     return 1;
   }
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The example of an arm with NLopt: the path comes nearer than 10 mm before, and not after, which `cprox` confirms. The last line
-is the sum."""
+"""The example of an arm with NLopt, from a planner's path and from a straight one that is in contact: the path comes nearer than
+10 mm before, and not after, which `cprox` confirms. The last line is the sum."""
 import argparse
 import os
 import subprocess
@@ -26,16 +26,24 @@ def check(what, holds, seen=''):
     print(f"{'ok' if holds else 'FAILED'}: {what} {'' if holds else seen}")
 
 
-with tempfile.TemporaryDirectory() as folder:
+def run(folder, start, options):
     before, after = (os.path.join(folder, name + '.yaml') for name in ('before', 'after'))
-    done = subprocess.run([arguments.push_out_arm, ROBOT, SRDF, SCENE, PATH, before, after], stdout=subprocess.PIPE,
+    done = subprocess.run([arguments.push_out_arm, *options, ROBOT, SRDF, SCENE, PATH, before, after], stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, timeout=300)
-    print(done.stdout.decode())
-    check('the example ends well', done.returncode == 0, done.returncode)
+    said = done.stdout.decode()
+    print(said)
+    check(f'from {start} the example ends well', done.returncode == 0, done.returncode)
+    check('it converges', 'NLopt said 3' in said or 'NLopt said 4' in said, said)
     codes = [subprocess.run([arguments.cprox, 'tolerance', '--delta', '0.01', '--robot', ROBOT, '--srdf', SRDF, '--scene', SCENE, '--self',
                              '--trajectory', path], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120).returncode
              for path in (before, after)]
-    check("the planner's path comes nearer than 10 mm", codes[0] == 1, codes)
-    check('the other one does not, proven', codes[1] == 0, codes)
-print(f'{3 - failed} passed, {failed} failed')
+    check(f'{start} comes nearer than 10 mm', codes[0] == 1, codes)
+    check('the result does not, proven', codes[1] == 0, codes)
+    return said
+
+
+with tempfile.TemporaryDirectory() as folder:
+    run(folder, "the planner's path", [])
+    check('the straight path is in contact', 'before: at least 0.0000 mm' in run(folder, 'the straight path', ['--straight']))
+print(f'{9 - failed} passed, {failed} failed')
 sys.exit(failed != 0)
