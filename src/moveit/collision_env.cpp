@@ -179,6 +179,7 @@ void CollisionEnvCurveProximity::setWorld(const cd::WorldPtr &world) {
     changed_.clear();
     moved_.clear();
     faults_.clear();
+    resized_ = true; // so that a fault of paddings is told again
     SceneChange none;
     none.clear_objects = true;
     scene_->apply(none);
