@@ -4,11 +4,13 @@ set(CURVE_PROXIMITY_MESSAGES
   AllowedContact.msg
   AttachedCollisionObject.msg
   Body.msg
+  Clearance.msg
   CollisionObject.msg
   ConstraintQuery.msg
   ConstraintResult.msg
   Curve.msg
   CurvePiece.msg
+  Gradient.msg
   Hyperquadric.msg
   LinkPadding.msg
   LinkScale.msg

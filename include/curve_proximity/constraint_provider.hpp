@@ -241,8 +241,9 @@ using ConstraintProvider = LayoutProvider<providerLayout()>;
 
 /* ---- for plugins ---- */
 
-/** The weight of each control point or coefficient in the curve's point at t; n = description.points.cols() of them. */
-inline void curveWeights(const CurveDescription &curve, double t, double *weights) {
+/** The weight of each control point or coefficient in the curve's point at t; n = description.points.cols() of them.
+ *  false: the basis has none, and nothing is written. */
+inline bool findCurveWeights(const CurveDescription &curve, double t, double *weights) {
   static constexpr std::pair<const char *, cprox_curve_kind> kinds[] = {
       {"bezier", CPROX_CURVE_BEZIER},         {"bspline", CPROX_CURVE_BSPLINE},
       {"polynomial", CPROX_CURVE_POLYNOMIAL}, {"legendre", CPROX_CURVE_LEGENDRE},
@@ -253,9 +254,14 @@ inline void curveWeights(const CurveDescription &curve, double t, double *weight
     cprox_curve_description d = detail::describe(kind, curve.points, curve.t0, curve.t1);
     d.degree = curve.degree, d.knots = curve.knots.data(), d.n_knots = curve.knots.size();
     d.weights = curve.parameters.data();
-    if (cprox_curve_weights(&d, t, weights) == CPROX_OK) return;
+    return cprox_curve_weights(&d, t, weights) == CPROX_OK;
   }
-  throw Error("no weights are known of the basis '" + curve.basis + "'");
+  return false;
+}
+
+/** The same. Throws Error where the basis has none. */
+inline void curveWeights(const CurveDescription &curve, double t, double *weights) {
+  if (!findCurveWeights(curve, t, weights)) throw Error("no weights are known of the basis '" + curve.basis + "'");
 }
 
 /** The side as one body: its only part if that stands at the side's origin, otherwise a compound of all parts. */

@@ -176,6 +176,37 @@ std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const Co
                                                 const std::vector<double> &breaks, const Query &query,
                                                 Workspace &workspace);
 
+/** The derivatives of a curve's clearance, at its minimiser t. */
+struct CurveGradient {
+  bool valid = false; /**< the clearance is differentiable here; the numbers are else those of one minimiser, or 0 */
+  std::string reason; /**< why valid is false */
+  double t = std::numeric_limits<double>::quiet_NaN(); /**< the minimiser; NaN: none was found */
+
+  /** By the control points or coefficients of the description, one a column [m/m]; no column for a basis in which the
+   *  curve is no sum of weighted points. */
+  Eigen::Matrix3Xd points;
+  double radius = 0.0; /**< by the radius of the tube: -1 */
+
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();        /**< by a shift of the whole curve, fixed frame */
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();       /**< [m/rad] by its small turn about the frame's origin */
+  Eigen::Vector3d object_linear = Eigen::Vector3d::Zero(); /**< by a shift of the nearest object; 0 for a link */
+  Eigen::Vector3d object_angular =
+      Eigen::Vector3d::Zero(); /**< [m/rad] by its small turn about its own origin; 0 for a link */
+};
+
+/** The clearance of a curve with its gradient. */
+struct CurveClearance {
+  Answer answer;          /**< as of ask() */
+  CurveGradient gradient; /**< at answer.result.t, as far as the search tells it */
+};
+
+/** The least distance of a curve and its derivatives (cprox_distance_gradient()). Where the nearest shape has no
+ *  gradient (a mesh, a second one that is as near), valid is false and reason says why. The query is DISTANCE without
+ *  per_object and without a certificate; throws Error for another, or answers with status "invalid". description: what
+ *  the curve was compiled from. Cost: two distances, and with more than one shape the second nearest. */
+CurveClearance clearanceGradient(const Targets &targets, const CompiledCurve &curve,
+                                 const CurveDescription &description, const Query &query, Workspace &workspace);
+
 /** An interval of the parameter in which what moves is within delta of something (cprox_obstacles_violations()). */
 struct Violation {
   double enter_lower = 0.0; /**< farther than delta before, back to leave_upper of the violation before */

@@ -108,6 +108,11 @@ class Client:
         own = dict(breaks=list(breaks), per_link=per_link) if len(breaks) else dict(intervals=intervals, per_link=per_link)
         return self._ask('clearance_profile', ClearanceProfile, ClearanceProfileRequest, curves, dict(fields, **own))
 
+    def gradient(self, curves, **fields):
+        """The derivatives of distance(): a Gradient message, or a list of them for a list. Where valid is false there is none, and message
+        says why."""
+        return self._ask('distance', Distance, DistanceRequest, curves, dict(fields, gradient=True))
+
     def is_clear(self, curve, delta, **fields):
         """True only where it is proven that the curve stays farther than delta [m] from everything."""
         return self.tolerance(curve, delta, **fields).verdict == 'clear'
@@ -161,6 +166,8 @@ class Client:
             else:
                 raise Failure('a query has no field %r' % name)
         response = self._call(service, kind, whole)
+        if asked.gradient:
+            return response.gradients
         return response.profiles if service == 'clearance_profile' else response.results
 
     def _call(self, service, kind, request):

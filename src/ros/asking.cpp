@@ -56,6 +56,12 @@ void askMotion(const RobotMotion &motion, const Query &query, bool self, const A
     if (answers.empty() && !std::isfinite(asking.limits.within)) answers = plainly(query);
   }
   if (asking.kind == Asking::ANSWER) answers = plainly(query);
+  if (asking.kind == Asking::GRADIENT) {
+    const RobotPairs pairs = self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
+    ClearanceRow row = clearanceGradient(motion, pairs, query, workspace);
+    out.gradients.push_back(std::move(row.gradient));
+    answers = {std::move(row.answer)};
+  }
   if (asking.kind == Asking::PROFILE) {
     const std::vector<double> breaks = breaksOf(asking, motion.domain()[0], motion.domain()[1]);
     std::vector<std::string> links = asking.per_link ? askedNames(motion, self) : std::vector<std::string>();

@@ -14,7 +14,7 @@ namespace curve_proximity {
 
 /** What is asked of each curve and motion. */
 struct Asking {
-  enum Kind { ANSWER, NEAREST, CONTACT, PROFILE };
+  enum Kind { ANSWER, GRADIENT, NEAREST, CONTACT, PROFILE };
   Kind kind = ANSWER;
   PairLimits limits;          /**< of NEAREST */
   std::size_t intervals = 0;  /**< of PROFILE, where there are no breaks */
@@ -33,7 +33,8 @@ Profile profileOf(const Targets &targets, const CompiledCurve &curve, const Quer
 /** The rows of a motion. */
 struct MotionRows {
   std::vector<Answer> answers;
-  std::vector<Profile> profiles; /* of Asking::PROFILE: one for each answer */
+  std::vector<Profile> profiles;            /* of Asking::PROFILE: one for each answer */
+  std::vector<ClearanceGradient> gradients; /* of Asking::GRADIENT likewise */
 };
 
 /** Appends the rows of one kind: against objects, or of the robot with itself. */

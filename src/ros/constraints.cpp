@@ -11,6 +11,7 @@
 
 #include "conversions.h"
 #include "doubts.h"
+#include "gradient_message.h"
 #include "name_limits.h"
 #include "robot_description.h"
 #include "turns.h"
@@ -69,28 +70,8 @@ bool isNamed(const CollisionObject &side) {
 
 /* ---- to messages ---- */
 
-geometry_msgs::Vector3 toVectorMessage(const Eigen::Vector3d &v) {
-  geometry_msgs::Vector3 message;
-  message.x = v.x();
-  message.y = v.y();
-  message.z = v.z();
-  return message;
-}
-
 geometry_msgs::Twist toTwistMessage(const ConstraintGradient &gradient) {
-  geometry_msgs::Twist message;
-  message.linear = toVectorMessage(gradient.linear);
-  message.angular = toVectorMessage(gradient.angular);
-  return message;
-}
-
-/** Row by row. */
-std::vector<double> toList(const Eigen::MatrixXd &matrix) {
-  std::vector<double> list;
-  list.reserve(static_cast<std::size_t>(matrix.size()));
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-    for (Eigen::Index k = 0; k < matrix.cols(); ++k) list.push_back(matrix(i, k));
-  return list;
+  return curve_proximity::toTwistMessage(gradient.linear, gradient.angular);
 }
 
 /** What all rows of a result share: the points and the normal. */

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "conversions.h"
+#include "gradient_message.h"
 #include "queries.h"
 #include "topics.h"
 
@@ -135,7 +136,7 @@ void Queries::answerMovers(Work &work) {
     work.response.message = "movers: " + row.message;
   }
   work.response.results.push_back(std::move(row));
-  if (request.asking.kind == Asking::PROFILE) work.response.profiles.resize(work.response.results.size());
+  work.response.fillUp(request.asking);
 }
 
 void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
@@ -183,6 +184,8 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     }
     std::vector<Answer> &answers = rows.answers;
     std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(response.profiles));
+    for (const ClearanceGradient &gradient : rows.gradients)
+      response.gradients.push_back(toMessage(gradient, trajectory));
     for (const Answer &answer : answers) {
       response.results.push_back(toRow(answer, environment, request.asking));
       Proximity &row = response.results.back();
@@ -196,7 +199,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
   } catch (const Error &error) {
     response.results.push_back(toFailedRow(id, Proximity::KIND_ENVIRONMENT, error.what()));
     if (request.more.self_collision) response.results.push_back(toFailedRow(id, Proximity::KIND_SELF, error.what()));
-    if (request.asking.kind == Asking::PROFILE) response.profiles.resize(response.results.size());
+    response.fillUp(request.asking);
   }
 
   // A row that failed fails the call, as a curve's does.

@@ -69,6 +69,7 @@ void checkAsked(const Query &query, const Asking &asking) {
   const std::string where = " while objects or further robots move";
   if (asking.kind == Asking::NEAREST) throw Error("nearest pairs are not available" + where);
   if (asking.kind == Asking::PROFILE) throw Error("clearance profiles are not available" + where);
+  if (asking.kind == Asking::GRADIENT) throw Error("gradients are not available" + where);
   if (query.per_object) throw Error("per_object is not available" + where);
   if (!query.objects.empty()) throw Error("a choice of objects is not available" + where);
 }

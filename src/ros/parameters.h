@@ -49,6 +49,8 @@ struct Parameters {
   double path_radius = 0.0;
   int queue_size = 10;
   double state_rate = 0.0;
+  int profile_intervals = 0;
+  bool profile_per_link = false;
   int memory_limit_mb = 4096;
   int max_request_mb = 1024;
   int max_name_length = 256;
@@ -105,6 +107,8 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("path_radius", parameters.path_radius, Range{0.0});
   visit("queue_size", parameters.queue_size, Range{1.0, false, 1e6});
   visit("state_rate", parameters.state_rate, Range{0.0, false, 1000.0});
+  visit("profile_intervals", parameters.profile_intervals, Range{0.0, false, 10000.0});
+  visit("profile_per_link", parameters.profile_per_link);
   visit("memory_limit_mb", parameters.memory_limit_mb, Range{0.0, false, count});
   visit("max_request_mb", parameters.max_request_mb, Range{1.0, false, count});
   visit("max_name_length", parameters.max_name_length, Range{16.0, false, 65536.0});

@@ -4,6 +4,7 @@
 #include <ros/console.h>
 
 #include <curve_proximity/fingerprint.hpp>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -51,21 +52,22 @@ ros::Time stampOf(const moveit::DisplayTrajectory &message) {
   return message.trajectory.empty() ? ros::Time() : stampOf(message.trajectory.front());
 }
 
-void ask(const Curve &message, QueryRequest &request) {
+/** The request is about a message. */
+void fill(const Curve &message, QueryRequest &request) {
   request.curves = List<Curve>(&message, 1);
 }
-void ask(const nav_msgs::Path &message, QueryRequest &request) {
+void fill(const nav_msgs::Path &message, QueryRequest &request) {
   request.paths = List<nav_msgs::Path>(&message, 1);
 }
-void ask(const trajectory_msgs::JointTrajectory &message, QueryRequest &request) {
+void fill(const trajectory_msgs::JointTrajectory &message, QueryRequest &request) {
   request.trajectories = List<trajectory_msgs::JointTrajectory>(&message, 1);
 }
-void ask(const trajectory_msgs::MultiDOFJointTrajectory &message, QueryRequest &request) {
+void fill(const trajectory_msgs::MultiDOFJointTrajectory &message, QueryRequest &request) {
   request.multi_dof_trajectories = List<trajectory_msgs::MultiDOFJointTrajectory>(&message, 1);
 }
-/* What moveit_msgs packs is asked by askMotions(). */
+/* What moveit_msgs packs is unpacked by requestOfMotions(). */
 template <class Message>
-void ask(const Message &, QueryRequest &) {}
+void fill(const Message &, QueryRequest &) {}
 
 std::string idOf(const Curve &curve) {
   return curve.id;
@@ -94,6 +96,9 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
   state_handle_.setCallbackQueue(&state_queue_);
   results_ = handle_.advertise<ProximityResults>("proximity", RESULTS_KEPT);
   contacts_ = handle_.advertise<moveit::ContactInformation>("contacts", RESULTS_KEPT);
+  if (parameters_.profile_intervals > 0)
+    clearance_ = std::make_unique<ClearanceTopics>(handle_, static_cast<std::size_t>(parameters_.profile_intervals),
+                                                   live_.scene.snapshot()->robot().get());
   listen<Curve>("curve");
   listen<trajectory_msgs::JointTrajectory>("trajectory");
   listen<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
@@ -174,46 +179,60 @@ void Pipeline::handle(const Job &job) {
   describe(*results);
 
   const auto drawing = std::make_shared<Drawing>();
-  guarded([&] { answerJob(job, *results, *drawing); },
+  bool told = false;
+  const auto tell = [&] {
+    told = true;
+    results->dropped = jobs_.dropped();
+    results_.publish(ProximityResultsPtr(results));
+    tellContacts(*results);
+    markers_.show(drawing);
+  };
+  const auto ask = [&](const QueryRequest &request) {
+    answer(request, *results, *drawing);
+    tell(); // nobody has to wait for the profile
+    tellClearance(request, *results);
+  };
+  guarded([&] { requestOf(job, *results, ask); },
           [&](const std::string &why) {
+            if (told) ROS_ERROR("~clearance: %s", why.c_str());
+            if (told) return;
             results->success = false;
             results->message = why;
           });
-  results->dropped = jobs_.dropped();
-  results_.publish(ProximityResultsPtr(results));
-  tellContacts(*results);
-  markers_.show(drawing);
+  if (!told) tell();
 }
 
-void Pipeline::answerJob(const Job &job, ProximityResults &results, Drawing &drawing) {
+/** Hands the request that a message is to `ask`. */
+void Pipeline::requestOf(const Job &job, ProximityResults &results, const Ask &ask) {
   // Curves meet the robot where tf2 has it; joints that a trajectory leaves alone stand as they were last told.
   ProximityQuery more;
   const bool moves = movesRobot(job);
   more.self_collision = parameters_.self_collision && moves;
   more.current_joints = moves && !live_.joints.joints().empty();
   if (const auto *motion = std::get_if<moveit::RobotTrajectoryConstPtr>(&job))
-    return askMotions(**motion, more, results, drawing);
+    return requestOfMotions(**motion, more, results, ask);
   if (const auto *motions = std::get_if<moveit::DisplayTrajectoryConstPtr>(&job))
-    return askMotions(**motions, more, results, drawing);
+    return requestOfMotions(**motions, more, results, ask);
   QueryRequest request(query_type_, results.delta, more);
-  std::visit([&](const auto &message) { ask(*message, request); }, job);
-  answer(request, results, drawing);
+  std::visit([&](const auto &message) { fill(*message, request); }, job);
+  ask(request);
 }
 
 /** What is not used of the message is told in the answer and in the log. */
 template <class Message>
-void Pipeline::askMotions(const Message &message, ProximityQuery &more, ProximityResults &results, Drawing &drawing) {
+void Pipeline::requestOfMotions(const Message &message, ProximityQuery &more, ProximityResults &results,
+                                const Ask &ask) {
   RobotMotions motions = toMotions(message, *live_.scene.snapshot(), live_.srdf);
   more.joint_state = motions.start;
   more.joint_state.header.stamp = ros::Time(); // when the trajectory was planned is no time to look transforms up for
   QueryRequest request(query_type_, results.delta, more);
   request.trajectories = List<trajectory_msgs::JointTrajectory>(motions.trajectories);
-  answer(request, results, drawing);
   for (std::string &remark : motions.remarks) {
     const std::string line = "~" + results.source + ": " + remark;
     if (complaints_.isDue(line)) ROS_WARN_STREAM(line);
     results.warnings.push_back(std::move(remark));
   }
+  ask(request);
 }
 
 /** moveit_msgs has no list of contacts: a message each. */
@@ -226,6 +245,26 @@ void Pipeline::tellContacts(const ProximityResults &results) {
     contact->header = results.header;
     contacts_.publish(*contact);
   }
+}
+
+/** The profile of what was answered. It is asked for only where somebody looks. */
+void Pipeline::tellClearance(const QueryRequest &request, const ProximityResults &results) {
+  if (!clearance_ || !clearance_->isWatched()) return;
+  QueryRequest again(QueryType::DISTANCE, 0.0, request.more);
+  again.curves = request.curves;
+  again.paths = request.paths;
+  again.trajectories = request.trajectories;
+  again.multi_dof_trajectories = request.multi_dof_trajectories;
+  again.asking.kind = Asking::PROFILE;
+  again.asking.intervals = static_cast<std::size_t>(parameters_.profile_intervals);
+  again.asking.per_link = parameters_.profile_per_link && !request.trajectories.empty();
+  QueryResponse answer;
+  Drawing not_drawn;
+  queries_.answer(again, answer, not_drawn);
+  if (!answer.success && complaints_.isDue(answer.message)) ROS_WARN("~clearance: %s", answer.message.c_str());
+  std_msgs::Header begin = results.header;
+  if (begin.stamp.isZero()) begin.stamp = ros::Time::now();
+  for (const Profile &profile : takeProfiles(answer)) clearance_->publish(profile, begin);
 }
 
 /** What is asked of every message. */
@@ -241,7 +280,7 @@ void Pipeline::answer(const QueryRequest &request, ProximityResults &results, Dr
   queries_.answer(request, answer, drawing);
   results.success = answer.success;
   results.message = std::move(answer.message);
-  results.warnings = std::move(answer.warnings);
+  std::move(answer.warnings.begin(), answer.warnings.end(), std::back_inserter(results.warnings));
   results.scene = std::move(answer.scene);
   results.results = std::move(answer.results);
 }

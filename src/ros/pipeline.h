@@ -15,7 +15,9 @@
 #include <trajectory_msgs/MultiDOFJointTrajectory.h>
 
 #include <atomic>
+#include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -23,6 +25,7 @@
 #include <vector>
 
 #include "bounded_queue.h"
+#include "clearance_topics.h"
 #include "complaints.h"
 #include "markers.h"
 #include "moveit_messages.h"
@@ -34,7 +37,8 @@ namespace curve_proximity {
 /** Answers what comes on ~curve, ~trajectory, ~multi_dof_trajectory, ~path, ~robot_trajectory and ~display_trajectory,
  * one message after the other, on ~proximity, and tells contacts on ~contacts. Messages are taken and results handed on
  * by pointer: within one nodelet manager nothing is copied. While one message is being answered ~queue_size others
- * wait; what is older than these is dropped and counted. With ~state_rate it also tells on ~state_proximity how close
+ * wait; what is older than these is dropped and counted. With ~profile_intervals the clearance profile follows on
+ * ~clearance. With ~state_rate it also tells on ~state_proximity how close
  * the robot is as it stands. */
 class Pipeline {
  public:
@@ -61,10 +65,12 @@ class Pipeline {
   void handle(const Job &job);
   void describe(ProximityResults &results) const;
   void answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing);
-  void answerJob(const Job &job, ProximityResults &results, Drawing &drawing);
+  using Ask = std::function<void(const QueryRequest &)>;
+  void requestOf(const Job &job, ProximityResults &results, const Ask &ask);
   template <class Message>
-  void askMotions(const Message &message, ProximityQuery &more, ProximityResults &results, Drawing &drawing);
+  void requestOfMotions(const Message &message, ProximityQuery &more, ProximityResults &results, const Ask &ask);
   void tellContacts(const ProximityResults &results);
+  void tellClearance(const QueryRequest &request, const ProximityResults &results);
   void tellState();
 
   bool movesRobot(const Job &job) const;
@@ -83,6 +89,7 @@ class Pipeline {
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher results_, states_, contacts_;
+  std::unique_ptr<ClearanceTopics> clearance_; /* null: without ~profile_intervals */
   Complaints complaints_{std::chrono::seconds(60)};
   ros::CallbackQueue state_queue_; /* with a thread of its own: it waits for no message */
   ros::NodeHandle state_handle_;

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "conversions.h"
+#include "gradient_message.h"
 #include "guard.h"
 #include "memory_account.h"
 #include "name_limits.h"
@@ -199,6 +200,13 @@ struct Queries::CurveRows {
   std::vector<std::size_t> counts;  /* of rows, for each curve */
   std::vector<Drawing::Line> lines; /* of those that are drawn */
   std::vector<Profile> profiles;    /* of Asking::PROFILE: one for each row */
+  std::vector<Gradient> gradients;  /* of Asking::GRADIENT likewise */
+
+  void fail(const std::string &id, const std::string &why, const Asking &asking) {
+    rows.push_back(toFailedRow(id, Proximity::KIND_CURVE, why));
+    if (asking.kind == Asking::PROFILE) profiles.emplace_back();
+    if (asking.kind == Asking::GRADIENT) gradients.emplace_back();
+  }
 };
 
 QueryType queryTypeFromName(const std::string &name) {
@@ -206,6 +214,18 @@ QueryType queryTypeFromName(const std::string &name) {
   if (name == "tolerance") return QueryType::TOLERANCE;
   if (name == "collision") return QueryType::COLLISION;
   throw Error("the query '" + name + "' is none of distance, tolerance, collision");
+}
+
+std::vector<Profile> takeProfiles(QueryResponse &answer) {
+  std::vector<Profile> profiles = std::move(answer.profiles);
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    Profile &profile = profiles[i];
+    profile.summary = std::move(answer.results[i]);
+    const std::string &status = profile.summary.status;
+    if (status != Proximity::STATUS_STALE && status != Proximity::STATUS_UNKNOWN) continue;
+    std::fill(profile.lower.begin(), profile.lower.end(), 0.0);
+  }
+  return profiles;
 }
 
 std::size_t Queries::mostBytes() const {
@@ -225,8 +245,12 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   if (request.delta != 0.0 && request.query_type != QueryType::TOLERANCE)
     throw Error("delta is " + std::to_string(request.delta) + ": it is the clearance that tolerance asks for");
   const std::size_t motions = request.trajectories.size() + request.multi_dof_trajectories.size();
-  if (request.asking.kind != Asking::ANSWER && more.per_object)
-    throw Error("per_object does not apply: it is of distance, tolerance and collision");
+  const bool own_rows = request.asking.kind != Asking::ANSWER && request.asking.kind != Asking::GRADIENT;
+  if (own_rows && more.per_object) throw Error("per_object does not apply: it is of distance, tolerance and collision");
+  if (more.gradient && request.asking.kind != Asking::GRADIENT)
+    throw Error("gradient does not apply: it is of the service distance");
+  if (more.gradient && more.per_object)
+    throw Error("gradient does not apply with per_object: there is one for the nearest object");
   if (request.asking.per_link && motions == 0 && !more.robot_state)
     throw Error("per_link is about the robot along a trajectory or as it stands (robot_state): there is neither");
   if (more.self_collision && motions == 0 && !more.robot_state && !more.movers)
@@ -255,7 +279,7 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   return query;
 }
 
-/** Throws Error for what is beyond a limit; how many rows there will be at most. */
+/** Throws Error for what is beyond a limit; how many bytes the answer has at most. */
 std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot) const {
   const NameLimits names(parameters_.max_name_length);
   names.check(request.more);
@@ -302,13 +326,18 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   if (asking.kind == Asking::NEAREST) targets = asking.limits.count;
   if (asking.kind == Asking::PROFILE) targets = std::max(asking.intervals, asking.breaks.size());
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), targets, "results");
-  const bool often = asking.kind != Asking::ANSWER && request.more.self_collision; // as many rows of kind self
+  const bool often = asking.kind != Asking::ANSWER && asking.kind != Asking::GRADIENT &&
+                     request.more.self_collision; // as many rows of kind self
   const std::size_t profiles =
       (asking.per_link && snapshot.robot() ? snapshot.robot()->links().size() + snapshot.attached().size() : 1) *
       (often ? 2 : 1);
   const std::size_t rows = (curves + motions * profiles) * targets + motions + (request.more.movers ? 1 : 0);
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
-  return rows;
+  constexpr std::size_t VECTOR = 3 * sizeof(double), COPIES = 2, KINDS = 2, DERIVATIVES = 3;
+  std::size_t bytes = rows * ROW_BYTES;
+  if (asking.kind == Asking::GRADIENT)
+    bytes += COPIES * (rows * sizeof(Gradient) + points * VECTOR + values * KINDS * DERIVATIVES * sizeof(double));
+  return bytes;
 }
 
 void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
@@ -332,8 +361,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
   TimeBudget budget(budget_ms, request, stop_, request.turn);
   query.options.stop = TimeBudget::isOver;
   query.options.stop_user = &budget;
-  const std::size_t rows = checkLimits(request, *snapshot);
-  const memory::Share share(rows * ROW_BYTES, mostBytes());
+  const memory::Share share(checkLimits(request, *snapshot), mostBytes());
   if (!snapshot->robot() && !request.more.joint_state.name.empty())
     throw Error("joint_state names '" + request.more.joint_state.name.front() + "', and this server has no robot");
 
@@ -461,13 +489,19 @@ void Queries::search(const Curve &message, const CurvePlace &place, const Query 
     const Targets &targets = place.stamped->targets;
     toDescription(message, *place.frame, scratch);
     CompiledCurve curve = compile(scratch, targets.boxes(), workspace);
-    std::vector<Answer> answers = askCurve(targets, curve, query, asking, workspace);
+    std::vector<Answer> answers;
+    if (asking.kind == Asking::GRADIENT) {
+      CurveClearance clearance = clearanceGradient(targets, curve, scratch, query, workspace);
+      answers.push_back(std::move(clearance.answer));
+      out.gradients.push_back(toMessage(clearance.gradient));
+    } else {
+      answers = askCurve(targets, curve, query, asking, workspace);
+    }
     if (asking.kind == Asking::PROFILE) out.profiles.push_back(profileOf(targets, curve, query, asking, workspace));
     for (const Answer &answer : answers) out.rows.push_back(toRow(answer, query, asking));
     if (drawn) out.lines.push_back({std::move(curve), std::move(answers)});
   } catch (const Error &error) {
-    out.rows.push_back(toFailedRow(message.id, Proximity::KIND_CURVE, error.what()));
-    if (asking.kind == Asking::PROFILE) out.profiles.emplace_back();
+    out.fail(message.id, error.what(), asking);
   }
   out.counts.push_back(out.rows.size() - before);
 }
@@ -488,6 +522,7 @@ void Queries::gather(const CurvePlace *places, CurveRows &&found, CurveSearch &s
   }
   std::move(found.lines.begin(), found.lines.end(), std::back_inserter(work.drawing.lines));
   std::move(found.profiles.begin(), found.profiles.end(), std::back_inserter(work.response.profiles));
+  std::move(found.gradients.begin(), found.gradients.end(), std::back_inserter(work.response.gradients));
 }
 
 void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work) {
@@ -502,9 +537,8 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
 /** The row of what could not be made a curve. */
 void Queries::refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work) {
   CurveRows found;
-  found.rows.push_back(toFailedRow(id, Proximity::KIND_CURVE, why));
+  found.fail(id, why, work.request.asking);
   found.counts.push_back(1);
-  if (work.request.asking.kind == Asking::PROFILE) found.profiles.emplace_back();
   const CurvePlace nowhere;
   gather(&nowhere, std::move(found), search, work);
 }

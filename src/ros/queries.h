@@ -5,6 +5,7 @@
 #define CURVE_PROXIMITY_ROS_QUERIES_H
 
 #include <curve_proximity/Curve.h>
+#include <curve_proximity/Gradient.h>
 #include <curve_proximity/Profile.h>
 #include <curve_proximity/Proximity.h>
 #include <curve_proximity/ProximityQuery.h>
@@ -56,6 +57,9 @@ class List {
   }
   std::size_t size() const {
     return size_;
+  }
+  bool empty() const {
+    return size_ == 0;
   }
 
  private:
@@ -110,7 +114,17 @@ struct QueryResponse {
   SceneState scene;
   std::vector<Proximity> results;
   std::vector<Profile> profiles; /**< of Asking::PROFILE: one for each of the results, their summaries not filled in */
+  std::vector<Gradient> gradients; /**< of Asking::GRADIENT: one for each of the results */
+
+  /** Rows without an answer have no profile and no gradient: fills up what is asked for. */
+  void fillUp(const Asking &asking) {
+    if (asking.kind == Asking::PROFILE) profiles.resize(results.size());
+    if (asking.kind == Asking::GRADIENT) gradients.resize(results.size());
+  }
 };
+
+/** The profiles of an answer with their summaries. What rests on nothing or on data too old has lower bounds of 0. */
+std::vector<Profile> takeProfiles(QueryResponse &answer);
 
 /** What the markers show of a query. */
 struct Drawing {
@@ -177,7 +191,7 @@ class Queries {
 
   std::size_t mostBytes() const; /* that a request may take */
   Query toQuery(const QueryRequest &request, const Snapshot &snapshot) const;
-  std::size_t checkLimits(const QueryRequest &request, const Snapshot &snapshot) const;
+  std::size_t checkLimits(const QueryRequest &request, const Snapshot &snapshot) const; /* bytes of the answer */
   void answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
   void answerCurves(Work &work);
   CurveSearch &curveSearch(Work &work);

@@ -56,6 +56,11 @@ template <class Request>
 Asking askingOf(const Request &) {
   return {};
 }
+Asking askingOf(const Distance::Request &request) {
+  Asking out;
+  if (request.query.gradient) out.kind = Asking::GRADIENT;
+  return out;
+}
 Asking askingOf(const NearestPairs::Request &request) {
   constexpr std::size_t USUAL_PAIRS = 10;
   if (!(request.within >= 0.0)) throw Error("within is " + std::to_string(request.within) + ": it must be at least 0");
@@ -86,15 +91,12 @@ template <class Response>
 void deliver(QueryResponse &answer, Response &response) {
   response.results = std::move(answer.results);
 }
+void deliver(QueryResponse &answer, Distance::Response &response) {
+  response.results = std::move(answer.results);
+  response.gradients = std::move(answer.gradients);
+}
 void deliver(QueryResponse &answer, ClearanceProfile::Response &response) {
-  response.profiles = std::move(answer.profiles);
-  for (std::size_t i = 0; i < response.profiles.size(); ++i) {
-    Profile &profile = response.profiles[i];
-    profile.summary = std::move(answer.results[i]);
-    const std::string &status = profile.summary.status;
-    if (status != Proximity::STATUS_STALE && status != Proximity::STATUS_UNKNOWN) continue;
-    std::fill(profile.lower.begin(), profile.lower.end(), 0.0);
-  }
+  response.profiles = takeProfiles(answer);
 }
 
 /** Once, here: not in every answer. */

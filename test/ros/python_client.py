@@ -48,6 +48,9 @@ class PythonClient(unittest.TestCase):
         self.assertAlmostEqual(profile.upper[1], 0.75, delta=1e-5)
         self.assertEqual(profile.b[0], 'ball')
         self.assertEqual(len(self.client.clearance_profile([LINE, LINE], breaks=(0.0, 0.1, 1.0))[1].lower), 2)
+        gradient = self.client.gradient(bezier([(0, 0, 1), (2, 0, 1.5)]), objects=['ball'])
+        self.assertTrue(gradient.valid, gradient.message)
+        self.assertAlmostEqual(sum(point.z for point in gradient.points), gradient.moving.linear.z, delta=1e-9)
         with self.assertRaises(Failure):
             self.client.distance(LINE, count=3)
 

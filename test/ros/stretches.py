@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Nearest pairs, times of contact and clearance profiles by service, against distances that are computed by hand."""
+import copy
 import math
 import unittest
 
 import rospy
+from curve_proximity.msg import Clearance, Curve
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest,
                                  TimeOfContact, TimeOfContactRequest)
 from helpers import Server, bezier, joint_trajectory, query, run, sphere, until
+from trajectory_msgs.msg import JointTrajectory
 
 EPSILON = 1e-6  # [m] ~epsilon
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -131,6 +134,33 @@ class Stretches(unittest.TestCase):
         self.assertEqual([together.summary.kind, own.summary.kind], ['environment', 'self'])
         for i in range(10):
             self.assertIs(together.lower[i], together.upper[i], min(profiles[0].upper[i], profiles[1].upper[i]))
+
+    def test_a_profile_comes_as_numbers_that_a_plotter_draws(self):
+        self.server.replace(sphere('ball', 0.1, (0, 0.5, 0.5)))
+        told = {name: [] for name in ('environment/arm', 'environment/slider', 'self/arm', 'self/slider', 'curve')}
+        subscribers = [rospy.Subscriber('/curve_proximity/clearance/' + name, Clearance, messages.append) for name, messages in told.items()]
+        motions = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
+        curves = rospy.Publisher('/curve_proximity/curve', Curve, queue_size=5)
+        self.assertTrue(until(lambda: all(s.get_num_connections() > 0 for s in [*subscribers, motions, curves]), 10))
+        moved = copy.deepcopy(QUARTER)
+        moved.header.stamp = rospy.Time(1000, 500000000)
+        motions.publish(moved)
+        self.assertTrue(until(lambda: all(len(told[name]) == 20 for name in told if name != 'curve'), 10), {k: len(v) for k, v in told.items()})
+        arm = told['environment/arm']
+        for i in range(10):
+            expected = max(0.0, math.sin((math.pi / 2 - (i + 1) * math.pi / 20) / 2) - 0.2)
+            for message, t in zip(arm[2 * i:2 * i + 2], (i / 10, (i + 1) / 10)):
+                self.assertAlmostEqual(message.t, t, delta=1e-9)
+                self.assertAlmostEqual(message.header.stamp.to_sec(), 1000.5 + t, delta=1e-6)
+                self.assertIs(message.lower, message.upper, expected)
+                self.assertEqual((message.id, message.a, message.b), ('trajectory', 'arm', 'ball'))
+        self.assertEqual({message.b for message in told['self/arm']}, {'slider'})
+
+        curves.publish(LINE)
+        self.assertTrue(until(lambda: len(told['curve']) == 20, 10))
+        self.assertGreater(told['curve'][0].header.stamp, rospy.Time(1000))  # the curve has no stamp: when it came
+        for subscriber in subscribers:
+            subscriber.unregister()
 
     def test_what_cannot_be_answered_is_refused_in_one_line(self):
         for ask in (self.pairs, self.contact, self.profile):
