@@ -117,12 +117,7 @@ std::shared_ptr<Mover> moverOf(const py::object &given) {
 
 std::shared_ptr<ObstacleSet> setOf(const py::object &given) {
   if (py::isinstance<ObstacleSet>(given)) return given.cast<std::shared_ptr<ObstacleSet>>();
-  std::vector<std::shared_ptr<Obstacle>> list;
-  if (py::isinstance<Obstacle>(given))
-    list.push_back(given.cast<std::shared_ptr<Obstacle>>());
-  else
-    list = given.cast<std::vector<std::shared_ptr<Obstacle>>>();
-  return std::make_shared<ObstacleSet>(std::move(list), "none");
+  return std::make_shared<ObstacleSet>(given.cast<std::vector<std::shared_ptr<Obstacle>>>(), "none");
 }
 
 /* ---- answers ---- */
@@ -228,12 +223,24 @@ py::dict gradientOf(const Mover &mover, const Obstacle &obstacle, cprox_options 
   return out;
 }
 
-template <typename Ask>
-cprox_result askOne(const py::object &mover, const py::object &obstacles, const py::kwargs &given, const Ask &ask) {
+/* A query by its function for one obstacle, which needs no index, or by that for many. */
+template <typename One, typename Many>
+cprox_result ask(const py::object &mover, const py::object &obstacles, const py::kwargs &given, const One &one,
+                 const Many &many) {
   const std::shared_ptr<Mover> moving = moverOf(mover);
-  const std::shared_ptr<ObstacleSet> set = setOf(obstacles);
   cprox_options options = optionsOf(given);
-  return unlocked(options, [&] { return ask(set->get(), moving->mover, options, threadWorkspace()); });
+  Workspace &workspace = threadWorkspace();
+  cprox_result result{};
+  if (py::isinstance<Obstacle>(obstacles)) {
+    const cprox_obstacle &target = obstacles.cast<const Obstacle &>().obstacle;
+    require(unlocked(options, [&] { return one(moving->mover, target, &options, workspace.get(), &result); }),
+            workspace);
+  } else {
+    const std::shared_ptr<ObstacleSet> set = setOf(obstacles);
+    const cprox_obstacles *all = set->get().get();
+    require(unlocked(options, [&] { return many(all, moving->mover, &options, workspace.get(), &result); }), workspace);
+  }
+  return result;
 }
 
 } // namespace
@@ -364,10 +371,9 @@ void addQueries(py::module &module) {
   module.def(
       "distance",
       [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
-        return askOne(mover, obstacles, given,
-                      [](const Obstacles &o, const cprox_mover &m, const cprox_options &options, Workspace &w) {
-                        return o.distance(m, options, w);
-                      });
+        return ask(mover, obstacles, given, cprox_distance, [](auto o, auto m, auto options, auto w, auto r) {
+          return cprox_obstacles_distance(o, m, options, w, r, nullptr);
+        });
       },
       py::arg("mover"), py::arg("obstacles"),
       "The least distance over the whole curve [m]. obstacles: Obstacles, one Obstacle or a list of them.\n"
@@ -375,28 +381,26 @@ void addQueries(py::module &module) {
   module.def(
       "tolerance",
       [](const py::object &mover, const py::object &obstacles, double delta, const py::kwargs &given) {
-        return askOne(mover, obstacles, given,
-                      [&](const Obstacles &o, const cprox_mover &m, const cprox_options &options, Workspace &w) {
-                        return o.tolerance(m, delta, options, w);
-                      });
+        return ask(
+            mover, obstacles, given,
+            [&](auto m, auto o, auto options, auto w, auto r) { return cprox_tolerance(m, o, delta, options, w, r); },
+            [&](auto o, auto m, auto options, auto w, auto r) {
+              return cprox_obstacles_tolerance(o, m, delta, options, w, r, nullptr);
+            });
       },
       py::arg("mover"), py::arg("obstacles"), py::arg("delta"), "Is the mover farther than delta >= 0 [m] everywhere?");
   module.def(
       "collision",
       [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
-        return askOne(mover, obstacles, given,
-                      [](const Obstacles &o, const cprox_mover &m, const cprox_options &options, Workspace &w) {
-                        return o.collision(m, options, w);
-                      });
+        return ask(mover, obstacles, given, cprox_collision, [](auto o, auto m, auto options, auto w, auto r) {
+          return cprox_obstacles_collision(o, m, options, w, r, nullptr);
+        });
       },
       py::arg("mover"), py::arg("obstacles"), "Does the mover touch or overlap an obstacle anywhere?");
   module.def(
       "time_of_contact",
       [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
-        return askOne(mover, obstacles, given,
-                      [](const Obstacles &o, const cprox_mover &m, const cprox_options &options, Workspace &w) {
-                        return o.timeOfContact(m, options, w);
-                      });
+        return ask(mover, obstacles, given, cprox_time_of_contact, cprox_obstacles_time_of_contact);
       },
       py::arg("mover"), py::arg("obstacles"), "Where the mover first touches: in [t_contact_lower, t]. Never late.");
   module.def(

@@ -15,8 +15,13 @@ import struct as _struct
 import subprocess as _subprocess
 import tempfile as _tempfile
 
-from ._cprox import *  # noqa: F401,F403
-from ._cprox import __version__  # noqa: F401
+from pkgutil import extend_path as _extend_path
+
+# A devel space of catkin has the compiled module in another folder of the path than this file.
+__path__ = _extend_path(__path__, __name__)
+
+from ._cprox import *  # noqa: E402,F401,F403
+from ._cprox import __version__  # noqa: E402,F401
 
 
 def check(certificate, program=None):
