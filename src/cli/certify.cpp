@@ -89,15 +89,15 @@ Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Que
   try {
     DatasetRow row = dataset.parse(manifest);
     id = row.id;
-    const std::shared_ptr<const Place> place = library.place(row.robot, row.srdf, row.scene);
+    const std::shared_ptr<const Place> place = library.place(row.files.robot, row.files.srdf, row.files.scene);
     if (!place->world) return unanswered(manifest.number, id, place->missing ? "missing" : "failed", place->fault);
     std::error_code error;
-    if (!row.inline_trajectory && !std::filesystem::exists(row.trajectory, error))
-      return unanswered(manifest.number, id, "missing", row.trajectory + ": there is no such file");
+    if (!row.inline_trajectory && !std::filesystem::exists(row.files.trajectory, error))
+      return unanswered(manifest.number, id, "missing", row.files.trajectory + ": there is no such file");
 
     const World &world = *place->world;
     TrajectoryDescription trajectory =
-        row.inline_trajectory ? std::move(*row.inline_trajectory) : trajectoryOf(row.trajectory);
+        row.inline_trajectory ? std::move(*row.inline_trajectory) : trajectoryOf(row.files.trajectory);
     adoptBase(world.srdf.virtual_joints, trajectory);
     const RobotMotion motion(place->prepared(trajectory), trajectory, restOf(trajectory, world));
     Query query = options;
@@ -146,11 +146,11 @@ ShardHead headOf(const Dataset &dataset, const std::string &folder, const std::s
   Dataset::Reader rows(dataset, head.range);
   while (const std::optional<ManifestRow> manifest = rows.next()) {
     try {
-      const DatasetRow row = dataset.parse(*manifest);
-      input(row.robot, true);
-      input(row.srdf, false);
-      input(row.scene, true);
-      if (!row.inline_trajectory) trajectories.add(digestOfFile(row.trajectory, false));
+      const RowFiles files = dataset.filesOf(*manifest);
+      input(files.robot, true);
+      input(files.srdf, false);
+      input(files.scene, true);
+      if (!files.trajectory.empty()) trajectories.add(digestOfFile(files.trajectory, false));
     } catch (const BadInput &) {
       /* it will be a failed row; the fingerprint has its bytes */
     } catch (const Error &) {

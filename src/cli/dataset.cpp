@@ -188,7 +188,25 @@ Json Dataset::toJson(const std::string &text) const {
 
 std::string Dataset::fileOf(const Json &row, const char *key) const {
   const Json *value = row.find(key);
-  return value ? (std::filesystem::path(folder_) / value->text(key)).string() : "";
+  if (!value || value->text(key).empty()) return "";
+  const std::string &file = value->text(key);
+  return file.front() == '/' ? file : folder_ + '/' + file;
+}
+
+RowFiles Dataset::filesIn(const Json &row) const {
+  RowFiles out;
+  out.robot = fileOf(row, "robot");
+  out.srdf = fileOf(row, "srdf");
+  out.scene = fileOf(row, "scene");
+  if (out.robot.empty()) throw BadInput("it names no robot");
+  const Json *trajectory = row.find("trajectory");
+  if (!trajectory) throw BadInput("it names no trajectory");
+  if (trajectory->kind != Json::Kind::MAP) out.trajectory = fileOf(row, "trajectory");
+  return out;
+}
+
+RowFiles Dataset::filesOf(const ManifestRow &row) const {
+  return filesIn(is_csv_ ? toJson(row.text) : parseJson(withoutNested(row.text)));
 }
 
 DatasetRow Dataset::parse(const ManifestRow &row) const {
@@ -197,16 +215,9 @@ DatasetRow Dataset::parse(const ManifestRow &row) const {
   for (const auto &member : value.members) requireKnown(member.first);
   DatasetRow out;
   out.id = idIn(value, row.number);
-  out.robot = fileOf(value, "robot");
-  out.srdf = fileOf(value, "srdf");
-  out.scene = fileOf(value, "scene");
-  if (out.robot.empty()) throw BadInput("it names no robot");
+  out.files = filesIn(value);
   const Json *trajectory = value.find("trajectory");
-  if (!trajectory) throw BadInput("it names no trajectory");
-  if (trajectory->kind == Json::Kind::MAP)
-    out.inline_trajectory = toTrajectory(*trajectory);
-  else
-    out.trajectory = fileOf(value, "trajectory");
+  if (trajectory->kind == Json::Kind::MAP) out.inline_trajectory = toTrajectory(*trajectory);
 
   /* the query */
   const Json *query = value.find("query"), *delta = value.find("delta"), *self = value.find("self");

@@ -16,10 +16,16 @@
 
 namespace curve_proximity::cli {
 
-/** One row. Files are absolute, or relative to the manifest's folder made so. */
+/** The files that a row names, absolute, or relative to the manifest's folder made so; '': none. */
+struct RowFiles {
+  std::string robot, srdf, scene;
+  std::string trajectory; /**< '' where the trajectory stands in the row */
+};
+
+/** One row. */
 struct DatasetRow {
   std::string id; /**< of the row; absent: its number */
-  std::string robot, srdf, scene, trajectory;
+  RowFiles files;
   std::optional<TrajectoryDescription> inline_trajectory; /**< instead of the file */
   QueryType query_type = QueryType::DISTANCE;
   double delta = 0.0;
@@ -68,12 +74,16 @@ class Dataset {
   /** Reads the text of a row. Throws BadInput with what is wrong. Any number of threads. */
   DatasetRow parse(const ManifestRow &row) const;
 
+  /** Its files alone, without reading a trajectory in it: a small part of the cost of parse(). Throws BadInput. */
+  RowFiles filesOf(const ManifestRow &row) const;
+
   /** The id of a row, as far as it can be read. Never throws. */
   std::string idOf(const ManifestRow &row) const;
 
  private:
   bool isRow(const std::string &line) const;
   Json toJson(const std::string &text) const;
+  RowFiles filesIn(const Json &row) const;
   std::string fileOf(const Json &row, const char *key) const;
 
   const std::string path_, folder_;

@@ -143,6 +143,23 @@ std::vector<double> Json::numbers(const char *what) const {
   return out;
 }
 
+std::string withoutNested(std::string_view text) {
+  std::string out;
+  int depth = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool opens = !in_text && (c == '{' || c == '['), closes = !in_text && (c == '}' || c == ']');
+    if (closes) --depth;
+    if (depth < 2) out += c;
+    if (opens) ++depth;
+    if (c == '"') in_text = !in_text;
+    if (in_text && c == '\\' && i + 1 < text.size() && depth < 2) out += text[i + 1];
+    if (in_text && c == '\\') ++i;
+  }
+  return out;
+}
+
 Json parseJson(std::string_view text) {
   Json whole;
   Builder builder(whole);

@@ -37,5 +37,9 @@ struct Json {
  *  than 64 lists and maps in each other. */
 Json parseJson(std::string_view text);
 
+/** The text of a map without what its lists and maps hold: {"a": 1, "b": {"c": [2]}} becomes {"a": 1, "b": {}}. What is
+ *  wrong in there is left out, too. */
+std::string withoutNested(std::string_view text);
+
 } // namespace curve_proximity::cli
 #endif

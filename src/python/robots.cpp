@@ -6,6 +6,7 @@
 
 #include <curve_proximity/files.hpp>
 #include <curve_proximity/motion.hpp>
+#include <curve_proximity/roadmap.hpp>
 #include <curve_proximity/srdf.hpp>
 
 #include "conversion.h"
@@ -266,6 +267,71 @@ py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, b
   return out;
 }
 
+/* A matrix as an array (rows, columns); none: None. */
+py::object fromMatrix(const Eigen::MatrixXd &matrix) {
+  if (matrix.size() == 0) return py::none();
+  Array out({matrix.rows(), matrix.cols()});
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) out.mutable_at(i, k) = matrix(i, k);
+  return std::move(out);
+}
+
+py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes) {
+  ClearanceRow row;
+  {
+    const py::gil_scoped_release release;
+    row = clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT,
+                            queryOf("distance", 0.0, epsilon, max_nodes), threadWorkspace());
+  }
+  py::dict out = answerOf(row.answer);
+  const ClearanceGradient &g = row.gradient;
+  out["valid"] = g.valid, out["reason"] = g.reason, out["t"] = g.t;
+  out["positions"] = fromMatrix(g.positions), out["velocities"] = fromMatrix(g.velocities);
+  out["accelerations"] = fromMatrix(g.accelerations), out["duration"] = g.duration;
+  out["base_linear"] = fromVector(toVec3(g.base_linear)), out["base_angular"] = fromVector(toVec3(g.base_angular));
+  out["object_linear"] = fromVector(toVec3(g.object_linear));
+  out["object_angular"] = fromVector(toVec3(g.object_angular));
+  return out;
+}
+
+/* ---- roadmaps ---- */
+
+using Edges = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+using Verdicts = py::array_t<std::int8_t, py::array::c_style | py::array::forcecast>;
+
+Roadmap roadmapOf(const std::vector<std::string> &joints, const Array &vertices, const Edges &edges,
+                  const JointPositions &rest) {
+  if (vertices.ndim() != 2) throw Error("vertices must be an array of shape (n, joints): one row a posture");
+  if (edges.ndim() != 2 || edges.shape(1) != 2) throw Error("edges must be an array of shape (m, 2): rows of vertices");
+  Roadmap out;
+  out.joints = joints, out.rest = rest;
+  out.vertices = Eigen::Map<const Eigen::MatrixXd>(vertices.data(), vertices.shape(1), vertices.shape(0));
+  for (py::ssize_t i = 0; i < edges.shape(0); ++i) out.edges.push_back({edges.at(i, 0), edges.at(i, 1)});
+  return out;
+}
+
+Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string> &joints, const Array &vertices,
+                        const Edges &edges, double delta, bool self, const std::optional<Verdicts> &known,
+                        const JointPositions &rest, const std::optional<Array> &base, double epsilon,
+                        std::uint32_t max_nodes, unsigned threads) {
+  if (!scene.robot()) throw Error("the scene has no robot");
+  const Roadmap roadmap = roadmapOf(joints, vertices, edges, scene.rest(rest));
+  std::vector<cprox_verdict> before;
+  for (py::ssize_t i = 0; known && i < known->size(); ++i)
+    before.push_back(static_cast<cprox_verdict>(known->data()[i]));
+  const Eigen::Isometry3d at = toTransform(base);
+  std::vector<cprox_verdict> found;
+  {
+    const py::gil_scoped_release release;
+    Pool pool(threads);
+    const PreparedRobot robot(scene.snapshot(), scene.robot()->srdf.disabled, {}, {}, at);
+    found = edgeVerdicts(robot, roadmap, self, queryOf("tolerance", delta, epsilon, max_nodes), before, pool);
+  }
+  Verdicts out(static_cast<py::ssize_t>(found.size()));
+  for (std::size_t i = 0; i < found.size(); ++i) out.mutable_data()[i] = static_cast<std::int8_t>(found[i]);
+  return out;
+}
+
 py::list violationsOf(const RobotMotion &motion, double delta, std::optional<double> resolution, bool self,
                       double epsilon) {
   constexpr double PART = 1e-3;
@@ -420,6 +486,12 @@ void addRobots(py::module &module) {
            "A proof of tolerance(delta), or without delta of distance(): their dict with claim ('apart' or 'near'), "
            "record\n"
            "(bytes) and query (str), which check() verifies. ValueError where there is no proof, with the cause.")
+      .def("gradient", &gradientOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
+           py::arg("max_nodes") = 20000,
+           "The least distance and its derivatives: the dict of distance() with valid, reason, t, positions (points, "
+           "joints),\n"
+           "velocities and accelerations likewise or None, duration, base_linear, base_angular, object_linear,\n"
+           "object_angular (3,). Where valid is False there is no derivative, and reason says why.")
       .def("violations", &violationsOf, py::arg("delta"), py::arg("resolution") = py::none(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            "All intervals of time within delta [m] of an object, or of the robot itself: a list of dicts of "
@@ -434,6 +506,17 @@ void addRobots(py::module &module) {
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            "The k pairs that come closest, nearest first; each as distance() gives it.");
+
+  module.def(
+      "edge_verdicts", &edgeVerdictsOf, py::arg("scene"), py::arg("joints"), py::arg("vertices"), py::arg("edges"),
+      py::arg("delta"), py::arg("self_collision") = false, py::arg("known") = py::none(),
+      py::arg("rest") = JointPositions{}, py::arg("base") = py::none(), py::arg("epsilon") = 1e-6,
+      py::arg("max_nodes") = 20000, py::arg("threads") = 0,
+      "Straight motions between postures, the edges of a roadmap: is the robot farther than delta [m] "
+      "everywhere?\n"
+      "vertices (n, joints), edges (m, 2) of their rows. known (m,): verdicts of an earlier call; those that are "
+      "not 0\n"
+      "stand. Returns int8 (m,): 0 clear, 1 violated, 2 undecided. All threads work (0: one a processor).");
 }
 
 } // namespace curve_proximity::python

@@ -382,6 +382,25 @@ class Robots(unittest.TestCase):
         self.assertEqual(len(pairs), 3)
         self.assertAlmostEqual(pairs[0]['result'].upper, answer['result'].upper, places=5)
 
+    def test_the_gradient_of_a_motion_is_that_of_differences(self):
+        scene = cprox.Scene(self.robot)
+        scene.add('ball', 'sphere', [.1], cprox.transform([.6, .5, 1.2]))
+        positions, velocities = (numpy.array(rows[:4]) for rows in (self.positions, self.velocities))
+
+        def moved(i=0, k=0, step=0.0, of=positions):
+            rows = [array.copy() for array in (positions, velocities)]
+            rows[0 if of is positions else 1][i, k] += step
+            return cprox.Motion(scene, self.joints, self.times[:4], *rows)
+        told = moved().gradient(epsilon=1e-11)
+        self.assertTrue(told['valid'], told['reason'])
+        self.assertEqual((told['positions'].shape, told['velocities'].shape, told['accelerations']), ((4, 7), (4, 7), None))
+        step = 1e-6
+        for name, of in (('positions', positions), ('velocities', velocities)):
+            for i in range(4):
+                for k in range(7):
+                    high, low = (moved(i, k, s, of).distance(epsilon=1e-12)['result'].upper for s in (step, -step))
+                    self.assertAlmostEqual(told[name][i, k], (high - low) / (2 * step), delta=1e-5)
+
     def test_scene_and_trajectory_files_are_what_they_say(self):
         path = os.path.join(DATA, 'scenes/mbm/box_panda/scene0001.yaml')
         scene = cprox.Scene(self.robot)

@@ -20,6 +20,7 @@ CPROX = os.environ.get('CPROX', 'cprox')
 ROWS, SHARDS, SEED = 60, 6, 3
 sys.path.insert(0, HERE)
 
+import cprox  # noqa: E402
 import cprox_dask  # noqa: E402
 import dataset_campaign  # noqa: E402
 
@@ -170,6 +171,69 @@ class Tables(Case):
             self.assertIn(f'{n} {verdict}', done.stdout)
         with open(picture, 'rb') as stream:
             self.assertEqual(stream.read(4), b'\x89PNG')
+
+    def test_the_report_is_one_page_of_what_the_table_says(self):
+        out = os.path.join(self.place.name, 'report.html')
+        done = self.run_module('report', self.results, '--out', out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(out, encoding='utf-8') as stream:
+            page = stream.read()
+        with open(self.results, newline='') as stream:
+            lines = list(csv.DictReader(stream))
+        nearest = min((line for line in lines if line['upper'] not in ('', 'inf')), key=lambda line: float(line['upper']))
+        for words in (f'<td>lines</td><td class="number">{ROWS}</td>', f"<td>{nearest['id']}</td>", 'data:image/png;base64,', '<p>None.</p>'):
+            self.assertIn(words, page)
+        self.assertNotRegex(page, r'(src|href)="(?!data:)')
+        broken = os.path.join(self.place.name, 'broken.csv')
+        with open(broken, 'w') as stream:
+            stream.write(','.join(lines[0]) + '\n0,<b>,,failed,,,,,,,,,,no <such> robot\n')
+        self.assertEqual(self.run_module('report', broken, '--out', out).returncode, 0)
+        with open(out, encoding='utf-8') as stream:
+            page = stream.read()
+        self.assertIn('no &lt;such&gt; robot', page)
+        self.assertIn('No line met anything.', page)
+
+    def test_edges_in_many_scenes_are_a_bit_matrix(self):
+        scenes = sorted({scene for scene, _ in dataset_campaign.postures()})[:3]
+        vertices = np.concatenate([np.array(saved[:4]) for _, saved in dataset_campaign.postures()[:3]])
+        rng = np.random.default_rng(5)
+        edges = rng.integers(0, len(vertices), (21, 2))
+        roadmap, out = os.path.join(self.place.name, 'roadmap.npz'), os.path.join(self.place.name, 'matrix.npz')
+        np.savez(roadmap, joints=dataset_campaign.JOINTS, vertices=vertices, edges=edges)
+        panda = os.path.join(dataset_campaign.DATA, 'robots', 'panda', 'panda')
+        words = ['--robot', panda + '.urdf', '--srdf', panda + '.srdf', '--roadmap', roadmap, '--delta', '0.01', '--out', out, '--scene']
+        done = self.run_module('edges', *words, *scenes, '--self')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with np.load(out) as matrix:
+            self.assertEqual((matrix['scenes'].tolist(), int(matrix['edges'])), (scenes, 21))
+            self.assertEqual(matrix['clear'].dtype, np.uint8)
+            clear, undecided = (np.unpackbits(matrix[name], axis=1, count=21) for name in ('clear', 'undecided'))
+        robot = cprox.Robot.from_urdf(panda + '.urdf', panda + '.srdf')
+        seen = set()
+        for i, path in enumerate(scenes):
+            scene = cprox.Scene(robot)
+            scene.load(path)
+            for k, (a, b) in enumerate(edges):
+                motion = cprox.Motion(scene, dataset_campaign.JOINTS, [0, 1], vertices[[a, b]])
+                verdicts = [motion.tolerance(0.01, self_collision=own)['result'].verdict for own in (False, True)]
+                expected = 'clear' if verdicts == ['clear'] * 2 else verdicts[1] if verdicts[1] != 'clear' else verdicts[0]
+                told = 'clear' if clear[i, k] else 'undecided' if undecided[i, k] else 'violated'
+                self.assertEqual(told, expected, (path, k))
+                seen.add(told)
+        self.assertLessEqual({'clear', 'violated'}, seen)
+
+        bad = os.path.join(self.place.name, 'bad.yaml')
+        with open(bad, 'w') as stream:
+            stream.write('world: [')
+        done = self.run_module('edges', *words, bad, scenes[0])
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f'cprox.dataset: {bad}: ', done.stderr)
+        with np.load(out) as matrix:
+            self.assertTrue(np.unpackbits(matrix['undecided'][0], count=21).all())
+            self.assertFalse(matrix['clear'][0].any())
+        np.savez(roadmap, joints=dataset_campaign.JOINTS, vertices=vertices)
+        done = self.run_module('edges', *words, scenes[0])
+        self.assertEqual((done.returncode, done.stderr), (2, f'cprox.dataset: {roadmap}: has no array edges\n'))
 
     def test_no_table_is_an_error(self):
         done = self.run_module('npz', self.manifest, os.path.join(self.place.name, 'no.npz'))

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Many straight motions between postures, the edges of a roadmap, in one scene after the other. */
+#ifndef CURVE_PROXIMITY_ROADMAP_HPP
+#define CURVE_PROXIMITY_ROADMAP_HPP
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/motion.hpp>
+#include <curve_proximity/parallel.hpp>
+
+namespace curve_proximity {
+
+/** Postures, and which of them are joined by straight motions in the space of the joints. */
+struct Roadmap {
+  std::vector<std::string> joints;                 /**< those that move; others are at rest */
+  Eigen::MatrixXd vertices;                        /**< [rad], [m] a posture a column, a joint a row */
+  std::vector<std::array<std::uint32_t, 2>> edges; /**< the columns of both ends, which may be one */
+  JointPositions rest;                             /**< of the other joints */
+};
+
+/** Is the robot farther than query.delta from the objects, or with `self` from itself, everywhere on each edge? As
+ *  askEnvironment() and askSelf() answer for the edge as a motion of its own: links that it does not move do not count.
+ *
+ *  robot    prepared in a scene; all threads share it.
+ *  roadmap  names that the robot does not have, a column that is not there, numbers that are not finite are an Error
+ *           that names them.
+ *  query    TOLERANCE or COLLISION; no per_object, no certificate.
+ *  known    empty, or a verdict for each edge: one that is not CPROX_VERDICT_CLEAR is kept and not asked again. So the
+ *           answers for `self`, which are the same in all scenes, are found once and handed to each.
+ *
+ *  Returns a verdict for each edge; what could not be decided within epsilon or the budget is undecided. Cost: a motion
+ *  for each edge, as long as it is not known; memory: a few bytes an edge. */
+std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &roadmap, bool self,
+                                        const Query &query, const std::vector<cprox_verdict> &known, Pool &pool);
+
+} // namespace curve_proximity
+#endif

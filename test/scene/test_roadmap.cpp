@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Edges of a roadmap: the verdicts of the motions that they are, for any number of threads. */
+#include <curve_proximity/roadmap.hpp>
+
+#include "support.h"
+
+using namespace curve_proximity;
+using namespace curve_proximity::test;
+
+namespace {
+
+constexpr double DELTA = 0.02;
+
+struct Case {
+  SnapshotPtr snapshot;
+  Srdf srdf;
+  Roadmap roadmap;
+};
+
+/* A Panda among boxes, postures about its middle, and edges between random ones. */
+Case makeCase(std::uint32_t seed, int vertices, int edges) {
+  static const std::shared_ptr<const Robot> panda = dataRobot("panda");
+  Random random(seed);
+  Case out;
+  out.srdf = parseSrdf(readText(TEST_DATA_DIR "/robots/panda/panda.srdf"));
+  Scene scene(panda, {}, allowedPairs(out.srdf));
+  SceneChange change;
+  for (int i = 0; i < 4; ++i) {
+    const std::string id = "box" + std::to_string(i);
+    change.operations.push_back(add(id, {shape(ShapeType::BOX, {0.1, 0.2, 0.3})}, random.pose(1.0)));
+  }
+  EXPECT_TRUE(scene.apply(change).empty());
+  out.snapshot = scene.snapshot();
+  out.roadmap.vertices.resize(7, vertices);
+  const double middle[] = {0.0, 0.0, 0.0, -1.5, 0.0, 1.8, 0.8};
+  for (int k = 0; k < 7; ++k) {
+    out.roadmap.joints.push_back("panda_joint" + std::to_string(k + 1));
+    for (int i = 0; i < vertices; ++i) out.roadmap.vertices(k, i) = middle[k] + random.uniform(-1.3, 1.3);
+  }
+  const auto column = [&] { return static_cast<std::uint32_t>(random.uniform(0.0, vertices - 1e-9)); };
+  for (int i = 0; i < edges; ++i) out.roadmap.edges.push_back({column(), column()});
+  return out;
+}
+
+Query tolerance() {
+  Query query;
+  query.query_type = QueryType::TOLERANCE;
+  query.delta = DELTA;
+  return query;
+}
+
+TrajectoryDescription edgeOf(const Roadmap &roadmap, const std::array<std::uint32_t, 2> &edge) {
+  TrajectoryDescription out;
+  out.joints = roadmap.joints;
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::VectorXd at = roadmap.vertices.col(edge[static_cast<std::size_t>(k)]);
+    TrajectoryPoint point;
+    point.time = k;
+    point.positions.assign(at.data(), at.data() + at.size());
+    out.points.push_back(point);
+  }
+  return out;
+}
+
+std::string refusalOf(const Roadmap &roadmap, const Case &c, const Query &query = tolerance(),
+                      const std::vector<cprox_verdict> &known = {}) {
+  Pool pool(1);
+  try {
+    edgeVerdicts(PreparedRobot(c.snapshot, c.srdf.disabled), roadmap, false, query, known, pool);
+  } catch (const Error &error) {
+    return error.what();
+  }
+  return "";
+}
+
+} // namespace
+
+/* 200 edges (seed 91), one thread and three: each as a motion of its own, against the boxes and itself, which they touch
+ * where the elbow is bent most. */
+TEST(Roadmaps, edges_have_the_verdicts_of_their_motions) {
+  const Case c = makeCase(91, 60, 200);
+  const PreparedRobot robot(c.snapshot, c.srdf.disabled);
+  for (const bool self : {false, true}) {
+    std::vector<cprox_verdict> expected;
+    Workspace workspace;
+    std::map<cprox_verdict, int> count;
+    for (const auto &edge : c.roadmap.edges) {
+      const RobotMotion motion(c.snapshot, edgeOf(c.roadmap, edge), {}, c.srdf.disabled);
+      const Answer answer =
+          self ? askSelf(motion, tolerance(), workspace) : askEnvironment(motion, tolerance(), workspace).front();
+      expected.push_back(answer.result.verdict);
+      ++count[answer.result.verdict];
+    }
+    EXPECT_GT(count[CPROX_VERDICT_CLEAR], 20);
+    EXPECT_GT(count[CPROX_VERDICT_VIOLATED], self ? 0 : 20);
+    for (const unsigned threads : {1U, 3U}) {
+      Pool pool(threads);
+      EXPECT_EQ(edgeVerdicts(robot, c.roadmap, self, tolerance(), {}, pool), expected);
+    }
+  }
+}
+
+/* What is known stands; the rest is asked (seed 92). */
+TEST(Roadmaps, what_is_known_is_not_asked_again) {
+  const Case c = makeCase(92, 20, 40);
+  const PreparedRobot robot(c.snapshot, c.srdf.disabled);
+  Pool pool(1);
+  const std::vector<cprox_verdict> plain = edgeVerdicts(robot, c.roadmap, false, tolerance(), {}, pool);
+  std::vector<cprox_verdict> known(plain.size(), CPROX_VERDICT_CLEAR);
+  for (std::size_t i = 0; i < known.size(); i += 3) known[i] = CPROX_VERDICT_UNDECIDED;
+  const std::vector<cprox_verdict> joined = edgeVerdicts(robot, c.roadmap, false, tolerance(), known, pool);
+  for (std::size_t i = 0; i < known.size(); ++i) EXPECT_EQ(joined[i], i % 3 == 0 ? CPROX_VERDICT_UNDECIDED : plain[i]);
+}
+
+TEST(Roadmaps, an_edge_without_a_budget_is_undecided) {
+  const Case c = makeCase(91, 60, 200);
+  Query query = tolerance();
+  query.options.stop = [](void *) { return true; };
+  Pool pool(1);
+  const PreparedRobot robot(c.snapshot, c.srdf.disabled);
+  const std::vector<cprox_verdict> all = edgeVerdicts(robot, c.roadmap, false, tolerance(), {}, pool),
+                                   stopped = edgeVerdicts(robot, c.roadmap, false, query, {}, pool);
+  int undecided = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    undecided += stopped[i] == CPROX_VERDICT_UNDECIDED;
+    if (stopped[i] == CPROX_VERDICT_UNDECIDED) continue;
+    EXPECT_EQ(stopped[i], all[i]);
+  }
+  EXPECT_GT(undecided, 10);
+}
+
+TEST(Roadmaps, bad_ones_are_refused_by_name) {
+  const Case c = makeCase(93, 5, 5);
+  Roadmap bad = c.roadmap;
+  bad.edges[3][1] = 5;
+  EXPECT_EQ(refusalOf(bad, c), "edge 3 ends at vertex 5, there are 5");
+  bad = c.roadmap;
+  bad.vertices(2, 4) = NAN;
+  EXPECT_EQ(refusalOf(bad, c), "vertex 4 is not finite");
+  bad = c.roadmap;
+  bad.joints.pop_back();
+  EXPECT_EQ(refusalOf(bad, c), "vertices have 7 rows, there are 6 joints");
+  bad = c.roadmap;
+  bad.joints[0] = "elbow";
+  EXPECT_NE(refusalOf(bad, c).find("elbow"), std::string::npos);
+  EXPECT_NE(refusalOf(c.roadmap, c, tolerance(), {CPROX_VERDICT_CLEAR}).find("known"), std::string::npos);
+  EXPECT_NE(refusalOf(c.roadmap, c, Query()).find("tolerance or collision"), std::string::npos);
+}
