@@ -75,8 +75,8 @@ std::string refusalOf(const Roadmap &roadmap, const Case &c, const Query &query 
 
 } // namespace
 
-/* 200 edges (seed 91), one thread and three: each as a motion of its own, against the boxes and itself, which they touch
- * where the elbow is bent most. */
+/* 200 edges (seed 91), one thread and three: each as a motion of its own, against the boxes and itself, which they
+ * touch where the elbow is bent most. */
 TEST(Roadmaps, edges_have_the_verdicts_of_their_motions) {
   const Case c = makeCase(91, 60, 200);
   const PreparedRobot robot(c.snapshot, c.srdf.disabled);
