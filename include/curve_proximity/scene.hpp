@@ -6,6 +6,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_HPP
 #define CURVE_PROXIMITY_SCENE_HPP
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -246,6 +247,10 @@ class Scene {
    *  Throws Error for an entry without a first name. */
   explicit Scene(std::shared_ptr<const Robot> robot = nullptr, ResourceOptions resources = {},
                  const std::vector<AllowedPair> &allowed = {});
+
+  /** A scene without a robot. */
+  explicit Scene(std::nullptr_t, ResourceOptions resources = {}, const std::vector<AllowedPair> &allowed = {})
+      : Scene(std::shared_ptr<const Robot>(), std::move(resources), allowed) {}
 
   /** A scene that begins as a snapshot, with its robot; so it is again what it allows, after a change that clears the
    *  scene. Throws Error for null. */
