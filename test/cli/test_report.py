@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The page of `cprox report`: its data against the other commands, and what a browser makes of it."""
+import base64
 import json
 import math
 import os
@@ -7,6 +8,8 @@ import re
 import shutil
 import struct
 import subprocess
+import urllib.parse
+import xml.etree.ElementTree
 import zlib
 
 from support import DATA, Case, bezier, cprox
@@ -121,7 +124,8 @@ class Report(Case):
 
     def a_certificate_is_named_by_its_digest(self):
         """The records in the file, one behind the other, are those that the page names; `check` proves them."""
-        import hashlib
+        import base64
+import hashlib
         words = robot_files(self)
         path = os.path.join(self.folder, 'proofs')
         _, data = self.report(*words, '--delta', '0.5', '--certificate', path)
@@ -202,6 +206,14 @@ class Report(Case):
         self.assertRegex(dom, r'<g class="band" data-name="cart"')
         self.assertIn('<canvas', dom)
         self.assertRegex(dom, r'<p id="view-note">Links have the colour')
+        chart = re.search(r'<a id="chart-file" download="clearance.svg" href="data:image/svg\+xml;charset=utf-8,([^"]*)"', dom).group(1)
+        figure = xml.etree.ElementTree.fromstring(urllib.parse.unquote(chart))
+        self.assertEqual(figure.tag, '{http://www.w3.org/2000/svg}svg')
+        texts = [text.text for text in figure.iter('{http://www.w3.org/2000/svg}text')]
+        self.assertIn('cart', texts)
+        self.assertIn('t [s]', texts)
+        picture = re.search(r'<a id="view-file" download="view.png" href="data:image/png;base64,([^"]*)"', dom).group(1)
+        self.assertEqual(base64.b64decode(picture)[:8], b'\x89PNG\r\n\x1a\n')
         browse(f'--screenshot={shot}')
         seen = {}
         for row in pixels(shot):

@@ -210,6 +210,32 @@ function showChart() {
   cursor = svg('line', {y1: above, y2: height - bottom, stroke: '#1d2733', 'stroke-dasharray': '2 3'});
   root.append(cursor);
   place.append(root);
+  offer('chart-file', () => 'data:image/svg+xml;charset=utf-8,' + encodeURIComponent(chartFile(root)));
+}
+
+// A link to a file that is made anew when it is asked for.
+function offer(id, address) {
+  const link = document.getElementById(id), make = () => link.setAttribute('href', address());
+  link.addEventListener('click', make);
+  make();
+  link.hidden = false;
+}
+
+// The chart as it is shown, with its legend, as a file that stands alone.
+function chartFile(root) {
+  const figure = root.cloneNode(true), {width, height, left} = CHART, each = 230, across = Math.floor((width - left) / each);
+  figure.querySelectorAll('[visibility=hidden], [stroke-dasharray="2 3"]').forEach(part => part.remove());
+  const bands = [...figure.querySelectorAll('.band')], rows = Math.ceil(bands.length / across);
+  bands.forEach((band, i) => {
+    const x = left + each * (i % across), at = height + 8 + 20 * Math.floor(i / across);
+    figure.append(svg('rect', {x, y: at - 8, width: 22, height: 6, fill: band.getAttribute('fill')}),
+      svg('text', {x: x + 28, y: at}, band.dataset.name));
+  });
+  const whole = height + 20 * rows;
+  for (const [key, value] of Object.entries({xmlns: SVG, width, height: whole, viewBox: `0 0 ${width} ${whole}`})) figure.setAttribute(key, value);
+  figure.prepend(svg('title', {}, document.title), svg('style', {}, 'text { font: 12px sans-serif; fill: #5b6875; }'),
+    svg('rect', {width: '100%', height: '100%', fill: '#fff'}));
+  return new XMLSerializer().serializeToString(figure);
 }
 
 // ---------------------------------------------------------------------------------------------------------- 3-D view
@@ -351,7 +377,10 @@ function makeView() {
   holder.append(renderer.domElement);
 
   view.render = () => renderer.render(scene, camera);
-  view.picture = () => renderer.domElement.toDataURL('image/png');
+  view.picture = () => {
+    view.render();
+    return renderer.domElement.toDataURL('image/png');
+  };
   const resize = () => {
     const width = holder.clientWidth, height = holder.clientHeight;
     renderer.setPixelRatio(window.devicePixelRatio || 1);
@@ -366,6 +395,7 @@ function makeView() {
     'Links have the colour of their clearance: red at a touch, teal with 0.3 m to spare, white where nothing is measured. Grey: the way. ' : '') +
     'Drag to turn, scroll to come nearer. Surfaces are drawn coarser than they are measured.';
   resize();
+  offer('view-file', view.picture);
 
   // Paper has no WebGL: it gets a picture of what was last seen.
   window.addEventListener('beforeprint', () => {
