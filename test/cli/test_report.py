@@ -124,8 +124,7 @@ class Report(Case):
 
     def a_certificate_is_named_by_its_digest(self):
         """The records in the file, one behind the other, are those that the page names; `check` proves them."""
-        import base64
-import hashlib
+        import hashlib
         words = robot_files(self)
         path = os.path.join(self.folder, 'proofs')
         _, data = self.report(*words, '--delta', '0.5', '--certificate', path)
