@@ -80,7 +80,7 @@ int main(int argc, char **argv) {
 
   Eigen::Matrix3Xd points(3, 3);
   points << -1, 0, 1, 0, 1, 0, 0, 0, 0;
-  const CurveHandle curve = makeCurve(detail::describe(CPROX_CURVE_BEZIER, points, 0.0, 1.0));
+  const CurveHandle curve = makeBezier(points);
   const BodyHandle ball = makeSphere(0.1);
   const cprox_mover mover = along(curve, 0.2);
   const cprox_obstacle obstacle =
