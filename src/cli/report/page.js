@@ -182,6 +182,7 @@ function showChart() {
   // A band for each profile; an interval without anything to measure is left out.
   profiles.forEach((profile, i) => {
     const colour = PALETTE[i % PALETTE.length], on = i < MOST_SHOWN;
+    const name = profile.name + (profile.kind === 'self' ? ' to the robot' : '');
     const group = svg('g', {class: 'band', 'data-name': profile.name, fill: colour, stroke: colour, 'stroke-width': 1.6,
       'stroke-dasharray': i < PALETTE.length ? 'none' : '5 3', visibility: on ? 'visible' : 'hidden'});
     for (let k = 0; k < profile.upper.length; ++k) {
@@ -195,7 +196,7 @@ function showChart() {
       const joined = k > 0 && profile.upper[k - 1] !== null;
       path += `${joined ? 'L' : 'M'}${timeToX(profile.t[k])} ${y(profile.upper[k])}L${timeToX(profile.t[k + 1])} ${y(profile.upper[k])}`;
     }
-    group.append(svg('path', {d: path, fill: 'none'}), svg('title', {}, profile.name));
+    group.append(svg('path', {d: path, fill: 'none'}), svg('title', {}, name));
     root.append(group);
 
     const label = element('label'), box = element('input'), line = element('i');
@@ -203,7 +204,7 @@ function showChart() {
     box.checked = on;
     box.addEventListener('change', () => group.setAttribute('visibility', box.checked ? 'visible' : 'hidden'));
     line.style.background = colour;
-    label.append(box, line, profile.name + (profile.kind === 'self' ? ' to the robot' : ''));
+    label.append(box, line, name);
     legend.append(label);
   });
 
@@ -229,7 +230,7 @@ function chartFile(root) {
   bands.forEach((band, i) => {
     const x = left + each * (i % across), at = height + 8 + 20 * Math.floor(i / across);
     figure.append(svg('rect', {x, y: at - 8, width: 22, height: 6, fill: band.getAttribute('fill')}),
-      svg('text', {x: x + 28, y: at}, band.dataset.name));
+      svg('text', {x: x + 28, y: at}, band.querySelector('title').textContent));
   });
   const whole = height + 20 * rows;
   for (const [key, value] of Object.entries({xmlns: SVG, width, height: whole, viewBox: `0 0 ${width} ${whole}`})) figure.setAttribute(key, value);
