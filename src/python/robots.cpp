@@ -355,11 +355,14 @@ py::list violationsOf(const RobotMotion &motion, double delta, std::optional<dou
   return out;
 }
 
-py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon) {
+py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon,
+                   const std::vector<std::string> &links) {
+  Query query = queryOf("distance", 0.0, epsilon, 20000);
+  query.links = links;
   std::vector<ClearanceInterval> intervals;
   {
     const py::gil_scoped_release release;
-    intervals = clearanceProfile(motion, self, breaks, queryOf("distance", 0.0, epsilon, 20000), threadWorkspace());
+    intervals = clearanceProfile(motion, self, breaks, query, threadWorkspace());
   }
   const auto n = static_cast<py::ssize_t>(intervals.size());
   Array lower(n), upper(n), t(n);
@@ -501,8 +504,13 @@ void addRobots(py::module &module) {
            "after leave_upper, within it from enter_upper to leave_lower. resolution [s]: how finely the ends are "
            "searched,\n"
            "a thousandth of the motion if None. RuntimeError where the budget ends.")
+      .def("links", &askedNames, py::arg("self_collision") = false,
+           "The links that move and have geometry, and what they carry; of those alone that are measured against the "
+           "robot.")
       .def("profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
-           "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,) and lists a, b.")
+           py::arg("links") = std::vector<std::string>{},
+           "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,) and lists a, b.\n"
+           "links: of these alone, names of links().")
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            "The k pairs that come closest, nearest first; each as distance() gives it.");

@@ -378,6 +378,13 @@ class Robots(unittest.TestCase):
         self.assertEqual(motion.tolerance(answer['result'].lower / 2)['result'].verdict, 'clear')
         profile = motion.profile(numpy.linspace(*motion.domain, 11))
         self.assertAlmostEqual(profile['upper'].min(), answer['result'].upper, places=5)
+        self.assertIn('panda_link4', motion.links())
+        self.assertNotIn('panda_link0', motion.links())
+        by_link = [motion.profile([*motion.domain], links=[link])['upper'][0] for link in motion.links()]
+        self.assertAlmostEqual(min(by_link), answer['result'].upper, places=5)
+        self.assertGreater(max(by_link), answer['result'].upper + .1)
+        with self.assertRaisesRegex(ValueError, 'elbow'):
+            motion.profile([*motion.domain], links=['elbow'])
         pairs = motion.nearest_pairs(k=3)
         self.assertEqual(len(pairs), 3)
         self.assertAlmostEqual(pairs[0]['result'].upper, answer['result'].upper, places=5)
