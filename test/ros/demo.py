@@ -3,7 +3,9 @@
 """demo.launch as it is: the Panda by robot_state_publisher, parameters from config/defaults.yaml, markers."""
 import math
 import os
+import subprocess
 import sys
+import tempfile
 import unittest
 
 import rospy
@@ -68,6 +70,19 @@ class Demo(unittest.TestCase):
         subscriber.unregister()
         self.assertTrue(found, wanted)
         return found.markers
+
+    def test_the_example_draws_the_clearance_of_each_link(self):
+        root = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
+        with tempfile.TemporaryDirectory() as folder:
+            picture = os.path.join(folder, 'profile.png')
+            done = subprocess.run([sys.executable, os.path.join(root, 'examples', 'client_profile.py'),
+                                   os.path.join(root, 'test', 'data', 'trajectories', 'panda_bookshelf_tall_0001_rrt.yaml'), picture],
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+            said = done.stdout.decode()
+            self.assertEqual(done.returncode, 0, said)
+            self.assertRegex(said, r'panda_hand +at least 0\.\d+ m, to table')
+            with open(picture, 'rb') as stream:
+                self.assertEqual(stream.read(4), b'\x89PNG')
 
     def test_a_budget_that_ends_early_leaves_open_hulls(self):
         winding = bspline([(0.9 + 0.1 * math.sin(3 * i), 0.04 * i - 0.6, 0.5 + 0.3 * math.cos(2 * i)) for i in range(30)], 3)
