@@ -28,21 +28,19 @@ bool isStamp(double seconds) {
 
 } // namespace
 
-ClearanceTopics::ClearanceTopics(const ros::NodeHandle &handle, std::size_t intervals, const Robot *robot)
-    : handle_(handle, "clearance"), queue_size_(static_cast<std::uint32_t>(2 * intervals * PROFILES_KEPT)) {
-  topic(Proximity::KIND_CURVE);
+ClearanceTopics::ClearanceTopics(const ros::NodeHandle &handle, std::size_t intervals, const Robot *robot,
+                                 bool per_link) {
+  ros::NodeHandle below(handle, "clearance");
+  const auto advertise = [&](const std::string &name) {
+    topics_[name] = below.advertise<Clearance>(name, static_cast<std::uint32_t>(2 * intervals * PROFILES_KEPT));
+  };
+  advertise(Proximity::KIND_CURVE);
   if (!robot) return;
   for (const std::string &kind : {Proximity::KIND_ENVIRONMENT, Proximity::KIND_SELF}) {
-    topic(kind);
+    advertise(kind);
     for (const auto &[link, elements] : robot->links())
-      if (!elements.empty()) topic(kind + "/" + graphName(link));
+      if (per_link && !elements.empty()) advertise(kind + "/" + graphName(link));
   }
-}
-
-ros::Publisher &ClearanceTopics::topic(const std::string &name) {
-  ros::Publisher &found = topics_[name];
-  if (!found) found = handle_.advertise<Clearance>(name, queue_size_);
-  return found;
 }
 
 bool ClearanceTopics::isWatched() const {
@@ -52,7 +50,8 @@ bool ClearanceTopics::isWatched() const {
 
 void ClearanceTopics::publish(const Profile &profile, const std_msgs::Header &begin) {
   const std::string &kind = profile.summary.kind;
-  ros::Publisher &publisher = topic(profile.link.empty() ? kind : kind + "/" + graphName(profile.link));
+  const auto topic = topics_.find(profile.link.empty() ? kind : kind + "/" + graphName(profile.link));
+  if (topic == topics_.end()) return;
   Clearance message;
   message.header.frame_id = begin.frame_id;
   message.id = profile.summary.id;
@@ -65,7 +64,7 @@ void ClearanceTopics::publish(const Profile &profile, const std_msgs::Header &be
       if (!isStamp(begin.stamp.toSec() + t)) continue;
       message.header.stamp = begin.stamp + ros::Duration(t);
       message.t = t;
-      publisher.publish(message);
+      topic->second.publish(message);
     }
   }
 }

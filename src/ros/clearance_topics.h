@@ -13,12 +13,13 @@
 
 namespace curve_proximity {
 
-/** Publishes on ~clearance/KIND, and with links on ~clearance/KIND/LINK. For one thread. */
+/** Publishes on ~clearance/KIND, and for links on ~clearance/KIND/LINK. What a link carries counts in KIND alone: its
+ * names come and go, and would leave topics behind. For one thread. */
 class ClearanceTopics {
  public:
-  /** handle: the server's private one. intervals: of a profile at most. robot: whose links have topics from the start;
-   * null: none. */
-  ClearanceTopics(const ros::NodeHandle &handle, std::size_t intervals, const Robot *robot);
+  /** handle: the server's private one. intervals: of a profile at most. robot: null: there is none. per_link: its links
+   * have topics, too. */
+  ClearanceTopics(const ros::NodeHandle &handle, std::size_t intervals, const Robot *robot, bool per_link);
 
   bool isWatched() const;
 
@@ -26,10 +27,6 @@ class ClearanceTopics {
   void publish(const Profile &profile, const std_msgs::Header &begin);
 
  private:
-  ros::Publisher &topic(const std::string &name);
-
-  ros::NodeHandle handle_;
-  const std::uint32_t queue_size_;
   std::map<std::string, ros::Publisher> topics_; /* by name, without ~clearance/ */
 };
 

@@ -98,7 +98,7 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
   contacts_ = handle_.advertise<moveit::ContactInformation>("contacts", RESULTS_KEPT);
   if (parameters_.profile_intervals > 0)
     clearance_ = std::make_unique<ClearanceTopics>(handle_, static_cast<std::size_t>(parameters_.profile_intervals),
-                                                   live_.scene.snapshot()->robot().get());
+                                                   live_.scene.snapshot()->robot().get(), parameters_.profile_per_link);
   listen<Curve>("curve");
   listen<trajectory_msgs::JointTrajectory>("trajectory");
   listen<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
@@ -179,9 +179,9 @@ void Pipeline::handle(const Job &job) {
   describe(*results);
 
   const auto drawing = std::make_shared<Drawing>();
-  bool told = false;
-  const auto tell = [&] {
-    told = true;
+  bool published = false;
+  const auto publish = [&] {
+    published = true;
     results->dropped = jobs_.dropped();
     results_.publish(ProximityResultsPtr(results));
     tellContacts(*results);
@@ -189,17 +189,17 @@ void Pipeline::handle(const Job &job) {
   };
   const auto ask = [&](const QueryRequest &request) {
     answer(request, *results, *drawing);
-    tell(); // nobody has to wait for the profile
+    publish(); // nobody has to wait for the profile
     tellClearance(request, *results);
   };
   guarded([&] { requestOf(job, *results, ask); },
           [&](const std::string &why) {
-            if (told) ROS_ERROR("~clearance: %s", why.c_str());
-            if (told) return;
+            if (published) ROS_ERROR("~clearance: %s", why.c_str());
+            if (published) return;
             results->success = false;
             results->message = why;
           });
-  if (!told) tell();
+  if (!published) publish();
 }
 
 /** Hands the request that a message is to `ask`. */
@@ -257,14 +257,17 @@ void Pipeline::tellClearance(const QueryRequest &request, const ProximityResults
   again.multi_dof_trajectories = request.multi_dof_trajectories;
   again.asking.kind = Asking::PROFILE;
   again.asking.intervals = static_cast<std::size_t>(parameters_.profile_intervals);
-  again.asking.per_link = parameters_.profile_per_link && !request.trajectories.empty();
-  QueryResponse answer;
-  Drawing not_drawn;
-  queries_.answer(again, answer, not_drawn);
-  if (!answer.success && complaints_.isDue(answer.message)) ROS_WARN("~clearance: %s", answer.message.c_str());
   std_msgs::Header begin = results.header;
   if (begin.stamp.isZero()) begin.stamp = ros::Time::now();
-  for (const Profile &profile : takeProfiles(answer)) clearance_->publish(profile, begin);
+  for (const bool per_link : {false, true}) {
+    if (per_link && (!parameters_.profile_per_link || request.trajectories.empty())) continue;
+    again.asking.per_link = per_link;
+    QueryResponse answer;
+    Drawing not_drawn;
+    queries_.answer(again, answer, not_drawn);
+    if (!answer.success && complaints_.isDue(answer.message)) ROS_WARN("~clearance: %s", answer.message.c_str());
+    for (const Profile &profile : takeProfiles(answer)) clearance_->publish(profile, begin);
+  }
 }
 
 /** What is asked of every message. */

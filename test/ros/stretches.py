@@ -137,7 +137,7 @@ class Stretches(unittest.TestCase):
 
     def test_a_profile_comes_as_numbers_that_a_plotter_draws(self):
         self.server.replace(sphere('ball', 0.1, (0, 0.5, 0.5)))
-        told = {name: [] for name in ('environment/arm', 'environment/slider', 'self/arm', 'self/slider', 'curve')}
+        told = {name: [] for name in ('environment', 'self', 'environment/arm', 'environment/slider', 'self/arm', 'self/slider', 'curve')}
         subscribers = [rospy.Subscriber('/curve_proximity/clearance/' + name, Clearance, messages.append) for name, messages in told.items()]
         motions = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
         curves = rospy.Publisher('/curve_proximity/curve', Curve, queue_size=5)
@@ -155,6 +155,8 @@ class Stretches(unittest.TestCase):
                 self.assertIs(message.lower, message.upper, expected)
                 self.assertEqual((message.id, message.a, message.b), ('trajectory', 'arm', 'ball'))
         self.assertEqual({message.b for message in told['self/arm']}, {'slider'})
+        for whole, *links in zip(told['environment'], arm, told['environment/slider']):
+            self.assertIs(whole.lower, whole.upper, min(link.upper for link in links))
 
         curves.publish(LINE)
         self.assertTrue(until(lambda: len(told['curve']) == 20, 10))
