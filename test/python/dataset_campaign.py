@@ -3,6 +3,8 @@
 """Edges of a roadmap, certified by Dask workers of which one is killed midway, against one process: the same bytes.
 
     scripts/run test/python/dataset_campaign.py --rows 100000 --seed 1 --shards 100 --workers 2
+    scripts/run test/python/dataset_campaign.py --matrix 4000           # so many edges in every scene, as bits
+    scripts/run test/python/dataset_campaign.py --rows 300 --write 300.jsonl [--paths]    # a manifest alone, to count instructions
 
 Each row is a straight motion of a Panda between two postures near those of the saved paths, in one of their scenes, with the
 verdict of 10 mm. Prints what each way took; ends with 1 where the tables differ. The environment variable CPROX may name the
@@ -56,6 +58,43 @@ def write_edges(path, rows, seed):
             out.write(json.dumps(row) + '\n')
 
 
+def write_paths(path, rows):
+    """A manifest of so many of the saved paths themselves, in turns, with the verdict of 10 mm."""
+    files = sorted(glob.glob(os.path.join(DATA, 'trajectories', 'panda_*.yaml')))
+    robot = os.path.join(DATA, 'robots', 'panda', 'panda.urdf')
+    with open(path, 'w') as out:
+        for i in range(rows):
+            with open(files[i % len(files)]) as stream:
+                saved = yaml.safe_load(stream)
+            row = {'id': f'path{i}', 'robot': robot, 'srdf': robot[:-4] + 'srdf', 'scene': os.path.join(DATA, saved['scene']),
+                   'query': 'tolerance', 'delta': 0.01,
+                   'trajectory': {key: saved[key] for key in ('joint_trajectory', 'fixed_joints') if key in saved}}
+            out.write(json.dumps(row) + '\n')
+
+
+def time_matrix(count, seed):
+    """So many short edges in every scene, with the robot against itself: pairs of edge and scene a second of CPU."""
+    import cprox
+    import cprox.dataset
+    import numpy as np
+    rng, paths = np.random.default_rng(seed), postures()
+    scenes = sorted({scene for scene, _ in paths})
+    saved = np.concatenate([np.array(postures_of) for _, postures_of in paths])
+    vertices = np.concatenate([saved + rng.uniform(-NEAR, NEAR, saved.shape) for _ in range(3)])
+    edges = []
+    for i in rng.integers(0, len(vertices), count):
+        nearest = np.argsort(np.abs(vertices - vertices[i]).max(axis=1))
+        edges.append((i, nearest[1 + rng.integers(0, 8)]))
+    panda = os.path.join(DATA, 'robots', 'panda', 'panda')
+    robot = cprox.Robot.from_urdf(panda + '.urdf', panda + '.srdf')
+    begin = time.process_time()
+    found = cprox.dataset.edge_matrix(robot, scenes, JOINTS, vertices, np.array(edges), 0.01, self=True)
+    seconds = time.process_time() - begin
+    clear = np.unpackbits(found['clear'], axis=1, count=count).mean()
+    print(f'{count} edges in {len(scenes)} scenes: {seconds:.2f} s of CPU, {count * len(scenes) / seconds:.0f} a second, '
+          f'{100 * clear:.0f} % clear')
+
+
 def kill_one_worker(cluster, out, after):
     """SIGKILL to a worker of the cluster once so many shards are whole. Returns its thread, and a list for the process number."""
     killed = []
@@ -97,7 +136,14 @@ def main():
     parser.add_argument('--shards', type=int, default=20)
     parser.add_argument('--workers', type=int, default=2)
     parser.add_argument('--folder', help='where files go and stay; default: a folder that is removed')
+    parser.add_argument('--matrix', type=int, metavar='EDGES', help='only this: time a bit matrix')
+    parser.add_argument('--write', metavar='FILE', help='only this: write the manifest')
+    parser.add_argument('--paths', action='store_true', help='with --write: of saved paths, not of edges')
     asked = parser.parse_args()
+    if asked.matrix:
+        return time_matrix(asked.matrix, asked.seed)
+    if asked.write:
+        return write_paths(asked.write, asked.rows) if asked.paths else write_edges(asked.write, asked.rows, asked.seed)
     cprox = os.environ.get('CPROX', 'cprox')
     folder = tempfile.TemporaryDirectory()
     place = asked.folder or folder.name
