@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 #include <functional>
 #include <random>
 #include <string>
@@ -17,30 +15,15 @@
 #include <curve_proximity/constraint_provider.hpp>
 #include <curve_proximity/query.hpp>
 
+#include "added.h"
 #include "support/measure.h"
 
 using namespace curve_proximity;
 
 namespace {
 
-double now() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
-
-double quantile(std::vector<double> values, double q) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
 /* One place, asked of the core and through the plugin. */
 using Ask = std::function<void(std::size_t)>;
-
-void printRow(const std::string &workload, const char *method, const std::vector<double> &times) {
-  std::printf("providers,%s,%s,,%.4f,%.4f,0,0,0,0,0\n", workload.c_str(), method, quantile(times, 0.5),
-              quantile(times, 0.95));
-}
 
 /* The least of several rounds for each place, of calls that take turns. */
 void measure(const char *workload, std::size_t n, int rounds, const Ask &core, const Ask &plugin) {
@@ -58,9 +41,9 @@ void measure(const char *workload, std::size_t n, int rounds, const Ask &core, c
     }
     added[i] = by_plugin[i] - by_core[i];
   }
-  printRow(workload, "curve_proximity", by_plugin);
-  printRow(workload, "core", by_core);
-  printRow(std::string(workload) + " adds", "curve_proximity", added);
+  printRow("providers", workload, "curve_proximity", by_plugin);
+  printRow("providers", workload, "core", by_core);
+  printRow("providers", std::string(workload) + " adds", "curve_proximity", added);
 }
 
 class Random {

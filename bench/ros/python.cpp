@@ -5,36 +5,19 @@
  * Workloads named "... adds" have the difference for their time. */
 #include <pybind11/embed.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <curve_proximity/core.hpp>
 
+#include "added.h"
+
 namespace py = pybind11;
 using namespace curve_proximity;
 
 namespace {
-
-double now() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
-
-double quantile(std::vector<double> values, double q) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
-void printRow(const std::string &workload, const char *method, const std::vector<double> &times) {
-  std::printf("python,%s,%s,,%.4f,%.4f,0,0,0,0,0\n", workload.c_str(), method, quantile(times, 0.5),
-              quantile(times, 0.95));
-}
 
 /* So many calls of one question. */
 using Calls = std::function<void(int)>;
@@ -51,9 +34,9 @@ void measure(const std::string &question, int rounds, const Calls &core, const C
     by_python.push_back((now() - between) / CALLS);
     added.push_back(by_python.back() - by_core.back());
   }
-  printRow(question, "curve_proximity", by_python);
-  printRow(question, "core", by_core);
-  printRow(question + " adds", "curve_proximity", added);
+  printRow("python", question, "curve_proximity", by_python);
+  printRow("python", question, "core", by_core);
+  printRow("python", question + " adds", "curve_proximity", added);
 }
 
 /* The same curve, ball and obstacle in both languages. */
