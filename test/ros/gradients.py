@@ -7,7 +7,7 @@ import unittest
 
 import rospy
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, Tolerance, ToleranceRequest)
-from helpers import Server, bezier, box, bspline, joint_trajectory, query, run, sphere, until
+from helpers import Server, bezier, box, bspline, joint_trajectory, pose, query, run, sphere, until
 
 STEP = 1e-5  # the error of a central difference is about 1e-10 of the curvature, that of ~epsilon 1e-5
 NEAR = 1e-4
@@ -47,6 +47,7 @@ class Gradients(unittest.TestCase):
         return (values[0] - values[1]) / (2.0 * STEP)
 
     def test_of_a_curve_by_its_control_points_its_radius_and_both_sides(self):
+        self.server.replace(sphere('ball', 0.25, (0.3, -0.2, 0.1)))  # off the frame's origin: a turn about it counts
         for curve in (bezier((-1, 0.2, 1), (0.1, 0.4, 0.5), (1, -0.3, 1.2)),
                       bspline([(-1, 0, 1), (-0.2, 0.4, 0.6), (0.4, -0.2, 0.5), (1, 0, 1.5)], 2)):
             curve.radius = 0.05
@@ -67,17 +68,21 @@ class Gradients(unittest.TestCase):
                 for p in moved.points:
                     p.x, p.y = p.x * math.cos(step) - p.y * math.sin(step), p.x * math.sin(step) + p.y * math.cos(step)
             self.assertAlmostEqual(gradient.moving.angular.z, self.difference(turn, curve, **ONLY), delta=NEAR)
+            self.assertGreater(abs(gradient.moving.angular.z), 0.01)
 
     def test_an_object_turns_about_its_own_origin(self):
-        self.server.replace(box('ball', (1.0, 0.2, 0.2), (0.3, 0.1, 0.0)))
+        def placed(turn=0.0):
+            """A box off its object's origin."""
+            out = box('ball', (1.0, 0.2, 0.2), (0.3, 0.1, 0.0), primitive_poses=[pose((0.2, 0.0, 0.1))])
+            out.pose.orientation.y, out.pose.orientation.w = math.sin(turn / 2), math.cos(turn / 2)
+            return out
+        self.server.replace(placed())
         curve = bezier((0.6, -1, 0.4), (0.7, 1, 0.5))
         gradient, = self.asked([curve], **ONLY).gradients
         self.assertTrue(gradient.valid, gradient.message)
         values = []
         for step in (STEP, -STEP):
-            turned = box('ball', (1.0, 0.2, 0.2), (0.3, 0.1, 0.0))
-            turned.pose.orientation.y, turned.pose.orientation.w = math.sin(step / 2), math.cos(step / 2)
-            self.server.replace(turned)
+            self.server.replace(placed(step))
             row, = self.server.distance([curve], **ONLY).results
             values.append(0.5 * (row.lower + row.upper))
         self.assertAlmostEqual(gradient.obstacle.angular.y, (values[0] - values[1]) / (2.0 * STEP), delta=NEAR)
