@@ -229,8 +229,10 @@ class Tables(Case):
         self.assertEqual(done.returncode, 2)
         self.assertIn(f'cprox.dataset: {bad}: ', done.stderr)
         with np.load(out) as matrix:
-            self.assertTrue(np.unpackbits(matrix['undecided'][0], count=21).all())
-            self.assertFalse(matrix['clear'][0].any())
+            row = matrix['scenes'].tolist().index(bad)  # rows are sorted by their files, wherever those are
+            self.assertTrue(np.unpackbits(matrix['undecided'][row], count=21).all())
+            self.assertFalse(matrix['clear'][row].any())
+            self.assertEqual([bool(why) for why in matrix['failed']], [i == row for i in range(2)])
         np.savez(roadmap, joints=dataset_campaign.JOINTS, vertices=vertices)
         done = self.run_module('edges', *words, scenes[0])
         self.assertEqual((done.returncode, done.stderr), (2, f'cprox.dataset: {roadmap}: has no array edges\n'))
