@@ -23,9 +23,10 @@ static const double TWO_POINTS = 1e-6;
 /* How far apart two normals are that count as two: those of curved sides are known to the root of what depths are. */
 static const double TWO_NORMALS = 2e-5;
 
-/* In sizes: by so much the other way out is longer where one is looked at; and how much its normal and slope (as a
- * fraction) may change in as long a step. */
-static const double CLEAR_OF_OTHER = 3e-5, SAME_WAY = 1e-3, SAME_SLOPE = 0.05;
+/* In sizes: by so much the other way out is longer where one is looked at. Its normals at such steps lead to the spot:
+ * what is found there may be so far from it, at least, and as a fraction of how far they bend; or they bend by less
+ * than that and are continued. */
+static const double CLEAR_OF_OTHER = 3e-5, SAME_WAY = 1e-6, SAME_WAY_BENT = 0.1, STRAIGHT_WAY = 1e-6;
 
 bool spot_begin(robot_scene *scene, int32_t index, spot_pair *p) {
   const cprox_robot *robot = scene->motion->robot;
@@ -399,27 +400,49 @@ static cprox_status measure_beside(spot_pair *p, const motion_interval *within, 
   return *inside ? spot_measure(p, spot->segment, u, beside) : CPROX_OK;
 }
 
-/* On one side of the spot (sign), where the other way out is clearly longer, twice and thrice as far: it is the only
- * one. */
+/* The nearest place on one side of the spot (sign) where the distance rises away from it: two ways out cross between.
+ */
+static cprox_status step_across(spot_pair *p, const motion_interval *within, const motion_spot *spot, double sign,
+                                motion_spot *next, bool *found) {
+  enum { MOST_STEPS = 6 };
+  double step = 2.0 * STILL;
+  for (int i = 0; i < MOST_STEPS; i++, step *= 4.0) {
+    const cprox_status status = measure_beside(p, within, spot, spot->u + sign * step, next, found);
+    if (status < 0 || !*found || sign * next->slope > 0.0) return status;
+  }
+  *found = false;
+  return CPROX_OK;
+}
+
+/* One way out on one side of the spot (sign): a sum of places with these factors. Where the other is clearly longer,
+ * twice and thrice as far, it is the only one. Directly beside the spot what is measured may be neither of the two
+ * where they are curved; flat ones are exact there. */
 static cprox_status find_side(spot_pair *p, const motion_interval *within, const motion_spot *spot, double apart,
-                              double sign, motion_spot side[SIDE_PLACES], bool *found) {
+                              double sign, motion_spot side[SIDE_PLACES], double factor[SIDE_PLACES], bool *found) {
   const cprox_motion *m = p->scene->motion;
   motion_spot next;
-  cprox_status status = measure_beside(p, within, spot, spot->u + sign * 2.0 * STILL, &next, found);
+  cprox_status status = step_across(p, within, spot, sign, &next, found);
   if (status < 0 || !*found) return status;
   const robot_body *moving = robot_scene_moving(p->scene, &p->pair),
                    *standing = robot_scene_standing(p->scene, &p->pair);
   const double speed = sign * next.slope * (m->times[spot->segment + 1] - m->times[spot->segment]);
-  *found = speed > 0.0;
   for (int k = 0; k < SIDE_PLACES && *found; k++) {
     const double step = (k + 1) * CLEAR_OF_OTHER * depth_size(moving, standing) / speed;
     status = measure_beside(p, within, spot, spot->u + sign * step, &side[k], found);
     if (status < 0) return status;
   }
-  *found = *found && sign * side[0].slope > 0.0 &&
-           vec_norm(vec_sub(side[0].gap.normal, side[SIDE_PLACES - 1].gap.normal)) < SAME_WAY &&
-           fabs(side[0].slope - side[SIDE_PLACES - 1].slope) < SAME_SLOPE * fabs(side[0].slope);
-  return *found ? spot_is_alone(p, &side[0], apart, found) : CPROX_OK;
+  *found = *found && sign * side[0].slope > 0.0;
+  if (*found) status = spot_is_alone(p, &side[0], apart, found);
+  if (status < 0 || !*found) return status;
+
+  const vec3 a = side[0].gap.normal, b = side[1].gap.normal, c = side[2].gap.normal;
+  const double bend = vec_norm(vec_axpy(vec_add(a, c), -2.0, b));
+  const vec3 led = vec_axpy(c, CONTINUED[0], vec_sub(a, b));
+  const bool is_next = vec_norm(vec_sub(next.gap.normal, led)) < fmax(SAME_WAY, SAME_WAY_BENT * bend);
+  for (int k = 0; k < SIDE_PLACES; k++) factor[k] = is_next ? (k == 0) : CONTINUED[k];
+  if (is_next) side[0] = next;
+  *found = is_next || bend < STRAIGHT_WAY;
+  return CPROX_OK;
 }
 
 cprox_status spot_find_crossing(spot_pair *p, const motion_interval *within, const motion_spot *spot, double apart,
@@ -428,12 +451,13 @@ cprox_status spot_find_crossing(spot_pair *p, const motion_interval *within, con
   double slope[2] = {0.0, 0.0};
   for (int k = 0; k < 2 && *found; k++) {
     motion_spot *of = side + SIDE_PLACES * k;
-    const cprox_status status = find_side(p, within, spot, apart, k ? 1.0 : -1.0, of, found);
+    double *factor = part + SIDE_PLACES * k;
+    const cprox_status status = find_side(p, within, spot, apart, k ? 1.0 : -1.0, of, factor, found);
     if (status < 0) return status;
-    for (int i = 0; i < SIDE_PLACES; i++) slope[k] += CONTINUED[i] * of[i].slope; /* at the spot */
+    for (int i = 0; i < SIDE_PLACES && *found; i++) slope[k] += factor[i] * of[i].slope; /* at the spot */
   }
-  for (int k = 0; k < 2; k++)
-    for (int i = 0; i < SIDE_PLACES; i++)
-      part[SIDE_PLACES * k + i] = CONTINUED[i] * (k ? -slope[0] : slope[1]) / (slope[1] - slope[0]);
+  *found = *found && slope[0] < 0.0 && slope[1] > 0.0;
+  for (int i = 0; i < SPOT_SIDES && *found; i++)
+    part[i] *= (i < SIDE_PLACES ? slope[1] : -slope[0]) / (slope[1] - slope[0]);
   return CPROX_OK;
 }
