@@ -270,6 +270,11 @@ def robots(rows, save):
         yield growth(rows, save, 'robots', what, r'\D*(\d+).*', f'Robots: time over the number of {what.split()[1]}', 'robots_' + what.replace(' ', '_'), what.split()[1])
 
 
+def optimise(rows, save):
+    yield dots(rows, save, 'optimise', lambda row: row['workload'] == 'clear by 10 mm', 'A motion of a Panda made smooth and clear',
+               'optimise', lambda row: row['parameter'].split()[0].replace('_', ' '), 'median time a motion [µs]')
+
+
 def implicit(rows, save):
     """Table I of Chakraborty et al. as bars, and its Fig. 2."""
     yield dots(rows, save, 'implicit', lambda row: row['workload'] == 'table I', 'Pairs of implicit bodies to 1e-8 of their size', 'implicit_pairs',
@@ -313,6 +318,6 @@ def draw_all(rows, out, made):
     save = Saver(out, made)
     style()
     drawn = []
-    for draw in (curves, splines, peers, seeds, batches, worlds, robots, implicit, fourier):
+    for draw in (curves, splines, peers, seeds, batches, worlds, robots, optimise, implicit, fourier):
         drawn += [name for name in draw(rows, save) if name]
     return drawn

@@ -25,7 +25,7 @@ SCRIPTS = {'lod': 'lod.py'}  # groups that ask the command line, where there is 
 TABLES = {'hulls.csv': 'hulls.py'}  # tables beside results.csv, of the command line too
 MADE = 'made.txt'  # how the results came to be
 PASSES, ROUNDS = 3, '3'
-ONCE = {'ros', 'lod', 'stability'}  # asked for counts, or too long: in the first pass only
+ONCE = {'ros', 'lod', 'stability', 'optimise'}  # asked for counts, or too long: in the first pass only
 LONG = {'fourier', 'implicit', 'robots', 'worlds'}  # these, too, where the run is to be quick
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'distance_queries', 'error', 'unsound', 'failures']
 

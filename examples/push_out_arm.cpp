@@ -12,7 +12,6 @@
  * sampled. BEFORE.yaml and AFTER.yaml get the spline before and after, for `cprox tolerance --trajectory` and for
  * draw_push_out_arm.py. */
 #include <nlopt.h>
-#include <yaml-cpp/yaml.h>
 #include <pluginlib/class_loader.hpp>
 
 #include <algorithm>
@@ -20,67 +19,21 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <curve_proximity/constraint_provider.hpp>
 
-#include "../src/scene/yaml/scene_change.h"
+#include "arm_spline.h"
 
 using namespace curve_proximity;
 
 namespace {
 
-constexpr int kSpans = 10;       /* of the spline */
 constexpr int kPairs = 3;        /* constraints a span: the pairs that come nearest */
 constexpr double kClear = 0.01;  /* [m] what is to be proven */
 constexpr double kMargin = 1e-4; /* [m] what is asked of the optimiser beyond that */
 constexpr double kHorizon = 0.02;
-constexpr double kDuration = 5.0; /* [s] */
-
-/* ---- the spline ---- */
-
-/* Uniform cubic B-splines with the first and the last three control points alike begin and end at rest. A row a control
- * point, a column a joint. */
-constexpr int kControls = kSpans + 3, kInner = kControls - 6;
-constexpr double kStep = kDuration / kSpans;
-
-/* The numbers of the spline at its knots are weighted control points: exactly a trajectory of cubic segments. */
-struct Weights {
-  double position[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
-  double velocity[3] = {-0.5 / kStep, 0.0, 0.5 / kStep};
-};
-
-TrajectoryDescription trajectoryOf(const std::vector<std::string> &joints, const Eigen::MatrixXd &control) {
-  const Weights weights;
-  TrajectoryDescription out;
-  out.joints = joints;
-  for (int knot = 0; knot <= kSpans; ++knot) {
-    Eigen::RowVectorXd position = Eigen::RowVectorXd::Zero(control.cols()), velocity = position;
-    for (int k = 0; k < 3; ++k) {
-      position += weights.position[k] * control.row(knot + k);
-      velocity += weights.velocity[k] * control.row(knot + k);
-    }
-    TrajectoryPoint point;
-    point.time = knot * kStep;
-    point.positions.assign(position.data(), position.data() + position.size());
-    point.velocities.assign(velocity.data(), velocity.data() + velocity.size());
-    out.points.push_back(std::move(point));
-  }
-  return out;
-}
-
-/* The gradient by control points, from that by positions and velocities at the knots. */
-Eigen::MatrixXd byControls(const MotionRow &row) {
-  const Weights weights;
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(kControls, row.positions.cols());
-  for (int knot = 0; knot <= kSpans; ++knot)
-    for (int k = 0; k < 3; ++k)
-      out.row(knot + k) +=
-          weights.position[k] * row.positions.row(knot) + weights.velocity[k] * row.velocities.row(knot);
-  return out;
-}
 
 /* ---- the problem ---- */
 
@@ -97,33 +50,13 @@ struct Problem {
   std::string failure; /* no exception may pass through NLopt */
 };
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/* The first and the last three control points stay; what lies between are the variables. */
 Eigen::MatrixXd controlAt(const Problem &problem, const double *x) {
-  Eigen::MatrixXd out = problem.control;
-  out.middleRows(3, kInner) = Eigen::Map<const RowMajor>(x, kInner, out.cols());
-  return out;
+  return withInner(problem.control, x);
 }
 
-void putInner(const Eigen::MatrixXd &by_controls, double *gradient) {
-  Eigen::Map<RowMajor>(gradient, kInner, by_controls.cols()) = by_controls.middleRows(3, kInner);
-}
-
-/* The integral of the squared third derivative, which is constant on each span; the times are left out. */
 double jerk(unsigned, const double *x, double *gradient, void *data) {
-  const Eigen::MatrixXd control = controlAt(*static_cast<const Problem *>(data), x);
-  Eigen::MatrixXd by_controls = Eigen::MatrixXd::Zero(control.rows(), control.cols());
-  double sum = 0.0;
-  for (int i = 0; i < kSpans; ++i) {
-    const Eigen::RowVectorXd third =
-        control.row(i + 3) - 3.0 * control.row(i + 2) + 3.0 * control.row(i + 1) - control.row(i);
-    sum += third.squaredNorm();
-    by_controls.row(i + 3) += 2.0 * third;
-    by_controls.row(i + 2) -= 6.0 * third;
-    by_controls.row(i + 1) += 6.0 * third;
-    by_controls.row(i) -= 2.0 * third;
-  }
+  Eigen::MatrixXd by_controls;
+  const double sum = squaredJerk(controlAt(*static_cast<const Problem *>(data), x), by_controls);
   if (gradient) putInner(by_controls, gradient);
   return sum;
 }
@@ -161,53 +94,7 @@ void tooNear(unsigned m, double *result, unsigned n, const double *x, double *gr
   for (unsigned i = 0; gradient && i < m * n; ++i) gradient[i] = -gradient[i];
 }
 
-/* ---- files ---- */
-
-std::string readText(const std::string &path) {
-  std::ifstream file(path);
-  if (!file) throw Error(path + " cannot be read");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-SnapshotPtr readScene(const std::string &urdf, const Srdf &srdf, const std::string &path) {
-  RobotOptions options;
-  options.resources.base_dir = yaml::folderOf(urdf);
-  yaml::Warnings warnings;
-  Scene scene(Robot::fromUrdf(readText(urdf), options), {}, allowedPairs(srdf));
-  for (const std::string &fault : scene.apply(yaml::toChange(yaml::readScene(path, warnings), path, warnings)))
-    throw Error(fault);
-  return scene.snapshot();
-}
-
-/* The planner's path, evenly spaced in time: control points of the spline. */
-void readPath(const std::string &path, bool straight, Problem &problem) {
-  const YAML::Node file = YAML::LoadFile(path);
-  problem.joints = file["joint_trajectory"]["joint_names"].as<std::vector<std::string>>();
-  if (file["fixed_joints"]) problem.rest = file["fixed_joints"].as<JointPositions>();
-  TrajectoryDescription given;
-  given.joints = problem.joints;
-  for (const YAML::Node &node : file["joint_trajectory"]["points"]) {
-    TrajectoryPoint point;
-    point.positions = node["positions"].as<std::vector<double>>();
-    point.time = node["time_from_start"].as<double>();
-    given.points.push_back(std::move(point));
-  }
-  checkTrajectory(given);
-  if (straight) given.points = {given.points.front(), given.points.back()};
-  problem.control.resize(kControls, static_cast<Eigen::Index>(problem.joints.size()));
-  std::size_t k = 0;
-  for (int i = 0; i < kControls; ++i) {
-    const double inner = std::clamp((i - 2.0) / (kControls - 5.0), 0.0, 1.0);
-    const double t = given.points.front().time + inner * (given.points.back().time - given.points.front().time);
-    while (k + 2 < given.points.size() && given.points[k + 1].time < t) ++k;
-    const TrajectoryPoint &a = given.points[k], &b = given.points[k + 1];
-    const double s = std::clamp((t - a.time) / (b.time - a.time), 0.0, 1.0);
-    for (std::size_t j = 0; j < problem.joints.size(); ++j)
-      problem.control(i, static_cast<Eigen::Index>(j)) = a.positions[j] + s * (b.positions[j] - a.positions[j]);
-  }
-}
+/* ---- the example ---- */
 
 void write(const char *path, const Problem &problem, const TrajectoryDescription &trajectory) {
   std::ofstream out(path);
@@ -232,8 +119,6 @@ void write(const char *path, const Problem &problem, const TrajectoryDescription
   if (!out) throw Error(std::string(path) + " cannot be written");
 }
 
-/* ---- the example ---- */
-
 /* What is proven of a whole trajectory: is it farther than kClear from all objects and from itself? */
 bool tell(const char *when, Problem &problem, const TrajectoryDescription &trajectory) {
   const RobotMotion motion(*problem.robot, trajectory, problem.rest);
@@ -250,26 +135,15 @@ bool tell(const char *when, Problem &problem, const TrajectoryDescription &traje
   return clear;
 }
 
-/* The joint limits, for all control points: a B-spline stays within those of its control points. */
-void setLimits(const Problem &problem, const Robot &robot) {
-  std::vector<double> lower, upper;
-  for (int i = 0; i < kInner; ++i)
-    for (const std::string &name : problem.joints)
-      for (const Robot::Joint &joint : robot.joints()) {
-        if (joint.name != name) continue;
-        lower.push_back(joint.lower);
-        upper.push_back(joint.upper);
-      }
-  nlopt_set_lower_bounds(problem.optimiser, lower.data());
-  nlopt_set_upper_bounds(problem.optimiser, upper.data());
-}
-
 int run(char **arguments, bool straight, const char *before_file, const char *after_file) {
   Problem problem;
   const Srdf srdf = parseSrdf(readText(arguments[2]));
   const SnapshotPtr snapshot = readScene(arguments[1], srdf, arguments[3]);
   problem.robot = std::make_unique<PreparedRobot>(snapshot, srdf.disabled);
-  readPath(arguments[4], straight, problem);
+  TrajectoryDescription path = readPath(arguments[4], problem.rest);
+  if (straight) path.points = {path.points.front(), path.points.back()};
+  problem.joints = path.joints;
+  problem.control = controlsOf(path);
   pluginlib::ClassLoader<ConstraintProvider> plugins("curve_proximity", "curve_proximity::ConstraintProvider");
   const auto provider = plugins.createUniqueInstance("curve_proximity/RobotDistance");
   provider->initialise(
@@ -284,7 +158,10 @@ int run(char **arguments, bool straight, const char *before_file, const char *af
   const std::vector<double> tolerances(m, 1e-6);
   nlopt_set_min_objective(optimiser.get(), jerk, &problem);
   nlopt_add_inequality_mconstraint(optimiser.get(), m, tooNear, &problem, tolerances.data());
-  setLimits(problem, *snapshot->robot());
+  std::vector<double> lower, upper;
+  limitsOf(*snapshot->robot(), problem.joints, lower, upper);
+  nlopt_set_lower_bounds(optimiser.get(), lower.data());
+  nlopt_set_upper_bounds(optimiser.get(), upper.data());
   nlopt_set_maxeval(optimiser.get(), 200);
   nlopt_set_ftol_rel(optimiser.get(), 1e-3);
   std::vector<double> x(n);

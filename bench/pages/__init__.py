@@ -4,10 +4,10 @@ import datetime
 import os
 import subprocess
 
-from pages import choosing, hulls, readme, seeds, stability
+from pages import choosing, hulls, optimise, readme, seeds, stability
 from pages.figures import Figures
 
-NEEDS = {'stability.md': {'stability'}, 'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit', 'worlds', 'certificates'}}
+NEEDS = {'stability.md': {'stability'}, 'optimise.md': {'optimise'}, 'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit', 'worlds', 'certificates'}}
 
 
 def how_made(command, commit):
@@ -28,6 +28,7 @@ def write_all(rows, drawn, out, made):
     groups = {row['group'] for row in rows}
     pages = {'README.md': lambda: readme.page(figures, drawn, made, out), 'seeds.md': lambda: seeds.page(figures),
              'stability.md': lambda: stability.page(figures),
+             'optimise.md': lambda: optimise.page(figures),
              'choosing.md': lambda: choosing.page(figures)}
     if hulls.read(out):
         pages['hulls.md'] = lambda: hulls.page(out)

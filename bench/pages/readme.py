@@ -23,6 +23,7 @@ CHARTS = [
     ('batches*', 'a thousand quintics against 2, 50 and 100 obstacles, beside sampling by FCL, and over threads'),
     ('robots_*', 'arms along joint splines, against the scene and themselves, beside the bound by both ends of an interval and samples; verdicts; '
                  "checks of states by FCL, and MoveIt's own figures for reference"),
+    ('optimise', 'motions of an arm made smooth and clear by rows of whole motions, and by samples of FCL'),
     ('worlds_*', 'meshes, point clouds, octree leaves, sets of bodies, beside FCL'),
     ('implicit_*', 'pairs of implicit bodies: interior point, support functions, both together, a general solver'),
     ('fourier_*', 'over-reach of gap functions by kernel and n, and what it costs; gradients; an SE(2) obstacle, convergence, boxes, nesting'),
@@ -133,7 +134,7 @@ def page(figures, drawn, made, out):
 
 Trust ratios and counts, not microseconds. `results.csv` has every row. [choosing.md](choosing.md) says what follows from them for a planner,
 [seeds.md](seeds.md) has the papers' own tables, [stability.md](stability.md) hard inputs: right, wrong, given up,
-[hulls.md](hulls.md) robots' meshes beside their hulls.
+[hulls.md](hulls.md) robots' meshes beside their hulls, [optimise.md](optimise.md) motions of an arm made smooth and clear.
 
 {table(['chart', 'shows'], chart_lines)}
 
