@@ -9,7 +9,9 @@
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "kinematics/motion.h"
 #include "peers/robot_states.h"
+#include "peers/two_ended.h"
 #include "solve/list.h"
 #include "support/measure.h"
 
@@ -96,6 +98,40 @@ static void states_by_fcl(const void *problems, size_t i, void *state, bench_ans
   answer->wrong = hit && p->truth > 0.0;
 }
 
+/* ---- verdicts of the scene alone ---- */
+
+static void scene_verdict(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  const method_state *s = state;
+  cprox_result r;
+  const cprox_status status =
+      cprox_obstacles_collision(p->set, cprox_robot_along(p->c.mesh_motion, NULL, 0), NULL, s->workspace, &r, NULL);
+  *answer = (bench_answer){.lower = NAN,
+                           .upper = NAN,
+                           .nodes = r.nodes,
+                           .distance_queries = r.distance_queries,
+                           .wrong = r.verdict != CPROX_VERDICT_CLEAR && p->truth > 0.0,
+                           .failed = status != CPROX_OK};
+}
+
+/* States between which no joint moves farther than .05 rad; these paths are clear, so that all are looked at. */
+static void scene_verdict_by_fcl(const void *problems, size_t i, void *state, bench_answer *answer) {
+  (void)state;
+  const problem *p = (const problem *)problems + i;
+  const cprox_motion *motion = p->c.motion;
+  double values[CASE_MAX_VARIABLES];
+  *answer = (bench_answer){.lower = NAN, .upper = NAN};
+  for (size_t segment = 0; segment < motion->n_segments; segment++) {
+    const int count = sampled_steps(motion, segment, 0.05);
+    for (int k = segment == 0 ? 0 : 1; k <= count; k++) {
+      cprox_motion_evaluate(motion, motion_time(motion, segment, (double)k / count), values);
+      robot_states_place(p->fcl, &p->c, values);
+      answer->wrong = (robot_fcl_hits_world(p->fcl) && p->truth > 0.0) || answer->wrong;
+      answer->nodes++;
+    }
+  }
+}
+
 /* ---- states by ourselves ---- */
 
 enum { MOST_STATES = 4096 };
@@ -136,7 +172,8 @@ static bool read_problem(FILE *f, problem *p) {
 
 int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
-  if (!bench_wanted(&size, "planning") && !bench_wanted(&size, "states")) return 0;
+  if (!bench_wanted(&size, "planning") && !bench_wanted(&size, "states") && !bench_wanted(&size, "environment verdict"))
+    return 0;
   method_state by_hull = {.workspace = cprox_workspace_create()},
                by_mesh = {.workspace = by_hull.workspace, .meshes = true};
   const bench_method hulls[] = {{"curve_proximity", ours, &by_hull}, {robot_fcl_name(), states_by_fcl, NULL}};
@@ -144,6 +181,8 @@ int main(int argc, char **argv) {
   const bench_method states[] = {{"curve_proximity", states_by_us, &by_mesh},
                                  {"by hulls", states_by_us, &by_hull},
                                  {robot_fcl_name(), states_by_fcl, NULL}};
+  const bench_method scenes[] = {{"curve_proximity", scene_verdict, &by_mesh},
+                                 {"FCL boolean at .05", scene_verdict_by_fcl, NULL}};
   FILE *f = fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
   size_t n;
   if (!f || fscanf(f, "%zu", &n) != 1) return 1;
@@ -163,6 +202,8 @@ int main(int argc, char **argv) {
         return 1;
       const bench_workload of_states = {"robots", "states", p.c.name, &p, 1, NULL, 0.0};
       bench_measure(&of_states, &size, states, robot_fcl_name() ? 3 : 2);
+      const bench_workload of_scene = {"robots", "environment verdict", p.c.name, &p, 1, NULL, 0.0};
+      bench_measure(&of_scene, &size, scenes, robot_fcl_name() ? 2 : 1);
       cprox_obstacles_free(p.set);
       printf("robots,planning,MoveIt 1.1.16 by itself,%s,%g,%g,%zu,0,,0,0\n", p.c.name, 1e3 * MOVEIT[k].milliseconds,
              1e3 * MOVEIT[k].milliseconds, p.states);

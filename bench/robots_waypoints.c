@@ -142,7 +142,7 @@ static void row(const char *name, size_t points, const problem *problems, size_t
 
 void bench_robot_waypoints(const robot_case *cases, size_t n_cases, const bench_size *size, cprox_workspace *ws) {
   static const size_t COUNTS[] = {2, 10, 100, 1000, 10000, MOST_POINTS};
-  for (size_t k = 2; k < sizeof COUNTS / sizeof *COUNTS && bench_wanted(size, "making a motion"); k++)
+  for (size_t k = 0; k < sizeof COUNTS / sizeof *COUNTS && bench_wanted(size, "making a motion"); k++)
     making_row(&cases[0], COUNTS[k], size, ws);
   if (!bench_wanted(size, "waypoints")) return;
   cprox_motion *sparse[ARMS], *dense[ARMS];

@@ -87,12 +87,17 @@ void robot_fcl_place(robot_fcl *r, size_t part, cprox_vec3 position, const doubl
   object.computeAABB();
 }
 
-bool robot_fcl_collides(robot_fcl *r) {
+bool robot_fcl_hits_world(robot_fcl *r) {
   for (const auto &part : r->parts) {
     fcl::DefaultCollisionData<double> data;
     r->tree.collide(part.get(), &data, fcl::DefaultCollisionFunction<double>);
     if (data.result.isCollision()) return true;
   }
+  return false;
+}
+
+bool robot_fcl_collides(robot_fcl *r) {
+  if (robot_fcl_hits_world(r)) return true;
   for (const auto &[a, b] : r->pairs) {
     if (!r->parts[a]->getAABB().overlap(r->parts[b]->getAABB())) continue;
     fcl::CollisionResultd result;

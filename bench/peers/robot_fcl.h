@@ -37,6 +37,8 @@ void robot_fcl_ready(robot_fcl *r);
 
 /* Where a part is now: x_world = rotation (row-major) x + position. */
 void robot_fcl_place(robot_fcl *r, size_t part, cprox_vec3 position, const double rotation[9]);
+/* Whether a part touches the world; or that, or a pair touches. */
+bool robot_fcl_hits_world(robot_fcl *r);
 bool robot_fcl_collides(robot_fcl *r);
 
 /* The least distance of the parts to the world, or of the pairs. */
