@@ -129,18 +129,40 @@ static void obstacles(const robot_case *arm, const bench_size *size, cprox_works
 
 /* ---- links ---- */
 
-/* A chain of capsules, its axes in turns across and up, that bends from one gentle curve to another. */
+enum { LONGEST_CHAIN = 96 };
+
+/* How a chain bends, from one gentle curve to another to a third. */
+typedef struct bends {
+  double values[3][LONGEST_CHAIN];
+} bends;
+
+static cprox_motion *bend(const cprox_robot *robot, const bends *b, size_t n) {
+  int32_t variables[LONGEST_CHAIN];
+  cprox_waypoint points[3];
+  for (int32_t i = 0; i < (int32_t)n; i++) variables[i] = i;
+  for (int k = 0; k < 3; k++) points[k] = (cprox_waypoint){.time = k, .positions = b->values[k]};
+  const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                      .variables = variables,
+                                      .n_variables = n,
+                                      .waypoints = points,
+                                      .n_waypoints = 3,
+                                      .interpolation = CPROX_INTERPOLATION_LINEAR};
+  cprox_motion *motion = NULL;
+  cprox_motion_create(robot, &d, NULL, &motion);
+  return motion;
+}
+
+/* Chains of capsules, their axes in turns across and up; of each length the first links of the same 45 chains. */
 static void links(const bench_size *size, cprox_workspace *ws) {
-  enum { MOST = 96 };
-  static const size_t COUNTS[] = {6, 12, 24, 48, MOST};
-  static cprox_link tree[MOST];
-  static cprox_link_geometry bodies[MOST];
-  double values[3][MOST] = {{0}};
-  int32_t variables[MOST];
+  enum { CHAINS = 45 };
+  static const size_t COUNTS[] = {6, 12, 24, 48, LONGEST_CHAIN};
+  static cprox_link tree[LONGEST_CHAIN];
+  static cprox_link_geometry bodies[LONGEST_CHAIN];
+  static bends chains[CHAINS];
   rng r = rng_seed(91);
   cprox_body *capsule = NULL;
   cprox_body_create_capsule(0.12, 0.03, NULL, &capsule);
-  for (int32_t i = 0; i < MOST; i++) {
+  for (int32_t i = 0; i < LONGEST_CHAIN; i++) {
     const double up = i % 2;
     tree[i] = (cprox_link){.parent = i - 1,
                            .origin = {.position = {0, 0, i > 0 ? 0.15 : 0.0}, .orientation = {.w = 1.0}},
@@ -150,29 +172,24 @@ static void links(const bench_size *size, cprox_workspace *ws) {
                            .multiplier = 1.0};
     bodies[i] = (cprox_link_geometry){
         .link = i, .body = capsule, .pose = {.position = {0, 0, 0.075}, .orientation = {.w = 1.0}}};
-    for (int k = 0; k < 3; k++) values[k][i] = rng_uniform(&r, -0.3, 0.3);
-    variables[i] = i;
+    for (int c = 0; c < CHAINS; c++)
+      for (int k = 0; k < 3; k++) chains[c].values[k][i] = rng_uniform(&r, -0.3, 0.3);
   }
-  const cprox_waypoint points[3] = {
-      {.time = 0, .positions = values[0]}, {.time = 1, .positions = values[1]}, {.time = 2, .positions = values[2]}};
   for (size_t k = 0; k < sizeof COUNTS / sizeof *COUNTS; k++) {
     cprox_robot *robot = NULL;
-    cprox_motion *motion = NULL;
     cprox_robot_create(tree, COUNTS[k], bodies, COUNTS[k], COUNTS[k], NULL, &robot);
-    cprox_motion_create(robot,
-                        &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                    .variables = variables,
-                                                    .n_variables = COUNTS[k],
-                                                    .waypoints = points,
-                                                    .n_waypoints = 3,
-                                                    .interpolation = CPROX_INTERPOLATION_LINEAR},
-                        NULL, &motion);
-    const problem p = {.mover = cprox_robot_self(motion, NULL, 0), .delta = -1.0};
+    problem problems[CHAINS];
+    double truth[CHAINS];
+    for (int c = 0; c < CHAINS; c++) {
+      problems[c] = (problem){.mover = cprox_robot_self(bend(robot, &chains[c], COUNTS[k]), NULL, 0), .delta = -1.0};
+      truth[c] = truth_of(&problems[c], ws);
+    }
     char parameter[40];
     snprintf(parameter, sizeof parameter, "links %zu", COUNTS[k]);
     const bench_method methods[] = {{"curve_proximity", by_list, ws}, {"sampling .05", sampled, ws}};
-    measure("growth links", parameter, &p, size, methods, 2, ws);
-    cprox_motion_free(motion);
+    const bench_workload w = {"robots", "growth links", parameter, problems, CHAINS, truth, 1.1e-7};
+    bench_measure(&w, size, methods, 2);
+    for (int c = 0; c < CHAINS; c++) cprox_motion_free((cprox_motion *)problems[c].mover.motion);
     cprox_robot_free(robot);
   }
   cprox_body_free(capsule);
