@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_MOTION_HPP
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -156,10 +157,11 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
                                  Workspace &workspace);
 
 /** The swept clearance: the least distance of the robot to the objects (query.objects: only these), or with `self`
- *  to itself, on each interval between two breaks [s], ascending and within domain(). Throws Error for breaks that are
- *  not, and where the core refuses. */
+ *  to itself, on each interval between two breaks [s], ascending and within domain(); beyond the horizon as of curves.
+ *  Throws Error for breaks that are not, and where the core refuses. */
 std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
-                                                const Query &query, Workspace &workspace);
+                                                const Query &query, Workspace &workspace,
+                                                double horizon = std::numeric_limits<double>::infinity());
 
 /** All intervals of time [s] in which the robot is within query.delta of an object, or with `self` of itself: as
  *  violations() of query.hpp, without signed_distance. */

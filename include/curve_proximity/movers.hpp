@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_MOVERS_HPP
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -83,8 +84,9 @@ class Movers {
 
 /** How close movers come. kind is "environment" where b is an object that stands, else "movers"; a and b are names of
  *  moving objects or links ("name/link"), result.t is the time [s]. query.links: only pairs with one of these movers
- *  ("name") or links ("name/link"). query.options.interval: only these times. Queries take no objects, per_object,
- *  signed_distance or certificate: such a query is refused, with status "invalid". */
+ *  ("name") or links ("name/link"). query.objects: only pairs with one of these objects, that stand or move, or robots.
+ *  query.options.interval: only these times. Queries take no per_object, signed_distance or certificate: such a query
+ * is refused, with status "invalid". */
 Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace);
 
 /** How close one of the robots comes to all that stands and to all others that move, at the times of its own motion;
@@ -104,6 +106,37 @@ Answer timeOfContact(const Movers &movers, Against against, const Query &query, 
 
 /** The same of one of the robots, as ask() of one of them. */
 Answer timeOfContact(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace);
+
+/** The clearance between each two of breaks [s], ascending and within domain(): as clearanceProfile() of motion.hpp.
+ * Throws Error for what ask() refuses, for an interval and for another query than DISTANCE. */
+std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, Against against,
+                                                const std::vector<double> &breaks, const Query &query,
+                                                Workspace &workspace,
+                                                double horizon = std::numeric_limits<double>::infinity());
+
+/** The same of one of the robots, as ask() of one of them. */
+std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, const MovingRobot &robot,
+                                                const std::vector<double> &breaks, const Query &query,
+                                                Workspace &workspace,
+                                                double horizon = std::numeric_limits<double>::infinity());
+
+/** The pairs that come closest, nearest first; each answer is that to DISTANCE for its pair alone. Throws Error for
+ * what ask() refuses, and for another query than DISTANCE. */
+std::vector<Answer> nearestPairs(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
+                                 Workspace &workspace);
+
+/** The same of one of the robots, as ask() of one of them. */
+std::vector<Answer> nearestPairs(const Movers &movers, const MovingRobot &robot, const PairLimits &limits,
+                                 const Query &query, Workspace &workspace);
+
+/** All intervals of time [s] in which movers are within query.delta of something: as violations() of query.hpp. Throws
+ *  Error for what ask() refuses. */
+Violations violations(const Movers &movers, Against against, double resolution, const Query &query,
+                      Workspace &workspace);
+
+/** The same of one of the robots, as ask() of one of them. */
+Violations violations(const Movers &movers, const MovingRobot &robot, double resolution, const Query &query,
+                      Workspace &workspace);
 
 } // namespace curve_proximity
 #endif

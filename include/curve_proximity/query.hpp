@@ -162,19 +162,26 @@ struct ClearanceInterval {
   double lower = 0.0; /**< [m] the least distance is at least this; infinity: nothing to measure */
   double upper = 0.0; /**< [m] and at most this */
   double t = 0.0;     /**< where upper was attained */
-  std::string a;      /**< the curve's id; of a robot the link or attached object, empty if nothing was measured */
-  std::string b;      /**< object or link */
 
-  /** CPROX_OK: as narrow as options ask for; else why not, as the core says of the whole profile. */
+  cprox_vec3 witness_a{}; /**< [m] world frame: the point of what moves that attains upper; 0 where upper is infinite */
+  cprox_vec3 witness_b{}; /**< the point of what it is near */
+
+  std::string a; /**< the curve's id; of a robot the link or attached object, empty if nothing was measured */
+  std::string b; /**< object or link */
+
+  /** CPROX_OK: as narrow as options ask for, or beyond the horizon; else why not, as the core says of the whole
+   * profile. */
   cprox_status status = CPROX_OK;
 };
 
 /** The clearance profile: the least distance on each interval between two breaks, which ascend within the domain of the
- *  curve. Takes no other query than DISTANCE, no signed_distance, no per_object and no certificate; throws Error for
- *  those, and where the core refuses. */
+ *  curve. Clearance beyond a horizon >= 0 [m] is only bounded: lower > horizon, which is less work. Takes no other
+ * query than DISTANCE, no signed_distance, no per_object and no certificate; throws Error for those, and where the core
+ *  refuses. */
 std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
                                                 const std::vector<double> &breaks, const Query &query,
-                                                Workspace &workspace);
+                                                Workspace &workspace,
+                                                double horizon = std::numeric_limits<double>::infinity());
 
 /** The derivatives of a curve's clearance, at its minimiser t. */
 struct CurveGradient {

@@ -53,6 +53,8 @@ const std::map<std::string, Option> &options() {
       {"--max-nodes", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
       {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::CHECK}}},
       {"--per-object", {false, {Action::CURVES}}},
+      {"--links", {true, {Action::CURVES, Action::REPORT}}},
+      {"--objects", {true, {Action::CURVES, Action::REPORT}}},
       {"--second-opinion", {true, {Action::CURVES, Action::PAIRS}}},
       {"--max-lod", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
@@ -60,6 +62,7 @@ const std::map<std::string, Option> &options() {
       {"--per-link", {false, {Action::CURVES}}},
       {"--intervals", {true, {Action::CURVES, Action::REPORT}}},
       {"--breaks", {true, {Action::CURVES, Action::REPORT}}},
+      {"--horizon", {true, {Action::CURVES}}},
       {"--pairs", {true, {Action::CURVES, Action::REPORT}}},
       {"--within", {true, {Action::CURVES}}},
       {"--resolution", {true, {Action::CURVES}}},
@@ -197,7 +200,26 @@ std::vector<double> readBreaks(const std::string &text) {
   return out;
 }
 
+/* "shelf, table" */
+std::vector<std::string> readNames(const Words &words, const std::string &option) {
+  std::vector<std::string> out;
+  const std::string text = words.text(option);
+  for (std::size_t begin = 0; words.has(option) && begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    out.emplace_back(trimmed(text.substr(begin, comma - begin)));
+    if (out.back().empty())
+      throw BadUsage(option + " is '" + text + "'; it must be names with commas between them: \"shelf, table\"");
+    begin = comma + 1;
+  }
+  return out;
+}
+
 void readQuery(const Words &words, const Command &command, Query &query) {
+  query.objects = readNames(words, "--objects");
+  query.links = readNames(words, "--links");
+  for (const char *name : {"--objects", "--links"})
+    if (words.has(name) && words.has("--certificate"))
+      throw BadUsage("--certificate takes no " + std::string(name) + ": it proves an answer about all of them");
   query.query_type = command.query_type;
   query.per_object = words.has("--per-object");
   query.options.signed_distance = words.has("--signed");
@@ -256,6 +278,8 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
         readCount(words, "--intervals", command.action == Action::REPORT ? kMostDrawn : kMostIntervals));
   }
   if (only("--breaks", "profile", Asking::PROFILE)) out.breaks = readBreaks(words.text("--breaks"));
+  if (only("--horizon", "profile", Asking::PROFILE))
+    out.horizon = readNumber(words, "--horizon", 0.0, true, "of at least 0 (metres)");
   if (only("--pairs", "nearest", Asking::NEAREST))
     out.limits.count = static_cast<std::size_t>(readCount(words, "--pairs", std::numeric_limits<std::uint32_t>::max()));
   if (only("--within", "nearest", Asking::NEAREST))
@@ -263,9 +287,7 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
   if (only("--resolution", "violations", Asking::VIOLATIONS))
     out.resolution = readNumber(words, "--resolution", 0.0, false, "above 0, in units of the parameter");
   if (command.asking == Asking::SEARCH) return;
-  const bool contact = command.asking == Asking::CONTACT;
-  for (const char *name : {"--against", "--certificate", "--movers"}) {
-    if (contact && std::string(name) == "--movers") continue;
+  for (const char *name : {"--against", "--certificate"}) {
     if (words.has(name)) throw BadUsage("'" + std::string(command.word) + "' takes no " + name);
   }
 }
@@ -273,7 +295,7 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
 /* Curves against curves: there is no scene, and a row has one answer. */
 void readAgainst(const Words &words, Arguments &out) {
   for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings",
-                           "--max-lod", "--per-link", "--second-opinion"}) {
+                           "--max-lod", "--per-link", "--links", "--objects", "--second-opinion"}) {
     if (words.has(name))
       throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
   }
@@ -303,7 +325,7 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
 /* What moves in the scene, without a robot of the command line. */
 void readMoversWords(const Words &words, Arguments &out) {
   for (const char *name : {"--curves", "--against", "--trajectory", "--signed", "--robot", "--srdf", "--state",
-                           "--per-object", "--per-link", "--certificate", "--second-opinion"}) {
+                           "--per-object", "--per-link", "--links", "--objects", "--certificate", "--second-opinion"}) {
     if (words.has(name)) throw BadUsage("--movers takes no " + std::string(name));
   }
   if (!words.has("--scene")) throw BadUsage("--movers needs --scene SCENE.yaml: what moves in it is asked about");
@@ -522,8 +544,12 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
   --per-object      rows for each curve and object or link, not for the nearest alone
   --per-link        with --trajectory: rows for each link and each object that a link carries
+  --objects LIST    these objects alone, "shelf, table"; with --curves and --links also those links
+  --links LIST      with --curves: these links of --robot alone. With --trajectory: what these links do, or objects that they
+                    carry; with --self pairs of which they are one
   --intervals N     'profile', 'report': N intervals of equal length (default 100)
   --breaks LIST     'profile', 'report': where intervals begin and end instead, "0, 0.5, 2"
+  --horizon H       'profile': clearance beyond H metres is only bounded: lower > H, which is less work
   --pairs K         'nearest', 'report': at most K pairs for each curve or trajectory (default 10)
   --resolution R    'violations': how finely the ends are searched, in units of the parameter (default: a thousandth of
                     all of it)
@@ -550,7 +576,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
 Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,
 t_b,lod,message. With --second-opinion also
 second_opinion,second_distance. Of 'time-of-contact' also t_contact_lower: there is no contact at any smaller parameter. Of 'profile':
-id,kind,status,t0,t1,lower,upper,t,a,b,message, a row an interval. Of 'violations':
+id,kind,status,t0,t1,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,message, a row an interval. Of 'violations':
 id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message, a row each: farther than D before
 enter_lower and after leave_upper, within D from enter_upper to leave_lower; or one row 'clear' without numbers. Of 'constraints': id,provider,status,value,lower,upper,valid,t,
 gradients ga_ and gb_ by a step of side a and b (v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,

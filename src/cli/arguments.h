@@ -53,20 +53,21 @@ struct Arguments {
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
   std::size_t intervals = 100; /**< PROFILE: so many of equal length, unless there are breaks */
   std::vector<double> breaks;  /**< PROFILE: where intervals begin and end; empty: see intervals */
-  PairLimits limits;           /**< NEAREST */
-  double resolution = 0.0;     /**< VIOLATIONS: in units of the parameter; 0: a thousandth of the domain */
-  std::string certificate;     /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
-  std::string robot, srdf;     /**< files of the robot; empty: none */
-  std::string state;           /**< "joint: value, …" */
-  std::string pairs;           /**< file of PAIRS */
-  std::string cases;           /**< file of CONSTRAINTS */
-  std::string provider;        /**< CONSTRAINTS: the plugin */
-  std::string parameters;      /**< CONSTRAINTS: "name: value, …" */
-  bool check_gradient = false; /**< CONSTRAINTS: hold gradients against differences */
-  std::string node;            /**< SEND: the node's name */
-  std::optional<bool> replace; /**< SEND: as the file's is_diff says, unless set */
-  std::string dataset;         /**< CERTIFY: the manifest */
-  std::size_t shards = 1;      /**< CERTIFY: into how many parts it is cut */
+  double horizon = std::numeric_limits<double>::infinity(); /**< PROFILE: [m] clearance beyond it is only bounded */
+  PairLimits limits;                                        /**< NEAREST */
+  double resolution = 0.0;           /**< VIOLATIONS: in units of the parameter; 0: a thousandth of the domain */
+  std::string certificate;           /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
+  std::string robot, srdf;           /**< files of the robot; empty: none */
+  std::string state;                 /**< "joint: value, …" */
+  std::string pairs;                 /**< file of PAIRS */
+  std::string cases;                 /**< file of CONSTRAINTS */
+  std::string provider;              /**< CONSTRAINTS: the plugin */
+  std::string parameters;            /**< CONSTRAINTS: "name: value, …" */
+  bool check_gradient = false;       /**< CONSTRAINTS: hold gradients against differences */
+  std::string node;                  /**< SEND: the node's name */
+  std::optional<bool> replace;       /**< SEND: as the file's is_diff says, unless set */
+  std::string dataset;               /**< CERTIFY: the manifest */
+  std::size_t shards = 1;            /**< CERTIFY: into how many parts it is cut */
   std::optional<std::size_t> shard;  /**< CERTIFY: the one that is wanted; else all */
   std::string progress;              /**< CERTIFY: "line" or "json" */
   std::optional<std::string> failed; /**< CERTIFY: why all rows of the shard are failed */

@@ -12,7 +12,6 @@ namespace {
 
 void addAnswer(const Subject &subject, const Arguments &arguments, Answer answer, Outcome &out) {
   answer.id = subject.id;
-  answer.kind = subject.kind;
   putLinkFirst(subject.link, answer);
   if (answer.b.empty()) answer.b = subject.object;
   out.stopped = out.stopped || answer.result.status == CPROX_STOPPED;
@@ -25,7 +24,10 @@ void addAnswer(const Subject &subject, const Arguments &arguments, Answer answer
 void addProfile(const Subject &subject, std::vector<ClearanceInterval> intervals, Outcome &out) {
   for (ClearanceInterval &interval : intervals) {
     if (!subject.link.empty() && interval.a != subject.link) {
-      if (interval.b == subject.link) interval.b = interval.a;
+      if (interval.b == subject.link) {
+        interval.b = interval.a;
+        std::swap(interval.witness_a, interval.witness_b);
+      }
       interval.a = subject.link;
     }
     if (interval.b.empty()) interval.b = subject.object;
@@ -63,13 +65,17 @@ std::vector<Answer> CurveSubject::nearest(const PairLimits &limits, const Query 
   return nearestPairs(targets_, curve_, limits, query, workspace);
 }
 
-std::vector<ClearanceInterval> CurveSubject::profile(const std::vector<double> &breaks, const Query &query,
-                                                     Workspace &workspace) const {
-  return clearanceProfile(targets_, curve_, breaks, query, workspace);
+std::vector<ClearanceInterval> CurveSubject::profile(const std::vector<double> &breaks, double horizon,
+                                                     const Query &query, Workspace &workspace) const {
+  return clearanceProfile(targets_, curve_, breaks, query, workspace, horizon);
 }
 
 Answer CurveSubject::contact(const Query &query, Workspace &workspace) const {
   return timeOfContact(targets_, curve_, query, workspace);
+}
+
+std::vector<Answer> CurveSubject::search(const Query &query, Workspace &workspace) const {
+  return ask(targets_, curve_, query, workspace);
 }
 
 Violations CurveSubject::violations(double resolution, const Query &query, Workspace &workspace) const {
@@ -82,6 +88,8 @@ std::array<double, 2> MotionSubject::domain() const {
 
 Query MotionSubject::named(const Query &query) const {
   Query out = query;
+  if (self_) out.objects.clear(); // the robot itself is none of them, and is one row
+  if (self_) out.per_object = false;
   if (!link.empty()) out.links = {link};
   if (!object.empty()) out.objects = {object};
   return out;
@@ -91,13 +99,19 @@ std::vector<Answer> MotionSubject::nearest(const PairLimits &limits, const Query
   return nearestPairs(motion_, self_, limits, named(query), workspace);
 }
 
-std::vector<ClearanceInterval> MotionSubject::profile(const std::vector<double> &breaks, const Query &query,
-                                                      Workspace &workspace) const {
-  return clearanceProfile(motion_, self_, breaks, named(query), workspace);
+std::vector<ClearanceInterval> MotionSubject::profile(const std::vector<double> &breaks, double horizon,
+                                                      const Query &query, Workspace &workspace) const {
+  return clearanceProfile(motion_, self_, breaks, named(query), workspace, horizon);
 }
 
 Answer MotionSubject::contact(const Query &query, Workspace &workspace) const {
   return timeOfContact(motion_, self_, named(query), workspace);
+}
+
+std::vector<Answer> MotionSubject::search(const Query &query, Workspace &workspace) const {
+  const Query asked = named(query);
+  if (self_) return {askSelf(motion_, asked, workspace)};
+  return askEnvironment(motion_, asked, workspace);
 }
 
 Violations MotionSubject::violations(double resolution, const Query &query, Workspace &workspace) const {
@@ -173,9 +187,12 @@ void answer(const Subject &subject, const Arguments &arguments, const Query &que
   one.per_object = false;
   try {
     switch (arguments.asking) {
-      case Asking::SEARCH: break;
+      case Asking::SEARCH:
+        for (const Answer &answer : subject.search(one, workspace)) addAnswer(subject, arguments, answer, out);
+        break;
       case Asking::PROFILE:
-        addProfile(subject, subject.profile(breaksOf(arguments, subject.domain()), one, workspace), out);
+        addProfile(subject, subject.profile(breaksOf(arguments, subject.domain()), arguments.horizon, one, workspace),
+                   out);
         break;
       case Asking::NEAREST: {
         const std::vector<Answer> answers = subject.nearest(arguments.limits, one, workspace);

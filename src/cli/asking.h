@@ -27,9 +27,11 @@ class Subject {
   virtual ~Subject() = default;
   virtual std::array<double, 2> domain() const = 0;
   virtual std::vector<Answer> nearest(const PairLimits &limits, const Query &query, Workspace &workspace) const = 0;
-  virtual std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, const Query &query,
+  virtual std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, double horizon, const Query &query,
                                                  Workspace &workspace) const = 0;
   virtual Answer contact(const Query &query, Workspace &workspace) const = 0;
+  /** Distance, tolerance or collision: a row, or one for each object. */
+  virtual std::vector<Answer> search(const Query &query, Workspace &workspace) const = 0;
   virtual Violations violations(double resolution, const Query &query, Workspace &workspace) const = 0;
 };
 
@@ -42,9 +44,10 @@ class CurveSubject : public Subject {
   }
   std::array<double, 2> domain() const override;
   std::vector<Answer> nearest(const PairLimits &limits, const Query &query, Workspace &workspace) const override;
-  std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, const Query &query,
+  std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, double horizon, const Query &query,
                                          Workspace &workspace) const override;
   Answer contact(const Query &query, Workspace &workspace) const override;
+  std::vector<Answer> search(const Query &query, Workspace &workspace) const override;
   Violations violations(double resolution, const Query &query, Workspace &workspace) const override;
 
  private:
@@ -60,9 +63,10 @@ class MotionSubject : public Subject {
   }
   std::array<double, 2> domain() const override;
   std::vector<Answer> nearest(const PairLimits &limits, const Query &query, Workspace &workspace) const override;
-  std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, const Query &query,
+  std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, double horizon, const Query &query,
                                          Workspace &workspace) const override;
   Answer contact(const Query &query, Workspace &workspace) const override;
+  std::vector<Answer> search(const Query &query, Workspace &workspace) const override;
   Violations violations(double resolution, const Query &query, Workspace &workspace) const override;
 
  private:
@@ -82,7 +86,7 @@ std::string headerOf(const Arguments &arguments);
 /** The columns that the results have beyond the common ones. */
 Columns columnsOf(const Arguments &arguments);
 
-/** The rows that arguments.asking asks for (not SEARCH), added to `out`. Never throws. */
+/** The rows that arguments.asking asks for, without certificates, added to `out`. Never throws. */
 void answer(const Subject &subject, const Arguments &arguments, const Query &query, Workspace &workspace, Outcome &out);
 
 /** Adds a row without an answer, and the complaint that says why. */

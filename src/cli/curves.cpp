@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include <algorithm>
+
 #include "asking.h"
 #include "certificates.h"
 #include "commands.h"
@@ -21,8 +23,14 @@ struct Side {
 /* One side, or one for each object and link, where the query is about each and ask() does not part them itself. */
 std::vector<Side> sidesOf(const World &world, const Arguments &arguments, const Query &query) {
   std::vector<Side> sides;
+  const auto &objects = query.objects, &links = query.links;
   const auto add = [&](const std::string &name, std::vector<std::string> Query::*names) {
+    const std::vector<std::string> &only = query.*names;
+    if (!objects.empty() || !links.empty()) {
+      if (std::find(only.begin(), only.end(), name) == only.end()) return;
+    }
     Query named = query;
+    named.objects.clear(), named.links.clear();
     (named.*names).push_back(name);
     sides.push_back({name, Targets(world.snapshot, world.links, named)});
   };

@@ -22,12 +22,7 @@ void checkAsked(const Arguments &arguments) {
   const auto refuse = [&](const std::string &what) {
     throw BadUsage(arguments.scene + ": " + what + " is not available where objects or further robots move");
   };
-  if (arguments.asking == Asking::PROFILE) refuse("'profile'");
-  if (arguments.asking == Asking::NEAREST) refuse("'nearest'");
-  if (arguments.asking == Asking::VIOLATIONS) refuse("'violations'");
   if (!arguments.certificate.empty()) refuse("--certificate");
-  if (arguments.query.per_object) refuse("--per-object");
-  if (arguments.per_link) refuse("--per-link");
   if (arguments.query.options.signed_distance) refuse("--signed");
 }
 
@@ -68,38 +63,68 @@ Movers gather(const Arguments &arguments, const World &world, const std::optiona
   }
 }
 
-void addRow(const Answer &answer, const Arguments &arguments, const std::string &place, Outcome &out) {
-  out.stopped = out.stopped || answer.result.status == CPROX_STOPPED;
-  const ResultRow row = toRow(answer, arguments.query.query_type);
-  out.text += resultsLine(row, columnsOf(arguments));
-  noteVerdict(row, out);
-  if (answer.result.status < 0) out.complaints.push_back(place + ": " + answer.kind + ": " + answer.message);
-}
-
-Outcome askMovers(const Movers &movers, const std::optional<OneRobot> &subject, const Query &query,
-                  const Arguments &arguments, const std::string &place, Workspace &workspace) {
-  const bool contact = arguments.asking == Asking::CONTACT;
-  Answer answer;
-  if (subject) {
-    answer = contact ? timeOfContact(movers, subject->robot, query, workspace)
-                     : ask(movers, subject->robot, query, workspace);
-    answer.id = subject->id;
-  } else {
-    const Against against = arguments.self ? Against::BOTH : Against::OTHERS;
-    answer = contact ? timeOfContact(movers, against, query, workspace) : ask(movers, against, query, workspace);
+/* The robot against all that stands and moves, or without a robot all that moves. Kept by reference. */
+class MoversSubject : public Subject {
+ public:
+  MoversSubject(const Movers &movers, const std::optional<OneRobot> &robot, Against against)
+      : movers_(movers), robot_(robot ? &robot->robot : nullptr), against_(against) {
+    id = robot ? robot->id : "movers";
+    kind = robot ? "environment" : "movers";
   }
-  Outcome out;
-  addRow(answer, arguments, place, out);
-  return out;
+  std::array<double, 2> domain() const override {
+    if (!robot_ || robot_->motion->stands()) return movers_.domain();
+    const std::array<double, 2> own = robot_->motion->domain();
+    return {own[0] + robot_->start, own[1] + robot_->start};
+  }
+  std::vector<Answer> nearest(const PairLimits &limits, const Query &query, Workspace &workspace) const override {
+    if (robot_) return nearestPairs(movers_, *robot_, limits, named(query), workspace);
+    return nearestPairs(movers_, against_, limits, named(query), workspace);
+  }
+  std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, double horizon, const Query &query,
+                                         Workspace &workspace) const override {
+    if (robot_) return clearanceProfile(movers_, *robot_, breaks, named(query), workspace, horizon);
+    return clearanceProfile(movers_, against_, breaks, named(query), workspace, horizon);
+  }
+  Answer contact(const Query &query, Workspace &workspace) const override {
+    if (robot_) return timeOfContact(movers_, *robot_, named(query), workspace);
+    return timeOfContact(movers_, against_, named(query), workspace);
+  }
+  Violations violations(double resolution, const Query &query, Workspace &workspace) const override {
+    if (robot_) return curve_proximity::violations(movers_, *robot_, resolution, named(query), workspace);
+    return curve_proximity::violations(movers_, against_, resolution, named(query), workspace);
+  }
+  std::vector<Answer> search(const Query &query, Workspace &workspace) const override {
+    if (robot_) return {ask(movers_, *robot_, named(query), workspace)};
+    return {ask(movers_, against_, named(query), workspace)};
+  }
+
+ private:
+  Query named(const Query &query) const {
+    Query out = query;
+    if (!link.empty()) out.links = {link};
+    if (!object.empty()) out.objects = {object};
+    return out;
+  }
+
+  const Movers &movers_;
+  const MovingRobot *robot_;
+  const Against against_;
+};
+
+/* Links that have rows of their own, of those that could; "": all are one. */
+std::vector<std::string> linksOf(const std::vector<std::string> &names, const Arguments &arguments) {
+  if (!arguments.per_link) return {""};
+  return arguments.query.links.empty() ? names : arguments.query.links;
 }
 
-Outcome askItself(const OneRobot &subject, const Query &query, const Arguments &arguments, const std::string &place,
-                  Workspace &workspace) {
-  Answer answer = arguments.asking == Asking::CONTACT ? timeOfContact(*subject.robot.motion, true, query, workspace)
-                                                      : askSelf(*subject.robot.motion, query, workspace);
-  answer.id = subject.id;
-  Outcome out;
-  addRow(answer, arguments, place, out);
+/* Likewise what they are measured against: objects that stand, objects and robots that move. */
+std::vector<std::string> objectsOf(const World &world, const Arguments &arguments) {
+  if (!arguments.query.per_object) return {""};
+  std::vector<std::string> out = arguments.query.objects;
+  if (!out.empty()) return out;
+  for (const auto &object : world.snapshot->objects()) out.push_back(object.first);
+  for (const auto &object : world.snapshot->moving()) out.push_back(object.first);
+  for (const MovingRobotFile &robot : world.moving_robots) out.push_back(robot.name);
   return out;
 }
 
@@ -119,9 +144,27 @@ int answer(const Arguments &arguments, const World &world, const std::optional<O
   catchInterrupts();
   results.write(headerOf(arguments));
   std::vector<Task> tasks;
-  tasks.push_back([&](Workspace &workspace) { return askMovers(movers, subject, query, arguments, place, workspace); });
-  if (subject && arguments.self)
-    tasks.push_back([&](Workspace &workspace) { return askItself(*subject, query, arguments, place, workspace); });
+  const auto add = [&](const auto &of, const std::string &link, const std::string &object) {
+    tasks.push_back([&, of, link, object](Workspace &workspace) {
+      auto one = of;
+      one.place = place + ": " + of.kind;
+      one.link = link;
+      one.object = object;
+      Outcome out;
+      cli::answer(one, arguments, query, workspace, out);
+      return out;
+    });
+  };
+  const Against against = arguments.self ? Against::BOTH : Against::OTHERS;
+  const std::vector<std::string> names = subject ? movingNames(*subject->robot.motion) : std::vector<std::string>();
+  for (const std::string &link : linksOf(names, arguments))
+    for (const std::string &object : objectsOf(world, arguments))
+      add(MoversSubject(movers, subject, against), link, object);
+  if (subject && arguments.self) {
+    MotionSubject itself(*subject->robot.motion, true);
+    itself.id = subject->id;
+    for (const std::string &link : linksOf(askedNames(*subject->robot.motion, true), arguments)) add(itself, link, "");
+  }
   Rows rows;
   std::size_t next = 0;
   rows.next = [&]() -> std::optional<Task> {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* report: one page that shows how close a trajectory, or curves, come to what is around them. */
 #include <filesystem>
-#include <functional>
 #include <set>
 
 #include "../scene/digest.h"
@@ -27,7 +26,6 @@ constexpr int kMoments = 100;           /* at which the robot is drawn, beside t
 struct Asked {
   std::unique_ptr<Subject> subject;
   std::vector<std::string> links; /* that have a line of their own in the chart; one empty name: all in one line */
-  std::function<Answer(const Query &, Workspace &)> search;
 };
 
 /* The page's data as they are gathered, and the exit code that they deserve. */
@@ -122,7 +120,7 @@ class Report {
       const CertificateHandle proof = makeCertificate();
       const bool proves = with_proof && type == types.front();
       if (proves) query.options.certificate = proof.get();
-      const Answer answer = asked.search(query, workspace);
+      const Answer answer = asked.subject->search(query, workspace).at(0);
       Value row = toValue(toRow(answer, type), asked);
       row["query"] = type == QueryType::TOLERANCE ? "tolerance" : "distance";
       if (proves) {
@@ -149,7 +147,8 @@ class Report {
     Value t = Value::array(), lower = Value::array(), upper = Value::array(), against = Value::array();
     std::string ended;
     const std::vector<double> breaks = breaksOf(arguments_, subject.domain());
-    for (const ClearanceInterval &interval : subject.profile(breaks, plainQuery(), workspace)) {
+    for (const ClearanceInterval &interval :
+         subject.profile(breaks, std::numeric_limits<double>::infinity(), plainQuery(), workspace)) {
       t.push_back(interval.t0);
       lower.push_back(numberOrNull(interval.lower));
       upper.push_back(numberOrNull(interval.upper));
@@ -238,10 +237,7 @@ Asked askedOf(const RobotMotion &motion, bool self, const Arguments &arguments) 
   out.subject = std::make_unique<MotionSubject>(motion, self);
   out.subject->id = std::filesystem::path(arguments.trajectory).stem().string();
   out.subject->place = arguments.trajectory + ": " + out.subject->kind;
-  out.links = askedNames(motion, self);
-  out.search = [&motion, self](const Query &query, Workspace &workspace) {
-    return self ? askSelf(motion, query, workspace) : askEnvironment(motion, query, workspace).at(0);
-  };
+  out.links = arguments.query.links.empty() ? askedNames(motion, self) : arguments.query.links;
   return out;
 }
 
@@ -250,9 +246,6 @@ Asked askedOf(const Targets &targets, const CompiledCurve &curve, const std::str
   out.subject = std::make_unique<CurveSubject>(targets, curve);
   out.subject->place = place;
   out.links.emplace_back();
-  out.search = [&targets, &curve](const Query &query, Workspace &workspace) {
-    return ask(targets, curve, query, workspace).at(0);
-  };
   return out;
 }
 

@@ -116,23 +116,27 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
 }
 
 std::string profileHeader() {
-  return "id,kind,status,t0,t1,lower,upper,t,a,b,message\n";
+  return "id,kind,status,t0,t1,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,message\n";
 }
 
 std::string profileLine(const std::string &id, const std::string &kind, const ClearanceInterval &interval) {
   std::string line = quotedField(id) + ',' + kind + ',' + cprox_status_name(interval.status);
   for (const double value : {interval.t0, interval.t1, interval.lower, interval.upper}) append(line, value);
-  if (std::isfinite(interval.upper))
+  if (std::isfinite(interval.upper)) {
     append(line, interval.t);
-  else
-    line += ',';
+    append(line, interval.witness_a);
+    append(line, interval.witness_b);
+  } else {
+    line += ",,,,,,,";
+  }
   const std::string message = interval.status == CPROX_OK ? "" : cprox_status_text(interval.status);
   return line + ',' + quotedField(interval.a) + ',' + quotedField(interval.b) + ',' + quotedField(message) + '\n';
 }
 
 std::string failedProfileLine(const std::string &id, const std::string &kind, cprox_status status,
                               const std::string &message) {
-  return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ",,,,,,,," + quotedField(message) + '\n';
+  return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ",,,,,,,,,,,,,," + quotedField(message) +
+         '\n';
 }
 
 std::string violationsHeader() {

@@ -34,17 +34,14 @@ void addAnswers(const std::vector<Answer> &answers, const Arguments &arguments, 
 
 /* The intervals of one of the two queries, of one link or all; with the record of its certificate, where one is wanted.
  */
-void search(const RobotMotion &motion, bool self, const std::string &link, const Query &query,
-            const Arguments &arguments, Workspace &workspace, Outcome &out) {
+void search(const MotionSubject &subject, const Query &query, const Arguments &arguments, Workspace &workspace,
+            Outcome &out) {
   const CertificateHandle proof = makeCertificate();
   const bool with_proof = !arguments.certificate.empty();
   Query asked = query;
   if (with_proof) asked.options.certificate = proof.get();
-  if (self) asked.per_object = false; /* the robot itself is one row */
-  if (!link.empty()) asked.links = {link};
-  std::vector<Answer> answers =
-      self ? std::vector<Answer>{askSelf(motion, asked, workspace)} : askEnvironment(motion, asked, workspace);
-  for (Answer &answer : answers) putLinkFirst(link, answer);
+  std::vector<Answer> answers = subject.search(asked, workspace);
+  for (Answer &answer : answers) putLinkFirst(subject.link, answer);
   addAnswers(answers, arguments, with_proof ? proofOf(proof) : "", out);
   if (with_proof) out.certificate = recordOf(proof);
 }
@@ -53,23 +50,23 @@ void search(const RobotMotion &motion, bool self, const std::string &link, const
 Outcome askOne(const RobotMotion &motion, bool self, const std::string &link, const std::string &object,
                const Query &query, const Arguments &arguments, Workspace &workspace) {
   Outcome out;
-  if (arguments.asking == Asking::SEARCH) {
-    search(motion, self, link, query, arguments, workspace, out);
-    return out;
-  }
   MotionSubject subject(motion, self);
   subject.id = std::filesystem::path(arguments.trajectory).stem().string();
   subject.place = arguments.trajectory + ": " + subject.kind;
   subject.link = link;
   subject.object = object;
-  answer(subject, arguments, query, workspace, out);
+  if (arguments.asking == Asking::SEARCH) {
+    search(subject, query, arguments, workspace, out);
+  } else {
+    answer(subject, arguments, query, workspace, out);
+  }
   return out;
 }
 
 /* The links that have rows of their own; "": all are one. */
 std::vector<std::string> linksOf(const RobotMotion &motion, bool self, const Arguments &arguments) {
   std::vector<std::string> links;
-  if (arguments.per_link) links = askedNames(motion, self);
+  if (arguments.per_link) links = arguments.query.links.empty() ? askedNames(motion, self) : arguments.query.links;
   if (links.empty()) links.emplace_back();
   return links;
 }
@@ -78,7 +75,9 @@ std::vector<std::string> linksOf(const RobotMotion &motion, bool self, const Arg
 std::vector<std::string> objectsOf(const World &world, bool self, const Arguments &arguments) {
   std::vector<std::string> objects;
   if (arguments.query.per_object && !self && arguments.asking != Asking::SEARCH) {
-    for (const auto &object : world.snapshot->objects()) objects.push_back(object.first);
+    objects = arguments.query.objects;
+    if (objects.empty())
+      for (const auto &object : world.snapshot->objects()) objects.push_back(object.first);
   }
   if (objects.empty()) objects.emplace_back();
   return objects;

@@ -102,10 +102,11 @@ class Client:
         """At most count pairs for each curve, the nearest first, or only those within a distance [m]: a list of Proximity messages."""
         return self._answers('nearest_pairs', NearestPairs, NearestPairsRequest, curves, dict(fields, count=count, within=float(within)))
 
-    def clearance_profile(self, curves, intervals=100, breaks=(), per_link=False, **fields):
+    def clearance_profile(self, curves, intervals=100, breaks=(), per_link=False, horizon=0.0, **fields):
         """The least distance on each of so many intervals of the parameter, or between breaks: a Profile message, or a list of them
-        for a list or per_link."""
-        own = dict(breaks=list(breaks), per_link=per_link) if len(breaks) else dict(intervals=intervals, per_link=per_link)
+        for a list or per_link. Clearance beyond a horizon [m] above 0 is only bounded."""
+        own = dict(breaks=list(breaks)) if len(breaks) else dict(intervals=intervals)
+        own.update(per_link=per_link, horizon=float(horizon))
         return self._ask('clearance_profile', ClearanceProfile, ClearanceProfileRequest, curves, dict(fields, **own))
 
     def gradient(self, curves, **fields):

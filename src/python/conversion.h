@@ -46,6 +46,9 @@ Eigen::Isometry3d toTransform(const std::optional<Array> &matrix);
 /** A vector as an array (3,). */
 Array fromVector(const cprox_vec3 &v);
 
+/** Writes a vector into row i of an array (n, 3). */
+void setRow(Array &rows, py::ssize_t i, const cprox_vec3 &v);
+
 /** A transform as an array (4, 4). */
 Array fromTransform(const Eigen::Isometry3d &transform);
 

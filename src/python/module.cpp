@@ -42,6 +42,11 @@ Array fromVector(const cprox_vec3 &v) {
   return out;
 }
 
+void setRow(Array &rows, py::ssize_t i, const cprox_vec3 &v) {
+  double *to = rows.mutable_data(i, 0);
+  to[0] = v.x, to[1] = v.y, to[2] = v.z;
+}
+
 Array fromTransform(const Eigen::Isometry3d &transform) {
   Array out({4, 4});
   for (int i = 0; i < 4; ++i)

@@ -146,26 +146,30 @@ py::dict columnsOf(const std::vector<cprox_result> &results) {
   return out;
 }
 
-py::dict profileOf(const ObstacleSet &set, const Mover &mover, const Array &breaks, cprox_options options) {
+py::dict profileOf(const ObstacleSet &set, const Mover &mover, const Array &breaks, double horizon,
+                   cprox_options options) {
   if (breaks.ndim() != 1 || breaks.shape(0) < 2) throw Error("breaks must be an array of two and more parameters");
   const auto n = static_cast<std::size_t>(breaks.shape(0)) - 1;
   std::vector<cprox_profile_interval> intervals(n);
   unlocked(options, [&] {
     Workspace &workspace = threadWorkspace();
-    return require(cprox_obstacles_profile(set.get().get(), mover.mover, breaks.data(), n, &options, workspace.get(),
-                                           intervals.data()),
+    return require(cprox_obstacles_profile(set.get().get(), mover.mover, breaks.data(), n, horizon, &options,
+                                           workspace.get(), intervals.data()),
                    workspace);
   });
   const auto rows = static_cast<py::ssize_t>(n);
-  Array lower(rows), upper(rows), t(rows);
+  Array lower(rows), upper(rows), t(rows), witness_mover({rows, py::ssize_t{3}}),
+      witness_obstacle({rows, py::ssize_t{3}});
   py::array_t<std::int32_t> obstacle(rows);
   for (py::ssize_t i = 0; i < rows; ++i) {
     const cprox_profile_interval &one = intervals[static_cast<std::size_t>(i)];
+    setRow(witness_mover, i, one.witness_mover), setRow(witness_obstacle, i, one.witness_obstacle);
     lower.mutable_data()[i] = one.lower, upper.mutable_data()[i] = one.upper, t.mutable_data()[i] = one.t;
     obstacle.mutable_data()[i] = one.obstacle_index;
   }
   py::dict out;
   out["lower"] = lower, out["upper"] = upper, out["t"] = t, out["obstacle"] = obstacle;
+  out["witness_mover"] = witness_mover, out["witness_obstacle"] = witness_obstacle;
   return out;
 }
 
@@ -336,12 +340,12 @@ void addQueries(py::module &module) {
           py::arg("mover"), py::arg("k"), "The k nearest obstacles, a Result each, in ascending order.")
       .def(
           "profile",
-          [](const ObstacleSet &set, const py::object &mover, const Array &breaks, const py::kwargs &given) {
-            return profileOf(set, *moverOf(mover), breaks, optionsOf(given));
-          },
-          py::arg("mover"), py::arg("breaks"),
+          [](const ObstacleSet &set, const py::object &mover, const Array &breaks, double horizon,
+             const py::kwargs &given) { return profileOf(set, *moverOf(mover), breaks, horizon, optionsOf(given)); },
+          py::arg("mover"), py::arg("breaks"), py::arg("horizon") = std::numeric_limits<double>::infinity(),
           "The clearance on each interval between two of breaks (n + 1,): a dict of arrays (n,) lower, upper, t, "
-          "obstacle.")
+          "obstacle,\nand (n, 3) witness_mover, witness_obstacle. Beyond the horizon [m] it is only bounded: lower > "
+          "horizon.")
       .def(
           "distance_batch",
           [](const ObstacleSet &set, const Array &points, double radius, unsigned threads, const py::kwargs &given) {

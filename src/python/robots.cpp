@@ -211,8 +211,12 @@ std::shared_ptr<RobotMotion> loadMotion(const PythonScene &scene, const std::str
   return move(scene, std::move(trajectory), still, base);
 }
 
-Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes) {
+using Names = std::vector<std::string>;
+
+Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links = {},
+              const Names &objects = {}) {
   Query out;
+  out.links = links, out.objects = objects;
   if (type == "tolerance")
     out.query_type = QueryType::TOLERANCE;
   else if (type == "collision")
@@ -243,11 +247,11 @@ py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
 
 /* An answer with its proof, and the query that it is about as cprox_check reads it. */
 py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, bool self, double epsilon,
-                       std::uint32_t max_nodes) {
+                       std::uint32_t max_nodes, const Names &links, const Names &objects) {
   using Handle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
   const Handle certificate(cprox_certificate_create(), cprox_certificate_free);
   if (!certificate) throw std::bad_alloc();
-  Query query = queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes);
+  Query query = queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes, links, objects);
   query.options.certificate = certificate.get();
   Answer answer;
   std::string text;
@@ -276,12 +280,13 @@ py::object fromMatrix(const Eigen::MatrixXd &matrix) {
   return std::move(out);
 }
 
-py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes) {
+py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
+                    const Names &objects) {
   ClearanceRow row;
   {
     const py::gil_scoped_release release;
     row = clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT,
-                            queryOf("distance", 0.0, epsilon, max_nodes), threadWorkspace());
+                            queryOf("distance", 0.0, epsilon, max_nodes, links, objects), threadWorkspace());
   }
   py::dict out = answerOf(row.answer);
   const ClearanceGradient &g = row.gradient;
@@ -333,14 +338,14 @@ Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string>
 }
 
 py::list violationsOf(const RobotMotion &motion, double delta, std::optional<double> resolution, bool self,
-                      double epsilon) {
+                      double epsilon, const Names &links, const Names &objects) {
   constexpr double PART = 1e-3;
   const std::array<double, 2> domain = motion.domain();
   Violations found;
   {
     const py::gil_scoped_release release;
     found = violations(motion, self, resolution.value_or(PART * (domain[1] - domain[0])),
-                       queryOf("tolerance", delta, epsilon, 20000), threadWorkspace());
+                       queryOf("tolerance", delta, epsilon, 20000, links, objects), threadWorkspace());
   }
   if (found.status != CPROX_OK) throw std::runtime_error(found.message);
   py::list out;
@@ -356,32 +361,35 @@ py::list violationsOf(const RobotMotion &motion, double delta, std::optional<dou
 }
 
 py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon,
-                   const std::vector<std::string> &links) {
-  Query query = queryOf("distance", 0.0, epsilon, 20000);
-  query.links = links;
+                   const Names &links, double horizon, const Names &objects) {
+  const Query query = queryOf("distance", 0.0, epsilon, 20000, links, objects);
   std::vector<ClearanceInterval> intervals;
   {
     const py::gil_scoped_release release;
-    intervals = clearanceProfile(motion, self, breaks, query, threadWorkspace());
+    intervals = clearanceProfile(motion, self, breaks, query, threadWorkspace(), horizon);
   }
   const auto n = static_cast<py::ssize_t>(intervals.size());
-  Array lower(n), upper(n), t(n);
+  Array lower(n), upper(n), t(n), witness_a({n, py::ssize_t{3}}), witness_b({n, py::ssize_t{3}});
   py::list a, b;
   for (py::ssize_t i = 0; i < n; ++i) {
     const ClearanceInterval &one = intervals[static_cast<std::size_t>(i)];
+    setRow(witness_a, i, one.witness_a), setRow(witness_b, i, one.witness_b);
     lower.mutable_data()[i] = one.lower, upper.mutable_data()[i] = one.upper, t.mutable_data()[i] = one.t;
     a.append(one.a), b.append(one.b);
   }
   py::dict out;
   out["lower"] = lower, out["upper"] = upper, out["t"] = t, out["a"] = a, out["b"] = b;
+  out["witness_a"] = witness_a, out["witness_b"] = witness_b;
   return out;
 }
 
-py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool self, double epsilon) {
+py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool self, double epsilon, const Names &links,
+                 const Names &objects) {
   std::vector<Answer> answers;
   {
     const py::gil_scoped_release release;
-    answers = nearestPairs(motion, self, {k, within}, queryOf("distance", 0.0, epsilon, 20000), threadWorkspace());
+    answers = nearestPairs(motion, self, {k, within}, queryOf("distance", 0.0, epsilon, 20000, links, objects),
+                           threadWorkspace());
   }
   py::list out;
   for (const Answer &answer : answers) out.append(answerOf(answer));
@@ -440,7 +448,9 @@ void addRobots(py::module &module) {
 
   py::class_<RobotMotion, std::shared_ptr<RobotMotion>>(
       module, "Motion",
-      "The robot of a scene along a joint trajectory, in the scene as it was when the motion was made.")
+      "The robot of a scene along a joint trajectory, in the scene as it was when the motion was made.\n"
+      "links, objects of its queries: of these alone, names of links() and of the scene; with self_collision pairs of "
+      "which\na link is one, and no objects.")
       .def(py::init(&makeMotion), py::arg("scene"), py::arg("joints"), py::arg("times"), py::arg("positions"),
            py::arg("velocities") = py::none(), py::arg("accelerations") = py::none(),
            py::arg("rest") = JointPositions{}, py::arg("base") = py::none(),
@@ -460,43 +470,50 @@ void addRobots(py::module &module) {
           py::arg("t"), "The pose (4, 4) of each link at the time t [s].")
       .def(
           "distance",
-          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, bool is_signed) {
-            Query query = queryOf("distance", 0.0, epsilon, max_nodes);
+          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, bool is_signed,
+             const Names &links, const Names &objects) {
+            Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
             query.options.signed_distance = is_signed;
             return ask(m, self, query);
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
-          py::arg("signed") = false,
+          py::arg("signed") = false, py::arg("links") = Names{}, py::arg("objects") = Names{},
           "The least distance to the objects, or of the robot to itself: a dict of result, kind, a (link), b (object "
           "or\n"
           "link), by_hull, message. With signed overlaps are negative: minus the deepest one, meshes by their hulls.")
       .def(
           "tolerance",
-          [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes) {
-            return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes));
+          [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
+             const Names &objects) {
+            return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes, links, objects));
           },
           py::arg("delta"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("links") = Names{}, py::arg("objects") = Names{},
           "Is the robot farther than delta [m] everywhere? As distance().")
       .def(
           "collision",
-          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes) {
-            return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes));
+          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
+             const Names &objects) {
+            return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects));
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("links") = Names{}, py::arg("objects") = Names{},
           "Does the robot touch or overlap an object, or itself? As distance().")
       .def("certificate", &certificateOf, py::arg("delta") = py::none(), py::arg("self_collision") = false,
-           py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+           py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000, py::arg("links") = Names{},
+           py::arg("objects") = Names{},
            "A proof of tolerance(delta), or without delta of distance(): their dict with claim ('apart' or 'near'), "
            "record\n"
            "(bytes) and query (str), which check() verifies. ValueError where there is no proof, with the cause.")
       .def("gradient", &gradientOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
-           py::arg("max_nodes") = 20000,
+           py::arg("max_nodes") = 20000, py::arg("links") = Names{}, py::arg("objects") = Names{},
            "The least distance and its derivatives: the dict of distance() with valid, reason, t, positions (points, "
            "joints),\n"
            "velocities and accelerations likewise or None, duration, base_linear, base_angular, object_linear,\n"
            "object_angular (3,). Where valid is False there is no derivative, and reason says why.")
       .def("violations", &violationsOf, py::arg("delta"), py::arg("resolution") = py::none(),
-           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
+           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
+           py::arg("objects") = Names{},
            "All intervals of time within delta [m] of an object, or of the robot itself: a list of dicts of "
            "enter_lower,\n"
            "enter_upper, leave_lower, leave_upper [s], verdict, upper, t, a, b. Farther than delta before enter_lower "
@@ -507,13 +524,16 @@ void addRobots(py::module &module) {
       .def("links", &askedNames, py::arg("self_collision") = false,
            "The links that move and have geometry, and what they carry; of those alone that are measured against the "
            "robot.")
-      .def("profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
-           py::arg("links") = std::vector<std::string>{},
-           "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,) and lists a, b.\n"
-           "links: of these alone, names of links().")
+      .def(
+          "profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
+          py::arg("links") = Names{}, py::arg("horizon") = std::numeric_limits<double>::infinity(),
+          py::arg("objects") = Names{},
+          "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,), witness_a, witness_b "
+          "(n, 3)\nand lists a, b. Beyond the horizon [m] it is only bounded: "
+          "lower > horizon.")
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),
-           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
-           "The k pairs that come closest, nearest first; each as distance() gives it.");
+           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
+           py::arg("objects") = Names{}, "The k pairs that come closest, nearest first; each as distance() gives it.");
 
   module.def(
       "edge_verdicts", &edgeVerdictsOf, py::arg("scene"), py::arg("joints"), py::arg("vertices"), py::arg("edges"),

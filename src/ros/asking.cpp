@@ -7,9 +7,7 @@
 #include "conversions.h"
 
 namespace curve_proximity {
-namespace {
 
-/** Where the intervals of a profile begin and end. */
 std::vector<double> breaksOf(const Asking &asking, double t0, double t1) {
   if (!asking.breaks.empty()) return asking.breaks;
   std::vector<double> breaks(asking.intervals + 1);
@@ -18,8 +16,6 @@ std::vector<double> breaksOf(const Asking &asking, double t0, double t1) {
   breaks.back() = t1;
   return breaks;
 }
-
-} // namespace
 
 std::vector<Answer> askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query,
                              const Asking &asking, Workspace &workspace) {
@@ -34,7 +30,8 @@ std::vector<Answer> askCurve(const Targets &targets, const CompiledCurve &curve,
 Profile profileOf(const Targets &targets, const CompiledCurve &curve, const Query &query, const Asking &asking,
                   Workspace &workspace) {
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
-  return toMessage(clearanceProfile(targets, curve, breaksOf(asking, info.t0, info.t1), query, workspace));
+  return toMessage(
+      clearanceProfile(targets, curve, breaksOf(asking, info.t0, info.t1), query, workspace, asking.horizon));
 }
 
 Proximity toRow(const Answer &answer, const Query &query, const Asking &asking) {
@@ -71,7 +68,7 @@ void askMotion(const RobotMotion &motion, const Query &query, bool self, const A
       if (!link.empty()) of_link.links.push_back(link);
       answers.push_back(plainly(of_link).front());
       if (answers.back().a.empty()) answers.back().a = link; // nothing is near it
-      out.profiles.push_back(toMessage(clearanceProfile(motion, self, breaks, of_link, workspace)));
+      out.profiles.push_back(toMessage(clearanceProfile(motion, self, breaks, of_link, workspace, asking.horizon)));
       out.profiles.back().link = link;
     }
   }

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <curve_proximity/motion.hpp>
+#include <limits>
 #include <vector>
 
 namespace curve_proximity {
@@ -16,11 +17,15 @@ namespace curve_proximity {
 struct Asking {
   enum Kind { ANSWER, GRADIENT, NEAREST, CONTACT, PROFILE };
   Kind kind = ANSWER;
-  PairLimits limits;          /**< of NEAREST */
-  std::size_t intervals = 0;  /**< of PROFILE, where there are no breaks */
-  std::vector<double> breaks; /**< of PROFILE */
-  bool per_link = false;      /**< of PROFILE */
+  PairLimits limits;                                        /**< of NEAREST */
+  std::size_t intervals = 0;                                /**< of PROFILE, where there are no breaks */
+  std::vector<double> breaks;                               /**< of PROFILE */
+  double horizon = std::numeric_limits<double>::infinity(); /**< [m] of PROFILE */
+  bool per_link = false;                                    /**< of PROFILE */
 };
+
+/** Where the intervals of a profile over [t0, t1] begin and end. */
+std::vector<double> breaksOf(const Asking &asking, double t0, double t1);
 
 /** One curve's answers. Without anything to measure against the nearest pairs are answered as a distance is. */
 std::vector<Answer> askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query,

@@ -664,6 +664,8 @@ Profile toMessage(const std::vector<ClearanceInterval> &intervals) {
     message.t.push_back(interval.t);
     message.a.push_back(interval.a);
     message.b.push_back(interval.b);
+    message.witness_a.push_back(toPointMessage(interval.witness_a));
+    message.witness_b.push_back(toPointMessage(interval.witness_b));
     message.converged.push_back(interval.status == CPROX_OK);
   }
   return message;

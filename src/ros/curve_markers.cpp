@@ -185,7 +185,7 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
   ObstaclesHandle obstacles;
   if (makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles) < 0 ||
       cprox_obstacles_profile(obstacles.get(), cprox_tube_along(curve, line.curve.radius), breaks.data(), INTERVALS,
-                              &options, workspace.get(), intervals.data()) < 0)
+                              answer.result.upper, &options, workspace.get(), intervals.data()) < 0)
     return;
   for (const cprox_profile_interval &interval : intervals) {
     // Nearer than the best point that is known: the least distance may be here.

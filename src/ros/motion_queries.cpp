@@ -25,6 +25,15 @@ std::vector<std::string> ownNames(const Snapshot &snapshot, const std::vector<st
   return out;
 }
 
+/** A row that failed fails the call, as a curve's does: the first of those from `before` on. */
+void tellFailure(const std::string &id, std::size_t before, QueryResponse &response) {
+  for (std::size_t i = before; i < response.results.size() && response.success; ++i) {
+    if (!std::isnan(response.results[i].lower)) continue;
+    response.success = false;
+    response.message = id + ": " + response.results[i].message;
+  }
+}
+
 /** What ends a query ends what is made for it. */
 Stop stopOf(const Query &query) {
   const cprox_options &options = query.options;
@@ -111,32 +120,32 @@ void Queries::answerState(Work &work) {
 void Queries::answerMovers(Work &work) {
   const QueryRequest &request = work.request;
   if (!request.more.movers) return;
-  Proximity row;
+  const std::size_t before = work.response.results.size();
   try {
     if (!work.query.links.empty()) throw Error("links and group do not apply to movers");
     const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), 0, work.lookup, mostBytes(),
                               stopOf(work.query));
     const WorkspacePool::Lease workspace(workspaces_);
-    Answer answer = around.ask(work.query, request.more.self_collision != 0, request.asking, *workspace);
-    answer.kind = Proximity::KIND_MOVERS;
-    row = toRow(answer, work.query, request.asking);
-    work.doubts.objects(work.query);
-    work.doubts.ages(work.lookup.age(), NAN);
-    work.doubts.apply(row);
+    MotionRows rows;
+    around.ask(work.query, request.more.self_collision != 0, request.asking, *workspace, rows);
+    std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(work.response.profiles));
+    for (Answer &answer : rows.answers) {
+      answer.kind = Proximity::KIND_MOVERS;
+      work.response.results.push_back(toRow(answer, work.query, request.asking));
+      work.doubts.objects(work.query);
+      work.doubts.ages(work.lookup.age(), NAN);
+      work.doubts.apply(work.response.results.back());
+    }
     if (!work.drawing.motion) {
       work.drawing.movers = around.movers();
       work.drawing.robots = around.robots();
-      work.drawing.motion_answers = {std::move(answer)};
+      work.drawing.motion_answers = std::move(rows.answers);
     }
   } catch (const Error &error) {
-    row = toFailedRow("movers", Proximity::KIND_MOVERS, error.what());
+    work.response.results.push_back(toFailedRow("movers", Proximity::KIND_MOVERS, error.what()));
+    work.response.fillUp(request.asking);
   }
-  if (std::isnan(row.lower) && work.response.success) {
-    work.response.success = false;
-    work.response.message = "movers: " + row.message;
-  }
-  work.response.results.push_back(std::move(row));
-  work.response.fillUp(request.asking);
+  tellFailure("movers", before, work.response);
 }
 
 void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
@@ -168,8 +177,8 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
                                 work.lookup, mostBytes(), stopOf(work.query));
       Query among = environment;
       among.links = ownNames(*work.snapshot, work.query.links);
-      rows.answers.push_back(around.ask(among, false, request.asking, *workspace));
-      rows.answers.back().id = id;
+      around.ask(among, false, request.asking, *workspace, rows);
+      for (Answer &answer : rows.answers) answer.id = id;
       work.drawing.movers = around.movers();
       work.drawing.robots.assign(around.robots().begin() + 1, around.robots().end());
     } else {
@@ -202,12 +211,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     response.fillUp(request.asking);
   }
 
-  // A row that failed fails the call, as a curve's does.
-  for (std::size_t i = before; i < response.results.size() && response.success; ++i) {
-    if (!std::isnan(response.results[i].lower)) continue;
-    response.success = false;
-    response.message = id + ": " + response.results[i].message;
-  }
+  tellFailure(id, before, response);
 }
 
 } // namespace curve_proximity

@@ -2,7 +2,9 @@
 #include "movers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <curve_proximity/nearest_name.hpp>
+#include <iterator>
 
 #include "conversions.h"
 
@@ -65,15 +67,6 @@ std::size_t bytesOf(const std::vector<MovingObject> &objects, std::size_t robots
   return polynomials * POLYNOMIAL + objects.size() * objects.size() * sizeof(cprox_robot_pair);
 }
 
-void checkAsked(const Query &query, const Asking &asking) {
-  const std::string where = " while objects or further robots move";
-  if (asking.kind == Asking::NEAREST) throw Error("nearest pairs are not available" + where);
-  if (asking.kind == Asking::PROFILE) throw Error("clearance profiles are not available" + where);
-  if (asking.kind == Asking::GRADIENT) throw Error("gradients are not available" + where);
-  if (query.per_object) throw Error("per_object is not available" + where);
-  if (!query.objects.empty()) throw Error("a choice of objects is not available" + where);
-}
-
 } // namespace
 
 bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot) {
@@ -83,7 +76,7 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot) {
 Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
                            std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, std::size_t points,
                            FrameLookup &lookup, std::size_t most_bytes, const Stop &stop)
-    : has_subject_(subject != nullptr) {
+    : snapshot_(snapshot), has_subject_(subject != nullptr) {
   const std::int64_t origin = originOf(query, *snapshot, has_subject_, stamp);
   const std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
   std::size_t polynomials = has_subject_ ? snapshot->robot()->links().size() * (points + 2) : 0;
@@ -101,15 +94,63 @@ Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &qu
   movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, ResourceOptions(), stop);
 }
 
-Answer Surroundings::ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace) const {
-  checkAsked(query, asking);
-  const bool contact = asking.kind == Asking::CONTACT;
-  if (has_subject_)
-    return contact ? timeOfContact(*movers_, robots_.front(), query, workspace)
-                   : curve_proximity::ask(*movers_, robots_.front(), query, workspace);
+/** What the subject is measured against by name: objects that stand, objects and robots that move. */
+std::vector<std::string> Surroundings::namesBeside() const {
+  std::vector<std::string> out;
+  for (const auto &object : snapshot_->objects()) out.push_back(object.first);
+  for (const auto &object : snapshot_->moving()) out.push_back(object.first);
+  for (std::size_t i = has_subject_ ? 1 : 0; i < robots_.size(); ++i) out.push_back(robots_[i].name);
+  return out;
+}
+
+void Surroundings::ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace,
+                       MotionRows &out) const {
+  if (asking.kind == Asking::GRADIENT) throw Error("gradients are not available while objects or further robots move");
   const Against against = against_self ? Against::BOTH : Against::OTHERS;
-  return contact ? timeOfContact(*movers_, against, query, workspace)
-                 : curve_proximity::ask(*movers_, against, query, workspace);
+  if (!query.per_object) return askOnce(query, against, asking, workspace, out);
+  for (const std::string &name : query.objects.empty() ? namesBeside() : query.objects) {
+    Query one = query;
+    one.per_object = false;
+    one.objects = {name};
+    askOnce(one, against, asking, workspace, out);
+    if (out.answers.back().b.empty()) out.answers.back().b = name; // nothing of it is measured
+  }
+}
+
+void Surroundings::askOnce(const Query &query, Against against, const Asking &asking, Workspace &workspace,
+                           MotionRows &out) const {
+  const MovingRobot *subject = has_subject_ ? &robots_.front() : nullptr;
+  const auto plainly = [&](const Query &asked) {
+    return subject ? curve_proximity::ask(*movers_, *subject, asked, workspace)
+                   : curve_proximity::ask(*movers_, against, asked, workspace);
+  };
+  if (asking.kind == Asking::ANSWER) out.answers.push_back(plainly(query));
+  if (asking.kind == Asking::CONTACT)
+    out.answers.push_back(subject ? timeOfContact(*movers_, *subject, query, workspace)
+                                  : timeOfContact(*movers_, against, query, workspace));
+  if (asking.kind == Asking::NEAREST) {
+    std::vector<Answer> pairs = subject ? nearestPairs(*movers_, *subject, asking.limits, query, workspace)
+                                        : nearestPairs(*movers_, against, asking.limits, query, workspace);
+    if (pairs.empty() && !std::isfinite(asking.limits.within)) pairs = {plainly(query)};
+    std::move(pairs.begin(), pairs.end(), std::back_inserter(out.answers));
+  }
+  if (asking.kind == Asking::PROFILE) {
+    const std::array<double, 2> domain =
+        subject && !subject->motion->stands() ? subject->motion->domain() : movers_->domain();
+    const std::vector<double> breaks = breaksOf(asking, domain[0], domain[1]);
+    std::vector<std::string> links{""};
+    if (asking.per_link && subject) links = query.links.empty() ? movingNames(*subject->motion) : query.links;
+    for (const std::string &link : links) {
+      Query of_link = query;
+      if (!link.empty()) of_link.links = {link};
+      out.answers.push_back(plainly(of_link));
+      if (out.answers.back().a.empty()) out.answers.back().a = link; // nothing is near it
+      out.profiles.push_back(
+          toMessage(subject ? clearanceProfile(*movers_, *subject, breaks, of_link, workspace, asking.horizon)
+                            : clearanceProfile(*movers_, against, breaks, of_link, workspace, asking.horizon)));
+      out.profiles.back().link = link;
+    }
+  }
 }
 
 } // namespace curve_proximity

@@ -37,9 +37,9 @@ class Surroundings {
                std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, std::size_t points,
                FrameLookup &lookup, std::size_t most_bytes, const Stop &stop);
 
-  /** One answer: of the subject, else of all that moves; against_self: of that each robot against itself, too. Throws
-   *  Error for what is not available of movers. query: its links are those of the subject. */
-  Answer ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace) const;
+  /** Appends the rows of the subject, else of all that moves; against_self: of that each robot against itself, too.
+   *  Throws Error for what is not available of movers. query: its links are those of the subject. */
+  void ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace, MotionRows &out) const;
 
   const std::shared_ptr<const Movers> &movers() const {
     return movers_;
@@ -49,6 +49,10 @@ class Surroundings {
   }
 
  private:
+  void askOnce(const Query &query, Against against, const Asking &asking, Workspace &workspace, MotionRows &out) const;
+  std::vector<std::string> namesBeside() const;
+
+  SnapshotPtr snapshot_;
   bool has_subject_ = false;
   std::optional<memory::Share> share_;
   std::vector<MovingRobot> robots_; /* the subject first */

@@ -318,7 +318,8 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
     const bool everything = request.more.objects.empty() && request.more.links.empty();
     targets = request.more.objects.size() + request.more.links.size();
     if (everything || !request.more.group.empty())
-      targets += snapshot.objects().size() + (snapshot.robot() ? snapshot.robot()->links().size() : 0);
+      targets += snapshot.objects().size() + snapshot.moving().size() + request.more.moving_robots.size() +
+                 (snapshot.robot() ? snapshot.robot()->links().size() : 0);
   }
   const std::size_t motions =
       request.trajectories.size() + request.multi_dof_trajectories.size() + (request.more.robot_state ? 1 : 0);
@@ -331,7 +332,8 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   const std::size_t profiles =
       (asking.per_link && snapshot.robot() ? snapshot.robot()->links().size() + snapshot.attached().size() : 1) *
       (often ? 2 : 1);
-  const std::size_t rows = (curves + motions * profiles) * targets + motions + (request.more.movers ? 1 : 0);
+  const std::size_t movers = request.more.movers ? 1 : 0;
+  const std::size_t rows = (curves + motions * profiles + movers) * targets + motions + movers;
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
   constexpr std::size_t VECTOR = 3 * sizeof(double), COPIES = 2, KINDS = 2, DERIVATIVES = 3;
   std::size_t bytes = rows * ROW_BYTES;

@@ -84,6 +84,9 @@ Asking askingOf(const ClearanceProfile::Request &request) {
   out.intervals = request.intervals != 0 ? request.intervals : USUAL_INTERVALS;
   out.breaks = request.breaks;
   out.per_link = request.per_link != 0;
+  if (!(request.horizon >= 0.0))
+    throw Error("horizon is " + std::to_string(request.horizon) + ": it must be at least 0");
+  if (request.horizon > 0.0) out.horizon = request.horizon;
   return out;
 }
 

@@ -135,15 +135,16 @@ void widen(const Query &query, double rounding, double left_out, cprox_result &r
 }
 
 ClearanceInterval toInterval(const cprox_profile_interval &found, double rounding, const cprox_options &options,
-                             cprox_status status) {
+                             double horizon, cprox_status status) {
   ClearanceInterval out;
   out.t0 = found.t0;
   out.t1 = found.t1;
   out.t = found.t;
+  out.witness_a = found.witness_mover, out.witness_b = found.witness_obstacle;
   out.lower = std::max(0.0, found.lower - rounding);
   out.upper = found.upper > 0.0 ? found.upper + rounding : found.upper;
   const bool wide = out.upper - out.lower > std::max(options.epsilon, options.relative_epsilon * out.upper);
-  if (wide) out.status = status == CPROX_OK ? CPROX_PRECISION : status;
+  if (wide && !(out.lower > horizon)) out.status = status == CPROX_OK ? CPROX_PRECISION : status;
   return out;
 }
 
@@ -151,6 +152,14 @@ std::string faultOfDistances(const Query &query) {
   if (query.query_type != QueryType::DISTANCE)
     return "query_type does not apply: pairs and clearance profiles are answered by their distances";
   if (query.options.certificate) return "a certificate does not apply: pairs and clearance profiles have none";
+  return "";
+}
+
+std::string faultOfProfile(const Query &query, const std::vector<double> &breaks, double horizon) {
+  if (breaks.size() < 2) return "a clearance profile needs at least two breaks";
+  if (!(horizon >= 0.0)) return "horizon is " + std::to_string(horizon) + ", must be 0 or more, or infinity";
+  if (query.options.signed_distance)
+    return "signed_distance does not apply: a clearance profile does not measure depths";
   return "";
 }
 

@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_ANSWERING_H
 #define CURVE_PROXIMITY_SCENE_ANSWERING_H
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,11 +44,26 @@ void widen(const Query &query, double rounding, double left_out, cprox_result &r
 /* An interval of a profile, widened by rounding; `status` is that of the whole profile. The names of a and b are left
  * to be filled in. */
 ClearanceInterval toInterval(const cprox_profile_interval &found, double rounding, const cprox_options &options,
-                             cprox_status status);
+                             double horizon, cprox_status status);
+
+/* Writes the names of both sides of what the core found. */
+using ViolationNamer = std::function<void(const cprox_violation &, Violation &)>;
+
+/* Nothing was measured. */
+Violations violationsOfNothing();
+
+/* Throws Error where violations cannot be asked for in this way. */
+void checkViolations(const Query &query, double resolution);
+
+/* The violations of delta and the rounding that the core does not know: outside of what is found everything is farther
+ * than delta. Throws Error where the core refuses. */
+Violations searchViolations(const Obstacles &obstacles, const cprox_mover &mover, double rounding, double resolution,
+                            const Query &query, Workspace &workspace, const ViolationNamer &name);
 
 /* Why a query of distances alone (nearest pairs, profiles), or of the time of contact, cannot be answered; "" where it
  * can. What cannot be asked of any query is not looked at here. */
 std::string faultOfDistances(const Query &query);
+std::string faultOfProfile(const Query &query, const std::vector<double> &breaks, double horizon);
 std::string faultOfContact(const Query &query);
 
 /* How far rounding can have moved any point of a shape that a curve can be near to. */

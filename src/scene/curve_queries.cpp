@@ -71,23 +71,23 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
 
 std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
                                                 const std::vector<double> &breaks, const Query &query,
-                                                Workspace &workspace) {
-  if (breaks.size() < 2) throw Error("a clearance profile needs at least two breaks");
+                                                Workspace &workspace, double horizon) {
   requireDistances(query);
-  if (query.options.signed_distance)
-    throw Error("signed_distance does not apply: a clearance profile does not measure depths");
+  const std::string fault = faultOfProfile(query, breaks, horizon);
+  if (!fault.empty()) throw Error(fault);
   const std::vector<Item> &items = targets.data().items;
   const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
   const double rounding = roundingOf(curve, items);
   const cprox_options options = withoutRounding(query.options, rounding);
   std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
-  const cprox_status status = cprox_obstacles_profile(obstacles.get(), along(curve.curve, curve.radius), breaks.data(),
-                                                      intervals.size(), &options, workspace.get(), intervals.data());
+  const cprox_status status =
+      cprox_obstacles_profile(obstacles.get(), along(curve.curve, curve.radius), breaks.data(), intervals.size(),
+                              horizon + rounding, &options, workspace.get(), intervals.data());
   if (status < 0) throw Error(workspace.reason(), status);
   std::vector<ClearanceInterval> out;
   for (const cprox_profile_interval &interval : intervals) {
     const std::int32_t found = interval.obstacle_index;
-    out.push_back(toInterval(interval, rounding, query.options, status));
+    out.push_back(toInterval(interval, rounding, query.options, horizon, status));
     out.back().a = curve.id;
     if (found >= 0) out.back().b = *items[static_cast<std::size_t>(found)].owner;
   }

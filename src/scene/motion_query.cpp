@@ -47,7 +47,7 @@ double beforeRounding(const Asked &asked, double t, const cprox_options &options
     const std::array<double, 2> breaks{start, t - step};
     cprox_profile_interval interval{};
     const cprox_status status =
-        cprox_obstacles_profile(nullptr, asked.mover(), breaks.data(), 1, &fine, workspace.get(), &interval);
+        cprox_obstacles_profile(nullptr, asked.mover(), breaks.data(), 1, INFINITE, &fine, workspace.get(), &interval);
     if (status < 0) return start;
     if (interval.lower > asked.rounding) return t - step;
   }
@@ -186,21 +186,20 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
 }
 
 std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
-                                                const Query &query, Workspace &workspace) {
-  if (breaks.size() < 2) throw Error("a clearance profile needs at least two breaks");
+                                                const Query &query, Workspace &workspace, double horizon) {
   checkDistances(againstOf(self), query);
-  if (query.options.signed_distance)
-    throw Error("signed_distance does not apply: a clearance profile does not measure depths");
+  const std::string fault = faultOfProfile(query, breaks, horizon);
+  if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, againstOf(self), query);
   std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
   for (std::size_t i = 0; i < intervals.size(); ++i)
-    intervals[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1, {}};
+    intervals[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1, {}, {}, {}};
   cprox_status status = CPROX_OK;
   if (!asked.pairs.empty()) {
     const cprox_options options = withoutRounding(query.options, asked.rounding);
     const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
-    status = cprox_obstacles_profile(obstacles.get(), asked.mover(), breaks.data(), intervals.size(), &options,
-                                     workspace.get(), intervals.data());
+    status = cprox_obstacles_profile(obstacles.get(), asked.mover(), breaks.data(), intervals.size(),
+                                     horizon + asked.rounding, &options, workspace.get(), intervals.data());
     if (status < 0) throw Error(workspace.reason(), status);
   }
   std::vector<ClearanceInterval> out;
@@ -209,7 +208,7 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
     names.result.obstacle_index = interval.obstacle_index;
     names.result.mover_part = interval.mover_part;
     nameSides(asked, query, names);
-    out.push_back(toInterval(interval, asked.rounding, query.options, status));
+    out.push_back(toInterval(interval, asked.rounding, query.options, horizon, status));
     out.back().a = names.a;
     out.back().b = names.b;
   }

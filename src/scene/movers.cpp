@@ -1,56 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+/* Robots and objects that move are joined into one robot on one clock; and which of their pairs are tested. */
 #include <curve_proximity/movers.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <set>
 
-#include "answering.h"
 #include "motion_data.h"
-#include "moving_body.h"
-#include "second_opinion.h"
+#include "movers_data.h"
 
 namespace curve_proximity {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using RobotPtr = std::unique_ptr<cprox_robot, void (*)(cprox_robot *)>;
-using MotionPtr = std::unique_ptr<cprox_motion, void (*)(cprox_motion *)>;
 using Names = std::array<std::string, 2>;
-
-/* One geometry of the joined robot. */
-struct MoverGeometry {
-  std::size_t mover = 0;
-  std::string name; /* in answers */
-  int part = 0;
-  double excess = 0.0;
-  bool moves = true;
-};
 
 void expect(cprox_status status, const std::string &who, const Workspace &workspace) {
   if (status != CPROX_OK) throw Error(who + ": " + workspace.reason(), status);
 }
-
-} // namespace
-
-struct Movers::Data {
-  SnapshotPtr snapshot;
-  std::vector<std::shared_ptr<const RobotMotion>> robots; /* kept */
-  std::vector<std::shared_ptr<const MovingBody>> objects;
-  std::vector<std::string> object_names;
-  std::vector<double> object_starts;
-  RobotPtr robot{nullptr, cprox_robot_free};
-  MotionPtr motion{nullptr, cprox_motion_free};
-  std::vector<MoverGeometry> geometries;
-  std::vector<cprox_obstacle> targets;              /* by item of the snapshot */
-  std::vector<cprox_robot_pair> environment, among; /* geometry against target, against geometry */
-  double rounding = 0.0;                            /* [m] that the core does not know of */
-};
-
-namespace {
 
 /* ---- moving objects ---- */
 
@@ -82,10 +49,6 @@ void checkNames(const Snapshot &snapshot, const std::vector<MovingRobot> &robots
   if (known.empty()) throw Error("nothing moves: there is no mover");
   for (const auto &[id, object] : snapshot.moving())
     if (known.count(id) == 0) throw Error("object '" + id + "' moves in the scene, and is none of the movers");
-}
-
-std::string moverOf(const std::string &name) {
-  return name.substr(0, name.find('/'));
 }
 
 /* Which pairs of names may touch: of movers, or of what belongs to them. */
@@ -261,128 +224,6 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
   data.rounding = most + std::max(most, rounding);
 }
 
-/* ---- queries ---- */
-
-std::string faultOfMovers(const Query &query) {
-  if (!query.objects.empty()) return "objects do not apply to movers, '" + query.objects.front() + "' among them";
-  if (query.options.certificate) return "a certificate does not apply: movers on one clock have none";
-  if (query.options.signed_distance) return "signed_distance does not apply: movers on one clock have no depth";
-  return faultOfMotion(query, true);
-}
-
-/* What a query is about: pairs with objects that stand, and pairs of movers. */
-struct Pairs {
-  Against against = Against::BOTH;
-  std::vector<cprox_robot_pair> environment, among;
-};
-
-/* The geometries that query.links names; all where it names none. Throws Error for a name that is none. */
-std::vector<bool> namedGeometries(const Movers::Data &data, const std::vector<std::string> &names) {
-  std::vector<bool> out(data.geometries.size(), names.empty());
-  for (const std::string &name : names) {
-    bool found = false;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const std::string &own = data.geometries[i].name;
-      const bool fits = own == name || own.substr(0, own.find('/')) == name;
-      out[i] = out[i] || fits;
-      found = found || fits;
-    }
-    if (!found) throw Error("'" + name + "' is no mover, and no link of one, that has geometry");
-  }
-  return out;
-}
-
-Pairs pairsOf(const Movers::Data &data, Against against, const Query &query) {
-  Pairs out;
-  const std::vector<bool> named = namedGeometries(data, query.links);
-  const auto at = [](std::int32_t geometry) { return static_cast<std::size_t>(geometry); };
-  if (against != Against::MOVERS) {
-    for (const cprox_robot_pair &pair : data.environment)
-      if (named[at(pair.geometry)]) out.environment.push_back(pair);
-  }
-  if (against != Against::OBJECTS) {
-    for (const cprox_robot_pair &pair : data.among) {
-      const bool self = data.geometries[at(pair.geometry)].mover == data.geometries[at(pair.other)].mover;
-      if (self && against == Against::OTHERS) continue;
-      if (named[at(pair.geometry)] || named[at(pair.other)]) out.among.push_back(pair);
-    }
-  }
-  /* a list of no pairs would mean all of them to the core */
-  if (out.among.empty()) {
-    out.against = against == Against::MOVERS ? Against::MOVERS : Against::OBJECTS;
-  } else {
-    out.against = out.environment.empty() ? Against::MOVERS : Against::BOTH;
-  }
-  return out;
-}
-
-cprox_mover moverOf(const Movers::Data &data, const Pairs &pairs) {
-  cprox_mover mover = pairs.against == Against::MOVERS
-                          ? cprox_robot_self(data.motion.get(), pairs.among.data(), pairs.among.size())
-                          : cprox_robot_along(data.motion.get(), pairs.environment.data(), pairs.environment.size());
-  if (pairs.against == Against::BOTH) {
-    mover.kind = CPROX_MOVER_ROBOT_WHOLE;
-    mover.self_pairs = pairs.among.data();
-    mover.n_self_pairs = pairs.among.size();
-  }
-  return mover;
-}
-
-void nameSides(const Movers::Data &data, Against against, Answer &answer) {
-  cprox_result &result = answer.result;
-  if (result.status < 0 || result.obstacle_index < 0) return;
-  const MoverGeometry &moving = data.geometries[static_cast<std::size_t>(result.mover_part)];
-  const std::size_t standing = against == Against::MOVERS ? 0 : data.targets.size();
-  const auto index = static_cast<std::size_t>(result.obstacle_index);
-  answer.a = moving.name;
-  result.mover_part = moving.part;
-  if (index < standing) {
-    const Item &item = data.snapshot->world().items()[index];
-    answer.b = *item.owner;
-    result.obstacle_index = item.part;
-    return;
-  }
-  const MoverGeometry &other = data.geometries[index - standing];
-  answer.kind = "movers";
-  answer.b = other.name;
-  answer.b_is_link = other.mover < data.robots.size();
-  result.obstacle_index = other.part;
-}
-
-template <class Core>
-Answer answerOf(const Movers &movers, Against asked, const Query &query, const std::string &fault,
-                const Workspace &workspace, Core core) {
-  const Movers::Data &data = movers.data();
-  const std::string kind = asked == Against::MOVERS ? "movers" : "environment";
-  if (!fault.empty()) return refusal("movers", kind, fault);
-  const Clock::time_point start = Clock::now();
-  Pairs pairs;
-  try {
-    pairs = pairsOf(data, asked, query);
-  } catch (const Error &error) {
-    return refusal("movers", kind, error.what());
-  }
-  Answer answer;
-  answer.id = "movers";
-  answer.kind = kind;
-  answer.result.obstacle_index = -1;
-  if (pairs.environment.empty() && pairs.among.empty()) {
-    answerNothing(query, answer.result);
-    answer.result.t_contact_lower = movers.domain()[1];
-  } else {
-    const std::vector<cprox_obstacle> none;
-    core(moverOf(data, pairs), pairs.against == Against::MOVERS ? none : data.targets, answer.result);
-    if (answer.result.status < 0) answer.message = workspace.reason();
-    nameSides(data, pairs.against, answer);
-  }
-  answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-  if (answer.result.status != CPROX_OK && answer.message.empty())
-    answer.message = cprox_status_text(answer.result.status);
-  answer.status = cprox_status_name(answer.result.status);
-  refuseSecondOpinion(query, "the peers are not asked about what moves beside the robot", answer);
-  return answer;
-}
-
 } // namespace
 
 Movers::Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, const std::vector<MovingObject> &objects,
@@ -469,76 +310,6 @@ Eigen::Isometry3d Movers::objectPose(const std::string &name, double t) const {
   pose.linear() = rotation;
   pose.translation() = toEigen(position);
   return pose;
-}
-
-namespace {
-
-/* The query by the names of all movers, and the time that it is about. */
-struct OfRobot {
-  Query query;
-  std::array<double, 2> interval{};
-
-  OfRobot(const MovingRobot &robot, const Query &asked) : query(asked) {
-    for (std::string &link : query.links) link = robot.name + "/" + link;
-    if (query.links.empty()) query.links = {robot.name};
-    if (robot.motion->stands()) return;
-    for (std::size_t i = 0; i < interval.size(); ++i) interval[i] = robot.motion->domain()[i] + robot.start;
-    query.options.interval = interval.data();
-  }
-  OfRobot(const OfRobot &) = delete;
-  OfRobot &operator=(const OfRobot &) = delete;
-};
-
-/* Side a is the robot's, by its own name. */
-Answer ofRobot(const MovingRobot &robot, Answer answer) {
-  const std::string prefix = robot.name + "/";
-  answer.kind = "environment";
-  if (answer.a.rfind(prefix, 0) != 0 && answer.b.rfind(prefix, 0) == 0) {
-    std::swap(answer.a, answer.b);
-    std::swap(answer.result.witness_mover, answer.result.witness_obstacle);
-    std::swap(answer.result.mover_part, answer.result.obstacle_index);
-    cprox_vec3 &normal = answer.result.normal;
-    normal = {-normal.x, -normal.y, -normal.z};
-  }
-  if (answer.a.rfind(prefix, 0) == 0) answer.a.erase(0, prefix.size());
-  return answer;
-}
-
-} // namespace
-
-Answer ask(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace) {
-  const OfRobot asked(robot, query);
-  return ofRobot(robot, ask(movers, Against::OTHERS, asked.query, workspace));
-}
-
-Answer timeOfContact(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace) {
-  const OfRobot asked(robot, query);
-  return ofRobot(robot, timeOfContact(movers, Against::OTHERS, asked.query, workspace));
-}
-
-Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
-  const double rounding = movers.data().rounding;
-  return answerOf(movers, against, query, faultOfMovers(query), workspace,
-                  [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
-                    const cprox_options options = withoutRounding(query.options, rounding);
-                    result.status = askCore(query, options, mover, targets, workspace, result);
-                    if (result.status >= 0) widen(query, rounding, std::numeric_limits<double>::infinity(), result);
-                  });
-}
-
-Answer timeOfContact(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
-  std::string fault = faultOfMovers(query);
-  if (fault.empty()) fault = faultOfContact(query);
-  const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
-    /* what is nearer than the rounding may be in contact: standing bodies grow by it */
-    std::vector<cprox_obstacle> grown = targets;
-    for (cprox_obstacle &target : grown) target.margin += movers.data().rounding;
-    ObstaclesHandle obstacles;
-    result.status = makeObstacles(grown, CPROX_INDEX_NONE, workspace, obstacles);
-    if (result.status >= 0)
-      result.status = cprox_obstacles_time_of_contact(obstacles.get(), mover, &query.options, workspace.get(), &result);
-  };
-  return answerOf(movers, against, query, fault, workspace, core);
 }
 
 } // namespace curve_proximity

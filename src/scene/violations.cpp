@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* All intervals in which a curve or a robot is within delta of something. */
-#include <functional>
-
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/query.hpp>
 
@@ -10,27 +8,22 @@
 #include "targets.h"
 
 namespace curve_proximity {
-namespace {
 
-void checkQuery(const Query &query, double resolution) {
+void checkViolations(const Query &query, double resolution) {
   if (query.query_type != QueryType::TOLERANCE) throw Error("violations are asked for by a tolerance");
   if (query.per_object) throw Error("per_object does not apply: violations are of all objects together");
   if (query.options.certificate) throw Error("there is no certificate of violations");
   if (!(resolution > 0.0)) throw Error("the resolution must be above 0");
 }
 
-Violations againstNothing() {
+Violations violationsOfNothing() {
   Violations out;
   out.measured = false;
   return out;
 }
 
-/* Writes the names of both sides of what the core found. */
-using Namer = std::function<void(const cprox_violation &, Violation &)>;
-
-/* Of delta and the rounding that the core does not know: outside of what is found everything is farther than delta. */
-Violations search(const Obstacles &obstacles, const cprox_mover &mover, double rounding, double resolution,
-                  const Query &query, Workspace &workspace, const Namer &name) {
+Violations searchViolations(const Obstacles &obstacles, const cprox_mover &mover, double rounding, double resolution,
+                            const Query &query, Workspace &workspace, const ViolationNamer &name) {
   constexpr std::size_t FIRST_ROOM = 64, MOST_ROOM = 65536;
   std::vector<cprox_violation> room(FIRST_ROOM);
   const cprox_options options = withoutRounding(query.options, rounding);
@@ -54,32 +47,30 @@ Violations search(const Obstacles &obstacles, const cprox_mover &mover, double r
   return out;
 }
 
-} // namespace
-
 Violations violations(const Targets &targets, const CompiledCurve &curve, double resolution, const Query &query,
                       Workspace &workspace) {
-  checkQuery(query, resolution);
+  checkViolations(query, resolution);
   const std::string fault = faultOf(query);
   if (!fault.empty()) throw Error(fault);
   const std::vector<Item> &items = targets.data().items;
-  if (items.empty()) return againstNothing();
+  if (items.empty()) return violationsOfNothing();
   const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
   const auto name = [&](const cprox_violation &found, Violation &out) {
     out.a = curve.id;
     if (found.obstacle_index >= 0) out.b = *items[static_cast<std::size_t>(found.obstacle_index)].owner;
   };
-  return search(obstacles, along(curve.curve, curve.radius), roundingOf(curve, items), resolution, query, workspace,
-                name);
+  return searchViolations(obstacles, along(curve.curve, curve.radius), roundingOf(curve, items), resolution, query,
+                          workspace, name);
 }
 
 Violations violations(const RobotMotion &motion, bool self, double resolution, const Query &query,
                       Workspace &workspace) {
-  checkQuery(query, resolution);
+  checkViolations(query, resolution);
   const RobotPairs against = self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
   const std::string fault = faultInAll(against, query);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, against, query);
-  if (asked.pairs.empty()) return againstNothing();
+  if (asked.pairs.empty()) return violationsOfNothing();
   const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
   const auto name = [&](const cprox_violation &found, Violation &out) {
     Answer names;
@@ -89,7 +80,7 @@ Violations violations(const RobotMotion &motion, bool self, double resolution, c
     out.a = names.a;
     out.b = names.b;
   };
-  return search(obstacles, asked.mover(), asked.rounding, resolution, query, workspace, name);
+  return searchViolations(obstacles, asked.mover(), asked.rounding, resolution, query, workspace, name);
 }
 
 } // namespace curve_proximity

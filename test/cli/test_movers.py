@@ -142,14 +142,60 @@ class Movers(Case):
                 self.assertRefused(self.scene('distance', ball.replace(change, into), '--movers'), because)
         self.assertRefused(self.scene('distance', SECOND.replace('NAME', 'a').replace('START', '0').replace('robot.urdf', 'none.urdf'), '--movers'), "none.urdf")
 
+    def clearance_over_time_between_what_moves(self):
+        """Cart and ball are both at |1 - t/2| from where their ways cross, in x and in y."""
+        def apart(t):
+            return max(0.0, math.sqrt(2) * max(0.0, abs(1 - t / 2) - 0.1) - 0.1)
+        answer = self.robot('profile', BALL.replace('START', '0'), '--intervals', '4')
+        self.assertEqual((answer.code, answer.err, len(answer.rows)), (0, '', 4))
+        for row, t in zip(answer.rows, (1, 2, 2, 3)):
+            self.assertAnswer(row, apart(t))
+            self.assertEqual((row['id'], row['kind'], row['a'], row['b']), ('go', 'environment', 'cart', 'ball'))
+        on_cart, on_ball = ([float(answer.rows[0][f'{side}_{axis}']) for axis in 'xyz'] for side in 'ab')
+        self.assertAlmostEqual(on_cart[0], 0.6, delta=1e-4)
+        self.assertAlmostEqual(math.dist(on_ball, (1, 0.5, on_ball[2])), 0.1, delta=1e-4)
+        row, = self.robot('violations', BALL.replace('START', '0'), '--delta', '0.2', '--resolution', '1e-5').rows
+        enter = 2 * (1 - (0.3 / math.sqrt(2) + 0.1))
+        self.assertTrue(float(row['enter_lower']) <= enter <= float(row['enter_upper']) + 1e-9, row)
+        self.assertTrue(float(row['leave_lower']) - 1e-9 <= 4 - enter <= float(row['leave_upper']), row)
+        self.assertLess(float(row['enter_upper']) - float(row['enter_lower']), 1e-3)
+        self.assertEqual((row['verdict'], row['a'], row['b']), ('violated', 'cart', 'ball'))
+
+    def pairs_links_and_objects_among_what_moves(self):
+        scene = BALL.replace('START', '0') + '    - {id: wall, primitives: [{type: box, dimensions: [1, 4, 4]}], primitive_poses: [{position: [3.5, 0, 0]}]}\n'
+        rows = self.robot('nearest', scene).rows
+        self.assertEqual({(row['a'], row['b']) for row in rows}, {(a, b) for a in ('cart', 'arm', 'hand') for b in ('ball', 'wall')})
+        self.assertEqual([float(row['upper']) for row in rows], sorted(float(row['upper']) for row in rows))
+        self.assertEqual((rows[0]['a'], rows[0]['b'], float(rows[0]['upper'])), ('cart', 'ball', 0.0))
+        rows = self.robot('distance', scene, '--per-object').rows
+        self.assertEqual([(row['b'], round(float(row['upper']), 5)) for row in rows], [('wall', 0.9), ('ball', 0.0)])
+        rows = self.robot('distance', scene, '--per-link', '--objects', 'wall').rows
+        self.assertEqual({row['a']: round(float(row['upper']), 5) for row in rows}, {'cart': 0.9, 'arm': 0.95, 'hand': 0.9})
+        self.assertEqual([row['a'] for row in self.robot('distance', scene, '--links', 'hand').rows], ['hand'])
+        self.assertEqual([row['b'] for row in self.robot('profile', scene, '--objects', 'wall', '--intervals', '2').rows], ['wall', 'wall'])
+        answer = self.robot('distance', scene, '--objects', 'wal')
+        self.assertEqual(answer.code, 2)
+        self.assertIn("no object 'wal'", answer.err)
+        second = SECOND.replace('NAME', 'other').replace('START', '0')
+        rows = self.robot('distance', second, '--per-object').rows
+        self.assertEqual([row['b'].split('/')[0] for row in rows], ['other'])
+
+    def clearance_over_time_of_all_that_moves(self):
+        answer = self.scene('profile', FALL, '--movers', '--intervals', '5')
+        self.assertEqual((answer.code, answer.err, [row['kind'] for row in answer.rows]), (0, '', ['movers'] * 5))
+        self.assertAnswer(answer.rows[2], 0.3 - 0.2 * math.sqrt(2))
+        self.assertGreater(float(answer.rows[0]['lower']), 0.9)
+        row, = self.scene('nearest', FALL, '--movers').rows
+        self.assertEqual((row['a'], row['b']), ('box', 'shelf'))
+        row, = self.scene('violations', FALL, '--movers', '--delta', '0.018').rows
+        self.assertEqual((row['verdict'], row['a'], row['b']), ('violated', 'box', 'shelf'))
+
     def what_does_not_know_movers_says_so(self):
         ball = BALL.replace('START', '0')
-        for query_type, more in (('profile', ()), ('nearest', ()), ('distance', ('--per-object',)), ('distance', ('--per-link',)),
-                                 ('distance', ('--certificate', self.folder + '/c'))):
-            self.assertRefused(self.robot(query_type, ball, *more), 'not available where objects or further robots move')
+        for more in (('--signed',), ('--certificate', self.folder + '/c')):
+            self.assertRefused(self.robot('distance', ball, *more), 'not available where objects or further robots move')
         curves = self.file('curves.csv', 'c,bezier,1,0,1,0,2,0,0,0,1,0,0\n')
         self.assertRefused(self.scene('distance', ball, '--curves', curves), "object 'ball' moves along a trajectory")
         self.assertRefused(self.scene('distance', 'world: {}', '--movers'), 'nothing moves in this scene')
         self.assertRefused(cprox('distance', '--movers'), '--movers needs --scene')
-        self.assertRefused(cprox('profile', '--movers', '--scene', 's'), "'profile' takes no --movers")
         self.assertRefused(self.scene('distance', ball, '--movers', '--robot', 'r'), '--movers takes no --robot')

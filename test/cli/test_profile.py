@@ -8,7 +8,7 @@ from support import BOX_SCENE, HEADER, LIMIT, PASSING, Answer, Case, bezier, cpr
 from test_trajectory import SLIDE, SLIDER, WALL
 
 VIOLATION = 'id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message'
-PROFILE = 'id,kind,status,t0,t1,lower,upper,t,a,b,message'
+PROFILE = 'id,kind,status,t0,t1,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,message'
 TWO = '''
 world:
   collision_objects:
@@ -47,6 +47,10 @@ class Curves(Case):
             self.assertContains(row, math.hypot(x, 2) - 1.5)
             self.assertEqual((row['id'], row['kind'], row['a'], row['b']), ('over', 'curve', 'over', 'near'))
             self.assertTrue(float(row['t0']) <= float(row['t']) <= float(row['t1']))
+            on_tube, on_ball = ([float(row[f'{side}_{axis}']) for axis in 'xyz'] for side in 'ab')
+            self.assertAlmostEqual(math.dist(on_tube, on_ball), float(row['upper']), delta=1e-9)
+            self.assertAlmostEqual(math.hypot(*on_ball), 1.0, delta=1e-9)
+            self.assertAlmostEqual(math.dist(on_tube, (-3 + 6 * float(row['t']), 0, 2)), 0.5, delta=1e-9)
         self.assertEqual((float(answer.rows[0]['t0']), float(answer.rows[-1]['t1'])), (0.0, 1.0))
 
     def violations_are_the_intervals_within_delta(self):
@@ -77,10 +81,41 @@ class Curves(Case):
         self.assertEqual((outside.code, [row['status'] for row in outside.rows]), (2, ['invalid']))
         self.assertIn('2', outside.rows[0]['message'])
 
+    def clearance_beyond_a_horizon_is_only_bounded(self):
+        whole = self.ask('profile', [OVER], TWO, '--intervals', '6')
+        answer = self.ask('profile', [OVER], TWO, '--intervals', '6', '--horizon', '0.9')
+        self.assertEqual((answer.code, [row['status'] for row in answer.rows]), (0, ['ok'] * 6))
+        wide = 0
+        for row, true in zip(answer.rows, whole.rows):
+            self.assertLessEqual(float(row['lower']), float(true['upper']))
+            self.assertGreaterEqual(float(row['upper']), float(true['lower']))
+            if float(row['upper']) - float(row['lower']) > 1e-6:
+                self.assertGreater(float(row['lower']), 0.9)
+                wide += 1
+        self.assertGreater(wide, 0)
+        for wrong in ('-1', 'nan', 'x'):
+            self.assertRefused(self.ask('profile', [OVER], TWO, '--horizon', wrong), '--horizon')
+
     def a_profile_of_each_object(self):
         answer = self.ask('profile', [OVER], TWO, '--intervals', '1', '--per-object')
         self.assertContains(answer.row('over', 'near'), 0.5)
         self.assertContains(answer.row('over', 'far'), 6.5)
+
+    def only_the_objects_that_are_named_take_part(self):
+        for command, more in (('distance', ()), ('profile', ('--intervals', '1')), ('nearest', ('--pairs', '1')), ('distance', ('--per-object',)),
+                              ('profile', ('--intervals', '1', '--per-object'))):
+            row, = self.ask(command, [OVER], TWO, '--objects', ' far ', *more).rows
+            self.assertContains(row, 6.5)
+            self.assertEqual(row['b'], 'far')
+        self.assertEqual(self.ask('tolerance', [OVER], TWO, '--delta', '1', '--objects', 'far').code, 0)
+        self.assertEqual(self.ask('violations', [OVER], TWO, '--delta', '1', '--objects', 'far').rows[0]['verdict'], 'clear')
+        self.assertEqual(self.ask('tolerance', [OVER], TWO, '--delta', '1', '--objects', 'far, near').code, 1)
+        answer = self.ask('distance', [OVER], TWO, '--objects', 'nera')
+        self.assertEqual(answer.code, 2)
+        self.assertIn("no object 'nera'", answer.err)
+        for wrong in ('', 'near,', 'near,,far'):
+            self.assertRefused(self.ask('distance', [OVER], TWO, '--objects', wrong), '--objects')
+        self.assertRefused(self.ask('distance', [OVER], TWO, '--objects', 'near', '--certificate', 'c'), '--objects')
 
     def the_nearest_shapes_come_first(self):
         answer = self.ask('nearest', [OVER, PASSING], TWO)
@@ -161,6 +196,24 @@ class Robots(Case):
         self.assertEqual({row['a']: row['verdict'] for row in answer.rows}, {'cart': 'violated', 'arm': 'clear', 'hand': 'violated'})
         answer = cprox('profile', *files, '--per-object', '--intervals', '1')
         self.assertEqual(sorted(row['b'] for row in answer.rows), ['post', 'wall'])
+
+    def only_the_links_and_objects_that_are_named_take_part(self):
+        files = robot_files(self)
+        for names, true in (('cart', 0.9), ('arm', 0.95), ('arm, hand', 0.9)):
+            row, = cprox('distance', *files, '--links', names).rows
+            self.assertAlmostEqual(float(row['upper']), true, delta=1e-6)
+            self.assertIn(row['a'], names)
+        self.assertEqual([row['a'] for row in cprox('distance', *files, '--links', 'arm,hand', '--per-link').rows], ['arm', 'hand'])
+        self.assertEqual([row['b'] for row in cprox('nearest', *files, '--links', 'cart', '--objects', 'post').rows], ['post'])
+        self.assertEqual({row['b'] for row in cprox('profile', *files, '--objects', 'post', '--intervals', '3').rows}, {'post'})
+        self.assertEqual(cprox('tolerance', '--delta', '0.92', *files, '--links', 'arm').code, 0)
+        self.assertEqual(cprox('tolerance', '--delta', '0.92', *files, '--links', 'arm,cart').code, 1)
+        both = cprox('distance', *files, '--self', '--objects', 'post')
+        self.assertEqual([(row['kind'], row['status'], row['b'] == 'post') for row in both.rows], [('environment', 'ok', True), ('self', 'ok', False)])
+        for option, name in (('--links', 'crat'), ('--objects', 'psot')):
+            answer = cprox('distance', *files, option, name)
+            self.assertEqual(answer.code, 2)
+            self.assertIn(name, answer.err)
 
     def the_robot_against_itself_is_asked_about_too(self):
         fold = SLIDE.replace('[slide]', '[slide, swing, wrist]').replace('[0]', '[0, 0, 0]').replace('[2]', '[0.5, 0.1, 3]')

@@ -127,7 +127,7 @@ CASE(rows_say_what_each_pair_does_on_each_interval) {
       const cprox_robot_pair pair = {pairs[k].mover_part, pairs[k].obstacle_index};
       cprox_profile_interval profile[8];
       mover.pairs = &pair, mover.n_pairs = 1;
-      assert_true(cprox_obstacles_profile(all, mover, breaks, n, NULL, ws, profile) >= 0);
+      assert_true(cprox_obstacles_profile(all, mover, breaks, n, INFINITY, NULL, ws, profile) >= 0);
       for (size_t j = 0; j < n; j++) {
         const cprox_motion_row *row = row_of(a, &pair, j);
         if (!row) {

@@ -264,6 +264,14 @@ class Curves(unittest.TestCase):
         self.assertEqual(profile['lower'].shape, (32,))
         self.assertAlmostEqual(profile['upper'].min(), answer.upper, places=5)
         self.assertTrue((profile['lower'] <= profile['upper']).all())
+        between = numpy.linalg.norm(profile['witness_mover'] - profile['witness_obstacle'], axis=1)
+        numpy.testing.assert_allclose(between, profile['upper'], atol=1e-9)
+        horizon = float(numpy.median(profile['upper']))
+        near = many.profile(curve, numpy.linspace(0, 1, 33), horizon=horizon)
+        measured = near['upper'] - near['lower'] <= 1e-6
+        self.assertTrue((measured | (near['lower'] > horizon)).all())
+        self.assertTrue(4 < measured.sum() < 32)
+        self.assertTrue((near['lower'] <= profile['upper']).all() and (profile['lower'] <= near['upper']).all())
 
     def test_a_batch_answers_as_single_queries_do(self):
         random = numpy.random.default_rng(3)
@@ -378,6 +386,11 @@ class Robots(unittest.TestCase):
         self.assertEqual(motion.tolerance(answer['result'].lower / 2)['result'].verdict, 'clear')
         profile = motion.profile(numpy.linspace(*motion.domain, 11))
         self.assertAlmostEqual(profile['upper'].min(), answer['result'].upper, places=5)
+        between = numpy.linalg.norm(profile['witness_a'] - profile['witness_b'], axis=1)
+        numpy.testing.assert_allclose(between, profile['upper'], atol=1e-9)
+        near = motion.profile(numpy.linspace(*motion.domain, 11), horizon=answer['result'].upper)
+        self.assertTrue((near['lower'] <= profile['upper']).all())
+        self.assertTrue(((near['upper'] - near['lower'] <= 1e-6) | (near['lower'] > answer['result'].upper)).all())
         self.assertIn('panda_link4', motion.links())
         self.assertNotIn('panda_link0', motion.links())
         by_link = [motion.profile([*motion.domain], links=[link])['upper'][0] for link in motion.links()]
@@ -385,6 +398,16 @@ class Robots(unittest.TestCase):
         self.assertGreater(max(by_link), answer['result'].upper + .1)
         with self.assertRaisesRegex(ValueError, 'elbow'):
             motion.profile([*motion.domain], links=['elbow'])
+        links = motion.links()
+        for ask in (motion.distance, motion.gradient, lambda **names: motion.nearest_pairs(k=1, **names)[0]):
+            found = ask(links=links[:1], objects=['ball'])
+            self.assertEqual((found['a'], found['b']), (links[0], 'ball'))
+            self.assertAlmostEqual(found['result'].upper, by_link[0], places=5)
+        self.assertEqual(motion.tolerance(by_link[-1] - 1e-3, links=links[-1:])['result'].verdict, 'clear')
+        self.assertEqual(motion.collision(links=links[-1:])['result'].verdict, 'clear')
+        self.assertEqual(motion.violations(by_link[-1] - 1e-3, links=links[-1:]), [])
+        with self.assertRaisesRegex(ValueError, 'bal'):
+            motion.distance(objects=['bal'])
         pairs = motion.nearest_pairs(k=3)
         self.assertEqual(len(pairs), 3)
         self.assertAlmostEqual(pairs[0]['result'].upper, answer['result'].upper, places=5)

@@ -12,7 +12,8 @@ import numpy
 import rospy
 import yaml
 from curve_proximity.msg import CollisionObject, PoseTrajectory, RobotTrajectory, Waypoint
-from curve_proximity.srv import ClearanceProfile, ClearanceProfileRequest, TimeOfContact, TimeOfContactRequest
+from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest, TimeOfContact,
+                                 TimeOfContactRequest)
 from helpers import Server, bezier, box, joints, pose, query, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
@@ -195,6 +196,7 @@ class Movers(unittest.TestCase):
         cls.server = Server()
         rospy.wait_for_service('/curve_proximity/time_of_contact', 20)
         cls.contact = rospy.ServiceProxy('/curve_proximity/time_of_contact', TimeOfContact)
+        cls.nearest = rospy.ServiceProxy('/curve_proximity/nearest_pairs', NearestPairs)
         cls.profile = rospy.ServiceProxy('/curve_proximity/clearance_profile', ClearanceProfile)
         until(lambda: cls.server.distance([], robot_state=True, joint_state=joints(**READY)).success, 20)
         cls.panda = Robot(PANDA, 'panda.urdf')
@@ -345,6 +347,38 @@ class Movers(unittest.TestCase):
         self.assertRefused(ask(other(swing(-0.8, 0.8), name='a/b')), "it contains '/'")
         self.assertRefused(ask(other(JointTrajectory(joint_names=['elbow'], points=[JointTrajectoryPoint(positions=[0])]))), "robot 'right'", 'elbow')
 
+    def test_clearance_over_time_beside_another_panda(self):
+        def asked(**fields):
+            return query(trajectory=swing(-0.8, 0.8, stamp=1000.0), moving_robots=[other(swing(-0.8, 0.8, stamp=1000.75))], **fields)
+        self.server.replace(moving(sphere('ball', 0.1), waypoint(0, (0.4, 2, 0.5)), waypoint(2, (0.4, 1, 0.5))), box('table', (1, 1, 0.1), (0, 3, 0)))
+        whole, = self.server.distance([], trajectory=swing(-0.8, 0.8, stamp=1000.0), moving_robots=[other(swing(-0.8, 0.8, stamp=1000.75))]).results
+        self.assertEqual(whole.b.split('/')[0], 'right')
+
+        profile, = self.profile(ClearanceProfileRequest(query=asked(), intervals=8)).profiles
+        self.assertAlmostEqual(min(profile.upper), whole.upper, delta=2e-6)
+        self.assertEqual((profile.t0[0], profile.t1[-1], profile.summary.b), (0.0, 2.0, whole.b))
+        for i in range(8):
+            for t in numpy.linspace(profile.t0[i], profile.t1[i], 4):
+                self.assertGreaterEqual(between(*self.pandas(t, 0.75, 1.6))[1], profile.lower[i] - 1e-6, t)
+            a, b = profile.witness_a[i], profile.witness_b[i]
+            self.assertAlmostEqual(math.dist((a.x, a.y, a.z), (b.x, b.y, b.z)), profile.upper[i], delta=1e-6)
+        links = self.profile(ClearanceProfileRequest(query=asked(), intervals=4, per_link=True)).profiles
+        self.assertIn('panda_hand', [one.link for one in links])
+        self.assertAlmostEqual(min(min(one.upper) for one in links), whole.upper, delta=2e-6)
+
+        rows = self.server.distance([], trajectory=swing(-0.8, 0.8, stamp=1000.0), per_object=True,
+                                    moving_robots=[other(swing(-0.8, 0.8, stamp=1000.75))]).results
+        self.assertEqual([row.b.split('/')[0] for row in rows], ['table', 'ball', 'right'])
+        self.assertAlmostEqual(rows[2].upper, whole.upper, delta=2e-6)
+        row, = self.server.distance([], trajectory=swing(-0.8, 0.8, stamp=1000.0), objects=['ball']).results
+        self.assertEqual((row.b, round(row.upper, 5)), ('ball', round(rows[1].upper, 5)))
+
+        pairs = self.nearest(NearestPairsRequest(query=asked(), count=5)).results
+        self.assertEqual(len(pairs), 5)
+        self.assertEqual((pairs[0].a, pairs[0].b), (whole.a, whole.b))
+        self.assertAlmostEqual(pairs[0].upper, whole.upper, delta=2e-6)
+        self.assertEqual([row.upper for row in pairs], sorted(row.upper for row in pairs))
+
     def test_what_takes_too_much_memory_is_refused(self):
         many = [moving(sphere('ball%d' % i, 0.1), waypoint(0.001 * i, (i, 2, 0.5)), waypoint(2 + 0.001 * i, (i, 3, 0.5)))
                 for i in range(200)]
@@ -368,8 +402,7 @@ class Movers(unittest.TestCase):
         line = bezier((0, 0, 2), (1, 0, 2))
         self.assertRefused(self.server.distance(line, joint_state=joints(**READY)), moves)
         self.assertTrue(self.server.distance(line, objects=['table'], joint_state=joints(**READY)).success)
-        self.assertRefused(self.server.distance([], trajectory=swing(0, 1), per_object=True), 'per_object is not available')
-        self.assertRefused(self.profile(ClearanceProfileRequest(query=query(trajectory=swing(0, 1)))), 'clearance profiles are not available')
+        self.assertRefused(self.server.distance([], trajectory=swing(0, 1), gradient=True), 'gradients are not available')
         self.assertRefused(self.server.distance(line, moving_robots=[other(swing(0, 1))]), 'moving_robots')
         self.assertTrue(self.server.distance([], robot_state=True, joint_state=joints(**READY)).success)
         self.assertRefused(self.server.apply(CollisionObject(id='ball', operation=CollisionObject.MOVE, pose=pose())), 'it moves along a trajectory')

@@ -113,8 +113,25 @@ class Stretches(unittest.TestCase):
             self.assertEqual((set(profile.b), set(profile.converged), profile.link), ({'ball'}, {True}, ''))
             self.assertIs(profile.summary.lower, profile.summary.upper, 0.75)
             self.assertAlmostEqual(profile.summary.witness_a.z, 1.0, delta=1e-9)
+            for t, upper, on_line, on_ball in zip(profile.t, profile.upper, profile.witness_a, profile.witness_b):
+                self.assertAlmostEqual(on_line.x, -1 + 2 * t, delta=1e-9)
+                self.assertAlmostEqual(math.hypot(on_ball.x, on_ball.y, on_ball.z), 0.25, delta=1e-9)
+                self.assertAlmostEqual(math.dist((on_line.x, on_line.y, on_line.z), (on_ball.x, on_ball.y, on_ball.z)), upper, delta=1e-9)
         profile, = self.good(self.profile(query(LINE, **ONLY)))
         self.assertEqual(len(profile.lower), 100)
+
+    def test_clearance_beyond_a_horizon_is_only_bounded(self):
+        whole, = self.good(self.profile(query(LINE, **ONLY)))
+        profile, = self.good(self.profile(query(LINE, **ONLY), horizon=0.8))
+        self.assertEqual(set(profile.converged), {True})
+        measured = [upper - lower <= EPSILON for lower, upper in zip(profile.lower, profile.upper)]
+        self.assertTrue(all(near or lower > 0.8 for near, lower in zip(measured, profile.lower)))
+        self.assertTrue(10 < measured.count(True) < 100)
+        for i in range(100):
+            self.assertTrue(profile.lower[i] <= whole.upper[i] and whole.lower[i] <= profile.upper[i])
+        profile, = self.good(self.profile(query(trajectory=QUARTER, **ONLY), horizon=0.2, intervals=10))
+        self.assertTrue(all(upper - lower <= EPSILON or lower > 0.2 for lower, upper in zip(profile.lower, profile.upper)))
+        self.assertRefused(self.profile(query(LINE), horizon=-1.0), 'horizon')
 
     def test_a_profile_for_each_link(self):
         post = sphere('ball', 0.1, (0, 0.5, 0.5))

@@ -84,6 +84,66 @@ TEST_F(Movement, carts_meet_when_the_later_one_has_come) {
   EXPECT_EQ(ask(movers, Against::BOTH, Query(), workspace).kind, "movers");
 }
 
+/* The same two: each interval of a profile is as the interval asked alone, and all of it together as the query. */
+TEST_F(Movement, clearance_over_time_is_that_of_each_interval) {
+  const auto there = slide(carts.snapshot(), 0, 2, 0), back = slide(carts.snapshot(), 0, -2, 4, 0.5);
+  const MovingRobot a{"a", there, 10.0}, b{"b", back, 10.5};
+  const Movers movers(world.snapshot(), {a, b}, {});
+  const std::vector<double> breaks{10.0, 10.4, 10.9, 11.2, 11.5};
+  for (const Against against : {Against::OBJECTS, Against::MOVERS, Against::BOTH}) {
+    const std::vector<ClearanceInterval> profile = clearanceProfile(movers, against, breaks, Query(), workspace);
+    ASSERT_EQ(profile.size(), breaks.size() - 1);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+      Query query;
+      query.options.interval = &breaks[i];
+      const Answer alone = ask(movers, against, query, workspace);
+      EXPECT_LE(profile[i].upper - profile[i].lower, 1.01e-6);
+      EXPECT_NEAR(profile[i].upper, alone.result.upper, 2e-6);
+      EXPECT_NEAR((toEigen(profile[i].witness_a) - toEigen(profile[i].witness_b)).norm(), profile[i].upper, 1e-6);
+      least = std::min(least, profile[i].upper);
+    }
+    EXPECT_NEAR(least, ask(movers, against, Query(), workspace).result.upper, 2e-6);
+  }
+  /* seen by the second one, whose times are from 10.5 on; there the wall is farther than the other cart */
+  const ClearanceInterval last = clearanceProfile(movers, b, {11.2, 11.5}, Query(), workspace).front();
+  EXPECT_NEAR(last.upper, 0.3, 1e-6);
+  EXPECT_EQ(last.a, "cart");
+  EXPECT_EQ(last.b, "a/cart");
+  EXPECT_NEAR(toEigen(last.witness_a).y() - toEigen(last.witness_b).y(), 0.3, 1e-6);
+  const ClearanceInterval beyond = clearanceProfile(movers, b, {10.5, 10.6}, Query(), workspace, 0.5).front();
+  EXPECT_GT(beyond.lower, 0.5);
+  EXPECT_EQ(beyond.status, CPROX_OK);
+
+  const std::vector<Answer> pairs = nearestPairs(movers, b, {}, Query(), workspace);
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_EQ(pairs[0].b, "a/cart");
+  EXPECT_EQ(pairs[1].b, "wall");
+  expectDistance(pairs[0], 0.3);
+  EXPECT_EQ(nearestPairs(movers, Against::BOTH, {1}, Query(), workspace).size(), 1u);
+
+  /* 0.5 m apart where 0.4 m are between them along x: 3.8 - 2 (t - 10.5) - 2 = 0.4 */
+  Query near;
+  near.query_type = QueryType::TOLERANCE;
+  near.delta = 0.5;
+  const Violations found = violations(movers, b, 1e-6, near, workspace);
+  ASSERT_EQ(found.list.size(), 1u);
+  EXPECT_LE(found.list[0].enter_lower, 11.2 + 1e-9);
+  EXPECT_GE(found.list[0].enter_upper, 11.2 - 1e-9);
+  EXPECT_LT(found.list[0].enter_upper - found.list[0].enter_lower, 1e-3);
+  EXPECT_NEAR(found.list[0].leave_upper, 11.5, 1e-9);
+  near.delta = 0.2;
+  EXPECT_TRUE(violations(movers, Against::MOVERS, 1e-6, near, workspace).list.empty());
+
+  Query one;
+  one.objects = {"a"};
+  expectDistance(ask(movers, b, one, workspace), 0.3);
+  one.objects = {"wall"};
+  EXPECT_EQ(ask(movers, b, one, workspace).b, "wall");
+  EXPECT_THROW(clearanceProfile(movers, Against::BOTH, {11.0, 10.0}, Query(), workspace), Error);
+  EXPECT_THROW(violations(movers, b, 1e-6, Query(), workspace), Error);
+}
+
 /* Both at 2 m/s on one rail, 4 m apart: faces meet when the way is 3.8 m; the later one starts after half a second. */
 TEST_F(Movement, contact_is_never_told_late) {
   const auto there = slide(carts.snapshot(), 0, 2, 0), back = slide(carts.snapshot(), 0, -2, 4);
@@ -193,8 +253,8 @@ TEST_F(Movement, what_cannot_be_is_refused_by_name) {
 
   const Movers movers(world.snapshot(), {{"a", there}}, {});
   Query query;
-  query.objects = {"wall"};
-  expectContains(ask(movers, Against::OBJECTS, query, workspace).message, "objects do not apply to movers");
+  query.objects = {"wal"};
+  expectContains(ask(movers, Against::OBJECTS, query, workspace).message, "there is no object 'wal'");
   query.objects.clear();
   query.links = {"cart"};
   expectContains(ask(movers, Against::OBJECTS, query, workspace).message, "'cart' is no mover, and no link of one");

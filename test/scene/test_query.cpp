@@ -357,6 +357,16 @@ TEST(Profile, each_interval_contains_the_least_distance) {
     }
     const double all = ask(targets, curve, Query(), workspace).front().result.upper;
     EXPECT_NEAR(least, all, 2e-6) << i;
+
+    /* beyond a horizon clearance is only bounded */
+    const double horizon = 1.5 * all;
+    const auto near = clearanceProfile(targets, curve, breaks, Query(), workspace, horizon);
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      EXPECT_EQ(near[k].status, CPROX_OK);
+      EXPECT_TRUE(near[k].upper - near[k].lower <= 1e-6 || near[k].lower > horizon) << i;
+      EXPECT_TRUE(near[k].lower <= profile[k].upper && profile[k].lower <= near[k].upper) << i;
+    }
+    EXPECT_THROW(clearanceProfile(targets, curve, breaks, Query(), workspace, -1.0), Error);
   }
 }
 

@@ -141,6 +141,10 @@ typedef struct cprox_profile_interval {
   int32_t obstacle_index;
   /** of a robot: which geometry; else as in cprox_result */
   int32_t mover_part;
+  /** [m] world frame, the two points that attain upper, as in cprox_result; (0,0,0) where there is none */
+  cprox_vec3 witness_mover;
+  /** [m] the witness point on the obstacle */
+  cprox_vec3 witness_obstacle;
   /** 0: room for later members, so that the size of the struct stays */
   uint64_t reserved[2];
 } cprox_profile_interval;
@@ -149,14 +153,17 @@ typedef struct cprox_profile_interval {
  *  planners.
  *
  *  breaks      n_intervals + 1 parameters, ascending, inside the range of the mover.
- *  intervals   receives n_intervals of them, each to the accuracy that options ask for.
+ *  horizon     [m] >= 0: clearance beyond it is only bounded, not measured; infinity: all is measured.
+ *  intervals   receives n_intervals of them, each to the accuracy that options ask for, or with lower > horizon; there
+ *              upper is what was measured on the way, infinity where nothing was.
  *
  *  Returns as cprox_distance(); a status above CPROX_OK means that some interval is less accurate than asked, and all
  *  are true. CPROX_INVALID also where breaks do not ascend or leave the range. On a negative status nothing or some is
  *  written. */
 CPROX_API cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles, cprox_mover mover,
-                                               const double *breaks, size_t n_intervals, const cprox_options *options,
-                                               cprox_workspace *workspace, cprox_profile_interval *intervals);
+                                               const double *breaks, size_t n_intervals, double horizon,
+                                               const cprox_options *options, cprox_workspace *workspace,
+                                               cprox_profile_interval *intervals);
 
 /** An interval of the mover's parameter in which it is within delta of an obstacle. */
 typedef struct cprox_violation {

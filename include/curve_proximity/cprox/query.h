@@ -168,8 +168,8 @@ typedef struct cprox_options {
    *  are. A coarser model contains the body: lower and clear hold for the body itself as well, but upper, the witness
    *  points and violated are the model's */
   cprox_lod max_lod;
-  /** robots: NULL for the whole motion, or two times [s], begin < end, both within the motion's domain: distance,
-   *  tolerance, collision and time of contact are then asked of this interval alone, without certificate */
+  /** robots: NULL for the whole motion, or two times [s], begin < end, within its domain: distance, tolerance,
+   * collision, contact, nearest pairs and violations are then asked of this interval alone, without certificate */
   const double *interval;
   /** robots, distance: several queries, each of an interval or of some pairs, that are one question together: called at
    *  each node with the upper bound of this query (infinity while it has none), it returns the least one of all of

@@ -135,8 +135,7 @@ cprox_status cprox_robot_rows(const cprox_obstacles *obstacles, cprox_mover move
   if (!s.breaks) s.breaks = mover.motion->times, s.n_intervals = mover.motion->n_segments;
   status = check(&s, asked, workspace);
   if (status != CPROX_OK) return status;
-  const double width = fmax(q->options.epsilon, q->options.relative_epsilon * s.horizon);
-  s.cutoff = (s.horizon + 2.0 * width) * (1.0 + 4.0 * (q->options.relative_epsilon + 1e-15));
+  s.cutoff = query_cutoff_beyond(q, s.horizon);
 
   const cprox_robot_pair *pairs = mover.pairs;
   size_t n = mover.n_pairs;

@@ -74,9 +74,7 @@ cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_
   cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
 
-  /* a search that ends at the cutoff has a lower bound of at least cutoff - width: above delta */
-  const double width = fmax(q.options.epsilon, q.options.relative_epsilon * delta);
-  const double cutoff = (delta + 2.0 * width) * (1.0 + 4.0 * (q.options.relative_epsilon + 1e-15));
+  const double cutoff = query_cutoff_beyond(&q, delta);
   size_t found = 0;
   cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < n && failure != CPROX_STOPPED; i++) {

@@ -136,7 +136,8 @@ cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets
                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                                 size_t *count) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
-  const cprox_status begun = query_begin(&q, (arguments_query){"the nearest pairs", ARGUMENTS_SEARCH});
+  const cprox_status begun =
+      query_begin(&q, (arguments_query){"the nearest pairs", ARGUMENTS_SEARCH | ARGUMENTS_INTERVAL});
   if (begun != CPROX_OK) return begun;
   if (!mover.motion)
     return workspace_fail(workspace, CPROX_INVALID, "pairs are those of a robot's motion, and the mover is none");
@@ -155,9 +156,8 @@ cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets
   if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   cprox_result *kept = query_reserve_results(&q, q.mover.n_pairs);
   if (!kept) return CPROX_MEMORY;
-  const double width = fmax(q.options.epsilon, q.options.relative_epsilon * delta);
   ranked_pairs p = {.q = &q, .rank = rank, .k = k, .delta = delta, .nearest = kept};
-  p.within = (delta + 2.0 * width) * (1.0 + 4.0 * (q.options.relative_epsilon + 1e-15));
+  p.within = query_cutoff_beyond(&q, delta);
   size_t i = 0;
   const cprox_status likely = ask_one_by_one(&p, &i, false);
   cprox_status rest = likely;

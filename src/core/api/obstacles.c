@@ -118,10 +118,10 @@ cprox_status cprox_obstacles_nearest_pairs(const cprox_obstacles *obstacles, cpr
 }
 
 cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles, cprox_mover mover, const double *breaks,
-                                     size_t n_intervals, const cprox_options *options, cprox_workspace *workspace,
-                                     cprox_profile_interval *intervals) {
-  return list_profile(mover, obstacles_list(obstacles), obstacles_count(obstacles), breaks, n_intervals, options,
-                      workspace, intervals);
+                                     size_t n_intervals, double horizon, const cprox_options *options,
+                                     cprox_workspace *workspace, cprox_profile_interval *intervals) {
+  return list_profile(mover, obstacles_list(obstacles), obstacles_count(obstacles), breaks, n_intervals, horizon,
+                      options, workspace, intervals);
 }
 
 cprox_status cprox_obstacles_violations(const cprox_obstacles *obstacles, cprox_mover mover, double delta,

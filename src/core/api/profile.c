@@ -22,7 +22,8 @@ static cprox_status check_breaks(const query *q, const double *breaks, size_t n,
 }
 
 /* The least clearance over [t0, t1], a piece at a time. */
-static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox_profile_interval *interval) {
+static cprox_status measure(query *q, double t0, double t1, double cutoff, size_t *piece,
+                            cprox_profile_interval *interval) {
   const cprox_curve *curve = q->mover.curve;
   *interval = (cprox_profile_interval){
       .t0 = t0, .t1 = t1, .lower = INFINITY, .upper = INFINITY, .t = t0, .obstacle_index = -1, .mover_part = -1};
@@ -33,7 +34,7 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
     if (!(from < to)) continue;
     query_ask_section(q, i, from, to);
     cprox_result r;
-    const cprox_status status = query_answer(q, 0, q->n, interval->upper, &r);
+    const cprox_status status = query_answer(q, 0, q->n, lesser(interval->upper, cutoff), &r);
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
     interval->lower = fmin(interval->lower, r.lower);
@@ -43,6 +44,7 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
       interval->t = fmin(fmax(r.t, t0), t1);
       interval->obstacle_index = r.obstacle_index;
       interval->mover_part = r.mover_part;
+      interval->witness_mover = r.witness_mover, interval->witness_obstacle = r.witness_obstacle;
     }
   }
   CORE_CHECK(!(interval->lower > interval->upper), "lower %.17g, upper %.17g", interval->lower, interval->upper);
@@ -50,10 +52,10 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
 }
 
 /* The same of a robot, whose search knows of segments itself. */
-static cprox_status measure_motion(query *q, double t0, double t1, cprox_profile_interval *interval) {
+static cprox_status measure_motion(query *q, double t0, double t1, double cutoff, cprox_profile_interval *interval) {
   q->t0 = t0, q->t1 = t1;
   cprox_result r;
-  const cprox_status status = query_answer(q, 0, q->n, INFINITY, &r);
+  const cprox_status status = query_answer(q, 0, q->n, cutoff, &r);
   if (status < 0) return status;
   *interval = (cprox_profile_interval){.t0 = t0,
                                        .t1 = t1,
@@ -61,25 +63,31 @@ static cprox_status measure_motion(query *q, double t0, double t1, cprox_profile
                                        .upper = r.upper,
                                        .t = r.obstacle_index < 0 ? t0 : r.t,
                                        .obstacle_index = r.obstacle_index,
-                                       .mover_part = r.mover_part};
+                                       .mover_part = r.mover_part,
+                                       .witness_mover = r.witness_mover,
+                                       .witness_obstacle = r.witness_obstacle};
   return status;
 }
 
 cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size_t n, const double *breaks,
-                          size_t n_intervals, const cprox_options *options, cprox_workspace *workspace,
+                          size_t n_intervals, double horizon, const cprox_options *options, cprox_workspace *workspace,
                           cprox_profile_interval *intervals) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  cprox_status status = query_begin(&q, (arguments_query){"a clearance profile", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
+  cprox_status status =
+      query_begin(&q, (arguments_query){"a clearance profile", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_WHOLE});
   if (status != CPROX_OK) return status;
+  if (!(horizon >= 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "horizon is %g, must be 0 or more, or infinity", horizon);
   status = check_breaks(&q, breaks, n_intervals, workspace);
   if (status != CPROX_OK) return status;
 
+  const double cutoff = query_cutoff_beyond(&q, horizon);
   size_t piece = 0;
   cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < n_intervals; i++) {
-    status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], &intervals[i])
-                          : measure(&q, breaks[i], breaks[i + 1], &piece, &intervals[i]);
+    status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], cutoff, &intervals[i])
+                          : measure(&q, breaks[i], breaks[i + 1], cutoff, &piece, &intervals[i]);
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
   }

@@ -55,6 +55,13 @@ search_goal query_goal(const query *q, search_order order, double cutoff) {
                        .stop_user = q->options.stop_user};
 }
 
+/* A search that ends at a cutoff has a lower bound of at least the cutoff less the width allowed there. */
+double query_cutoff_beyond(const query *q, double distance) {
+  if (isinf(distance)) return distance;
+  const double width = width_allowed(q->options.epsilon, q->options.relative_epsilon, distance);
+  return (distance + 2.0 * width) * (1.0 + 4.0 * (q->options.relative_epsilon + 1e-15));
+}
+
 cprox_verdict query_verdict(const query *q, const cprox_result *r) {
   if (!query_wants_verdict(q)) return CPROX_VERDICT_UNDECIDED;
   if (r->upper <= q->limit) return CPROX_VERDICT_VIOLATED;

@@ -63,6 +63,9 @@ cprox_status query_begin(query *q, arguments_query asked);
 /* What a status above CPROX_OK means to the caller. */
 const char *query_shortfall(cprox_status status);
 
+/* An upper bound from elsewhere with which a search ends, unless it finds something nearer, with lower > distance. */
+double query_cutoff_beyond(const query *q, double distance);
+
 /* The verdict that the result's interval gives; undecided for distances. */
 cprox_verdict query_verdict(const query *q, const cprox_result *r);
 

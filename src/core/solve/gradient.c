@@ -179,11 +179,12 @@ static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *target, 
                                const double breaks[4], double distance, cprox_workspace *workspace, bool *farther) {
   cprox_options few = *options;
   if (few.max_nodes > MOST_NODES) few.max_nodes = MOST_NODES;
+  const double horizon = fmax(distance + options->epsilon, 0.0);
   *farther = true;
   for (int i = 0; i < 4 && *farther; i += 2) {
     if (!(breaks[i] < breaks[i + 1])) continue;
     cprox_profile_interval interval;
-    const cprox_status status = list_profile(mover, target, 1, &breaks[i], 1, &few, workspace, &interval);
+    const cprox_status status = list_profile(mover, target, 1, &breaks[i], 1, horizon, &few, workspace, &interval);
     if (status < 0) return status;
     *farther = interval.lower > distance + options->epsilon;
   }

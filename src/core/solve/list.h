@@ -24,7 +24,7 @@ cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets
                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                                 size_t *count);
 cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size_t n, const double *breaks,
-                          size_t n_intervals, const cprox_options *options, cprox_workspace *workspace,
+                          size_t n_intervals, double horizon, const cprox_options *options, cprox_workspace *workspace,
                           cprox_profile_interval *intervals);
 cprox_status list_violations(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                              double resolution, const cprox_options *options, cprox_workspace *workspace,

@@ -41,7 +41,7 @@ static double ask(const gradient_case *p, gradient_answer *a, double *width) {
   if (p->pair) {
     cprox_profile_interval least;
     mover.pairs = p->pair, mover.n_pairs = 1;
-    status = cprox_obstacles_profile(against, mover, p->breaks, 1, &options, ws, &least);
+    status = cprox_obstacles_profile(against, mover, p->breaks, 1, INFINITY, &options, ws, &least);
     r.lower = least.lower, r.upper = least.upper;
   }
   if (status < 0) fail_msg("%s", cprox_workspace_error(ws));

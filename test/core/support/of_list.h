@@ -4,6 +4,8 @@
 #ifndef CPROX_TEST_OF_LIST_H
 #define CPROX_TEST_OF_LIST_H
 
+#include <math.h>
+
 #include "curve_proximity/cprox.h"
 
 /* The status of the handle where it cannot be made, else that of the query. */
@@ -63,7 +65,7 @@ static inline cprox_status profile_of_list(cprox_mover moving, const cprox_obsta
                                            const double *breaks, size_t n_intervals, const cprox_options *options,
                                            cprox_workspace *workspace, cprox_profile_interval *intervals) {
   OF_LIST(targets, n, workspace,
-          cprox_obstacles_profile(obstacles, moving, breaks, n_intervals, options, workspace, intervals));
+          cprox_obstacles_profile(obstacles, moving, breaks, n_intervals, INFINITY, options, workspace, intervals));
 }
 
 static inline cprox_status violations_of_list(cprox_mover moving, const cprox_obstacle *targets, size_t n, double delta,

@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Queries about robots and objects that move at the same time. */
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <set>
+
+#include <curve_proximity/movers.hpp>
+#include <curve_proximity/nearest_name.hpp>
+
+#include "answering.h"
+#include "movers_data.h"
+#include "second_opinion.h"
+
+namespace curve_proximity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::string faultOfMovers(const Query &query) {
+  if (query.options.certificate) return "a certificate does not apply: movers on one clock have none";
+  if (query.options.signed_distance) return "signed_distance does not apply: movers on one clock have no depth";
+  return faultOfMotion(query, true);
+}
+
+/* What a query is about: pairs with objects that stand, and pairs of movers. */
+struct Pairs {
+  Against against = Against::BOTH;
+  std::vector<cprox_robot_pair> environment, among;
+};
+
+/* The geometries that query.links names; all where it names none. Throws Error for a name that is none. */
+std::vector<bool> namedGeometries(const Movers::Data &data, const std::vector<std::string> &names) {
+  std::vector<bool> out(data.geometries.size(), names.empty());
+  for (const std::string &name : names) {
+    bool found = false;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const std::string &own = data.geometries[i].name;
+      const bool fits = own == name || moverOf(own) == name;
+      out[i] = out[i] || fits;
+      found = found || fits;
+    }
+    if (!found) throw Error("'" + name + "' is no mover, and no link of one, that has geometry");
+  }
+  return out;
+}
+
+/* Is it one of query.objects, or of a robot that these name? All are where they name none. */
+class AskedObjects {
+ public:
+  AskedObjects(const Movers::Data &data, const Query &query) : names_(query.objects.begin(), query.objects.end()) {
+    std::set<std::string> known(data.object_names.begin(), data.object_names.end());
+    for (const MoverGeometry &geometry : data.geometries) known.insert(moverOf(geometry.name));
+    for (const Item &item : data.snapshot->world().items()) known.insert(*item.owner);
+    for (const std::string &name : names_)
+      if (known.count(name) == 0)
+        throw Error("there is no object '" + name + "' in the scene" + didYouMean(name, {known.begin(), known.end()}));
+  }
+
+  bool has(const std::string &name) const {
+    return names_.empty() || names_.count(name) > 0 || names_.count(moverOf(name)) > 0;
+  }
+
+ private:
+  std::set<std::string> names_;
+};
+
+Pairs pairsOf(const Movers::Data &data, Against against, const Query &query) {
+  Pairs out;
+  const std::vector<bool> named = namedGeometries(data, query.links);
+  const AskedObjects objects(data, query);
+  const auto at = [](std::int32_t geometry) { return static_cast<std::size_t>(geometry); };
+  if (against != Against::MOVERS) {
+    for (const cprox_robot_pair &pair : data.environment)
+      if (named[at(pair.geometry)] && objects.has(*data.snapshot->world().items()[at(pair.other)].owner))
+        out.environment.push_back(pair);
+  }
+  if (against != Against::OBJECTS) {
+    for (const cprox_robot_pair &pair : data.among) {
+      if (!objects.has(data.geometries[at(pair.geometry)].name) && !objects.has(data.geometries[at(pair.other)].name))
+        continue;
+      const bool self = data.geometries[at(pair.geometry)].mover == data.geometries[at(pair.other)].mover;
+      if (self && against == Against::OTHERS) continue;
+      if (named[at(pair.geometry)] || named[at(pair.other)]) out.among.push_back(pair);
+    }
+  }
+  /* a list of no pairs would mean all of them to the core */
+  if (out.among.empty()) {
+    out.against = against == Against::MOVERS ? Against::MOVERS : Against::OBJECTS;
+  } else {
+    out.against = out.environment.empty() ? Against::MOVERS : Against::BOTH;
+  }
+  return out;
+}
+
+cprox_mover moverOf(const Movers::Data &data, const Pairs &pairs) {
+  cprox_mover mover = pairs.against == Against::MOVERS
+                          ? cprox_robot_self(data.motion.get(), pairs.among.data(), pairs.among.size())
+                          : cprox_robot_along(data.motion.get(), pairs.environment.data(), pairs.environment.size());
+  if (pairs.against == Against::BOTH) {
+    mover.kind = CPROX_MOVER_ROBOT_WHOLE;
+    mover.self_pairs = pairs.among.data();
+    mover.n_self_pairs = pairs.among.size();
+  }
+  return mover;
+}
+
+/* Those that stand, where pairs have one of them. */
+std::vector<cprox_obstacle> targetsOf(const Movers::Data &data, const Pairs &pairs) {
+  return pairs.against == Against::MOVERS ? std::vector<cprox_obstacle>() : data.targets;
+}
+
+double microsecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+void nameSides(const Movers::Data &data, Against against, Answer &answer) {
+  cprox_result &result = answer.result;
+  if (result.status < 0 || result.obstacle_index < 0) return;
+  const MoverGeometry &moving = data.geometries[static_cast<std::size_t>(result.mover_part)];
+  const std::size_t standing = against == Against::MOVERS ? 0 : data.targets.size();
+  const auto index = static_cast<std::size_t>(result.obstacle_index);
+  answer.a = moving.name;
+  result.mover_part = moving.part;
+  if (index < standing) {
+    const Item &item = data.snapshot->world().items()[index];
+    answer.b = *item.owner;
+    result.obstacle_index = item.part;
+    return;
+  }
+  const MoverGeometry &other = data.geometries[index - standing];
+  answer.kind = "movers";
+  answer.b = other.name;
+  answer.b_is_link = other.mover < data.robots.size();
+  result.obstacle_index = other.part;
+}
+
+template <class Core>
+Answer answerOf(const Movers &movers, Against asked, const Query &query, const std::string &fault,
+                const Workspace &workspace, Core core) {
+  const Movers::Data &data = movers.data();
+  const std::string kind = asked == Against::MOVERS ? "movers" : "environment";
+  if (!fault.empty()) return refusal("movers", kind, fault);
+  const Clock::time_point start = Clock::now();
+  Pairs pairs;
+  try {
+    pairs = pairsOf(data, asked, query);
+  } catch (const Error &error) {
+    return refusal("movers", kind, error.what());
+  }
+  Answer answer;
+  answer.id = "movers";
+  answer.kind = kind;
+  answer.result.obstacle_index = -1;
+  if (pairs.environment.empty() && pairs.among.empty()) {
+    answerNothing(query, answer.result);
+    answer.result.t_contact_lower = movers.domain()[1];
+  } else {
+    core(moverOf(data, pairs), targetsOf(data, pairs), answer.result);
+    if (answer.result.status < 0) answer.message = workspace.reason();
+    nameSides(data, pairs.against, answer);
+  }
+  answer.microseconds = microsecondsSince(start);
+  if (answer.result.status != CPROX_OK && answer.message.empty())
+    answer.message = cprox_status_text(answer.result.status);
+  answer.status = cprox_status_name(answer.result.status);
+  refuseSecondOpinion(query, "the peers are not asked about what moves beside the robot", answer);
+  return answer;
+}
+
+/* The query by the names of all movers, and the time that it is about. */
+struct OfRobot {
+  Query query;
+  std::array<double, 2> interval{};
+
+  OfRobot(const MovingRobot &robot, const Query &asked) : query(asked) {
+    for (std::string &link : query.links) link = robot.name + "/" + link;
+    if (query.links.empty()) query.links = {robot.name};
+    if (robot.motion->stands()) return;
+    for (std::size_t i = 0; i < interval.size(); ++i) interval[i] = robot.motion->domain()[i] + robot.start;
+    query.options.interval = interval.data();
+  }
+  OfRobot(const OfRobot &) = delete;
+  OfRobot &operator=(const OfRobot &) = delete;
+};
+
+/* Side a is the robot's, by its own name. */
+Answer ofRobot(const MovingRobot &robot, Answer answer) {
+  const std::string prefix = robot.name + "/";
+  answer.kind = "environment";
+  if (answer.a.rfind(prefix, 0) != 0 && answer.b.rfind(prefix, 0) == 0) {
+    std::swap(answer.a, answer.b);
+    std::swap(answer.result.witness_mover, answer.result.witness_obstacle);
+    std::swap(answer.result.mover_part, answer.result.obstacle_index);
+    cprox_vec3 &normal = answer.result.normal;
+    normal = {-normal.x, -normal.y, -normal.z};
+  }
+  if (answer.a.rfind(prefix, 0) == 0) answer.a.erase(0, prefix.size());
+  return answer;
+}
+
+/* How a pair is told: its sides as nameSides() has them, or seen by one of the robots. */
+using View = std::function<Answer(Answer)>;
+
+Answer asFound(Answer answer) {
+  return answer;
+}
+
+View seenBy(const MovingRobot &robot) {
+  return [&robot](Answer answer) { return ofRobot(robot, std::move(answer)); };
+}
+
+/* Throws Error where movers cannot be asked in this way. */
+void refuse(const std::string &fault) {
+  if (!fault.empty()) throw Error(fault);
+}
+
+std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, const std::vector<double> &breaks,
+                                         const Query &query, Workspace &workspace, double horizon, const View &view) {
+  refuse(faultOfMovers(query));
+  refuse(faultOfDistances(query));
+  refuse(faultOfProfile(query, breaks, horizon));
+  if (query.options.interval) throw Error("an interval does not apply: breaks say where a profile begins and ends");
+  const Movers::Data &data = movers.data();
+  const Pairs pairs = pairsOf(data, against, query);
+  constexpr double FAR = std::numeric_limits<double>::infinity();
+  std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
+  for (std::size_t i = 0; i < intervals.size(); ++i)
+    intervals[i] = {breaks[i], breaks[i + 1], FAR, FAR, breaks[i], -1, -1, {}, {}, {}};
+  cprox_status status = CPROX_OK;
+  if (!pairs.environment.empty() || !pairs.among.empty()) {
+    const cprox_options options = withoutRounding(query.options, data.rounding);
+    const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
+    status = cprox_obstacles_profile(obstacles.get(), moverOf(data, pairs), breaks.data(), intervals.size(),
+                                     horizon + data.rounding, &options, workspace.get(), intervals.data());
+    if (status < 0) throw Error(workspace.reason(), status);
+  }
+  std::vector<ClearanceInterval> out;
+  for (const cprox_profile_interval &interval : intervals) {
+    Answer sides;
+    sides.result.obstacle_index = interval.obstacle_index;
+    sides.result.mover_part = interval.mover_part;
+    sides.result.witness_mover = interval.witness_mover;
+    sides.result.witness_obstacle = interval.witness_obstacle;
+    nameSides(data, pairs.against, sides);
+    sides = view(std::move(sides));
+    ClearanceInterval one = toInterval(interval, data.rounding, query.options, horizon, status);
+    one.a = sides.a, one.witness_a = sides.result.witness_mover;
+    one.b = sides.b, one.witness_b = sides.result.witness_obstacle;
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
+                              Workspace &workspace, const View &view) {
+  refuse(faultOfMovers(query));
+  refuse(faultOfDistances(query));
+  if (query.second_opinion) throw Error("a second opinion does not apply to what moves beside the robot");
+  const Movers::Data &data = movers.data();
+  const Pairs pairs = pairsOf(data, against, query);
+  const cprox_options options = withoutRounding(query.options, data.rounding);
+  std::vector<Answer> out;
+  const auto add = [&](const Pairs &some) {
+    const std::size_t n = some.environment.size() + some.among.size();
+    if (n == 0) return;
+    const Clock::time_point start = Clock::now();
+    const Obstacles obstacles(targetsOf(data, some), CPROX_INDEX_NONE);
+    std::vector<cprox_result> results(std::min(limits.count, n));
+    std::size_t count = 0;
+    const cprox_status status =
+        cprox_obstacles_nearest_pairs(obstacles.get(), moverOf(data, some), limits.count, limits.within + data.rounding,
+                                      &options, workspace.get(), results.data(), &count);
+    if (status < 0) throw Error(workspace.reason(), status);
+    for (std::size_t i = 0; i < count; ++i) {
+      Answer answer;
+      answer.id = "movers", answer.kind = "environment";
+      answer.result = results[i];
+      widen(query, data.rounding, std::numeric_limits<double>::infinity(), answer.result);
+      nameSides(data, some.against, answer);
+      answer.microseconds = microsecondsSince(start);
+      answer.status = cprox_status_name(answer.result.status);
+      if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
+      out.push_back(view(std::move(answer)));
+    }
+  };
+  add({Against::OBJECTS, pairs.environment, {}});
+  add({Against::MOVERS, {}, pairs.among});
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Answer &x, const Answer &y) { return x.result.upper < y.result.upper; });
+  if (out.size() > limits.count) out.resize(limits.count);
+  return out;
+}
+
+Violations violationsOf(const Movers &movers, Against against, double resolution, const Query &query,
+                        Workspace &workspace, const View &view) {
+  checkViolations(query, resolution);
+  refuse(faultOfMovers(query));
+  const Movers::Data &data = movers.data();
+  const Pairs pairs = pairsOf(data, against, query);
+  if (pairs.environment.empty() && pairs.among.empty()) return violationsOfNothing();
+  const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
+  const auto name = [&](const cprox_violation &found, Violation &out) {
+    Answer sides;
+    sides.result.obstacle_index = found.obstacle_index;
+    sides.result.mover_part = found.mover_part;
+    nameSides(data, pairs.against, sides);
+    sides = view(std::move(sides));
+    out.a = sides.a, out.b = sides.b;
+  };
+  return searchViolations(obstacles, moverOf(data, pairs), data.rounding, resolution, query, workspace, name);
+}
+
+} // namespace
+
+std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, Against against,
+                                                const std::vector<double> &breaks, const Query &query,
+                                                Workspace &workspace, double horizon) {
+  return profileOf(movers, against, breaks, query, workspace, horizon, asFound);
+}
+
+std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, const MovingRobot &robot,
+                                                const std::vector<double> &breaks, const Query &query,
+                                                Workspace &workspace, double horizon) {
+  OfRobot asked(robot, query);
+  asked.query.options.interval = query.options.interval; // breaks say which times
+  return profileOf(movers, Against::OTHERS, breaks, asked.query, workspace, horizon, seenBy(robot));
+}
+
+std::vector<Answer> nearestPairs(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
+                                 Workspace &workspace) {
+  return nearestOf(movers, against, limits, query, workspace, asFound);
+}
+
+std::vector<Answer> nearestPairs(const Movers &movers, const MovingRobot &robot, const PairLimits &limits,
+                                 const Query &query, Workspace &workspace) {
+  const OfRobot asked(robot, query);
+  return nearestOf(movers, Against::OTHERS, limits, asked.query, workspace, seenBy(robot));
+}
+
+Violations violations(const Movers &movers, Against against, double resolution, const Query &query,
+                      Workspace &workspace) {
+  return violationsOf(movers, against, resolution, query, workspace, asFound);
+}
+
+Violations violations(const Movers &movers, const MovingRobot &robot, double resolution, const Query &query,
+                      Workspace &workspace) {
+  const OfRobot asked(robot, query);
+  return violationsOf(movers, Against::OTHERS, resolution, asked.query, workspace, seenBy(robot));
+}
+
+Answer ask(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace) {
+  const OfRobot asked(robot, query);
+  return ofRobot(robot, ask(movers, Against::OTHERS, asked.query, workspace));
+}
+
+Answer timeOfContact(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace) {
+  const OfRobot asked(robot, query);
+  return ofRobot(robot, timeOfContact(movers, Against::OTHERS, asked.query, workspace));
+}
+
+Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
+  const double rounding = movers.data().rounding;
+  return answerOf(movers, against, query, faultOfMovers(query), workspace,
+                  [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
+                    const cprox_options options = withoutRounding(query.options, rounding);
+                    result.status = askCore(query, options, mover, targets, workspace, result);
+                    if (result.status >= 0) widen(query, rounding, std::numeric_limits<double>::infinity(), result);
+                  });
+}
+
+Answer timeOfContact(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
+  std::string fault = faultOfMovers(query);
+  if (fault.empty()) fault = faultOfContact(query);
+  const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
+    /* what is nearer than the rounding may be in contact: standing bodies grow by it */
+    std::vector<cprox_obstacle> grown = targets;
+    for (cprox_obstacle &target : grown) target.margin += movers.data().rounding;
+    ObstaclesHandle obstacles;
+    result.status = makeObstacles(grown, CPROX_INDEX_NONE, workspace, obstacles);
+    if (result.status >= 0)
+      result.status = cprox_obstacles_time_of_contact(obstacles.get(), mover, &query.options, workspace.get(), &result);
+  };
+  return answerOf(movers, against, query, fault, workspace, core);
+}
+
+} // namespace curve_proximity
