@@ -92,7 +92,6 @@ TrajectoryDescription toTrajectory(const Json &value) {
   for (const Json &name : trajectory->find("joint_names")->list("joint_names"))
     out.joints.push_back(name.text("joint_names"));
   for (const Json &point : trajectory->find("points")->list("points")) out.points.push_back(toPoint(point));
-  checkTrajectory(out);
   return out;
 }
 
@@ -206,7 +205,7 @@ RowFiles Dataset::filesIn(const Json &row) const {
 }
 
 RowFiles Dataset::filesOf(const ManifestRow &row) const {
-  return filesIn(is_csv_ ? toJson(row.text) : parseJson(withoutNested(row.text)));
+  return filesIn(is_csv_ ? toJson(row.text) : outlineOfJson(row.text));
 }
 
 DatasetRow Dataset::parse(const ManifestRow &row) const {

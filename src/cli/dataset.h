@@ -93,7 +93,8 @@ class Dataset {
   std::string digest_;
 };
 
-/** A trajectory as JSON: the keys of a trajectory file, without virtual_joint. Throws BadInput, Error. */
+/** A trajectory as JSON: the keys of a trajectory file, without virtual_joint. Throws BadInput. Whether it is one that
+ * a robot can follow is not looked at. */
 TrajectoryDescription toTrajectory(const Json &value);
 
 } // namespace curve_proximity::cli

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** JSON as values, read by nlohmann-json: for lines of a dataset, which yaml-cpp takes a tenth of a search to read. */
+/** JSON as values: for the lines of a dataset, which must cost little beside a search. */
 #ifndef CURVE_PROXIMITY_CLI_JSON_H
 #define CURVE_PROXIMITY_CLI_JSON_H
 
@@ -23,7 +23,10 @@ struct Json {
   std::vector<Json> items;                           /**< of a list */
   std::vector<std::pair<std::string, Json>> members; /**< of a map, in the order of the text */
 
-  /** The member of that name; null where it is not there or null. */
+  /** The member of that name; null where it is not there. */
+  const Json *member(std::string_view name) const;
+
+  /** The same; null also where its value is null. */
   const Json *find(std::string_view name) const;
 
   const std::string &text(const char *what) const;
@@ -37,9 +40,9 @@ struct Json {
  *  than 64 lists and maps in each other. */
 Json parseJson(std::string_view text);
 
-/** The text of a map without what its lists and maps hold: {"a": 1, "b": {"c": [2]}} becomes {"a": 1, "b": {}}. What is
- *  wrong in there is left out, too. */
-std::string withoutNested(std::string_view text);
+/** The same without what the lists and maps inside hold: of {"a": 1, "b": {"c": [2]}} it is {"a": 1, "b": {}}. What is
+ *  wrong in there is not found. */
+Json outlineOfJson(std::string_view text);
 
 } // namespace curve_proximity::cli
 #endif

@@ -621,12 +621,12 @@ static void take_in(const double *root, size_t degree, value_range *range) {
   while (n > 0) {
     double *c = stack[n - 1], right[MOTION_MAX_DEGREE + 1];
     double low = c[0], high = c[0];
-    for (size_t i = 1; i <= degree; i++) low = fmin(low, c[i]), high = fmax(high, c[i]);
-    range->low = fmin(range->low, fmin(c[0], c[degree]));
-    range->high = fmax(range->high, fmax(c[0], c[degree]));
+    for (size_t i = 1; i <= degree; i++) low = lesser(low, c[i]), high = greater(high, c[i]);
+    range->low = lesser(range->low, lesser(c[0], c[degree]));
+    range->high = greater(range->high, greater(c[0], c[degree]));
     const bool known = low >= range->low - range->room && high <= range->high + range->room;
     if (known || depths[n - 1] >= RANGE_HALVINGS) {
-      range->low = fmin(range->low, low), range->high = fmax(range->high, high);
+      range->low = lesser(range->low, low), range->high = greater(range->high, high);
       n--;
       continue;
     }
@@ -664,8 +664,16 @@ cprox_variable_info cprox_motion_get_variable_info(const cprox_motion *motion, s
   for (int pass = 0; pass < 2; pass++) {
     for (size_t segment = 0; segment < t->n_segments; segment++) {
       const double *c = t->coefficients + (segment * t->n_moving + (size_t)slot - t->first_slot) * t->stride;
-      for (size_t i = 0; pass == 0 && i <= t->degree[segment]; i++) range.room = fmax(range.room, 1e-9 * fabs(c[i]));
-      if (pass == 1) take_in(c, t->degree[segment], &range);
+      const size_t degree = t->degree[segment];
+      if (pass == 1) {
+        take_in(c, degree, &range);
+        continue;
+      }
+
+      /* first the segments' ends: where the values between them are within those, nothing is cut */
+      range.low = lesser(range.low, lesser(c[0], c[degree]));
+      range.high = greater(range.high, greater(c[0], c[degree]));
+      for (size_t i = 0; i <= degree; i++) range.room = greater(range.room, 1e-9 * fabs(c[i]));
     }
   }
   const double arcs = sagitta_of_variable(motion, variable);

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 
 #include <locale.h>
@@ -22,13 +21,18 @@ std::optional<double> parseFinite(std::string_view text) {
   text = trimmed(text);
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1); /* "+-1" is no number */
 
-  /* strtod of the C locale: libstdc++ before version 11 has no from_chars for doubles. Its hexadecimal numbers, names
-   * and leading blanks are no decimal numbers. */
+  /* hexadecimal numbers, names and leading blanks, which strtod takes, are no decimal numbers */
+  const std::size_t first = text.find_first_not_of('-');
+  const bool decimal = first <= 1 && std::string_view(".0123456789").find(text[first]) != std::string_view::npos;
+  if (!decimal) return std::nullopt;
+#if defined(__cpp_lib_to_chars) /* libstdc++ from version 11; it has no answer for what rounds to 0 or a denormal */
+  double quick = 0.0;
+  const auto [read, error] = std::from_chars(text.data(), text.data() + text.size(), quick);
+  if (error == std::errc() && read == text.data() + text.size()) return quick;
+#endif
+  if (text.find_first_of("xX") != std::string_view::npos) return std::nullopt;
   static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
   const std::string ended(text);
-  const std::size_t first = ended.find_first_not_of('-');
-  const bool decimal = first <= 1 && std::strchr(".0123456789", ended[first]) != nullptr;
-  if (!decimal || ended.find_first_of("xX") != std::string::npos) return std::nullopt;
   char *stop = nullptr;
   const double value = strtod_l(ended.c_str(), &stop, c_locale);
   if (stop != ended.c_str() + ended.size() || !std::isfinite(value)) return std::nullopt;
