@@ -4,13 +4,16 @@
 
     scripts/run test/python/dataset_campaign.py --rows 100000 --seed 1 --shards 100 --workers 2
     scripts/run test/python/dataset_campaign.py --matrix 4000           # so many edges in every scene, as bits
-    scripts/run test/python/dataset_campaign.py --rows 300 --write 300.jsonl [--paths]    # a manifest alone, to count instructions
+    scripts/run test/python/dataset_campaign.py --rows 300 --write 300.jsonl [--paths]    # a manifest alone
+    scripts/run test/python/dataset_campaign.py --overhead              # what a row costs beside its search; needs valgrind
 
 Each row is a straight motion of a Panda between two postures near those of the saved paths, in one of their scenes, with the
 verdict of 10 mm. Prints what each way took; ends with 1 where the tables differ. The environment variable CPROX may name the
 program.
 """
 import argparse
+import collections
+import csv
 import filecmp
 import glob
 import json
@@ -58,8 +61,8 @@ def write_edges(path, rows, seed):
             out.write(json.dumps(row) + '\n')
 
 
-def write_paths(path, rows):
-    """A manifest of so many of the saved paths themselves, in turns, with the verdict of 10 mm."""
+def write_paths(path, rows, query='tolerance'):
+    """A manifest of so many of the saved paths themselves, in turns, with the verdict of 10 mm or another query."""
     files = sorted(glob.glob(os.path.join(DATA, 'trajectories', 'panda_*.yaml')))
     robot = os.path.join(DATA, 'robots', 'panda', 'panda.urdf')
     with open(path, 'w') as out:
@@ -67,7 +70,7 @@ def write_paths(path, rows):
             with open(files[i % len(files)]) as stream:
                 saved = yaml.safe_load(stream)
             row = {'id': f'path{i}', 'robot': robot, 'srdf': robot[:-4] + 'srdf', 'scene': os.path.join(DATA, saved['scene']),
-                   'query': 'tolerance', 'delta': 0.01,
+                   'query': query, **({'delta': 0.01} if query == 'tolerance' else {}),
                    'trajectory': {key: saved[key] for key in ('joint_trajectory', 'fixed_joints') if key in saved}}
             out.write(json.dumps(row) + '\n')
 
@@ -93,6 +96,41 @@ def time_matrix(count, seed):
     clear = np.unpackbits(found['clear'], axis=1, count=count).mean()
     print(f'{count} edges in {len(scenes)} scenes: {seconds:.2f} s of CPU, {count * len(scenes) / seconds:.0f} a second, '
           f'{100 * clear:.0f} % clear')
+
+
+def instructions_of(program, manifest, out):
+    """All instructions of `certify`, and those of its searches."""
+    profile = out + '.callgrind'
+    subprocess.run(['valgrind', '--tool=callgrind', f'--callgrind-out-file={profile}', program, 'certify', '--dataset', manifest, '--out', out,
+                    '--threads', '1'], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    text = subprocess.run(['callgrind_annotate', '--inclusive=yes', '--threshold=100', profile], check=True, stdout=subprocess.PIPE,
+                          universal_newlines=True).stdout
+
+    def count(name):
+        return int(next(line for line in text.splitlines() if name in line).split('(')[0].replace(',', ''))
+    return count('PROGRAM TOTALS'), count('curve_proximity::askEnvironment(')
+
+
+def count_overhead(program):
+    """What a row costs beside its search: the difference between 250 and 150 rows; and the time of a row."""
+    kinds = {'edges': lambda path, rows: write_edges(path, rows, 1), 'verdicts about saved paths': write_paths,
+             'distances of saved paths': lambda path, rows: write_paths(path, rows, 'distance')}
+    with tempfile.TemporaryDirectory() as place:
+        for kind, write in kinds.items():
+            costs, seconds = [], []
+            for rows in (150, 250, 3250):
+                manifest, out = os.path.join(place, f'{kind}{rows}.jsonl'), os.path.join(place, f'{kind}{rows}')
+                write(manifest, rows)
+                if rows < 1000:
+                    costs.append(instructions_of(program, manifest, out))
+                if rows != 150:
+                    begin = sum(os.times()[2:4])
+                    subprocess.run([program, 'certify', '--dataset', manifest, '--out', out + '-timed', '--threads', '1'], check=True,
+                                   stderr=subprocess.DEVNULL)
+                    seconds.append(sum(os.times()[2:4]) - begin)
+            whole, search = ((costs[1][i] - costs[0][i]) / 100 for i in (0, 1))
+            print(f'{kind}: {whole - search:.0f} of {whole:.0f} instructions a row are not the search: {100 * (1 - search / whole):.1f} %; '
+                  f'{(seconds[1] - seconds[0]) / 3000 * 1e3:.2f} ms of CPU a row')
 
 
 def kill_one_worker(cluster, out, after):
@@ -122,9 +160,60 @@ def certify_on_cluster(manifest, out, shards, workers, cprox, kill_after=None):
         return failures, len(killed)
 
 
+def certify_row(line, program):
+    """Answers a row of a manifest by `cprox tolerance`. Its verdict, and its certificate."""
+    row = json.loads(line)
+    with tempfile.TemporaryDirectory() as folder:
+        certificate = os.path.join(folder, 'certificate')
+        done = subprocess.run([program, 'tolerance', '--delta', str(row['delta']), *inputs_of(row, folder), '--certificate', certificate],
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
+        with open(certificate, 'rb') as stream:
+            return next(csv.DictReader(done.stdout.splitlines()))['verdict'], stream.read()
+
+
+def check_row(line, certificate, program):
+    """What `cprox check` says of it: "proven: farther than ..."."""
+    row = json.loads(line)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'certificate')
+        with open(path, 'wb') as stream:
+            stream.write(certificate)
+        done = subprocess.run([program, 'check', path, *inputs_of(row, folder)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                              universal_newlines=True)
+        return done.stdout.split(': ', 1)[-1].strip()
+
+
+def inputs_of(row, folder):
+    """The words that name the inputs of a row; its trajectory becomes a file."""
+    path = os.path.join(folder, 'trajectory.yaml')
+    with open(path, 'w') as stream:
+        json.dump(row['trajectory'], stream)
+    return ['--robot', row['robot'], '--srdf', row['srdf'], '--scene', row['scene'], '--trajectory', path]
+
+
+def recheck(client, manifest, table, count, seed, program='cprox'):
+    """Random rows of a merged table, answered again by one worker; a clear one's certificate is checked by another. A hit of
+    meshes has no certificate. Returns how many of each verdict; RuntimeError where any of the two says otherwise."""
+    with open(manifest) as stream:
+        lines = stream.readlines()
+    verdicts = [row['verdict'] for row in csv.DictReader(table.splitlines())]
+    one, other = sorted(client.scheduler_info()['workers'])[:2]
+    counts = collections.Counter()
+    for row in random.Random(seed).sample(range(len(lines)), count):
+        verdict, certificate = client.submit(certify_row, lines[row], program, workers=[one], pure=False).result()
+        if verdict != verdicts[row]:
+            raise RuntimeError(f'row {row} is {verdicts[row]} in the table, {verdict} on {one}')
+        if verdict == 'clear':
+            said = client.submit(check_row, lines[row], certificate, program, workers=[other], pure=False).result()
+            if not said.startswith('proven: farther than 0.01 m everywhere'):
+                raise RuntimeError(f'row {row}: {said}')
+        counts[verdict] += 1
+    return counts
+
+
 def merge(cprox, folder, path):
     """One table of all shards. Its exit code says what the verdicts are; 2, that there is none."""
-    code = subprocess.run([cprox, 'merge', folder, '--out', path], stdout=subprocess.DEVNULL).returncode
+    code = subprocess.run([cprox, 'merge', folder, '--out', path], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
     if code == 2:
         raise RuntimeError(f'{folder}: not merged, or rows have no answer')
 
@@ -139,7 +228,10 @@ def main():
     parser.add_argument('--matrix', type=int, metavar='EDGES', help='only this: time a bit matrix')
     parser.add_argument('--write', metavar='FILE', help='only this: write the manifest')
     parser.add_argument('--paths', action='store_true', help='with --write: of saved paths, not of edges')
+    parser.add_argument('--overhead', action='store_true', help='only this: instructions of a row beside its search')
     asked = parser.parse_args()
+    if asked.overhead:
+        return count_overhead(os.environ.get('CPROX', 'cprox'))
     if asked.matrix:
         return time_matrix(asked.matrix, asked.seed)
     if asked.write:

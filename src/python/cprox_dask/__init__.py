@@ -50,7 +50,7 @@ def certify(client, dataset, out, shards, cprox='cprox', options=(), attempts=3,
 
     A shard that cannot be certified so many times is written with a row `failed` for each of its rows, so that `cprox merge`
     has no gap; remove its file to have it done again. Calls progress(done, shards) after each shard. RuntimeError where not
-    even that can be written: a dataset that cannot be read, a full disk."""
+    even that can be written, as on a full disk, and where the scheduler is lost."""
     from distributed import as_completed
 
     base = [cprox, 'certify', '--dataset', os.path.abspath(dataset), '--out', os.path.abspath(out), '--shards', str(shards),
@@ -72,6 +72,8 @@ def certify(client, dataset, out, shards, cprox='cprox', options=(), attempts=3,
         try:
             said = future.result()
         except Exception as error:  # the worker died so often that Dask gave up; or it has no cprox
+            if client.status != 'running':
+                raise RuntimeError('the scheduler is lost; shards that are whole are kept, the same command goes on') from error
             said = f'{type(error).__name__}: {error}'.splitlines()[0]
         if said is None:
             done += 1
