@@ -7,6 +7,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/make_curve.h"
+#include "support/meshes.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -225,6 +226,56 @@ CASE(carried_bodies_have_gradients) {
   assert_true(4 * valid > all);
 }
 
+/* A few points with a radius, boxes, or a mesh: anywhere, a torus, that torus solid, that torus with its hull. */
+typedef struct elements {
+  cprox_body *body, *hull, *mesh; /* the last two, where the first is made of them */
+} elements;
+
+static elements elements_make(rng *r, size_t kind) {
+  enum { ELEMENTS = 12 };
+  elements e = {NULL, NULL, NULL};
+  vec3 low[ELEMENTS], high[ELEMENTS];
+  for (int i = 0; i < ELEMENTS; i++) {
+    low[i] = rng_in_cube(r, 0.7);
+    high[i] = vec_add(low[i], vec(rng_uniform(r, 0.0, 0.2), rng_uniform(r, 0.0, 0.2), rng_uniform(r, 0.0, 0.2)));
+  }
+  if (kind == 0) assert_int_equal(cprox_body_create_points(low, ELEMENTS, 0.05, SIZE_MAX, ws, &e.body), CPROX_OK);
+  if (kind == 1) assert_int_equal(cprox_body_create_boxes(low, high, ELEMENTS, SIZE_MAX, ws, &e.body), CPROX_OK);
+  if (kind < 2) return e;
+  test_mesh mesh = kind == 2 ? mesh_soup(r, 8, 0.7, 0.5) : mesh_torus(6, 4, 0.5, 0.2, 0.2);
+  e.body = mesh_body(&mesh, kind == 4 ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE, ws);
+  if (kind == 5) {
+    e.mesh = e.body;
+    assert_int_equal(cprox_body_create_polytope(mesh.vertices, mesh.n, ws, &e.hull), CPROX_OK);
+    assert_int_equal(cprox_body_create_lod(e.hull, 0.0, e.mesh, ws, &e.body), CPROX_OK);
+  }
+  mesh_free(&mesh);
+  return e;
+}
+
+static void elements_free(elements *e) {
+  cprox_body_free(e->body);
+  cprox_body_free(e->hull);
+  cprox_body_free(e->mesh);
+}
+
+/* Seed 105, 2000 problems of points, boxes and meshes: 1e-7, as with bodies. */
+CASE(meshes_points_and_boxes_have_gradients) {
+  rng r = rng_seed(105);
+  enum { KINDS = 6 };
+  size_t valid[KINDS] = {0}, all = test_cases(2000);
+  for (size_t k = 0; k < all; k++) {
+    elements e = elements_make(&r, k % KINDS);
+    const problem p = problem_random(&r, BODY, e.body);
+    valid[k % KINDS] += check(&r, &p, 1e-7);
+    elements_free(&e);
+  }
+  for (size_t k = 0; k < KINDS; k++) {
+    print_message("kind %zu: %zu of %zu have a gradient\n", k, valid[k], all / KINDS);
+    assert_true(2 * valid[k] > all / KINDS);
+  }
+}
+
 /* Seed 103, 2000 problems through balls, ellipsoids and boxes: depths have gradients where one way out is the shortest.
  */
 CASE(depths_have_gradients) {
@@ -284,6 +335,18 @@ CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   assert_none(cprox_point_along(middle), cprox_obstacle_at(two, CPROX_POSE_IDENTITY), false,
               "no gradient: two parts are equally near");
 
+  /* two points of a cloud; a solid that begins round it */
+  const vec3 pair[2] = {{-1, 0, 0}, {1, 0, 0}};
+  cprox_body *cloud = NULL;
+  assert_int_equal(cprox_body_create_points(pair, 2, 0.1, SIZE_MAX, ws, &cloud), CPROX_OK);
+  assert_none(cprox_point_along(middle), cprox_obstacle_at(cloud, CPROX_POSE_IDENTITY), false,
+              "no gradient: the nearest points are not the only ones");
+  test_mesh mesh = mesh_box(vec(3, 3, 3));
+  cprox_body *solid = mesh_body(&mesh, CPROX_MESH_FILL_SOLID, ws);
+  mesh_free(&mesh);
+  assert_none(cprox_point_along(middle), cprox_obstacle_at(solid, CPROX_POSE_IDENTITY), false,
+              "no gradient: the distance is 0");
+
   /* a plain case, which has one */
   cprox_curve *plain = bezier((vec3[]){{-1, 0, 4}, {0, 0, 1}, {1.5, 0, 4}}, 3);
   cprox_result result;
@@ -298,6 +361,8 @@ CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   assert_int_equal(cprox_distance_gradient(cprox_point_along(plain), round, NULL, &none, ws, &g), CPROX_INVALID);
   cprox_curve *curves[] = {parallel, twice, through, between, middle, plain};
   for (size_t i = 0; i < sizeof curves / sizeof *curves; i++) cprox_curve_free(curves[i]);
+  cprox_body_free(cloud);
+  cprox_body_free(solid);
   cprox_body_free(two);
   cprox_body_free(box);
   cprox_body_free(ball);

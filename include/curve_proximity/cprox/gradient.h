@@ -49,14 +49,15 @@ typedef struct cprox_gradient {
  *  whole curve is searched once more. valid is false
  *    where the distance elsewhere comes within min(epsilon, 1e-9 curve lengths) of the least, or is as small on a
  *    interval of more than 1e-3 of the range about the minimiser (of 1e-6 where the distance grows like a square),
- *    where two parts or two points of a target curve are equally near,
+ *    where two parts or two points of a target curve are equally near, or two elements of a mesh, of points or boxes,
  *    where the nearest points are not the only ones (face on face, edge along a face, a cone's base): a turn of 1e-6
  *    rad to either side moves them by as much as one of 1e-4 rad,
  *    where the way out of an overlap is not unique, found likewise by shifts of 1e-6 and 1e-4 sizes,
  *    and where the distance is 0 and not signed.
  *
  *  Returns CPROX_OK also where valid is false. CPROX_INVALID for unusable arguments, for a result without a witness,
- *  and for movers and targets of which no gradient is known (meshes, points, robots). *gradient is untouched then.
+ *  and for movers and targets of which no gradient is known (robots; sets known by their distance). *gradient is
+ *  untouched then.
  *  Cost: about five distance queries, and for carried bodies four static pairs. Source: J. M. Danskin, The theory of
  *  max-min, 1967; doc/curve-bound.md. */
 CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,

@@ -4,6 +4,7 @@
 #include "curve_proximity/cprox/gradient.h"
 
 #include "base/workspace.h"
+#include "bvh/winding.h"
 #include "curve/relative_curve.h"
 #include "curve_query/report.h"
 #include "problem/level_of_detail.h"
@@ -41,34 +42,101 @@ static cprox_status invalid(cprox_workspace *workspace, cprox_gradient *g, const
 
 /* ---- the minimiser along the curve ---- */
 
-/* The distance at t, and how fast it changes along the curve. */
+/* What is measured along the curve: a convex shape, or the elements of a tree. */
+typedef struct beside {
+  bool is_tree;
+  union {
+    curve_convex convex;
+    curve_tree tree;
+  } of;
+} beside;
+
+/* What is seen from a point of the curve, in the frame of what stands. */
 typedef struct look {
-  curve_sample sample;
-  double slope;
-  double slack; /* of the distance */
+  union {
+    curve_sample convex;
+    tree_sample tree;
+  } sample;
+  size_t piece;
+  double s;
+  vec3 y, normal;
+  double distance; /* without margins; */
+  double slope;    /* how fast it changes along the curve */
+  double slack;    /* of the distance */
 } look;
 
-static cprox_status measure_pair_at(curve_convex *o, double t, bool from_left, look *seen) {
-  const cprox_curve *c = o->side.curve;
+static bool beside_begin(beside *o, const query *q, const placed_pair *p) {
+  o->is_tree = p->shape->tree != NULL;
+  if (o->is_tree) return curve_tree_begin_pair(&o->of.tree, q, p);
+  if (!curve_convex_begin_pair(&o->of.convex, q, p)) return false;
+  o->of.convex.effort.is_signed = q->is_signed;
+  o->of.convex.effort.epsilon = q->options.epsilon;
+  return true;
+}
+
+static curve_side *side_of(beside *o) {
+  return o->is_tree ? &o->of.tree.side : &o->of.convex.side;
+}
+
+static double offset_of(const beside *o) {
+  return o->is_tree ? o->of.tree.offset : o->of.convex.offset;
+}
+
+static double size_of(const beside *o) {
+  if (o->is_tree) return o->of.tree.tree->scale + o->of.tree.body->shape.margin;
+  return o->of.convex.shape->scale + o->of.convex.shape->margin;
+}
+
+static cprox_status look_from(beside *o, size_t piece, double s, vec3 y, double error, look *seen) {
+  *seen = (look){.piece = piece, .s = s, .y = y};
+  if (o->is_tree) {
+    tree_sample *sample = &seen->sample.tree;
+    const tree_hit hit = tree_nearest(o->of.tree.tree, y, INFINITY);
+    seen->slack = curve_tree_measure(&o->of.tree, hit.at, piece, s, y, error, sample).slack;
+    const bool inside = o->of.tree.body->winding && winding_is_inside(o->of.tree.body->winding, o->of.tree.tree, y);
+    seen->normal = sample->near.normal, seen->distance = inside ? 0.0 : sample->near.distance;
+    return CPROX_OK;
+  }
+  curve_sample *sample = &seen->sample.convex;
+  search_best bound;
+  const cprox_status status = curve_convex_measure(&o->of.convex, piece, s, y, error, sample, &bound);
+  seen->slack = bound.slack;
+  seen->normal = sample->normal, seen->distance = sample->near.distance;
+  return status;
+}
+
+static cprox_status look_at(beside *o, double t, bool from_left, look *seen) {
+  curve_side *side = side_of(o);
+  const cprox_curve *c = side->curve;
   size_t piece = 0;
   while (piece + 1 < c->n_pieces && (from_left ? c->breaks[piece + 1] < t : c->breaks[piece + 1] <= t)) piece++;
   const double length = c->breaks[piece + 1] - c->breaks[piece];
   const double s = fmin(fmax((t - c->breaks[piece]) / length, 0.0), 1.0);
-  curve_side_load(&o->side, piece);
-  const double *x = points_pool_at(&o->pool, o->side.root_slot), *y = x + c->degree + 1, *z = y + c->degree + 1;
+  curve_side_load(side, piece);
+  const double *x = points_pool_at(o->is_tree ? &o->of.tree.pool : &o->of.convex.pool, side->root_slot),
+               *y = x + c->degree + 1, *z = y + c->degree + 1;
   vec3 at, velocity;
   curve_bezier_evaluate(x, y, z, 1, c->degree, c->binomial, s, &at, &velocity, NULL);
-  search_best bound;
-  const cprox_status status =
-      curve_convex_measure(o, piece, s, at, curve_side_point_error(&o->side), &seen->sample, &bound);
-  seen->slope = vec_dot(seen->sample.normal, velocity) / length;
-  seen->slack = bound.slack;
+  const cprox_status status = look_from(o, piece, s, at, curve_side_point_error(side), seen);
+  seen->slope = vec_dot(seen->normal, velocity) / length;
   return status;
+}
+
+/* As the search would report it. */
+static void finding_of(beside *o, const look *seen, curve_finding *finding) {
+  const search_best bound = {.upper = seen->distance - offset_of(o)};
+  if (o->is_tree) {
+    o->of.tree.best = seen->sample.tree, o->of.tree.best_bound = bound, o->of.tree.found = true;
+    curve_tree_finding(&o->of.tree, finding);
+    return;
+  }
+  curve_convex_adopt(&o->of.convex, &seen->sample.convex, bound);
+  curve_convex_finding(&o->of.convex, finding);
 }
 
 /* Between left, where the distance falls, and right, where it grows: where it
  * does neither (Illinois). */
-static cprox_status find_root(curve_convex *o, double left, double right, look *a, look *b, double *t) {
+static cprox_status find_root(beside *o, double left, double right, look *a, look *b, double *t) {
   enum { MOST_STEPS = 100 };
   double fa = a->slope, fb = b->slope;
   int side = 0;
@@ -79,7 +147,7 @@ static cprox_status find_root(curve_convex *o, double left, double right, look *
     if (!(next > left && next < right)) return CPROX_OK;
     *t = next;
     look seen;
-    const cprox_status status = measure_pair_at(o, next, false, &seen);
+    const cprox_status status = look_at(o, next, false, &seen);
     if (status < 0) return status;
     if (seen.slope == 0.0) return CPROX_OK;
     if (seen.slope < 0.0) {
@@ -97,7 +165,7 @@ static cprox_status find_root(curve_convex *o, double left, double right, look *
 
 /* The minimiser near t, to the last digits; *end: -1 or 1 where it is an end of
  * the range. */
-static cprox_status refine(curve_convex *o, double t0, double t1, double *t, int *end) {
+static cprox_status refine(beside *o, double t0, double t1, double *t, int *end) {
   enum { MOST_STEPS = 8 };
   const double range = t1 - t0;
   *end = 0;
@@ -105,8 +173,8 @@ static cprox_status refine(curve_convex *o, double t0, double t1, double *t, int
   for (int i = 0; i < MOST_STEPS && step < 0.05 * range; i++, step *= 8.0) {
     const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
     look a = {.slope = 0.0}, b = {.slope = 0.0};
-    cprox_status status = measure_pair_at(o, left, true, &a);
-    if (status == CPROX_OK) status = measure_pair_at(o, right, false, &b);
+    cprox_status status = look_at(o, left, true, &a);
+    if (status == CPROX_OK) status = look_at(o, right, false, &b);
     if (status < 0) return status;
     if (left == t0 && a.slope > 0.0) {
       *t = t0, *end = -1;
@@ -237,30 +305,27 @@ static cprox_status part_is_alone(const query *q, const placed_pair *best, doubl
   for (size_t i = 0; i < parts * own && *alone; i++) {
     const candidate c = {.part = (int32_t)(i / own), .mover_part = (int32_t)(i % own)};
     if (c.part == best->which.part && c.mover_part == best->which.mover_part) continue;
-    curve_convex o;
+    beside o;
     const placed_pair other = placed_pair_resolve(q, &c);
-    if (!curve_convex_begin_pair(&o, q, &other)) return CPROX_MEMORY;
-    o.effort.is_signed = q->is_signed;
-    o.effort.epsilon = q->options.epsilon;
+    if (!beside_begin(&o, q, &other)) return CPROX_MEMORY;
     look seen;
-    const cprox_status status = measure_pair_at(&o, t, false, &seen);
+    const cprox_status status = look_at(&o, t, false, &seen);
     if (status < 0) return status;
-    *alone = seen.sample.near.distance - o.offset > distance + 2.0 * q->options.epsilon;
+    *alone = seen.distance - offset_of(&o) > distance + 2.0 * q->options.epsilon;
   }
   return CPROX_OK;
 }
 
 /* How much the normal differs a step to either side, along the axis where that
  * is most. */
-static cprox_status lean_of(curve_convex *o, const look *here, double step, double *lean) {
+static cprox_status lean_of(beside *o, const look *here, double step, double *lean) {
   *lean = 0.0;
   for (int i = 0; i < 3; i++) {
-    curve_sample seen[2];
+    look seen[2];
     for (int k = 0; k < 2; k++) {
       const double d = k ? step : -step;
-      const vec3 y = vec_add(here->sample.y, vec(i == 0 ? d : 0.0, i == 1 ? d : 0.0, i == 2 ? d : 0.0));
-      search_best bound;
-      const cprox_status status = curve_convex_measure(o, here->sample.piece, here->sample.s, y, 0.0, &seen[k], &bound);
+      const vec3 y = vec_add(here->y, vec(i == 0 ? d : 0.0, i == 1 ? d : 0.0, i == 2 ? d : 0.0));
+      const cprox_status status = look_from(o, here->piece, here->s, y, 0.0, &seen[k]);
       if (status < 0) return status;
     }
     *lean = fmax(vec_norm(vec_sub(seen[1].normal, seen[0].normal)), *lean);
@@ -268,17 +333,16 @@ static cprox_status lean_of(curve_convex *o, const look *here, double step, doub
   return CPROX_OK;
 }
 
-/* Inside, and where that cannot be told, the way out may change from one face
- * to another: then the normal jumps nearby. */
-static cprox_status way_out_is_alone(curve_convex *o, const look *here, bool *alone) {
+/* Inside, and where that cannot be told, the way out may change from one face to another, and of many elements another
+ * may be as near: then the normal jumps nearby. */
+static cprox_status normal_is_alone(beside *o, const look *here, bool *alone) {
   static const double NOISE = 2e-5; /* normals of carried bodies are known to
                                        the root of what depths are */
   *alone = true;
-  if (here->sample.near.distance > 2.0 * here->slack) return CPROX_OK;
-  const double size = o->shape->scale + o->shape->margin;
+  if (!o->is_tree && here->distance > 2.0 * here->slack) return CPROX_OK;
   double near, far = 0.0;
-  cprox_status status = lean_of(o, here, TIES_NEAR * size, &near);
-  if (status >= 0 && near > NOISE) status = lean_of(o, here, TIES_FAR * size, &far);
+  cprox_status status = lean_of(o, here, TIES_NEAR * size_of(o), &near);
+  if (status >= 0 && near > NOISE) status = lean_of(o, here, TIES_FAR * size_of(o), &far);
   *alone = !ties_is_jump(near, far, NOISE);
   return status < 0 ? status : CPROX_OK;
 }
@@ -329,35 +393,34 @@ static void fill(const cprox_obstacle *target, vec3 n, vec3 witness_obstacle, cp
 }
 
 static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox_gradient *g) {
-  curve_convex o;
-  if (!curve_convex_begin_pair(&o, q, c)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
-  o.effort.is_signed = q->is_signed;
-  o.effort.epsilon = 1e-3 * q->options.epsilon;
+  beside o;
+  if (!beside_begin(&o, q, c)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
+  if (!o.is_tree) o.of.convex.effort.epsilon = 1e-3 * q->options.epsilon;
   int end;
   cprox_status status = refine(&o, q->t0, q->t1, &g->t, &end);
   look here = {.slope = 0.0};
-  if (status == CPROX_OK) status = measure_pair_at(&o, g->t, end > 0, &here);
+  if (status == CPROX_OK) status = look_at(&o, g->t, end > 0, &here);
   if (status < 0) return status;
-  const double distance = here.sample.near.distance - o.offset;
+  const double distance = here.distance - offset_of(&o);
   if (end < 0) g->t0 = here.slope;
   if (end > 0) g->t1 = here.slope;
 
-  /* the points, as the search would report them */
-  curve_convex_adopt(&o, &here.sample, (search_best){.upper = distance});
   cprox_result r = {.t_obstacle = NAN};
   curve_finding seen;
-  curve_convex_finding(&o, &seen);
+  finding_of(&o, &here, &seen);
   status = report_finding(q, c, &seen, &r);
   if (status < 0) return status;
   fill(&q->targets[0], r.normal, r.witness_obstacle, g);
   if (q->targets[0].synchronized) g->t_obstacle = g->t;
   if (vec_norm2(r.normal) == 0.0) return invalid(q->workspace, g, "there is no normal");
-  if (!q->is_signed && !(distance > here.slack)) return invalid(q->workspace, g, "the distance is 0");
+  if ((!q->is_signed || o.is_tree) && !(distance > here.slack)) return invalid(q->workspace, g, "the distance is 0");
 
   bool alone = true;
-  status = way_out_is_alone(&o, &here, &alone);
+  status = normal_is_alone(&o, &here, &alone);
   if (status < 0) return status;
-  if (!alone) return invalid(q->workspace, g, "there is more than one way out");
+  if (!alone)
+    return invalid(q->workspace, g,
+                   o.is_tree ? "the nearest points are not the only ones" : "there is more than one way out");
   status = nearest_is_alone(q, c, g->t, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "the nearest points are not the only ones");
@@ -432,11 +495,10 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, c
   const candidate c = {.part = result->obstacle_part, .mover_part = result->mover_part};
   if (result->obstacle_index < 0 || !isfinite(result->upper))
     return workspace_fail(workspace, CPROX_INVALID, "the result has no witness: ask for a distance");
-  const bool many = model_has_tree(target.body, q.options.max_lod) || (target.body && target.body->field);
-  if (mover.curve->arcs || (target.curve && target.curve->arcs) || many)
-    return workspace_fail(
-        workspace, CPROX_INVALID, "no gradient is known for %s",
-        many ? "meshes, points, boxes and sets known by their distance" : "a curve without derivatives");
+  const bool is_field = target.body && target.body->field;
+  if (mover.curve->arcs || (target.curve && target.curve->arcs) || is_field)
+    return workspace_fail(workspace, CPROX_INVALID, "no gradient is known for %s",
+                          is_field ? "sets known by their distance" : "a curve without derivatives");
   query_ask_whole(&q);
   if (!(q.t0 <= result->t && result->t <= q.t1))
     return workspace_fail(workspace, CPROX_INVALID, "the result's t = %.17g is not on the mover's curve", result->t);
