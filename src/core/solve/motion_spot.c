@@ -414,11 +414,12 @@ static cprox_status step_across(spot_pair *p, const motion_interval *within, con
   return CPROX_OK;
 }
 
-/* One way out on one side of the spot (sign): a sum of places with these factors. Where the other is clearly longer,
- * twice and thrice as far, it is the only one. Directly beside the spot what is measured may be neither of the two
- * where they are curved; flat ones are exact there. */
+/* One way out on one side of the spot (sign): a sum of places with these factors; *depth: how long it is at the spot.
+ * Where the other is clearly longer, twice and thrice as far, it is the only one. Directly beside the spot what is
+ * measured may be neither of the two where they are curved; flat ones are exact there. */
 static cprox_status find_side(spot_pair *p, const motion_interval *within, const motion_spot *spot, double apart,
-                              double sign, motion_spot side[SIDE_PLACES], double factor[SIDE_PLACES], bool *found) {
+                              double sign, motion_spot side[SIDE_PLACES], double factor[SIDE_PLACES], double *depth,
+                              bool *found) {
   const cprox_motion *m = p->scene->motion;
   motion_spot next;
   cprox_status status = step_across(p, within, spot, sign, &next, found);
@@ -438,7 +439,12 @@ static cprox_status find_side(spot_pair *p, const motion_interval *within, const
   const vec3 a = side[0].gap.normal, b = side[1].gap.normal, c = side[2].gap.normal;
   const double bend = vec_norm(vec_axpy(vec_add(a, c), -2.0, b));
   const vec3 led = vec_axpy(c, CONTINUED[0], vec_sub(a, b));
-  const bool is_next = vec_norm(vec_sub(next.gap.normal, led)) < fmax(SAME_WAY, SAME_WAY_BENT * bend);
+  const double slope =
+                   CONTINUED[0] * (side[0].slope - side[1].slope) + side[2].slope, /* of the parabola, at the spot */
+      bend_of_slope = fabs(side[0].slope - 2.0 * side[1].slope + side[2].slope);
+  const bool is_next = vec_norm(vec_sub(next.gap.normal, led)) < fmax(SAME_WAY, SAME_WAY_BENT * bend) &&
+                       fabs(next.slope - slope) < fmax(SAME_WAY * fabs(slope), SAME_WAY_BENT * bend_of_slope);
+  *depth = 3.0 * (spot_distance(&side[0]) - spot_distance(&side[1])) + spot_distance(&side[2]);
   for (int k = 0; k < SIDE_PLACES; k++) factor[k] = is_next ? (k == 0) : CONTINUED[k];
   if (is_next) side[0] = next;
   *found = is_next || bend < STRAIGHT_WAY;
@@ -448,15 +454,15 @@ static cprox_status find_side(spot_pair *p, const motion_interval *within, const
 cprox_status spot_find_crossing(spot_pair *p, const motion_interval *within, const motion_spot *spot, double apart,
                                 motion_spot side[SPOT_SIDES], double part[SPOT_SIDES], bool *found) {
   *found = true;
-  double slope[2] = {0.0, 0.0};
+  double slope[2] = {0.0, 0.0}, depth[2] = {0.0, 0.0};
   for (int k = 0; k < 2 && *found; k++) {
     motion_spot *of = side + SIDE_PLACES * k;
     double *factor = part + SIDE_PLACES * k;
-    const cprox_status status = find_side(p, within, spot, apart, k ? 1.0 : -1.0, of, factor, found);
+    const cprox_status status = find_side(p, within, spot, apart, k ? 1.0 : -1.0, of, factor, &depth[k], found);
     if (status < 0) return status;
     for (int i = 0; i < SIDE_PLACES && *found; i++) slope[k] += factor[i] * of[i].slope; /* at the spot */
   }
-  *found = *found && slope[0] < 0.0 && slope[1] > 0.0;
+  *found = *found && slope[0] < 0.0 && slope[1] > 0.0 && fabs(depth[0] - depth[1]) < apart;
   for (int i = 0; i < SPOT_SIDES && *found; i++)
     part[i] *= (i < SIDE_PLACES ? slope[1] : -slope[0]) / (slope[1] - slope[0]);
   return CPROX_OK;
