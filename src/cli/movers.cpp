@@ -44,32 +44,13 @@ MovingRobot load(const MovingRobotFile &file, const std::string &scene) {
   }
 }
 
-/* The robot of the command line. */
-struct OneRobot {
-  MovingRobot robot;
-  std::string id;
-};
-
-Movers gather(const Arguments &arguments, const World &world, const std::optional<OneRobot> &subject) {
-  std::vector<MovingRobot> robots;
-  for (const MovingRobotFile &file : world.moving_robots) robots.push_back(load(file, arguments.scene));
-  const std::vector<MovingObject> objects = movingObjects(*world.snapshot);
-  try {
-    if (subject) checkClocks(subject->robot, robots, objects);
-    if (subject) robots.insert(robots.begin(), subject->robot);
-    return Movers(world.snapshot, robots, objects);
-  } catch (const Error &e) {
-    throw BadUsage(arguments.scene + ": " + e.what());
-  }
-}
-
-/* The robot against all that stands and moves, or without a robot all that moves. Kept by reference. */
+/* Kept by reference. */
 class MoversSubject : public Subject {
  public:
-  MoversSubject(const Movers &movers, const std::optional<OneRobot> &robot, Against against)
-      : movers_(movers), robot_(robot ? &robot->robot : nullptr), against_(against) {
-    id = robot ? robot->id : "movers";
-    kind = robot ? "environment" : "movers";
+  MoversSubject(const MovingWorld &moving, Against against)
+      : movers_(moving.movers), robot_(moving.subject ? &*moving.subject : nullptr), against_(against) {
+    id = "movers";
+    kind = robot_ ? "environment" : "movers";
   }
   std::array<double, 2> domain() const override {
     if (!robot_ || robot_->motion->stands()) return movers_.domain();
@@ -111,6 +92,10 @@ class MoversSubject : public Subject {
   const Against against_;
 };
 
+std::string stemOf(const std::string &path) {
+  return std::filesystem::path(path).stem().string();
+}
+
 /* Links that have rows of their own, of those that could; "": all are one. */
 std::vector<std::string> linksOf(const std::vector<std::string> &names, const Arguments &arguments) {
   if (!arguments.per_link) return {""};
@@ -128,42 +113,43 @@ std::vector<std::string> objectsOf(const World &world, const Arguments &argument
   return out;
 }
 
-int answer(const Arguments &arguments, const World &world, const std::optional<OneRobot> &subject, Warnings &warnings,
-           Console &console) {
+int answer(const Arguments &arguments, const World &world, std::shared_ptr<const RobotMotion> motion,
+           Warnings &warnings, Console &console) {
   checkAsked(arguments);
-  const Movers movers = gather(arguments, world, subject);
+  const MovingWorld moving = gatherMovers(arguments, world, std::move(motion));
+  const RobotMotion *robot = moving.subject ? moving.subject->motion.get() : nullptr;
   Query query = arguments.query;
   query.options.stop = interrupted;
   query.second_opinion = secondOpinions(arguments, world.resources);
-  const std::string place = subject ? arguments.trajectory : arguments.scene;
+  const std::string place = robot ? arguments.trajectory : arguments.scene;
   ResultsFile results(arguments.out, {arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf});
   console.warn(warnings);
   if (arguments.timings) tellTimings(world.timings, console);
   if (arguments.skipped) tellSkipped(world.skipped, console);
 
+  /* a task for each part that has rows of its own */
   catchInterrupts();
   results.write(headerOf(arguments));
   std::vector<Task> tasks;
-  const auto add = [&](const auto &of, const std::string &link, const std::string &object) {
-    tasks.push_back([&, of, link, object](Workspace &workspace) {
-      auto one = of;
-      one.place = place + ": " + of.kind;
-      one.link = link;
-      one.object = object;
+  const auto add = [&](std::shared_ptr<Subject> subject, const std::string &link, const std::string &object) {
+    subject->place = place + ": " + subject->kind;
+    subject->link = link;
+    subject->object = object;
+    tasks.push_back([&, subject](Workspace &workspace) {
       Outcome out;
-      cli::answer(one, arguments, query, workspace, out);
+      cli::answer(*subject, arguments, query, workspace, out);
       return out;
     });
   };
-  const Against against = arguments.self ? Against::BOTH : Against::OTHERS;
-  const std::vector<std::string> names = subject ? movingNames(*subject->robot.motion) : std::vector<std::string>();
+  const std::vector<std::string> names = robot ? movingNames(*robot) : std::vector<std::string>();
   for (const std::string &link : linksOf(names, arguments))
-    for (const std::string &object : objectsOf(world, arguments))
-      add(MoversSubject(movers, subject, against), link, object);
-  if (subject && arguments.self) {
-    MotionSubject itself(*subject->robot.motion, true);
-    itself.id = subject->id;
-    for (const std::string &link : linksOf(askedNames(*subject->robot.motion, true), arguments)) add(itself, link, "");
+    for (const std::string &object : objectsOf(world, arguments)) add(subjectAmong(moving, arguments), link, object);
+  if (robot && arguments.self) {
+    for (const std::string &link : linksOf(askedNames(*robot, true), arguments)) {
+      auto itself = std::make_shared<MotionSubject>(*robot, true);
+      itself->id = stemOf(arguments.trajectory);
+      add(itself, link, "");
+    }
   }
   Rows rows;
   std::size_t next = 0;
@@ -177,21 +163,39 @@ int answer(const Arguments &arguments, const World &world, const std::optional<O
 
 } // namespace
 
+MovingWorld gatherMovers(const Arguments &arguments, const World &world, std::shared_ptr<const RobotMotion> subject) {
+  std::optional<MovingRobot> robot;
+  if (subject) robot = MovingRobot{world.snapshot->robot()->name(), std::move(subject), 0.0};
+  std::vector<MovingRobot> others;
+  for (const MovingRobotFile &file : world.moving_robots) others.push_back(load(file, arguments.scene));
+  const std::vector<MovingObject> objects = movingObjects(*world.snapshot);
+  try {
+    if (robot) checkClocks(*robot, others, objects);
+    std::vector<MovingRobot> all = others;
+    if (robot) all.insert(all.begin(), *robot);
+    return {robot, std::move(others), Movers(world.snapshot, all, objects)};
+  } catch (const Error &e) {
+    throw BadUsage(arguments.scene + ": " + e.what());
+  }
+}
+
+std::unique_ptr<Subject> subjectAmong(const MovingWorld &moving, const Arguments &arguments) {
+  auto out = std::make_unique<MoversSubject>(moving, arguments.self ? Against::BOTH : Against::OTHERS);
+  if (moving.subject) out->id = stemOf(arguments.trajectory);
+  return out;
+}
+
 int answerAmongMovers(const Arguments &arguments, const World &world, Warnings &warnings, Console &console) {
-  OneRobot subject;
-  subject.robot.name = world.snapshot->robot()->name();
-  subject.robot.motion = std::make_shared<const RobotMotion>(readMotion(arguments, world, warnings));
-  subject.id = std::filesystem::path(arguments.trajectory).stem().string();
-  for (const std::string &sentence : subject.robot.motion->warnings())
-    warnings.add(arguments.trajectory + ": " + sentence);
-  return answer(arguments, world, subject, warnings, console);
+  auto motion = std::make_shared<const RobotMotion>(readMotion(arguments, world, warnings));
+  for (const std::string &sentence : motion->warnings()) warnings.add(arguments.trajectory + ": " + sentence);
+  return answer(arguments, world, std::move(motion), warnings, console);
 }
 
 int answerMovers(const Arguments &arguments, Console &console) {
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
   if (!world.moves()) throw BadUsage(arguments.scene + ": nothing moves in this scene: no object has a trajectory");
-  return answer(arguments, world, std::nullopt, warnings, console);
+  return answer(arguments, world, nullptr, warnings, console);
 }
 
 } // namespace curve_proximity::cli

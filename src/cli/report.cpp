@@ -10,6 +10,7 @@
 #include "csv.h"
 #include "failure.h"
 #include "library.h"
+#include "movers.h"
 #include "report_drawing.h"
 #include "report_page.h"
 #include "results.h"
@@ -218,7 +219,7 @@ void addBasis(const Arguments &arguments, const World &world, Report &report) {
   data["delta"] = arguments.has_delta ? Value(arguments.query.delta) : Value(nullptr);
   data["unit"] = arguments.trajectory.empty() ? "" : "s";
   data["self"] = arguments.self;
-  data["objects"] = world.snapshot->objects().size();
+  data["objects"] = world.snapshot->objects().size() + world.snapshot->moving().size();
   data["inputs"] = Value::array();
   const std::pair<const char *, const std::string *> inputs[] = {{"robot", &arguments.robot},
                                                                  {"SRDF", &arguments.srdf},
@@ -249,17 +250,31 @@ Asked askedOf(const Targets &targets, const CompiledCurve &curve, const std::str
   return out;
 }
 
+/* The robot among what moves. */
+Asked askedOf(const MovingWorld &moving, const Arguments &arguments) {
+  Asked out;
+  out.subject = subjectAmong(moving, arguments);
+  out.subject->place = arguments.trajectory + ": " + out.subject->kind;
+  out.links = arguments.query.links.empty() ? movingNames(*moving.subject->motion) : arguments.query.links;
+  return out;
+}
+
 void askTrajectory(const Arguments &arguments, const World &world, Report &report, Warnings &warnings) {
-  const RobotMotion motion = readMotion(arguments, world, warnings);
-  for (const std::string &sentence : motion.warnings()) report.note(sentence);
-  for (const std::string &sentence : motion.skipped()) report.note(sentence);
+  const auto motion = std::make_shared<const RobotMotion>(readMotion(arguments, world, warnings));
+  for (const std::string &sentence : motion->warnings()) report.note(sentence);
+  for (const std::string &sentence : motion->skipped()) report.note(sentence);
+  std::optional<MovingWorld> moving;
+  if (world.moves()) moving = gatherMovers(arguments, world, motion);
   Workspace workspace;
-  for (const bool self : {false, true}) {
-    if (self ? arguments.self : !world.snapshot->objects().empty())
-      report.ask(askedOf(motion, self, arguments), workspace);
-  }
-  report.data()["domain"] = motion.domain();
-  drawWorld(world, &motion, report.moments(motion.domain()), report.data());
+  if (moving)
+    report.ask(askedOf(*moving, arguments), workspace);
+  else if (!world.snapshot->objects().empty())
+    report.ask(askedOf(*motion, false, arguments), workspace);
+  if (arguments.self) report.ask(askedOf(*motion, true, arguments), workspace);
+  const std::vector<double> moments = report.moments(motion->domain());
+  report.data()["domain"] = motion->domain();
+  drawWorld(world, motion.get(), moments, report.data());
+  if (moving) drawMovers(world, *moving, moments, report.data());
 }
 
 void askCurves(const Arguments &arguments, const World &world, Report &report) {
@@ -296,7 +311,9 @@ void askCurves(const Arguments &arguments, const World &world, Report &report) {
 
 int writeReport(const Arguments &arguments, Console &console) {
   Warnings warnings;
-  const World world = readStandingWorld(arguments, "a report", warnings);
+  const bool standing = arguments.trajectory.empty() || !arguments.certificate.empty();
+  const char *what = arguments.trajectory.empty() ? "a report of curves" : "--certificate";
+  const World world = standing ? readStandingWorld(arguments, what, warnings) : readWorld(arguments, warnings);
   reportPage("", ""); /* before any search: is all there that the page needs? */
   const std::vector<std::string> inputs{arguments.curves, arguments.trajectory, arguments.scene, arguments.robot,
                                         arguments.srdf};

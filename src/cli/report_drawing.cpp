@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "../scene/moving_body.h"
 #include "../scene/surface.h"
 
 namespace curve_proximity::cli {
@@ -62,6 +63,27 @@ double sizeOf(const World &world) {
   return std::max(kLeast, box.sizes().maxCoeff());
 }
 
+/* Triangles for each of so many shapes. */
+std::size_t mostOf(std::size_t shapes) {
+  return std::clamp(kMostTriangles / std::max<std::size_t>(shapes, 1), kLeastOfABody, kMostOfABody);
+}
+
+/* The links of a robot and what they carry, each in its link's frame: prefix + link. */
+void addRobot(const Snapshot &scene, const std::string &kind, const std::string &prefix, std::size_t most,
+              double plane_size, Value &bodies) {
+  for (const auto &[link, parts] : scene.robot()->links()) {
+    for (const LinkGeometry &part : scene.linkGeometry(link))
+      addBody(prefix + link, kind, prefix + link,
+              surfaceOf(part.description, part.geometry.body, scene.robot()->resources(), most, plane_size), part.pose,
+              bodies);
+  }
+  for (const auto &[id, object] : scene.attached()) {
+    for (const LinkGeometry &part : object->shapes)
+      addBody(prefix + id, kind, prefix + object->link,
+              surfaceOf(part.description, part.geometry.body, {}, most, plane_size), part.pose, bodies);
+  }
+}
+
 } // namespace
 
 Value numberOrNull(double x) {
@@ -76,7 +98,7 @@ void drawWorld(const World &world, const RobotMotion *motion, const std::vector<
   if (with_robot) {
     for (const auto &[link, parts] : scene.robot()->links()) count += parts.size();
   }
-  const std::size_t most = std::clamp(kMostTriangles / std::max<std::size_t>(count, 1), kLeastOfABody, kMostOfABody);
+  const std::size_t most = mostOf(count);
   const double plane_size = sizeOf(world);
 
   // The objects, where they stand.
@@ -89,20 +111,7 @@ void drawWorld(const World &world, const RobotMotion *motion, const std::vector<
     }
   }
 
-  // The links and what they carry, each in its link's frame.
-  if (with_robot) {
-    for (const auto &[link, parts] : scene.robot()->links()) {
-      for (const LinkGeometry &part : scene.linkGeometry(link))
-        addBody(link, "link", link,
-                surfaceOf(part.description, part.geometry.body, scene.robot()->resources(), most, plane_size),
-                part.pose, bodies);
-    }
-    for (const auto &[id, object] : scene.attached()) {
-      for (const LinkGeometry &part : object->shapes)
-        addBody(id, "link", object->link, surfaceOf(part.description, part.geometry.body, {}, most, plane_size),
-                part.pose, bodies);
-    }
-  }
+  if (with_robot) addRobot(scene, "link", "", most, plane_size, bodies);
   out["bodies"] = std::move(bodies);
 
   // Where the links are.
@@ -112,6 +121,31 @@ void drawWorld(const World &world, const RobotMotion *motion, const std::vector<
     for (const auto &[link, pose] : poses) frames["poses"][link].push_back(toPose(pose));
   }
   out["frames"] = std::move(frames);
+}
+
+void drawMovers(const World &world, const MovingWorld &moving, const std::vector<double> &times, Value &out) {
+  Value &bodies = out["bodies"], &poses = out["frames"]["poses"];
+  std::size_t count = 0;
+  for (const auto &[id, object] : world.snapshot->moving()) count += object->description.shapes.size();
+  for (const MovingRobot &robot : moving.others) count += robot.motion->snapshot()->robot()->links().size();
+  const std::size_t most = mostOf(count);
+  const double plane_size = sizeOf(world);
+  for (const auto &[id, object] : world.snapshot->moving()) {
+    for (std::size_t i = 0; i < object->description.shapes.size(); ++i) {
+      const ShapeDescription &shape = object->description.shapes[i];
+      addBody(id, "mover", id, surfaceOf(shape, object->body->geometries[i].body, world.resources, most, plane_size),
+              shape.pose, bodies);
+    }
+    for (const double t : times) poses[id].push_back(toPose(moving.movers.objectPose(id, t)));
+  }
+  for (const MovingRobot &robot : moving.others) {
+    const std::string prefix = robot.name + "/";
+    addRobot(*robot.motion->snapshot(), "mover", prefix, most, plane_size, bodies);
+    const std::array<double, 2> domain = robot.motion->domain();
+    for (const double t : times)
+      for (const auto &[link, pose] : robot.motion->linkPoses(std::clamp(t - robot.start, domain[0], domain[1])))
+        poses[prefix + link].push_back(toPose(pose));
+  }
 }
 
 Value drawCurve(const CompiledCurve &curve, Workspace &workspace) {

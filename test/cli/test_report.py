@@ -13,6 +13,7 @@ import xml.etree.ElementTree
 import zlib
 
 from support import DATA, Case, bezier, cprox
+from test_movers import BALL, SECOND
 from test_profile import OVER, TWO, robot_files
 
 PANDA = [f'--{name}={os.path.join(DATA, path)}' for name, path in (
@@ -167,6 +168,24 @@ class Report(Case):
         _, data = self.report('--curves', bad, '--scene', words[5], code=2)
         self.assertEqual(len(data['verdicts']), 1)
         self.assertTrue(any('row 2' in note for note in data['notes']), data['notes'])
+
+    def what_moves_beside_the_robot_is_where_it_is_then(self):
+        words = robot_files(self, scene=BALL.replace('START', '0') + SECOND.replace('NAME', 'other').replace('START', '1'))
+        _, data = self.report(*words, '--self', '--delta', '0.05', '--intervals', '8', code=1)
+        self.assertEqual([(row['kind'], row['query'], row['b']) for row in data['verdicts'] if row['kind'] == 'environment'],
+                         [('environment', 'tolerance', 'ball'), ('environment', 'distance', 'ball')])
+        movers = {body['name'] for body in data['bodies'] if body['kind'] == 'mover'}
+        self.assertEqual(movers, {'ball', 'other/cart', 'other/arm', 'other/hand'})
+        times, poses = data['frames']['times'], data['frames']['poses']
+        for t, ball, cart in zip(times, poses['ball'], poses['other/cart']):
+            self.assertAlmostEqual(math.dist(ball[:3], (1, 1 - t / 2, 0)), 0, delta=1e-4)
+            gone = min(max(t - 1, 0), 4) / 2  # it begins a second later, turned round
+            self.assertAlmostEqual(math.dist(cart[:3], (2 - gone, 0.5, 0)), 0, delta=1e-4)
+        cart = next(profile for profile in data['profiles'] if profile['name'] == 'cart')
+        rows = [row for row in cprox('profile', *words, '--per-link', '--intervals', '8').rows if row['a'] == 'cart']
+        self.assertEqual(numbers(cart['upper']), [float(row['upper']) for row in rows])
+        for option in (('--certificate', os.path.join(self.folder, 'c')),):
+            self.assertRefused(cprox('report', *words, *option, '--out', os.path.join(self.folder, 'no.html')), 'moves along a trajectory')
 
     def a_mesh_is_drawn_with_fewer_triangles(self):
         """A Panda by its own meshes: what is drawn is coarse, and within each link's size."""

@@ -310,10 +310,11 @@ function makeView() {
 
   // What moves: at the moment shown, and faintly on its way.
   const ghosts = [0, 0.2, 0.4, 0.6, 0.8, 1].map(share => Math.round(share * (times.length - 1)));
-  for (const body of data.bodies.filter(body => body.kind === 'link')) {
-    const mesh = meshOf(body, new THREE.MeshLambertMaterial({color: '#e9e9e4', side: THREE.DoubleSide}));
+  for (const body of data.bodies.filter(body => body.kind !== 'object')) {
+    const plain = body.kind === 'link' ? '#e9e9e4' : '#b8a88f';
+    const mesh = meshOf(body, new THREE.MeshLambertMaterial({color: plain, side: THREE.DoubleSide}));
     mesh.name = body.name;
-    mesh.userData.on = body.on;
+    mesh.userData = {on: body.on, plain};
     scene.add(mesh);
     view.links.push(mesh);
     for (const index of times.length > 1 ? new Set(ghosts) : []) {
@@ -425,7 +426,7 @@ function showMoment(index) {
   for (const mesh of view.links) {
     place(mesh, mesh.userData.on, times.length > 1 ? index : 0);
     const d = clearanceOf(mesh.name, t);
-    mesh.material.color = d === null ? new THREE.Color('#e9e9e4') : clearanceColour(d);
+    mesh.material.color = d === null ? new THREE.Color(mesh.userData.plain) : clearanceColour(d);
   }
   for (const {ball, curve, points} of view.dots) {
     const k = curve.t.findIndex(x => x >= t);
