@@ -108,9 +108,38 @@ class Workers(Case):
         self.assertEqual(changed, [1, 4])
         self.assertEqual(table_of(self.out()), self.truth)
 
+    def test_a_disk_that_is_full_is_an_error_and_the_run_goes_on_later(self):
+        """A limit of file sizes stands for the disk; test/python/dataset_faults.py fills a real one."""
+        full = self.out() + '.full'
+        program = self.program(f'[ "$shard" = 2 ] && [ -e {full} ] && trap "" XFSZ && ulimit -f 1')
+        with open(full, 'w'):
+            pass
+        with self.assertRaisesRegex(RuntimeError, 'shard 2: exit code 2: .*writing failed: File too large; it cannot be marked'):
+            cprox_dask.certify(self.client, self.manifest, self.out(), SHARDS, program)
+        os.remove(full)
+        self.assertEqual(cprox_dask.certify(self.client, self.manifest, self.out(), SHARDS, program), [])
+        self.assertEqual(table_of(self.out()), self.truth)
+
+    def test_another_worker_verifies_random_rows(self):
+        self.client.run(sys.path.append, HERE)
+        counts = dataset_campaign.recheck(self.client, self.manifest, self.truth.decode(), 6, SEED, CPROX)
+        self.assertEqual(sum(counts.values()), 6)
+        self.assertGreater(counts['clear'], 0)
+        other = self.truth.replace(b',clear,', b',violated,')
+        with self.assertRaisesRegex(RuntimeError, 'is violated in the table, clear on tcp'):
+            dataset_campaign.recheck(self.client, self.manifest, other.decode(), 6, SEED, CPROX)
+
     def test_a_dataset_that_cannot_be_read_is_an_error(self):
         with self.assertRaisesRegex(RuntimeError, 'shard 0: exit code 2: .*none.jsonl.* cannot be marked'):
             cprox_dask.certify(self.client, os.path.join(self.place.name, 'none.jsonl'), self.out(), 1, CPROX, attempts=2)
+
+
+class Cuts(Case):
+    def test_any_number_of_workers_and_shards_gives_the_same_table(self):
+        for workers, shards in ((1, 1), (4, 7)):
+            out = f'{self.out()}-{workers}'
+            self.assertEqual(dataset_campaign.certify_on_cluster(self.manifest, out, shards, workers, CPROX), ([], 0))
+            self.assertEqual(table_of(out), self.truth)
 
 
 class Killed(Case):
