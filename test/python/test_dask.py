@@ -292,6 +292,27 @@ class Tables(Case):
         done = self.run_module('manifest', '--robot', 'r', '--trajectory', folder + '/none*')
         self.assertEqual((done.returncode, done.stderr), (2, f'cprox.dataset: {folder}/none*: names no file\n'))
 
+    def test_the_public_problems_become_edges(self):
+        """Those of them that test/data has, laid out as VAMP lays out all of them."""
+        data, resources, out = dataset_campaign.DATA, os.path.join(self.place.name, 'resources'), os.path.join(self.place.name, 'problems')
+        panda = os.path.join(resources, 'panda')
+        os.makedirs(panda + '/problems')
+        for name in ('panda.urdf', 'panda.srdf', 'meshes'):
+            os.symlink(os.path.join(data, 'robots', 'panda', name), os.path.join(panda, name))
+        os.symlink(os.path.join(data, 'scenes', 'mbm', 'box_panda'), panda + '/problems/box_panda')
+        script = os.path.join(os.path.dirname(os.path.dirname(HERE)), 'examples', 'datasets', 'public_problems.py')
+        done = subprocess.run([sys.executable, script, resources, out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        self.assertEqual((done.returncode, done.stderr), (0, "6 edges; 0 problems have no goal that is a posture of the start's joints\n"))
+        with open(os.path.join(out, 'edges.jsonl')) as stream:
+            rows = [json.loads(line) for line in stream]
+        self.assertEqual([row['id'] for row in rows], [f'box_panda/{number}/{kind}' for number in ('0001', '0017', '0042') for kind in ('straight', 'smoothed')])
+        ends = [[row['trajectory']['joint_trajectory']['points'][i]['positions'] for i in (0, -1)] for row in rows[:2]]
+        self.assertEqual(ends[0], ends[1])
+        self.assertEqual((ends[0][0][1], ends[0][1][1]), (-0.785, 1.7628))
+        subprocess.run([CPROX, 'certify', '--dataset', os.path.join(out, 'edges.jsonl'), '--out', self.out()], check=True)
+        answers = list(csv.DictReader(table_of(self.out()).decode().splitlines()))
+        self.assertEqual([line['status'] for line in answers], ['ok'] * 6)
+
 
 if __name__ == '__main__':
     program = unittest.main(exit=False, verbosity=2)
