@@ -287,18 +287,20 @@ class Curves(unittest.TestCase):
         self.assertTrue(((verdicts == 0) == (batch['lower'] > .5))[numpy.abs(batch['upper'] - .5) > 1e-5].all())
 
     def test_gradients_are_those_of_differences(self):
-        points, ball = numpy.array([[-1, .3, 0], [0, 1, .5], [1, 0, .2]]), cprox.Obstacle(cprox.sphere(.2))
-        gradient = cprox.distance_gradient(cprox.bezier(points), ball, epsilon=1e-12)
-        self.assertTrue(gradient['valid'], gradient['reason'])
-        t, step = gradient['t'], 1e-6
-        weights = [(1 - t) ** 2, 2 * t * (1 - t), t * t]
-        for i in range(3):
-            for k in range(3):
-                moved = [points.copy(), points.copy()]
-                moved[0][i, k] -= step
-                moved[1][i, k] += step
-                low, high = (cprox.distance(cprox.bezier(m), ball, epsilon=1e-12).upper for m in moved)
-                self.assertAlmostEqual((high - low) / (2 * step), weights[i] * gradient['mover'][k], places=6)
+        points, few = numpy.array([[-1, .3, 0], [0, 1, .5], [1, 0, .2]]), numpy.array([[.1, -.2, 0], [-.3, -.1, .1], [0, .1, -.2]])
+        for body in (cprox.sphere(.2), cprox.mesh(few, [[0, 1, 2]]), cprox.point_cloud(few, .05)):
+            obstacle = cprox.Obstacle(body)
+            gradient = cprox.distance_gradient(cprox.bezier(points), obstacle, epsilon=1e-12)
+            self.assertTrue(gradient['valid'], gradient['reason'])
+            t, step = gradient['t'], 1e-6
+            weights = [(1 - t) ** 2, 2 * t * (1 - t), t * t]
+            for i in range(3):
+                for k in range(3):
+                    moved = [points.copy(), points.copy()]
+                    moved[0][i, k] -= step
+                    moved[1][i, k] += step
+                    low, high = (cprox.distance(cprox.bezier(m), obstacle, epsilon=1e-12).upper for m in moved)
+                    self.assertAlmostEqual((high - low) / (2 * step), weights[i] * gradient['mover'][k], places=6)
 
 
 class Errors(unittest.TestCase):

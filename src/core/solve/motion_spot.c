@@ -25,8 +25,9 @@ static const double TWO_NORMALS = 2e-5;
 
 /* In sizes: by so much the other way out is longer where one is looked at. Its normals at such steps lead to the spot:
  * what is found there may be so far from it, at least, and as a fraction of how far they bend; or they bend by less
- * than that and are continued. */
-static const double CLEAR_OF_OTHER = 3e-5, SAME_WAY = 1e-6, SAME_WAY_BENT = 0.1, STRAIGHT_WAY = 1e-6;
+ * than that and are continued. Nearest points that jump bend the slopes, by more than that fraction. */
+static const double CLEAR_OF_OTHER = 3e-5, SAME_WAY = 1e-6, SAME_WAY_BENT = 0.1, STRAIGHT_WAY = 1e-6,
+                    STRAIGHT_SLOPE = 2e-3;
 
 bool spot_begin(robot_scene *scene, int32_t index, spot_pair *p) {
   const cprox_robot *robot = scene->motion->robot;
@@ -447,7 +448,7 @@ static cprox_status find_side(spot_pair *p, const motion_interval *within, const
   *depth = 3.0 * (spot_distance(&side[0]) - spot_distance(&side[1])) + spot_distance(&side[2]);
   for (int k = 0; k < SIDE_PLACES; k++) factor[k] = is_next ? (k == 0) : CONTINUED[k];
   if (is_next) side[0] = next;
-  *found = is_next || bend < STRAIGHT_WAY;
+  *found = (is_next || bend < STRAIGHT_WAY) && bend_of_slope < STRAIGHT_SLOPE * fabs(slope);
   return CPROX_OK;
 }
 

@@ -157,7 +157,11 @@ gradient_fit gradient_compare(const gradient_case *p, const gradient_answer *a, 
     const double noise = noise_of(width, widths[k]);
     fit.is_known = fit.is_known || noise <= 0.1 * GRADIENT_TOLERANCE;
     if (noise <= most_noise)
-      fit.off = fmin(fmax(fabs((4.0 * slope[1] - slope[0]) / 3.0 - expected) - noise, 0.0), fit.off);
+      fit.off = fmin(fmax(fmin(fabs((4.0 * slope[1] - slope[0]) / 3.0 - expected),
+                               fabs(2.0 * slope[1] - slope[0] - expected)) - /* where the second derivative jumps */
+                              noise,
+                          0.0),
+                     fit.off);
   }
   return fit;
 }
