@@ -17,16 +17,27 @@ namespace curve_proximity {
  *  compute. */
 class RequestThreads {
  public:
-  /** queue: kept by reference. most: threads beside the one that refuses. */
-  RequestThreads(ros::CallbackQueue &queue, std::size_t most) : queue_(queue), most_(most) {
+  /** queue: kept by reference. most: threads beside the one that refuses. Nothing runs before start(). */
+  RequestThreads(ros::CallbackQueue &queue, std::size_t most) : queue_(queue), most_(most) {}
+
+  ~RequestThreads() {
+    stop();
+  }
+
+  /** Once. What has waited in the queue runs at once. */
+  void start() {
     const std::lock_guard<std::mutex> lock(mutex_);
     add();
   }
 
   /** Joins the threads: no callback runs, nor will one begin. */
-  ~RequestThreads() {
-    ending_ = true;
+  void stop() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ending_ = true;
+    }
     for (std::thread &thread : threads_) thread.join();
+    threads_.clear();
   }
 
   /** A callback of the queue is at work, for as long as this lives. */
@@ -67,6 +78,7 @@ class RequestThreads {
   }
 
   void add() {
+    if (ending_) return;
     threads_.emplace_back([this] {
       while (!ending_) queue_.callOne(ros::WallDuration(0.1));
     });

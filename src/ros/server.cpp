@@ -144,6 +144,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       tuning_(parameters_),
       handle_(onQueue(handle, queue_)),
       control_handle_(onQueue(handle, control_queue_)),
+      threads_(queue_, static_cast<std::size_t>(parameters_.max_waiting)),
       turns_(parameters_.threads),
       scene_turns_(LARGE_CHANGES),
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
@@ -216,9 +217,9 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   diagnostics_ = std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *sensors_,
                                                *planning_scene_, frames_, live_);
   reconfigure_ = std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { setThreads(threads); });
-  threads_ = std::make_unique<RequestThreads>(queue_, static_cast<std::size_t>(parameters_.max_waiting));
   control_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &control_queue_);
   control_spinner_->start();
+  threads_.start();
 }
 
 void ProximityServer::setThreads(int threads) {
@@ -228,9 +229,9 @@ void ProximityServer::setThreads(int threads) {
 ProximityServer::~ProximityServer() {
   // Running queries end with what they have; their answers leave while the services still stand.
   stop_ = true;
-  const bool busy = threads_->atWork() > 0;
+  const bool busy = threads_.atWork() > 0;
   const auto deadline = std::chrono::steady_clock::now() + FAREWELL;
-  while (threads_->atWork() > 0 && std::chrono::steady_clock::now() < deadline)
+  while (threads_.atWork() > 0 && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (busy) std::this_thread::sleep_for(LAST_WRITE);
 
@@ -238,7 +239,7 @@ ProximityServer::~ProximityServer() {
   for (ros::ServiceServer &service : services_) service.shutdown();
   for (ros::Subscriber &subscriber : objects_) subscriber.shutdown();
   control_spinner_->stop();
-  threads_.reset();
+  threads_.stop();
   reconfigure_.reset();
   diagnostics_.reset();
   batches_.reset();
@@ -257,7 +258,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::handler(std::size_t ti
   using Helper = ServiceHelper<Service>;
   return [this, times_wire, work](const Call &call, const typename Helper::Read &read,
                                   typename Helper::Response &response) {
-    const RequestThreads::AtWork at_work(*threads_);
+    const RequestThreads::AtWork at_work(threads_);
     std::optional<memory::Share> share;
     bool admitted = false;
     answered(response, [&] {
@@ -364,7 +365,7 @@ void ProximityServer::applyScene(const Call &call, const RequestThreads::AtWork 
 template <class Fill>
 void ProximityServer::changeScene(const char *topic, Fill &&fill) {
   const auto complain = [&](const std::string &why) { ROS_ERROR("%s: %s", topic, why.c_str()); };
-  const RequestThreads::AtWork at_work(*threads_);
+  const RequestThreads::AtWork at_work(threads_);
   guarded(
       [&] {
         ApplyScene::Request request;

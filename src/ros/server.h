@@ -88,6 +88,7 @@ class ProximityServer {
   std::atomic<int> running_{0};              /* handlers that have begun and not ended */
   ros::CallbackQueue queue_, control_queue_; /* of requests; of what watches over them, with a thread of its own */
   ros::NodeHandle handle_, control_handle_;  /* their callbacks go to these queues */
+  RequestThreads threads_;                   /* of queue_ */
   Turns turns_, scene_turns_;                /* of queries; of large changes of the scene, which are made beside them */
   Frames frames_;
   LiveScene live_;
@@ -103,7 +104,6 @@ class ProximityServer {
   std::unique_ptr<BatchAction> batches_;
   std::unique_ptr<Diagnostics> diagnostics_;
   std::unique_ptr<Reconfigure> reconfigure_;
-  std::unique_ptr<RequestThreads> threads_;
   std::unique_ptr<ros::AsyncSpinner> control_spinner_;
 };
 
