@@ -143,6 +143,10 @@ std::vector<std::string> unprovable(const Targets &targets);
  *  and message say why. Any number of threads, each with its own workspace. */
 std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace);
 
+/** The same, appended to `answers`: one list for many curves saves each of them its own. */
+void ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace,
+         std::vector<Answer> &answers);
+
 /** Limits of nearestPairs(). */
 struct PairLimits {
   std::size_t count = 10;                                  /**< at most so many pairs */

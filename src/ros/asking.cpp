@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "asking.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -17,14 +18,18 @@ std::vector<double> breaksOf(const Asking &asking, double t0, double t1) {
   return breaks;
 }
 
-std::vector<Answer> askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query,
-                             const Asking &asking, Workspace &workspace) {
-  if (asking.kind == Asking::CONTACT) return {timeOfContact(targets, curve, query, workspace)};
-  if (asking.kind == Asking::NEAREST) {
-    std::vector<Answer> answers = nearestPairs(targets, curve, asking.limits, query, workspace);
-    if (!answers.empty() || std::isfinite(asking.limits.within)) return answers;
+void askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query, const Asking &asking,
+              Workspace &workspace, std::vector<Answer> &answers) {
+  if (asking.kind == Asking::CONTACT) {
+    answers.push_back(timeOfContact(targets, curve, query, workspace));
+    return;
   }
-  return ask(targets, curve, query, workspace);
+  if (asking.kind == Asking::NEAREST) {
+    std::vector<Answer> pairs = nearestPairs(targets, curve, asking.limits, query, workspace);
+    std::move(pairs.begin(), pairs.end(), std::back_inserter(answers));
+    if (!pairs.empty() || std::isfinite(asking.limits.within)) return;
+  }
+  ask(targets, curve, query, workspace, answers);
 }
 
 Profile profileOf(const Targets &targets, const CompiledCurve &curve, const Query &query, const Asking &asking,
@@ -34,10 +39,9 @@ Profile profileOf(const Targets &targets, const CompiledCurve &curve, const Quer
       clearanceProfile(targets, curve, breaksOf(asking, info.t0, info.t1), query, workspace, asking.horizon));
 }
 
-Proximity toRow(const Answer &answer, const Query &query, const Asking &asking) {
-  Proximity row = toMessage(answer, query.query_type);
+void fillRow(const Answer &answer, const Query &query, const Asking &asking, Proximity &row) {
+  fillRow(answer, query.query_type, row);
   if (asking.kind == Asking::CONTACT && answer.result.status >= 0) row.t_contact_lower = answer.result.t_contact_lower;
-  return row;
 }
 
 void askMotion(const RobotMotion &motion, const Query &query, bool self, const Asking &asking, Workspace &workspace,

@@ -27,9 +27,9 @@ struct Asking {
 /** Where the intervals of a profile over [t0, t1] begin and end. */
 std::vector<double> breaksOf(const Asking &asking, double t0, double t1);
 
-/** One curve's answers. Without anything to measure against the nearest pairs are answered as a distance is. */
-std::vector<Answer> askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query,
-                             const Asking &asking, Workspace &workspace);
+/** Appends one curve's answers. Without anything to measure against the nearest pairs are answered as a distance is. */
+void askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query, const Asking &asking,
+              Workspace &workspace, std::vector<Answer> &answers);
 
 /** The profile of one curve, of Asking::PROFILE; the summary is not filled in. */
 Profile profileOf(const Targets &targets, const CompiledCurve &curve, const Query &query, const Asking &asking,
@@ -46,8 +46,8 @@ struct MotionRows {
 void askMotion(const RobotMotion &motion, const Query &query, bool self, const Asking &asking, Workspace &workspace,
                MotionRows &out);
 
-/** The row of an answer. */
-Proximity toRow(const Answer &answer, const Query &query, const Asking &asking);
+/** Fills the row of an answer, which is as it was made. */
+void fillRow(const Answer &answer, const Query &query, const Asking &asking, Proximity &row);
 
 } // namespace curve_proximity
 #endif

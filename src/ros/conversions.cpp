@@ -440,8 +440,8 @@ static void fillBasis(const Message &curve, CurveDescription &out) {
   // The whole of the curve; where its knots are too few for that compile() says so.
   out.t1 = 1.0;
   const std::size_t n = curve.points.size();
-  const bool spline = out.basis == Curve::BSPLINE || out.basis == Curve::NURBS;
-  if (spline && curve.degree < n && n < curve.knots.size()) {
+  const bool has_knots = curve.degree < n && n < curve.knots.size();
+  if (has_knots && (out.basis == Curve::BSPLINE || out.basis == Curve::NURBS)) {
     out.t0 = curve.knots[curve.degree];
     out.t1 = curve.knots[n];
   }
@@ -604,14 +604,13 @@ ApplySceneRequest toMessage(const SceneChange &change) {
 
 /* ---- answers ---- */
 
-Proximity toMessage(const Answer &answer, QueryType query_type) {
+void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
   if (answer.result.status < 0) {
-    Proximity failed = toFailedRow(answer.id, answer.kind, answer.message);
-    failed.status = answer.status;
-    return failed;
+    message = toFailedRow(answer.id, answer.kind, answer.message);
+    message.status = answer.status;
+    return;
   }
   const cprox_result &result = answer.result;
-  Proximity message;
   message.id = answer.id;
   message.kind = answer.kind;
   message.status = answer.status;
@@ -634,7 +633,6 @@ Proximity toMessage(const Answer &answer, QueryType query_type) {
   message.microseconds = answer.microseconds;
   message.lod = cprox_lod_name(result.lod);
   message.message = answer.message;
-  return message;
 }
 
 Proximity toFailedRow(const std::string &id, const std::string &kind, const std::string &why) {

@@ -63,8 +63,8 @@ void toMessage(const Snapshot &snapshot, const std::vector<std::string> &ids, Ge
 /** A change as ~apply_scene takes it: the way of a scene file to the node. The poses are in object.frame. */
 ApplySceneRequest toMessage(const SceneChange &change);
 
-/** One row of the results. What has no answer has NaN for numbers. */
-Proximity toMessage(const Answer &answer, QueryType query_type);
+/** Fills one row of the results, which is as it was made. What has no answer has NaN for numbers. */
+void fillRow(const Answer &answer, QueryType query_type, Proximity &message);
 
 /** The profile of what the summary is about, without that. */
 Profile toMessage(const std::vector<ClearanceInterval> &intervals);

@@ -131,7 +131,8 @@ void Queries::answerMovers(Work &work) {
     std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(work.response.profiles));
     for (Answer &answer : rows.answers) {
       answer.kind = Proximity::KIND_MOVERS;
-      work.response.results.push_back(toRow(answer, work.query, request.asking));
+      work.response.results.emplace_back();
+      fillRow(answer, work.query, request.asking, work.response.results.back());
       work.doubts.objects(work.query);
       work.doubts.ages(work.lookup.age(), NAN);
       work.doubts.apply(work.response.results.back());
@@ -196,8 +197,9 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     for (const ClearanceGradient &gradient : rows.gradients)
       response.gradients.push_back(toMessage(gradient, trajectory));
     for (const Answer &answer : answers) {
-      response.results.push_back(toRow(answer, environment, request.asking));
+      response.results.emplace_back();
       Proximity &row = response.results.back();
+      fillRow(answer, environment, request.asking, row);
       if (!remark.empty() && answer.result.status >= 0) row.message += (row.message.empty() ? "" : "; ") + remark;
       work.doubts.objects(environment, answer.kind == Proximity::KIND_ENVIRONMENT);
       work.doubts.ages(work.lookup.age(), work.joints.age);

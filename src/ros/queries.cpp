@@ -27,7 +27,7 @@ constexpr std::size_t MAX_DRAWN_CURVES = 100;
 constexpr std::size_t MANY_CURVES = 64;
 
 /** Curves that a thread takes at a time. */
-constexpr std::size_t A_PART = 16;
+constexpr std::size_t A_PART = 8;
 
 /** Ends a query when its time is over or the server goes, and makes way for others meanwhile. */
 class TimeBudget {
@@ -44,7 +44,12 @@ class TimeBudget {
   static bool isOver(void *user) {
     const TimeBudget &budget = *static_cast<const TimeBudget *>(user);
     if (budget.turn_) budget.turn_->yield();
-    return budget.stop_ || budget.isCancelled() || Clock::now() >= budget.deadline_;
+    return budget.isReached();
+  }
+
+  /** Once reached it stays so. */
+  bool isReached() const {
+    return stop_ || isCancelled() || Clock::now() >= deadline_;
   }
 
   std::string reason() const {
@@ -176,12 +181,18 @@ std::string Queries::numbered(const std::string &name, std::size_t i, std::size_
   return all == 1 ? name : name + "/" + std::to_string(i);
 }
 
+/* What a thread keeps from curve to curve. */
+struct Queries::CurveScratch {
+  CurveDescription curve; /* the one at hand */
+  std::vector<Answer> answers;
+};
+
 /* What all curves of a request share. */
 struct Queries::CurveSearch {
   StampedTargets targets;
   WorkspacePool::Lease workspace;
-  CurveDescription scratch; /* the curve at hand */
-  std::size_t curves;       /* so far */
+  CurveScratch scratch;
+  std::size_t curves; /* so far */
   Failures failures;
   const LinkPoses *drawn; /* the robot of the last curve that is drawn; null: none is */
 };
@@ -196,14 +207,20 @@ struct Queries::CurvePlace {
 
 /* The rows of some curves. */
 struct Queries::CurveRows {
+  Proximity *in_place = nullptr; /* in the response, which has room for one a curve; null: in `rows` */
   std::vector<Proximity> rows;
   std::vector<std::size_t> counts;  /* of rows, for each curve */
   std::vector<Drawing::Line> lines; /* of those that are drawn */
   std::vector<Profile> profiles;    /* of Asking::PROFILE: one for each row */
   std::vector<Gradient> gradients;  /* of Asking::GRADIENT likewise */
 
+  /* One more, for the curve after those that are counted. */
+  Proximity &add() {
+    return in_place ? in_place[counts.size()] : rows.emplace_back();
+  }
+
   void fail(const std::string &id, const std::string &why, const Asking &asking) {
-    rows.push_back(toFailedRow(id, Proximity::KIND_CURVE, why));
+    add() = toFailedRow(id, Proximity::KIND_CURVE, why);
     if (asking.kind == Asking::PROFILE) profiles.emplace_back();
     if (asking.kind == Asking::GRADIENT) gradients.emplace_back();
   }
@@ -389,8 +406,10 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
     work.search->failures.tell(response);
     if (work.search->drawn) drawing.links = *work.search->drawn;
   }
-  for (Proximity &row : response.results)
-    if (row.status == cprox_status_name(CPROX_STOPPED)) row.message = budget.reason();
+  if (budget.isReached()) {
+    for (Proximity &row : response.results)
+      if (row.status == Proximity::STATUS_STOPPED) row.message = budget.reason();
+  }
   describe(work);
   drawing.query_type = request.query_type;
   drawing.snapshot = snapshot;
@@ -484,40 +503,42 @@ Queries::CurvePlace Queries::place(const Curve &curve, CurveSearch &search, Work
 
 /** What is wrong with a curve fails its row only. Any number of threads, each with its own query and workspace. */
 void Queries::search(const Curve &message, const CurvePlace &place, const Query &query, const Asking &asking,
-                     bool drawn, Workspace &workspace, CurveDescription &scratch, CurveRows &out) {
-  const std::size_t before = out.rows.size();
+                     bool drawn, Workspace &workspace, CurveScratch &scratch, CurveRows &out) {
+  std::vector<Answer> &answers = scratch.answers;
+  answers.clear();
+  std::size_t count = 1;
   try {
     if (!place.why_not.empty()) throw Error(place.why_not);
     const Targets &targets = place.stamped->targets;
-    toDescription(message, *place.frame, scratch);
-    CompiledCurve curve = compile(scratch, targets.boxes(), workspace);
-    std::vector<Answer> answers;
+    toDescription(message, *place.frame, scratch.curve);
+    CompiledCurve curve = compile(scratch.curve, targets.boxes(), workspace);
     if (asking.kind == Asking::GRADIENT) {
-      CurveClearance clearance = clearanceGradient(targets, curve, scratch, query, workspace);
+      CurveClearance clearance = clearanceGradient(targets, curve, scratch.curve, query, workspace);
       answers.push_back(std::move(clearance.answer));
       out.gradients.push_back(toMessage(clearance.gradient));
     } else {
-      answers = askCurve(targets, curve, query, asking, workspace);
+      askCurve(targets, curve, query, asking, workspace, answers);
     }
     if (asking.kind == Asking::PROFILE) out.profiles.push_back(profileOf(targets, curve, query, asking, workspace));
-    for (const Answer &answer : answers) out.rows.push_back(toRow(answer, query, asking));
+    for (const Answer &answer : answers) fillRow(answer, query, asking, out.add());
+    count = answers.size();
     if (drawn) out.lines.push_back({std::move(curve), std::move(answers)});
   } catch (const Error &error) {
     out.fail(message.id, error.what(), asking);
   }
-  out.counts.push_back(out.rows.size() - before);
+  out.counts.push_back(count);
 }
 
 /** Hands the rows of some curves over, in their order. */
 void Queries::gather(const CurvePlace *places, CurveRows &&found, CurveSearch &search, Work &work) {
-  auto row = found.rows.begin();
+  Proximity *row = found.in_place ? found.in_place : found.rows.data();
   for (const std::size_t count : found.counts) {
     const CurvePlace &place = *places++;
     work.doubts.ages(place.age, search.targets.withRobot() ? work.joints.age : NAN);
     for (std::size_t i = 0; i < count; ++i, ++row) {
       work.doubts.apply(*row);
       if (std::isnan(row->lower)) search.failures.count(*row, search.curves);
-      work.response.results.push_back(std::move(*row));
+      if (!found.in_place) work.response.results.push_back(std::move(*row));
     }
     ++search.curves;
     if (place.stamped && work.drawing.lines.size() < MAX_DRAWN_CURVES) search.drawn = &place.stamped->links;
@@ -605,18 +626,23 @@ void Queries::answerManyCurves(CurveSearch &search, Work &work) {
     }
   }
 
+  const Asking &asking = work.request.asking;
+  std::vector<Proximity> &results = work.response.results;
+  const std::size_t before = results.size();
+  const bool one_row_each = !work.query.per_object && asking.kind != Asking::NEAREST;
+  if (one_row_each) results.resize(before + curves.size());
   const auto rows = std::make_shared<SharedRows>((curves.size() + A_PART - 1) / A_PART);
   const auto answerParts = [&, rows = rows.get()](std::size_t part, const Query &query, Turn *turn,
-                                                  Workspace &workspace, CurveDescription &scratch) {
+                                                  Workspace &workspace, CurveScratch &scratch) {
     for (bool claimed = true; claimed;) {
       const std::size_t first = part * A_PART, last = std::min(first + A_PART, curves.size());
       CurveRows &out = rows->parts[part];
-      out.rows.reserve(last - first);
+      if (one_row_each) out.in_place = &results[before + first];
       out.counts.reserve(last - first);
+      if (first < MAX_DRAWN_CURVES) out.lines.reserve(last - first);
       for (std::size_t i = first; i < last; ++i) {
         if (turn) turn->yield();
-        Queries::search(curves.begin()[i], places[i], query, work.request.asking, i < MAX_DRAWN_CURVES, workspace,
-                        scratch, out);
+        Queries::search(curves.begin()[i], places[i], query, asking, i < MAX_DRAWN_CURVES, workspace, scratch, out);
       }
       claimed = rows->claim(part); // before the request may go on without this thread
       rows->finish();
@@ -631,7 +657,7 @@ void Queries::answerManyCurves(CurveSearch &search, Work &work) {
     Query query = work.query;
     query.options.stop_user = &budget;
     const WorkspacePool::Lease workspace(workspaces_);
-    CurveDescription scratch;
+    CurveScratch scratch;
     answerParts(part, query, turn, *workspace, scratch);
   };
   const std::size_t most = own ? std::min(crew_.most(), 2 * curves.size() / MANY_CURVES - 1) : 0;
@@ -651,7 +677,10 @@ void Queries::answerManyCurves(CurveSearch &search, Work &work) {
       },
       fail);
   rows->wait(own);
-  if (!rows->failure.empty()) throw Error(rows->failure);
+  if (!rows->failure.empty()) {
+    results.resize(before);
+    throw Error(rows->failure);
+  }
   for (std::size_t part = 0; part < rows->parts.size(); ++part)
     gather(&places[part * A_PART], std::move(rows->parts[part]), search, work);
 }

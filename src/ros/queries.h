@@ -168,6 +168,7 @@ class Queries {
   void answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
 
  private:
+  struct CurveScratch;
   struct CurveSearch;
   struct CurvePlace;
   struct CurveRows;
@@ -197,7 +198,7 @@ class Queries {
   CurveSearch &curveSearch(Work &work);
   static CurvePlace place(const Curve &curve, CurveSearch &search, Work &work);
   static void search(const Curve &message, const CurvePlace &place, const Query &query, const Asking &asking,
-                     bool drawn, Workspace &workspace, CurveDescription &scratch, CurveRows &out);
+                     bool drawn, Workspace &workspace, CurveScratch &scratch, CurveRows &out);
   static void gather(const CurvePlace *places, CurveRows &&found, CurveSearch &search, Work &work);
   static void answerCurve(const Curve &message, CurveSearch &search, Work &work);
   static void refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work);

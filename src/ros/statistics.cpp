@@ -16,6 +16,7 @@ void Statistics::record(Clock::duration took, bool success, const std::vector<Pr
   for (const Proximity &row : results) {
     undecided += row.verdict == cprox_verdict_name(CPROX_VERDICT_UNDECIDED);
     failed += row.lower != row.lower;
+    if (row.second_opinion.empty()) continue;
     opinions += row.second_opinion == Proximity::OPINION_AGREES || row.second_opinion == Proximity::OPINION_DISAGREES;
     if (row.second_opinion != Proximity::OPINION_DISAGREES) continue;
     ++disputed;

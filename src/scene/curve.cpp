@@ -211,22 +211,13 @@ CurveHandle joinPieces(const CurveDescription &curve, Workspace &workspace) {
   return makePiecewise(handles, {}, curve.parameters.empty() ? 0.0 : curve.parameters.front());
 }
 
-/* Without restriction and pose. */
-CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
-  if (curve.basis != "piecewise" && !curve.pieces.empty())
-    throw Error("a " + curve.basis + " curve has no pieces, got " + std::to_string(curve.pieces.size()));
-  if (curve.basis == "piecewise") return joinPieces(curve, workspace);
-  if (isNamedBasis(curve.basis)) return makeNamed(curve);
-  if (isRationalBasis(curve.basis)) {
-    checkCounts(curve);
-    if (curve.basis == "nurbs")
-      return makeNurbs(curve.points, curve.parameters, curve.degree, curve.knots, curve.t0, curve.t1);
-    return makeRationalBezier(curve.points, curve.parameters, curve.t0, curve.t1);
-  }
+void checkNoParameters(const CurveDescription &curve) {
   if (!curve.parameters.empty())
     throw Error("a " + curve.basis + " curve takes no parameters, got " + std::to_string(curve.parameters.size()));
-  if (curve.basis == "bspline") return makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
-  if (curve.basis != "bezier") return makeSeries(curve);
+}
+
+CurveHandle makeBezier(const CurveDescription &curve, Workspace &workspace) {
+  checkNoParameters(curve);
   const auto n = static_cast<std::size_t>(curve.points.cols());
   if (curve.degree != 0 && curve.degree + 1 != n) {
     throw Error("a bezier curve of degree " + std::to_string(curve.degree) + " has " +
@@ -234,6 +225,24 @@ CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
   }
   if (!curve.knots.empty()) throw Error("a bezier curve takes no knots, got " + std::to_string(curve.knots.size()));
   return detail::createCurve(detail::describe(CPROX_CURVE_BEZIER, curve.points, curve.t0, curve.t1), workspace);
+}
+
+/* Without restriction and pose. The usual basis is asked for first. */
+CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
+  if (curve.basis == "piecewise") return joinPieces(curve, workspace);
+  if (!curve.pieces.empty())
+    throw Error("a " + curve.basis + " curve has no pieces, got " + std::to_string(curve.pieces.size()));
+  if (curve.basis == "bezier") return makeBezier(curve, workspace);
+  if (isNamedBasis(curve.basis)) return makeNamed(curve);
+  if (isRationalBasis(curve.basis)) {
+    checkCounts(curve);
+    if (curve.basis == "nurbs")
+      return makeNurbs(curve.points, curve.parameters, curve.degree, curve.knots, curve.t0, curve.t1);
+    return makeRationalBezier(curve.points, curve.parameters, curve.t0, curve.t1);
+  }
+  checkNoParameters(curve);
+  if (curve.basis == "bspline") return makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
+  return makeSeries(curve);
 }
 
 } // namespace

@@ -181,43 +181,50 @@ double microsecondsSince(Clock::time_point start) {
 }
 
 /* With the proof of the one answer: about everything that was asked about, and not only what the search chose. */
-std::vector<Answer> askWithProof(const Targets &targets, const CompiledCurve &curve, const Query &query,
-                                 Workspace &workspace) {
+Answer askWithProof(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
   Query bare = query;
   bare.options.certificate = nullptr;
-  std::vector<Answer> answers = ask(targets, curve, bare, workspace);
-  Answer &answer = answers.front();
+  Answer answer = ask(targets, curve, bare, workspace).front();
   cprox_result named = answer.result;
   named.obstacle_index = coreTargetOf(targets, answer);
   leaveProof(query, along(curve.curve, curve.radius), coreTargets(targets), named, workspace, answer);
-  return answers;
+  return answer;
 }
 
 } // namespace
 
 std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
+  std::vector<Answer> answers;
+  ask(targets, curve, query, workspace, answers);
+  return answers;
+}
+
+void ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace,
+         std::vector<Answer> &answers) {
   cprox_certificate_clear(query.options.certificate);
   const std::string fault = faultOf(query);
   if (!fault.empty()) {
-    Answer answer = refusal(curve.id, "curve", fault);
-    answer.a = curve.id;
-    return {answer};
+    answers.push_back(refusal(curve.id, "curve", fault));
+    answers.back().a = curve.id;
+    return;
   }
-  if (query.options.certificate) return askWithProof(targets, curve, query, workspace);
+  if (query.options.certificate) {
+    answers.push_back(askWithProof(targets, curve, query, workspace));
+    return;
+  }
   const Targets::Data &data = targets.data();
   const std::vector<Item> &items = data.items;
-  std::vector<Answer> answers;
 
   // One in all.
   if (!query.per_object || items.empty()) {
     const Clock::time_point start = Clock::now();
     Search search{curve, query, items, data.few.get(), workspace, {}, INFINITE};
     choose(data, search);
-    answers.resize(1);
+    answers.emplace_back();
     answerOf(search, answers.back());
     answers.back().microseconds = microsecondsSince(start);
     addSecondOpinion(data, curve, query, answers.back());
-    return answers;
+    return;
   }
 
   // One for each run of items of the same owner.
@@ -237,7 +244,6 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
     addSecondOpinion(data, curve, query, answers.back());
     first = last;
   }
-  return answers;
 }
 
 std::vector<Answer> ask(const SnapshotPtr &snapshot, const LinkPoses &links, const CurveDescription &curve,

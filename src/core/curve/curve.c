@@ -16,8 +16,10 @@ cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
   while (n_leaves < n_pieces) n_leaves *= 2;
   const size_t packs = curve_packs(n_leaves), points = n_pieces * (degree + 1), tables = curve_tables_size(degree);
   const size_t numbers = 3 * points + (n_pieces + 1) + n_pieces + tables;
-  char *memory = calloc(1, sizeof(cprox_curve) + packs * sizeof(curve_pack) + numbers * sizeof(double));
+  const size_t bytes = sizeof(cprox_curve) + packs * sizeof(curve_pack) + numbers * sizeof(double);
+  char *memory = malloc(bytes); /* calloc does not take from glibc's cache of the thread, which free fills */
   if (!memory) return NULL;
+  memset(memory, 0, bytes);
   cprox_curve *c = (cprox_curve *)(void *)memory;
   c->degree = degree;
   c->n_pieces = n_pieces;
