@@ -46,7 +46,10 @@ std::size_t utf8Length(const char *at, const char *end) {
 class Parser {
  public:
   Parser(std::string_view text, bool outline)
-      : begin_(text.data()), at_(begin_), end_(begin_ + text.size()), outline_(outline) {}
+      : begin_(text.data()), at_(begin_), end_(begin_ + text.size()), outline_(outline) {
+    const std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text.substr(0, byte_order_mark.size()) == byte_order_mark) at_ += byte_order_mark.size();
+  }
 
   Json whole() {
     Json out;

@@ -134,7 +134,7 @@ class Dataset(Case):
             return float(text) if math.isfinite(float(text)) else refuse()
 
         def read(line):
-            value = json.loads(line.decode(), object_pairs_hook=members, parse_float=finite, parse_int=finite, parse_constant=refuse)
+            value = json.loads(line.decode('utf-8-sig'), object_pairs_hook=members, parse_float=finite, parse_int=finite, parse_constant=refuse)
             json.dumps(value, ensure_ascii=False).encode()  # refuses half a surrogate pair
             return value
 
@@ -152,7 +152,8 @@ class Dataset(Case):
                 line[at:at + rng.randrange(2)] = rng.choice([b'', b'"', b'\\', b'{', b']', b',', b':', b'e', b'.', b'-', b'0', b'\xc0\xaf', b'\xed\xa0\x80',
                                                              b'\xf4\x90\x80\x80', b'\x80', b'\x1f', b'\\ud800', b'\\u00', b'\\ud83d\\ude00', b'1e999', b'01'])
             lines.append(bytes(line))
-        lines += [b'\xef\xbb\xbf{}', b'[1,]', b'{"a":1,}', b'truex', b'+1', b'.5', b'1.', b'{"id": 1} {}', b'"\\', b'[' * 65, b'nul', b'{"a"']
+        lines += [b'\xef\xbb\xbf{}', b'[1,]', b'{"a":1,}', b'truex', b'+1', b'.5', b'1.', b'{"id": 1} {}', b'"\\', b'[' * 65, b'nul', b'{"a"',
+                  b'"\xe0\x80\xaf"', b'"\xf0\x8f\xbf\xbf"', b'"\xed\xa0\x80"', b'"\xf4\x90\x80\x80"', b'"\xf5\x80\x80\x80"', b'"\xc3"']
         path = os.path.join(self.folder, 'lines.jsonl')
         with open(path, 'wb') as out:
             out.write(b'\n'.join(lines))
