@@ -13,7 +13,7 @@ ASKED += [('certificates of robots and mutants', 10000, None)]
 ASKED += [(f'attack: {family}', 1000000, None) for family in
           ('coaxial', 'coincident', 'contact', 'flat', 'inside', 'lengths', 'starve', 'superquadrics', 'ties',
            'time_of_contact')]
-ASKED += [(f'attack: {family}', 100000, None) for family in ('links', 'robots')]
+ASKED += [(f'attack: {family}', 100000, None) for family in ('gradients', 'links', 'robots')]
 ASKED += [('intervals of queries', 1000000, None), ('certificates and mutants', 10000, None)]
 
 
