@@ -25,7 +25,11 @@ typedef enum simd_level { SIMD_BASE, SIMD_AVX2, SIMD_AVX512 } simd_level;
 #if defined(__GNUC__) && defined(__x86_64__)
 #define SIMD_HAS_LEVELS 1
 #define SIMD_TARGET_AVX2 __attribute__((target("avx2")))
+#if defined(__clang__) /* it takes no preferred width, and would take nothing else with one */
+#define SIMD_TARGET_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl")))
+#else
 #define SIMD_TARGET_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")))
+#endif
 #endif
 
 /* The highest level that this machine runs. */
