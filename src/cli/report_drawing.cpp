@@ -6,7 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include "../scene/moving_body.h"
 #include "../scene/surface.h"
 
 namespace curve_proximity::cli {
@@ -131,11 +130,10 @@ void drawMovers(const World &world, const MovingWorld &moving, const std::vector
   const std::size_t most = mostOf(count);
   const double plane_size = sizeOf(world);
   for (const auto &[id, object] : world.snapshot->moving()) {
-    for (std::size_t i = 0; i < object->description.shapes.size(); ++i) {
-      const ShapeDescription &shape = object->description.shapes[i];
-      addBody(id, "mover", id, surfaceOf(shape, object->body->geometries[i].body, world.resources, most, plane_size),
+    for (const ShapeDescription &shape : object->description.shapes)
+      addBody(id, "mover", id,
+              surfaceOf(shape, makeGeometry(shape, world.resources).body, world.resources, most, plane_size),
               shape.pose, bodies);
-    }
     for (const double t : times) poses[id].push_back(toPose(moving.movers.objectPose(id, t)));
   }
   for (const MovingRobot &robot : moving.others) {

@@ -141,9 +141,13 @@ static bool goes_through(curve_tree *o, tree_sample *sample) {
   return false;
 }
 
+bool curve_tree_holds(const curve_tree *o, vec3 y) {
+  return o->body->winding && winding_is_inside(o->body->winding, o->tree, y);
+}
+
 /* Inside of the solid, and farther from its surface than rounding. */
 static bool is_inside(const curve_tree *o, vec3 y, double error) {
-  if (!o->body->winding || !winding_is_inside(o->body->winding, o->tree, y)) return false;
+  if (!curve_tree_holds(o, y)) return false;
   const tree_hit hit = tree_nearest(o->tree, y, INFINITY);
   return hit.lower > measure_slack(o, error, hit.upper, y);
 }

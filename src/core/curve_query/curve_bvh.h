@@ -85,6 +85,9 @@ void curve_tree_segment(const curve_tree *o, const search_node *node, vec3 x, tr
 search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, double s, vec3 y, double error,
                                tree_sample *sample);
 
+/* Whether a point is inside of the body, which is a solid mesh. */
+bool curve_tree_holds(const curve_tree *o, vec3 y);
+
 /* Whether the curve certainly meets the body near a sample: it goes through the triangle before *until, or is inside of
  * a solid there, to where the sample moves. */
 bool curve_tree_meets(curve_tree *o, tree_sample *sample, double *until);

@@ -4,7 +4,6 @@
 #include "curve_proximity/cprox/gradient.h"
 
 #include "base/workspace.h"
-#include "bvh/winding.h"
 #include "curve/relative_curve.h"
 #include "curve_query/report.h"
 #include "problem/level_of_detail.h"
@@ -93,8 +92,8 @@ static cprox_status look_from(beside *o, size_t piece, double s, vec3 y, double 
     tree_sample *sample = &seen->sample.tree;
     const tree_hit hit = tree_nearest(o->of.tree.tree, y, INFINITY);
     seen->slack = curve_tree_measure(&o->of.tree, hit.at, piece, s, y, error, sample).slack;
-    const bool inside = o->of.tree.body->winding && winding_is_inside(o->of.tree.body->winding, o->of.tree.tree, y);
-    seen->normal = sample->near.normal, seen->distance = inside ? 0.0 : sample->near.distance;
+    seen->normal = sample->near.normal;
+    seen->distance = curve_tree_holds(&o->of.tree, y) ? 0.0 : sample->near.distance;
     return CPROX_OK;
   }
   curve_sample *sample = &seen->sample.convex;
