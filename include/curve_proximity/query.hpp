@@ -173,15 +173,14 @@ struct ClearanceInterval {
   std::string a; /**< the curve's id; of a robot the link or attached object, empty if nothing was measured */
   std::string b; /**< object or link */
 
-  /** CPROX_OK: as narrow as options ask for, or beyond the horizon; else why not, as the core says of the whole
-   * profile. */
+  /** CPROX_OK: as narrow as options ask for, or beyond the horizon; else what the core says of the whole profile. */
   cprox_status status = CPROX_OK;
 };
 
 /** The clearance profile: the least distance on each interval between two breaks, which ascend within the domain of the
- *  curve. Clearance beyond a horizon >= 0 [m] is only bounded: lower > horizon, which is less work. Takes no other
- * query than DISTANCE, no signed_distance, no per_object and no certificate; throws Error for those, and where the core
- *  refuses. */
+ *  curve. Clearance beyond a horizon >= 0 [m] is only bounded: lower > horizon, which is less work. Takes no query but
+ *  DISTANCE, no signed_distance, no per_object and no certificate; throws Error for those, and where the core refuses.
+ */
 std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
                                                 const std::vector<double> &breaks, const Query &query,
                                                 Workspace &workspace,
