@@ -665,6 +665,16 @@ inline cprox_mover along(const CurveHandle &curve, double radius = 0.0) {
 }
 cprox_mover along(CurveHandle &&curve, double radius = 0.0) = delete;
 
+/** A ball whose radius changes: at each parameter it is the x of the second curve. Both must outlive the mover. */
+inline cprox_mover along(const CurveHandle &curve, const CurveHandle &radius) {
+  cprox_mover mover = cprox_point_along(curve.get());
+  mover.radius_curve = radius.get();
+  return mover;
+}
+cprox_mover along(CurveHandle &&curve, const CurveHandle &radius) = delete;
+cprox_mover along(const CurveHandle &curve, CurveHandle &&radius) = delete;
+cprox_mover along(CurveHandle &&curve, CurveHandle &&radius) = delete;
+
 /** The least distance, as cprox_distance(). */
 inline cprox_result distance(const cprox_mover &mover, const cprox_obstacle &target, const cprox_options &options,
                              Workspace &workspace) {

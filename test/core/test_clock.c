@@ -90,7 +90,7 @@ CASE(the_relative_curve_is_within_its_error) {
     const double a = rng_index(&r, 2) ? 0.0 : rng_uniform(&r, 0.0, 0.9);
     const double b = a == 0.0 ? 1.0 : a + rng_uniform(&r, 0.01, 0.1);
     cprox_curve relative;
-    assert_true(relative_create(first, second, &pose, a, b, ws, &relative));
+    assert_true(relative_create(first, second, &pose, a, b, ws, WORKSPACE_RELATIVE, &relative));
     assert_int_equal(relative.n_pieces, 1);
     for (int i = 0; i < 10; i++) {
       const long double s = (long double)rng_uniform(&r, 0.0, 1.0);

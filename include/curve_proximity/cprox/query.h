@@ -30,6 +30,8 @@ typedef struct cprox_obstacle {
   const cprox_curve *curve;
   /** the curve is at the mover's own parameter, and carries the body if there is one */
   bool synchronized;
+  /** of a curve at the mover's own parameter: as of cprox_mover, what it adds to the margin there; NULL: nothing */
+  const cprox_curve *radius_curve;
 } cprox_obstacle;
 
 /** A body at a pose, without margin. */
@@ -47,10 +49,11 @@ struct cprox_robot_pair;
 
 /** The kinds of moving objects. Each comment names the members of cprox_mover that the kind reads; all others are 0. */
 typedef enum cprox_mover_kind {
-  /** A ball that rides a curve, or a point where the radius is 0: curve, radius. cprox_point_along(),
+  /** A ball that rides a curve, or a point where the radius is 0: curve, radius, radius_curve. cprox_point_along(),
    *  cprox_tube_along(). */
   CPROX_MOVER_BALL,
-  /** A body that is carried along a curve without turning: curve, body, radius. cprox_body_along(). */
+  /** A body that is carried along a curve without turning: curve, body, radius, radius_curve.
+   *  cprox_body_along(). */
   CPROX_MOVER_BODY,
   /** A robot along a joint motion, against obstacles: motion, pairs, n_pairs. cprox_robot_along(), robot.h. */
   CPROX_MOVER_ROBOT,
@@ -82,6 +85,11 @@ typedef struct cprox_mover {
   const struct cprox_robot_pair *self_pairs;
   /** the number of pairs with itself */
   size_t n_self_pairs;
+  /** a radius that changes: at each parameter the x of this curve is added to radius [m]. It has the domain of `curve`,
+   *  and the sum is 0 or more. NULL: nothing is added. Distance, tolerance and collision take it, against convex bodies
+   *  and compounds of them that stand or are synchronized; all other queries refuse it, as do certificates, signed
+   *  distances and obstacle sets with a BVH. doc/curve-bound.md */
+  const cprox_curve *radius_curve;
 } cprox_mover;
 
 /** A point along a curve. */

@@ -7,7 +7,8 @@
 #include "solve/solve.h"
 
 static arguments_query query_of(const query *q, bool each) {
-  const unsigned has = ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE | ARGUMENTS_INTERVAL | (each ? 0 : ARGUMENTS_WHOLE);
+  const unsigned has =
+      ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS | (each ? 0 : ARGUMENTS_WHOLE);
   if (!query_wants_verdict(q))
     return (arguments_query){"distance", has | ARGUMENTS_SIGNED | (each ? 0 : ARGUMENTS_SHARE)};
   return (arguments_query){q->is_tolerance ? "tolerance" : "collision", has};

@@ -82,10 +82,10 @@ static cprox_status answer_fast(batch_run *run, cprox_result *r) {
 
 /* The short way is for points and balls along curves with control points. */
 static bool may_be_fast(const batch_run *run, const cprox_mover *mover) {
-  return mover->kind == CPROX_MOVER_BALL && mover->curve && !mover->curve->arcs && !mover->body && !mover->motion &&
-         mover->radius >= 0.0 && mover->radius <= LENGTH_MOST && curve_is_in_reach(mover->curve) &&
-         !run->batch->synchronized && run->q.options.max_lod == CPROX_LOD_MESH && !run->q.options.signed_distance &&
-         !mover->pairs && mover->n_pairs == 0;
+  return mover->kind == CPROX_MOVER_BALL && mover->curve && !mover->radius_curve && !mover->curve->arcs &&
+         !mover->body && !mover->motion && mover->radius >= 0.0 && mover->radius <= LENGTH_MOST &&
+         curve_is_in_reach(mover->curve) && !run->batch->synchronized && run->q.options.max_lod == CPROX_LOD_MESH &&
+         !run->q.options.signed_distance && !mover->pairs && mover->n_pairs == 0;
 }
 
 static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_result *r) {

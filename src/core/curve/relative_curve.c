@@ -78,14 +78,15 @@ static void section_of_second(const cprox_curve *c, size_t piece, const frame *f
 
 /* ---- the curve ---- */
 
-/* Lays out the arrays of a curve in the workspace's buffer. */
-static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, cprox_curve *c) {
+/* Lays out the arrays of a curve in a buffer of the workspace. */
+static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, workspace_buffer buffer,
+                    cprox_curve *c) {
   size_t leaves = 1;
   while (leaves < n_pieces) leaves *= 2;
   const size_t points = n_pieces * (degree + 1);
   const size_t bytes = curve_packs(leaves) * sizeof *c->packs + points * sizeof *c->points +
                        (n_pieces + 1 + n_pieces + curve_tables_size(degree)) * sizeof(double);
-  char *memory = workspace_reserve(workspace, WORKSPACE_RELATIVE, bytes);
+  char *memory = workspace_reserve(workspace, buffer, bytes);
   if (!memory) return false;
   *c = (cprox_curve){.degree = degree, .n_pieces = n_pieces, .n_leaves = leaves};
   c->packs = (curve_pack *)(void *)memory;
@@ -96,8 +97,9 @@ static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, 
   return true;
 }
 
-bool relative_create(const cprox_curve *first, const cprox_curve *second, const cprox_pose *pose, double t0, double t1,
-                     cprox_workspace *workspace, cprox_curve *relative) {
+/* The first curve, cut at the joints of both and of the higher degree, less the second one where a frame places it. */
+static bool combine(const cprox_curve *first, const cprox_curve *second, const frame *placed, double t0, double t1,
+                    cprox_workspace *workspace, workspace_buffer buffer, cprox_curve *relative) {
   size_t i = curve_piece_at(first, t0), j = curve_piece_at(second, t0), n_pieces = 1;
 
   /* every joint of either begins a piece */
@@ -109,18 +111,17 @@ bool relative_create(const cprox_curve *first, const cprox_curve *second, const 
     b += second->breaks[b + 1] == next;
   }
   const size_t degree = first->degree > second->degree ? first->degree : second->degree;
-  if (!lay_out(degree, n_pieces, workspace, relative)) return false;
+  if (!lay_out(degree, n_pieces, workspace, buffer, relative)) return false;
 
-  const frame f = frame_create(pose, vec(0, 0, 0));
   relative->breaks[0] = t0;
   for (size_t k = 0; k < n_pieces; k++) {
     const double left = relative->breaks[k];
     const double right = k + 1 < n_pieces ? fmin(first->breaks[i + 1], second->breaks[j + 1]) : t1;
     relative->breaks[k + 1] = right;
-    const vec3 base = curve_piece(first, i)[0];
-    section own, other;
+    const vec3 base = placed ? curve_piece(first, i)[0] : vec(0, 0, 0);
+    section own, other = {.degree = degree};
     section_of_first(first, i, base, left, right, &own);
-    section_of_second(second, j, &f, base, left, right, &other);
+    if (placed) section_of_second(second, j, placed, base, left, right, &other);
     while (own.degree < degree) section_elevate(&own);
     while (other.degree < degree) section_elevate(&other);
     double size = 0.0;
@@ -135,6 +136,17 @@ bool relative_create(const cprox_curve *first, const cprox_curve *second, const 
   }
   curve_finish(relative);
   return true;
+}
+
+bool relative_create(const cprox_curve *first, const cprox_curve *second, const cprox_pose *pose, double t0, double t1,
+                     cprox_workspace *workspace, workspace_buffer buffer, cprox_curve *relative) {
+  const frame f = frame_create(pose, vec(0, 0, 0));
+  return combine(first, second, &f, t0, t1, workspace, buffer, relative);
+}
+
+bool relative_align(const cprox_curve *curve, const cprox_curve *like, double t0, double t1, cprox_workspace *workspace,
+                    workspace_buffer buffer, cprox_curve *aligned) {
+  return combine(curve, like, NULL, t0, t1, workspace, buffer, aligned);
 }
 
 static vec3 point_at(const cprox_curve *curve, double t, bool from_left, cprox_workspace *workspace) {

@@ -5,6 +5,7 @@
 #include "curve/relative_curve.h"
 #include "curve_query/crossing.h"
 #include "problem/minkowski.h"
+#include "problem/radius.h"
 #include "shape/body.h"
 
 /* ---- what the kernels share ---- */
@@ -26,8 +27,8 @@ static search_effort effort_of(const query *q) {
 static const cprox_curve *curve_about(const query *q, const placed_pair *p, cprox_curve *relative) {
   const cprox_obstacle *obstacle = p->obstacle;
   if (!obstacle->synchronized) return q->mover.curve;
-  const bool made =
-      relative_create(q->mover.curve, obstacle->curve, &obstacle->pose, q->t0, q->t1, q->workspace, relative);
+  const bool made = relative_create(q->mover.curve, obstacle->curve, &obstacle->pose, q->t0, q->t1, q->workspace,
+                                    WORKSPACE_RELATIVE, relative);
   return made ? relative : NULL;
 }
 
@@ -63,15 +64,16 @@ static bool begin_carried(const query *q, const placed_pair *p, const cprox_curv
   return true;
 }
 
+/* The shape that stands for both, along a curve that is seen from what stands. */
+static bool begin_along(const query *q, const placed_pair *p, const cprox_curve *curve, curve_convex *o) {
+  if (q->mover.body) return begin_carried(q, p, curve, o);
+  return curve_convex_begin(o, curve, &p->shape->shape, p->frame, p->offset, q->workspace);
+}
+
 bool curve_convex_begin_pair(curve_convex *o, const query *q, const placed_pair *p) {
   cprox_curve relative;
   const cprox_curve *curve = curve_about(q, p, &relative);
-  if (!curve) return false;
-  if (q->mover.body) {
-    if (!begin_carried(q, p, curve, o)) return false;
-  } else if (!curve_convex_begin(o, curve, &p->shape->shape, p->frame, p->offset, q->workspace)) {
-    return false;
-  }
+  if (!curve || !begin_along(q, p, curve, o)) return false;
   keep_curve(q, p, &relative, &o->relative, &o->side);
   return true;
 }
@@ -144,6 +146,42 @@ void curve_convex_finding(const curve_convex *o, curve_finding *seen) {
 
 static void found_convex(const curve_search *s, curve_finding *seen) {
   curve_convex_finding(&s->state.convex.base, seen);
+}
+
+/* ---- a convex shape, and a radius that changes ---- */
+
+/* The curve whose x is what both radii add to their constant parts: the sum of two is the difference from the second
+ * one after half a turn about z. */
+static const cprox_curve *radius_about(const query *q, const placed_pair *p, cprox_curve *sum) {
+  static const cprox_pose HALF_TURN = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  const cprox_curve *own = q->mover.radius_curve, *other = p->obstacle->radius_curve;
+  if (!own || !other) return own ? own : other;
+  return relative_create(own, other, &HALF_TURN, q->t0, q->t1, q->workspace, WORKSPACE_RADII, sum) ? sum : NULL;
+}
+
+static cprox_status begin_radius(curve_search *s) {
+  curve_radius *o = &s->state.radius;
+  const query *q = s->q;
+  cprox_curve relative, sum, centres, radii;
+  const cprox_curve *curve = curve_about(q, s->pair, &relative), *radius = radius_about(q, s->pair, &sum);
+  if (!curve || !radius || !relative_align(curve, radius, q->t0, q->t1, q->workspace, WORKSPACE_ALIGNED, &centres) ||
+      !relative_align(radius, curve, q->t0, q->t1, q->workspace, WORKSPACE_ALIGNED_RADII, &radii) ||
+      !begin_along(q, s->pair, &centres, &o->base))
+    return CPROX_MEMORY;
+  curve_radius_begin(o, &centres, &radii);
+  return CPROX_OK;
+}
+
+static cprox_status start_radius(curve_search *s, curve_start *start) {
+  curve_radius *o = &s->state.radius;
+  o->base.effort = effort_of(s->q);
+  start->oracle = curve_radius_oracle(o);
+  start->root = curve_radius_root(o);
+  return CPROX_OK;
+}
+
+static void found_radius(const curve_search *s, curve_finding *seen) {
+  curve_convex_finding(&s->state.radius.base, seen);
 }
 
 /* ---- the elements of a BVH ---- */
@@ -321,6 +359,10 @@ static const curve_kernel convex_kernel = {.knows_depth = true,
                                            .prove_contact = prove_contact_convex,
                                            .best_found = found_convex};
 
+/* Queries that ask for a depth, a time of contact or a proof refuse a radius that changes. */
+static const curve_kernel radius_kernel = {
+    .begin_state = begin_radius, .start_distance = start_radius, .best_found = found_radius};
+
 static const curve_kernel tree_kernel = {.begin_state = begin_tree,
                                          .start_distance = start_tree,
                                          .start_contact = start_contact_tree,
@@ -341,6 +383,7 @@ static const curve_kernel field_kernel = {.begin_state = begin_field,
                                           .best_found = found_field};
 
 const curve_kernel *curve_kernel_of(const placed_pair *p) {
+  if (p->radius_changes) return &radius_kernel;
   if (!p->shape) return &two_curves_kernel;
   if (p->shape->field) return &field_kernel;
   return p->shape->tree ? &tree_kernel : &convex_kernel;

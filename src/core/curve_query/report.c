@@ -5,6 +5,7 @@
 #include "curve/relative_curve.h"
 #include "narrowphase/witness.h"
 #include "problem/minkowski.h"
+#include "problem/radius.h"
 
 /* The direction from a surface point to the moving object's centre. The normal is that of the best lower bound: a
  * search that stops early, because its upper bound is good enough, leaves another direction between the two points that
@@ -78,8 +79,23 @@ static cprox_status report_pair(const query *q, const placed_pair *p, const curv
   return CPROX_OK;
 }
 
+/* The same pair with the radii that are seen there. */
+static cprox_status report_radius(const query *q, const placed_pair *p, const curve_finding *seen, cprox_result *r) {
+  query there = *q;
+  placed_pair pair = *p;
+  cprox_obstacle obstacle = *p->obstacle;
+  there.mover.radius += radius_at(q->mover.radius_curve, seen->t, seen->at_end, q->workspace);
+  obstacle.margin += radius_at(obstacle.radius_curve, seen->t, seen->at_end, q->workspace);
+  pair.margin += obstacle.margin - p->obstacle->margin;
+  pair.offset += there.mover.radius - q->mover.radius + (obstacle.margin - p->obstacle->margin);
+  pair.obstacle = &obstacle;
+  pair.radius_changes = false;
+  return report_finding(&there, &pair, seen, r);
+}
+
 cprox_status report_finding(const query *q, const placed_pair *p, const curve_finding *seen, cprox_result *r) {
   if (!seen->found) return CPROX_OK;
+  if (p->radius_changes) return report_radius(q, p, seen, r);
   const cprox_obstacle *obstacle = p->obstacle;
   vec3 position = vec(0, 0, 0); /* of the obstacle's curve then */
   r->t = seen->t;

@@ -4,6 +4,7 @@
 #include "base/frame.h"
 #include "base/rounding.h"
 #include "problem/placed_pair.h"
+#include "problem/radius.h"
 #include "shape/body.h"
 
 /* No less than the length, and had without a root: for sums of sizes that rounding is measured by. */
@@ -73,7 +74,8 @@ double candidate_ball_bound(const query *q, const candidate *c) {
   const vec3 centre = vec_sub(round.centre, own.centre);
   const curve_capsule *capsule = &q->reach;
   const double offset = q->mover.radius + both.carried.excess + (obstacle->margin + both.obstacle.excess);
-  const double reach = capsule->radius + round.radius + own.radius + offset;
+  const double most = radius_most(q->mover.radius_curve) + radius_most(obstacle->radius_curve);
+  const double reach = capsule->radius + round.radius + own.radius + offset + most;
   /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
   const double sizes =
       size_of(capsule->a) + size_of(capsule->b) + size_of(centre) + placing + 2.0 * size_of(own.centre) + reach;

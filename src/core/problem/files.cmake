@@ -5,6 +5,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/minkowski.c
   ${CMAKE_CURRENT_LIST_DIR}/placed_pair.c
   ${CMAKE_CURRENT_LIST_DIR}/problem.c
+  ${CMAKE_CURRENT_LIST_DIR}/radius.c
   ${CMAKE_CURRENT_LIST_DIR}/section.c
   ${CMAKE_CURRENT_LIST_DIR}/validate.c
   ${CMAKE_CURRENT_LIST_DIR}/values.c

@@ -4,6 +4,7 @@
 #include "base/rounding.h"
 #include "problem/level_of_detail.h"
 #include "problem/minkowski.h"
+#include "problem/radius.h"
 #include "shape/body.h"
 
 /* Most bodies are their own model. */
@@ -58,6 +59,7 @@ placed_pair placed_pair_resolve(const query *q, const candidate *c) {
                    .carried_pose = both.carried.pose};
   p.margin = p.obstacle->margin + m->excess;
   p.offset = q->mover.radius + both.carried.excess + p.margin;
+  p.radius_changes = radius_changes(&q->mover, p.obstacle);
   p.position_error = position_error_of(m, p.carried);
   if (!p.shape) return p;
   const cprox_pose outer = obstacle_pose(p.obstacle);

@@ -24,7 +24,8 @@ typedef struct placed_pair {
    */
   const cprox_body *carried;
   cprox_pose carried_pose;
-  double offset; /* all margins: the obstacle's, and that of what rides the curve */
+  double offset;       /* all margins: the obstacle's, and that of what rides the curve; */
+  bool radius_changes; /* on top of it, the radius of one of the two changes */
 } placed_pair;
 
 placed_pair placed_pair_resolve(const query *q, const candidate *c);

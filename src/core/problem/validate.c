@@ -2,6 +2,7 @@
 #include "problem/validate.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "base/frame.h"
 #include "base/rounding.h"
@@ -10,6 +11,7 @@
 #include "kinematics/link_model.h"
 #include "kinematics/motion.h"
 #include "problem/level_of_detail.h"
+#include "problem/radius.h"
 #include "shape/body.h"
 
 cprox_status arguments_check_length(const char *name, double value, cprox_workspace *workspace) {
@@ -83,6 +85,9 @@ cprox_status arguments_check_target(const cprox_obstacle *target, size_t index, 
     return workspace_fail(workspace, CPROX_INVALID, "target %zu is on the mover's clock, but has no curve", index);
   if (target->body && target->curve && !target->synchronized)
     return workspace_fail(workspace, CPROX_INVALID, "target %zu has both a body and a curve", index);
+  if (target->radius_curve && !target->synchronized)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu has a radius that changes, but is not synchronized",
+                          index);
   const char *support_failed = frame_pose_error(&target->pose);
   if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, support_failed);
   if (!(target->margin >= 0.0 && isfinite(target->margin)))
@@ -169,7 +174,7 @@ static cprox_status check_pairs(const cprox_mover *mover, const cprox_robot_pair
 
 static cprox_status check_robot(const cprox_mover *mover, size_t n, cprox_workspace *workspace) {
   if (!mover->motion) return CPROX_OK;
-  if (mover->curve || mover->body || mover->radius != 0.0)
+  if (mover->curve || mover->body || mover->radius != 0.0 || mover->radius_curve)
     return workspace_fail(workspace, CPROX_INVALID,
                           "a mover is a robot's motion, or a curve and what rides it: not both; pad the robot's links");
   if (mover->kind == CPROX_MOVER_ROBOT_SELF && n > 0)
@@ -203,6 +208,46 @@ static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle
                           "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
                           index);
   return CPROX_OK;
+}
+
+/* A radius that changes is an affair of queries that know it. */
+static cprox_status check_radius_applies(const cprox_options *options, arguments_query asked,
+                                         cprox_workspace *workspace) {
+  if (!(asked.has & ARGUMENTS_RADIUS))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "a radius that changes does not apply to %s: ask for a distance, a tolerance or a collision",
+                          asked.name);
+  if (options->certificate || options->signed_distance)
+    return workspace_fail(workspace, CPROX_INVALID, "a radius that changes: there is no %s for it",
+                          options->certificate ? "certificate" : "signed distance");
+  return CPROX_OK;
+}
+
+static cprox_status check_own_radius(const cprox_mover *mover, const cprox_options *options, arguments_query asked,
+                                     cprox_workspace *workspace) {
+  if (!mover->radius_curve) return CPROX_OK;
+  const cprox_status applies = check_radius_applies(options, asked, workspace);
+  if (applies != CPROX_OK) return applies;
+  return radius_check("the mover's radius", mover->radius_curve, mover->radius, mover->curve, workspace);
+}
+
+/* Against what is convex or has convex parts. */
+static cprox_status check_radius_against(const cprox_mover *mover, const cprox_obstacle *target, size_t index,
+                                         const cprox_options *options, arguments_query asked,
+                                         cprox_workspace *workspace) {
+  if (!radius_changes(mover, target)) return CPROX_OK;
+  const cprox_status applies = check_radius_applies(options, asked, workspace);
+  if (applies != CPROX_OK) return applies;
+  if ((target->curve && !target->synchronized) ||
+      (target->body && (target->body->field || model_has_tree(target->body, options->max_lod))))
+    return workspace_fail(
+        workspace, CPROX_INVALID,
+        "a radius that changes: target %zu is a curve, a mesh, points, boxes or known by its distance "
+        "alone, must be convex or have convex parts",
+        index);
+  char whose[40];
+  snprintf(whose, sizeof whose, "the radius of target %zu", index);
+  return radius_check(whose, target->radius_curve, target->margin, mover->curve, workspace);
 }
 
 /* Do the members that are set belong to the kind? */
@@ -275,9 +320,12 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacl
   checked = check_robot(mover, n, workspace);
   if (checked == CPROX_OK) checked = check_part(mover, options, workspace);
   if (checked == CPROX_OK) checked = check_ride(mover, options->max_lod, workspace);
+  if (checked == CPROX_OK) checked = check_own_radius(mover, options, asked, workspace);
   if (checked == CPROX_OK) checked = arguments_check_targets(targets, n, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)
     checked = check_against(mover, &targets[i], i, options->max_lod, workspace);
+  for (size_t i = 0; i < n && checked == CPROX_OK; i++)
+    checked = check_radius_against(mover, &targets[i], i, options, asked, workspace);
   if (checked == CPROX_OK && mover->motion && options->signed_distance)
     checked = check_depths(mover, targets, n, workspace);
   return checked;

@@ -15,6 +15,7 @@ typedef enum arguments_option {
   ARGUMENTS_WHOLE = 32,      /* robots against obstacles and themselves at once */
   ARGUMENTS_INTERVAL = 64,   /* interval, of robots */
   ARGUMENTS_SHARE = 128,     /* share, of robots */
+  ARGUMENTS_RADIUS = 256,    /* a radius that changes */
   ARGUMENTS_SEARCH = ARGUMENTS_STOP | ARGUMENTS_RELATIVE | ARGUMENTS_LOD
 } arguments_option;
 

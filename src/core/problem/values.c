@@ -47,7 +47,8 @@ cprox_obstacle cprox_synchronized(cprox_mover other) {
                           .pose = CPROX_POSE_IDENTITY,
                           .margin = other.radius,
                           .curve = other.curve,
-                          .synchronized = true};
+                          .synchronized = true,
+                          .radius_curve = other.radius_curve};
 }
 
 cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve) {
