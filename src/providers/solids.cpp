@@ -8,8 +8,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
+
+#include <curve_proximity/superquadric_fit.hpp>
 
 namespace curve_proximity {
 namespace {
@@ -45,74 +48,105 @@ void lookOutward(const Points &vertices, const Eigen::Vector3d &inside, Corners 
   }
 }
 
+/* A convex polytope. */
+struct Hull {
+  Points vertices;
+  Corners triangles;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero(); /* inside */
+};
+
 /* The hull of points with an interior. What the hull's computation dropped is taken in again: all is scaled about the
  * middle until every point is behind every face. */
-SolidHandle hullSolid(const Eigen::Matrix3Xd &points) {
+Hull hullOf(const Eigen::Matrix3Xd &points) {
   shapes::Mesh mesh(static_cast<unsigned>(points.cols()), 0);
   Eigen::Map<Eigen::Matrix3Xd>(mesh.vertices, 3, points.cols()) = points;
   const bodies::ConvexMesh hull(&mesh);
   const std::vector<unsigned> &corners = hull.getTriangles();
   if (corners.size() < 12) throw Error("the hull of its vertices has no interior");
-  Points vertices;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  Hull out;
   for (const Eigen::Vector3d &v : hull.getVertices()) {
-    vertices.push_back(toVec3(v));
-    middle += v / static_cast<double>(hull.getVertices().size());
+    out.vertices.push_back(toVec3(v));
+    out.middle += v / static_cast<double>(hull.getVertices().size());
   }
-  Corners triangles;
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
-    triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
-  lookOutward(vertices, middle, triangles);
+    out.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  lookOutward(out.vertices, out.middle, out.triangles);
 
   double scale = 1.0;
-  for (const auto &t : triangles) {
-    const Eigen::Vector3d a = toEigen(vertices[t[0]]);
-    const Eigen::Vector3d n = (toEigen(vertices[t[1]]) - a).cross(toEigen(vertices[t[2]]) - a).normalized();
-    const double depth = n.dot(a - middle);
+  for (const auto &t : out.triangles) {
+    const Eigen::Vector3d a = toEigen(out.vertices[t[0]]);
+    const Eigen::Vector3d n = (toEigen(out.vertices[t[1]]) - a).cross(toEigen(out.vertices[t[2]]) - a).normalized();
+    const double depth = n.dot(a - out.middle);
     if (!(depth > 0.0)) continue; // a sliver: its neighbours hold its place
     scale = std::max(
         scale,
-        (points.colwise() - middle).cwiseProduct(n.replicate(1, points.cols())).colwise().sum().maxCoeff() / depth);
+        (points.colwise() - out.middle).cwiseProduct(n.replicate(1, points.cols())).colwise().sum().maxCoeff() / depth);
   }
   scale *= 1.0 + 1e-12;
-  for (cprox_vec3 &v : vertices) v = toVec3(middle + scale * (toEigen(v) - middle));
-  return meshSolid(vertices, triangles);
+  for (cprox_vec3 &v : out.vertices) v = toVec3(out.middle + scale * (toEigen(v) - out.middle));
+  return out;
 }
 
-SolidHandle coneSolid(double height, double radius) {
-  const double r = radius / std::cos(M_PI / SIDES);
-  Eigen::Matrix3Xd points(3, SIDES + 1);
-  for (int i = 0; i < SIDES; ++i)
-    points.col(i) << r * std::cos(2.0 * M_PI * i / SIDES), r * std::sin(2.0 * M_PI * i / SIDES), -0.5 * height;
-  points.col(SIDES) << 0.0, 0.0, 0.5 * height;
-  return hullSolid(points);
+SolidHandle hullSolid(const Eigen::Matrix3Xd &points) {
+  const Hull hull = hullOf(points);
+  return meshSolid(hull.vertices, hull.triangles);
 }
 
-SolidHandle meshOf(const ShapeDescription &shape) {
-  if (!shape.resource.empty()) throw Error("FourierGap takes meshes by vertices and triangles, not from a file");
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
-  if (shape.dimensions.size() == 3) scale = Eigen::Vector3d(shape.dimensions.data());
-  Points vertices;
-  for (Eigen::Index i = 0; i < shape.vertices.cols(); ++i)
-    vertices.push_back(toVec3(scale.cwiseProduct(shape.vertices.col(i))));
-  Corners triangles;
-  const bool mirrored = scale.prod() < 0.0;
-  for (Eigen::Index i = 0; i < shape.triangles.cols(); ++i) {
-    const Eigen::Vector3i t = shape.triangles.col(i);
-    triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[mirrored ? 2 : 1]),
-                         static_cast<std::uint32_t>(t[mirrored ? 1 : 2])});
+/* ---- what has no formula, or is enlarged ---- */
+
+/* Directions in which a convex body is looked at, on a Fibonacci sphere, and in the plane. */
+constexpr int DIRECTIONS = 200, PLANAR_DIRECTIONS = 64;
+
+/* Of the proof that a polytope contains a body: its width as a fraction of the body's size, and its cells. */
+constexpr double PROVEN_WITHIN = 1e-3;
+constexpr int PROOF_CELLS = 20000;
+
+SupportFunction enlarged(const BodyHandle &body, double by) {
+  return [body, by](const Eigen::Vector3d &direction, Eigen::Vector3d &point) {
+    cprox_vec3 at;
+    const double height = cprox_body_support(body.get(), toVec3(direction), &at);
+    point = toEigen(at) + by * direction;
+    return height + by;
+  };
+}
+
+Eigen::Matrix3Xd reached(const SupportFunction &support) {
+  Eigen::Matrix3Xd points(3, DIRECTIONS);
+  const double golden = M_PI * (3.0 - std::sqrt(5.0));
+  for (int i = 0; i < DIRECTIONS; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / DIRECTIONS, r = std::sqrt(1.0 - z * z);
+    Eigen::Vector3d point;
+    support({r * std::cos(golden * i), r * std::sin(golden * i), z}, point);
+    points.col(i) = point;
   }
-  return meshSolid(vertices, triangles);
+  return points;
 }
+
+/* A polytope that contains the body and all within `padding` of it: the hull of what it reaches in some directions,
+ * with a padding that grows until the support functions prove it. */
+SolidHandle polytopeRound(const BodyHandle &body, double padding) {
+  const SupportFunction whole = enlarged(body, padding);
+  const double size = cprox_body_get_info(body.get()).radius + padding, within = PROVEN_WITHIN * size;
+  double more = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    const Hull hull = hullOf(reached(enlarged(body, padding + more)));
+    Eigen::Matrix3Xd corners(3, static_cast<Eigen::Index>(hull.vertices.size()));
+    for (std::size_t k = 0; k < hull.vertices.size(); ++k)
+      corners.col(static_cast<Eigen::Index>(k)) = toEigen(hull.vertices[k]);
+    const double out = supportGap(whole, enlarged(makePolytope(corners), 0.0), within, PROOF_CELLS) + 1e-10 * size;
+    if (out <= 0.0) return meshSolid(hull.vertices, hull.triangles);
+    more += 1.1 * out + 0.1 * within;
+  }
+  throw Error("no polytope was found that contains it");
+}
+
+/* ---- the plane ---- */
+
+using Point = std::array<double, 2>;
 
 /* The hull of planar points, counter-clockwise (Andrew's chains). */
-SolidHandle polygonSolid(const Eigen::Matrix3Xd &points) {
-  using Point = std::array<double, 2>;
-  std::vector<Point> sorted, hull;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (points(2, i) != 0.0) throw Error("in the plane vertices have z = 0");
-    sorted.push_back({points(0, i), points(1, i)});
-  }
+SolidHandle polygonSolid(std::vector<Point> sorted) {
+  std::vector<Point> hull;
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   const auto turns_right = [](const Point &a, const Point &b, const Point &c) {
@@ -134,56 +168,152 @@ SolidHandle polygonSolid(const Eigen::Matrix3Xd &points) {
   return own(solid);
 }
 
-SolidHandle solidOf(const ShapeDescription &shape, int dimension) {
+std::vector<Point> planarPoints(const Eigen::Matrix3Xd &points) {
+  std::vector<Point> out;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (points(2, i) != 0.0) throw Error("in the plane vertices have z = 0");
+    out.push_back({points(0, i), points(1, i)});
+  }
+  return out;
+}
+
+/* In the plane: where the tangents of neighbouring directions meet. */
+SolidHandle polygonRound(const BodyHandle &body, double padding) {
+  const SupportFunction whole = enlarged(body, padding);
+  const double step = 2.0 * M_PI / PLANAR_DIRECTIONS;
+  std::vector<double> heights;
+  Eigen::Vector3d point;
+  for (int i = 0; i < PLANAR_DIRECTIONS; ++i)
+    heights.push_back(whole({std::cos(step * i), std::sin(step * i), 0.0}, point));
+  std::vector<Point> corners;
+  for (int i = 0; i < PLANAR_DIRECTIONS; ++i) {
+    const double here = heights[static_cast<std::size_t>(i)],
+                 next = heights[static_cast<std::size_t>((i + 1) % PLANAR_DIRECTIONS)];
+    const double along = (next - here * std::cos(step)) / std::sin(step); // from the foot of this tangent
+    corners.push_back({here * std::cos(step * i) - along * std::sin(step * i),
+                       here * std::sin(step * i) + along * std::cos(step * i)});
+  }
+  return polygonSolid(corners);
+}
+
+/* Semi-axes of an ellipsoid that contains all within p of the one with semi-axes a: for any c > 0
+ * (h + p)² <= (1 + c) h² + (1 + 1/c) p², and h² = sum a_i² u_i². */
+cprox_vec3 enlargedAxes(const std::vector<double> &a, int dimension, double p) {
+  if (p == 0.0) return {a.at(0), a.at(1), a.at(2)};
+  const double mean = dimension == 2 ? std::sqrt(a.at(0) * a.at(1)) : std::cbrt(a.at(0) * a.at(1) * a.at(2));
+  const double c = p / mean;
+  const auto axis = [&](double x) { return std::sqrt((1.0 + c) * x * x + (1.0 + 1.0 / c) * p * p) * (1.0 + 1e-14); };
+  return {axis(a[0]), axis(a[1]), axis(a[2])};
+}
+
+SolidHandle coneSolid(double height, double radius) {
+  const double r = radius / std::cos(M_PI / SIDES);
+  Eigen::Matrix3Xd points(3, SIDES + 1);
+  for (int i = 0; i < SIDES; ++i)
+    points.col(i) << r * std::cos(2.0 * M_PI * i / SIDES), r * std::sin(2.0 * M_PI * i / SIDES), -0.5 * height;
+  points.col(SIDES) << 0.0, 0.0, 0.5 * height;
+  return hullSolid(points);
+}
+
+/* Vertices at one place are one: files of triangles repeat them. */
+SolidHandle meshOf(const ShapeDescription &shape) {
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  if (shape.dimensions.size() == 3) scale = Eigen::Vector3d(shape.dimensions.data());
+  Points vertices;
+  std::vector<std::uint32_t> numbers;
+  std::map<std::array<double, 3>, std::uint32_t> known;
+  for (Eigen::Index i = 0; i < shape.vertices.cols(); ++i) {
+    const Eigen::Vector3d v = scale.cwiseProduct(shape.vertices.col(i));
+    const auto [at, is_new] =
+        known.emplace(std::array<double, 3>{v.x(), v.y(), v.z()}, static_cast<std::uint32_t>(vertices.size()));
+    if (is_new) vertices.push_back(toVec3(v));
+    numbers.push_back(at->second);
+  }
+  Corners triangles;
+  const bool mirrored = scale.prod() < 0.0;
+  for (Eigen::Index i = 0; i < shape.triangles.cols(); ++i) {
+    const auto corner = [&](int k) { return numbers[static_cast<std::size_t>(shape.triangles(k, i))]; };
+    triangles.push_back({corner(0), corner(mirrored ? 2 : 1), corner(mirrored ? 1 : 2)});
+  }
+  return meshSolid(vertices, triangles);
+}
+
+SolidHandle planarSolid(const ConstraintBody::Part &part, double padding) {
+  const ShapeDescription &shape = part.shape;
   const std::vector<double> &d = shape.dimensions;
   cprox_solid_description solid{};
-  solid.dimension = dimension;
+  solid.dimension = 2;
   switch (shape.type) {
     case ShapeType::SPHERE:
       solid.kind = CPROX_SOLID_BALL;
-      solid.radius = d.at(0);
+      solid.radius = d.at(0) + padding;
       return own(solid);
     case ShapeType::BOX:
+      if (padding > 0.0) return polygonRound(part.body, padding);
       solid.kind = CPROX_SOLID_BOX;
       solid.size = {d.at(0), d.at(1), d.at(2)};
       return own(solid);
     case ShapeType::ELLIPSOID:
       solid.kind = CPROX_SOLID_ELLIPSOID;
-      solid.semi_axes = {d.at(0), d.at(1), d.at(2)};
+      solid.semi_axes = enlargedAxes(d, 2, padding);
       return own(solid);
-    case ShapeType::POLYTOPE: return dimension == 2 ? polygonSolid(shape.vertices) : hullSolid(shape.vertices);
-    case ShapeType::POLYGON:
-      if (dimension == 3) break;
-      return polygonSolid(shape.vertices);
-    case ShapeType::CYLINDER:
-    case ShapeType::CAPSULE:
-      if (dimension == 2) break;
-      solid.kind = shape.type == ShapeType::CYLINDER ? CPROX_SOLID_CYLINDER : CPROX_SOLID_CAPSULE;
-      solid.height = d.at(0);
-      solid.radius = d.at(1);
-      return own(solid);
-    case ShapeType::CONE:
-      if (dimension == 2) break;
-      return coneSolid(d.at(0), d.at(1));
-    case ShapeType::MESH:
-      if (dimension == 2) break;
-      return meshOf(shape);
-    default: break;
+    case ShapeType::POLYTOPE:
+    case ShapeType::POLYGON: {
+      std::vector<Point> corners = planarPoints(shape.vertices);
+      return padding > 0.0 ? polygonRound(part.body, padding) : polygonSolid(std::move(corners));
+    }
+    case ShapeType::SUPERQUADRIC: return polygonRound(part.body, padding); // its shadow is its section
+    default: throw Error("FourierGap has no solid for it in the plane");
   }
-  throw Error(std::string("FourierGap has no solid for it in ") + (dimension == 2 ? "the plane" : "space"));
+}
+
+SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding) {
+  const ShapeDescription &shape = part.shape;
+  const std::vector<double> &d = shape.dimensions;
+  cprox_solid_description solid{};
+  solid.dimension = 3;
+  switch (shape.type) {
+    case ShapeType::SPHERE:
+      solid.kind = CPROX_SOLID_BALL;
+      solid.radius = d.at(0) + padding;
+      return own(solid);
+    case ShapeType::BOX:
+      solid.kind = CPROX_SOLID_BOX;
+      solid.size = {d.at(0) + 2.0 * padding, d.at(1) + 2.0 * padding, d.at(2) + 2.0 * padding};
+      return own(solid);
+    case ShapeType::ELLIPSOID:
+      solid.kind = CPROX_SOLID_ELLIPSOID;
+      solid.semi_axes = enlargedAxes(d, 3, padding);
+      return own(solid);
+    case ShapeType::CYLINDER:
+      solid.kind = CPROX_SOLID_CYLINDER;
+      solid.height = d.at(0) + 2.0 * padding;
+      solid.radius = d.at(1) + padding;
+      return own(solid);
+    case ShapeType::CAPSULE:
+      solid.kind = CPROX_SOLID_CAPSULE;
+      solid.height = d.at(0);
+      solid.radius = d.at(1) + padding;
+      return own(solid);
+    case ShapeType::CONE: return padding > 0.0 ? polytopeRound(part.body, padding) : coneSolid(d.at(0), d.at(1));
+    case ShapeType::POLYTOPE: return padding > 0.0 ? polytopeRound(part.body, padding) : hullSolid(shape.vertices);
+    case ShapeType::MESH: return padding > 0.0 ? polytopeRound(part.body, padding) : meshOf(shape);
+    case ShapeType::SUPERQUADRIC:
+    case ShapeType::IMPLICIT: return polytopeRound(part.body, padding);
+    default: throw Error("FourierGap has no solid for it in space");
+  }
 }
 
 } // namespace
 
 SolidHandle makeSolid(const ConstraintBody &side, int dimension) {
   if (side.parts.empty()) throw Error("the side has no shape");
-  if (side.padding != 0.0) throw Error("FourierGap takes no padding: enlarge the shapes");
   std::vector<SolidHandle> parts;
   std::vector<cprox_pose> poses;
   bool moved = false;
   for (const ConstraintBody::Part &part : side.parts) {
     try {
-      parts.push_back(solidOf(part.shape, dimension));
+      parts.push_back(dimension == 2 ? planarSolid(part, side.padding) : spatialSolid(part, side.padding));
     } catch (const Error &error) {
       throw Error(std::string(shapeTypeName(part.shape.type)) + ": " + error.what(), error.status());
     }

@@ -11,11 +11,11 @@ namespace curve_proximity {
 
 using SolidHandle = std::shared_ptr<const cprox_solid>;
 
-/** The union of a side's parts, each as a solid that contains the shape.
+/** The union of a side's parts, each as a solid that contains the shape and all within the side's padding of it.
  *
- *  In space: spheres, boxes, ellipsoids, cylinders, capsules, cones (as an enclosing pyramid), polytopes, closed meshes
- *  given by vertices and triangles. In the plane: spheres, boxes, ellipsoids, and polygons and polytopes at z = 0.
- *  Throws Error that names the type of any other shape, and for padding. dimension: 2 or 3. */
+ *  In space: spheres, boxes, ellipsoids, cylinders, capsules; cones, polytopes, superquadrics and implicit bodies by
+ *  polytopes; closed meshes, with padding by their hulls. In the plane: spheres, boxes, ellipsoids, superquadrics, and
+ *  polygons and polytopes at z = 0. Throws Error that names the type of any other shape. dimension: 2 or 3. */
 SolidHandle makeSolid(const ConstraintBody &side, int dimension);
 
 } // namespace curve_proximity

@@ -74,9 +74,7 @@ TEST(Pairs, that_a_provider_cannot_answer_for_are_refused_by_type) {
   EXPECT_SAYS(complaint([&] { gap->prepare(along); }), "ask CurveDistance");
   EXPECT_SAYS(complaint([&] { gap->prepare(standing); }), "side b: halfspace");
   EXPECT_EQ(complaint([&] { pair->prepare(standing); }), "");
-  standing.b = side({shape(ShapeType::CONE, {1, 1})}, 0.1);
-  EXPECT_SAYS(complaint([&] { gap->prepare(standing); }), "padding");
-  standing.b.padding = 0.0;
+  standing.b = side({shape(ShapeType::CONE, {1, 1})});
   EXPECT_EQ(complaint([&] { gap->prepare(standing); }), "");
   EXPECT_SAYS(complaint([&] { plane->prepare(standing); }), "side b: cone");
   standing.b = {};
