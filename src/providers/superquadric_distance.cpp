@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* curve_proximity/SuperquadricDistance: the signed distance of standing bodies, each a superquadric, an implicit body,
- * or a superquadric that encloses it. */
+/* curve_proximity/SuperquadricDistance: the signed distance of standing convex bodies, each as it is, or by a
+ * superquadric that encloses it. */
 #include <pluginlib/class_list_macros.hpp>
 
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 #include <curve_proximity/constraint_provider.hpp>
 #include <curve_proximity/superquadric_fit.hpp>
@@ -26,8 +27,8 @@ bool isJump(double near, double far, double noise) {
 
 struct Parameters {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
-  SuperquadricFitOptions fit;
-  double margin = 0.0; /* [m] */
+  std::optional<SuperquadricFitOptions> fit; /* superquadrics in place of what is not smooth */
+  double margin = 0.0;                       /* [m] */
 };
 
 /* A side as single bodies, and how far they stand out of what was described. */
@@ -54,23 +55,24 @@ double sizeOf(const BodyHandle &body) {
   return cprox_body_get_info(body.get()).radius;
 }
 
-/* A part's body in the part's frame, with the frame's pose in the side's. */
-ConstraintBody::Part asSuperquadric(const ConstraintBody::Part &part, const SuperquadricFitOptions &options,
-                                    double &excess) {
+/* An ellipsoid is a superquadric; two of these are searched by their second derivatives. */
+ConstraintBody::Part asItIs(const ConstraintBody::Part &part) {
   ConstraintBody::Part out = part;
+  if (part.shape.type != ShapeType::ELLIPSOID) return out;
   const std::vector<double> &d = part.shape.dimensions;
-  switch (part.shape.type) {
-    case ShapeType::POINT:
-    case ShapeType::SPHERE:
-    case ShapeType::HALFSPACE:
-    case ShapeType::SUPERQUADRIC:
-    case ShapeType::IMPLICIT: return out;
-    case ShapeType::ELLIPSOID:
-      out.body = makeSuperquadric({d.at(0), d.at(1), d.at(2)}, Eigen::Vector3d::Constant(2.0));
-      return out;
-    default: break;
-  }
+  out.body = makeSuperquadric({d.at(0), d.at(1), d.at(2)}, Eigen::Vector3d::Constant(2.0));
+  return out;
+}
+
+bool isSmooth(ShapeType type) {
+  return type == ShapeType::POINT || type == ShapeType::SPHERE || type == ShapeType::HALFSPACE ||
+         type == ShapeType::SUPERQUADRIC || type == ShapeType::IMPLICIT || type == ShapeType::ELLIPSOID;
+}
+
+/* A superquadric round it, in the part's frame, with the frame's pose in the side's. */
+ConstraintBody::Part enclosed(const ConstraintBody::Part &part, const SuperquadricFitOptions &options, double &excess) {
   try {
+    ConstraintBody::Part out = part;
     const SuperquadricFit fit = fitSuperquadric(part.body, options);
     out.body = fit.body;
     out.shape.pose = part.shape.pose * fit.pose;
@@ -84,14 +86,15 @@ ConstraintBody::Part asSuperquadric(const ConstraintBody::Part &part, const Supe
   }
 }
 
-Side makeSide(const ConstraintBody &described, const SuperquadricFitOptions &options, const char *name) {
+Side makeSide(const ConstraintBody &described, const Parameters &parameters, const char *name) {
   if (described.parts.empty()) throw Error(std::string("side ") + name + " has no shape");
   Side side;
   side.padding = described.padding;
   side.missing = excessOf(described);
   for (const ConstraintBody::Part &part : described.parts) {
     ConstraintBody alone;
-    alone.parts = {asSuperquadric(part, options, side.excess)};
+    const bool enclose = parameters.fit && !isSmooth(part.shape.type);
+    alone.parts = {enclose ? enclosed(part, *parameters.fit, side.excess) : asItIs(part)};
     side.bodies.push_back(joinedBody(alone));
     side.may_be_flat = side.may_be_flat || mayBeFlat(alone.parts.front().shape);
     side.size = side.bodies.size() > 1 ? std::min(side.size, sizeOf(side.bodies.back())) : sizeOf(side.bodies.back());
@@ -102,7 +105,7 @@ Side makeSide(const ConstraintBody &described, const SuperquadricFitOptions &opt
 class SuperquadricConstraint : public Constraint {
  public:
   SuperquadricConstraint(const Parameters &parameters, const ConstraintPair &pair)
-      : parameters_(parameters), a_(makeSide(pair.a, parameters.fit, "a")), b_(makeSide(pair.b, parameters.fit, "b")) {}
+      : parameters_(parameters), a_(makeSide(pair.a, parameters, "a")), b_(makeSide(pair.b, parameters, "b")) {}
 
   void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
     if (place.curve) throw Error("there is a curve, and the pair is not along one");
@@ -254,8 +257,11 @@ class SuperquadricDistance : public ConstraintProvider {
     ParameterReader reader(parameters);
     parameters_.options.epsilon = reader.number("epsilon", 1e-9, 0.0);
     parameters_.margin = reader.number("margin", 0.0, 0.0);
-    parameters_.fit.most_exponent = reader.number("most_exponent", 16.0, 2.0, false, 1000.0);
+    const double most_exponent = reader.number("most_exponent", 0.0, 2.0, false, 1000.0);
     reader.end();
+    if (most_exponent == 0.0) return; /* not given */
+    parameters_.fit.emplace();
+    parameters_.fit->most_exponent = most_exponent;
   }
 
   std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {

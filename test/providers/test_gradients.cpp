@@ -209,6 +209,51 @@ TEST(Gradients, of_SuperquadricDistance_are_those_of_finite_differences_apart_an
   EXPECT_GT(inside.valid, 20);
 }
 
+/* Bodies with faces and edges as they are. Between two of them places are generic: no two faces are level. */
+TEST(Gradients, of_SuperquadricDistance_are_those_of_finite_differences_where_bodies_answer_as_they_are) {
+  const Loaded provider("curve_proximity/SuperquadricDistance", {{"epsilon", 1e-13}});
+  Random random(816);
+  Workspace workspace;
+  Tally apart, inside;
+  const Eigen::Matrix3Xd tetrahedron =
+      (Eigen::Matrix3Xd(3, 4) << 0.5, -0.4, 0, 0, 0, 0.1, 0.5, -0.5, -0.3, -0.2, -0.3, 0.5).finished();
+  const std::vector<ShapeDescription> shapes = {shape(ShapeType::BOX, {0.6, 0.8, 0.5}),
+                                                shape(ShapeType::CYLINDER, {0.7, 0.3}),
+                                                shape(ShapeType::CONE, {0.7, 0.4}),
+                                                shape(ShapeType::CAPSULE, {0.5, 0.2}),
+                                                polytope(tetrahedron),
+                                                shape(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0})};
+  std::vector<std::unique_ptr<const Constraint>> constraints;
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    for (std::size_t j = i; j < shapes.size(); ++j) {
+      ConstraintPair pair;
+      pair.a = side({shapes[i]}, j == i ? 0.03 : 0.0);
+      pair.b = side({shapes[j]});
+      constraints.push_back(provider->prepare(pair));
+    }
+  for (std::size_t i = 0; i < 420; ++i) {
+    const Constraint &constraint = *constraints[i % constraints.size()];
+    Case c;
+    const bool overlapping = i % 5 == 4;
+    c.a = random.pose(0.2);
+    c.b = random.pose(0.2);
+    if (!overlapping) c.b.position = toVec3(toEigen(c.b.position) + random.uniform(1.2, 3.0) * random.direction());
+    check(constraint, c, random, workspace, false, overlapping ? inside : apart);
+  }
+  std::printf(
+      "SuperquadricDistance as they are: apart %d of %d valid, worst %.1e; near or inside %d of %d, worst %.1e\n",
+      apart.valid, apart.asked, apart.worst, inside.valid, inside.asked, inside.worst);
+  EXPECT_GT(apart.valid, 300);
+  EXPECT_GT(inside.valid, 40);
+}
+
+cprox_pose planar(cprox_pose pose, Random &random) {
+  const double angle = random.uniform(-M_PI, M_PI);
+  pose.position.z = 0.0;
+  pose.orientation = {std::cos(angle), 0, 0, std::sin(angle)};
+  return pose;
+}
+
 TEST(Gradients, of_FourierGap_are_those_of_finite_differences_in_the_plane_and_in_space) {
   Random random(813);
   Workspace workspace;
@@ -228,18 +273,80 @@ TEST(Gradients, of_FourierGap_are_those_of_finite_differences_in_the_plane_and_i
       for (int i = 0; i < 60; ++i) {
         Case c;
         c.a = random.pose(0.3), c.b = random.pose(0.3);
-        if (dimension == 2)
-          for (cprox_pose *p : {&c.a, &c.b}) {
-            const double angle = random.uniform(-M_PI, M_PI);
-            p->position.z = 0.0;
-            p->orientation = {std::cos(angle), 0, 0, std::sin(angle)};
-          }
+        if (dimension == 2) c.a = planar(c.a, random), c.b = planar(c.b, random);
         check(*constraint, c, random, workspace, dimension == 2, tally);
       }
       std::printf("FourierGap %d-D %s: %d of %d valid, worst %.1e\n", dimension, mode, tally.valid, tally.asked,
                   tally.worst);
       EXPECT_GT(tally.valid, 40) << mode << " " << dimension;
       EXPECT_LT(tally.worst, 1e-7) << mode << " " << dimension;
+    }
+  }
+}
+
+/* Seed 818: sides whose spheres are not about their origins, from where the spheres touch to five of their radii away.
+ */
+TEST(Gradients, of_FourierGap_are_those_of_finite_differences_beyond_the_bounding_spheres) {
+  Random random(818);
+  Workspace workspace;
+  ShapeDescription arm = shape(ShapeType::BOX, {0.5, 0.7, 0.6}), ball = shape(ShapeType::SPHERE, {0.3});
+  arm.pose.translation() = Eigen::Vector3d(0.2, -0.1, 0.0);
+  for (const int dimension : {2, 3}) {
+    for (const char *mode : {"certified", "tuned", "signal"}) {
+      const Loaded provider("curve_proximity/FourierGap",
+                            {{"mode", std::string(mode)}, {"dimension", dimension}, {"samples", 9}});
+      ConstraintPair pair;
+      pair.a = side({arm});
+      pair.b = side({ball, shape(ShapeType::ELLIPSOID, {0.5, 0.2, 0.4})});
+      const auto constraint = provider->prepare(pair);
+      Tally tally;
+      ConstraintValue value;
+      for (int i = 0; i < 60; ++i) {
+        Case c;
+        c.a = random.pose(0.3), c.b = random.pose(0.3);
+        const Eigen::Vector3d away = random.direction(), flat(away.x(), away.y(), 0.0);
+        c.b.position = toVec3((dimension == 2 ? flat.normalized() : away) * random.uniform(2.0, 6.0));
+        if (dimension == 2) c.a = planar(c.a, random), c.b = planar(c.b, random);
+        valueAt(*constraint, c, randomStep(random, c, dimension == 2), 0.0, workspace, value);
+        EXPECT_TRUE(std::isfinite(value.value));
+        EXPECT_TRUE(value.valid) << value.reason;
+        EXPECT_GT(value.b.linear.norm(), 0.1) << mode << " " << dimension;
+        check(*constraint, c, random, workspace, dimension == 2, tally);
+      }
+      EXPECT_EQ(tally.valid, 60) << mode << " " << dimension;
+    }
+  }
+}
+
+/* Seed 819: along 200 straight ways outward through the place where the spheres touch. */
+TEST(Values, of_FourierGap_are_continuous_and_rise_where_the_bounding_spheres_part) {
+  Random random(819);
+  Workspace workspace;
+  for (const char *mode : {"certified", "signal"}) {
+    const Loaded provider("curve_proximity/FourierGap", {{"mode", std::string(mode)}, {"samples", 9}});
+    ConstraintPair pair;
+    pair.a = side({shape(ShapeType::BOX, {0.5, 0.7, 0.6})});
+    pair.b = side({shape(ShapeType::SPHERE, {0.4})});
+    const auto constraint = provider->prepare(pair);
+    const double touching = 0.5 * Eigen::Vector3d(0.5, 0.7, 0.6).norm() + 0.4;
+    ConstraintValue value;
+    for (int i = 0; i < 200; ++i) {
+      ConstraintPlace place;
+      place.a = random.pose(0.0), place.b = random.pose(0.0);
+      const Eigen::Vector3d away = random.direction();
+      const auto at = [&](double distance) {
+        place.b.position = toVec3(distance * away);
+        constraint->evaluate(place, workspace, value);
+        return value.value;
+      };
+      EXPECT_NEAR(at(touching * (1.0 - 1e-7)), at(touching * (1.0 + 1e-7)), 1e-5) << mode;
+      double before = at(touching);
+      for (const double factor : {1.01, 1.1, 1.3, 2.0, 5.0, 100.0}) {
+        const double here = at(factor * touching);
+        EXPECT_GT(here, before) << mode << " " << factor;
+        before = here;
+      }
+      EXPECT_NEAR(before - at(50.0 * touching), 50.0, 1e-9) << "1 for each sum of the radii";
     }
   }
 }
@@ -308,10 +415,20 @@ ShapeDescription frustum(double w) {
   return out;
 }
 
+/* The corners of the same. */
+ShapeDescription frustumByCorners(double w) {
+  Eigen::Matrix3Xd corners(3, 8);
+  for (int i = 0; i < 8; ++i) {
+    const double half = i & 4 ? w : 1.0;
+    corners.col(i) << (i & 1 ? half : -half), (i & 2 ? half : -half), (i & 4 ? 0.5 : -0.5);
+  }
+  return polytope(corners);
+}
+
 /* Seed 815, 300 places of a frustum under a slab, level or tilted by 1e-12 to 1e-2, apart and overlapping. What is
  * called a gradient is the derivative to either side: one-sided differences at steps of 1e-3 to 1e-7 of values that are
  * exact to 1e-12. */
-TEST(Gradients, of_SuperquadricDistance_hold_to_either_side_where_faces_are_level) {
+void holdToEitherSide(bool by_planes) {
   const Loaded provider("curve_proximity/SuperquadricDistance", {{"epsilon", 1e-13}});
   Random random(815);
   Workspace workspace;
@@ -319,11 +436,12 @@ TEST(Gradients, of_SuperquadricDistance_hold_to_either_side_where_faces_are_leve
   int valid = 0, refused = 0;
   for (int i = 0; i < 300; ++i) {
     ConstraintPair pair;
-    pair.a = side({frustum(i % 3 ? random.uniform(0.002, 0.02) : random.uniform(0.1, 0.9))});
+    const double w = i % 3 ? random.uniform(0.002, 0.02) : random.uniform(0.1, 0.9);
+    pair.a = side({by_planes ? frustum(w) : frustumByCorners(w)});
     ShapeDescription slab;
     slab.type = ShapeType::IMPLICIT;
     slab.planes = {{1, 0, 0, -2}, {-1, 0, 0, -2}, {0, 1, 0, -2}, {0, -1, 0, -2}, {0, 0, 1, -1}, {0, 0, -1, -1}};
-    pair.b = side({slab});
+    pair.b = side({by_planes ? slab : shape(ShapeType::BOX, {4, 4, 2})});
     const auto constraint = provider->prepare(pair);
     Case c;
     const double turn = random.uniform(-3.0, 3.0), tilt = i % 2 ? 0.0 : std::pow(10.0, random.uniform(-12.0, -2.0));
@@ -351,6 +469,69 @@ TEST(Gradients, of_SuperquadricDistance_hold_to_either_side_where_faces_are_leve
   EXPECT_GT(refused, 100);
 }
 
+TEST(Gradients, of_SuperquadricDistance_hold_to_either_side_where_faces_are_level) {
+  holdToEitherSide(true);
+}
+
+TEST(Gradients, of_SuperquadricDistance_hold_to_either_side_where_a_polytope_is_level_with_a_box) {
+  holdToEitherSide(false);
+}
+
+ShapeDescription byPlanes(const std::vector<std::array<double, 4>> &planes,
+                          const std::vector<std::array<double, 10>> &quadrics = {}) {
+  ShapeDescription out;
+  out.type = ShapeType::IMPLICIT;
+  out.planes = planes;
+  out.quadrics = quadrics;
+  return out;
+}
+
+/* Seed 817, 600 places. The truth is that of the interior point method for the same bodies by planes and quadrics: it
+ * shares neither the support functions nor the search. Both are within 1e-9. */
+TEST(Values, of_SuperquadricDistance_are_exact_for_bodies_that_are_no_superquadrics) {
+  const Loaded provider("curve_proximity/SuperquadricDistance", {});
+  Random random(817);
+  Workspace workspace;
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = 1e-9;
+  std::vector<std::array<double, 4>> octahedron; // |x| + |y| + |z| <= 1/2
+  for (int i = 0; i < 8; ++i) octahedron.push_back({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0, -0.5});
+  const std::vector<std::array<ShapeDescription, 2>> shapes = {
+      {shape(ShapeType::BOX, {1.0, 0.8, 0.5}), byPlanes({{1, 0, 0, -0.5},
+                                                         {-1, 0, 0, -0.5},
+                                                         {0, 1, 0, -0.4},
+                                                         {0, -1, 0, -0.4},
+                                                         {0, 0, 1, -0.25},
+                                                         {0, 0, -1, -0.25}})},
+      {shape(ShapeType::CYLINDER, {0.6, 0.3}),
+       byPlanes({{0, 0, 1, -0.3}, {0, 0, -1, -0.3}}, {{1, 0, 0, 1, 0, 0, 0, 0, 0, -0.09}})},
+      {polytope(0.5 * (Eigen::Matrix3Xd(3, 6) << 1, -1, 0, 0, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 1, -1).finished()),
+       byPlanes(octahedron)},
+      {shape(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0}),
+       shape(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0})}};
+  int overlapping = 0;
+  for (std::size_t i = 0; i < 600; ++i) {
+    const auto &x = shapes[i % 3], &y = shapes[i / 3 % 4];
+    ConstraintPair pair;
+    pair.a = side({x[0]});
+    pair.b = side({y[0]});
+    ConstraintPlace place;
+    place.a = random.pose(0.6), place.b = random.pose(0.6);
+    const ConstraintValue value = provider->evaluate(pair, place, workspace);
+    const cprox_result truth =
+        curve_proximity::pair(cprox_obstacle_at(makeGeometry(x[1]).body.get(), place.a),
+                              cprox_obstacle_at(makeGeometry(y[1]).body.get(), place.b), options, workspace);
+    EXPECT_EQ(value.status, CPROX_OK) << i;
+    EXPECT_LE(value.upper - value.lower, 1e-9) << i;
+    EXPECT_LE(value.lower, truth.upper) << i;
+    EXPECT_GE(value.upper, truth.lower) << i;
+    EXPECT_LE(truth.upper - truth.lower, 1e-8) << i;
+    overlapping += truth.upper < 0.0;
+  }
+  EXPECT_GT(overlapping, 100);
+  EXPECT_LT(overlapping, 500);
+}
+
 TEST(Values, are_negative_inside_and_a_margin_is_taken_off) {
   Workspace workspace;
   ConstraintPair pair;
@@ -367,6 +548,45 @@ TEST(Values, are_negative_inside_and_a_margin_is_taken_off) {
   EXPECT_NEAR(plain->evaluate(pair, place, workspace).value, -0.3, 1e-9);
   EXPECT_NEAR(with_margin->evaluate(pair, place, workspace).value, -0.425, 1e-9);
   EXPECT_EQ(without_sign->evaluate(pair, place, workspace).lower, 0.0);
+}
+
+/* Seed 820. The truth is that of the bodies and their paddings themselves, by their support functions. */
+TEST(Values, of_a_certified_FourierGap_are_positive_only_where_padded_and_implicit_bodies_do_not_overlap) {
+  const Loaded provider("curve_proximity/FourierGap", {{"samples", 9}});
+  const Loaded distance("curve_proximity/SuperquadricDistance", {});
+  Random random(820);
+  Workspace workspace;
+  const Eigen::Matrix3Xd tetrahedron =
+      (Eigen::Matrix3Xd(3, 4) << 0.5, -0.4, 0, 0, 0, 0.1, 0.5, -0.5, -0.3, -0.2, -0.3, 0.5).finished();
+  ShapeDescription slab;
+  slab.type = ShapeType::IMPLICIT;
+  slab.planes = {{0, 0, 1, -0.1}, {0, 0, -1, -0.1}};
+  slab.quadrics = {{1, 0, 0, 2, 0, 0, 0, 0, 0, -0.25}};
+  int clear = 0, hit = 0;
+  for (const ShapeDescription &s :
+       {shape(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0}), slab, polytope(tetrahedron),
+        shape(ShapeType::CONE, {0.7, 0.4}), shape(ShapeType::BOX, {0.4, 0.6, 0.5}),
+        shape(ShapeType::ELLIPSOID, {0.4, 0.2, 0.5}), shape(ShapeType::CYLINDER, {0.6, 0.3}),
+        shape(ShapeType::CAPSULE, {0.6, 0.2}), shape(ShapeType::SPHERE, {0.3})}) {
+    ConstraintPair pair;
+    pair.a = side({s}, 0.15);
+    pair.b = side({shape(ShapeType::SPHERE, {0.4})});
+    const auto gap = provider->prepare(pair), exact = distance->prepare(pair);
+    ConstraintValue value, truth;
+    for (int i = 0; i < 60; ++i) {
+      ConstraintPlace place;
+      place.a = random.pose(0.7), place.b = random.pose(0.7);
+      gap->evaluate(place, workspace, value);
+      exact->evaluate(place, workspace, truth);
+      if (value.lower >= 0.0) {
+        EXPECT_GE(truth.upper, 0.0) << shapeTypeName(s.type);
+        ++clear;
+      }
+      hit += truth.upper < 0.0;
+    }
+  }
+  EXPECT_GT(clear, 20);
+  EXPECT_GT(hit, 20);
 }
 
 TEST(Values, of_a_certified_FourierGap_are_positive_only_where_the_interiors_do_not_overlap) {
