@@ -256,6 +256,20 @@ FACTS = (Campaign.a_worker_is_killed, Campaign.a_cable_is_pulled, Campaign.a_wor
          Campaign.another_worker_verifies_one_row_of_a_hundred)
 
 
+def run_facts(facts, campaign):
+    """Runs each, prints what it says of itself and how many failed; the process's exit code."""
+    failed = 0
+    for fact in facts:
+        begin = time.monotonic()
+        try:
+            print(f'{fact.__name__}: {fact(campaign)} ({time.monotonic() - begin:.0f} s)', flush=True)
+        except (RuntimeError, OSError, subprocess.SubprocessError) as error:
+            failed += 1
+            print(f'FAILED {fact.__name__}: {error}', flush=True)
+    print(f'{len(facts) - failed} passed, {failed} failed')
+    return 1 if failed or not facts else 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--rows', type=int, default=3000)
@@ -267,18 +281,9 @@ def main():
         print('dataset_faults.py: needs root: network namespaces and a file system in memory', file=sys.stderr)
         return 2
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(130))  # so that nothing is left behind
-    failed, chosen = 0, [fact for fact in FACTS if not asked.names or fact.__name__ in asked.names]
     with tempfile.TemporaryDirectory(prefix='cprox-faults-') as place, network():
         campaign = Campaign(asked, place, os.environ.get('CPROX', 'cprox'))
-        for fact in chosen:
-            begin = time.monotonic()
-            try:
-                print(f'{fact.__name__}: {fact(campaign)} ({time.monotonic() - begin:.0f} s)', flush=True)
-            except (RuntimeError, OSError, subprocess.SubprocessError) as error:
-                failed += 1
-                print(f'FAILED {fact.__name__}: {error}', flush=True)
-    print(f'{len(chosen) - failed} passed, {failed} failed')
-    return 1 if failed or not chosen else 0
+        return run_facts([fact for fact in FACTS if not asked.names or fact.__name__ in asked.names], campaign)
 
 
 if __name__ == '__main__':

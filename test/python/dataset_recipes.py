@@ -16,7 +16,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -107,7 +106,7 @@ def slurm(campaign):
     if not all(tasks):
         raise RuntimeError(f'the nodes had {tasks} tasks')
     campaign.expect_truth(out)
-    return f'{campaign.shards} tasks, {" and ".join(map(str, tasks))} on the two nodes'
+    return f'{campaign.shards} tasks, {" and ".join(map(str, tasks))} on the two nodes, the same bytes as of one process'
 
 
 def parallel_over_ssh(campaign):
@@ -127,7 +126,7 @@ def parallel_over_ssh(campaign):
     if done.returncode != 0:
         raise RuntimeError(f'parallel ended with {done.returncode}: {done.stderr[-500:]}')
     campaign.expect_truth(out)
-    return f'{campaign.shards} shards'
+    return f'{campaign.shards} shards, the same bytes as of one process'
 
 
 def main():
@@ -143,18 +142,8 @@ def main():
     cprox = shutil.which(os.environ.get('CPROX', 'cprox'))
     os.environ['CPROX'] = cprox
     os.environ['PATH'] = os.path.dirname(cprox) + os.pathsep + os.environ['PATH']
-    failed = 0
     with tempfile.TemporaryDirectory(prefix='cprox-recipes-') as place, dataset_faults.network():
-        campaign = dataset_faults.Campaign(asked, place, cprox)
-        for recipe in (slurm, parallel_over_ssh):
-            begin = time.monotonic()
-            try:
-                print(f'{recipe.__name__}: {recipe(campaign)}, the same bytes as of one process ({time.monotonic() - begin:.0f} s)', flush=True)
-            except (RuntimeError, OSError, subprocess.SubprocessError) as error:
-                failed += 1
-                print(f'FAILED {recipe.__name__}: {error}', flush=True)
-    print(f'{2 - failed} passed, {failed} failed')
-    return 1 if failed else 0
+        return dataset_faults.run_facts((slurm, parallel_over_ssh), dataset_faults.Campaign(asked, place, cprox))
 
 
 if __name__ == '__main__':
