@@ -48,11 +48,24 @@ int32_t vertices_extreme(const convex *shape, vec3 d, double *most) {
   return (int32_t)first;
 }
 
+/* How far the vertices reach, without asking which one does. */
+SIMD_CLONES
+static double reach_of(const convex *shape, vec3 d) {
+  const double *x = shape->x, *y = shape->y, *z = shape->z;
+  double most = -INFINITY;
+#pragma omp simd reduction(max : most)
+  for (int32_t i = 0; i < shape->padded; i++) {
+    const double h = d.x * x[i] + d.y * y[i] + d.z * z[i];
+    most = h > most ? h : most;
+  }
+  return most;
+}
+
 double vertices_support(const convex *shape, vec3 d, convex_hint *hint, vec3 *at) {
   (void)hint;
+  if (!at) return reach_of(shape, d);
   double h;
-  const int32_t i = vertices_extreme(shape, d, &h);
-  if (at) *at = vertices_at(shape, i);
+  *at = vertices_at(shape, vertices_extreme(shape, d, &h));
   return h;
 }
 

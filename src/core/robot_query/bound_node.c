@@ -304,8 +304,8 @@ static cprox_status open_cluster(robot_search *o, const search_node *node, const
     cluster_measure(view, at, bar, &lanes);
     if (lanes.live && (at & TREE_LEAF)) cluster_measure_boxes(view, at, bar, &lanes);
     o->dropped = lesser(lanes.dropped, o->dropped);
-    for (uint32_t l = 0; lanes.live >> l && status == CPROX_OK; l++) {
-      if (!(lanes.live >> l & 1u)) continue;
+    for (uint32_t left = lanes.live; left && status == CPROX_OK; left &= left - 1) {
+      const uint32_t l = (uint32_t)__builtin_ctz(left);
       const double size = greater(MOST_DISPLACEMENT * lanes.apart[l], view->radius);
       list_entry lane = *entry;
       lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
