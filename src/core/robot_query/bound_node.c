@@ -282,7 +282,7 @@ static cprox_status open_box(robot_search *o, const search_node *node, const lis
   return status;
 }
 
-/* From this bound on what is under a node of the set's tree does not matter. */
+/* From this bound on what is under a node of the set's tree, or in two groups, does not matter. */
 static double pruning_bar(const robot_search *o) {
   const double bound = robot_pruning_bound(o);
   return o->goal.limit >= 0.0 ? nextafter(bound, INFINITY) : bound;
@@ -338,13 +338,13 @@ typedef struct open_groups {
 } open_groups;
 
 /* Raises the bound of two groups. Whether they move too far to be opened on this node, which they want cut. */
-static bool bound_groups(robot_search *o, const search_node *node, open_groups *pair) {
+static bool bound_groups(robot_search *o, const search_node *node, double bar, open_groups *pair) {
   const double apart = robot_groups_apart(&o->scene, pair->groups);
   pair->lower = greater(apart - pair->displacement, pair->lower);
-  if (robot_is_pruned(o, pair->lower)) return false;
+  if (pair->lower >= bar) return false;
   pair->displacement = lesser(robot_groups_displacement(&o->scene, pair->groups), pair->displacement);
   pair->lower = greater(apart - pair->displacement, pair->lower);
-  if (robot_is_pruned(o, pair->lower) || robot_groups_are_parts(&o->scene, pair->groups)) return false;
+  if (pair->lower >= bar || robot_groups_are_parts(&o->scene, pair->groups)) return false;
   const double size = greater(MOST_DISPLACEMENT * apart, robot_groups_radius(&o->scene, pair->groups));
   if (!(pair->displacement > GROUP_DISPLACEMENT * size) || robot_is_short(node)) return false;
   want_pieces(o, pair->displacement / (GROUP_DISPLACEMENT * size));
@@ -354,14 +354,15 @@ static bool bound_groups(robot_search *o, const search_node *node, open_groups *
 /* Two groups of parts: what is within reach of each other becomes pairs, or, where they move too far for these to be
  * measured, pairs of groups. */
 static cprox_status open_groups_of(robot_search *o, const search_node *node, const list_entry *entry) {
+  const double bar = pruning_bar(o);
   open_groups stack[GROUP_STACK];
   stack[0] = (open_groups){{{entry->part, (int32_t)entry->under}}, entry->lower, INFINITY};
   size_t n = 1;
   cprox_status status = CPROX_OK;
   while (n > 0 && status == CPROX_OK) {
     open_groups top = stack[--n];
-    const bool needs_split = !group_pair_is_one(top.groups) && bound_groups(o, node, &top);
-    if (robot_is_pruned(o, top.lower)) {
+    const bool needs_split = !group_pair_is_one(top.groups) && bound_groups(o, node, bar, &top);
+    if (top.lower >= bar) {
       o->dropped = lesser(top.lower, o->dropped);
     } else if (robot_groups_are_parts(&o->scene, top.groups)) {
       status = open_parts(o, node, top.groups, top.lower);

@@ -61,11 +61,13 @@ static uint64_t *row_of(const struct robot_groups *g, size_t group) {
 
 bool robot_groups_ask(const robot_scene *s, group_pair pair) {
   const struct robot_groups *g = s->groups;
-  const uint64_t *row = row_of(g, (size_t)pair.group[0]);
   const part_group *other = &g->of->at[pair.group[1]];
-  for (size_t w = (size_t)other->first / WORD; w * WORD < (size_t)other->last; w++)
-    if (row[w] & bits_between(w, other->first, other->last)) return true;
-  return false;
+  const uint32_t first = (uint32_t)other->first, last = (uint32_t)other->last - 1;
+  const uint64_t *row = row_of(g, (size_t)pair.group[0]), *end = row + last / WORD;
+  uint64_t bits = ~(uint64_t)0 << (first % WORD);
+  for (row += first / WORD; row < end; row++, bits = ~(uint64_t)0)
+    if (*row & bits) return true;
+  return (*row & bits & ~(uint64_t)0 >> (WORD - 1 - last % WORD)) != 0;
 }
 
 /* The rows of single parts, by place: those of pairs that were given. */
