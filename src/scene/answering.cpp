@@ -134,6 +134,9 @@ void widen(const Query &query, double rounding, double left_out, cprox_result &r
   if (result.status == CPROX_OK && !narrow) result.status = CPROX_PRECISION;
 }
 
+namespace {
+
+/* An interval of a profile, widened by rounding; `status` is that of the whole profile. */
 ClearanceInterval toInterval(const cprox_profile_interval &found, double rounding, const cprox_options &options,
                              double horizon, cprox_status status) {
   ClearanceInterval out;
@@ -145,6 +148,34 @@ ClearanceInterval toInterval(const cprox_profile_interval &found, double roundin
   out.upper = found.upper > 0.0 ? found.upper + rounding : found.upper;
   const bool wide = out.upper - out.lower > std::max(options.epsilon, options.relative_epsilon * out.upper);
   if (wide && !(out.lower > horizon)) out.status = status == CPROX_OK ? CPROX_PRECISION : status;
+  return out;
+}
+
+} // namespace
+
+std::vector<ClearanceInterval> searchProfile(const Obstacles &obstacles, const cprox_mover &mover, double rounding,
+                                             const std::vector<double> &breaks, double horizon, const Query &query,
+                                             Workspace &workspace, const IntervalNamer &name) {
+  std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
+  const cprox_options options = withoutRounding(query.options, rounding);
+  const cprox_status status = cprox_obstacles_profile(obstacles.get(), mover, breaks.data(), intervals.size(),
+                                                      horizon + rounding, &options, workspace.get(), intervals.data());
+  if (status < 0) throw Error(workspace.reason(), status);
+  std::vector<ClearanceInterval> out;
+  for (const cprox_profile_interval &interval : intervals) {
+    out.push_back(toInterval(interval, rounding, query.options, horizon, status));
+    name(interval, out.back());
+  }
+  return out;
+}
+
+std::vector<ClearanceInterval> profileOfNothing(const std::vector<double> &breaks) {
+  std::vector<ClearanceInterval> out(breaks.size() - 1);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].t0 = out[i].t = breaks[i];
+    out[i].t1 = breaks[i + 1];
+    out[i].lower = out[i].upper = std::numeric_limits<double>::infinity();
+  }
   return out;
 }
 

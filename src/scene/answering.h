@@ -41,10 +41,16 @@ cprox_status askCore(const Query &query, const cprox_options &options, const cpr
  * left_out. The verdict is reviewed by the interval as it then is. */
 void widen(const Query &query, double rounding, double left_out, cprox_result &result);
 
-/* An interval of a profile, widened by rounding; `status` is that of the whole profile. The names of a and b are left
- * to be filled in. */
-ClearanceInterval toInterval(const cprox_profile_interval &found, double rounding, const cprox_options &options,
-                             double horizon, cprox_status status);
+/* Writes the names of both sides of what the core found. */
+using IntervalNamer = std::function<void(const cprox_profile_interval &, ClearanceInterval &)>;
+
+/* The clearance profile, widened by the rounding that the core does not know. Throws Error where the core refuses. */
+std::vector<ClearanceInterval> searchProfile(const Obstacles &obstacles, const cprox_mover &mover, double rounding,
+                                             const std::vector<double> &breaks, double horizon, const Query &query,
+                                             Workspace &workspace, const IntervalNamer &name);
+
+/* The same where there is nothing to measure against. */
+std::vector<ClearanceInterval> profileOfNothing(const std::vector<double> &breaks);
 
 /* Writes the names of both sides of what the core found. */
 using ViolationNamer = std::function<void(const cprox_violation &, Violation &)>;

@@ -77,21 +77,12 @@ std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const Co
   if (!fault.empty()) throw Error(fault);
   const std::vector<Item> &items = targets.data().items;
   const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
-  const double rounding = roundingOf(curve, items);
-  const cprox_options options = withoutRounding(query.options, rounding);
-  std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
-  const cprox_status status =
-      cprox_obstacles_profile(obstacles.get(), along(curve.curve, curve.radius), breaks.data(), intervals.size(),
-                              horizon + rounding, &options, workspace.get(), intervals.data());
-  if (status < 0) throw Error(workspace.reason(), status);
-  std::vector<ClearanceInterval> out;
-  for (const cprox_profile_interval &interval : intervals) {
-    const std::int32_t found = interval.obstacle_index;
-    out.push_back(toInterval(interval, rounding, query.options, horizon, status));
-    out.back().a = curve.id;
-    if (found >= 0) out.back().b = *items[static_cast<std::size_t>(found)].owner;
-  }
-  return out;
+  const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
+    out.a = curve.id;
+    if (found.obstacle_index >= 0) out.b = *items[static_cast<std::size_t>(found.obstacle_index)].owner;
+  };
+  return searchProfile(obstacles, along(curve.curve, curve.radius), roundingOf(curve, items), breaks, horizon, query,
+                       workspace, name);
 }
 
 Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {

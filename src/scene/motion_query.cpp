@@ -191,28 +191,16 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
   const std::string fault = faultOfProfile(query, breaks, horizon);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, againstOf(self), query);
-  std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
-  for (std::size_t i = 0; i < intervals.size(); ++i)
-    intervals[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1, {}, {}, {}};
-  cprox_status status = CPROX_OK;
-  if (!asked.pairs.empty()) {
-    const cprox_options options = withoutRounding(query.options, asked.rounding);
-    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
-    status = cprox_obstacles_profile(obstacles.get(), asked.mover(), breaks.data(), intervals.size(),
-                                     horizon + asked.rounding, &options, workspace.get(), intervals.data());
-    if (status < 0) throw Error(workspace.reason(), status);
-  }
-  std::vector<ClearanceInterval> out;
-  for (const cprox_profile_interval &interval : intervals) {
+  if (asked.pairs.empty()) return profileOfNothing(breaks);
+  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
     Answer names;
-    names.result.obstacle_index = interval.obstacle_index;
-    names.result.mover_part = interval.mover_part;
+    names.result.obstacle_index = found.obstacle_index;
+    names.result.mover_part = found.mover_part;
     nameSides(asked, query, names);
-    out.push_back(toInterval(interval, asked.rounding, query.options, horizon, status));
-    out.back().a = names.a;
-    out.back().b = names.b;
-  }
-  return out;
+    out.a = names.a, out.b = names.b;
+  };
+  return searchProfile(obstacles, asked.mover(), asked.rounding, breaks, horizon, query, workspace, name);
 }
 
 } // namespace curve_proximity

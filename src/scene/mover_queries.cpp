@@ -224,33 +224,20 @@ std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, 
   if (query.options.interval) throw Error("an interval does not apply: breaks say where a profile begins and ends");
   const Movers::Data &data = movers.data();
   const Pairs pairs = pairsOf(data, against, query);
-  constexpr double FAR = std::numeric_limits<double>::infinity();
-  std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
-  for (std::size_t i = 0; i < intervals.size(); ++i)
-    intervals[i] = {breaks[i], breaks[i + 1], FAR, FAR, breaks[i], -1, -1, {}, {}, {}};
-  cprox_status status = CPROX_OK;
-  if (!pairs.environment.empty() || !pairs.among.empty()) {
-    const cprox_options options = withoutRounding(query.options, data.rounding);
-    const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
-    status = cprox_obstacles_profile(obstacles.get(), moverOf(data, pairs), breaks.data(), intervals.size(),
-                                     horizon + data.rounding, &options, workspace.get(), intervals.data());
-    if (status < 0) throw Error(workspace.reason(), status);
-  }
-  std::vector<ClearanceInterval> out;
-  for (const cprox_profile_interval &interval : intervals) {
+  if (pairs.environment.empty() && pairs.among.empty()) return profileOfNothing(breaks);
+  const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
+  const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
     Answer sides;
-    sides.result.obstacle_index = interval.obstacle_index;
-    sides.result.mover_part = interval.mover_part;
-    sides.result.witness_mover = interval.witness_mover;
-    sides.result.witness_obstacle = interval.witness_obstacle;
+    sides.result.obstacle_index = found.obstacle_index;
+    sides.result.mover_part = found.mover_part;
+    sides.result.witness_mover = found.witness_mover;
+    sides.result.witness_obstacle = found.witness_obstacle;
     nameSides(data, pairs.against, sides);
     sides = view(std::move(sides));
-    ClearanceInterval one = toInterval(interval, data.rounding, query.options, horizon, status);
-    one.a = sides.a, one.witness_a = sides.result.witness_mover;
-    one.b = sides.b, one.witness_b = sides.result.witness_obstacle;
-    out.push_back(std::move(one));
-  }
-  return out;
+    out.a = sides.a, out.witness_a = sides.result.witness_mover;
+    out.b = sides.b, out.witness_b = sides.result.witness_obstacle;
+  };
+  return searchProfile(obstacles, moverOf(data, pairs), data.rounding, breaks, horizon, query, workspace, name);
 }
 
 std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
