@@ -2,52 +2,76 @@
 #include "shape/cluster_hulls.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/rounding.h"
 
 enum { PADDING = 8 };
 
-/* ---- vertices ---- */
-
-static int compare_numbers(double a, double b) {
-  return (a > b) - (a < b);
-}
-
-static int compare_places(const void *a, const void *b) {
-  const vec3 *p = a, *q = b;
-  const int x = compare_numbers(p->x, q->x), y = compare_numbers(p->y, q->y);
-  return x ? x : y ? y : compare_numbers(p->z, q->z);
-}
+/* ---- places ---- */
 
 static bool is_repeated(const tree *t, uint32_t pack, uint32_t lane) {
   const uint32_t *ids = t->ids + (size_t)pack * TREE_LANES;
   return lane > 0 && ids[lane] == ids[lane - 1];
 }
 
-/* The corners of all triangles under a node or a pack; at most 3 a triangle. */
-static void gather(const tree *t, uint32_t at, vec3 *corners, size_t *n) {
-  uint32_t open[TREE_LANES * TREE_DEEPEST] = {at};
-  for (size_t count = 1; count > 0;) {
-    const uint32_t next = open[--count];
-    for (uint32_t l = 0; l < TREE_LANES; l++) {
-      if (next & TREE_LEAF) {
-        if (is_repeated(t, next & ~TREE_LEAF, l)) continue;
-        tree_corners(t, (tree_place){next & ~TREE_LEAF, l}, corners + *n);
-        *n += 3;
-      } else if (t->nodes[next].lanes >> l & 1u) {
-        open[count++] = t->nodes[next].child[l];
-      }
-    }
-  }
+/* The places of all corners, each once. */
+typedef struct places {
+  vec3 *at; /* room for all corners */
+  uint32_t n;
+  uint32_t *corner; /* of corner k of lane l of pack p, at 3 (8 p + l) + k: the number of its place */
+  uint32_t *slots;  /* a table of numbers, by their coordinates; NOWHERE: empty */
+  size_t mask;      /* the table has so many slots, less one; a power of two */
+} places;
+
+enum { NOWHERE = UINT32_MAX };
+
+static void places_free(places *p) {
+  free(p->at);
+  free(p->corner);
+  free(p->slots);
 }
 
-/* Each place once; how many. */
-static size_t merge(vec3 *corners, size_t n) {
-  size_t kept = 0;
-  qsort(corners, n, sizeof *corners, compare_places);
-  for (size_t i = 0; i < n; i++)
-    if (kept == 0 || !vec_equal(corners[i], corners[kept - 1])) corners[kept++] = corners[i];
-  return kept;
+/* Places that are equal have equal hashes: adding 0 turns -0 into 0. */
+static size_t hash_of(vec3 p) {
+  const double numbers[3] = {p.x + 0.0, p.y + 0.0, p.z + 0.0};
+  uint64_t bits[3], h = 0;
+  memcpy(bits, numbers, sizeof bits);
+  for (int k = 0; k < 3; k++) {
+    h = (h ^ bits[k]) * 0x9e3779b97f4a7c15u;
+    h ^= h >> 32;
+  }
+  return (size_t)h;
+}
+
+static uint32_t number_of(places *p, vec3 at) {
+  size_t slot = hash_of(at) & p->mask;
+  while (p->slots[slot] != NOWHERE && !vec_equal(p->at[p->slots[slot]], at)) slot = (slot + 1) & p->mask;
+  if (p->slots[slot] == NOWHERE) {
+    p->slots[slot] = p->n;
+    p->at[p->n++] = at;
+  }
+  return p->slots[slot];
+}
+
+/* False where memory is out. */
+static bool places_find(const tree *t, places *p) {
+  size_t slots = 64;
+  while (slots < 6 * t->n) slots *= 2;
+  *p = (places){.mask = slots - 1};
+  p->at = malloc((3 * t->n + 1) * sizeof *p->at);
+  p->corner = malloc((3 * TREE_LANES * t->n_packs + 1) * sizeof *p->corner);
+  p->slots = malloc(slots * sizeof *p->slots);
+  if (!p->at || !p->corner || !p->slots) return false;
+  memset(p->slots, 0xff, slots * sizeof *p->slots);
+  for (uint32_t pack = 0; pack < t->n_packs; pack++)
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      if (is_repeated(t, pack, l)) continue;
+      vec3 corners[3];
+      tree_corners(t, (tree_place){pack, l}, corners);
+      for (int k = 0; k < 3; k++) p->corner[3 * ((size_t)pack * TREE_LANES + l) + (size_t)k] = number_of(p, corners[k]);
+    }
+  return true;
 }
 
 /* ---- hulls ---- */
@@ -56,9 +80,36 @@ typedef struct builder {
   const tree *t;
   cluster_hulls *made;
   size_t room_of_hulls, room_of_vertices;
-  vec3 *corners;
+  places places;
+  uint32_t *seen; /* of each place the number of the latest hull that has it, plus 1 */
+  vec3 *corners;  /* of the hull at hand */
   bool failed;
 } builder;
+
+/* The places of all corners of the triangles under a node or a pack, each once; how many. */
+static size_t gather(builder *b, uint32_t at) {
+  const tree *t = b->t;
+  const uint32_t stamp = (uint32_t)b->made->n + 1;
+  uint32_t open[TREE_LANES * TREE_DEEPEST] = {at};
+  size_t n = 0;
+  for (size_t count = 1; count > 0;) {
+    const uint32_t next = open[--count], pack = next & ~TREE_LEAF;
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      if (!(next & TREE_LEAF)) {
+        if (t->nodes[next].lanes >> l & 1u) open[count++] = t->nodes[next].child[l];
+        continue;
+      }
+      if (is_repeated(t, pack, l)) continue;
+      const uint32_t *corner = b->places.corner + 3 * ((size_t)pack * TREE_LANES + l);
+      for (int k = 0; k < 3; k++) {
+        if (b->seen[corner[k]] == stamp) continue;
+        b->seen[corner[k]] = stamp;
+        b->corners[n++] = b->places.at[corner[k]];
+      }
+    }
+  }
+  return n;
+}
 
 /* Room for one more hull, and for so many numbers. */
 static bool make_room(builder *b, size_t numbers) {
@@ -92,9 +143,7 @@ static void find_box(cluster_hull *hull, const vec3 *corners, size_t n) {
 /* The hull of what is under a node or a pack; its number. Pointers into the vertices are set at the end, when these
  * stay where they are. */
 static uint32_t add_hull(builder *b, uint32_t at) {
-  size_t n = 0;
-  gather(b->t, at, b->corners, &n);
-  n = merge(b->corners, n);
+  const size_t n = gather(b, at);
   const size_t padded = (n + PADDING - 1) / PADDING * PADDING;
   if (n == 0 || n > INT32_MAX / 2 || !make_room(b, 3 * padded) || !b->made->vertices) {
     b->failed = true;
@@ -138,10 +187,17 @@ static void add_inside(builder *b, uint32_t number, uint32_t at) {
 }
 
 cluster_hulls *cluster_hulls_create(const tree *t) {
-  builder b = {.t = t, .made = calloc(1, sizeof *b.made), .corners = calloc(3 * t->n, sizeof *b.corners)};
-  b.failed = !b.made || !b.corners;
+  builder b = {.t = t, .made = calloc(1, sizeof *b.made)};
+  b.failed = !b.made || !places_find(t, &b.places);
+  if (!b.failed) {
+    b.seen = calloc(b.places.n + 1, sizeof *b.seen);
+    b.corners = malloc((b.places.n + 1) * sizeof *b.corners);
+    b.failed = !b.seen || !b.corners;
+  }
   if (!b.failed) add_hull(&b, 0);
   if (!b.failed) add_inside(&b, 0, 0);
+  places_free(&b.places);
+  free(b.seen);
   free(b.corners);
   if (b.failed) {
     cluster_hulls_free(b.made);
