@@ -604,6 +604,22 @@ CASE(gaps_refuse_delta_and_samples_together) {
   cprox_solid_free(ball);
 }
 
+/* A start is of pairs that stand, and it is written then. */
+CASE(a_start_is_refused_by_all_but_pairs) {
+  world w = make_world();
+  cprox_pair_start start = {.usable = false};
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.start = &start;
+  cprox_result r;
+  assert_int_equal(cprox_distance(cprox_point_along(w.way), target_of(&w, BOX, 0.0), &options, ws, &r), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_error(ws), "start does not apply to"));
+  assert_int_equal(cprox_time_of_contact(cprox_point_along(w.way), target_of(&w, BOX, 0.0), &options, ws, &r),
+                   CPROX_INVALID);
+  assert_true(cprox_pair(target_of(&w, BOX, 0.0), target_of(&w, BALL, 9.0), &options, ws, &r) >= 0);
+  assert_true(start.usable);
+  free_world(&w);
+}
+
 /* Signed: of two bodies that the curve goes through the deeper one is the nearest, alone, in a set and in a batch. */
 CASE(the_deepest_is_the_nearest_where_distances_are_signed) {
   world w = make_world();

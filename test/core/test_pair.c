@@ -7,6 +7,7 @@
 #include "shape/body.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/implicits.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -373,6 +374,105 @@ CASE(a_compound_is_as_near_as_its_nearest_part) {
     cprox_body_free(b);
     for (int k = 0; k < 5; k++) cprox_body_free(part[k].body);
   }
+}
+
+/* ---- where a former search ended ---- */
+
+static void move_a_little(rng *r, double step, cprox_pose *pose) {
+  pose->position = vec_axpy(pose->position, step, rng_unit(r));
+  pose->orientation.x += step * rng_uniform(r, -1, 1);
+  pose->orientation.z += step * rng_uniform(r, -1, 1);
+}
+
+/* Steps of pairs of the paper's objects, or of `kinds`, over a motion: from scratch and from the former answer. Both
+ * intervals hold the one distance. */
+static void track(uint64_t seed, bool implicit, uint64_t *cold, uint64_t *warm) {
+  rng r = rng_seed(seed);
+  cprox_workspace *workspace = cprox_workspace_create();
+  static test_shape shape[2];
+  *cold = *warm = 0;
+  for (size_t i = 0; i < test_cases(100); i++) {
+    cprox_body *body[2];
+    for (int k = 0; k < 2; k++) {
+      implicit_case c;
+      if (implicit) {
+        implicit_case_paper(1 + (int)rng_index(&r, 6), &c);
+        body[k] = implicit_case_body(&c, NULL);
+      } else {
+        shape_make(&r, TEST_BOUNDED[rng_index(&r, TEST_N_BOUNDED)], 1.0, 3.0, &shape[k]);
+        body[k] = shape[k].body;
+      }
+    }
+    cprox_pose a = rng_pose(&r, 0.5), b = rng_pose(&r, 0.5);
+    b.position = vec_axpy(b.position, 1.2 * (body[0]->ball_radius + body[1]->ball_radius), rng_unit(&r));
+    cprox_pair_start start = {0};
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.epsilon = 1e-8;
+    for (int k = 0; k < 20; k++) {
+      const cprox_obstacle pa = cprox_with_margin(cprox_obstacle_at(body[0], a), 0.01),
+                           pb = cprox_obstacle_at(body[1], b);
+      cprox_result none, some;
+      options.start = NULL;
+      assert_true(cprox_pair(pa, pb, &options, workspace, &none) >= 0);
+      options.start = &start;
+      assert_true(cprox_pair(pa, pb, &options, workspace, &some) >= 0);
+      assert_true(none.lower <= some.upper && some.lower <= none.upper);
+      assert_true(some.status == none.status || some.status == CPROX_OK || some.upper < 1e-6);
+      if (k > 0 && none.lower > 0.0) *cold += none.nodes, *warm += some.nodes;
+      move_a_little(&r, 1e-3, &a);
+      move_a_little(&r, 1e-3, &b);
+    }
+    for (int k = 0; k < 2; k++) cprox_body_free(body[k]);
+  }
+  cprox_workspace_free(workspace);
+}
+
+/* Seeds 61 and 62: 2000 places each. */
+CASE(a_start_answers_what_none_does_in_fewer_steps) {
+  uint64_t cold, warm;
+  track(61, false, &cold, &warm);
+  print_message("primitives and polytopes: %lu steps from scratch, %lu from the former answer\n", (unsigned long)cold,
+                (unsigned long)warm);
+  assert_true(warm < cold);
+  track(62, true, &cold, &warm);
+  print_message("implicit bodies: %lu steps from scratch, %lu from the former answer\n", (unsigned long)cold,
+                (unsigned long)warm);
+  assert_true(warm < cold);
+}
+
+/* Seed 63: a start of another pair, or one that is no answer at all, changes no truth. */
+CASE(a_false_start_is_as_true_as_none) {
+  rng r = rng_seed(63);
+  cprox_workspace *workspace = cprox_workspace_create();
+  for (size_t i = 0; i < test_cases(400); i++) {
+    implicit_case c;
+    cprox_body *body[2];
+    for (int k = 0; k < 2; k++) {
+      implicit_case_paper(1 + (int)rng_index(&r, 6), &c);
+      body[k] = implicit_case_body(&c, NULL);
+    }
+    const cprox_pose a = rng_pose(&r, 0.0), b = implicit_random_pose(&r, 2.5, 6);
+    const cprox_obstacle pa = cprox_obstacle_at(body[0], a), pb = cprox_obstacle_at(body[1], b);
+    cprox_pair_start start = {.usable = true,
+                              .point_a = rng_in_cube(&r, 3.0),
+                              .point_b = rng_in_cube(&r, 3.0),
+                              .normal = rng_unit(&r),
+                              .distance = rng_uniform(&r, 0.0, 5.0)};
+    if (i % 8 == 0) start.point_a.x = NAN;
+    if (i % 8 == 1) start.distance = INFINITY;
+    if (i % 8 == 2) start.normal = vec(0, 0, 0);
+    if (i % 8 == 3) start.distance = -1.0;
+    if (i % 8 == 4) start.point_b.y = 1e300;
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    cprox_result none, some;
+    assert_true(cprox_pair(pa, pb, &options, workspace, &none) >= 0);
+    options.start = &start;
+    assert_true(cprox_pair(pa, pb, &options, workspace, &some) >= 0);
+    assert_true(none.lower <= some.upper && some.lower <= none.upper);
+    assert_true(some.upper - some.lower <= fmax(none.upper - none.lower, 1e-6));
+    for (int k = 0; k < 2; k++) cprox_body_free(body[k]);
+  }
+  cprox_workspace_free(workspace);
 }
 
 int main(void) {

@@ -129,6 +129,21 @@ typedef enum cprox_lod { CPROX_LOD_NONE = 0, CPROX_LOD_SPHERE = 1, CPROX_LOD_HUL
 /** "none", "sphere", "hull", "mesh". Convex bodies are their own hull. */
 CPROX_API const char *cprox_lod_name(cprox_lod lod);
 
+/** Where a search of a pair of bodies ended, for the next search of the same two bodies, a little moved. Zeros: nothing
+ *  is known. It changes what the answer costs, and within its interval the answer, but not what holds of it. */
+typedef struct cprox_pair_start {
+  /** the members below are those of a former answer */
+  bool usable;
+  /** [m] in the frame of a, without its margin */
+  cprox_vec3 point_a;
+  /** [m] in the frame of b, without its margin */
+  cprox_vec3 point_b;
+  /** unit, in the frame of a, from b to a */
+  cprox_vec3 normal;
+  /** [m] between the two points; 0 where they overlapped */
+  double distance;
+} cprox_pair_start;
+
 /** How a query is to be answered. Start from CPROX_OPTIONS_DEFAULT, which sets the size.
  *
  *  Every query has epsilon and max_nodes. An option that is set and does not apply to the query is refused:
@@ -146,7 +161,8 @@ CPROX_API const char *cprox_lod_name(cprox_lod lod);
  *    translating contact, growth distance      no                yes   no        no           no
  *    certificate for an answer                 yes               no    yes       no           no
  *
- *  Of robots alone: interval goes with distance, tolerance, collision and time of contact; share with distance. */
+ *  Of pairs alone: start. Of robots alone: interval goes with distance, tolerance, collision and time of contact; share
+ * with distance. */
 typedef struct cprox_options {
   /** sizeof(cprox_options), as CPROX_OPTIONS_DEFAULT sets it; any other size is refused */
   size_t size;
@@ -187,12 +203,15 @@ typedef struct cprox_options {
   double (*share)(void *user, double upper);
   /** handed to share */
   void *share_user;
+  /** a pair of convex bodies: read before the search and written after it, so that the nearest points are tracked over
+   *  a motion from call to call. NULL: each search begins from scratch */
+  cprox_pair_start *start;
 } cprox_options;
 
 /** The default of all options. */
 #define CPROX_OPTIONS_DEFAULT                                                                                         \
   (CPROX_VALUE(cprox_options){sizeof(cprox_options), 1e-6, 0.0, 20000, NULL, NULL, NULL, false, CPROX_LOD_MESH, NULL, \
-                              NULL, NULL})
+                              NULL, NULL, NULL})
 
 /** The result of a query. */
 typedef struct cprox_result {

@@ -195,8 +195,9 @@ typedef struct implicit_answer {
  * found to within the width: then implicit_solve() does. The bounds are without give and rounding. */
 bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implicit_answer *answer);
 
-/* Two closed bodies that stand apart, by their support functions; false where that stalls or there is no gap to be
- * seen: then implicit_solve() answers, from `warm`. What it found is true all the same, rounding included. */
+/* Two closed bodies that stand apart, by their support functions, from `warm` on; false where that stalls or there is
+ * no gap to be seen: then implicit_solve() answers, from `warm` as it then is. What it found is true all the same,
+ * rounding included. */
 bool implicit_separate(const implicit_query *query, const implicit_goal *goal, implicit_warm *warm,
                        implicit_answer *answer);
 

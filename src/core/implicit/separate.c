@@ -91,6 +91,7 @@ bool implicit_separate(const implicit_query *query, const implicit_goal *goal, i
                        implicit_answer *answer) {
   const implicit_query *q = query;
   *answer = (implicit_answer){.lower = -INFINITY, .upper = INFINITY};
+  const implicit_warm former = *warm;
   *warm = (implicit_warm){.usable = false};
   const double far = vec_norm(q->t), reach = q->a->radius + q->b->radius;
   if (!(far > 0.0) || (has_flat(q->a) && has_flat(q->b))) return false;
@@ -99,7 +100,7 @@ bool implicit_separate(const implicit_query *query, const implicit_goal *goal, i
 
   ascent c = {.q = q};
   simplex hull = {.n = 0};
-  vec3 next = vec_scale(-1.0 / far, q->t);
+  vec3 next = unit(former.usable ? former.apart : vec_neg(q->t));
   double before[2] = {INFINITY, INFINITY};
   for (int i = 0; i < SEPARATE_STEPS; i++) {
     look(&c, next);

@@ -22,6 +22,12 @@ typedef struct pair_reply {
   cprox_lod lod;
 } pair_reply;
 
+/* Where a former search of the pair ended, in the world. */
+typedef struct pair_known {
+  vec3 on_a, on_b, normal;
+  double distance;
+} pair_known;
+
 /* ---- arguments ---- */
 
 static cprox_status pair_check_target(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
@@ -134,10 +140,20 @@ static void pair_take(const implicit_answer *found, const pair_side *a, const pa
   answer->on_b = vec_axpy(on_b, b->margin, answer->normal);
 }
 
+/* Where a former answer lets the interior point method begin; the goal's start is its normal. */
+static implicit_warm pair_warm(const pair_side *a, const pair_side *b, const pair_goal *goal, const pair_known *known) {
+  if (!known || !(known->distance > 0.0)) return (implicit_warm){.usable = false};
+  double error;
+  return (implicit_warm){.usable = true,
+                         .x = frame_to_local(&a->f, known->on_a, &error),
+                         .y = frame_to_local(&b->f, known->on_b, &error),
+                         .apart = vec_scale(known->distance, goal->start)};
+}
+
 /* Two implicit bodies: their support functions where that does not stall, else the interior point method. How deep they
  * overlap the search by supports says. False where memory is out. */
 static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
-                          cprox_workspace *workspace, pair_answer *answer) {
+                          const pair_known *known, cprox_workspace *workspace, pair_answer *answer) {
   const implicit *x = a->shape->implicit, *y = b->shape->implicit;
   void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(x, y));
   if (!memory) return false;
@@ -149,7 +165,7 @@ static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_pla
                                .max_steps = goal->max_steps};
   implicit_answer found;
   uint32_t steps = 0;
-  implicit_warm warm = {.usable = false};
+  implicit_warm warm = pair_warm(a, b, goal, known);
   if (!x->closed || !y->closed || !implicit_separate(&query, &inner, &warm, &found)) {
     if (x->closed && y->closed) steps = found.steps;
     implicit_solve(&query, &inner, &warm, memory, &found);
@@ -200,22 +216,24 @@ static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, c
 }
 
 /* One pair of convex shapes. The special ways want their shape first: the frame of the answer is the first one's. */
-static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pair_goal *goal,
+static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pair_goal *asked, const pair_known *known,
                                cprox_workspace *workspace, pair_answer *answer) {
-  if (a->body->tree || b->body->tree) return pair_with_elements(a, b, goal, workspace, answer);
+  if (a->body->tree || b->body->tree) return pair_with_elements(a, b, asked, workspace, answer);
   const bool halfspace = b->shape->ops->kind == CPROX_BODY_HALFSPACE;
   const bool ball = is_ball(a->shape) && b->shape->ops->closed_form && !is_ball(b->shape);
   const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_BODY_HALFSPACE);
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
   const pair_placement place = pair_place(first, second);
+  pair_goal goal = *asked;
+  if (known) goal.start = frame_turn_to_local(&first->f, swapped ? vec_neg(known->normal) : known->normal);
 
   if (first->shape->ops->kind == CPROX_BODY_HALFSPACE)
     pair_halfspace(first, second, &place, answer);
   else if (is_ball(second->shape) && first->shape->ops->closed_form)
     pair_ball(first, second, &place, answer);
   else if (!workspace || !is_implicit(first->shape) || !is_implicit(second->shape))
-    pair_separate(first->shape, first->margin, second->shape, second->margin, &place, goal, answer);
-  else if (!pair_implicit(first, second, &place, goal, workspace, answer))
+    pair_separate(first->shape, first->margin, second->shape, second->margin, &place, &goal, answer);
+  else if (!pair_implicit(first, second, &place, &goal, known, workspace, answer))
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of implicit bodies");
 
   /* pair_separate's normal is from b to a, the special ways' as well */
@@ -229,7 +247,7 @@ cprox_status pair_witness_of(const cprox_obstacle *a, size_t part_a, const cprox
   const pair_side side_a = pair_place_model(a, part_a, finest), side_b = pair_place_model(b, part_b, finest);
   const pair_goal goal = {.relative_epsilon = depth ? 1e-10 : 1e-13, .max_steps = 400, .wants_depth = depth};
   pair_answer answer = {.upper = INFINITY};
-  const cprox_status status = pair_solve(&side_a, &side_b, &goal, workspace, &answer);
+  const cprox_status status = pair_solve(&side_a, &side_b, &goal, NULL, workspace, &answer);
   if (status < 0) return status;
   *witness = (pair_witness){.on_a = answer.on_a, .on_b = answer.on_b, .normal = answer.normal};
   if (!depth && answer.upper <= answer.rounding) witness->on_a = witness->on_b = answer.common;
@@ -242,6 +260,7 @@ cprox_status pair_witness_of(const cprox_obstacle *a, size_t part_a, const cprox
 typedef struct pair_task {
   const cprox_obstacle *a, *b;
   const pair_goal *goal;
+  const pair_known *known; /* or NULL */
   cprox_lod finest;
   const cprox_options *options;
   cprox_workspace *workspace;
@@ -255,7 +274,7 @@ static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cp
     return workspace_fail(task->workspace, CPROX_INVALID, "two halfspaces have no distance");
   *reply = (pair_reply){.answer = {.upper = INFINITY}, .part = (int32_t)j};
   reply->lod = a.lod > b.lod ? a.lod : b.lod;
-  const cprox_status status = pair_solve(&a, &b, task->goal, task->workspace, &reply->answer);
+  const cprox_status status = pair_solve(&a, &b, task->goal, task->known, task->workspace, &reply->answer);
   if (status) return status;
   if (!reply->answer.support_failed) return CPROX_OK;
   return workspace_fail(task->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
@@ -332,13 +351,36 @@ static cprox_status pair_status(const pair_answer *answer, const cprox_options *
   return answer->exhausted ? CPROX_BUDGET : CPROX_PRECISION;
 }
 
+static bool pair_has_start(const cprox_options *options) {
+  const cprox_pair_start *start = options->start;
+  if (!start || !start->usable) return false;
+  const double sizes = vec_norm(start->point_a) + vec_norm(start->point_b) + start->distance;
+  return isfinite(sizes) && fabs(vec_norm(start->normal) - 1.0) < 1e-6;
+}
+
+/* Leaves behind where the search ended. */
+static void pair_leave(const cprox_obstacle *a, const cprox_obstacle *b, const pair_answer *answer,
+                       cprox_pair_start *start) {
+  const frame fa = frame_create(&a->pose, vec(0, 0, 0)), fb = frame_create(&b->pose, vec(0, 0, 0));
+  const vec3 n = answer->normal;
+  double error;
+  *start = (cprox_pair_start){.usable = vec_norm2(n) > 0.0};
+  if (!start->usable) return;
+  start->normal = frame_turn_to_local(&fa, n);
+  start->point_a = frame_to_local(&fa, vec_axpy(answer->on_a, a->margin, n), &error);
+  start->point_b = frame_to_local(&fb, vec_axpy(answer->on_b, -b->margin, n), &error);
+  const double distance = vec_dot(vec_sub(answer->on_a, answer->on_b), n) + a->margin + b->margin;
+  start->distance = answer->overlap ? 0.0 : fmax(distance, 0.0);
+}
+
 cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options *options, cprox_workspace *workspace,
                         cprox_result *result) {
   workspace_clear(workspace);
   const cprox_options asked = arguments_options(options);
   cprox_status status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
-  const arguments_query kind = {"a pair", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED}; /* depths are always measured */
+  const arguments_query kind = {"a pair",
+                                ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_START}; /* depths are always measured */
   if ((status = arguments_check_options(&asked, kind, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
       (status = pair_check_target("b", &b, workspace)))
     return status;
@@ -351,11 +393,26 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
                           .wants_depth = true};
   pair_reply best;
   const cprox_lod finest = asked.max_lod == CPROX_LOD_NONE ? CPROX_LOD_MESH : asked.max_lod;
-  const pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .options = &asked, .workspace = workspace};
+  pair_known known;
+  if (pair_has_start(&asked)) {
+    const frame fa = frame_create(&a.pose, vec(0, 0, 0)), fb = frame_create(&b.pose, vec(0, 0, 0));
+    known = (pair_known){.on_a = frame_to_world(&fa, asked.start->point_a),
+                         .on_b = frame_to_world(&fb, asked.start->point_b),
+                         .normal = frame_turn_to_world(&fa, asked.start->normal),
+                         .distance = asked.start->distance};
+  }
+  const pair_task task = {.a = &a,
+                          .b = &b,
+                          .goal = &goal,
+                          .known = pair_has_start(&asked) ? &known : NULL,
+                          .finest = finest,
+                          .options = &asked,
+                          .workspace = workspace};
   if ((status = pair_over_parts(&task, &best))) return status;
 
   const pair_answer *answer = &best.answer;
   status = pair_status(answer, &asked);
+  if (asked.start) pair_leave(&a, &b, answer, asked.start);
   *result = (cprox_result){.status = status,
                            .verdict = CPROX_VERDICT_UNDECIDED,
                            .lower = answer->lower,

@@ -39,6 +39,7 @@ static cprox_status check_applies(const cprox_options *options, arguments_query 
       {ARGUMENTS_INTERVAL, options->interval != NULL, "interval",
        "it is an option of distance, tolerance, collision and time of contact"},
       {ARGUMENTS_SHARE, options->share != NULL, "share", "it is an option of distance queries"},
+      {ARGUMENTS_START, options->start != NULL, "start", "it is an option of cprox_pair()"},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     if (all[i].set && !(asked.has & all[i].option))

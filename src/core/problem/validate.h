@@ -16,6 +16,7 @@ typedef enum arguments_option {
   ARGUMENTS_INTERVAL = 64,   /* interval, of robots */
   ARGUMENTS_SHARE = 128,     /* share, of robots */
   ARGUMENTS_RADIUS = 256,    /* a radius that changes */
+  ARGUMENTS_START = 512,     /* start, of pairs */
   ARGUMENTS_SEARCH = ARGUMENTS_STOP | ARGUMENTS_RELATIVE | ARGUMENTS_LOD
 } arguments_option;
 
