@@ -279,9 +279,29 @@ def implicit(rows, save):
     """Table I of Chakraborty et al. as bars, and its Fig. 2."""
     yield dots(rows, save, 'implicit', lambda row: row['workload'] == 'table I', 'Pairs of implicit bodies to 1e-8 of their size', 'implicit_pairs',
                lambda row: ' and '.join(OBJECTS[name] for name in row['parameter'].split('-')))
+    yield accuracies(rows, save)
+    yield dots(rows, save, 'implicit', lambda row: row['workload'] == 'as meshes', 'Pairs of implicit bodies, and as meshes of 19,000 triangles',
+               'implicit_meshes', lambda row: ' and '.join(OBJECTS[name] for name in row['parameter'].split('-')))
     for kind in ('planes', 'quadrics', 'superquadrics'):
         yield growth(rows, save, 'implicit', f'figure 2 {kind}', r'(\d+)', f'Bodies of many {kind}', f'seeds_figure_2_{kind}',
                      'constraints of both bodies')
+
+
+def accuracies(rows, save):
+    """Objects II and III to 1e-2 … 1e-12 of their sizes."""
+    found = [row for row in rows if row['group'] == 'implicit' and row['workload'] == 'accuracy']
+    figure, axes = plt.subplots()
+    names = {'curve_proximity': 'ours together', 'interior_point': 'our interior point', 'supports': 'support functions', 'ipopt': 'Ipopt'}
+    for method, name in names.items():
+        mine = [row for row in found if row['method'] == method]
+        if mine:
+            axes.loglog([float(row['parameter']) for row in mine], [float(row['median_us']) for row in mine], 'o-', label=name)
+    axes.invert_xaxis()
+    axes.set_xlabel('accuracy asked for, of the size of both bodies')
+    axes.set_ylabel('time [µs]')
+    axes.set_title('Objects II and III: time against accuracy')
+    legend_below(axes)
+    return save(figure, 'implicit_accuracy') if found else plt.close(figure)
 
 
 def fourier(rows, save):
@@ -292,6 +312,8 @@ def fourier(rows, save):
 def seeds(rows, save):
     """Fig. 7 and 10 of Lakshmanan et al., and its Table II as bars."""
     yield narrowing(rows, save)
+    yield reaches(rows, save)
+    yield memory(rows, save)
     for query_type in ('distance', 'tolerance', 'collision'):
         yield growth(rows, save, 'seeds', f'figure 10 {query_type}', r'order (\d+)', f'Bézier curves and a point, {query_type}',
                      f'seeds_figure_10_{query_type}', 'order of the curve')
@@ -311,6 +333,37 @@ def narrowing(rows, save):
     axes.set_title('A curve of order 13 and a polygon: how the interval narrows')
     legend_below(axes)
     return save(figure, 'seeds_figure_7') if found else plt.close(figure)
+
+
+def reaches(rows, save):
+    """What Theorem 1's ellipsoids are worth beside control points: the three curves of Fig. 11 a to c, cut in equal parts."""
+    found = [row for row in rows if row['group'] == 'seeds' and row['workload'] == 'figure 11 reach']
+    figure, axes = plt.subplots()
+    for style_of, method in (('--', 'ellipsoids'), ('-', 'control points')):
+        for number, curve in enumerate(sorted({row['parameter'] for row in found})):
+            mine = [row for row in found if (row['method'], row['parameter']) == (method, curve)]
+            axes.loglog([float(row['nodes']) for row in mine], [float(row['error']) for row in mine], style_of, marker='o', markersize=3,
+                        color=f'C{number}', label=f'{curve[2:]}, {method}')
+    axes.set_xlabel('parts of the curve')
+    axes.set_ylabel('mean reach beyond the chord [m]')
+    axes.set_title('Curves of Fig. 11 a, b, c: ellipsoids by arc length, and control points')
+    legend_below(axes)
+    return save(figure, 'seeds_figure_11_reach') if found else plt.close(figure)
+
+
+def memory(rows, save):
+    found = [row for row in rows if row['group'] == 'seeds' and row['workload'] == 'figure 10 memory']
+    figure, axes = plt.subplots()
+    names = {'curve_proximity': 'ours: curve, workspace', 'the curve alone': 'ours: the curve alone', 'paper': 'published: nodes examined, curve'}
+    for method, name in names.items():
+        mine = [row for row in found if row['method'] == method]
+        axes.plot([int(row['parameter'][6:]) for row in mine], [float(row['error']) / 1024 for row in mine], 'o-', label=name)
+    axes.set_xlabel('order of the curve')
+    axes.set_ylabel('memory [KiB]')
+    axes.set_ylim(bottom=0)
+    axes.set_title('Memory of a curve and the search for its distance from a point')
+    legend_below(axes)
+    return save(figure, 'seeds_figure_10_memory') if found else plt.close(figure)
 
 
 def draw_all(rows, out, made):

@@ -15,8 +15,12 @@
 #ifdef CPROX_BENCH_IPOPT
 #include "peers/ipopt.h"
 #endif
+#ifdef CPROX_BENCH_FCL
+#include "peers/mesh_fcl.h"
+#endif
 
-static const double ACCURACY = 1e-8;
+/* What is asked for, as a fraction of both bodies' sizes. */
+static double accuracy = 1e-8;
 
 /* What the methods need besides the problem. */
 typedef struct bench_state {
@@ -24,12 +28,16 @@ typedef struct bench_state {
   void *memory;
   const double *truth;
   double duration;
-  const double *exponents; /* deformation: to these */
-  cprox_affine scale;      /* or by this */
+  const double *exponents;  /* deformation: to these */
+  cprox_affine scale[2];    /* or each body by its own */
+  cprox_pair_start *starts; /* of a motion: where the search of the problem before each ended */
+  void *mesh[2];            /* of a peer */
+  const cprox_body *surface[2];
+  size_t n;
 } bench_state;
 
 static double accuracy_of(const implicit_problem *p) {
-  return ACCURACY * (p->query.a->radius + p->query.b->radius);
+  return accuracy * (p->query.a->radius + p->query.b->radius);
 }
 
 /* ---- Table I ---- */
@@ -72,12 +80,12 @@ static void supports(const void *problems, size_t i, void *state, bench_answer *
 /* Neither has a certificate: what is off by more than 1e-6 counts as failed. */
 static bool is_off(const bench_state *s, const implicit_problem *p, size_t i, double distance) {
   const double reach = p->query.a->radius + p->query.b->radius;
-  return s->truth && !(fabs(distance - s->truth[i]) <= 1e-6 * (reach + s->truth[i]));
+  return s->truth && !(fabs(distance - s->truth[i]) <= fmax(1e-6, accuracy) * (reach + s->truth[i]));
 }
 
 static void naive(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
-  const naive_answer r = naive_pair(&p->query, ACCURACY);
+  const naive_answer r = naive_pair(&p->query, accuracy);
   *a = (bench_answer){.lower = r.distance, .upper = r.distance, .nodes = (uint32_t)r.iterations};
   a->failed = !r.converged || is_off(state, p, i, r.distance);
 }
@@ -85,7 +93,7 @@ static void naive(const void *problems, size_t i, void *state, bench_answer *a) 
 #ifdef CPROX_BENCH_IPOPT
 static void ipopt(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
-  const ipopt_answer r = ipopt_pair(&p->query);
+  const ipopt_answer r = ipopt_pair(&p->query, accuracy);
   *a = (bench_answer){.lower = r.distance, .upper = r.distance, .nodes = (uint32_t)r.iterations};
   a->failed = !r.solved || is_off(state, p, i, r.distance);
 }
@@ -185,28 +193,36 @@ static void table_2(const bench_size *size, cprox_body *const *object, bench_sta
 
 /* ---- Table III: the deformed body is made and measured ---- */
 
-/* The step of ten that the problem's number picks. */
+/* The body at a part of its deformation: to the exponents, or by the scale. */
+static cprox_body *deformed_body(const cprox_body *from, const bench_state *s, int side, double part) {
+  cprox_affine map = {.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  double exponents[3];
+  for (int k = 0; k < 3; k++) {
+    const double p = from->shape.implicit->term[k].p;
+    exponents[k] = s->exponents ? p + part * (s->exponents[k] - p) : p;
+    if (!s->exponents) map.linear[4 * k] = 1.0 + part * (s->scale[side].linear[4 * k] - 1.0);
+  }
+  const cprox_implicit_description d = {
+      .deformed = from, .exponents = s->exponents ? exponents : NULL, .n_exponents = 3};
+  cprox_body *body = NULL;
+  if (cprox_body_create_implicit(&d, s->exponents ? NULL : &map, s->workspace, &body) < 0) return NULL;
+  return body;
+}
+
+/* The step of ten that the problem's number picks: exponents of a alone, the scale of both. */
 static void deformed(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
   const bench_state *s = state;
   const double part = (double)(i % 10 + 1) / 10.0;
-  cprox_affine map = {.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  double exponents[3];
-  for (int k = 0; k < 3; k++) {
-    const double from = p->query.a->term[k].p;
-    exponents[k] = s->exponents ? from + part * (s->exponents[k] - from) : from;
-    if (!s->exponents) map.linear[4 * k] = 1.0 + part * (s->scale.linear[4 * k] - 1.0);
-  }
-  cprox_body *body = NULL;
+  cprox_body *first = deformed_body(p->a, s, 0, part), *second = s->exponents ? NULL : deformed_body(p->b, s, 1, part);
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = accuracy_of(p);
   cprox_result r = {.status = CPROX_INVALID};
-  const cprox_implicit_description d = {
-      .deformed = p->a, .exponents = s->exponents ? exponents : NULL, .n_exponents = 3};
-  if (cprox_body_create_implicit(&d, s->exponents ? NULL : &map, s->workspace, &body) == CPROX_OK)
-    cprox_pair(cprox_obstacle_at(body, CPROX_POSE_IDENTITY), cprox_obstacle_at(p->b, p->pose), &options, s->workspace,
-               &r);
-  cprox_body_free(body);
+  if (first && (second || s->exponents))
+    cprox_pair(cprox_obstacle_at(first, CPROX_POSE_IDENTITY), cprox_obstacle_at(second ? second : p->b, p->pose),
+               &options, s->workspace, &r);
+  cprox_body_free(first);
+  cprox_body_free(second);
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .failed = r.status != CPROX_OK};
 }
 
@@ -215,17 +231,189 @@ static void table_3(const bench_size *size, cprox_body *const *object, bench_sta
   for (int k = 0; k < 4; k++) {
     const int first = k % 2 + 1;
     implicit_problem *problems =
-        implicit_problems_make(object[first], object[3], 5, 8, 51 + (uint64_t)k, size->problems);
+        implicit_problems_make(object[first], object[3], 7, 10, 51 + (uint64_t)k, size->problems);
     const bench_workload w = {.group = "implicit",
                               .name = k < 2 ? "table III scaling" : "table III exponents",
                               .parameter = first == 1 ? "I-III" : "II-III",
                               .problems = problems,
                               .n = size->problems};
     s->exponents = k < 2 ? NULL : third;
-    s->scale = (cprox_affine){.linear = {1, 0, 0, 0, 0.5, 0, 0, 0, 2}};
+    s->scale[0] = (cprox_affine){.linear = {1, 0, 0, 0, 0.5, 0, 0, 0, 2}};
+    s->scale[1] = (cprox_affine){.linear = {0.5, 0, 0, 0, 3, 0, 0, 0, 0.67}};
     bench_measure(&w, size, &(bench_method){"curve_proximity", deformed, s}, 1);
     free(problems);
   }
+}
+
+/* ---- the accuracy asked for ---- */
+
+static void accuracies(const bench_size *size, cprox_body *const *object, bench_state *s) {
+  const double usual = accuracy;
+  implicit_problem *problems = implicit_problems_make(object[2], object[3], 2, 8, 81, size->problems);
+  double *truth = implicit_problems_truth(problems, size->problems);
+  s->truth = truth;
+  s->memory = memory_of(object[2], object[3]);
+  for (int digits = 2; digits <= 12; digits += 2) {
+    accuracy = pow(10.0, -digits);
+    char parameter[32];
+    snprintf(parameter, sizeof parameter, "1e-%02d", digits);
+    const bench_method methods[] = {
+        {"curve_proximity", hybrid, s}, {"supports", supports, s}, {"interior_point", interior_point, s}};
+    const bench_workload w = {.group = "implicit",
+                              .name = "accuracy",
+                              .parameter = parameter,
+                              .problems = problems,
+                              .n = size->problems,
+                              .truth = truth,
+                              .doubt = 1e-9};
+    bench_measure(&w, size, methods, 3);
+    measure_ipopt(&w, size, s);
+  }
+  accuracy = usual;
+  free(s->memory);
+  free(truth);
+  free(problems);
+}
+
+/* ---- a motion: each problem is the one before it, a little moved ---- */
+
+static void tracked(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  cprox_pair_start start = s->starts[i];
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = accuracy_of(p);
+  options.start = &start;
+  cprox_result r;
+  const cprox_status status = cprox_pair(cprox_obstacle_at(p->a, CPROX_POSE_IDENTITY), cprox_obstacle_at(p->b, p->pose),
+                                         &options, s->workspace, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
+  a->failed = status != CPROX_OK;
+  if (i + 1 < s->n) s->starts[i + 1] = start;
+}
+
+static void motions(const bench_size *size, cprox_body *const *object, bench_state *s) {
+  static const int pairs[3][2] = {{2, 3}, {3, 4}, {5, 6}};
+  static const char *const names[3] = {"II-III", "III-IV", "V-VI"};
+  for (int k = 0; k < 3; k++) {
+    for (int digits = 1; digits <= 3; digits++) {
+      const double step = pow(10.0, -digits);
+      implicit_problem *problems =
+          implicit_problems_make(object[pairs[k][0]], object[pairs[k][1]], 6, 6.5, 91 + (uint64_t)k, size->problems);
+      rng r = rng_seed(95 + (uint64_t)k);
+      cprox_pose pose = problems[0].pose;
+      for (size_t i = 0; i < size->problems; i++) {
+        implicit_problem_place(&problems[i], pose);
+        const vec3 across = vec_cross(pose.position, rng_unit(&r));
+        pose.position = vec_axpy(pose.position, step / vec_norm(across), across);
+        pose.position = vec_scale(6.0 / vec_norm(pose.position), pose.position);
+        pose.orientation.x += step * rng_uniform(&r, -1, 1), pose.orientation.y += step * rng_uniform(&r, -1, 1);
+      }
+      char parameter[32];
+      snprintf(parameter, sizeof parameter, "%s step %g", names[k], step);
+      const bench_workload w = {
+          .group = "implicit", .name = "motion", .parameter = parameter, .problems = problems, .n = size->problems};
+      const bench_method methods[] = {{"curve_proximity", hybrid, s}, {"curve_proximity tracked", tracked, s}};
+      s->n = size->problems;
+      s->starts = calloc(s->n, sizeof *s->starts);
+      if (!s->starts) exit(1);
+      bench_measure(&w, size, methods, 2);
+      free(s->starts);
+      free(problems);
+    }
+  }
+}
+
+/* ---- the objects as meshes, as the paper gave them to PQP ---- */
+
+/* Support points in the directions of a sphere of `rings` circles and twice as many points each. */
+static size_t mesh_of(const cprox_body *body, int rings, vec3 *vertex, uint32_t (*triangle)[3]) {
+  const int sides = 2 * rings;
+  const double pi = 3.14159265358979323846;
+  for (int i = 0; i <= rings; i++) {
+    for (int k = 0; k < sides; k++) {
+      const double latitude = pi * ((double)i / rings - 0.5), longitude = 2.0 * pi * k / sides;
+      const vec3 u = {cos(latitude) * cos(longitude), cos(latitude) * sin(longitude), sin(latitude)};
+      cprox_body_support(body, u, &vertex[i * sides + k]);
+    }
+  }
+  size_t n = 0;
+  for (int i = 0; i < rings; i++) {
+    for (int k = 0; k < sides; k++) {
+      const uint32_t a = (uint32_t)(i * sides + k), b = (uint32_t)(i * sides + (k + 1) % sides);
+      const uint32_t c = a + (uint32_t)sides, d = b + (uint32_t)sides;
+      if (!vec_equal(vertex[a], vertex[b])) triangle[n][0] = a, triangle[n][1] = b, triangle[n][2] = d, n++;
+      if (!vec_equal(vertex[c], vertex[d])) triangle[n][0] = a, triangle[n][1] = d, triangle[n][2] = c, n++;
+    }
+  }
+  return n;
+}
+
+static void meshes_ours(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = 1e-6;
+  options.max_nodes = 1000000;
+  cprox_result r;
+  const cprox_status status = cprox_pair(cprox_obstacle_at(s->surface[0], CPROX_POSE_IDENTITY),
+                                         cprox_obstacle_at(s->surface[1], p->pose), &options, s->workspace, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
+  a->failed = status < 0;
+}
+
+#ifdef CPROX_BENCH_FCL
+static void meshes_fcl(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  const cprox_pose here = CPROX_POSE_IDENTITY;
+  const double d = mesh_fcl_distance(s->mesh[0], &here, s->mesh[1], &p->pose);
+  *a = (bench_answer){.lower = d, .upper = d, .failed = isnan(d)};
+}
+#endif
+
+static void meshes(const bench_size *size, cprox_body *const *object, bench_state *s) {
+  static const int pairs[3][2] = {{2, 3}, {3, 4}, {5, 6}};
+  static const char *const names[3] = {"II-III", "III-IV", "V-VI"};
+  enum { RINGS = 69, MOST = 2 * RINGS * 2 * RINGS };
+  vec3 *vertex = malloc(MOST * sizeof *vertex);
+  uint32_t(*triangle)[3] = malloc(MOST * sizeof *triangle);
+  if (!vertex || !triangle) exit(1);
+  for (int k = 0; k < 3; k++) {
+    implicit_problem *problems =
+        implicit_problems_make(object[pairs[k][0]], object[pairs[k][1]], 2, 8, 101 + (uint64_t)k, size->problems);
+    cprox_body *surface[2] = {NULL, NULL};
+    for (int side = 0; side < 2; side++) {
+      const size_t n = mesh_of(object[pairs[k][side]], RINGS, vertex, triangle);
+      const size_t corners = (RINGS + 1) * 2 * RINGS;
+      if (cprox_body_create_mesh(vertex, corners, (const uint32_t(*)[3])triangle, n, CPROX_MESH_FILL_SURFACE, SIZE_MAX,
+                                 s->workspace, &surface[side]) < 0)
+        exit(1);
+      s->surface[side] = surface[side];
+#ifdef CPROX_BENCH_FCL
+      s->mesh[side] = mesh_fcl_make(vertex, corners, (const uint32_t(*)[3])triangle, n);
+#endif
+    }
+    const bench_workload w = {
+        .group = "implicit", .name = "as meshes", .parameter = names[k], .problems = problems, .n = size->problems};
+    const bench_method methods[] = {
+        {"curve_proximity", hybrid, s},
+        {"curve_proximity meshes", meshes_ours, s},
+#ifdef CPROX_BENCH_FCL
+        {"fcl meshes", meshes_fcl, s},
+#endif
+    };
+    bench_measure(&w, size, methods, sizeof methods / sizeof *methods);
+    for (int side = 0; side < 2; side++) {
+      cprox_body_free(surface[side]);
+#ifdef CPROX_BENCH_FCL
+      mesh_fcl_free(s->mesh[side]);
+#endif
+    }
+    free(problems);
+  }
+  free(vertex);
+  free(triangle);
 }
 
 /* ---- Fig. 2: growth in the number of constraints ---- */
@@ -329,6 +517,9 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "table I")) table_1(&size, object, &s);
   if (bench_wanted(&size, "table II")) table_2(&size, object, &s);
   if (bench_wanted(&size, "table III")) table_3(&size, object, &s);
+  if (bench_wanted(&size, "accuracy")) accuracies(&size, object, &s);
+  if (bench_wanted(&size, "motion")) motions(&size, object, &s);
+  if (bench_wanted(&size, "as meshes")) meshes(&size, object, &s);
   if (bench_wanted(&size, "figure 2")) figure_2(&size, &s);
   if (bench_wanted(&size, "hard families")) hard(&size, &s);
   if (bench_wanted(&size, "point")) points(&size, object, &s);

@@ -105,7 +105,7 @@ static Bool count(Index mode, Index iteration, Number value, Number primal, Numb
   return TRUE;
 }
 
-ipopt_answer ipopt_pair(const implicit_query *query) {
+ipopt_answer ipopt_pair(const implicit_query *query, double tolerance) {
   task t = {.q = query};
   const int32_t m = implicit_count(query->a) + implicit_count(query->b);
   double low[6], high[6], x[6] = {0}, value = 0.0;
@@ -115,7 +115,7 @@ ipopt_answer ipopt_pair(const implicit_query *query) {
 
   IpoptProblem problem = CreateIpoptProblem(6, low, high, m, g_low, g_high, 3 * m, 21, 0, objective, constraints,
                                             objective_gradient, jacobian, lagrangian);
-  AddIpoptNumOption(problem, "tol", 1e-8);
+  AddIpoptNumOption(problem, "tol", tolerance);
   AddIpoptIntOption(problem, "print_level", 0);
   AddIpoptIntOption(problem, "max_iter", 500);
   AddIpoptNumOption(problem, "max_cpu_time", 0.1);

@@ -14,7 +14,7 @@ typedef struct ipopt_answer {
   int iterations;
 } ipopt_answer;
 
-/* From the centres, to the tolerance 1e-8. */
-ipopt_answer ipopt_pair(const implicit_query *query);
+/* From the centres, to a tolerance. */
+ipopt_answer ipopt_pair(const implicit_query *query, double tolerance);
 
 #endif

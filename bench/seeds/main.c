@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The tables and figures of Lakshmanan et al. (2019) that the other groups do not measure: Table I, Fig. 7, Fig. 10,
- * Table II. The kinds of curves are the paper's; where they stand, and the polygons, are ours, since it does not print
- * them. */
+ * Fig. 11, Table II. The kinds of curves are the paper's; where they stand, and the polygons, are ours, since it does
+ * not print them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "figures.h"
 #include "named.h"
 #include "support/measure.h"
 #include "support/problems.h"
@@ -216,6 +217,8 @@ static void figure_ten(const bench_size *size, const tools *t) {
 
 /* ---- Table II: the pairs of Fig. 11 ---- */
 
+static const vec3 PENTAGON[5] = {{2.0, 0.2, 0.0}, {2.9, -0.1, 0.0}, {3.2, 0.7, 0.0}, {2.6, 1.3, 0.0}, {2.1, 0.9, 0.0}};
+
 static void table_two_polygon(const bench_size *size, const tools *t, const char *name, const named_curve *curve,
                               const vec3 *vertex, size_t n) {
   cprox_body *body = NULL;
@@ -228,6 +231,31 @@ static void table_two_polygon(const bench_size *size, const tools *t, const char
              .obstacle = &polygon};
   measure_query_types(size, "table II", name, &q, 1);
   cprox_body_free(body);
+}
+
+/* ---- Fig. 11 b: what ellipsoids are worth ---- */
+
+static void figure_eleven_polygon(const tools *t, const char *name, const named_curve *curve, const vec3 *vertex,
+                                  size_t n) {
+  cprox_body *body = NULL;
+  if (cprox_body_create_polytope(vertex, n, t->workspace, &body) < 0) exit(1);
+  const cprox_obstacle target = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
+  const paper_obstacle polygon = {.vertex = vertex, .n = n};
+  figure_eleven(name, curve, &target, &polygon, t->heap);
+  cprox_body_free(body);
+}
+
+static void figures_eleven(const tools *t) {
+  named_curve c;
+  named_heart(vec(0.0, 0.0, 0.0), 1.2, &c);
+  figure_eleven_polygon(t, "a heart", &c, PENTAGON, 5);
+  cprox_curve_free(c.curve);
+  named_epicycloid(vec(0.0, 0.0, 0.0), 1.2, &c);
+  figure_eleven_polygon(t, "b epicycloid", &c, PENTAGON, 5);
+  cprox_curve_free(c.curve);
+  named_spiral(vec(0.0, 0.0, 0.0), &c);
+  figure_eleven_polygon(t, "c Euler spiral", &c, PENTAGON, 5);
+  cprox_curve_free(c.curve);
 }
 
 static void table_two_pair(const bench_size *size, const tools *t, const char *name, const cprox_curve *const curve[2],
@@ -247,17 +275,15 @@ static void table_two_named(const bench_size *size, const tools *t, const char *
 }
 
 static void table_two(const bench_size *size, const tools *t) {
-  static const vec3 pentagon[5] = {
-      {2.0, 0.2, 0.0}, {2.9, -0.1, 0.0}, {3.2, 0.7, 0.0}, {2.6, 1.3, 0.0}, {2.1, 0.9, 0.0}};
   named_curve a, b;
   named_heart(vec(0.0, 0.0, 0.0), 1.2, &a);
-  table_two_polygon(size, t, "a heart | polygon", &a, pentagon, 5);
+  table_two_polygon(size, t, "a heart | polygon", &a, PENTAGON, 5);
   cprox_curve_free(a.curve);
   named_epicycloid(vec(0.0, 0.0, 0.0), 1.2, &a);
-  table_two_polygon(size, t, "b epicycloid | polygon", &a, pentagon, 5);
+  table_two_polygon(size, t, "b epicycloid | polygon", &a, PENTAGON, 5);
   cprox_curve_free(a.curve);
   named_spiral(vec(0.0, 0.0, 0.0), &a);
-  table_two_polygon(size, t, "c Euler spiral | polygon", &a, pentagon, 5);
+  table_two_polygon(size, t, "c Euler spiral | polygon", &a, PENTAGON, 5);
   cprox_curve_free(a.curve);
 
   curve_pair *pair = curve_pairs_make(10, true, 1);
@@ -285,6 +311,8 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "figure 7")) figure_seven(&t);
   if (bench_wanted(&size, "figure 10")) figure_ten(&size, &t);
   if (bench_wanted(&size, "table II")) table_two(&size, &t);
+  if (bench_wanted(&size, "figure 11")) figures_eleven(&t);
+  for (size_t order = 5; bench_wanted(&size, "figure 10 memory") && order <= 45; order += 5) figure_ten_memory(order);
   free(t.heap);
   cprox_workspace_free(t.workspace);
   return 0;

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "figures.h"
+
+#include <malloc.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "support/problems.h"
+
+static const double EPSILON = 1e-10;
+
+/* ---- ellipsoids and hulls ---- */
+
+static double from_chord(vec3 p, vec3 a, vec3 b) {
+  const vec3 along = vec_sub(b, a);
+  const double square = vec_norm2(along);
+  const double s = square > 0.0 ? fmin(fmax(vec_dot(vec_sub(p, a), along) / square, 0.0), 1.0) : 0.0;
+  return vec_norm(vec_sub(p, vec_axpy(a, s, along)));
+}
+
+/* The largest distance of a control point over [a, b] from the chord; pieces end where they end. */
+static double hull_reach(const cprox_curve *curve, double a, double b, cprox_workspace *w) {
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  vec3 first, last, point[CPROX_MAX_DEGREE + 1];
+  cprox_curve_evaluate(curve, a, w, &first, NULL, NULL);
+  cprox_curve_evaluate(curve, b, w, &last, NULL, NULL);
+  double reach = 0.0;
+  for (size_t i = 0; i < info.n_pieces; i++) {
+    const cprox_curve_piece_info piece = cprox_curve_get_piece_info(curve, i);
+    const double from = fmax(a, piece.t0), to = fmin(b, piece.t1);
+    if (!(from < to) || cprox_curve_control_points(curve, from, to, w, point) < 0) continue;
+    for (size_t k = 0; k <= info.degree; k++) reach = fmax(reach, from_chord(point[k], first, last));
+  }
+  return reach;
+}
+
+/* The same curve, known by its points and the bound u_psi of the lengths of its parts. */
+static void known_point(void *user, double t, vec3 *point) {
+  const paper_curve *c = user;
+  *point = c->point(c->self, t);
+}
+
+static double known_length(void *user, double a, double b) {
+  const paper_curve *c = user;
+  const double energy = c->energy(c->self, b) - c->energy(c->self, a);
+  return sqrt((b - a) * fmax(energy, 0.0)) * (1.0 + 1e-12) + 1e-13;
+}
+
+static cprox_curve *by_length(const paper_curve *curve) {
+  const cprox_rectifiable_curve functions = {
+      .point = known_point, .length = known_length, .user = (void *)(uintptr_t)curve, .error = 1e-14};
+  const cprox_curve_description d = {
+      .kind = CPROX_CURVE_RECTIFIABLE, .t0 = curve->t0, .t1 = curve->t1, .rectifiable = &functions};
+  cprox_curve *made = NULL;
+  if (cprox_curve_create(&d, NULL, &made) < 0) exit(1);
+  return made;
+}
+
+static void print_row(const char *workload, const char *method, const char *parameter, double nodes, double error) {
+  printf("seeds,%s,%s,%s,,,%.0f,,%.4g,0,0\n", workload, method, parameter, nodes, error);
+}
+
+static void print_reaches(const char *name, const named_curve *curve, const cprox_curve *known, cprox_workspace *w) {
+  const double t0 = curve->paper.t0, t1 = curve->paper.t1;
+  for (int parts = 2; parts <= 256; parts *= 2) {
+    double ellipsoids = 0.0, hulls = 0.0;
+    for (int i = 0; i < parts; i++) {
+      const double a = t0 + (t1 - t0) * i / parts, b = i + 1 == parts ? t1 : t0 + (t1 - t0) * (i + 1) / parts;
+      cprox_curve_ellipsoid e;
+      if (cprox_curve_get_ellipsoid(known, a, b, w, &e) < 0) exit(1);
+      ellipsoids += e.radius / parts;
+      hulls += hull_reach(curve->curve, a, b, w) / parts;
+    }
+    print_row("figure 11 reach", "ellipsoids", name, parts, ellipsoids);
+    print_row("figure 11 reach", "control points", name, parts, hulls);
+  }
+}
+
+void figure_eleven(const char *name, const named_curve *curve, const cprox_obstacle *polygon,
+                   const paper_obstacle *vertices, paper_node *heap) {
+  cprox_workspace *w = cprox_workspace_create();
+  cprox_curve *known = by_length(&curve->paper);
+  print_reaches(name, curve, known, w);
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = EPSILON;
+  cprox_result r;
+  if (cprox_distance(cprox_point_along(curve->curve), *polygon, &options, w, &r) < 0) exit(1);
+  print_row("figure 11 intervals", "control points", name, r.nodes, r.upper - r.lower);
+  if (cprox_distance(cprox_point_along(known), *polygon, &options, w, &r) < 0) exit(1);
+  print_row("figure 11 intervals", "ellipsoids", name, r.nodes, r.upper - r.lower);
+  const paper_query q = {.query_type = PAPER_DISTANCE, .epsilon = EPSILON, .max_nodes = PAPER_MAX_NODES};
+  paper_answer answer;
+  paper_search(&curve->paper, vertices, &q, heap, &answer);
+  print_row("figure 11 intervals", "paper", name, answer.nodes, answer.upper - answer.lower);
+  cprox_curve_free(known);
+  cprox_workspace_free(w);
+}
+
+/* ---- memory ---- */
+
+static size_t bytes_in_use(void) {
+#if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
+  return mallinfo2().uordblks;
+#else
+  return (size_t)(unsigned)mallinfo().uordblks;
+#endif
+}
+
+void figure_ten_memory(size_t order) {
+  curve_problem *p = curve_problems_make(OBSTACLE_POINT, order, 1);
+  vec3 points[CPROX_MAX_DEGREE + 1];
+  if (cprox_curve_control_points(p->curve, 0.0, 1.0, NULL, points) < 0) exit(1);
+  char parameter[32];
+  snprintf(parameter, sizeof parameter, "order %02zu", order);
+
+  const size_t before = bytes_in_use();
+  cprox_workspace *w = cprox_workspace_create();
+  const cprox_curve_description d = {.kind = CPROX_CURVE_BEZIER, .points = points, .n = order + 1, .t1 = 1.0};
+  cprox_curve *curve = NULL;
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = EPSILON;
+  cprox_result r;
+  if (cprox_curve_create(&d, w, &curve) < 0) exit(1);
+  const size_t of_curve = bytes_in_use();
+  if (cprox_distance(cprox_point_along(curve), p->target, &options, w, &r) < 0) exit(1);
+  print_row("figure 10 memory", "curve_proximity", parameter, r.nodes, (double)(bytes_in_use() - before));
+  print_row("figure 10 memory", "the curve alone", parameter, 0, (double)(of_curve - before));
+  cprox_curve_free(curve);
+  cprox_workspace_free(w);
+
+  /* the published method keeps its open nodes, and a curve with the energy of |psi'|² */
+  paper_node *heap = calloc(PAPER_MAX_NODES, sizeof *heap);
+  const paper_query q = {.query_type = PAPER_DISTANCE, .epsilon = EPSILON, .max_nodes = PAPER_MAX_NODES};
+  paper_answer answer;
+  paper_search(&p->paper, &p->paper_obstacle, &q, heap, &answer);
+  print_row("figure 10 memory", "paper", parameter, answer.nodes,
+            (double)(answer.nodes * sizeof(paper_node) + (3 * order + 1) * sizeof(vec3)));
+  free(heap);
+  curve_problems_free(p, 1);
+}
