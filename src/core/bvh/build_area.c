@@ -8,9 +8,15 @@
 
 enum { BINS = 16, DEEPEST_BY_AREA = 24 };
 
+/* A box as its low corner and its high one negated: the smaller number is always the wider one, so that two boxes are
+ * united without asking which corner a number belongs to. */
+typedef struct bounds {
+  double at[6];
+} bounds;
+
 /* An element on its way into the tree. */
 typedef struct item {
-  box b;
+  bounds b;
   uint32_t element;
 } item;
 
@@ -21,28 +27,22 @@ typedef struct builder {
   bool stopped;
 } builder;
 
-/* box_add(), in line. */
-static inline void grow(box *b, const box *other) {
-  b->low.x = other->low.x < b->low.x ? other->low.x : b->low.x;
-  b->low.y = other->low.y < b->low.y ? other->low.y : b->low.y;
-  b->low.z = other->low.z < b->low.z ? other->low.z : b->low.z;
-  b->high.x = other->high.x > b->high.x ? other->high.x : b->high.x;
-  b->high.y = other->high.y > b->high.y ? other->high.y : b->high.y;
-  b->high.z = other->high.z > b->high.z ? other->high.z : b->high.z;
+static inline bounds bounds_empty(void) {
+  return (bounds){{INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}};
 }
 
-static double axis_of(vec3 v, int axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+static inline void grow(bounds *b, const bounds *other) {
+  for (int k = 0; k < 6; k++) b->at[k] = other->at[k] < b->at[k] ? other->at[k] : b->at[k];
 }
 
 /* Twice the middle of an element's box. */
-static inline vec3 middle2(const item *i) {
-  return vec_add(i->b.low, i->b.high);
+static inline double middle2(const item *i, int axis) {
+  return i->b.at[axis] - i->b.at[3 + axis];
 }
 
-static double area_of(const box *b) {
-  const vec3 d = vec_sub(b->high, b->low);
-  return d.x * d.y + d.y * d.z + d.z * d.x;
+static double area_of(const bounds *b) {
+  const double x = -b->at[3] - b->at[0], y = -b->at[4] - b->at[1], z = -b->at[5] - b->at[2];
+  return x * y + y * z + z * x;
 }
 
 /* ---- where to cut ---- */
@@ -55,7 +55,7 @@ typedef struct cut {
 } cut;
 
 static int bin_of(const item *i, const cut *c) {
-  const int bin = (int)((axis_of(middle2(i), c->axis) - c->low) * c->scale);
+  const int bin = (int)((middle2(i, c->axis) - c->low) * c->scale);
   return bin < BINS ? bin : BINS - 1;
 }
 
@@ -68,9 +68,9 @@ static double packs_for(size_t n) {
 static void try_axis(const builder *b, size_t first, size_t last, int axis, double low, double high, cut *best) {
   cut c = {.axis = axis, .low = low, .scale = (double)BINS / (high - low)};
   if (!isfinite(c.scale)) return;
-  box boxes[BINS], right[BINS];
+  bounds boxes[BINS], right[BINS];
   size_t count[BINS] = {0}, behind[BINS];
-  for (int i = 0; i < BINS; i++) boxes[i] = box_empty();
+  for (int i = 0; i < BINS; i++) boxes[i] = bounds_empty();
   for (size_t i = first; i < last; i++) {
     const int bin = bin_of(&b->items[i], &c);
     grow(&boxes[bin], &b->items[i].b);
@@ -83,7 +83,7 @@ static void try_axis(const builder *b, size_t first, size_t last, int axis, doub
     grow(&right[i], &boxes[i]);
     behind[i] = behind[i + 1] + count[i];
   }
-  box left = box_empty();
+  bounds left = bounds_empty();
   size_t before = 0;
   for (int i = 0; i + 1 < BINS; i++) {
     before += count[i];
@@ -113,11 +113,11 @@ static void select_middle(builder *b, size_t first, size_t last, size_t m, int a
   ptrdiff_t low = (ptrdiff_t)first, high = (ptrdiff_t)last - 1;
   const ptrdiff_t wanted = (ptrdiff_t)m;
   while (low < high) {
-    const double pivot = axis_of(middle2(&b->items[wanted]), axis);
+    const double pivot = middle2(&b->items[wanted], axis);
     ptrdiff_t i = low, j = high;
     while (i <= j) {
-      while (axis_of(middle2(&b->items[i]), axis) < pivot) i++;
-      while (pivot < axis_of(middle2(&b->items[j]), axis)) j--;
+      while (middle2(&b->items[i], axis) < pivot) i++;
+      while (pivot < middle2(&b->items[j], axis)) j--;
       if (i > j) break;
       const item moved = b->items[i];
       b->items[i++] = b->items[j];
@@ -130,17 +130,18 @@ static void select_middle(builder *b, size_t first, size_t last, size_t m, int a
 
 /* Cuts a range of more than a pack in two, neither empty; returns where. */
 static size_t cut_range(builder *b, size_t first, size_t last, int depth) {
-  box middles = box_empty();
-  for (size_t i = first; i < last; i++) {
-    const vec3 m = middle2(&b->items[i]);
-    grow(&middles, &(box){m, m});
-  }
-  const vec3 extent = vec_sub(middles.high, middles.low);
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t i = first; i < last; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      const double middle = middle2(&b->items[i], axis);
+      low[axis] = middle < low[axis] ? middle : low[axis];
+      high[axis] = middle > high[axis] ? middle : high[axis];
+    }
+  const vec3 extent = vec(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
   if (last - first > 2 * TREE_LANES && depth < DEEPEST_BY_AREA) {
     cut best = {.cost = INFINITY};
     for (int axis = 0; axis < 3; axis++)
-      if (axis_of(extent, axis) > 0.0)
-        try_axis(b, first, last, axis, axis_of(middles.low, axis), axis_of(middles.high, axis), &best);
+      if (high[axis] > low[axis]) try_axis(b, first, last, axis, low[axis], high[axis], &best);
     if (isfinite(best.cost)) return partition(b, first, last, &best);
   }
   /* near the middle of the longest axis: at a whole pack, where that leaves at least half a one */
@@ -191,8 +192,11 @@ bool tree_build_by_area(tree *t, const tree_source *source) {
   b.items = malloc(source->n * sizeof *b.items);
   bool made = b.items != NULL;
   if (made) {
-    for (size_t i = 0; i < source->n; i++)
-      b.items[i] = (item){.b = element_box(source, (uint32_t)i), .element = (uint32_t)i};
+    for (size_t i = 0; i < source->n; i++) {
+      const box of = element_box(source, (uint32_t)i);
+      b.items[i] =
+          (item){.b = {{of.low.x, of.low.y, of.low.z, -of.high.x, -of.high.y, -of.high.z}}, .element = (uint32_t)i};
+    }
     box all;
     const uint32_t root = build_range(&b, 0, source->n, 0, &all);
     made = !b.stopped;

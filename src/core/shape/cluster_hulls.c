@@ -2,76 +2,15 @@
 #include "shape/cluster_hulls.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/rounding.h"
+#include "shape/places.h"
 
 enum { PADDING = 8 };
-
-/* ---- places ---- */
 
 static bool is_repeated(const tree *t, uint32_t pack, uint32_t lane) {
   const uint32_t *ids = t->ids + (size_t)pack * TREE_LANES;
   return lane > 0 && ids[lane] == ids[lane - 1];
-}
-
-/* The places of all corners, each once. */
-typedef struct places {
-  vec3 *at; /* room for all corners */
-  uint32_t n;
-  uint32_t *corner; /* of corner k of lane l of pack p, at 3 (8 p + l) + k: the number of its place */
-  uint32_t *slots;  /* a table of numbers, by their coordinates; NOWHERE: empty */
-  size_t mask;      /* the table has so many slots, less one; a power of two */
-} places;
-
-enum { NOWHERE = UINT32_MAX };
-
-static void places_free(places *p) {
-  free(p->at);
-  free(p->corner);
-  free(p->slots);
-}
-
-/* Places that are equal have equal hashes: adding 0 turns -0 into 0. */
-static size_t hash_of(vec3 p) {
-  const double numbers[3] = {p.x + 0.0, p.y + 0.0, p.z + 0.0};
-  uint64_t bits[3], h = 0;
-  memcpy(bits, numbers, sizeof bits);
-  for (int k = 0; k < 3; k++) {
-    h = (h ^ bits[k]) * 0x9e3779b97f4a7c15u;
-    h ^= h >> 32;
-  }
-  return (size_t)h;
-}
-
-static uint32_t number_of(places *p, vec3 at) {
-  size_t slot = hash_of(at) & p->mask;
-  while (p->slots[slot] != NOWHERE && !vec_equal(p->at[p->slots[slot]], at)) slot = (slot + 1) & p->mask;
-  if (p->slots[slot] == NOWHERE) {
-    p->slots[slot] = p->n;
-    p->at[p->n++] = at;
-  }
-  return p->slots[slot];
-}
-
-/* False where memory is out. */
-static bool places_find(const tree *t, places *p) {
-  size_t slots = 64;
-  while (slots < 6 * t->n) slots *= 2;
-  *p = (places){.mask = slots - 1};
-  p->at = malloc((3 * t->n + 1) * sizeof *p->at);
-  p->corner = malloc((3 * TREE_LANES * t->n_packs + 1) * sizeof *p->corner);
-  p->slots = malloc(slots * sizeof *p->slots);
-  if (!p->at || !p->corner || !p->slots) return false;
-  memset(p->slots, 0xff, slots * sizeof *p->slots);
-  for (uint32_t pack = 0; pack < t->n_packs; pack++)
-    for (uint32_t l = 0; l < TREE_LANES; l++) {
-      if (is_repeated(t, pack, l)) continue;
-      vec3 corners[3];
-      tree_corners(t, (tree_place){pack, l}, corners);
-      for (int k = 0; k < 3; k++) p->corner[3 * ((size_t)pack * TREE_LANES + l) + (size_t)k] = number_of(p, corners[k]);
-    }
-  return true;
 }
 
 /* ---- hulls ---- */
@@ -80,11 +19,28 @@ typedef struct builder {
   const tree *t;
   cluster_hulls *made;
   size_t room_of_hulls, room_of_vertices;
-  places places;
-  uint32_t *seen; /* of each place the number of the latest hull that has it, plus 1 */
-  vec3 *corners;  /* of the hull at hand */
+  places places;    /* of all corners */
+  uint32_t *corner; /* of corner k of lane l of pack p, at 3 (8 p + l) + k: the number of its place */
+  uint32_t *seen;   /* of each place the number of the latest hull that has it, plus 1 */
+  vec3 *corners;    /* of the hull at hand */
   bool failed;
 } builder;
+
+/* False where memory is out. */
+static bool number_corners(builder *b) {
+  const tree *t = b->t;
+  b->corner = malloc((3 * TREE_LANES * t->n_packs + 1) * sizeof *b->corner);
+  if (!b->corner || !places_begin(&b->places, 3 * t->n)) return false;
+  for (uint32_t pack = 0; pack < t->n_packs; pack++)
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      if (is_repeated(t, pack, l)) continue;
+      uint32_t *number = b->corner + 3 * ((size_t)pack * TREE_LANES + l);
+      vec3 corners[3];
+      tree_corners(t, (tree_place){pack, l}, corners);
+      for (int k = 0; k < 3; k++) number[k] = places_number(&b->places, corners[k]);
+    }
+  return true;
+}
 
 /* The places of all corners of the triangles under a node or a pack, each once; how many. */
 static size_t gather(builder *b, uint32_t at) {
@@ -100,7 +56,7 @@ static size_t gather(builder *b, uint32_t at) {
         continue;
       }
       if (is_repeated(t, pack, l)) continue;
-      const uint32_t *corner = b->places.corner + 3 * ((size_t)pack * TREE_LANES + l);
+      const uint32_t *corner = b->corner + 3 * ((size_t)pack * TREE_LANES + l);
       for (int k = 0; k < 3; k++) {
         if (b->seen[corner[k]] == stamp) continue;
         b->seen[corner[k]] = stamp;
@@ -111,22 +67,31 @@ static size_t gather(builder *b, uint32_t at) {
   return n;
 }
 
-/* Room for one more hull, and for so many numbers. */
+/* Room for one more hull, and for so many numbers. What the first room is for is seldom more. */
 static bool make_room(builder *b, size_t numbers) {
   cluster_hulls *made = b->made;
+  const size_t n = b->t->n;
   if (made->n == b->room_of_hulls) {
-    const size_t room = 2 * b->room_of_hulls + 16;
+    const size_t room = b->room_of_hulls > 0 ? 2 * b->room_of_hulls : n / 4 + 16;
     cluster_hull *grown = realloc(made->hull, room * sizeof *grown);
     if (!grown) return false;
     made->hull = grown, b->room_of_hulls = room;
   }
   if (b->made->n_vertices + numbers > b->room_of_vertices) {
-    const size_t room = 2 * b->room_of_vertices + numbers;
+    const size_t room = (b->room_of_vertices > 0 ? 2 * b->room_of_vertices : 16 * n) + numbers;
     double *grown = realloc(made->vertices, room * sizeof *grown);
     if (!grown) return false;
     made->vertices = grown, b->room_of_vertices = room;
   }
   return true;
+}
+
+/* The room that was not needed. */
+static void give_back(cluster_hulls *made) {
+  cluster_hull *hull = realloc(made->hull, made->n * sizeof *hull);
+  if (hull) made->hull = hull;
+  double *vertices = realloc(made->vertices, made->n_vertices * sizeof *vertices);
+  if (vertices) made->vertices = vertices;
 }
 
 static void find_box(cluster_hull *hull, const vec3 *corners, size_t n) {
@@ -188,7 +153,7 @@ static void add_inside(builder *b, uint32_t number, uint32_t at) {
 
 cluster_hulls *cluster_hulls_create(const tree *t) {
   builder b = {.t = t, .made = calloc(1, sizeof *b.made)};
-  b.failed = !b.made || !places_find(t, &b.places);
+  b.failed = !b.made || !number_corners(&b);
   if (!b.failed) {
     b.seen = calloc(b.places.n + 1, sizeof *b.seen);
     b.corners = malloc((b.places.n + 1) * sizeof *b.corners);
@@ -197,12 +162,14 @@ cluster_hulls *cluster_hulls_create(const tree *t) {
   if (!b.failed) add_hull(&b, 0);
   if (!b.failed) add_inside(&b, 0, 0);
   places_free(&b.places);
+  free(b.corner);
   free(b.seen);
   free(b.corners);
   if (b.failed) {
     cluster_hulls_free(b.made);
     return NULL;
   }
+  give_back(b.made);
   double *x = b.made->vertices;
   for (size_t i = 0; i < b.made->n; i++) {
     convex *shape = &b.made->hull[i].shape;

@@ -12,5 +12,6 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/kinds.c
   ${CMAKE_CURRENT_LIST_DIR}/level_of_detail.c
   ${CMAKE_CURRENT_LIST_DIR}/mesh.c
+  ${CMAKE_CURRENT_LIST_DIR}/places.c
   ${CMAKE_CURRENT_LIST_DIR}/points.c
 )

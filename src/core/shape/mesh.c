@@ -6,6 +6,7 @@
 #include "bvh/winding.h"
 #include "shape/construct.h"
 #include "shape/elements.h"
+#include "shape/places.h"
 
 static cprox_status check_triangles(const uint32_t (*triangles)[3], size_t m, size_t n, cprox_workspace *workspace) {
   for (size_t i = 0; i < m; i++)
@@ -17,31 +18,6 @@ static cprox_status check_triangles(const uint32_t (*triangles)[3], size_t m, si
 }
 
 /* ---- closedness ---- */
-
-typedef struct placed_vertex {
-  vec3 at;
-  uint32_t index;
-} placed_vertex;
-
-static int compare_numbers(double a, double b) {
-  return (a > b) - (a < b);
-}
-
-static int compare_places(const void *a, const void *b) {
-  const vec3 p = ((const placed_vertex *)a)->at, q = ((const placed_vertex *)b)->at;
-  const int x = compare_numbers(p.x, q.x), y = compare_numbers(p.y, q.y);
-  return x ? x : y ? y : compare_numbers(p.z, q.z);
-}
-
-/* One number for each place: vertices with equal coordinates share theirs. */
-static void merge_vertices(const vec3 *vertices, size_t n, placed_vertex *sorted, uint32_t *merged) {
-  for (size_t i = 0; i < n; i++) sorted[i] = (placed_vertex){vertices[i], (uint32_t)i};
-  qsort(sorted, n, sizeof *sorted, compare_places);
-  for (size_t i = 0; i < n; i++) {
-    const bool same = i > 0 && vec_equal(sorted[i].at, sorted[i - 1].at);
-    merged[sorted[i].index] = same ? merged[sorted[i - 1].index] : (uint32_t)i;
-  }
-}
 
 /* A use of an edge, in the list of its vertex with the lower number. */
 typedef struct edge_use {
@@ -105,16 +81,16 @@ static bool edges_balance(const uint32_t (*triangles)[3], size_t m, const uint32
 static bool find_closedness(const vec3 *vertices, size_t n, const uint32_t (*triangles)[3], size_t m, bool *closed) {
   *closed = false;
   if (n == 0 || m == 0) return true;
-  placed_vertex *sorted = malloc(n * sizeof *sorted);
+  places merging = {0};
   uint32_t *merged = malloc(n * sizeof *merged);
   size_t *start = malloc((n + 1) * sizeof *start);
   edge_use *uses = calloc(3 * m, sizeof *uses);
-  const bool enough = sorted && merged && start && uses;
+  const bool enough = places_begin(&merging, n) && merged && start && uses;
   if (enough) {
-    merge_vertices(vertices, n, sorted, merged);
+    for (size_t i = 0; i < n; i++) merged[i] = places_number(&merging, vertices[i]);
     *closed = edges_balance(triangles, m, merged, n, start, uses);
   }
-  free(sorted);
+  places_free(&merging);
   free(merged);
   free(start);
   free(uses);
