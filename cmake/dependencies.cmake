@@ -8,6 +8,9 @@ if(CPROX_ROS)
   set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
 endif()
 find_package(Python3 REQUIRED COMPONENTS Interpreter Development)
+if(Python_FOUND) # by Debian 13's catkin, without what pybind11 then asks of it
+  find_package(Python REQUIRED COMPONENTS Interpreter Development)
+endif()
 find_package(pybind11 REQUIRED CONFIG)
 
 # FCL: 0.6 and 0.7 bring a CMake package with a target; 0.5 is asked for by pkg-config.

@@ -88,7 +88,7 @@ CASE(a_cut_adds_no_more_than_it_says) {
     vec3 p[MAX_DEGREE + 1];
     random_points(&r, n, p);
     double left[3 * (MAX_DEGREE + 1)], right[3 * (MAX_DEGREE + 1)];
-    num3 exact_left[MAX_DEGREE + 1], exact_right[MAX_DEGREE + 1];
+    num3 exact_left[MAX_DEGREE + 1], exact_right[MAX_DEGREE + 1] = {{{0}}};
     for (size_t j = 0; j < n; j++) {
       right[j] = p[j].x, right[n + j] = p[j].y, right[2 * n + j] = p[j].z;
       exact_right[j] = exact3(p[j]);
