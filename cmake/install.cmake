@@ -4,8 +4,15 @@ include(CMakePackageConfigHelpers)
 
 # The core and the Fourier gaps on top of it: libraries, C headers, a CMake package with the component `fourier`, and a
 # pkg-config file each; all relocatable.
-# Before 1.0 a new minor version may break the ABI, so that the SONAME carries it.
-set_target_properties(cprox cprox_fourier PROPERTIES
+# Before 1.0 a new minor version may break the ABI, so that the SONAME carries it: of these libraries and of those above them.
+set(linked_libraries cprox cprox_fourier)
+if(CPROX_SCENE)
+  list(APPEND linked_libraries ${PROJECT_NAME}_scene)
+endif()
+if(CPROX_ROS)
+  list(APPEND linked_libraries ${PROJECT_NAME}_constraints ${PROJECT_NAME}_ros)
+endif()
+set_target_properties(${linked_libraries} PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 install(TARGETS cprox EXPORT cproxTargets LIBRARY DESTINATION ${CPROX_LIB_DIR} ARCHIVE DESTINATION ${CPROX_LIB_DIR}
         RUNTIME DESTINATION bin)
