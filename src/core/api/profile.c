@@ -21,24 +21,29 @@ static cprox_status check_breaks(const query *q, const double *breaks, size_t n,
   return CPROX_OK;
 }
 
-/* The least clearance over [t0, t1], a piece at a time. */
+/* The least clearance over [t0, t1], a piece at a time. What section_outward() adds to the interval is taken from the
+ * width that is searched for. */
 static cprox_status measure(query *q, double t0, double t1, double cutoff, size_t *piece,
                             cprox_profile_interval *interval) {
   const cprox_curve *curve = q->mover.curve;
   *interval = (cprox_profile_interval){
       .t0 = t0, .t1 = t1, .lower = INFINITY, .upper = INFINITY, .t = t0, .obstacle_index = -1, .mover_part = -1};
+  const double epsilon = q->options.epsilon;
   cprox_status failure = CPROX_OK;
   while (*piece + 1 < curve->n_pieces && curve->breaks[*piece + 1] <= t0) (*piece)++;
   for (size_t i = *piece; i < curve->n_pieces && curve->breaks[i] < t1; i++) {
     const double from = fmax(t0, curve->breaks[i]), to = fmin(t1, curve->breaks[i + 1]);
     if (!(from < to)) continue;
     query_ask_section(q, i, from, to);
+    const double outward = section_outward(curve, i);
     cprox_result r;
+    q->options.epsilon = greater(0.0, epsilon - outward);
     const cprox_status status = query_answer(q, 0, q->n, lesser(interval->upper, cutoff), &r);
+    q->options.epsilon = epsilon;
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
     interval->lower = fmin(interval->lower, r.lower);
-    r.upper += section_outward(curve, i);
+    r.upper += outward;
     if (r.upper < interval->upper) {
       interval->upper = r.upper;
       interval->t = fmin(fmax(r.t, t0), t1);
@@ -48,7 +53,8 @@ static cprox_status measure(query *q, double t0, double t1, double cutoff, size_
     }
   }
   CORE_CHECK(!(interval->lower > interval->upper), "lower %.17g, upper %.17g", interval->lower, interval->upper);
-  return failure;
+  const cprox_result all = {.lower = interval->lower, .upper = interval->upper};
+  return failure == CPROX_OK && !query_is_satisfied(q, cutoff, &all) ? CPROX_PRECISION : failure;
 }
 
 /* The same of a robot, whose search knows of segments itself. */
