@@ -70,9 +70,18 @@ PreparedRobot Place::prepared(const TrajectoryDescription &trajectory) const {
 
 std::shared_ptr<const Robot> Library::robot(const std::string &path) {
   const std::lock_guard<std::mutex> lock(robots_mutex_);
-  std::shared_ptr<const Robot> &robot = robots_[path];
-  if (!robot) robot = readRobot(path);
-  return robot;
+  ReadRobot &read = robots_[path];
+  if (!read.robot && read.fault.empty()) {
+    try {
+      read.robot = readRobot(path);
+    } catch (const std::bad_alloc &) {
+      throw;
+    } catch (const std::exception &e) {
+      read.fault = e.what();
+    }
+  }
+  if (!read.robot) throw Error(read.fault);
+  return read.robot;
 }
 
 std::shared_ptr<const Place> Library::load(const std::string &robot, const std::string &srdf,

@@ -54,8 +54,13 @@ class Library {
   std::map<std::string, Entry> places_;
   std::list<std::string> used_; /* the latest first */
 
+  /** A robot, or why it cannot be read: then it is not read again for the next scene. */
+  struct ReadRobot {
+    std::shared_ptr<const Robot> robot;
+    std::string fault;
+  };
   std::mutex robots_mutex_; /* held while a robot is read: all wait for the one that they are about to share */
-  std::map<std::string, std::shared_ptr<const Robot>> robots_;
+  std::map<std::string, ReadRobot> robots_;
 };
 
 /** The digest of a file and of the mesh files that it names (as filename="…" or resource: …), 64 digits; of one that

@@ -8,6 +8,7 @@ import os
 import random
 import signal
 import subprocess
+import threading
 import time
 
 from support import Case, cprox
@@ -94,6 +95,30 @@ class Dataset(Case):
             self.assertEqual(self.certify(manifest, 'single', '--shards', 7, '--shard', shard).code, 0)
         self.assertEqual(len(os.listdir(single)), 7)
         self.assertEqual(self.merged('single'), tables[1, 1])
+
+    def a_robot_that_cannot_be_read_is_read_once_for_all_scenes(self):
+        pipe = os.path.join(self.folder, 'broken.urdf')
+        os.mkfifo(pipe)
+        reads = []
+
+        def write():
+            while True:
+                with open(pipe, 'w') as file:  # waits for a reader
+                    if len(reads) == 10:
+                        return
+                    reads.append(file.write('<robot name="broken">'))
+                time.sleep(0.1)  # until that reader is done
+        writer = threading.Thread(target=write, daemon=True)
+        writer.start()
+        scenes = ['near.yaml', 'far.yaml', 'third.yaml']
+        self.file('third.yaml', WALL)
+        manifest = self.manifest([self.row(scene, scene=scene, robot='broken.urdf') for scene in scenes])
+        self.assertEqual(self.certify(manifest, 'out').code, 0)
+        rows = self.table(self.merged('out'))
+        self.assertEqual([row['status'] for row in rows], ['failed'] * 3)
+        self.assertEqual(len({row['message'] for row in rows}), 1)
+        self.assertIn('broken.urdf', rows[0]['message'])
+        self.assertEqual(len(reads), 1)
 
     def csv_and_json_lines_say_the_same(self):
         self.manifest([self.row('a', query='tolerance', delta=0.5), self.row('b, "b"', scene='far.yaml', self=True)], 'one.jsonl')
