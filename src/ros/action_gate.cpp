@@ -11,25 +11,8 @@
 namespace curve_proximity {
 namespace {
 
-constexpr double PERIOD = 0.05; /* [s] between two looks at the scene */
-
 void complain(const std::string &why) {
   ROS_ERROR("gate: %s", why.c_str());
-}
-
-/** What is left after `elapsed` seconds: from the last point before that on, as a trajectory of its own whose time 0 is
- *  now: objects that move do so on that clock. */
-trajectory_msgs::JointTrajectory restOf(const trajectory_msgs::JointTrajectory &whole, double elapsed) {
-  std::size_t first = 0;
-  while (first + 1 < whole.points.size() && whole.points[first + 1].time_from_start.toSec() <= elapsed) ++first;
-  trajectory_msgs::JointTrajectory rest = whole;
-  rest.header.stamp = ros::Time();
-  rest.points.erase(rest.points.begin(), rest.points.begin() + static_cast<std::ptrdiff_t>(first));
-  const bool stands = rest.points.size() == 1 && rest.points.front().time_from_start.toSec() <= elapsed; // at its end
-  if (!stands && elapsed <= 0.0) return rest;
-  const ros::Duration now = stands ? rest.points.front().time_from_start : ros::Duration(elapsed);
-  for (auto &point : rest.points) point.time_from_start -= now;
-  return rest;
 }
 
 } // namespace
@@ -47,7 +30,7 @@ ActionGate::ActionGate(const ros::NodeHandle &handle, const GateParameters &para
       [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, complain); },
       [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, complain); }, false);
   server_->start();
-  timer_ = handle_.createWallTimer(ros::WallDuration(PERIOD),
+  timer_ = handle_.createWallTimer(ros::WallDuration(MotionWatch::PERIOD),
                                    [this](const ros::WallTimerEvent &) { guarded([this] { watch(); }, complain); });
   spinner_.start();
 }
@@ -86,8 +69,8 @@ void ActionGate::begin(Server::GoalHandle goal) {
   result.error_code = control::FollowJointTrajectoryResult::INVALID_GOAL;
   Refusal refusal;
   bool clear = false;
-  guarded([&] { clear = calls_.isClear(queryOf(asked->trajectory), refusal); },
-          [&](const std::string &why) { refusal.message = why; });
+  const ProximityQuery query = queryOf(asked->trajectory);
+  guarded([&] { clear = calls_.isClear(query, refusal); }, [&](const std::string &why) { refusal.message = why; });
   if (clear && !client_->isServerConnected()) {
     refusal = Refusal();
     refusal.message = "the controller's action '" + parameters_.controller + "' is not there";
@@ -99,11 +82,8 @@ void ActionGate::begin(Server::GoalHandle goal) {
     return tell(std::move(refusal), id, false);
   }
   goal.setAccepted();
-  running_.emplace_back();
+  running_.push_back({goal, {}, MotionWatch(query, asked->trajectory.header.stamp, refusal.scene), ""});
   Running &running = running_.back();
-  running.in = goal;
-  running.scene = refusal.scene;
-  running.began = std::max(ros::Time::now(), asked->trajectory.header.stamp);
   running.out = client_->sendGoal(
       *asked, [this](Client::GoalHandle done) { guarded([&] { end(std::move(done)); }, complain); },
       [this](Client::GoalHandle from, const boost::shared_ptr<const control::FollowJointTrajectoryFeedback> &feedback) {
@@ -144,19 +124,7 @@ void ActionGate::end(Client::GoalHandle done) {
 
 void ActionGate::check(Running &running) {
   Refusal refusal;
-  bool clear = false;
-  guarded(
-      [&] {
-        const SceneState now = calls_.scene();
-        clear = now.epoch == running.scene.epoch && now.version == running.scene.version;
-        if (clear) return;
-        const auto goal = running.in.getGoal();
-        const double elapsed = (ros::Time::now() - running.began).toSec();
-        clear = calls_.isClear(queryOf(restOf(goal->trajectory, elapsed)), refusal);
-        running.scene = refusal.scene;
-      },
-      [&](const std::string &why) { refusal.message = why; });
-  if (clear) return;
+  if (running.watch.isStillClear(calls_, refusal)) return;
   running.stopped = refusal.message;
   running.out.cancel();
   tell(std::move(refusal), running.in.getGoalID().id, true);

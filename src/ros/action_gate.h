@@ -16,15 +16,15 @@
 #include <string>
 
 #include "follow_joint_trajectory.h"
+#include "motion_watch.h"
 #include "parameters.h"
 #include "server_calls.h"
 
 namespace curve_proximity {
 
 /** A goal of ~follow_joint_trajectory is asked about from where the robot is by ~joint_states of the server. It is
- * rejected, or handed to the action ~controller. While it runs, what is left of it is asked about again as soon as the
- * scene is another one; the controller is told to cancel where that is not clear, or the server does not answer. One
- * thread. */
+ * rejected, or handed to the action ~controller. While it runs it is watched (MotionWatch); the controller is told to
+ * cancel where what is left is not clear, or the server does not answer. One thread. */
 class ActionGate {
  public:
   /** handle: private. refused: where refusals go. */
@@ -40,8 +40,7 @@ class ActionGate {
   struct Running {
     Server::GoalHandle in;
     Client::GoalHandle out;
-    ros::Time began;
-    SceneState scene;
+    MotionWatch watch;
     std::string stopped; /* why the gate has cancelled it; empty: it has not */
   };
 

@@ -223,6 +223,8 @@ GateParameters readGateParameters(const ros::NodeHandle &handle) {
   reader.warnOfOthers();
   if (!parameters.controller.empty() && parameters.server.empty())
     throw ParameterError("parameter ~controller: goals need a server to ask: ~server is its namespace");
+  if (parameters.watch && parameters.server.empty())
+    throw ParameterError("parameter ~watch: it needs a server to ask: ~server is its namespace");
   return parameters;
 }
 

@@ -132,6 +132,7 @@ struct GateParameters {
   std::string server;         /**< the namespace of the server's services; empty: the scene is not looked at again */
   std::string controller;     /**< the action of the controller; empty: there is no action */
   bool self_collision = true; /**< of goals of the action */
+  bool watch = false;         /**< ~clear_trajectory is watched while it runs */
 };
 
 template <class Fields, class Visitor>
@@ -141,6 +142,7 @@ void visitGateParameters(Fields &parameters, Visitor &&visit) {
   visit("server", parameters.server);
   visit("controller", parameters.controller);
   visit("self_collision", parameters.self_collision);
+  visit("watch", parameters.watch);
 }
 
 /** Reads the parameters of a private handle; those that are not set keep their defaults.

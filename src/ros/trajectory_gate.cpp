@@ -12,6 +12,7 @@
 #include <curve_proximity/core.hpp>
 #include <curve_proximity/fingerprint.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "guard.h"
@@ -79,11 +80,15 @@ TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParamete
   subscribers_.push_back(handle_.subscribe<ProximityResults>(
       "proximity", QUEUE,
       [this](const ProximityResultsConstPtr &results) { guarded([&] { answer(results); }, complain); }));
+  if (parameters_.watch)
+    timer_ = handle_.createWallTimer(ros::WallDuration(MotionWatch::PERIOD),
+                                     [this](const ros::WallTimerEvent &) { guarded([this] { lookOn(); }, complain); });
   spinner_.start();
 }
 
 TrajectoryGate::~TrajectoryGate() {
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
+  timer_.stop();
   spinner_.stop();
   actions_.reset();
   queue_.clear();
@@ -93,6 +98,7 @@ template <class Message>
 void TrajectoryGate::connect(const std::string &topic) {
   using Pointer = boost::shared_ptr<const Message>;
   const ros::Publisher out = handle_.advertise<Message>("clear_" + topic, QUEUE);
+  if (std::is_same_v<Message, trajectory_msgs::JointTrajectory>) clear_trajectory_ = out;
   subscribers_.push_back(handle_.subscribe<Message>(topic, QUEUE, [this, out](const Pointer &message) {
     guarded(
         [&] {
@@ -120,34 +126,67 @@ void TrajectoryGate::decide(const Waiting &message, const ProximityResults &resu
   if (!isClear(results, parameters_.delta)) {
     refusal = refusalOf(results.results, parameters_.delta, results.scene);
     if (!results.success) refusal.message = results.message;
-  } else if (isStillClear(message, results, refusal)) {
-    return message.pass();
+    return refuse(std::move(refusal), results);
   }
-  refuse(std::move(refusal), results);
+  if (!calls_) return message.pass();
+  ProximityQuery query;
+  message.ask(query);
+  query.current_joints = !std::isnan(results.scene.joint_state_age);
+  query.self_collision = std::any_of(results.results.begin(), results.results.end(),
+                                     [](const Proximity &row) { return row.kind == Proximity::KIND_SELF; });
+  SceneState scene = results.scene;
+  if (!isStillClear(query, scene, refusal)) return refuse(std::move(refusal), results);
+  message.pass();
+  if (parameters_.watch && !query.trajectories.empty()) watch(std::move(query), results, std::move(scene));
 }
 
-/** The scene may have changed since the answer. */
-bool TrajectoryGate::isStillClear(const Waiting &message, const ProximityResults &results, Refusal &refusal) {
-  if (!calls_) return true;
+/** The scene may have changed since the answer. `scene` becomes that which it is clear of. */
+bool TrajectoryGate::isStillClear(const ProximityQuery &query, SceneState &scene, Refusal &refusal) {
   bool clear = false;
   guarded(
       [&] {
         const SceneState now = calls_->scene();
-        clear = now.epoch == results.scene.epoch && now.version == results.scene.version;
+        clear = now.epoch == scene.epoch && now.version == scene.version;
         if (clear) return;
-        ProximityQuery query;
-        message.ask(query);
-        query.current_joints = !std::isnan(results.scene.joint_state_age);
-        query.self_collision = std::any_of(results.results.begin(), results.results.end(),
-                                           [](const Proximity &row) { return row.kind == Proximity::KIND_SELF; });
         clear = calls_->isClear(query, refusal);
+        scene = refusal.scene;
       },
       [&](const std::string &why) {
         refusal.header.stamp = ros::Time::now();
-        refusal.scene = results.scene;
+        refusal.scene = scene;
         refusal.message = why;
       });
   return clear;
+}
+
+/** A trajectory of the same joints takes the place of the one before it. */
+void TrajectoryGate::watch(ProximityQuery query, const ProximityResults &results, SceneState scene) {
+  const ros::Time stamp = query.trajectories.front().header.stamp;
+  Running next{MotionWatch(std::move(query), stamp, std::move(scene)), {}};
+  next.of.header = results.header;
+  next.of.source = results.source;
+  next.of.id = results.id;
+  next.of.fingerprint = results.fingerprint;
+  const auto &joints = next.watch.trajectory().joint_names;
+  running_.remove_if([&](const Running &one) {
+    const auto &others = one.watch.trajectory().joint_names;
+    return std::find_first_of(others.begin(), others.end(), joints.begin(), joints.end()) != others.end();
+  });
+  running_.push_back(std::move(next));
+}
+
+void TrajectoryGate::lookOn() {
+  running_.remove_if([this](Running &one) {
+    if (one.watch.isOver()) return true;
+    Refusal refusal;
+    if (one.watch.isStillClear(*calls_, refusal)) return false;
+    trajectory_msgs::JointTrajectory stop;
+    stop.joint_names = one.watch.trajectory().joint_names;
+    clear_trajectory_.publish(stop);
+    refusal.cancelled = true;
+    refuse(std::move(refusal), one.of);
+    return true;
+  });
 }
 
 void TrajectoryGate::refuse(Refusal refusal, const ProximityResults &results) {
@@ -156,7 +195,8 @@ void TrajectoryGate::refuse(Refusal refusal, const ProximityResults &results) {
   refusal.id = results.id;
   refusal.fingerprint = results.fingerprint;
   refusal.delta = parameters_.delta;
-  ROS_WARN("gate: %s '%s' does not pass: %s", results.source.c_str(), results.id.c_str(), refusal.message.c_str());
+  ROS_WARN("gate: %s '%s' %s: %s", results.source.c_str(), results.id.c_str(),
+           refusal.cancelled ? "is stopped" : "does not pass", refusal.message.c_str());
   refused_.publish(refusal);
 }
 

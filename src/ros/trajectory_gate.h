@@ -7,15 +7,18 @@
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
+#include <ros/wall_timer.h>
 
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "action_gate.h"
+#include "motion_watch.h"
 #include "parameters.h"
 #include "server_calls.h"
 
@@ -29,8 +32,9 @@ bool isClear(const ProximityResults &results, double delta);
  * whichever order they come, and hands on those that are clear, by pointer: ~clear_curve, ~clear_trajectory,
  * ~clear_multi_dof_trajectory, ~clear_path. ~queue_size messages and as many answers wait for each other; what is older
  * never passes. Before it hands a message on, it looks at the scene of ~server: where that is another one than the
- * answer's, it asks again. What does not pass is told on ~refused. With ~controller it is also a FollowJointTrajectory
- * action: see ActionGate. */
+ * answer's, it asks again. What does not pass is told on ~refused. With ~watch it looks on while a trajectory runs
+ * (MotionWatch); where what is left is not clear, a trajectory without points follows on ~clear_trajectory, at which
+ * joint_trajectory_controller stops. With ~controller it is also a FollowJointTrajectory action: see ActionGate. */
 class TrajectoryGate {
  public:
   TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters);
@@ -49,22 +53,30 @@ class TrajectoryGate {
     std::uint64_t fingerprint;
     ProximityResultsConstPtr results;
   };
+  struct Running {
+    MotionWatch watch;
+    ProximityResults of; /* the head of its answer, without rows */
+  };
 
   template <class Message>
   void connect(const std::string &topic);
   void receive(Waiting message);
   void answer(const ProximityResultsConstPtr &results);
   void decide(const Waiting &message, const ProximityResults &results);
-  bool isStillClear(const Waiting &message, const ProximityResults &results, Refusal &refusal);
+  bool isStillClear(const ProximityQuery &query, SceneState &scene, Refusal &refusal);
+  void watch(ProximityQuery query, const ProximityResults &results, SceneState scene);
+  void lookOn();
   void refuse(Refusal refusal, const ProximityResults &results);
 
   const GateParameters parameters_;
   std::deque<Waiting> waiting_; /* touched by the one thread of the queue alone */
   std::deque<Answered> answered_;
+  std::list<Running> running_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
-  ros::Publisher refused_;
+  ros::Publisher refused_, clear_trajectory_;
   std::unique_ptr<ServerCalls> calls_; /* null: the scene is not looked at again */
+  ros::WallTimer timer_;
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<ActionGate> actions_;
   ros::AsyncSpinner spinner_;

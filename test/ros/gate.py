@@ -166,9 +166,57 @@ class Gate(unittest.TestCase):
         self.assertTrue(until(lambda: self.refused, 5))
         self.assertEqual((self.refused[0].source, self.refused[0].row.b), ('trajectory', 'post'))
         self.server.apply(thing('post', operation=CollisionObject.REMOVE))
-        self.topic.publish(turning(3.0, 2.0))
+        self.topic.publish(turning(3.0, 0.2))
         self.assertTrue(until(lambda: self.passed, 5))
         self.assertEqual((len(self.passed), len(self.refused)), (1, 1))
+
+    def test_a_trajectory_that_passed_is_stopped_when_what_is_left_of_it_is_no_longer_clear(self):
+        self.topic.publish(turning(2.0, 3.0))
+        self.assertTrue(until(lambda: self.passed, 5))
+        self.server.apply(sphere('behind', 0.1, (0.5, -0.5, 0.5)))  # another scene, and nothing in the way
+        time.sleep(0.4)
+        self.assertEqual((len(self.passed), self.refused), (1, []))
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        begin = time.monotonic()
+        self.assertTrue(until(lambda: len(self.passed) == 2 and self.refused, 5))
+        self.assertLess(time.monotonic() - begin, 1.0)
+        self.assertEqual((self.passed[1].joint_names, self.passed[1].points), (['turn'], []))
+        refusal, = self.refused
+        self.assertEqual((refusal.source, refusal.row.b, refusal.cancelled), ('trajectory', 'post', True))
+        time.sleep(0.3)
+        self.assertEqual((len(self.passed), len(self.refused)), (2, 1))  # once
+
+    def test_a_trajectory_at_its_end_is_watched_no_more_and_another_one_takes_its_place(self):
+        self.topic.publish(turning(2.0, 0.3))
+        self.assertTrue(until(lambda: self.passed, 5))
+        time.sleep(0.5)
+        self.topic.publish(turning(2.0, 30.0))
+        self.topic.publish(turning(0.5, 30.0))  # the post is not in the way of this one
+        self.assertTrue(until(lambda: len(self.passed) == 3, 5))
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        time.sleep(0.4)
+        self.assertEqual((len(self.passed), self.refused), (3, []))
+
+    def test_a_trajectory_is_stopped_when_data_becomes_too_old(self):
+        passed, refused = [], []
+        topics = [rospy.Subscriber('/aging_gate/clear_trajectory', JointTrajectory, passed.append),
+                  rospy.Subscriber('/aging_gate/refused', Refusal, refused.append)]
+        out = rospy.Publisher('/aging/trajectory', JointTrajectory, queue_size=5)
+        states = rospy.Publisher('/aging/joint_states', JointState, queue_size=5)
+        self.assertTrue(until(lambda: all(one.get_num_connections() for one in (*topics, out, states)), 10))
+        Server('/aging').replace(sphere('far', 0.1, (0, 0, 5)))
+
+        def ask():  # the first joint states may come after the question
+            states.publish(joints(turn=0.0))
+            time.sleep(0.1)
+            out.publish(turning(2.0, 8.0))
+            return until(lambda: passed, 1)
+        self.assertTrue(until(ask, 10))
+        del refused[:]
+        self.assertTrue(until(lambda: refused and len(passed) == 2, 5))
+        self.assertEqual((refused[0].cancelled, refused[0].row.status, passed[1].points), (True, Proximity.STATUS_STALE, []))
+        for topic in topics:
+            topic.unregister()
 
 
 if __name__ == '__main__':
