@@ -40,12 +40,13 @@ void *allocate(std::size_t size) {
   return memory;
 }
 
-/** Counts what has been allocated, or frees it and throws. */
-void *counted(void *memory, std::atomic<std::size_t> &account, bool may_throw) {
+/** Counts what has been allocated, or frees it and throws, at a request or from this size on. */
+void *counted(void *memory, std::atomic<std::size_t> &account, std::size_t may_throw_from) {
   const std::size_t usable = malloc_usable_size(memory); // as delete will see it
   if (usable < COUNTED) return memory;
   account += usable;
-  if (!may_throw || held + buffers <= limit) return memory;
+  if (held + buffers <= limit) return memory;
+  if (usable < may_throw_from && !curve_proximity::memory::at_request) return memory;
   account -= usable;
   std::free(memory); // untouched as yet, so that it has cost nothing
   throw std::bad_alloc();
@@ -92,7 +93,7 @@ unsigned long connectionsClosed() {
 } // namespace curve_proximity
 
 void *operator new(std::size_t size) {
-  return counted(allocate(size), held, size >= LARGE || curve_proximity::memory::at_request);
+  return counted(allocate(size), held, LARGE);
 }
 
 void operator delete(void *memory) noexcept {
@@ -108,7 +109,7 @@ void *operator new[](std::size_t size) {
     ++closed;
     return nowhere;
   }
-  return counted(allocate(size), buffers, curve_proximity::memory::at_request);
+  return counted(allocate(size), buffers, std::numeric_limits<std::size_t>::max());
 }
 
 void operator delete[](void *memory) noexcept {

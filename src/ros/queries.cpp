@@ -29,6 +29,9 @@ constexpr std::size_t MANY_CURVES = 64;
 /** Curves that a thread takes at a time. */
 constexpr std::size_t A_PART = 8;
 
+/** [bytes] A curve takes no less in a request. */
+constexpr std::size_t LEAST_CURVE = 128;
+
 /** Ends a query when its time is over or the server goes, and makes way for others meanwhile. */
 class TimeBudget {
  public:
@@ -359,6 +362,10 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   return bytes;
 }
 
+void Queries::expect(std::size_t bytes) {
+  if (bytes >= MANY_CURVES * LEAST_CURVE) crew_.rouse();
+}
+
 void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
   const auto begin = request.arrival;
   try {
@@ -593,8 +600,14 @@ struct Queries::SharedRows {
 
   /* turn: may be null. */
   void wait(Turn *turn) {
-    std::unique_lock<std::mutex> lock(mutex);
     const auto done = [this] { return finished == parts.size(); };
+    // A part takes some 20 us: to sleep meanwhile, and to be woken, takes longer.
+    const auto soon = std::chrono::steady_clock::now() + std::chrono::microseconds(100);
+    while (std::chrono::steady_clock::now() < soon) {
+      if (done()) return;
+      std::this_thread::yield();
+    }
+    std::unique_lock<std::mutex> lock(mutex);
     if (all_finished.wait_for(lock, std::chrono::milliseconds(1), done)) return;
     lock.unlock();
     const Turn::Pause pause(turn); // one that is not done may wait for a turn
@@ -606,7 +619,7 @@ struct Queries::SharedRows {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::condition_variable all_finished;
-  std::size_t finished = 0;
+  std::atomic<std::size_t> finished{0};
   std::string failure;
 };
 

@@ -163,6 +163,9 @@ class Queries {
         robots_(std::move(robots)),
         second_opinions_(std::move(second_opinions)) {}
 
+  /** A request of so many bytes is about to be read. */
+  void expect(std::size_t bytes);
+
   /** Fills the response and the drawing. Throws Error where nothing can be answered at all; what is
    *  wrong with one curve becomes its row. */
   void answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing);

@@ -286,26 +286,31 @@ Turns::Clock::time_point ProximityServer::waitUntil(const Call &call, const Requ
 
 template <class Service>
 typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType query_type) {
-  return handler<Service>(QUERY_TIMES_WIRE,
-                          [this, query_type](const Call &call, const RequestThreads::AtWork &at_work,
-                                             typename Service::Request &asked, typename Service::Response &response) {
-                            response.frame_id = frames_.fixedFrame();
-                            Turn turn(turns_, call.client, waitUntil(call, at_work));
-                            QueryRequest request(query_type, deltaOf(asked), asked.query);
-                            request.asking = askingOf(asked);
-                            request.budget_ms = asked.query.budget_ms;
-                            request.arrival = call.arrival;
-                            request.turn = &turn;
-                            QueryResponse answer;
-                            auto drawing = std::make_shared<Drawing>();
-                            queries_.answer(request, answer, *drawing);
-                            response.success = answer.success;
-                            response.message = std::move(answer.message);
-                            response.warnings = std::move(answer.warnings);
-                            response.scene = std::move(answer.scene);
-                            deliver(answer, response);
-                            markers_->show(std::move(drawing));
-                          });
+  using Helper = ServiceHelper<Service>;
+  const auto work = [this, query_type](const Call &call, const RequestThreads::AtWork &at_work,
+                                       typename Service::Request &asked, typename Service::Response &response) {
+    response.frame_id = frames_.fixedFrame();
+    Turn turn(turns_, call.client, waitUntil(call, at_work));
+    QueryRequest request(query_type, deltaOf(asked), asked.query);
+    request.asking = askingOf(asked);
+    request.budget_ms = asked.query.budget_ms;
+    request.arrival = call.arrival;
+    request.turn = &turn;
+    QueryResponse answer;
+    auto drawing = std::make_shared<Drawing>();
+    queries_.answer(request, answer, *drawing);
+    response.success = answer.success;
+    response.message = std::move(answer.message);
+    response.warnings = std::move(answer.warnings);
+    response.scene = std::move(answer.scene);
+    deliver(answer, response);
+    markers_->show(std::move(drawing));
+  };
+  return [this, handle = handler<Service>(QUERY_TIMES_WIRE, work)](const Call &call, const typename Helper::Read &read,
+                                                                   typename Helper::Response &response) {
+    queries_.expect(call.bytes);
+    handle(call, read, response);
+  };
 }
 
 /** Objects come in any frame; what is wrong with one is told, and the others are applied. */
