@@ -17,12 +17,17 @@ import rosgraph
 import rospy
 from curve_proximity.msg import Body, CollisionObject, ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance, DistanceRequest
+from geometry_msgs.msg import TransformStamped
 from helpers import Node, RawClient, Server, bezier, bspline, box, free_port, raw_call, ring_and_shells, serialized, sphere
 from hostile import Attacker
+from tf2_ros import StaticTransformBroadcaster
 
 LIMIT_MB, ROOM_MB, GROWTH_MB = 512, 64, 32  # growth: from the first quarter of the time to the last one, medians
+HEAVY, LOST = 8, 12                         # clients that one honest one is asked beside, and how much longer it may take:
+P99_RATIO, P50_RATIO = 10.0, 1.5            # of the p99 beside heavy ones, of the p50 beside those with a wrong frame
 NODE, TWIN = 'hostile_target', 'twin'  # the attacker knows the first name
 PROCESSES, CLIENTS, CURVES = 2, 4, 2000  # honest processes, clients in each, curves that each knows the answers of
+ALONE = 1, 200                           # clients and curves where waits are compared
 
 
 def scene():
@@ -30,26 +35,25 @@ def scene():
     return balls + [box('box%d' % i, (0.2, 0.3, 0.4), (i - 3, 0.5, 2)) for i in range(7)]
 
 
-def honest(seed, seconds, report):
-    """A process of clients that ask a few thousand curves again and again, and compare each answer with that of the twin, to
-    the last bit. Calls report(counts, waits, the first wrong answer) at the end and each few seconds."""
+def honest(seed, end, report, n_clients, n_curves):
+    """A process of clients that ask some curves again and again until `end` on the monotonic clock, and compare each answer
+    with that of the twin, to the last bit. Calls report(counts, waits, the first wrong answer) at the end and each few seconds."""
     r = random.Random(seed)
     names = [o.id for o in scene()]
     requests = []
-    for _ in range(CURVES):
+    for _ in range(n_curves):
         points = [[r.uniform(-3, 3) for _ in range(3)] for _ in range(r.randrange(4, 12))]
         curve = bspline(points, 3, id='c', radius=r.choice([0, 0.05]))
         requests.append(serialized(DistanceRequest(ProximityQuery(curves=[curve], objects=names))))
     twin = RawClient('/' + TWIN + '/distance', Distance)
     expected = [twin.call(request).results[0] for request in requests]
-    end = time.monotonic() + seconds
     lock = threading.Lock()
     counts, waits, wrong = dict(calls=0, wrong=0, busy=0, failures=0, stopped=0), [], []
 
     def ask(seed):
         r, client, mine = random.Random(seed), None, []
         while time.monotonic() < end:
-            i = r.randrange(CURVES)
+            i = r.randrange(n_curves)
             begin = time.monotonic()
             try:
                 client = client or RawClient('/' + NODE + '/distance', Distance)
@@ -72,20 +76,24 @@ def honest(seed, seconds, report):
                 if len(mine) > 200:
                     waits.extend(mine)
                     mine.clear()
+        with lock:
+            waits.extend(mine)
 
-    clients = [threading.Thread(target=ask, args=(1000 * seed + i,), daemon=True) for i in range(CLIENTS)]
+    clients = [threading.Thread(target=ask, args=(1000 * seed + i,), daemon=True) for i in range(n_clients)]
     for client in clients:
         client.start()
-    while any(client.is_alive() for client in clients):
-        time.sleep(2)
+    while True:
+        alive = any(client.is_alive() for client in clients)
         with lock:
             report(dict(counts), waits[:], wrong[:1])
             waits.clear()
+        if not alive:
+            return
+        clients[0].join(2)
 
 
-def malformed(seed, seconds, report):
+def malformed(seed, end, report):
     """A process that makes connections of all kinds that hostile.py knows."""
-    end = time.monotonic() + seconds
     master = rosgraph.Master('/soak')
     service = master.lookupService('/%s/distance' % NODE).split('//')[1].split(':')
     api = master.lookupNode('/' + NODE).split('//')[1].strip('/').split(':')
@@ -104,7 +112,7 @@ def malformed(seed, seconds, report):
 
 class Soak:
     def __init__(self, seconds):
-        self.end = time.monotonic() + seconds
+        self.seconds, self.end = seconds, 0.0
         self.lock = threading.Lock()
         self.counts = dict(large=0, lost_frames=0, heavy=0, changes=0, ended_badly=0)
         self.waits, self.first_wrong, self.others = [], None, {}
@@ -122,19 +130,22 @@ class Soak:
 
     # ---- in processes of their own
     def asks(self, seed):
-        self.follow('honest', seed)
+        self.follow('honest', seed, CLIENTS, CURVES)
+
+    def asks_alone(self, seed):
+        self.follow('honest', seed, *ALONE)
 
     def is_malformed(self, seed):
         self.follow('malformed', seed)
 
-    def follow(self, part, seed):
+    def follow(self, part, seed, *more):
         """Reads what a process reports."""
-        process = subprocess.Popen([sys.executable, os.path.abspath(__file__), '--part', part, str(seed), str(self.end - time.monotonic())],
-                                   stdout=subprocess.PIPE, text=True)
+        arguments = [part, seed, self.end, *more]
+        process = subprocess.Popen([sys.executable, os.path.abspath(__file__), '--part', *map(str, arguments)], stdout=subprocess.PIPE, text=True)
         for line in process.stdout:
             counts, waits, wrong = json.loads(line)
             with self.lock:
-                self.others[part, seed] = counts
+                self.others[process.pid] = counts
                 self.waits += waits
                 self.first_wrong = self.first_wrong or (wrong[0] if wrong else None)
         if process.wait() != 0:
@@ -165,10 +176,12 @@ class Soak:
             server.distance(ring, **fields)
             self.add(heavy=1)
 
-    def loses_frames(self, _):
+    def loses_frames(self, seed):
+        """Frames that are waited for, and some that nobody has heard of."""
+        r = random.Random(seed)
         server = Server('/' + NODE)
         while self.going():
-            server.distance(bezier((0, 0, 1), (1, 0, 1), frame='nowhere'))
+            server.distance(bezier((0, 0, 1), (1, 0, 1), frame='island' if r.random() < 0.9 else 'nowhere'))
             self.add(lost_frames=1)
             time.sleep(0.005)
 
@@ -198,72 +211,94 @@ class Soak:
             raw_call('/%s/%s' % (NODE, service), kind, data)
             self.add(large=1)
 
-    def run(self):
-        memory = [self.nodes[0].resident_mb()]
-        cheap = self.idle()
-        works = [(self.asks, PROCESSES), (self.changes, 1), (self.is_heavy, 3), (self.loses_frames, 4), (self.is_malformed, 4), (self.is_large, 2)]
-        threads = [threading.Thread(target=work, args=(i,), daemon=True) for work, n in works for i in range(n)]
+    def together(self, works, seconds, meanwhile=lambda: time.sleep(0.1)):
+        """Lets (work, threads) go on for so long."""
         begin = time.monotonic()
+        self.end = begin + seconds
+        threads = [threading.Thread(target=work, args=(i,), daemon=True) for work, n in works for i in range(n)]
         for thread in threads:
             thread.start()
-        peak, next_report = 0.0, 0.0
         while self.going():
-            now = self.nodes[0].resident_mb()
-            peak = max(peak, now)
-            memory.append(now)
-            if time.monotonic() > next_report:
-                next_report = time.monotonic() + max(5.0, (self.end - begin) / 20)
-                print('%6.0f s  %5.0f MB  %s' % (time.monotonic() - begin, now, self.counted()), flush=True)
-            time.sleep(0.01)
+            meanwhile()
         for thread in threads:
             thread.join(90)
+
+    def waits_beside(self, *works):
+        """Sorted, of one honest client [s]."""
+        self.together([(self.asks_alone, 1), *works], max(8.0, min(30.0, 0.03 * self.seconds)))
+        with self.lock:
+            waits, self.waits = sorted(self.waits), []
+        return waits
+
+    def run(self):
+        broadcaster = StaticTransformBroadcaster()  # no way leads from it to the node's frame
+        island = TransformStamped(child_frame_id='island')
+        island.header.frame_id = 'elsewhere'
+        island.transform.rotation.w = 1.0
+        broadcaster.sendTransform(island)
+        waits = dict(idle=self.waits_beside(), lost=self.waits_beside((self.loses_frames, LOST)), heavy=self.waits_beside((self.is_heavy, HEAVY)))
+
+        memory = [self.nodes[0].resident_mb()]
+        begin, next_report = time.monotonic(), time.monotonic()
+
+        def look():
+            nonlocal next_report
+            memory.append(self.nodes[0].resident_mb())
+            if time.monotonic() > next_report:
+                next_report = time.monotonic() + max(5.0, self.seconds / 20)
+                print('%6.0f s  %5.0f MB  %s' % (time.monotonic() - begin, memory[-1], self.counted()), flush=True)
+            time.sleep(0.01)
+        self.together([(self.asks, PROCESSES), (self.changes, 1), (self.is_heavy, 3), (self.loses_frames, 4), (self.is_malformed, 4), (self.is_large, 2)],
+                      self.seconds, look)
         time.sleep(3)
-        return self.report(memory, peak, cheap, begin)
+        return self.report(memory, dict(waits, load=sorted(self.waits)), begin)
 
-    def idle(self):
-        """The waits of one client alone [s]."""
-        server, out = Server('/' + NODE), []
-        for _ in range(500):
-            begin = time.monotonic()
-            server.distance(bezier((-1, 0, 1), (1, 0, 1)), objects=['ball001'])
-            out.append(time.monotonic() - begin)
-        return sorted(out)
-
-    def report(self, memory, peak, cheap, begin):
+    def report(self, memory, waits, begin):
         alive = self.nodes[0].alive()
         quarter = max(1, len(memory) // 4)
         before, after = statistics.median(memory[:quarter]), statistics.median(memory[-quarter:])
         rest = self.nodes[0].resident_mb() if alive else 0.0
-        waits = sorted(self.waits)
         counts = self.counted()
-        bad = sum(counts.get(name, 0) for name in ('wrong', 'failures', 'ended_badly'))
-        good = (alive and counts.get('calls', 0) > 0 and bad == 0 and peak < LIMIT_MB + ROOM_MB and after < before + GROWTH_MB)
+        bad = {name: counts.get(name, 0) for name in ('wrong', 'failures', 'ended_badly')}
+
+        def quantile(name, q):  # [ms]
+            return 1e3 * waits[name][int(q * len(waits[name]))] if waits[name] else float('inf')
+        verdicts = []
+
+        def demand(what, value, good):
+            verdicts.append(good)
+            return '%-7s %s: %s' % ('passed' if good else 'FAILED', what, value)
+        p99, p50 = quantile('heavy', 0.99) / quantile('idle', 0.99), quantile('lost', 0.5) / quantile('idle', 0.5)
         text = ['seconds %.0f' % (time.monotonic() - begin), str(counts),
-                'memory [MB]: at rest before %.0f and after %.0f, first quarter %.0f, last quarter %.0f, peak %.0f (limit %d and %d)' % (
-                    memory[0], rest, before, after, peak, LIMIT_MB, ROOM_MB),
-                'idle client [ms]: p50 %.2f, p99 %.2f' % tuple(1e3 * cheap[int(q * len(cheap))] for q in (0.5, 0.99))]
-        if waits:
-            text.append('honest clients under load [ms]: p50 %.2f, p99 %.2f, worst %.0f' % (
-                *(1e3 * waits[int(q * len(waits))] for q in (0.5, 0.99)), 1e3 * waits[-1]))
+                'memory [MB]: at rest before %.0f and after %.0f' % (memory[0], rest)]
+        for name, who in (('idle', 'alone'), ('lost', 'beside %d clients with a wrong frame' % LOST), ('heavy', 'beside %d heavy clients' % HEAVY),
+                          ('load', 'under the whole load (all honest clients)')):
+            text.append('an honest client %s [ms]: p50 %.2f, p99 %.2f, worst %.1f' % (who, quantile(name, 0.5), quantile(name, 0.99), quantile(name, 0.9999999)))
+        text += [demand('the node lives', 'yes' if alive else self.nodes[0].output()[-2000:], alive),
+                 demand('wrong answers, failed calls, processes that ended badly', '%(wrong)d, %(failures)d, %(ended_badly)d' % bad,
+                        counts.get('calls', 0) > 0 and sum(bad.values()) == 0),
+                 demand('memory is below the limit of %d MB and %d' % (LIMIT_MB, ROOM_MB), '%.0f MB at most' % max(memory), max(memory) < LIMIT_MB + ROOM_MB),
+                 demand('memory is flat, within %d MB' % GROWTH_MB, 'first quarter %.0f MB, last quarter %.0f MB' % (before, after), after < before + GROWTH_MB),
+                 demand('p99 beside heavy clients, at most %g times that alone' % P99_RATIO, '%.2f' % p99, p99 <= P99_RATIO),
+                 demand('p50 beside clients with a wrong frame, at most %g times that alone' % P50_RATIO, '%.2f' % p50, p50 <= P50_RATIO)]
         if self.first_wrong:
             text.append('the first wrong answer:\n' + self.first_wrong)
-        if not alive:
-            text.append('the node died: ' + self.nodes[0].output()[-2000:])
-        text.append('passed' if good else 'FAILED')
+        text.append('passed' if all(verdicts) else 'FAILED')
         for node in self.nodes:
             node.end()
-        return good, '\n'.join(text)
+        return all(verdicts), '\n'.join(text)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--minutes', type=float, default=30.0)
     parser.add_argument('--out')
-    parser.add_argument('--part', nargs=3, metavar=('PART', 'SEED', 'SECONDS'), help=argparse.SUPPRESS)
+    parser.add_argument('--part', nargs='+', metavar=('PART', 'SEED'), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.part:
-        part = dict(honest=honest, malformed=malformed)[options.part[0]]
-        return part(int(options.part[1]), float(options.part[2]), lambda *report: print(json.dumps(report), flush=True))
+        part, seed, end, *more = options.part
+        return dict(honest=honest, malformed=malformed)[part](
+            int(seed), float(end), lambda *report: print(json.dumps(report), flush=True), *map(int, more))
     port = free_port()
     os.environ.update(ROS_MASTER_URI='http://localhost:%d' % port, ROS_HOSTNAME='localhost')
     master = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
