@@ -352,16 +352,20 @@ static bool begin_from(surface *s, const expand_set *set, const simplex *start, 
   return false;
 }
 
-/* Of the facets on the nearest plane, the one that has its foot: coplanar ones share the offset. They are used up. */
+/* Of the facets on the nearest plane, the one that has its foot: coplanar ones share the offset. They are used up.
+ * Facets that are nearer than what is proven were turned round by rounding in the last step: they are none of M's. */
 static void find_touch(surface *s, double room, double rounding, expand_depth *depth) {
   enum { MOST_TRIED = 16 };
   double nearest = INFINITY;
-  for (int tried = 0; tried < MOST_TRIED && nearest > depth->least + rounding; tried++) {
+  for (int tried = 0; tried < MOST_TRIED && nearest > depth->least + rounding;) {
     const int32_t at = surface_nearest(s);
-    if (!(s->offset[at] <= depth->least + room)) return;
+    const double offset = s->offset[at];
+    if (!(offset < INFINITY) || (nearest < INFINITY && offset > depth->least + room)) return;
+    s->offset[at] = INFINITY;
+    if (offset < depth->least - rounding) continue;
+    tried++;
     simplex triangle = {.n = 3};
     for (int k = 0; k < 3; k++) triangle.vertex[k] = s->vertex[s->facet[at].vertex[k]];
-    s->offset[at] = INFINITY;
     simplex_nearest found;
     simplex_reduce(&triangle, &found);
     if (found.distance >= nearest) continue;

@@ -155,10 +155,10 @@ static pair_pieces pair_follow(const pair *p, vec3 u, const vec3 *e, const vec3 
   return pieces;
 }
 
-/* One piece: grad phi = y, and its second derivative is -(K + d), d the distance. */
+/* One piece: grad phi = y, and its second derivative is -(K + d), d the distance, minus the depth. */
 static bool newton_one(const pair_pieces *k, double d, vec3 e, vec3 f, double delta[2]) {
   const double a = k->kee + d, b = k->kef, c = k->kff + d, det = a * c - b * b;
-  if (!(det > 0.0)) return false;
+  if (!(det > 0.0) || !(a > 0.0)) return false;
   const double ge = vec_dot(k->y[0].w, e), gf = vec_dot(k->y[0].w, f);
   delta[0] = (c * ge - b * gf) / det;
   delta[1] = (a * gf - b * ge) / det;
@@ -182,13 +182,11 @@ static bool newton_two(const pair_pieces *k, double d, vec3 u, vec3 e, vec3 f, d
   return true;
 }
 
-/* Where Newton's method sends the best direction; false where it has no say. */
-static bool pair_newton(const pair *p, vec3 *next) {
+/* Where Newton's method sends the best direction, at a distance d; false where it has no say. */
+static bool pair_newton(const pair *p, double d, vec3 *next) {
   vec3 e, f;
   feature_tangents(p->u, &e, &f);
   const pair_pieces pieces = pair_follow(p, p->u, &e, &f);
-  /* a negative phi would make a valley of a peak */
-  const double d = 0.5 * (fmax(p->lower, 0.0) + p->nearest.distance);
   double delta[2];
   if (pieces.n == 1) {
     if (!newton_one(&pieces, d, e, f, delta)) return false;
@@ -217,6 +215,14 @@ bool pair_is_reached(const pair_goal *goal, double margins, double rounding, dou
   return upper - lower <= greater(asked - 2.0 * rounding, 0.25 * rounding);
 }
 
+/* The simplex's vertices where u finds them on their pieces. */
+static simplex pair_moved(const pair *p, vec3 u) {
+  const pair_pieces pieces = pair_follow(p, u, NULL, NULL);
+  simplex moved = {0};
+  for (int i = 0; i < pieces.n && i < 3; i++) moved.vertex[moved.n++] = pieces.y[i];
+  return moved;
+}
+
 /* Looks along u: a lower bound, and a vertex that may bring the simplex nearer; on curved shapes its other vertices are
  * moved along their pieces as well, since the old ones would hold it back. True where one of the bounds got better. */
 static bool pair_support_step(pair *p, vec3 u, bool follow) {
@@ -225,9 +231,7 @@ static bool pair_support_step(pair *p, vec3 u, bool follow) {
   pair_raise_lower(p, u, vec_dot(u, x.w) - x.behind);
   bool nearer = false;
   if (follow) {
-    const pair_pieces pieces = pair_follow(p, u, NULL, NULL);
-    simplex moved = {0};
-    for (int i = 0; i < pieces.n && i < 3; i++) moved.vertex[moved.n++] = pieces.y[i];
+    simplex moved = pair_moved(p, u);
     if (!simplex_has(&moved, x.w)) moved.vertex[moved.n++] = x;
     nearer = pair_accept(p, &moved);
   }
@@ -243,7 +247,9 @@ static bool pair_support_step(pair *p, vec3 u, bool follow) {
  * plain directions, since the normal is exact where v is all rounding, and v where the simplex is a sliver. */
 static bool pair_step(pair *p, bool newton) {
   vec3 u;
-  if (newton && pair_newton(p, &u)) return pair_support_step(p, u, true);
+  /* a negative phi would make a valley of a peak */
+  const double d = 0.5 * (fmax(p->lower, 0.0) + p->nearest.distance);
+  if (newton && pair_newton(p, d, &u)) return pair_support_step(p, u, true);
   const vec3 normal = p->nearest.normal;
   if (vec_norm2(normal) > 0.0 && pair_support_step(p, normal, false)) return true;
   if (p->nearest.inside || p->support_failed) return true;
@@ -487,6 +493,36 @@ static void pair_prove_overlap(pair *p, const pair_goal *goal, pair_expander exp
   answer->overlap = true;
 }
 
+/* A depth that is known within e tells the way out of curved pieces within about the root of e; Newton's method tells
+ * it as exactly as rounding allows. */
+static void pair_sharpen_way_out(pair *p, expand_depth *depth) {
+  enum { MOST_STEPS = 8 };
+  static const double still = 1e-12;
+  pair q = *p;
+  q.s = depth->touch, q.u = vec_neg(depth->normal);
+  double step = INFINITY;
+  for (int i = 0; i < MOST_STEPS && step > still; i++) {
+    const double before = step;
+    vec3 next;
+    if (!pair_newton(&q, -depth->most, &next)) return;
+    step = vec_norm(vec_sub(next, q.u));
+    if (!(step < before)) return;
+    q.u = next;
+    q.s = pair_moved(&q, next);
+    simplex_reduce(&q.s, &q.nearest);
+  }
+  const simplex_vertex x = pair_extreme(p, q.u);
+  const double reach = x.behind - vec_dot(q.u, x.w);
+  if (!(step <= still) || !(reach <= fmin(depth->most, -p->lower) + p->rounding)) return;
+  /* farther: beside the foot of 0, as points of a disc's rim along its axis are not told apart; or `least` is less than
+   * the depth, and these points would not attain it */
+  if (!(q.nearest.distance <= depth->least + p->rounding)) return;
+  depth->most = reach;
+  depth->normal = vec_neg(q.u);
+  depth->touch = q.s;
+  p->u = q.u, p->lower = -reach; /* the normal proves what `lower` says */
+}
+
 /* 0 is inside the simplex, or on it; it expands until it has found the nearest way out of M. */
 static void pair_measure_depth(pair *p, double margin_a, double margin_b, const pair_goal *goal, pair_expander expand,
                                pair_answer *answer) {
@@ -500,6 +536,7 @@ static void pair_measure_depth(pair *p, double margin_a, double margin_b, const 
   p->steps += depth.steps;
   p->nearest.inside = true;
   p->nearest.depth = depth.least;
+  if (p->curved) pair_sharpen_way_out(p, &depth);
   pair_raise_lower(p, vec_neg(depth.normal), -depth.most);
   answer->overlap = answer->measured = true;
   answer->exhausted = depth.exhausted;

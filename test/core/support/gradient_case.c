@@ -141,20 +141,22 @@ gradient_fit gradient_compare(const gradient_case *p, const gradient_answer *a, 
                               double expected) {
   const int32_t nearest = vec_norm2(a->gradient.position) > 0.0 ? a->result.obstacle_index : -1;
   const double widths[] = {1e-4, 1e-5, 1e-6, 1e-3}, most_noise = 3.0 * GRADIENT_TOLERANCE;
-  gradient_fit fit = {.off = INFINITY, .kink = INFINITY, .one_sided = INFINITY};
+  gradient_fit fit = {.off = INFINITY, .kink = INFINITY, .least_kink = INFINITY, .one_sided = INFINITY};
   double width = 0.0;
   const double here = ask(p, NULL, &width);
   for (int k = 0; k < 4 && fit.off > 0.1 * GRADIENT_TOLERANCE; k++) {
-    double slope[2];
+    double slope[2], kink = INFINITY;
     for (int m = 0; m < 2; m++) {
       const double h = widths[k] / (m + 1), ahead = ask_along(p, d, nearest, h, &width),
                    behind = ask_along(p, d, nearest, -h, &width);
       slope[m] = (ahead - behind) / (2.0 * h);
       fit.one_sided =
           fmin(fmin(fabs((ahead - here) / h - expected), fabs((here - behind) / h - expected)), fit.one_sided);
-      fit.kink = fmin(fabs(ahead - 2.0 * here + behind) / h, fit.kink);
+      kink = fmin(fabs(ahead - 2.0 * here + behind) / h, kink);
     }
     const double noise = noise_of(width, widths[k]);
+    fit.least_kink = fmin(kink, fit.least_kink);
+    if (noise <= most_noise) fit.kink = fmin(kink, fit.kink);
     fit.is_known = fit.is_known || noise <= 0.1 * GRADIENT_TOLERANCE;
     if (noise <= most_noise)
       fit.off = fmin(fmax(fmin(fabs((4.0 * slope[1] - slope[0]) / 3.0 - expected),
@@ -248,13 +250,13 @@ gradient_verdict gradient_case_judge(rng *r, const gradient_case *p, gradient_ju
   if (!(p->is_signed ? distance < -0.01 : distance > 0.01) || !isfinite(distance)) return GRADIENT_NOT_ASKED;
   j->expected = gradient_derivative(p, &j->answer, &d);
   j->fit = gradient_compare(p, &j->answer, &d, j->expected);
-  const bool kinks = j->fit.kink > 1e-4;
+  const double kinks = 1e-4;
   if (!j->answer.gradient.valid) {
     const bool again = (p->kind != CPROX_MOVER_ROBOT_SELF && is_attained_again(p, &j->answer, false)) ||
                        (p->kind != CPROX_MOVER_ROBOT && is_attained_again(p, &j->answer, true));
-    return kinks || again ? GRADIENT_TIED : GRADIENT_MISSING;
+    return j->fit.least_kink > kinks || again ? GRADIENT_TIED : GRADIENT_MISSING;
   }
-  if (kinks && j->fit.one_sided < 1e-5) return GRADIENT_BESIDE_TIE;
+  if (j->fit.kink > kinks && j->fit.one_sided < 1e-5) return GRADIENT_BESIDE_TIE;
   j->off = j->fit.off / (1.0 + fabs(j->expected));
   if (j->off <= GRADIENT_TOLERANCE) return GRADIENT_FITS;
   return j->fit.is_known ? GRADIENT_WRONG : GRADIENT_UNKNOWN;

@@ -41,10 +41,11 @@ typedef struct gradient_step {
 
 /* A derivative beside four central differences with one extrapolation each. */
 typedef struct gradient_fit {
-  double off;       /* how far it is from what the nearest of those are known to be; infinite: none is known well */
-  double kink;      /* how much the slopes to either side differ */
-  double one_sided; /* how far it is from the nearer one of these */
-  bool is_known;    /* one of them within a tenth of the tolerance: distances are intervals */
+  double off;        /* how far it is from what the nearest of those are known to be; infinite: none is known well */
+  double kink;       /* how much the slopes to either side differ, where distances are known well enough */
+  double least_kink; /* the same of all differences */
+  double one_sided;  /* how far it is from the nearer one of these */
+  bool is_known;     /* one of them within a tenth of the tolerance: distances are intervals */
 } gradient_fit;
 
 typedef enum gradient_verdict {
