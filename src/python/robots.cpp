@@ -281,12 +281,13 @@ py::object fromMatrix(const Eigen::MatrixXd &matrix) {
 }
 
 py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-                    const Names &objects) {
+                    const Names &objects, bool is_signed) {
+  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
+  query.options.signed_distance = is_signed;
   ClearanceRow row;
   {
     const py::gil_scoped_release release;
-    row = clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT,
-                            queryOf("distance", 0.0, epsilon, max_nodes, links, objects), threadWorkspace());
+    row = clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, query, threadWorkspace());
   }
   py::dict out = answerOf(row.answer);
   const ClearanceGradient &g = row.gradient;
@@ -296,6 +297,68 @@ py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::u
   out["base_linear"] = fromVector(toVec3(g.base_linear)), out["base_angular"] = fromVector(toVec3(g.base_angular));
   out["object_linear"] = fromVector(toVec3(g.object_linear));
   out["object_angular"] = fromVector(toVec3(g.object_angular));
+  return out;
+}
+
+/* One array of all rows' matrices (rows, points, joints); None if no point has such numbers. */
+py::object stacked(const std::vector<ClearanceRow> &rows, Eigen::MatrixXd ClearanceGradient::*matrix) {
+  if (rows.empty() || (rows.front().gradient.*matrix).size() == 0) return py::none();
+  const Eigen::MatrixXd &first = rows.front().gradient.*matrix;
+  Array out({static_cast<py::ssize_t>(rows.size()), first.rows(), first.cols()});
+  double *to = out.mutable_data();
+  for (const ClearanceRow &row : rows)
+    for (Eigen::Index i = 0; i < first.rows(); ++i)
+      for (Eigen::Index k = 0; k < first.cols(); ++k) *to++ = (row.gradient.*matrix)(i, k);
+  return std::move(out);
+}
+
+/* One array of all rows' vectors (rows, 3). */
+Array stacked(const std::vector<ClearanceRow> &rows, Eigen::Vector3d ClearanceGradient::*vector) {
+  Array out({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}});
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    setRow(out, static_cast<py::ssize_t>(i), toVec3(rows[i].gradient.*vector));
+  return out;
+}
+
+py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair, const std::vector<double> &breaks,
+                bool self, double epsilon, std::uint32_t max_nodes, const Names &links, const Names &objects,
+                bool is_signed, std::size_t most) {
+  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
+  query.options.signed_distance = is_signed;
+  RowLimits limits;
+  limits.horizon = horizon, limits.per_pair = per_pair, limits.most = most, limits.breaks = breaks;
+  ClearanceRows found;
+  {
+    const py::gil_scoped_release release;
+    found = clearanceRows(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, limits, query, threadWorkspace());
+  }
+  if (found.status != CPROX_OK) throw std::runtime_error(found.message);
+  const std::vector<ClearanceRow> &rows = found.rows;
+  const auto n = static_cast<py::ssize_t>(rows.size());
+  Array lower(n), upper(n), t(n), t0(n), t1(n), duration(n), witness_a({n, py::ssize_t{3}}),
+      witness_b({n, py::ssize_t{3}});
+  py::array_t<bool> valid(n);
+  py::list a, b, reason;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const ClearanceRow &row = rows[static_cast<std::size_t>(i)];
+    const cprox_result &result = row.answer.result;
+    lower.mutable_data()[i] = result.lower, upper.mutable_data()[i] = result.upper, t.mutable_data()[i] = result.t;
+    t0.mutable_data()[i] = row.t0, t1.mutable_data()[i] = row.t1, duration.mutable_data()[i] = row.gradient.duration;
+    setRow(witness_a, i, result.witness_mover), setRow(witness_b, i, result.witness_obstacle);
+    valid.mutable_data()[i] = row.gradient.valid, reason.append(row.gradient.reason);
+    a.append(row.answer.a), b.append(row.answer.b);
+  }
+  py::dict out;
+  out["lower"] = lower, out["upper"] = upper, out["t"] = t, out["t0"] = t0, out["t1"] = t1;
+  out["a"] = a, out["b"] = b, out["witness_a"] = witness_a, out["witness_b"] = witness_b;
+  out["valid"] = valid, out["reason"] = reason, out["duration"] = duration;
+  out["positions"] = stacked(rows, &ClearanceGradient::positions);
+  out["velocities"] = stacked(rows, &ClearanceGradient::velocities);
+  out["accelerations"] = stacked(rows, &ClearanceGradient::accelerations);
+  out["base_linear"] = stacked(rows, &ClearanceGradient::base_linear);
+  out["base_angular"] = stacked(rows, &ClearanceGradient::base_angular);
+  out["object_linear"] = stacked(rows, &ClearanceGradient::object_linear);
+  out["object_angular"] = stacked(rows, &ClearanceGradient::object_angular);
   return out;
 }
 
@@ -507,10 +570,21 @@ void addRobots(py::module &module) {
            "(bytes) and query (str), which check() verifies. ValueError where there is no proof, with the cause.")
       .def("gradient", &gradientOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            py::arg("max_nodes") = 20000, py::arg("links") = Names{}, py::arg("objects") = Names{},
+           py::arg("signed") = false,
            "The least distance and its derivatives: the dict of distance() with valid, reason, t, positions (points, "
            "joints),\n"
            "velocities and accelerations likewise or None, duration, base_linear, base_angular, object_linear,\n"
            "object_angular (3,). Where valid is False there is no derivative, and reason says why.")
+      .def(
+          "rows", &rowsOf, py::arg("horizon"), py::arg("per_pair") = 1, py::arg("breaks") = std::vector<double>{},
+          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("signed") = false, py::arg("most") = 1000,
+          "Constraints for an optimiser: of each pair that comes within the horizon [m] its least distances between "
+          "each two\nof breaks [s] (empty: the trajectory's times), the per_pair nearest, with their derivatives. "
+          "A dict of arrays with an\nentry a row: lower, upper, t, t0, t1, valid, duration (n,), positions (n, points, "
+          "joints), velocities and accelerations\nlikewise or None, witness_a, witness_b, base_linear, base_angular, "
+          "object_linear, object_angular (n, 3), and lists a, b,\nreason. A pair without a row is farther than the "
+          "horizon. RuntimeError where there are more than most rows.")
       .def("violations", &violationsOf, py::arg("delta"), py::arg("resolution") = py::none(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
            py::arg("objects") = Names{},

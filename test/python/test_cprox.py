@@ -3,6 +3,8 @@
 """The Python package cprox: answers against dense samples in NumPy, arrays in and out, errors, threads, a robot."""
 import os
 import signal
+import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -433,6 +435,42 @@ class Robots(unittest.TestCase):
                     high, low = (moved(i, k, s, of).distance(epsilon=1e-12)['result'].upper for s in (step, -step))
                     self.assertAlmostEqual(told[name][i, k], (high - low) / (2 * step), delta=1e-5)
 
+    def test_rows_are_the_nearest_of_each_pair_between_breaks_with_their_gradients(self):
+        scene = cprox.Scene(self.robot)
+        scene.add('ball', 'sphere', [.1], cprox.transform([.6, .5, 1.2]))
+        positions, velocities = (numpy.array(rows[:4]) for rows in (self.positions, self.velocities))
+
+        def moved(step=0.0):
+            return cprox.Motion(scene, self.joints, self.times[:4], positions + step, velocities)
+        motion, breaks = moved(), [self.times[0], self.times[1], self.times[3]]
+        rows = motion.rows(5.0, per_pair=2, breaks=breaks, epsilon=1e-11)
+        n = len(rows['a'])
+        self.assertGreater(n, len(motion.links()))
+        self.assertEqual({name: rows[name].shape for name in ('lower', 'valid', 'positions', 'velocities', 'witness_a', 'object_linear')},
+                         {'lower': (n,), 'valid': (n,), 'positions': (n, 4, 7), 'velocities': (n, 4, 7), 'witness_a': (n, 3),
+                          'object_linear': (n, 3)})
+        self.assertIsNone(rows['accelerations'])
+        self.assertEqual(set(rows['b']), {'ball'})
+        for t0, t1 in zip(breaks, breaks[1:]):
+            of = rows['t0'] == t0
+            self.assertTrue(((t0 <= rows['t'][of]) & (rows['t'][of] <= t1) & (rows['t1'][of] == t1)).all())
+            self.assertGreater(rows['upper'][of].min(), motion.profile([t0, t1])['lower'][0] - 1e-9)
+        self.assertAlmostEqual(rows['upper'].min(), motion.distance()['result'].upper, places=5)
+        self.assertTrue((numpy.abs(numpy.linalg.norm(rows['witness_a'] - rows['witness_b'], axis=1) - rows['upper']) < 1e-9).all())
+        i = int(numpy.argmin(rows['upper']))
+        self.assertTrue(rows['valid'][i], rows['reason'][i])
+        step = numpy.random.default_rng(1).uniform(-1e-6, 1e-6, positions.shape)
+        high, low = (moved(s * step).distance(epsilon=1e-12)['result'].upper for s in (1, -1))
+        self.assertAlmostEqual(numpy.sum(rows['positions'][i] * step), (high - low) / 2, delta=1e-11)
+        self.assertEqual((motion.rows(0.0)['positions'], motion.rows(0.0)['lower'].shape), (None, (0,)))
+        with self.assertRaisesRegex(RuntimeError, 'more than 1 rows'):
+            motion.rows(5.0, most=1)
+        deep = cprox.Scene(self.robot)
+        deep.add('block', 'box', [3, 3, 3])
+        inside = cprox.Motion(deep, self.joints, self.times[:4], positions, velocities)
+        self.assertLess(inside.rows(0.01, signed=True)['upper'].min(), -.1)
+        self.assertEqual(inside.gradient(signed=True)['result'].upper, inside.distance(signed=True)['result'].upper)
+
     def test_scene_and_trajectory_files_are_what_they_say(self):
         path = os.path.join(DATA, 'scenes/mbm/box_panda/scene0001.yaml')
         scene = cprox.Scene(self.robot)
@@ -564,6 +602,25 @@ class Robots(unittest.TestCase):
         with self.assertRaises(ValueError) as caught:
             cprox.Motion(scene, ['elbow'], [0, 1], [[0], [1]])
         self.assertIn('elbow', str(caught.exception))
+
+
+class Examples(unittest.TestCase):
+    def test_an_arm_is_pushed_out_by_scipy_and_proven_clear(self):
+        files = [os.path.join(DATA, name) for name in ('robots/panda/panda.urdf', 'robots/panda/panda.srdf',
+                                                       'scenes/mbm/bookshelf_thin_panda/scene0042.yaml',
+                                                       'trajectories/panda_bookshelf_thin_0042_rrt.yaml')]
+        example = os.path.join(DATA, '..', '..', 'examples', 'push_out_arm.py')
+        with tempfile.TemporaryDirectory() as folder:
+            picture = os.path.join(folder, 'arm.png')
+            for options, least in (([], '8.6'), (['--straight'], '0.0')):
+                done = subprocess.run([sys.executable, example, *options, *files, picture], stdout=subprocess.PIPE,
+                                      stderr=subprocess.STDOUT, timeout=300, text=True)
+                self.assertEqual(done.returncode, 0, done.stdout)
+                before, after, end = done.stdout.splitlines()
+                self.assertTrue(before.startswith(f'before: at least {least}') and before.endswith('no'), before)
+                self.assertTrue(after.endswith('more than 10 mm everywhere: proven'), after)
+                self.assertIn('terminated successfully', end)
+                self.assertGreater(os.path.getsize(picture), 10000)
 
 
 if __name__ == '__main__':
