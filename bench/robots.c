@@ -264,6 +264,7 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "thin obstacles")) thin_obstacles(cases, n_cases, &size, ws);
   if (bench_wanted(&size, "pairs measured")) bench_robot_pairs(cases, n_cases, ws);
   bench_robot_waypoints(cases, n_cases, &size, ws);
+  bench_robot_gradients(cases, n_cases, &size, ws);
   bench_robot_scale(&cases[0], &size, ws);
   bench_robot_links(&size, ws);
   bench_robot_states(cases, n_cases, &size, ws);

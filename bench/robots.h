@@ -12,6 +12,9 @@ void bench_robot_scale(const robot_case *arm, const bench_size *size, cprox_work
 /* One straight motion with 2 to 100,000 waypoints. */
 void bench_robot_waypoints(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
 
+/* Distances with their gradients, beside distances alone. */
+void bench_robot_gradients(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
+
 /* The share of the pairs looked at whose distance is measured. */
 void bench_robot_pairs(const robot_case *cases, size_t n, cprox_workspace *workspace);
 

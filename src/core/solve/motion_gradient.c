@@ -32,7 +32,7 @@ static const double REACHING_OUT = 0.25;
 static const double SHORTEST = 0x1p-22;
 
 /* Of nodes after the distance is known; and after how many a wider neighbourhood is tried. */
-enum { MOST_NODES = 400, PATIENCE = 40, NEIGHBOURHOODS = sizeof NEIGHBOURHOOD / sizeof *NEIGHBOURHOOD };
+enum { MOST_NODES = 400, PATIENCE = 16, NEIGHBOURHOODS = sizeof NEIGHBOURHOOD / sizeof *NEIGHBOURHOOD };
 
 typedef struct gradient_search {
   robot_search o;
@@ -305,37 +305,31 @@ static void fill_given(const cprox_motion *m, const motion_spot *spot, const dou
 }
 
 /* A part of the derivative is that of the distance at a spot. */
-static cprox_status add_spot(gradient_search *g, const motion_spot *spot, double part, cprox_motion_gradient *to) {
-  motion_spot at;
-  const cprox_status status = spot_measure(&g->pair, spot->segment, spot->u, &at);
-  if (status < 0) return status;
+static void add_spot(gradient_search *g, const motion_spot *spot, double part, cprox_motion_gradient *to) {
+  spot_differentiate(&g->pair, spot);
   const robot_scene *scene = &g->o.scene;
   for (size_t v = 0; v < scene->motion->robot->n_variables; v++) g->pair.sum[v] += part * g->pair.by_variable[v];
   const robot_pair *pair = &g->pair.pair;
-  if (pair->self) return CPROX_OK;
-  const vec3 n = at.gap.normal;
+  if (pair->self) return;
+  const vec3 n = spot->gap.normal;
   const cprox_obstacle *target = &g->q->targets[scene->obstacles[pair->standing].index];
   to->base_position = vec_axpy(to->base_position, part, n);
-  to->base_rotation = vec_axpy(to->base_rotation, part, vec_cross(at.gap.on_moving, n));
+  to->base_rotation = vec_axpy(to->base_rotation, part, vec_cross(spot->gap.on_moving, n));
   to->position = vec_axpy(to->position, -part, n);
-  to->rotation = vec_axpy(to->rotation, part, vec_cross(n, vec_sub(at.gap.on_standing, target->pose.position)));
-  return CPROX_OK;
+  to->rotation = vec_axpy(to->rotation, part, vec_cross(n, vec_sub(spot->gap.on_standing, target->pose.position)));
 }
 
-static cprox_status fill(gradient_search *g, cprox_motion_gradient *to) {
+static void fill(gradient_search *g, cprox_motion_gradient *to) {
   const cprox_motion *motion = g->o.scene.motion;
   const size_t all = motion->robot->n_variables * sizeof(double);
   to->base_position = to->base_rotation = to->position = to->rotation = vec(0, 0, 0);
   memset(g->pair.sum, 0, all);
-  cprox_status status = CPROX_OK;
-  if (!g->crosses) status = add_spot(g, &g->spot, 1.0, to);
-  for (int k = 0; k < SPOT_SIDES && g->crosses && status >= 0; k++) status = add_spot(g, &g->side[k], g->part[k], to);
-  if (status < 0) return status;
+  if (!g->crosses) add_spot(g, &g->spot, 1.0, to);
+  for (int k = 0; k < SPOT_SIDES && g->crosses; k++) add_spot(g, &g->side[k], g->part[k], to);
   to->t = spot_time(&g->pair, &g->spot);
   to->margin = -1.0;
   if (to->variables) memcpy(to->variables, g->pair.sum, all);
   fill_given(motion, &g->spot, g->pair.sum, to);
-  return CPROX_OK;
 }
 
 /* Without a minimiser: all numbers are 0. */
@@ -377,8 +371,7 @@ cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox
   if (!g.ended && !(g.previous > g.spot.gap.upper + g.apart))
     end(&g, "the distance is as small elsewhere along the motion, or of another pair");
   if (g.settled && g.pair.scene) {
-    const cprox_status filled = fill(&g, gradient);
-    if (filled < 0) return filled;
+    fill(&g, gradient);
   } else {
     fill_nothing(&g, gradient);
   }

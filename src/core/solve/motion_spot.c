@@ -146,6 +146,11 @@ static void differentiate(spot_pair *p, const robot_gap *gap) {
                       p->by_variable);
 }
 
+void spot_differentiate(spot_pair *p, const motion_spot *spot) {
+  motion_place(p->scene->motion, spot->segment, spot->u, p->values, p->frames);
+  differentiate(p, &spot->gap);
+}
+
 cprox_status spot_measure(spot_pair *p, size_t segment, double u, motion_spot *spot) {
   const cprox_motion *motion = p->scene->motion;
   robot_scene_enter(p->scene, segment, u, u);
@@ -161,9 +166,8 @@ cprox_status spot_measure(spot_pair *p, size_t segment, double u, motion_spot *s
     if (spot->gap.support_failed) return refuse(p);
     sharpen(moving, standing, &spot->gap);
   }
-  motion_place(motion, segment, u, p->values, p->frames);
+  spot_differentiate(p, spot);
   motion_rates(motion, segment, u, p->rates);
-  differentiate(p, &spot->gap);
   for (size_t v = 0; v < motion->robot->n_variables; v++) spot->slope += p->by_variable[v] * p->rates[v];
   return CPROX_OK;
 }
