@@ -169,7 +169,7 @@ static double closest_miss(closest *c, double *slope) {
 static bool closest_together(closest *c) {
   enum { STEPS = 12 };
   for (int step = 0; step < STEPS; step++) {
-    double g[3], s[3], r[3], q[3], sum = 0.0, miss = 0.0, pull = 0.0;
+    double g[3] = {0.0}, s[3] = {0.0}, r[3] = {0.0}, q[3] = {0.0}, sum = 0.0, miss = 0.0, pull = 0.0;
     for (int i = 0; i < 3; i++) {
       if (!c->live[i]) continue;
       const double p1 = c->p[i] - 1.0, near = exp(c->t[i]), push = exp(c->log_lambda + c->b[i] + p1 * c->t[i]);
