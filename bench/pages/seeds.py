@@ -123,6 +123,8 @@ method" is the published method, written again as described (`bench/paper`).
 
 **Fig. 7**, the width of the interval against intervals examined: `seeds_figure_7`.
 
+**Fig. 6**, stages of a search: `papers_figure_6`. **Fig. 8**, glyphs: `papers_figure_8`. Both by `bench/pictures.py`.
+
 **Fig. 11**, intervals by the ellipsoids of Theorem 1; how far they reach: `seeds_figure_11_reach`.
 
 {ellipsoids(figures)}
