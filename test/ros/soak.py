@@ -114,7 +114,7 @@ class Soak:
     def __init__(self, seconds):
         self.seconds, self.end = seconds, 0.0
         self.lock = threading.Lock()
-        self.counts = dict(large=0, lost_frames=0, heavy=0, changes=0, ended_badly=0)
+        self.counts = dict(large=0, lost_frames=0, heavy=0, changes=0, closed=0, ended_badly=0)
         self.waits, self.first_wrong, self.others = [], None, {}
         self.nodes = [Node(name, memory_limit_mb=LIMIT_MB, budget_ms=300, tf_timeout=0.3) for name in (NODE, TWIN)]
         for name in (NODE, TWIN):
@@ -160,30 +160,39 @@ class Soak:
             return total
 
     # ---- in this process
+    def again_and_again(self, work, **counts):
+        """work(server). A connection is closed that announces more than the others have left of the memory: then by another one."""
+        server = None
+        while self.going():
+            try:
+                server = server or Server('/' + NODE)
+                work(server)
+                self.add(**counts)
+            except (rospy.ServiceException, rospy.ROSException):
+                server = None
+                self.add(closed=1)
+
     def changes(self, seed):
         """Objects that no honest query names come and go."""
         r = random.Random(seed)
-        server = Server('/' + NODE)
-        while self.going():
+
+        def change(server):
             server.apply(sphere('other%d' % r.randrange(20), r.uniform(0.1, 1), (0, 0, r.uniform(5, 9))))
-            self.add(changes=1)
             time.sleep(0.01)
+        self.again_and_again(change, changes=1)
 
     def is_heavy(self, _):
         ring, balls, fields = ring_and_shells(shells=20)
-        server = Server('/' + NODE)
-        while self.going():
-            server.distance(ring, **fields)
-            self.add(heavy=1)
+        self.again_and_again(lambda server: server.distance(ring, **fields), heavy=1)
 
     def loses_frames(self, seed):
         """Frames that are waited for, and some that nobody has heard of."""
         r = random.Random(seed)
-        server = Server('/' + NODE)
-        while self.going():
+
+        def lose(server):
             server.distance(bezier((0, 0, 1), (1, 0, 1), frame='island' if r.random() < 0.9 else 'nowhere'))
-            self.add(lost_frames=1)
             time.sleep(0.005)
+        self.again_and_again(lose, lost_frames=1)
 
     def is_large(self, seed):
         """Long names, millions of points, many empty strings, in turn."""
@@ -225,7 +234,7 @@ class Soak:
 
     def waits_beside(self, *works):
         """Sorted, of one honest client [s]."""
-        self.together([(self.asks_alone, 1), *works], max(8.0, min(30.0, 0.03 * self.seconds)))
+        self.together([(self.asks_alone, 1), *works], max(15.0, min(30.0, 0.03 * self.seconds)))
         with self.lock:
             waits, self.waits = sorted(self.waits), []
         return waits
@@ -261,8 +270,8 @@ class Soak:
         counts = self.counted()
         bad = {name: counts.get(name, 0) for name in ('wrong', 'failures', 'ended_badly')}
 
-        def quantile(name, q):  # [ms]
-            return 1e3 * waits[name][int(q * len(waits[name]))] if waits[name] else float('inf')
+        def quantile(name, q):  # [ms]; no call at all fails every demand
+            return 1e3 * waits[name][int(q * len(waits[name]))] if waits[name] else float('nan')
         verdicts = []
 
         def demand(what, value, good):
