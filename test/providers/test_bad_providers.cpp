@@ -71,7 +71,7 @@ TEST(Pairs, that_a_provider_cannot_answer_for_are_refused_by_type) {
   along.along_curve = true;
   EXPECT_SAYS(complaint([&] { curve->prepare(standing); }), "CurveDistance is about curves");
   EXPECT_SAYS(complaint([&] { pair->prepare(along); }), "ask CurveDistance");
-  EXPECT_SAYS(complaint([&] { gap->prepare(along); }), "ask CurveDistance");
+  EXPECT_SAYS(complaint([&] { gap->prepare(along); }), "side b: halfspace");
   EXPECT_SAYS(complaint([&] { gap->prepare(standing); }), "side b: halfspace");
   EXPECT_EQ(complaint([&] { pair->prepare(standing); }), "");
   standing.b = side({shape(ShapeType::CONE, {1, 1})});

@@ -345,6 +345,9 @@ TEST(Values, of_FourierGap_are_continuous_and_rise_where_the_bounding_spheres_pa
         const double here = at(factor * touching);
         EXPECT_GT(here, before) << mode << " " << factor;
         before = here;
+        if (value.bounded) {
+          EXPECT_GE(value.lower, 0.0) << "the spheres are apart, so the bodies are proven to be";
+        }
       }
       EXPECT_NEAR(before - at(50.0 * touching), 50.0, 1e-9) << "1 for each sum of the radii";
     }
