@@ -45,6 +45,12 @@ class Key {
       addRows(shape.planes);
       addRows(shape.quadrics);
       add(shape.resource);
+      add(std::size_t{shape.solid});
+      add(shape.octree.id);
+      add(shape.octree.resolution);
+      add(std::size_t{shape.octree.binary});
+      add(shape.octree.data);
+      add(std::size_t{shape.unknown_is_occupied});
       addMatrix(shape.pose.matrix());
     }
   }
@@ -61,6 +67,28 @@ class Key {
   std::string out_;
 };
 
+/* Whether an outline in the plane z = 0 is not convex. */
+bool turnsBothWays(const Eigen::Matrix3Xd &outline) {
+  bool left = false, right = false;
+  for (Eigen::Index i = 0, n = outline.cols(); i < n; ++i) {
+    const Eigen::Vector3d a = outline.col((i + 1) % n) - outline.col(i);
+    const double turn = a.cross(outline.col((i + 2) % n) - outline.col((i + 1) % n)).z();
+    left = left || turn > 0.0;
+    right = right || turn < 0.0;
+  }
+  return left && right;
+}
+
+/* With files by their absolute paths. */
+ConstraintBody::Part toPart(const ShapeDescription &given, const ResourceOptions &resources) {
+  if (given.type == ShapeType::HEIGHT_FIELD || given.type == ShapeType::DISTANCE_GRID)
+    throw Error(std::string(shapeTypeName(given.type)) + ": constraints take bodies, meshes, points and octrees");
+  ShapeDescription shape = given;
+  if (!shape.resource.empty()) shape.resource = resolveResource(shape.resource, resources, shapeTypeName(shape.type));
+  const Geometry geometry = sideGeometry(shape, resources);
+  return {shape, geometry.hull, geometry.hull_excess};
+}
+
 ConstraintBody toBody(const ObjectDescription &object, const char *name, const ResourceOptions &resources) {
   ConstraintBody side;
   if (!(object.padding >= 0.0) || !std::isfinite(object.padding))
@@ -70,11 +98,7 @@ ConstraintBody toBody(const ObjectDescription &object, const char *name, const R
     const ShapeDescription &shape = object.shapes[i];
     try {
       if (!shape.pose.matrix().allFinite()) throw Error("its pose is not finite");
-      if (shape.type == ShapeType::POINTS || shape.type == ShapeType::OCTREE || shape.type == ShapeType::HEIGHT_FIELD ||
-          shape.type == ShapeType::DISTANCE_GRID)
-        throw Error(std::string(shapeTypeName(shape.type)) + ": constraints are about convex bodies and meshes");
-      const Geometry geometry = makeGeometry(shape, resources);
-      side.parts.push_back({shape, geometry.hull, geometry.hull_excess});
+      side.parts.push_back(toPart(shape, resources));
     } catch (const Error &error) {
       throw Error(std::string(name) + ": shape " + std::to_string(i) + ": " + error.what(), error.status());
     }
@@ -166,6 +190,15 @@ void askProvider(ProviderSet &providers, const LoadedProvider &loaded, const Con
 }
 
 } // namespace
+
+Geometry sideGeometry(const ShapeDescription &shape, const ResourceOptions &resources) {
+  const bool outline = shape.type == ShapeType::POLYGON && turnsBothWays(shape.vertices);
+  ShapeDescription hull;
+  if (outline) hull = shape, hull.type = ShapeType::POLYTOPE;
+  Geometry geometry = makeGeometry(outline ? hull : shape, resources);
+  if (!geometry.hull) throw Error("the octree has no occupied cell");
+  return geometry;
+}
 
 ConstraintRow failedRow(const std::string &id, const std::string &why, cprox_status status) {
   ConstraintRow row;

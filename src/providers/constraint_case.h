@@ -48,6 +48,10 @@ struct ConstraintRow {
 std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCase &asked,
                                       const ResourceOptions &resources, Workspace &workspace);
 
+/** The geometry of a side's shape. Unlike makeGeometry() it takes outlines that are not convex, by their hulls, and
+ * refuses octrees without an occupied cell. */
+Geometry sideGeometry(const ShapeDescription &shape, const ResourceOptions &resources);
+
 /** A row that says why a case could not even be asked about. */
 ConstraintRow failedRow(const std::string &id, const std::string &why, cprox_status status = CPROX_INVALID);
 

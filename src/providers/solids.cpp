@@ -12,7 +12,10 @@
 #include <string>
 #include <vector>
 
+#include <curve_proximity/geometry.hpp>
 #include <curve_proximity/superquadric_fit.hpp>
+
+#include "../scene/scaling.h"
 
 namespace curve_proximity {
 namespace {
@@ -144,6 +147,14 @@ SolidHandle polytopeRound(const BodyHandle &body, double padding) {
 
 using Point = std::array<double, 2>;
 
+SolidHandle loopSolid(const std::vector<Point> &corners) {
+  cprox_solid_description solid{};
+  solid.kind = CPROX_SOLID_POLYGON;
+  solid.corners = reinterpret_cast<const double(*)[2]>(corners.data());
+  solid.n = corners.size();
+  return own(solid);
+}
+
 /* The hull of planar points, counter-clockwise (Andrew's chains). */
 SolidHandle polygonSolid(std::vector<Point> sorted) {
   std::vector<Point> hull;
@@ -161,11 +172,7 @@ SolidHandle polygonSolid(std::vector<Point> sorted) {
     hull.pop_back();
   }
   if (hull.size() < 3) throw Error("the hull of its vertices has no interior");
-  cprox_solid_description solid{};
-  solid.kind = CPROX_SOLID_POLYGON;
-  solid.corners = reinterpret_cast<const double(*)[2]>(hull.data());
-  solid.n = hull.size();
-  return own(solid);
+  return loopSolid(hull);
 }
 
 std::vector<Point> planarPoints(const Eigen::Matrix3Xd &points) {
@@ -204,6 +211,100 @@ cprox_vec3 enlargedAxes(const std::vector<double> &a, int dimension, double p) {
   const double c = p / mean;
   const auto axis = [&](double x) { return std::sqrt((1.0 + c) * x * x + (1.0 + 1.0 / c) * p * p) * (1.0 + 1e-14); };
   return {axis(a[0]), axis(a[1]), axis(a[2])};
+}
+
+SolidHandle unite(const std::vector<SolidHandle> &parts, const std::vector<cprox_pose> &poses) {
+  std::vector<const cprox_solid *> handles;
+  for (const SolidHandle &part : parts) handles.push_back(part.get());
+  cprox_solid_description all{};
+  all.kind = CPROX_SOLID_UNION;
+  all.parts = handles.data();
+  all.poses = poses.data();
+  all.n = handles.size();
+  return own(all);
+}
+
+/* Twice the area of a loop, positive counter-clockwise, and whether it never turns to the right then. */
+double area2(const std::vector<Point> &loop) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Point &p = loop[i], &q = loop[(i + 1) % loop.size()];
+    sum += (p[0] - loop[0][0]) * (q[1] - loop[0][1]) - (q[0] - loop[0][0]) * (p[1] - loop[0][1]);
+  }
+  return sum;
+}
+
+bool isConvex(const std::vector<Point> &loop) {
+  const std::size_t n = loop.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point &a = loop[i], &b = loop[(i + 1) % n], &c = loop[(i + 2) % n];
+    if ((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) < 0.0) return false;
+  }
+  return true;
+}
+
+/* An outline, convex or not, as it is; with padding all within it of a convex one, and capsules along the edges of
+ * another. */
+SolidHandle outlineSolid(const ConstraintBody::Part &part, double padding) {
+  std::vector<Point> loop = planarPoints(part.shape.vertices);
+  if (area2(loop) < 0.0) std::reverse(loop.begin(), loop.end());
+  if (isConvex(loop)) return padding > 0.0 ? polygonRound(part.body, padding) : polygonSolid(std::move(loop));
+  const SolidHandle inside = loopSolid(loop);
+  if (padding == 0.0) return inside;
+  Points edges;
+  for (std::size_t i = 0; i <= loop.size(); ++i)
+    edges.push_back({loop[i % loop.size()][0], loop[i % loop.size()][1], 0.0});
+  cprox_solid_description rim{};
+  rim.kind = CPROX_SOLID_POLYLINE;
+  rim.dimension = 2;
+  rim.points = edges.data();
+  rim.n = edges.size();
+  rim.radius = padding;
+  return unite({inside, own(rim)}, {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY});
+}
+
+/* ---- clouds and octrees ---- */
+
+/* Cells along the longest side of a grid. */
+constexpr double CELLS_ACROSS = 64.0;
+
+/* The cells of a grid that meet one of the boxes, each enlarged by the padding. */
+SolidHandle gridSolid(const Boxes &boxes, double padding, int dimension) {
+  const Eigen::Vector3d low = boxes.low.rowwise().minCoeff().array() - padding,
+                        high = boxes.high.rowwise().maxCoeff().array() + padding;
+  const double size = (high - low).maxCoeff(), rounding = 1e-12 * std::max(low.norm(), high.norm());
+  const double cell = std::max(size, rounding) / CELLS_ACROSS;
+  if (!(cell > 0.0)) throw Error("it has no size");
+  const Eigen::Vector3d lowest = low.array() - 0.5 * cell;
+
+  std::array<Eigen::Index, 3> counts{1, 1, 1};
+  for (int i = 0; i < dimension; ++i) counts.at(i) = static_cast<Eigen::Index>((high - lowest)[i] / cell) + 2;
+  std::vector<unsigned char> occupied(static_cast<std::size_t>(counts[0] * counts[1] * counts[2]));
+  for (Eigen::Index b = 0; b < boxes.low.cols(); ++b) {
+    std::array<Eigen::Index, 3> from{0, 0, 0}, to{0, 0, 0};
+    for (int i = 0; i < dimension; ++i) {
+      from.at(i) = static_cast<Eigen::Index>((boxes.low(i, b) - padding - rounding - lowest[i]) / cell);
+      to.at(i) = static_cast<Eigen::Index>((boxes.high(i, b) + padding + rounding - lowest[i]) / cell);
+    }
+    for (Eigen::Index z = from[2]; z <= to[2]; ++z)
+      for (Eigen::Index y = from[1]; y <= to[1]; ++y)
+        for (Eigen::Index x = from[0]; x <= to[0]; ++x)
+          occupied[static_cast<std::size_t>(x + counts[0] * (y + counts[1] * z))] = 1;
+  }
+  cprox_solid_description grid{};
+  grid.kind = CPROX_SOLID_GRID;
+  grid.dimension = dimension;
+  grid.lowest = {lowest.x(), lowest.y(), dimension == 2 ? 0.0 : lowest.z()};
+  grid.cell = cell;
+  for (std::size_t i = 0; i < 3; ++i) grid.counts[i] = static_cast<std::uint32_t>(counts.at(i));
+  grid.occupied = occupied.data();
+  return own(grid);
+}
+
+SolidHandle cloudSolid(const ShapeDescription &shape, double padding, int dimension) {
+  if (dimension == 2 && !shape.vertices.row(2).isZero(0.0)) throw Error("in the plane points have z = 0");
+  return gridSolid({shape.vertices, shape.vertices}, padding + (shape.dimensions.empty() ? 0.0 : shape.dimensions[0]),
+                   dimension);
 }
 
 SolidHandle coneSolid(double height, double radius) {
@@ -257,8 +358,9 @@ SolidHandle planarSolid(const ConstraintBody::Part &part, double padding) {
       solid.kind = CPROX_SOLID_ELLIPSOID;
       solid.semi_axes = enlargedAxes(d, 2, padding);
       return own(solid);
-    case ShapeType::POLYTOPE:
-    case ShapeType::POLYGON: {
+    case ShapeType::POLYGON: return outlineSolid(part, padding);
+    case ShapeType::POINTS: return cloudSolid(shape, padding, 2);
+    case ShapeType::POLYTOPE: {
       std::vector<Point> corners = planarPoints(shape.vertices);
       return padding > 0.0 ? polygonRound(part.body, padding) : polygonSolid(std::move(corners));
     }
@@ -297,7 +399,10 @@ SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding) {
       return own(solid);
     case ShapeType::CONE: return padding > 0.0 ? polytopeRound(part.body, padding) : coneSolid(d.at(0), d.at(1));
     case ShapeType::POLYTOPE: return padding > 0.0 ? polytopeRound(part.body, padding) : hullSolid(shape.vertices);
-    case ShapeType::MESH: return padding > 0.0 ? polytopeRound(part.body, padding) : meshOf(shape);
+    case ShapeType::MESH:
+      return padding > 0.0 ? polytopeRound(part.body, padding + part.excess) : meshOf(loadedShape(shape, {}));
+    case ShapeType::POINTS: return cloudSolid(shape, padding, 3);
+    case ShapeType::OCTREE: return gridSolid(octreeBoxes(shape), padding, 3);
     case ShapeType::SUPERQUADRIC:
     case ShapeType::IMPLICIT: return polytopeRound(part.body, padding);
     default: throw Error("FourierGap has no solid for it in space");
@@ -321,14 +426,7 @@ SolidHandle makeSolid(const ConstraintBody &side, int dimension) {
     moved = moved || !part.shape.pose.matrix().isIdentity(0.0);
   }
   if (parts.size() == 1 && !moved) return parts.front();
-  std::vector<const cprox_solid *> handles;
-  for (const SolidHandle &part : parts) handles.push_back(part.get());
-  cprox_solid_description all{};
-  all.kind = CPROX_SOLID_UNION;
-  all.parts = handles.data();
-  all.poses = poses.data();
-  all.n = handles.size();
-  return own(all);
+  return unite(parts, poses);
 }
 
 } // namespace curve_proximity

@@ -14,8 +14,9 @@ using SolidHandle = std::shared_ptr<const cprox_solid>;
 /** The union of a side's parts, each as a solid that contains the shape and all within the side's padding of it.
  *
  *  In space: spheres, boxes, ellipsoids, cylinders, capsules; cones, polytopes, superquadrics and implicit bodies by
- *  polytopes; closed meshes, with padding by their hulls. In the plane: spheres, boxes, ellipsoids, superquadrics, and
- *  polygons and polytopes at z = 0. Throws Error that names the type of any other shape. dimension: 2 or 3. */
+ *  polytopes; closed meshes, with padding by their hulls; points and octrees by the cells of a grid that they meet. In
+ *  the plane: spheres, boxes, ellipsoids, superquadrics, outlines convex or not, polytopes and points at z = 0. Throws
+ *  Error that names the type of any other shape. Files are named by absolute paths. dimension: 2 or 3. */
 SolidHandle makeSolid(const ConstraintBody &side, int dimension);
 
 } // namespace curve_proximity

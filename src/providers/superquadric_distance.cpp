@@ -92,6 +92,9 @@ Side makeSide(const ConstraintBody &described, const Parameters &parameters, con
   side.padding = described.padding;
   side.missing = excessOf(described);
   for (const ConstraintBody::Part &part : described.parts) {
+    if (part.shape.type == ShapeType::POINTS || part.shape.type == ShapeType::OCTREE)
+      throw DoesNotApply(std::string("side ") + name + ": SuperquadricDistance takes no " +
+                         shapeTypeName(part.shape.type) + ": ask FourierGap, or CurveDistance along a curve");
     ConstraintBody alone;
     const bool enclose = parameters.fit && !isSmooth(part.shape.type);
     alone.parts = {enclose ? enclosed(part, *parameters.fit, side.excess) : asItIs(part)};

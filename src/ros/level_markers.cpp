@@ -28,7 +28,7 @@ constexpr Level LEVELS[] = {{0.0, 0.78, 0.10, 0.16}, {0.5, 0.96, 0.62, 0.20}, {0
 double addSide(Canvas &canvas, const ObjectDescription &side, const ResourceOptions &resources) {
   double reach = 0.0;
   for (const ShapeDescription &shape : side.shapes) {
-    const BodyHandle hull = makeGeometry(shape, resources).hull;
+    const BodyHandle hull = sideGeometry(shape, resources).hull;
     canvas.addShape("sides", shape, hull, resources, side.pose * shape.pose, colour(0.42, 0.52, 0.66, 0.45));
     const cprox_body_info info = cprox_body_get_info(hull.get());
     const cprox_vec3 centre = info.centre;

@@ -8,12 +8,7 @@ namespace {
 
 /* The factors of a mesh, its own and the new one; its mean stays where it is. */
 void scaleMesh(ShapeDescription &shape, double scale, const ResourceOptions &resources) {
-  if (!shape.resource.empty()) {
-    const MeshData data = readMesh(resolveResource(shape.resource, resources));
-    shape.vertices = data.vertices;
-    shape.triangles = data.triangles;
-    shape.resource.clear();
-  }
+  shape = loadedShape(shape, resources);
   if (shape.dimensions.empty()) shape.dimensions = {1.0, 1.0, 1.0};
   if (shape.dimensions.size() != 3 || shape.vertices.cols() == 0) return; /* refused where the body is made */
   const Eigen::Vector3d factors(shape.dimensions.data());
@@ -34,6 +29,16 @@ void scaleConstraints(ShapeDescription &shape, double scale) {
 }
 
 } // namespace
+
+ShapeDescription loadedShape(const ShapeDescription &shape, const ResourceOptions &resources) {
+  if (shape.type != ShapeType::MESH || shape.resource.empty()) return shape;
+  const MeshData data = readMesh(resolveResource(shape.resource, resources));
+  ShapeDescription out = shape;
+  out.vertices = data.vertices;
+  out.triangles = data.triangles;
+  out.resource.clear();
+  return out;
+}
 
 ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const ResourceOptions &resources) {
   ShapeDescription out = shape;

@@ -5,6 +5,8 @@
 #include "support.h"
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 
 namespace curve_proximity {
 namespace {
@@ -69,6 +71,198 @@ TEST(Solids, in_the_plane_hold_the_area_of_the_enlarged_body_and_not_much_more) 
   const double disc = measureOf(shape(ShapeType::SUPERQUADRIC, {0.5, 0.5, 0.2, 2, 2, 2}), 0.0, 2);
   EXPECT_GE(disc, M_PI * 0.25);
   EXPECT_LE(disc, 1.001 * M_PI * 0.25);
+}
+
+ShapeDescription outlineOfL() {
+  ShapeDescription out;
+  out.type = ShapeType::POLYGON;
+  out.vertices =
+      (Eigen::Matrix3Xd(3, 6) << -0.5, 0.5, 0.5, -0.1, -0.1, -0.5, -0.5, -0.5, -0.1, -0.1, 0.5, 0.5, 0, 0, 0, 0, 0, 0)
+          .finished();
+  return out;
+}
+
+/* From a rectangle. */
+double rectangleDistance(const Eigen::Vector2d &p, const Eigen::Vector2d &low, const Eigen::Vector2d &high) {
+  const Eigen::Vector2d out = (low - p).cwiseMax(p - high);
+  return out.cwiseMax(0.0).norm() + std::min(0.0, out.maxCoeff());
+}
+
+double distanceOfL(const Eigen::Vector2d &p) {
+  return std::min(rectangleDistance(p, {-0.5, -0.5}, {0.5, -0.1}), rectangleDistance(p, {-0.5, -0.5}, {-0.1, 0.5}));
+}
+
+/* A case by the way of the service and the command line, with poses. */
+ConstraintRow answered(ProviderSet &providers, const ShapeDescription &a, double padding, const ShapeDescription &b,
+                       const Eigen::Vector3d &at, Workspace &workspace) {
+  ConstraintCase asked;
+  asked.a.shapes = {a};
+  asked.a.padding = padding;
+  asked.b.shapes = {b};
+  asked.b.pose.translation() = at;
+  return answerCase(providers, asked, {}, workspace).front();
+}
+
+/* Seed 841: a ball about an L, with and without padding; half of the places are on its surface. */
+TEST(Outlines, that_are_not_convex_are_as_they_are_and_never_clear_in_an_overlap) {
+  ProviderSet providers({{"gap", "curve_proximity/FourierGap", {{"dimension", 2}, {"samples", 65}}}});
+  Workspace workspace;
+  Random random(841);
+  for (const double padding : {0.0, 0.05}) {
+    int clear = 0, deep = 0;
+    for (int i = 0; i < 600; ++i) {
+      Eigen::Vector2d p(random.uniform(-1, 1), random.uniform(-1, 1));
+      if (i % 2)
+        for (int k = 0; k < 60; ++k) { // to a distance of 0.1, at most 1e-6 off
+          const Eigen::Vector2d dx(1e-6, 0), dy(0, 1e-6);
+          const Eigen::Vector2d slope((distanceOfL(p + dx) - distanceOfL(p - dx)) / 2e-6,
+                                      (distanceOfL(p + dy) - distanceOfL(p - dy)) / 2e-6);
+          p -= (distanceOfL(p) - 0.1 - padding) * slope;
+        }
+      const double distance = distanceOfL(p) - 0.1 - padding;
+      const ConstraintRow row =
+          answered(providers, outlineOfL(), padding, shape(ShapeType::SPHERE, {0.1}), {p.x(), p.y(), 0.0}, workspace);
+      ASSERT_EQ(row.status, CPROX_OK) << row.message;
+      if (distance < -1e-9) {
+        EXPECT_LT(row.value.lower, 0.0) << p.transpose() << " overlaps by " << -distance;
+      }
+      clear += row.value.lower > 0.0, deep += distance < -1e-9;
+    }
+    EXPECT_GT(clear, 50);
+    EXPECT_GT(deep, 50);
+  }
+  // 0.3 m from both arms, which the hull of the L takes for an overlap
+  const ConstraintRow row =
+      answered(providers, outlineOfL(), 0.0, shape(ShapeType::SPHERE, {0.1}), {0.3, 0.3, 0.0}, workspace);
+  EXPECT_GT(row.value.lower, 0.0);
+  ShapeDescription clockwise = outlineOfL();
+  clockwise.vertices = outlineOfL().vertices.rowwise().reverse().eval();
+  EXPECT_NEAR(
+      answered(providers, clockwise, 0.0, shape(ShapeType::SPHERE, {0.1}), {0.3, 0.3, 0.0}, workspace).value.value,
+      row.value.value, 1e-9);
+}
+
+/* Seed 842: a cloud of balls, and a ball about it. */
+TEST(Clouds, are_never_clear_in_an_overlap) {
+  ProviderSet providers({{"gap", "curve_proximity/FourierGap", {{"samples", 17}}}});
+  Workspace workspace;
+  Random random(842);
+  ShapeDescription cloud = shape(ShapeType::POINTS, {0.05});
+  cloud.vertices.resize(3, 60);
+  for (int i = 0; i < 60; ++i) cloud.vertices.col(i) = random.inCube(0.5).cwiseProduct(Eigen::Vector3d(1, 0.2, 1));
+  int clear = 0, deep = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d at = random.inCube(1.2);
+    const double distance = (cloud.vertices.colwise() - at).colwise().norm().minCoeff() - 0.05 - 0.1;
+    const ConstraintRow row = answered(providers, cloud, 0.0, shape(ShapeType::SPHERE, {0.1}), at, workspace);
+    ASSERT_EQ(row.status, CPROX_OK) << row.message;
+    if (distance < -1e-9) {
+      EXPECT_LT(row.value.lower, 0.0) << at.transpose() << " overlaps by " << -distance;
+    }
+    clear += row.value.lower > 0.0, deep += distance < -1e-9;
+  }
+  EXPECT_GT(clear, 50);
+  EXPECT_GT(deep, 5);
+}
+
+/* Seed 843: cubic curves past a box: the value is the least of 400 along the curve, its gradient is that of
+ * differences, and what is proven clear is. */
+TEST(Curves, carry_a_solid_past_another) {
+  const Loaded provider("curve_proximity/FourierGap", {{"samples", 9}});
+  ConstraintPair pair;
+  pair.along_curve = true;
+  EXPECT_NE(sentenceOf([&] { provider->prepare(pair); }).find("give side a a shape"), std::string::npos);
+  pair.a = side({shape(ShapeType::SPHERE, {0.2})});
+  pair.b = side({shape(ShapeType::BOX, {0.5, 0.7, 0.6})});
+  const auto constraint = provider->prepare(pair);
+  Workspace workspace;
+  Random random(843);
+  int proven = 0;
+  for (int i = 0; i < 12; ++i) {
+    ConstraintCurve curve;
+    ConstraintPlace place;
+    place.curve = &curve;
+    place.b = random.pose(0.2);
+    curve.description.points.resize(3, 4);
+    for (int k = 0; k < 4; ++k) curve.description.points.col(k) = random.inCube(0.8) + Eigen::Vector3d(0, 0, i % 3);
+    const auto valueOf = [&](const Eigen::Matrix3Xd &points, ConstraintValue &value) {
+      const Eigen::Matrix3Xd kept = curve.description.points;
+      curve.description.points = points;
+      curve.curve = compile(curve.description).curve;
+      constraint->evaluate(place, workspace, value);
+      curve.description.points = kept;
+      return value.value;
+    };
+    ConstraintValue value, unused;
+    valueOf(curve.description.points, value);
+    proven += value.bounded;
+    Eigen::Matrix3Xd step(3, 4);
+    for (int k = 0; k < 4; ++k) step.col(k) = random.direction();
+    const double h = 1e-5, slope = (valueOf(curve.description.points + h * step, unused) -
+                                    valueOf(curve.description.points - h * step, unused)) /
+                                   (2.0 * h);
+    EXPECT_NEAR(value.points.cwiseProduct(step).sum(), slope, 1e-4 * (1.0 + std::abs(slope))) << i;
+
+    // The same pair standing, at places of the curve.
+    ConstraintPair standing = pair;
+    standing.along_curve = false;
+    const auto at = provider->prepare(standing);
+    double least = std::numeric_limits<double>::infinity();
+    valueOf(curve.description.points, value);
+    for (int k = 0; k <= 100; ++k) {
+      ConstraintPlace here;
+      here.b = place.b;
+      require(cprox_curve_evaluate(curve.curve.get(), 0.01 * k, workspace.get(), &here.a.position, nullptr, nullptr),
+              workspace);
+      at->evaluate(here, workspace, unused);
+      least = std::min(least, unused.value);
+    }
+    EXPECT_LT(value.value, least + 1e-6);
+    EXPECT_GT(value.value, least - 0.2 * (1.0 + std::abs(least)));
+    if (value.bounded) {
+      EXPECT_GE(least, value.lower);
+    }
+  }
+  EXPECT_GT(proven, 2);
+}
+
+/* One occupied child of the root: the cube from (-1, -1, -1) to the origin. */
+TEST(Octrees, are_the_cells_that_they_meet) {
+  ShapeDescription tree;
+  tree.type = ShapeType::OCTREE;
+  tree.octree.resolution = 1.0 / 32768.0;
+  tree.octree.data = std::string("\x02\x00", 2);
+  const double measure = cprox_solid_get_info(makeSolid({{{tree, nullptr, 0.0}}, 0.0}, 3).get()).measure;
+  EXPECT_GE(measure, 1.0);
+  EXPECT_LE(measure, 1.12);
+  ProviderSet providers({{"gap", "curve_proximity/FourierGap", {{"samples", 17}}}});
+  Workspace workspace;
+  const ShapeDescription ball = shape(ShapeType::SPHERE, {0.1});
+  EXPECT_LT(answered(providers, tree, 0.0, ball, {-0.05, -0.05, -0.05}, workspace).value.value, 0.0);
+  EXPECT_GT(answered(providers, tree, 0.0, ball, {-0.5, -0.5, 1.5}, workspace).value.lower, 0.0);
+  ShapeDescription other = tree; // another tree of the same size: not the one that is kept
+  other.octree.data = std::string("\x08\x00", 2);
+  EXPECT_GT(answered(providers, other, 0.0, ball, {-0.5, -0.5, 1.5}, workspace).value.lower, 0.0);
+  EXPECT_GT(answered(providers, other, 0.0, ball, {-1.0, -0.5, -0.5}, workspace).value.value,
+            answered(providers, tree, 0.0, ball, {-1.0, -0.5, -0.5}, workspace).value.value);
+}
+
+TEST(Files, of_meshes_are_read) {
+  ProviderSet providers({{"gap", "curve_proximity/FourierGap", {{"samples", 9}}}});
+  Workspace workspace;
+  ShapeDescription cube;
+  cube.type = ShapeType::MESH;
+  cube.resource = ::testing::TempDir() + "cube.off";
+  std::ofstream(cube.resource) << "OFF\n8 12 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n"
+                                  "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n"
+                                  "3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 5\n";
+  EXPECT_NEAR(measureOf(cube, 0.0), 1.0, 1e-6);
+  const ConstraintRow row = answered(providers, cube, 0.0, shape(ShapeType::SPHERE, {0.1}), {0.5, 0.5, 0.5}, workspace);
+  ASSERT_EQ(row.status, CPROX_OK) << row.message;
+  EXPECT_LT(row.value.value, 0.0);
+  EXPECT_GT(answered(providers, cube, 0.0, shape(ShapeType::SPHERE, {0.1}), {2.5, 0.5, 0.5}, workspace).value.lower,
+            0.0);
+  std::remove(cube.resource.c_str());
 }
 
 } // namespace
