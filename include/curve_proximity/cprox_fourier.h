@@ -19,6 +19,7 @@
 #include <stdbool.h>
 
 #include <curve_proximity/cprox/base.h>
+#include <curve_proximity/cprox/body.h>
 #include <curve_proximity/cprox/curve.h>
 
 #ifdef __cplusplus
@@ -64,11 +65,16 @@ typedef enum cprox_solid_kind {
   /** The union of solids of one dimension, each at a pose: parts, poses, n. It is the sum of their functions (Prop. 2):
    *  overlaps count more than once; the guarantee stays, the over-reach grows. */
   CPROX_SOLID_UNION,
-  /** The part of a solid inside a convex region: solid, region, n. It is the product of its function and the region's
-   *  indicator (Prop. 2, Theorem 2). In a gap it localises the test: overlap counts only inside the region. The product
-   *  must not be empty. Boxes, polygons, meshes and unions of them; others are refused: give them as a polygon or mesh
-   *  that holds them. */
-  CPROX_SOLID_CLIPPED
+  /** The part of a solid inside a convex region: solid, region, n, body. It is the product of its function and the
+   *  region's indicator (Prop. 2, Theorem 2). In a gap it localises the test: overlap counts only inside the region.
+   * The product must not be empty. Boxes, polygons, meshes and unions of them; others are refused: give them as a
+   * polygon or mesh that holds them. A body makes any convex set a solid: clip a box that contains it. */
+  CPROX_SOLID_CLIPPED,
+  /** The points of a box at which a function is at most 0, convex or not (Prop. 1): dimension, lowest, cell, counts,
+   *  function, user, lipschitz. It is the grid of the cells that may meet the set: those with a value of at most
+   *  lipschitz times half a cell's diagonal at their middle. One call a cell; what lies outside of the box is no part.
+   */
+  CPROX_SOLID_SUBLEVEL
 } cprox_solid_kind;
 
 /** What a solid is made of. Set all members to 0, then those that the kind reads: cprox_solid_kind lists them. Every
@@ -100,11 +106,11 @@ typedef struct cprox_solid_description {
   const cprox_curve *curve;
   /** [m] > 0 of a sweep: how far the polyline may be from the curve */
   double tolerance;
-  /** [m] of a grid: the corner of cell (0, 0, 0) */
+  /** [m] of a grid or a sublevel set: the corner of cell (0, 0, 0) */
   cprox_vec3 lowest;
-  /** [m] > 0 of a grid: the edge length of a cell */
+  /** [m] > 0 of a grid or a sublevel set: the edge length of a cell */
   double cell;
-  /** of a grid: cells along x, y, z, each >= 1, their product <= 2^30; counts[2] is 1 in the plane */
+  /** of a grid or a sublevel set: cells along x, y, z, each >= 1, their product <= 2^30; counts[2] is 1 in the plane */
   uint32_t counts[3];
   /** of a grid: one byte a cell, x fastest; not 0: occupied. At least one is */
   const unsigned char *occupied;
@@ -115,8 +121,19 @@ typedef struct cprox_solid_description {
   /** what is clipped */
   const cprox_solid *solid;
   /** of a clipped solid: half-spaces a x + b y + c z <= d as {a, b, c, d} in the frame of the solid, (a, b, c) not 0,
-   *  c = 0 in the plane */
+   *  c = 0 in the plane; with a body it may be NULL, and n 0 */
   const double (*region)[4];
+  /** of a clipped solid, or NULL: a bounded convex body of any kind in the frame of the solid, in the plane its shadow.
+   *  Its tangents in 48 directions (32 in the plane) clip, which contain it: a ball with 10 % of its radius to spare.
+   * In space it clips boxes only */
+  const cprox_body *body;
+  /** of a sublevel set: the value at a point [any unit], finite; z = 0 in the plane */
+  double (*function)(void *user, cprox_vec3 point);
+  /** of a sublevel set: handed to the function */
+  void *user;
+  /** [unit of the function/m] > 0 of a sublevel set: values at two points differ by at most this many times the way
+   *  between them. Neighbouring cells whose values say otherwise are an error */
+  double lipschitz;
 } cprox_solid_description;
 
 /** Makes a solid.
@@ -205,8 +222,8 @@ typedef struct cprox_gap_info {
   /** t, in units of the measure squared over L^d; V_ref in the signal mode */
   double threshold;
   /** [m] solids farther apart than this are never called colliding. Certified: proven. Tuned: what was measured,
-   *  times 1.25. To a clipped solid: from the solid or from its region, whichever is farther. Infinity in the signal
-   *  mode, and where the gap is too coarse to say */
+   *  times 1.25. To a clipped solid: from the solid or from one of its half-spaces, whichever is farthest. Infinity in
+   * the signal mode, and where the gap is too coarse to say */
   double over_reach;
   /** clear is a proof */
   bool guaranteed;

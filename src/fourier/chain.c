@@ -140,32 +140,33 @@ cprox_status solid_create_sweep(const cprox_solid_description *d, cprox_workspac
 
 /* ---- Grids ---- */
 
-cprox_status solid_create_grid(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
-  const vec3 lowest = d->lowest;
-  const double cell = d->cell;
+cprox_status solid_check_grid(const cprox_solid_description *d, cprox_workspace *workspace) {
   const uint32_t *counts = d->counts;
-  const unsigned char *occupied = d->occupied;
-  const int dimension = d->dimension;
-  cprox_status status = solid_check_length("cell", cell, workspace);
-  if (status == CPROX_OK) status = solid_check_points("lowest corner", &lowest, 1, dimension, workspace);
+  cprox_status status = solid_check_length("cell", d->cell, workspace);
+  if (status == CPROX_OK) status = solid_check_points("lowest corner", &d->lowest, 1, d->dimension, workspace);
   if (status != CPROX_OK) return status;
-  if (!occupied) return fourier_fail(workspace, CPROX_INVALID, "occupied is NULL");
   const double cells = (double)counts[0] * counts[1] * counts[2];
-  if (!(cells >= 1.0) || cells > 1073741824.0 || (dimension == 2 && counts[2] != 1))
+  if (!(cells >= 1.0) || cells > 1073741824.0 || (d->dimension == 2 && counts[2] != 1))
     return fourier_fail(workspace, CPROX_INVALID, "counts are %u × %u × %u, must be 1 or more, together at most 2^30%s",
-                        counts[0], counts[1], counts[2], dimension == 2 ? ", the last 1 in the plane" : "");
-  const size_t n = (size_t)cells;
-  if (!memchr(occupied, 1, n)) {
-    size_t i = 0;
-    while (i < n && !occupied[i]) i++;
-    if (i == n) return fourier_fail(workspace, CPROX_INVALID, "no cell of the grid is occupied");
-  }
+                        counts[0], counts[1], counts[2], d->dimension == 2 ? ", the last 1 in the plane" : "");
+  return CPROX_OK;
+}
+
+cprox_status solid_create_grid(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const unsigned char *occupied = d->occupied;
+  if (!occupied) return fourier_fail(workspace, CPROX_INVALID, "occupied is NULL");
+  const cprox_status status = solid_check_grid(d, workspace);
+  if (status != CPROX_OK) return status;
+  const size_t n = (size_t)d->counts[0] * d->counts[1] * d->counts[2];
+  size_t first = 0;
+  while (first < n && !occupied[first]) first++;
+  if (first == n) return fourier_fail(workspace, CPROX_INVALID, "no cell of the grid is occupied");
 
   piece p = piece_create(PIECE_GRID);
-  p.size[0] = cell, p.centre = lowest;
+  p.size[0] = d->cell, p.centre = d->lowest;
   memcpy(p.counts, d->counts, sizeof p.counts);
   p.cells = malloc(n);
   if (!p.cells) return solid_out_of_memory(workspace);
   memcpy(p.cells, occupied, n);
-  return solid_of_piece(dimension, &p, workspace, solid);
+  return solid_of_piece(d->dimension, &p, workspace, solid);
 }

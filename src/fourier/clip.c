@@ -54,3 +54,43 @@ void clip_soup(points *soup, const double plane[4]) {
   free(soup->at);
   *soup = kept;
 }
+
+/* Whether another plane of the same direction makes plane i redundant. */
+static bool is_hidden(const double (*plane)[4], size_t n, size_t i) {
+  const vec3 u = vec(plane[i][0], plane[i][1], plane[i][2]);
+  for (size_t j = 0; j < n; j++)
+    if (j != i && vec_dot(u, vec(plane[j][0], plane[j][1], plane[j][2])) > 1.0 - 1e-13 &&
+        (plane[j][3] < plane[i][3] || (plane[j][3] == plane[i][3] && j < i)))
+      return true;
+  return false;
+}
+
+/* The face of the polytope in plane i: a square of half the side `half` about `middle`, clipped by all other planes. */
+static points face_in(const double (*plane)[4], size_t n, size_t i, double grow, vec3 middle, double half) {
+  const vec3 u = vec(plane[i][0], plane[i][1], plane[i][2]), other = fabs(u.x) < 0.6 ? vec(1, 0, 0) : vec(0, 1, 0);
+  const vec3 across = vec_cross(other, u), v = vec_scale(half / vec_norm(across), across), w = vec_cross(u, v);
+  const vec3 foot = vec_axpy(middle, plane[i][3] + grow - vec_dot(u, middle), u);
+  points face = {0};
+  points_add(&face, vec_add(foot, vec_add(v, w)));
+  points_add(&face, vec_add(foot, vec_sub(w, v)));
+  points_add(&face, vec_sub(foot, vec_add(v, w)));
+  points_add(&face, vec_sub(foot, vec_sub(w, v)));
+  for (size_t j = 0; j < n && face.n > 0; j++) {
+    const double cutter[4] = {plane[j][0], plane[j][1], plane[j][2], plane[j][3] + grow};
+    if (j != i && !is_hidden(plane, n, j)) clip_loop(&face, cutter);
+  }
+  return face;
+}
+
+bool polytope_soup(const double (*plane)[4], size_t n, double grow, vec3 middle, double size, points *soup) {
+  for (size_t i = 0; i < n && !soup->failed; i++) {
+    if (is_hidden(plane, n, i)) continue;
+    points face = face_in(plane, n, i, grow, middle, size);
+    soup->failed = soup->failed || face.failed;
+    for (size_t j = 0; j < face.n; j++)
+      if (vec_norm(vec_sub(face.at[j], middle)) > size) soup->failed = true;
+    for (size_t j = 1; j + 1 < face.n; j++) points_add_triangle(soup, face.at[0], face.at[j], face.at[j + 1]);
+    free(face.at);
+  }
+  return !soup->failed;
+}

@@ -56,23 +56,80 @@ static bool box_to_corners(piece *p, int dimension) {
   return true;
 }
 
-/* Adds the region to what clips the piece, and clips its corners. */
-static bool clip_piece(piece *p, int dimension, const double (*region)[4], size_t n) {
-  if (p->kind == PIECE_BOX && !box_to_corners(p, dimension)) return false;
+/* Appends half-spaces with normals of unit length; false where memory is out. */
+static bool add_planes(piece *p, const double (*region)[4], size_t n) {
   double(*plane)[4] = realloc(p->plane, (p->n_planes + n) * sizeof *plane);
   if (!plane) return false;
   p->plane = plane;
-  points corners = {.at = p->corner, .n = p->n_corners, .room = p->n_corners};
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < n; i++, p->n_planes++) {
     const double norm = vec_norm(vec(region[i][0], region[i][1], region[i][2]));
     for (int j = 0; j < 4; j++) plane[p->n_planes][j] = region[i][j] / norm;
-    (p->kind == PIECE_POLYGON ? clip_loop : clip_soup)(&corners, plane[p->n_planes++]);
   }
+  return true;
+}
+
+bool piece_polytope_faces(const piece *p, double grow, points *out) {
+  const double size = (1.0 + 1e-9) * (vec_norm(vec(p->size[0], p->size[1], p->size[2])) + sqrt(3.0) * grow);
+  return polytope_soup((const double(*)[4])p->plane, p->n_planes, grow, p->centre, size, out);
+}
+
+/* A box in space as the polytope of its faces. */
+static bool box_to_polytope(piece *p) {
+  double face[6][4];
+  for (int i = 0; i < 6; i++) {
+    const double sign = i & 1 ? -1.0 : 1.0;
+    const vec3 u = vec(sign * p->turn[i / 2], sign * p->turn[3 + i / 2], sign * p->turn[6 + i / 2]);
+    face[i][0] = u.x, face[i][1] = u.y, face[i][2] = u.z, face[i][3] = vec_dot(u, p->centre) + p->size[i / 2];
+  }
+  p->kind = PIECE_SOUP;
+  return add_planes(p, (const double(*)[4])face, 6);
+}
+
+/* Clips a polytope, whose faces are made anew: a soup's caps would be cut again and again. */
+static bool clip_polytope(piece *p, const double (*region)[4], size_t n) {
+  points corners = {0};
+  const bool ok = add_planes(p, region, n) && piece_polytope_faces(p, 0.0, &corners);
+  free(p->corner);
+  p->corner = corners.at, p->n_corners = corners.n;
+  return ok;
+}
+
+/* Adds the region to what clips the piece, and clips its corners. round: the region has many half-spaces. */
+static bool clip_piece(piece *p, int dimension, const double (*region)[4], size_t n, bool round) {
+  if (round && p->kind == PIECE_BOX && dimension == 3 && !box_to_polytope(p)) return false;
+  if (piece_is_polytope(p)) return clip_polytope(p, region, n);
+  if (p->kind == PIECE_BOX && !box_to_corners(p, dimension)) return false;
+  const size_t first = p->n_planes;
+  if (!add_planes(p, region, n)) return false;
+  points corners = {.at = p->corner, .n = p->n_corners, .room = p->n_corners};
+  for (size_t i = first; i < p->n_planes; i++)
+    (p->kind == PIECE_POLYGON ? clip_loop : clip_soup)(&corners, p->plane[i]);
   p->corner = corners.at, p->n_corners = corners.n;
   return !corners.failed;
 }
 
-static cprox_status check_region(const cprox_solid *solid, const double (*region)[4], size_t n,
+/* Tangents of a body, in evenly spread directions; they contain it. */
+enum { TANGENTS_IN_PLANE = 32, TANGENTS_IN_SPACE = 48 };
+
+static cprox_status add_tangents(const cprox_body *body, int dimension, cprox_workspace *workspace,
+                                 double (*plane)[4]) {
+  const cprox_body_info info = cprox_body_get_info(body);
+  const int n = dimension == 2 ? TANGENTS_IN_PLANE : TANGENTS_IN_SPACE;
+  for (int i = 0; i < n; i++) {
+    const double z = dimension == 2 ? 0.0 : 1.0 - (2.0 * i + 1.0) / n, r = sqrt(1.0 - z * z);
+    const double angle = dimension == 2 ? 6.28318530717958647693 * i / n : 2.39996322972865332 * i;
+    const vec3 u = vec(r * cos(angle), r * sin(angle), z);
+    const double height = cprox_body_support(body, u, NULL);
+    if (!isfinite(height) || !isfinite(info.radius))
+      return fourier_fail(workspace, CPROX_INVALID, "a %s is not bounded: it is no region",
+                          cprox_body_kind_name(info.kind));
+    plane[i][0] = u.x, plane[i][1] = u.y, plane[i][2] = u.z;
+    plane[i][3] = height + 1e-12 * (info.radius + vec_norm(info.centre)); /* its rounding, and that of u's length */
+  }
+  return CPROX_OK;
+}
+
+static cprox_status check_planes(const cprox_solid *solid, const double (*region)[4], size_t n,
                                  cprox_workspace *workspace) {
   if (n == 0 || !region) return fourier_fail(workspace, CPROX_INVALID, "the region has no half-space");
   for (size_t i = 0; i < n; i++) {
@@ -84,8 +141,14 @@ static cprox_status check_region(const cprox_solid *solid, const double (*region
       return fourier_fail(workspace, CPROX_INVALID, "half-space %zu of the region has c = %g, in the plane it is 0", i,
                           a.z);
   }
+  return CPROX_OK;
+}
+
+static cprox_status check_pieces(const cprox_solid *solid, bool round, cprox_workspace *workspace) {
   for (size_t i = 0; i < solid->n; i++) {
     const piece_kind kind = solid->pieces[i].kind;
+    if (round && kind == PIECE_SOUP && !piece_is_polytope(&solid->pieces[i]))
+      return fourier_fail(workspace, CPROX_INVALID, "piece %zu is a mesh: in space a body clips boxes only", i);
     if (kind != PIECE_BOX && kind != PIECE_POLYGON && !(kind == PIECE_SOUP))
       return fourier_fail(workspace, CPROX_INVALID,
                           "piece %zu cannot be clipped: only boxes, polygons and meshes can; give one that holds it",
@@ -94,21 +157,16 @@ static cprox_status check_region(const cprox_solid *solid, const double (*region
   return CPROX_OK;
 }
 
-cprox_status solid_create_clipped(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **clipped) {
-  const cprox_solid *solid = d->solid;
-  const double(*region)[4] = d->region;
-  const size_t n = d->n;
-  if (!solid) return fourier_fail(workspace, CPROX_INVALID, "solid is NULL");
-  cprox_status status = check_region(solid, region, n, workspace);
-  if (status != CPROX_OK) return status;
-
+static cprox_status clip_solid(const cprox_solid *solid, const double (*region)[4], size_t n, bool round,
+                               cprox_workspace *workspace, cprox_solid **clipped) {
   cprox_solid *made = solid_allocate(solid->dimension, solid->n);
   if (!made) return solid_out_of_memory(workspace);
   const double no_turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   size_t kept = 0;
   for (size_t i = 0; i < solid->n; i++) {
     piece *p = &made->pieces[kept];
-    if (!piece_copy(&solid->pieces[i], no_turn, vec(0, 0, 0), p) || !clip_piece(p, solid->dimension, region, n)) {
+    if (!piece_copy(&solid->pieces[i], no_turn, vec(0, 0, 0), p) ||
+        !clip_piece(p, solid->dimension, region, n, round)) {
       cprox_solid_free(made);
       return solid_out_of_memory(workspace);
     }
@@ -125,4 +183,21 @@ cprox_status solid_create_clipped(const cprox_solid_description *d, cprox_worksp
   solid_bound(made);
   *clipped = made;
   return CPROX_OK;
+}
+
+cprox_status solid_create_clipped(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **clipped) {
+  const cprox_solid *solid = d->solid;
+  if (!solid) return fourier_fail(workspace, CPROX_INVALID, "solid is NULL");
+  cprox_status status = d->body && d->n == 0 ? CPROX_OK : check_planes(solid, d->region, d->n, workspace);
+  if (status == CPROX_OK) status = check_pieces(solid, d->body != NULL, workspace);
+  if (status != CPROX_OK) return status;
+  const size_t n = d->n + (!d->body ? 0 : solid->dimension == 2 ? TANGENTS_IN_PLANE : TANGENTS_IN_SPACE);
+  double(*region)[4] = malloc(n * sizeof *region);
+  if (!region) return solid_out_of_memory(workspace);
+  if (d->n > 0) memcpy(region, d->region, d->n * sizeof *region);
+  if (d->body) status = add_tangents(d->body, solid->dimension, workspace, region + d->n);
+  if (status == CPROX_OK)
+    status = clip_solid(solid, (const double(*)[4])region, n, d->body != NULL, workspace, clipped);
+  free(region);
+  return status;
 }

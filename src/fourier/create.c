@@ -14,6 +14,7 @@ static const solid_maker makers[] = {
     [CPROX_SOLID_MESH] = {solid_create_mesh, false},          [CPROX_SOLID_POLYLINE] = {solid_create_polyline, true},
     [CPROX_SOLID_SWEEP] = {solid_create_sweep, true},         [CPROX_SOLID_GRID] = {solid_create_grid, true},
     [CPROX_SOLID_UNION] = {solid_create_union, false},        [CPROX_SOLID_CLIPPED] = {solid_create_clipped, false},
+    [CPROX_SOLID_SUBLEVEL] = {solid_create_sublevel, true},
 };
 
 cprox_status cprox_solid_create(const cprox_solid_description *description, cprox_workspace *workspace,

@@ -35,6 +35,23 @@ static void offset_loop(const vec3 *v, size_t n, double rho, points *out) {
   }
 }
 
+/* A polytope by its half-spaces, each moved out by rho. The distance to the polytope is convex, so that it is largest
+ * at a corner, from where the nearest corner is at least as far. */
+static bool offset_polytope(const piece *p, double rho, piece *out, double *reach) {
+  points corners = {0};
+  if (!piece_polytope_faces(p, rho, &corners)) {
+    free(corners.at);
+    return false;
+  }
+  for (size_t i = 0; i < corners.n; i++) {
+    double least = INFINITY;
+    for (size_t j = 0; j < p->n_corners; j++) least = fmin(least, vec_norm(vec_sub(corners.at[i], p->corner[j])));
+    *reach = fmax(*reach, least);
+  }
+  out->corner = corners.at, out->n_corners = corners.n;
+  return true;
+}
+
 /* Corners of a polygon or a mesh: offset what was before clipping, then clip by the planes moved out by rho. */
 static bool offset_corners(const piece *p, double rho, piece *out, double *reach) {
   points corners = {0};
@@ -153,7 +170,9 @@ bool piece_offset(const piece *p, int dimension, double rho, piece *out, double 
       break;
     }
     case PIECE_POLYGON:
-    case PIECE_SOUP: ok = offset_corners(p, rho, out, reach); break;
+    case PIECE_SOUP:
+      ok = rho > 0.0 && piece_is_polytope(p) ? offset_polytope(p, rho, out, reach) : offset_corners(p, rho, out, reach);
+      break;
     case PIECE_GRID: ok = offset_grid(p, dimension, rho, out, reach); break;
   }
   if (!ok) piece_free(out);

@@ -29,7 +29,8 @@ typedef struct piece {
   vec3 *corner;
   size_t n_corners;
 
-  /* What an offset is made from: the polygon's loop or the mesh before clipping, and the clipping half-spaces. */
+  /* What an offset is made from: the polygon's loop or the mesh before clipping, and the clipping half-spaces. A soup
+   * without triangles is a convex polytope: the half-spaces alone, within the box of `size` at `centre`. */
   vec3 *vertex;
   size_t n_vertices;
   uint32_t (*triangle)[3];
@@ -73,6 +74,14 @@ double piece_error_scale(const piece *p, int dimension, double q);
 /* A piece without clipping whose function is at least 1 on every point within rho of p: corners and sizes only. *reach
  * grows to how far beyond p it goes at most. False where memory is out. */
 bool piece_offset(const piece *p, int dimension, double rho, piece *out, double *reach);
+
+static inline bool piece_is_polytope(const piece *p) {
+  return p->kind == PIECE_SOUP && !p->triangle;
+}
+
+/* The faces of a polytope whose half-spaces have moved out by `grow`; false where memory is out. */
+struct points;
+bool piece_polytope_faces(const piece *p, double grow, struct points *out);
 
 static inline double ball_measure(int dimension, double r) {
   return dimension == 2 ? 3.14159265358979323846 * r * r : 4.18879020478639098462 * r * r * r;

@@ -36,6 +36,10 @@ static inline void points_add_triangle(points *list, vec3 a, vec3 b, vec3 c) {
 void clip_loop(points *loop, const double plane[4]);
 void clip_soup(points *soup, const double plane[4]);
 
+/* Adds the faces of the polytope of all x with plane·(x, -1) <= grow, which lies within `size` of `middle`; normals of
+ * unit length. Returns false where memory is out or the polytope is larger. */
+bool polytope_soup(const double (*plane)[4], size_t n, double grow, vec3 middle, double size, points *soup);
+
 /* Adds the boundary of a function that is at least 1 within rho of a closed mesh and is its indicator on it. *reach
  * grows to how far it goes beyond the mesh. Returns whether the function may exceed 1. */
 struct piece;

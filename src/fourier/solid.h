@@ -26,13 +26,16 @@ typedef cprox_status solid_constructor(const cprox_solid_description *d, cprox_w
                                        cprox_solid **solid);
 solid_constructor solid_create_ball, solid_create_box, solid_create_ellipsoid, solid_create_cylinder,
     solid_create_capsule, solid_create_polygon, solid_create_mesh, solid_create_polyline, solid_create_sweep,
-    solid_create_grid, solid_create_union, solid_create_clipped;
+    solid_create_grid, solid_create_union, solid_create_clipped, solid_create_sublevel;
 
 /* The checks that constructors share; CPROX_OK or the failure with its sentence. */
 cprox_status solid_check_length(const char *name, double value, cprox_workspace *workspace);
 cprox_status solid_check_points(const char *name, const vec3 *points, size_t n, int dimension,
                                 cprox_workspace *workspace);
 cprox_status solid_out_of_memory(cprox_workspace *workspace);
+
+/* The grid of a description, without its cells. */
+cprox_status solid_check_grid(const cprox_solid_description *d, cprox_workspace *workspace);
 
 /* A solid with room for n empty pieces, or NULL. */
 cprox_solid *solid_allocate(int dimension, size_t n);
