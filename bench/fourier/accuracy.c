@@ -255,3 +255,34 @@ void fourier_obstacle(const bench_size *size) {
   cprox_workspace_free(ws);
   shapes_free(s);
 }
+
+/* Along one ray out of an overlap, the three rows of the paper's Fig. 5: the value, the part of the sum that a verdict
+ * takes, the length of the gradient by the position [1/m]. */
+void fourier_profile(const bench_size *size) {
+  shape s[SHAPES];
+  shapes_create(s);
+  cprox_workspace *ws = cprox_workspace_create();
+  const int steps = size->problems >= 200 ? 40 : 20;
+  const uint32_t samples[] = {9, 17, 33};
+  const cprox_pose a = shape_pose(0, 0, 0);
+  for (int i = 0; i < 3; i++) {
+    cprox_gap *gap = make_certified(&s[0], &s[1], samples[i], ws);
+    const double terms = (double)cprox_gap_get_info(gap).terms;
+    for (int k = 0; k <= steps; k++) {
+      const double x = 1.8 * k / steps;
+      const cprox_pose b = shape_pose(x * cos(0.4), x * sin(0.4), 0.6);
+      cprox_gap_result whole, early;
+      if (cprox_gap_evaluate(gap, &a, &b, ws, &whole) < CPROX_OK || cprox_gap_test(gap, &a, &b, ws, &early) < CPROX_OK)
+        abort();
+      char parameter[96];
+      snprintf(parameter, sizeof parameter, "n %u x %.4f clearance %.4f", samples[i], x,
+               shape_distance(&s[0], &a, &s[1], &b));
+      fourier_row("profile value", "curve_proximity", parameter, NAN, 0, whole.value, 0, 0);
+      fourier_row("profile terms", "curve_proximity", parameter, NAN, 0, fmin(1.0, early.terms / terms), 0, 0);
+      fourier_row("profile gradient", "curve_proximity", parameter, NAN, 0, vec_norm(whole.position_b), 0, 0);
+    }
+    cprox_gap_free(gap);
+  }
+  cprox_workspace_free(ws);
+  shapes_free(s);
+}

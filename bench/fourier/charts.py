@@ -34,6 +34,40 @@ def over_reach(rows, save, legend_below):
     return save(figure, 'fourier_over_reach')
 
 
+def space(rows, save, legend_below):
+    """Pairs in space: the share of clear poses that are called clear, and what a verdict costs beside the distance."""
+    share, cost, exact = (collections.defaultdict(lambda: collections.defaultdict(list)) for _ in range(3))
+    for row in rows:
+        if not row['workload'].startswith('space: clear') or math.isnan(float(row['error'] or 'nan')):
+            continue
+        if row['method'] == 'curve_proximity distance':
+            exact[''][0].append(float(row['median_us']))
+            continue
+        n = int(row['parameter'].split()[1])
+        share[row['method']][n].append(100.0 * float(row['error']))
+        cost[row['method']][n].append(float(row['median_us']))
+    if not share:
+        return None
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 4.0))
+    for method, by_n in share.items():
+        n = sorted(by_n)
+        for axes, values in ((left, by_n), (right, cost[method])):
+            axes.plot(n, [sum(values[k]) / len(values[k]) for k in n], 'o-', color=COLOURS[method], label=NAMES[method])
+            axes.fill_between(n, [min(values[k]) for k in n], [max(values[k]) for k in n], color=COLOURS[method], alpha=0.13,
+                              linewidth=0)
+    left.axhline(100.0, color=COLOURS['exact'], label='certified distance (cprox_pair)')
+    right.axhline(sorted(exact[''][0])[len(exact[''][0]) // 2] if exact else math.nan, color=COLOURS['exact'])
+    for axes in (left, right):
+        axes.set_xscale('log')
+        axes.set_xlabel('samples an axis n')
+    left.set_ylabel('called clear [%]')
+    right.set_yscale('log')
+    right.set_ylabel('time of a verdict [µs]')
+    figure.suptitle('In space: clear poses farther apart than 5 % of the size; five pairs, mean and band')
+    legend_below(left)
+    return save(figure, 'fourier_space')
+
+
 def cost(rows, save, legend_below):
     """Over-reach against the time of value and gradient, a point for each n."""
     found = collections.defaultdict(lambda: collections.defaultdict(list))
@@ -128,6 +162,34 @@ def convergence(rows, save, legend_below):
     return save(figure, 'fourier_convergence')
 
 
+def profile(rows, save, legend_below):
+    """The rows of the paper's Fig. 5 along one ray: value, part of the sum before a verdict, gradient."""
+    kinds = {'profile value': 'V/θ', 'profile terms': 'part of the sum', 'profile gradient': 'gradient [1/m]'}
+    found = collections.defaultdict(lambda: collections.defaultdict(list))
+    touch = math.inf
+    for row in rows:
+        match = re.fullmatch(r'n (\d+) x ([\d.]+) clearance (-?[\d.]+)', row['parameter'])
+        if row['workload'] in kinds and match:
+            found[row['workload']][int(match.group(1))].append((float(match.group(2)), float(row['error'])))
+            if float(match.group(3)) > 0.0:
+                touch = min(touch, float(match.group(2)))
+    if not found:
+        return None
+    figure, grid = plt.subplots(3, 1, figsize=(7.2, 6.4), sharex=True)
+    for axes, (workload, label) in zip(grid, kinds.items()):
+        for k, n in enumerate(sorted(found[workload])):
+            axes.plot(*zip(*sorted(found[workload][n])), 'o-', color=plt.cm.viridis(0.15 + 0.3 * k), label=f'n = {n}', markersize=3)
+        axes.axvline(touch, color=COLOURS['exact'], linewidth=1.0, label='apart from here on' if workload == 'profile value' else None)
+        axes.set_ylabel(label)
+        if workload != 'profile terms':
+            axes.set_yscale('log')
+    grid[0].axhline(1.0, color=COLOURS['exact'], linewidth=0.8, linestyle='--')
+    grid[0].legend(loc='lower left', fontsize=8)
+    grid[-1].set_xlabel('distance of the T from the L along a ray [m]')
+    figure.suptitle('A gap of an L and a T along a ray (certified)')
+    return save(figure, 'fourier_profile')
+
+
 def obstacle(rows, save, legend_below):
     """Slices of the SE(2) obstacle at n = 17, rotation upwards: the paper's Fig. 6."""
     slices = {key[1]: value for key, value in outlines(rows).items() if key[0] == 17}
@@ -178,5 +240,5 @@ def nesting(rows, save, legend_below):
 
 def draw(rows, save, legend_below):
     rows = [row for row in rows if row['group'] == 'fourier']
-    for chart in (over_reach, cost, gradients, tables, convergence, obstacle, nesting):
+    for chart in (over_reach, space, cost, gradients, tables, convergence, profile, obstacle, nesting):
         yield chart(rows, save, legend_below)

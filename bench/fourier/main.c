@@ -17,7 +17,9 @@ int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
   if (bench_wanted(&size, "over-reach")) fourier_over_reach(&size);
   if (bench_wanted(&size, "obstacle")) fourier_obstacle(&size);
+  if (bench_wanted(&size, "profile")) fourier_profile(&size);
   if (bench_wanted(&size, "gradient")) fourier_gradients(&size);
+  if (bench_wanted(&size, "space")) fourier_space(&size);
   if (bench_wanted(&size, "boxes")) fourier_pairs(&size);
   if (bench_wanted(&size, "box value and gradient")) fourier_tables(&size);
   if (bench_wanted(&size, "nesting")) fourier_nesting(&size);

@@ -11,7 +11,9 @@ void fourier_row(const char *workload, const char *method, const char *parameter
 
 void fourier_over_reach(const bench_size *size);
 void fourier_obstacle(const bench_size *size);
+void fourier_profile(const bench_size *size);
 void fourier_gradients(const bench_size *size);
+void fourier_space(const bench_size *size);
 void fourier_pairs(const bench_size *size);
 void fourier_tables(const bench_size *size);
 void fourier_nesting(const bench_size *size);

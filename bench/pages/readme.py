@@ -26,7 +26,8 @@ CHARTS = [
     ('optimise', 'motions of an arm made smooth and clear by rows of whole motions, and by samples of FCL'),
     ('worlds_*', 'meshes, point clouds, octree leaves, sets of bodies, beside FCL'),
     ('implicit_*', 'pairs of implicit bodies: interior point, support functions, both together, a general solver'),
-    ('fourier_*', 'over-reach of gap functions by kernel and n, and what it costs; gradients; an SE(2) obstacle, convergence, boxes, nesting'),
+    ('fourier_*', 'over-reach of gap functions by kernel and n, what verdicts are worth in space, and what it costs; gradients; an SE(2) obstacle, '
+     'convergence, value, terms and gradient along a ray, boxes, nesting'),
 ]
 
 
