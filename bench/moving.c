@@ -213,7 +213,7 @@ static void quadrotors(const bench_size *size, cprox_workspace *ws) {
                                     .knots = knots,
                                     .n_knots = SEGMENTS + 7});
     robots[i] = s[i].robot;
-    motions[i] = (cprox_joined_motion){s[i].motion, 0.03 * i};
+    motions[i] = (cprox_joined_motion){s[i].motion, 0.03 * i, 0.0};
   }
   cprox_robot *all = NULL;
   cprox_motion *motion = NULL;
@@ -275,7 +275,7 @@ static bool make_cell(cell *p, cprox_workspace *ws) {
   const cprox_pose bases[2] = {HERE, {.position = {-1, 0, 0}, .orientation = {.z = 1}}};
   const cprox_robot *robots[2] = {c->robot, c->robot};
   const cprox_motion_info info = cprox_motion_get_info(c->motion);
-  const cprox_joined_motion motions[2] = {{c->motion, 0.0}, {c->motion, 0.25 * (info.t1 - info.t0)}};
+  const cprox_joined_motion motions[2] = {{c->motion, 0.0, 0.0}, {c->motion, 0.25 * (info.t1 - info.t0), 0.0}};
   for (size_t i = 0; i < c->n_targets; i++) {
     const cprox_pose *at = &c->targets[i].pose;
     const cprox_quat q = at->orientation;
@@ -359,7 +359,7 @@ static void among_many(const bench_size *size, cprox_workspace *ws) {
       const double from[7] = {-2, 0, 0, 0, 0, 0, 1}, to[7] = {2, 0, 0, 0, 0, h, h};
       go(&s[i], i ? top : from, i ? floor : to, CPROX_TURNING_SLERP);
       robots[i] = s[i].robot;
-      motions[i] = (cprox_joined_motion){s[i].motion, i ? rng_uniform(&r, -0.2, 0.2) : 0.0};
+      motions[i] = (cprox_joined_motion){s[i].motion, i ? rng_uniform(&r, -0.2, 0.2) : 0.0, 0.0};
       if (i) pairs[i - 1] = (cprox_robot_pair){0, i};
     }
     cprox_robot *all = NULL;

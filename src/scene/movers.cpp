@@ -126,7 +126,7 @@ class Joiner {
     }
     for (const cprox_robot_pair &pair : data.self) out_.among.push_back({pair.geometry + first, pair.other + first});
     cores_.push_back(data.kinematics->core.get());
-    motions_.push_back({data.core.get(), robot.start});
+    motions_.push_back({data.core.get(), robot.start, 0.0});
     names_.push_back(robot.name);
     out_.robots.push_back(robot.motion);
   }
@@ -136,7 +136,7 @@ class Joiner {
       out_.geometries.push_back(
           {cores_.size(), object.object.id, static_cast<int>(i), made.geometries[i].excess, object.poses.size() > 1});
     cores_.push_back(made.robot.get());
-    motions_.push_back({made.motion.get(), object.start});
+    motions_.push_back({made.motion.get(), object.start, 0.0});
     names_.push_back(object.object.id);
   }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Robots: trees of every type of joint with bodies of many kinds on their links, along few and many waypoints, against
  * obstacles, against themselves, and both at once; every query that robots have. Movers: two or three of these, or
- * bodies on pose splines, on one clock.
+ * bodies on pose splines, on one clock, half of them with starts that are only known to a tolerance or not at all.
  *
  * Held against poses in long double (support/robots.h) and nearest points by definition (bodies.h). Nearest points
  * taken in turns give two points, one of each body: their distance is an upper bound of the true one, so no lower bound
@@ -10,6 +10,7 @@
  * and times of contact must follow. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "bodies.h"
 #include "robot_cases.h"
@@ -28,10 +29,11 @@ static const cprox_pose HERE = {.orientation = {1, 0, 0, 0}};
 typedef struct world {
   attack *a;
   rng *r;
-  bool several;
+  bool several, vague;                  /* starts have tolerances */
   test_robot members[MEMBERS];          /* one geometry a link */
   size_t n_members, first[MEMBERS + 1]; /* their geometries */
-  double starts[MEMBERS];
+  double starts[MEMBERS], tolerances[MEMBERS];
+  double place[MEMBERS]; /* in [0, 1]: which of the possible starts; of what may be anywhere, where it is */
   cprox_pose bases[MEMBERS];
   cprox_robot *joined; /* of several */
   cprox_motion *motion;
@@ -81,7 +83,11 @@ static void place_links(const world *w, long double time, ref_pose *links) {
   for (size_t m = 0; m < w->n_members; m++) {
     const test_robot *t = &w->members[m];
     const cprox_motion_info info = cprox_motion_get_info(t->motion);
-    const long double own = w->n_members > 1 ? fminl(fmaxl(time - w->starts[m], info.t0), info.t1) : time;
+    const bool anywhere = isinf(w->tolerances[m]);
+    const long double late = anywhere ? 0.0L : (2.0L * w->place[m] - 1.0L) * w->tolerances[m];
+    const long double at =
+        anywhere ? info.t0 + w->place[m] * ((long double)info.t1 - info.t0) : time - w->starts[m] - late;
+    const long double own = w->n_members > 1 ? fminl(fmaxl(at, info.t0), info.t1) : time;
     long double values[TEST_MAX_VARIABLES + 1];
     ref_pose *of = links + w->first[m];
     robot_ref_values(t, own, values);
@@ -248,8 +254,11 @@ static bool join_members(world *w) {
     const cprox_motion_info info = cprox_motion_get_info(w->members[m].motion);
     w->starts[m] = m == 0 ? 0.0 : rng_uniform(w->r, first.t0 - info.t1, first.t1 - info.t0);
     w->bases[m] = rng_pose(w->r, 0.5);
+    w->tolerances[m] = !w->vague || rng_index(w->r, 2) ? 0.0
+                       : m == 0 || rng_index(w->r, 3)  ? rng_log_uniform(w->r, 1e-3, 3.0) * (info.t1 - info.t0)
+                                                       : INFINITY;
     robots[m] = w->members[m].robot;
-    motions[m] = (cprox_joined_motion){w->members[m].motion, w->starts[m]};
+    motions[m] = (cprox_joined_motion){w->members[m].motion, w->starts[m], w->tolerances[m]};
   }
   const cprox_motion_description d = {.kind = CPROX_MOTION_JOINED, .joined = motions, .n_joined = w->n_members};
   return attack_check(w->a,
@@ -315,21 +324,40 @@ static bool pair_of_result(const world *w, const cprox_result *x, pair *p) {
 #define RESULT "[%.17g, %.17g] (%s, %s) at t = %.17g"
 #define SHOWN(x) (x)->lower, (x)->upper, cprox_status_name((x)->status), cprox_verdict_name((x)->verdict), (x)->t
 
+static void draw_places(world *w) {
+  for (size_t m = 0; m < w->n_members && w->vague; m++)
+    w->place[m] = rng_index(w->r, 4) ? rng_uniform(w->r, 0.0, 1.0) : (double)rng_index(w->r, 2);
+}
+
 /* The least distance of a pair that is found over [t0, t1]: samples, then smaller and smaller steps about the best. */
-static gap least_gap(const world *w, pair p, double t0, double t1, double begin, double *where) {
+static gap least_gap(world *w, pair p, double t0, double t1, double begin, double *where) {
+  draw_places(w);
   gap best = gap_at(w, p, begin);
+  double places[MEMBERS];
   *where = begin;
+  memcpy(places, w->place, sizeof places);
   for (int i = 0; i <= SAMPLES; i++) {
     const double t = fmin(t0 + (t1 - t0) * (i + rng_uniform(w->r, 0.0, 1.0)) / SAMPLES, t1);
+    draw_places(w);
     const gap g = gap_below(w, p, t, best.upper);
-    if (g.upper < best.upper) best = g, *where = t;
+    if (g.upper < best.upper) best = g, *where = t, memcpy(places, w->place, sizeof places);
   }
+  memcpy(w->place, places, sizeof places);
   double step = (t1 - t0) / SAMPLES;
   for (int i = 0; i < REFINEMENTS; i++, step *= 0.5) {
     for (int side = -1; side <= 1; side += 2) {
       const double t = fmin(fmax(*where + side * step, t0), t1);
       const gap g = gap_below(w, p, t, best.upper);
       if (g.upper < best.upper) best = g, *where = t;
+      for (size_t m = 0; m < w->n_members && w->vague; m++) {
+        const double kept = w->place[m];
+        w->place[m] = fmin(fmax(kept + side * ldexp(0.5, -i), 0.0), 1.0);
+        const gap moved = gap_below(w, p, *where, best.upper);
+        if (moved.upper < best.upper)
+          best = moved;
+        else
+          w->place[m] = kept;
+      }
     }
   }
   return best;
@@ -367,12 +395,52 @@ static void check_witness(world *w, const cprox_result *x, pair p, const gap *g)
     attack_check(w->a, fabsl(between - x->upper) <= room, RESULT ": the witnesses are %.17Lg apart", SHOWN(x), between);
 }
 
+/* How far a point is from a geometry at the nearest, whatever the start: places of its member side by side, then
+ * smaller and smaller steps about the best. More places where that is above what is enough. */
+static long double nearest_of_all(world *w, size_t g, vec3l x, long double time, long double enough) {
+  enum { STEPS = 40, MOST = 30000 };
+  double *place = &w->place[member_of(w, g)], best = 0.0;
+  long double least = HUGE_VALL;
+  for (int drawn = 300; drawn <= MOST && least > enough; drawn *= 10) {
+    for (int i = 0; i < drawn + 2 * STEPS; i++) {
+      const int k = i - drawn;
+      const double step = (k % 2 ? 1.0 : -1.0) * ldexp(1.0 / drawn, -k / 4);
+      *place = k < 0 ? (double)i / (drawn - 1) : fmin(fmax(best + step, 0.0), 1.0);
+      ref_pose links[MOST_GEOMETRIES];
+      place_links(w, time, links);
+      const placed a = place_geometry(w, links, g);
+      const long double off = ref_norm(ref_sub(nearest_on(&a, x), x)) - a.margin;
+      if (off < least) least = off, best = *place;
+    }
+  }
+  return least;
+}
+
+/* Of starts with a tolerance the result does not say with which ones it was measured: each witness is near its geometry
+ * with some start that is possible then. What is found of the best one is right to about the square root of the room of
+ * nearest points. */
+static void check_witness_of_some_start(world *w, const cprox_result *x, pair p) {
+  const long double room = 1e-4L;
+  const vec3l on_a = ref_vec(x->witness_mover), on_b = ref_vec(x->witness_obstacle);
+  const long double off_a = nearest_of_all(w, p.geometry, on_a, x->t, room);
+  attack_check(w->a, off_a <= room, RESULT ": no start brings geometry %zu nearer than %.3Lg to its witness", SHOWN(x),
+               p.geometry, off_a);
+  if (!p.self) return;
+  const long double off_b = nearest_of_all(w, p.other, on_b, x->t, room);
+  attack_check(w->a, off_b <= room, RESULT ": no start brings geometry %zu nearer than %.3Lg to its witness", SHOWN(x),
+               p.other, off_b);
+}
+
 static void check_upper(world *w, const cprox_result *x) {
   pair p;
   if (isinf(x->upper)) return;
   if (!attack_check(w->a, pair_of_result(w, x, &p), RESULT ": parts %d and %d are not asked about", SHOWN(x),
                     x->mover_part, x->obstacle_index))
     return;
+  if (w->vague) {
+    check_witness_of_some_start(w, x, p);
+    return;
+  }
   const gap g = gap_at(w, p, x->t);
   attack_check(w->a, g.lower <= x->upper + g.room, RESULT ", but a plane proves %.19Lg there", SHOWN(x), g.lower);
   check_witness(w, x, p, &g);
@@ -460,7 +528,7 @@ static void ask_time_of_contact(world *w, const cprox_options *asked) {
   if (x.verdict == CPROX_VERDICT_CLEAR) attack_check(w->a, x.lower > 0.0, RESULT, SHOWN(&x));
   if (x.verdict == CPROX_VERDICT_VIOLATED) {
     attack_check(w->a, x.t >= x.t_contact_lower, RESULT ", free before %.17g", SHOWN(&x), x.t_contact_lower);
-    if (pair_of_result(w, &x, &p)) {
+    if (pair_of_result(w, &x, &p) && !w->vague) {
       const gap g = gap_at(w, p, x.t);
       attack_check(w->a, g.lower <= g.room, RESULT ": touching, but a plane proves %.19Lg", SHOWN(&x), g.lower);
     }
@@ -530,14 +598,14 @@ void robot_case(attack *a, rng *r, bool several) {
                  {"profile", ask_profile, false}};
   static const char *const ABOUT[] = {"", "obstacles", "itself", "obstacles and itself"};
   static world w;
-  w = (world){.a = a, .r = r, .several = several};
+  w = (world){.a = a, .r = r, .several = several, .vague = several && rng_index(r, 2)};
   if (world_make(&w, rng_log_uniform(r, 0.02, 0.3))) {
     const size_t which = rng_index(r, sizeof QUERIES / sizeof *QUERIES);
     const size_t about = 1 + rng_index(r, QUERIES[which].both ? 3 : 2);
     w.obstacles = about & 1, w.self = about & 2;
     w.mover = mover_of(&w);
     const test_robot *t = &w.members[0];
-    attack_kind(a, "%s: %s, %s", QUERIES[which].name, ABOUT[about],
+    attack_kind(a, "%s: %s, %s%s", QUERIES[which].name, ABOUT[about], w.vague ? "vague starts, " : "",
                 t->spline                      ? "spline"
                 : t->n_points > TEST_WAYPOINTS ? "many waypoints"
                                                : "few waypoints");

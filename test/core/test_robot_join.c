@@ -51,7 +51,7 @@ static void assembly_make(rng *r, assembly *a) {
     const double from = first.t0 - info.t1, to = first.t1 - info.t0;
     a->starts[i] = i == 0 ? 0.0 : ldexp(rint(ldexp(rng_uniform(r, from, to), 20)), -20);
     a->bases[i] = rng_pose(r, 1.0);
-    robots[i] = t->robot, joined[i] = (cprox_joined_motion){t->motion, a->starts[i]};
+    robots[i] = t->robot, joined[i] = (cprox_joined_motion){t->motion, a->starts[i], 0.0};
   }
   assert_int_equal(cprox_robot_join(robots, a->bases, MEMBERS, ws, &a->robot), CPROX_OK);
   if (join(a->robot, joined, MEMBERS, &a->motion) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
@@ -378,7 +378,7 @@ static void pair_make(rng *r, pair_of_balls *p) {
   ball_make(r, &p->a);
   ball_make(r, &p->b);
   const cprox_robot *robots[2] = {p->a.robot, p->b.robot};
-  const cprox_joined_motion joined[2] = {{p->a.motion, p->a.start}, {p->b.motion, p->b.start}};
+  const cprox_joined_motion joined[2] = {{p->a.motion, p->a.start, 0.0}, {p->b.motion, p->b.start, 0.0}};
   assert_int_equal(cprox_robot_join(robots, NULL, 2, ws, &p->robot), CPROX_OK);
   assert_int_equal(join(p->robot, joined, 2, &p->motion), CPROX_OK);
 }
@@ -471,7 +471,7 @@ CASE(a_joined_motion_is_as_large_as_its_members_together) {
   cprox_joined_motion joined[MANY];
   for (size_t i = 0; i < MANY; i++) {
     ball_make(&r, &balls[i]);
-    robots[i] = balls[i].robot, joined[i] = (cprox_joined_motion){balls[i].motion, balls[i].start};
+    robots[i] = balls[i].robot, joined[i] = (cprox_joined_motion){balls[i].motion, balls[i].start, 0.0};
   }
   cprox_robot *robot = NULL;
   cprox_motion *motion = NULL;
@@ -519,7 +519,7 @@ CASE(the_nearest_of_many_movers_are_found_whoever_is_left_out) {
       ball_make(&r, &balls[k]);
       bases[k] = HERE;
       bases[k].position = vec_scale(room, rng_in_cube(&r, 1.0));
-      robots[k] = balls[k].robot, joined[k] = (cprox_joined_motion){balls[k].motion, balls[k].start};
+      robots[k] = balls[k].robot, joined[k] = (cprox_joined_motion){balls[k].motion, balls[k].start, 0.0};
       for (size_t j = 0; j < k; j++) pairs[n++] = (cprox_robot_pair){(int32_t)j, (int32_t)k};
     }
     cprox_robot *robot = NULL;
@@ -588,7 +588,7 @@ CASE(what_cannot_be_joined_gets_a_sentence) {
   assert_null(robot);
   assert_int_equal(cprox_robot_join(robots, NULL, 2, ws, &robot), CPROX_OK);
 
-  cprox_joined_motion joined[2] = {{a.motion, 0.0}, {b.motion, 100.0}};
+  cprox_joined_motion joined[2] = {{a.motion, 0.0, 0.0}, {b.motion, 100.0, 0.0}};
   refused(join(robot, NULL, 2, &motion), "no motion to join");
   refused(join(robot, joined, 1, &motion), "one motion for each joined robot");
   refused(join(robot, joined, 2, &motion), "the clocks do not overlap: motion 1 begins at");
@@ -596,17 +596,23 @@ CASE(what_cannot_be_joined_gets_a_sentence) {
   refused(join(robot, joined, 2, &motion), "its start is nan");
   joined[1].start = 1e18;
   refused(join(robot, joined, 2, &motion), "become one");
+  joined[1] = (cprox_joined_motion){b.motion, 0.0, -1.0};
+  refused(join(robot, joined, 2, &motion), "motion 1: the tolerance of its start is -1 s");
+  joined[1].tolerance = NAN;
+  refused(join(robot, joined, 2, &motion), "motion 1: the tolerance of its start is nan s");
+  joined[1] = (cprox_joined_motion){b.motion, 100.0, 1.0};
+  refused(join(robot, joined, 2, &motion), "the clocks do not overlap: motion 1 begins at");
   joined[1].motion = NULL;
   refused(join(robot, joined, 2, &motion), "motion 1 is NULL");
   const double pose[7] = {1, 2, 3, 0, 0, 0, 1};
   const cprox_motion_description stands = {.kind = CPROX_MOTION_STATE, .rest = pose};
   assert_int_equal(cprox_motion_create(b.robot, &stands, ws, &stand), CPROX_OK);
-  joined[0] = joined[1] = (cprox_joined_motion){stand, 0.0};
+  joined[0] = joined[1] = (cprox_joined_motion){stand, 0.0, 0.0};
   refused(join(robot, joined, 2, &motion), "all motions are states");
   assert_null(motion);
 
   /* a stand stands on the clock of the others */
-  joined[0] = (cprox_joined_motion){a.motion, 0.0};
+  joined[0] = (cprox_joined_motion){a.motion, 0.0, 0.0};
   assert_int_equal(join(robot, joined, 2, &motion), CPROX_OK);
   double values[14];
   cprox_motion_evaluate(motion, a.times[1], values);

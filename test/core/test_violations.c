@@ -163,7 +163,7 @@ CASE(two_movers_are_within_delta_where_they_are_said_to_be) {
           .variables = ALL, .n_variables = 7, .waypoints = ends, .n_waypoints = 2, .turning = CPROX_TURNING_SLERP};
       assert_int_equal(cprox_motion_create(robots[k], &d, ws, &motions[k]), CPROX_OK);
     }
-    const cprox_joined_motion joined[2] = {{motions[0], f.start[0]}, {motions[1], f.start[1]}};
+    const cprox_joined_motion joined[2] = {{motions[0], f.start[0], 0.0}, {motions[1], f.start[1], 0.0}};
     const cprox_motion_description d = {.kind = CPROX_MOTION_JOINED, .joined = joined, .n_joined = 2};
     assert_int_equal(cprox_robot_join((const cprox_robot *const *)robots, NULL, 2, ws, &both), CPROX_OK);
     assert_int_equal(cprox_motion_create(both, &d, ws, &motion), CPROX_OK);

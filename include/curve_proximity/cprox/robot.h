@@ -167,6 +167,10 @@ typedef struct cprox_joined_motion {
   const cprox_motion *motion;
   /** [s] is added to all times of the motion, and each sum is rounded: that is when things happen */
   double start;
+  /** [s] >= 0: the start is only known to within this, before or after. INFINITY: the motion may be anywhere on its
+   *  path at any time, whatever the start. Queries answer for all starts that are possible: the least distance of all,
+   *  and contact as early as it can be; t is the earliest time at which that can be. There is no gradient. */
+  double tolerance;
 } cprox_joined_motion;
 
 /** What a motion is made of. Set all members to 0, then those that the kind reads: cprox_motion_kind lists them. All

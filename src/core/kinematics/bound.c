@@ -110,6 +110,16 @@ static void find_rates(const axis_state *axes, const chain_axis *chain, size_t n
   }
 }
 
+/* The axes that the chain passes from their tips to their bases come first. */
+void motion_find_standing_rates(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre,
+                                chain_motion *m) {
+  size_t standing = 0;
+  while (standing < n && chain[standing].sign < 0.0) standing++;
+  chain_motion part;
+  find_rates(axes, chain, standing, centre, &part);
+  m->v_standing = part.v, m->omega_standing = part.omega;
+}
+
 /* A1 = sum r w, A2, A3. */
 static void find_derivative_bounds(const axis_state *axes, const chain_axis *chain, size_t n, const double *lever_arms,
                                    chain_motion *m) {
@@ -238,4 +248,26 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
     third = fmin(third, least_quotient(first[end] - rest, far - first[end], k));
   }
   return fmax(second, third - m->stray);
+}
+
+/* Along the straight line from the middle to two other times the first derivative is that of a point of the square of
+ * both, and the second one at most a quarter of `second`. The least over the moving side is concave in the two times,
+ * so it is at a corner of the polygon. */
+double motion_plane_bound_of_two(const chain_motion *m, const two_times *times, const bound_side *moving,
+                                 const bound_side *standing, vec3 n, double height, uint32_t steps, double *slack) {
+  const vec3 apart = vec_sub(moving->at.p, standing->at.p);
+  const vec3 v = vec_sub(m->v, m->v_standing), omega = vec_sub(m->omega, m->omega_standing);
+  const vec3 turn_standing = vec_cross(n, m->omega_standing), turn = vec_cross(n, omega);
+  const double start = vec_dot(n, apart);
+  double least = INFINITY;
+  for (size_t i = 0; i < times->n; i++) {
+    const double at_standing = times->corner[i][times->standing], at = times->corner[i][1 - times->standing];
+    const vec3 d = vec_axpy(vec_axpy(n, at_standing, turn_standing), at, turn);
+    if (!usable(d)) return -INFINITY;
+    const double margin = moving->margin * (moving->margin_turns ? vec_norm(d) : 1.0);
+    const double along = at_standing * vec_dot(n, m->v_standing) + at * vec_dot(n, v);
+    least = lesser(start + along + lowest(moving, d) - margin - height, least);
+  }
+  *slack = plane_slack(m, moving, standing, apart, 0.0, steps) + 16.0 * ROUND_U * fabs(least);
+  return least - 0.125 * m->second - *slack - m->stray;
 }

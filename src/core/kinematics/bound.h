@@ -25,12 +25,26 @@ typedef struct chain_motion {
   double stray; /* over spans all but `displacement` is of a straight line of the variables; points are within this of
                    those on it */
   double error; /* of what is computed with v, omega, a and alpha over the node */
+  vec3 v_standing, omega_standing; /* by motion_find_standing_rates(): the part of v and omega that is the standing
+                                      side's own */
 } chain_motion;
+
+/* The two sides of a pair at two times, each from -1/2 to 1/2 of its interval; what is possible of both together is in
+ * a polygon. */
+typedef struct two_times {
+  double corner[6][2];
+  size_t n;
+  int standing; /* which of the two times is that of the standing side */
+} two_times;
 
 /* centre: of a ball that contains the part, in the middle of the node, world; radius: with the error of the part's
  * place. scratch: a number for each axis of the chain. */
 void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                     double *scratch, chain_motion *m);
+
+/* What the standing side's own axes add to v and omega. */
+void motion_find_standing_rates(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre,
+                                chain_motion *m);
 
 /* The displacement bound alone, by the chain of motion_chain(). */
 double motion_displacement(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
@@ -68,5 +82,10 @@ double bound_height(const bound_side *side, vec3 n);
  * `goal`: what would be enough. steps: transforms in the chain. */
 double motion_plane_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
                           vec3 normal_rate, const double heights[2], uint32_t steps, double goal, double *slack);
+
+/* The same of second order where the two sides are at two times, by a plane that does not turn; `height` is that of the
+ * standing side along n. The chain goes by the world. */
+double motion_plane_bound_of_two(const chain_motion *m, const two_times *times, const bound_side *moving,
+                                 const bound_side *standing, vec3 n, double height, uint32_t steps, double *slack);
 
 #endif

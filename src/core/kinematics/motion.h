@@ -28,7 +28,9 @@ typedef struct motion_track {
   int32_t *arc_axes; /* their balls */
   motion_arc *arcs;  /* [joint][segment] */
   motion_spans spans;
-  bool by_time; /* spans of it are followed by time, as those of other tracks are, and not by their chord */
+  int32_t clock;    /* of a joined motion: whose track it is, */
+  double tolerance; /* [s] and by how much that may start earlier or later */
+  bool by_time;     /* spans of it are followed by time, as those of other tracks are, and not by their chord */
 } motion_track;
 
 struct cprox_motion {

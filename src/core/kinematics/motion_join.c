@@ -22,6 +22,11 @@ static double end_of(const cprox_joined_motion *one) {
   return on_clock(one, one->motion->n_segments);
 }
 
+/* It may be anywhere on its path at any time. */
+static bool is_anywhere(const cprox_joined_motion *one) {
+  return isinf(one->tolerance);
+}
+
 static cprox_status no_memory(size_t n, cprox_workspace *workspace) {
   return workspace_fail(workspace, CPROX_MEMORY, "no memory to join %zu motions", n);
 }
@@ -31,6 +36,12 @@ static cprox_status no_memory(size_t n, cprox_workspace *workspace) {
 static cprox_status check_times(const cprox_joined_motion *one, size_t i, cprox_workspace *workspace) {
   if (!isfinite(one->start))
     return workspace_fail(workspace, CPROX_INVALID, "motion %zu: its start is %g s", i, one->start);
+  if (!(one->tolerance >= 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "motion %zu: the tolerance of its start is %g s", i,
+                          one->tolerance);
+  for (size_t k = 0; k < one->motion->n_tracks; k++)
+    if (one->motion->tracks[k].tolerance > 0.0)
+      return workspace_fail(workspace, CPROX_INVALID, "motion %zu has a start with a tolerance: join all at once", i);
   for (size_t k = 0; k < one->motion->n_segments; k++)
     if (!(on_clock(one, k) < on_clock(one, k + 1)))
       return workspace_fail(
@@ -40,7 +51,7 @@ static cprox_status check_times(const cprox_joined_motion *one, size_t i, cprox_
   return CPROX_OK;
 }
 
-/* From when to when a motion goes on. */
+/* From when to when a motion may go on. */
 typedef struct clock_range {
   double begin, end;
   size_t motion;
@@ -56,8 +67,11 @@ static cprox_status check_overlap(const cprox_joined_motion *joined, size_t n, c
   clock_range *ranges = malloc((n + 1) * sizeof *ranges);
   if (!ranges) return no_memory(n, workspace);
   size_t count = 0;
-  for (size_t i = 0; i < n; i++)
-    if (!joined[i].motion->is_state) ranges[count++] = (clock_range){begin_of(&joined[i]), end_of(&joined[i]), i};
+  for (size_t i = 0; i < n; i++) {
+    const cprox_joined_motion *one = &joined[i];
+    if (!one->motion->is_state && !is_anywhere(one))
+      ranges[count++] = (clock_range){begin_of(one) - one->tolerance, end_of(one) + one->tolerance, i};
+  }
   qsort(ranges, count, sizeof *ranges, compare_begins);
   cprox_status status = CPROX_OK;
   double before = INFINITY; /* the last end of those that begin earlier */
@@ -103,15 +117,50 @@ static int compare_times(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* The ends of all segments, ascending, none twice; *count of them. NULL where memory is out. */
-static double *unite_times(const cprox_joined_motion *joined, size_t n, size_t *count) {
-  size_t most = 0, all = 0;
+/* The first start and the last end, whenever motions with a tolerance begin. Those that may be anywhere take as long as
+ * they need, and count where nothing else moves. */
+static clock_range range_of_all(const cprox_joined_motion *joined, size_t n) {
+  clock_range all = {.begin = INFINITY, .end = -INFINITY};
+  double anywhere = INFINITY;
+  for (size_t i = 0; i < n; i++) {
+    const cprox_joined_motion *one = &joined[i];
+    if (one->motion->is_state) continue;
+    if (is_anywhere(one)) {
+      anywhere = fmin(anywhere, begin_of(one));
+      continue;
+    }
+    all.begin = fmin(all.begin, begin_of(one) - one->tolerance);
+    all.end = fmax(all.end, end_of(one) + one->tolerance);
+  }
+  if (!isfinite(all.begin)) all.begin = anywhere;
+  for (size_t i = 0; i < n; i++)
+    if (!joined[i].motion->is_state && is_anywhere(&joined[i]))
+      all.end = fmax(all.end, all.begin + (end_of(&joined[i]) - begin_of(&joined[i])));
+  return all;
+}
+
+/* What may be anywhere begins with the clock, as much earlier or later as all of that. NULL where memory is out. */
+static cprox_joined_motion *settle_starts(const motion_source *s, const clock_range *all) {
+  const size_t n = s->description->n_joined;
+  cprox_joined_motion *joined = malloc((n + 1) * sizeof *joined);
+  if (!joined) return NULL;
+  memcpy(joined, s->description->joined, n * sizeof *joined);
+  for (size_t i = 0; i < n; i++)
+    if (!joined[i].motion->is_state && is_anywhere(&joined[i]))
+      joined[i].start = all->begin - joined[i].motion->times[0], joined[i].tolerance = all->end - all->begin;
+  return joined;
+}
+
+/* The ends of all segments and of the whole, ascending, none twice; *count of them. NULL where memory is out. */
+static double *unite_times(const cprox_joined_motion *joined, size_t n, const clock_range *whole, size_t *count) {
+  size_t most = 2, all = 0;
   for (size_t i = 0; i < n; i++) most += joined[i].motion->n_segments + 1;
   double *times = malloc((most + 1) * sizeof *times);
   if (!times) return NULL;
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k <= joined[i].motion->n_segments && !joined[i].motion->is_state; k++)
       times[all++] = on_clock(&joined[i], k);
+  times[all++] = whole->begin, times[all++] = whole->end;
   qsort(times, all, sizeof *times, compare_times);
   *count = 0;
   for (size_t i = 0; i < all; i++)
@@ -194,10 +243,10 @@ static void copy_robot(cprox_motion *m, const cprox_motion *from, size_t variabl
     if (from->robot->axes[i].kind == AXIS_BALL) m->arc_of[axis + i] = from->arc_of[i];
 }
 
-static bool copy_motions(cprox_motion *m, const motion_source *s) {
+static bool copy_motions(cprox_motion *m, const motion_source *s, const cprox_joined_motion *joined) {
   size_t variable = 0, axis = 0, track = 0, slot = 0;
   for (size_t i = 0; i < s->description->n_joined; i++) {
-    const cprox_joined_motion *one = &s->description->joined[i];
+    const cprox_joined_motion *one = &joined[i];
     const cprox_motion *from = one->motion;
     copy_robot(m, from, variable, axis, track);
     for (size_t k = 0; k < from->n_tracks && !from->is_state; k++, track++) {
@@ -205,6 +254,7 @@ static bool copy_motions(cprox_motion *m, const motion_source *s) {
       if (workspace_stops(s->workspace) || !copy_track(m, &from->tracks[k], one->start, variable, axis, t))
         return false;
       t->by_time = m->n_tracks > 1;
+      t->clock = (int32_t)i, t->tolerance = one->tolerance;
       t->first_slot = slot;
       for (size_t j = 0; j < t->n_moving; j++) m->slot[t->moving[j]] = (int32_t)(slot + j);
       slot += (t->n_moving + MOTION_LANES - 1) / MOTION_LANES * MOTION_LANES;
@@ -214,10 +264,7 @@ static bool copy_motions(cprox_motion *m, const motion_source *s) {
   return true;
 }
 
-cprox_status motion_create_joined(const motion_source *s, cprox_motion **motion) {
-  const cprox_status status = check_joined(s);
-  if (status != CPROX_OK) return status;
-  const cprox_joined_motion *joined = s->description->joined;
+static cprox_motion *make_joined(const motion_source *s, const clock_range *whole, const cprox_joined_motion *joined) {
   const size_t n = s->description->n_joined;
   size_t tracks = 0, arcs = 0, count = 0;
   for (size_t i = 0; i < n; i++) {
@@ -225,12 +272,24 @@ cprox_status motion_create_joined(const motion_source *s, cprox_motion **motion)
     tracks += from->is_state ? 0 : from->n_tracks;
     arcs += from->arc_of != NULL;
   }
-  double *times = unite_times(joined, n, &count);
+  double *times = unite_times(joined, n, whole, &count);
   cprox_motion *m = times ? motion_allocate(s, tracks) : NULL;
   if (!m) free(times);
   if (m) m->times = times, m->n_segments = count - 1;
-  if (m && (arcs == 0 || motion_allocate_arcs(m)) && copy_motions(m, s)) return motion_finish(m, s, motion);
+  if (m && (arcs == 0 || motion_allocate_arcs(m)) && copy_motions(m, s, joined)) return m;
   cprox_motion_free(m);
+  return NULL;
+}
+
+cprox_status motion_create_joined(const motion_source *s, cprox_motion **motion) {
+  const cprox_status status = check_joined(s);
+  if (status != CPROX_OK) return status;
+  const size_t n = s->description->n_joined;
+  const clock_range whole = range_of_all(s->description->joined, n);
+  cprox_joined_motion *joined = settle_starts(s, &whole);
+  cprox_motion *m = joined ? make_joined(s, &whole, joined) : NULL;
+  free(joined);
+  if (m) return motion_finish(m, s, motion);
   if (workspace_has_stopped(s->workspace))
     return workspace_fail(s->workspace, CPROX_INVALID, "stopped while %zu motions were being joined", n);
   return no_memory(n, s->workspace);

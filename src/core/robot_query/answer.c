@@ -10,12 +10,13 @@
 /* ---- the search ---- */
 
 static cprox_status run(const query *q, const search_goal *goal, robot_search *o, search_outcome *found) {
-  const motion_interval over = motion_interval_of(q->mover.motion, q->t0, q->t1);
+  motion_interval over, other;
+  robot_scene_range(&o->scene, &over, &other);
   robot_search_begin(o, goal);
   *found = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
   if (o->scene.n_pairs == 0 && !q->set && !o->scene.groups) return CPROX_OK;
   search_node root;
-  if (!robot_search_root(o, &over, &root))
+  if (!robot_search_root(o, &over, &other, &root))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
   const search_oracle oracle = robot_search_oracle(o);
   const cprox_status status = search_run(&o->goal, &oracle, root, q->workspace, found);
@@ -29,7 +30,8 @@ static void report(const robot_search *o, const robot_sample *sample, cprox_resu
   if (sample->pair < 0) return;
   const robot_scene *s = &o->scene;
   const robot_pair *pair = &s->pairs[sample->pair];
-  r->t = fmin(fmax(motion_time(s->motion, sample->segment, sample->u), s->q->t0), s->q->t1);
+  const double t = robot_scene_clock(s, motion_time(s->motion, sample->segment, sample->u), sample->other);
+  r->t = fmin(fmax(t, s->q->t0), s->q->t1);
   r->witness_mover = sample->gap.on_moving, r->witness_obstacle = sample->gap.on_standing,
   r->normal = sample->gap.normal;
   r->mover_part = s->parts[pair->moving].body.index;
@@ -51,20 +53,11 @@ void robot_search_report(const robot_search *o, cprox_result *result) {
   result->lod = lod_of(o);
 }
 
-/* Twice the way from the middle. */
-static double travel_of(robot_search *o, const motion_interval *over) {
-  if (o->best.pair < 0) return INFINITY;
-  robot_scene *s = &o->scene;
-  robot_scene_enter_span(s, over);
-  const robot_pair *pair = &s->pairs[o->best.pair];
-  const robot_body *moving = robot_scene_moving(s, pair), *standing = robot_scene_standing(s, pair);
-  return ROUND_UP * 2.0 * (robot_scene_displacement(s, pair, moving) + moving->side.error + standing->side.error);
-}
-
-static cprox_status answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
-                           double *travel) {
+/* Of the pairs of one class. */
+static cprox_status answer_class(const query *q, const start_class *starts, size_t first, size_t last, double cutoff,
+                                 cprox_result *result, double *travel) {
   robot_search o;
-  if (!robot_scene_begin(&o.scene, q, first, last, ROBOT_MOST_LISTED, cutoff))
+  if (!robot_scene_begin_class(&o.scene, q, starts, first, last, ROBOT_MOST_LISTED, cutoff))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   search_goal goal = query_goal(q, query_order(q), cutoff);
   if (!query_wants_verdict(q)) goal.share = q->options.share, goal.share_user = q->options.share_user;
@@ -79,12 +72,33 @@ static cprox_status answer(const query *q, size_t first, size_t last, double cut
   r.nodes = found.nodes;
   if (goal.share) cutoff = lesser(cutoff, goal.share(goal.share_user, r.upper));
   query_conclude(q, cutoff, status, &r);
-  if (travel) {
-    const motion_interval over = motion_interval_of(q->mover.motion, q->t0, q->t1);
-    *travel = travel_of(&o, &over);
-  }
+  const double at = o.best.pair >= 0 ? motion_time(q->mover.motion, o.best.segment, o.best.u) : 0.0;
+  if (travel) *travel = o.best.pair >= 0 ? robot_scene_travel(&o.scene, o.best.pair, at, o.best.other) : INFINITY;
   *result = r;
   return r.status;
+}
+
+/* The union of all classes. */
+static cprox_status answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
+                           double *travel) {
+  start_class starts = start_class_first();
+  cprox_status failure = answer_class(q, &starts, first, last, cutoff, result, travel);
+  if (failure < 0 || !start_class_is_one_of_many(q->mover.motion)) return failure;
+  cprox_result all = *result;
+  while (start_class_next(q->mover.motion, &starts) && all.verdict != CPROX_VERDICT_VIOLATED) {
+    cprox_result r;
+    double moves;
+    const cprox_status status =
+        answer_class(q, &starts, first, last, lesser(cutoff, all.upper), &r, travel ? &moves : NULL);
+    if (status < 0) return status;
+    if (status != CPROX_OK) failure = status;
+    if (travel && (r.upper < all.upper || all.obstacle_index < 0)) *travel = moves;
+    query_join(&all, &r);
+    all.verdict = query_verdict(q, &all);
+  }
+  query_conclude(q, cutoff, failure, &all);
+  *result = all;
+  return all.status;
 }
 
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
@@ -97,15 +111,17 @@ cprox_status robot_answer_and_travel(const query *q, cprox_result *result, doubl
 
 /* ---- time of contact ---- */
 
-cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
+static cprox_status contact_of_class(const query *q, const start_class *starts, double time_cutoff,
+                                     cprox_result *result) {
   robot_search o;
-  if (!robot_scene_begin(&o.scene, q, 0, q->n, ROBOT_MOST_LISTED, INFINITY))
+  if (!robot_scene_begin_class(&o.scene, q, starts, 0, q->n, ROBOT_MOST_LISTED, INFINITY))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
-  const search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
+  search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
+  goal.time_cutoff = time_cutoff;
   search_outcome found;
   const cprox_status status = run(q, &goal, &o, &found);
   if (status < 0) return status;
-  const cprox_status proved = robot_search_prove(&o, q->t1);
+  const cprox_status proved = robot_search_prove(&o, q->t1 + o.scene.lead_tolerance);
   if (proved < 0) return proved;
 
   const bool touch = o.touch.pair >= 0, near = o.best_bound.upper <= q->options.epsilon;
@@ -125,4 +141,37 @@ cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", query_shortfall(r.status));
   *result = r;
   return r.status;
+}
+
+/* The earlier contact, the earlier place that may be one, or the nearest place. */
+static bool tells_more(const cprox_result *r, const cprox_result *than, double epsilon) {
+  const bool touches = r->verdict == CPROX_VERDICT_VIOLATED, touched = than->verdict == CPROX_VERDICT_VIOLATED;
+  if (touches != touched) return touches;
+  const bool near = touches || r->upper <= epsilon, was_near = touched || than->upper <= epsilon;
+  if (near != was_near) return near;
+  return near ? r->t < than->t : r->upper < than->upper;
+}
+
+cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
+  start_class starts = start_class_first();
+  cprox_status status = contact_of_class(q, &starts, INFINITY, result);
+  if (status < 0 || !start_class_is_one_of_many(q->mover.motion)) return status;
+  cprox_result all = *result;
+  while (start_class_next(q->mover.motion, &starts)) {
+    cprox_result r;
+    const cprox_status one = contact_of_class(q, &starts, all.verdict == CPROX_VERDICT_VIOLATED ? all.t : INFINITY, &r);
+    if (one < 0) return one;
+    if (one != CPROX_OK) status = one;
+    const cprox_result other = tells_more(&r, &all, q->options.epsilon) ? all : r;
+    if (tells_more(&r, &all, q->options.epsilon)) all = r;
+    all.t_contact_lower = fmin(all.t_contact_lower, other.t_contact_lower);
+    all.lower = fmin(all.lower, other.lower);
+    all.nodes += other.nodes, all.distance_queries += other.distance_queries;
+    if (other.lod > all.lod) all.lod = other.lod;
+    if (all.verdict == CPROX_VERDICT_CLEAR) all.verdict = other.verdict;
+  }
+  all.status = status;
+  if (status != CPROX_OK) workspace_fail(q->workspace, status, "%s", query_shortfall(status));
+  *result = all;
+  return status;
 }

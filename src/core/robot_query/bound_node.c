@@ -79,6 +79,11 @@ static double bound_by_normal(robot_search *o, const robot_pair *pair, const rob
   const double here = robot_scene_place(&o->scene, o->scene.centre.segment, o->scene.centre.u);
   const bool turning = here >= pair->from && here <= pair->to;
   const vec3 n = normal_in_middle(o, pair, standing);
+  if (pair->self && robot_scene_has_two_times(&o->scene)) {
+    o->planes++;
+    return motion_plane_bound_of_two(motion, &o->scene.times, &moving->side, &standing->side, n,
+                                     robot_pair_height(standing, n), moving->steps + standing->steps, slack);
+  }
   vec3 normal_rate = placement_turn(&standing->side.at, vec_scale(turning ? width_of_node(o) : 0.0, pair->normal_rate));
   normal_rate = vec_axpy(normal_rate, -vec_dot(normal_rate, n), n);
   if (!(vec_norm2(normal_rate) < FASTEST_NORMAL_RATE * FASTEST_NORMAL_RATE)) normal_rate = vec(0, 0, 0);
@@ -105,6 +110,7 @@ static double pieces_for(const robot_search *o, double middle, double bound) {
 /* The plane of the distance just measured, turning as its feature does. */
 static double bound_by_gap(robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing,
                            const chain_motion *motion, const robot_gap *gap, double *slack) {
+  if (robot_scene_has_two_times(&o->scene)) return bound_by_normal(o, pair, moving, standing, motion, 0.0, slack);
   const vec3 normal_rate = vec_scale(1.0 / width_of_node(o), robot_pair_normal_rate(gap, moving, standing, motion));
   pair->normal_rate = placement_turn_back(&standing->side.at, normal_rate);
   ends_of_node(o, true, &pair->from, &pair->to);
@@ -382,6 +388,20 @@ static cprox_status open_groups_of(robot_search *o, const search_node *node, con
   return status;
 }
 
+/* Of two times: whether the side on the other clock moves farther than that on the lead; of the first pair of the list.
+ */
+static bool other_moves_farther(robot_search *o) {
+  robot_scene *s = &o->scene;
+  double other = 0.0, lead = 0.0;
+  for (size_t i = 0; i < o->n_next; i++)
+    if (o->next[i].pair >= 0) {
+      robot_scene_displacements(s, &s->pairs[o->next[i].pair], &other, &lead);
+      return other > lead;
+    }
+  return motion_time(s->motion, s->other.last - 1, s->other.b) - motion_time(s->motion, s->other.first, s->other.a) >
+         motion_time(s->motion, s->over.last - 1, s->over.b) - motion_time(s->motion, s->over.first, s->over.a);
+}
+
 /* Balls and boxes of all pairs of a node; those that still matter are kept. */
 static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   const int32_t list = robot_known(node)->list;
@@ -409,12 +429,13 @@ cprox_status robot_bound_node(robot_search *o, search_node *node) {
   robot_node *payload = robot_own(node);
   const int32_t old = payload->list;
   const double inherited = node->lower;
-  const motion_interval over = robot_interval(node);
-  robot_scene_enter_span(&o->scene, &over);
+  const motion_interval over = robot_interval(node), other = robot_other_interval(node);
+  robot_scene_enter_both(&o->scene, &over, &other);
   o->n_next = 0;
   o->pieces = 2.0;
   const cprox_status rough = bound_roughly(o, node);
   if (rough < 0) return rough;
+  if (robot_scene_has_two_times(&o->scene)) o->cut_other = other_moves_farther(o);
 
   /* those that stay move to the front, what takes the place of a pair comes behind the last one */
   o->cut = o->pieces > 2.0;
@@ -423,7 +444,7 @@ cprox_status robot_bound_node(robot_search *o, search_node *node) {
   for (size_t i = 0; i < o->n_next; i++) {
     list_entry entry = o->next[i];
     double slack = 0.0;
-    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !entry.bounded && !o->scene.centre.bent) {
+    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !entry.bounded && !robot_scene_is_bent(&o->scene)) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
       if (robot_is_answered(o)) {

@@ -14,4 +14,5 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/prove_contact.c
   ${CMAKE_CURRENT_LIST_DIR}/rank.c
   ${CMAKE_CURRENT_LIST_DIR}/refine.c
+  ${CMAKE_CURRENT_LIST_DIR}/starts.c
 )

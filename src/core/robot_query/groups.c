@@ -165,6 +165,16 @@ static void ask_all(const robot_scene *s, uint64_t *rows) {
   }
 }
 
+/* Pairs of another class of starts are not asked about. */
+static void clear_other_classes(const robot_scene *s, uint64_t *rows) {
+  const struct robot_groups *g = s->groups;
+  const int32_t n = (int32_t)s->motion->robot->n_parts;
+  for (int32_t i = 0; i < n; i++)
+    for (int32_t k = 0; k < n; k++)
+      if (!start_class_has(s->motion, s->starts, g->of->part[i], g->of->part[k]))
+        clear_bits(rows + (size_t)i * g->words, k, k + 1);
+}
+
 /* ---- beginning ---- */
 
 /* The rows of single parts become those of their groups, those of halves are united. */
@@ -209,6 +219,7 @@ bool robot_groups_begin(robot_scene *s) {
     ask_given(s, rows);
   else
     ask_all(s, rows);
+  if (s->starts && start_class_is_one_of_many(s->motion)) clear_other_classes(s, rows);
   fill_rows(g, rows);
   if (!robot_groups_ask(s, (group_pair){{0, 0}})) s->groups = NULL;
   return true;

@@ -28,10 +28,12 @@ static cprox_status refuse_callback(const robot_search *o) {
 
 /* What was measured may be the least so far, or a contact. */
 static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
+  if (!robot_scene_is_possible(&o->scene)) return;
   const size_t segment = o->scene.centre.segment;
-  const double u = o->scene.centre.u, upper = o->goal.is_signed ? gap->upper : fmax(gap->upper, 0.0),
-               at = motion_time_below(o->scene.motion, segment, u);
-  const robot_sample sample = {.gap = *gap, .pair = index, .segment = segment, .u = u};
+  const double u = o->scene.centre.u, other = robot_scene_other_time(&o->scene);
+  const double upper = o->goal.is_signed ? gap->upper : fmax(gap->upper, 0.0),
+               at = robot_scene_clock(&o->scene, motion_time_below(o->scene.motion, segment, u), other);
+  const robot_sample sample = {.gap = *gap, .pair = index, .segment = segment, .u = u, .other = other};
   if (is_better(o, upper, at)) {
     o->best = sample;
     o->best_bound = (search_best){.upper = upper, .slack = gap->slack, .at = at};

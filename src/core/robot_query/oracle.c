@@ -11,17 +11,21 @@
 
 /* ---- nodes ---- */
 
-static search_node node_of(const robot_search *o, const search_node *parent, size_t first, double a, size_t last,
-                           double b) {
+/* A part of the parent: of the lead's interval, or of that of the other clock. */
+static search_node node_of(const robot_search *o, const search_node *parent, const motion_interval *over,
+                           const motion_interval *other) {
   search_node node = *parent;
   robot_node *to = robot_own(&node);
-  to->a = a, to->first = (uint32_t)first;
-  to->b = b, to->last = (uint32_t)last;
-  node.start = motion_time_below(o->scene.motion, first, a);
+  to->a = over->a, to->first = (uint32_t)over->first;
+  to->b = over->b, to->last = (uint32_t)over->last;
+  to->other_a = other->a, to->other_first = (uint32_t)other->first;
+  to->other_b = other->b, to->other_last = (uint32_t)other->last;
+  const double from = motion_time_below(o->scene.motion, over->first, over->a);
+  node.start = robot_scene_clock(&o->scene, from, motion_time(o->scene.motion, other->first, other->a));
   return node;
 }
 
-bool robot_search_root(robot_search *o, const motion_interval *over, search_node *root) {
+bool robot_search_root(robot_search *o, const motion_interval *over, const motion_interval *other, search_node *root) {
   *root = (search_node){.lower = -INFINITY};
   const obstacle_bvh *set = o->scene.q->set;
   const size_t n_pairs = o->scene.n_pairs, n_parts = set && set->boxes ? o->scene.motion->robot->n_parts : 0;
@@ -37,9 +41,10 @@ bool robot_search_root(robot_search *o, const motion_interval *over, search_node
       entry[n++] = (list_entry){.lower = -INFINITY, .pair = LIST_CLUSTER, .part = (int32_t)i};
   if (o->scene.groups) entry[n++] = (list_entry){.lower = -INFINITY, .pair = LIST_GROUPS}; /* all parts with all */
   lists_set_count(&o->lists, slot, n);
-  *root = node_of(o, root, over->first, over->a, over->last, over->b);
+  *root = node_of(o, root, over, other);
   return true;
 }
+
 /* ---- the oracle ---- */
 
 static double filter(void *self, search_node *node, double goal) {
@@ -68,46 +73,64 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
 /* At knots, into pieces that take about the same time: as many as are wanted, or where the span is bent as many as can
  * be. */
-static int split_span(const robot_search *o, const search_node *node, search_node *child) {
+static int split_span(const robot_search *o, const motion_interval *over, bool bent, motion_interval *piece) {
   const cprox_motion *m = o->scene.motion;
-  const motion_interval over = robot_interval(node);
-  const size_t segments = over.last - over.first;
-  const size_t wanted =
-      o->scene.centre.bent || o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (size_t)ceil(o->pieces);
-  const double t0 = motion_time(m, over.first, over.a), t1 = motion_time(m, over.last - 1, over.b);
+  const size_t segments = over->last - over->first;
+  const size_t wanted = bent || o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (size_t)ceil(o->pieces);
+  const double t0 = motion_time(m, over->first, over->a), t1 = motion_time(m, over->last - 1, over->b);
   const size_t step = robot_knot_step(2 * segments / wanted);
-  size_t from = over.first;
+  size_t from = over->first;
   int n = 0;
-  for (size_t k = 1; k <= wanted && from < over.last; k++) {
-    size_t to = over.last;
+  for (size_t k = 1; k <= wanted && from < over->last; k++) {
+    size_t to = over->last;
     if (segments <= wanted)
       to = from + 1;
     else if (k < wanted)
-      to = robot_knot_near(m, over.first, over.last, step, t0 + (t1 - t0) * (double)k / (double)wanted);
+      to = robot_knot_near(m, over->first, over->last, step, t0 + (t1 - t0) * (double)k / (double)wanted);
     if (to <= from) continue;
-    child[n++] = node_of(o, node, from, from == over.first ? over.a : 0.0, to, to == over.last ? over.b : 1.0);
+    piece[n++] = (motion_interval){
+        .a = from == over->first ? over->a : 0.0, .b = to == over->last ? over->b : 1.0, .first = from, .last = to};
     from = to;
   }
   return n;
 }
 
-static int split(void *self, search_node *node, search_node *child) {
-  const robot_node *payload = robot_known(node);
-  robot_search *o = self;
-  const size_t first = payload->first, last = payload->last;
-  const double a = payload->a, b = payload->b;
-  int n;
-  if (first + 1 < last) {
-    n = split_span(o, node, child);
-  } else {
-    if (!(b - a > SHORTEST_INTERVAL)) return 0;
-    n = o->pieces < 2.0 ? 2 : o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)ceil(o->pieces);
-    for (int k = 0; k < n; k++) {
-      const double from = k == 0 ? a : robot_known(&child[k - 1])->b, to = k + 1 == n ? b : a + (b - a) * (k + 1) / n;
-      child[k] = node_of(o, node, first, from, last, to);
-    }
+static int split_segment(const robot_search *o, const motion_interval *over, motion_interval *piece) {
+  const double a = over->a, b = over->b;
+  if (!(b - a > SHORTEST_INTERVAL)) return 0;
+  const int n = o->pieces < 2.0 ? 2 : o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)ceil(o->pieces);
+  for (int k = 0; k < n; k++) {
+    piece[k] = *over;
+    piece[k].a = k == 0 ? a : piece[k - 1].b;
+    piece[k].b = k + 1 == n ? b : a + (b - a) * (k + 1) / n;
   }
-  for (int k = 1; k < n; k++) lists_share(&o->lists, payload->list);
+  return n;
+}
+
+static int split_interval(const robot_search *o, const motion_interval *over, bool bent, motion_interval *piece) {
+  return motion_is_span(over) ? split_span(o, over, bent, piece) : split_segment(o, over, piece);
+}
+
+static int split(void *self, search_node *node, search_node *child) {
+  robot_search *o = self;
+  const robot_scene *s = &o->scene;
+  const bool two = robot_scene_has_two_times(s);
+  const motion_interval over = robot_interval(node), other = robot_other_interval(node);
+  motion_interval piece[SEARCH_MAX_CHILDREN];
+  bool cut_other = two && o->cut_other;
+  int pieces = 0;
+  for (int tries = 0; tries < (two ? 2 : 1) && pieces == 0; tries++) {
+    if (tries > 0) cut_other = !cut_other;
+    pieces = cut_other ? split_interval(o, &other, s->other_centre.bent, piece)
+                       : split_interval(o, &over, s->centre.bent, piece);
+  }
+  int n = 0;
+  for (int k = 0; k < pieces; k++) {
+    motion_interval lead = cut_other ? over : piece[k], late = cut_other ? piece[k] : other;
+    if (two && !robot_scene_fit(s, &lead, &late)) continue;
+    child[n++] = node_of(o, node, &lead, two ? &late : &lead);
+  }
+  for (int k = 1; k < n; k++) lists_share(&o->lists, robot_known(node)->list);
   return n;
 }
 

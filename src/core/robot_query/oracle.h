@@ -9,10 +9,13 @@
 #include "robot_query/pair_state.h"
 #include "robot_query/refine.h"
 
-/* The payload of a node: from u = a of segment `first` to u = b of segment last - 1, and the list of its pairs. */
+/* The payload of a node: from u = a of segment `first` to u = b of segment last - 1, the same of another clock that the
+ * class of starts may have, and the list of its pairs. */
 typedef struct robot_node {
   double a, b;
+  double other_a, other_b;
   uint32_t first, last;
+  uint32_t other_first, other_last;
   int32_t list;
 } robot_node;
 
@@ -30,13 +33,20 @@ static inline motion_interval robot_interval(const search_node *node) {
   return (motion_interval){.a = payload->a, .b = payload->b, .first = payload->first, .last = payload->last};
 }
 
+static inline motion_interval robot_other_interval(const search_node *node) {
+  const robot_node *payload = robot_known(node);
+  return (motion_interval){
+      .a = payload->other_a, .b = payload->other_b, .first = payload->other_first, .last = payload->other_last};
+}
+
 /* Intervals that are shorter are measured even where a part moves farther than its own size. */
 #define ROBOT_SHORT_INTERVAL 0x1p-8
 
 /* Whether a node is so short that everything is measured. */
 static inline bool robot_is_short(const search_node *node) {
-  const motion_interval over = robot_interval(node);
-  return !motion_is_span(&over) && !(over.b - over.a > ROBOT_SHORT_INTERVAL);
+  const motion_interval over = robot_interval(node), other = robot_other_interval(node);
+  return !motion_is_span(&over) && !(over.b - over.a > ROBOT_SHORT_INTERVAL) && !motion_is_span(&other) &&
+         !(other.b - other.a > ROBOT_SHORT_INTERVAL);
 }
 
 /* Where the least distance was measured. */
@@ -45,6 +55,7 @@ typedef struct robot_sample {
   int32_t pair; /* -1: nothing was measured */
   size_t segment;
   double u;
+  double other; /* [s] the time of the other clock, if there is one */
 } robot_sample;
 
 typedef struct robot_search {
@@ -61,7 +72,8 @@ typedef struct robot_search {
   bool seeded;
   uint32_t gaps, planes; /* distances measured, plane bounds asked for */
   bool refined;          /* elements of meshes were looked at */
-  double pieces;         /* into so many the node at hand is best cut */
+  double pieces;         /* into so many the node at hand is best cut, */
+  bool cut_other;        /* of two times: the other clock's interval */
   list_entry *next;      /* what the node at hand keeps, in the workspace */
   size_t n_next;
   bool cut; /* it will be cut whatever is measured */
@@ -71,7 +83,7 @@ typedef struct robot_search {
 void robot_search_begin(robot_search *o, const search_goal *goal);
 
 /* The node of all that is asked about. False where memory is out. */
-bool robot_search_root(robot_search *o, const motion_interval *over, search_node *root);
+bool robot_search_root(robot_search *o, const motion_interval *over, const motion_interval *other, search_node *root);
 
 search_oracle robot_search_oracle(robot_search *o);
 

@@ -145,13 +145,20 @@ double robot_scene_apart(const robot_scene *s, const robot_pair *pair) {
   return pair->self ? parts_apart(s, (size_t)pair->moving, (size_t)pair->standing) : -INFINITY;
 }
 
+/* An obstacle: -1. */
+static bool is_of_class(const robot_scene *s, size_t part, int32_t other) {
+  return !s->starts || start_class_has(s->motion, s->starts, (int32_t)part, other);
+}
+
 static void take_obstacle(const robot_scene *s, size_t part, size_t obstacle, pair_list *to) {
+  if (!is_of_class(s, part, -1)) return;
   if (to->pairs) to->pairs[to->n] = pair_of(s, part, obstacle, false);
   to->n++;
 }
 
 /* Whether two parts may come near enough to matter. */
 static bool may_be_near(const robot_scene *s, size_t part, size_t other, pair_list *to) {
+  if (!is_of_class(s, part, (int32_t)other)) return false;
   const double apart = parts_apart(s, part, other);
   if (apart > s->reach) {
     to->beyond = lesser(apart, to->beyond);
@@ -183,7 +190,7 @@ static void list_geometry(const robot_scene *s, int32_t geometry, int32_t other,
 }
 
 bool robot_scene_asks(const robot_scene *s, size_t part) {
-  return motion_moves_link(s->motion, s->motion->robot->parts[part].link);
+  return is_of_class(s, part, -1) && motion_moves_link(s->motion, s->motion->robot->parts[part].link);
 }
 
 /* All pairs that are worth asking for. */
@@ -258,8 +265,58 @@ static size_t count_self_pairs(const robot_scene *s) {
 }
 
 bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last, size_t most_listed, double cutoff) {
+  return robot_scene_begin_class(s, q, NULL, first, last, most_listed, cutoff);
+}
+
+/* ---- two times ---- */
+
+static double time_from(const robot_scene *s, const motion_interval *over) {
+  return motion_time(s->motion, over->first, over->a);
+}
+
+static double time_to(const robot_scene *s, const motion_interval *over) {
+  return motion_time(s->motion, over->last - 1, over->b);
+}
+
+static double most_apart(const robot_scene *s) {
+  return (1.0 + 2.0 * ROUND_U) * (s->lead_tolerance + s->other_tolerance);
+}
+
+void robot_scene_range(const robot_scene *s, motion_interval *lead, motion_interval *other) {
+  *lead = motion_interval_of(s->motion, s->q->t0 - s->lead_tolerance, s->q->t1 + s->lead_tolerance);
+  *other = *lead;
+  if (!robot_scene_has_two_times(s)) return;
+  *other = motion_interval_of(s->motion, s->q->t0 - s->other_tolerance, s->q->t1 + s->other_tolerance);
+  robot_scene_fit(s, lead, other);
+}
+
+bool robot_scene_fit(const robot_scene *s, motion_interval *lead, motion_interval *other) {
+  const start_times whole = {{time_from(s, lead), time_to(s, lead)}, {time_from(s, other), time_to(s, other)}};
+  start_times left = whole;
+  if (!start_times_fit(&left, most_apart(s))) return false;
+  if (left.lead[0] > whole.lead[0] || left.lead[1] < whole.lead[1])
+    *lead = motion_interval_of(s->motion, left.lead[0], left.lead[1]);
+  if (left.other[0] > whole.other[0] || left.other[1] < whole.other[1])
+    *other = motion_interval_of(s->motion, left.other[0], left.other[1]);
+  return true;
+}
+
+double robot_scene_clock(const robot_scene *s, double lead, double other) {
+  if (!(s->lead_tolerance > 0.0)) return lead;
+  double earliest = lead - s->lead_tolerance;
+  if (robot_scene_has_two_times(s)) earliest = greater(other - s->other_tolerance, earliest);
+  const double rounding = 8.0 * ROUND_U * (fabs(lead) + fabs(other) + s->lead_tolerance + s->other_tolerance);
+  return greater(earliest - rounding, s->q->t0);
+}
+
+bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *starts, size_t first, size_t last,
+                             size_t most_listed, double cutoff) {
   const bool self = mover_is_self(&q->mover) || mover_is_whole(&q->mover);
-  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self, .reach = INFINITY};
+  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self, .reach = INFINITY, .starts = starts};
+  if (starts) {
+    s->lead_tolerance = start_tolerance(s->motion, starts->lead);
+    s->other_tolerance = start_tolerance(s->motion, starts->other);
+  }
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;
   const bool leaves_out = self && s->motion->sweeps && most_listed < SIZE_MAX;
@@ -347,22 +404,52 @@ void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
 static void fill_track(robot_scene *s, size_t track) {
   track_state *state = &s->tracks[track];
   if (state->filled == s->node) return;
+  const motion_track *t = &s->motion->tracks[track];
+  const bool other = robot_scene_has_two_times(s) && t->clock == s->starts->other;
+  const motion_interval *over = other ? &s->other : &s->over;
   state->filled = s->node;
-  state->own = motion_track_interval(s->motion, &s->motion->tracks[track], &s->over);
-  motion_fill_track(s->motion, track, &s->over, &state->own, &s->centre, s->rows);
+  state->own = motion_track_interval(s->motion, t, over);
+  motion_fill_track(s->motion, track, over, &state->own, other ? &s->other_centre : &s->centre, s->rows);
 }
 
 static bool is_same(const motion_interval *a, const motion_interval *b) {
   return a->first == b->first && a->last == b->last && a->a == b->a && a->b == b->b;
 }
 
-/* The one track says where the centre is. */
-void robot_scene_enter_span(robot_scene *s, const motion_interval *over) {
-  if (s->node > 0 && is_same(over, &s->over)) return; /* everything is known */
+void robot_scene_enter_both(robot_scene *s, const motion_interval *lead, const motion_interval *other) {
+  if (s->node > 0 && is_same(lead, &s->over) && is_same(other, &s->other)) return; /* everything is known */
   s->node++;
-  s->over = *over;
-  s->centre = motion_middle(s->motion, over);
+  s->over = *lead, s->other = *other;
+  s->centre = motion_middle(s->motion, lead);
+  s->other_centre = (span_centre){.u = s->centre.u, .segment = s->centre.segment};
+  /* the one track says where the centre is */
   if (s->motion->n_tracks == 1) fill_track(s, 0);
+  if (!robot_scene_has_two_times(s)) return;
+  s->other_centre = motion_middle(s->motion, other);
+  const start_times times = {{time_from(s, lead), time_to(s, lead)}, {time_from(s, other), time_to(s, other)}};
+  s->times.n = start_times_corners(&times, most_apart(s), s->times.corner);
+}
+
+/* Within what is asked about of the other clock. */
+void robot_scene_enter_span(robot_scene *s, const motion_interval *over) {
+  motion_interval other = *over;
+  if (robot_scene_has_two_times(s)) {
+    const double from = s->q->t0 - s->other_tolerance, to = s->q->t1 + s->other_tolerance;
+    other = motion_interval_of(s->motion, lesser(greater(time_from(s, over), from), to),
+                               lesser(greater(time_to(s, over), from), to));
+  }
+  robot_scene_enter_both(s, over, &other);
+}
+
+double robot_scene_other_time(const robot_scene *s) {
+  return motion_time(s->motion, s->other_centre.segment, s->other_centre.u);
+}
+
+bool robot_scene_is_possible(const robot_scene *s) {
+  if (!robot_scene_has_two_times(s)) return true;
+  const double lead = motion_time(s->motion, s->centre.segment, s->centre.u), other = robot_scene_other_time(s);
+  const double rounding = 64.0 * ROUND_U * (fabs(lead) + fabs(other) + most_apart(s));
+  return fabs(lead - other) <= most_apart(s) + rounding;
 }
 
 static void fill_part(robot_scene *s, int32_t part) {
@@ -446,6 +533,9 @@ static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body
   const size_t n =
       motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
   motion_of_part(s->axes, s->chain, n, body->side.at.p, robot_core_radius(body), s->scratch, m);
+  if (!robot_scene_has_two_times(s) || !pair->self) return;
+  motion_find_standing_rates(s->axes, s->chain, n, body->side.at.p, m);
+  s->times.standing = start_clock_of(s->motion, pair->standing) == s->starts->other;
 }
 
 /* How far a whole part moves, seen from the world; its displacements are known then. */
@@ -475,6 +565,25 @@ double robot_scene_displacement(robot_scene *s, const robot_pair *pair, const ro
   if (!pair->self && pair->element[0] == ROBOT_WHOLE) return displacement_of_part(s, pair->moving);
   return motion_displacement(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
                              moving->side.at.p, robot_core_radius(moving));
+}
+
+void robot_scene_displacements(robot_scene *s, const robot_pair *pair, double *other, double *lead) {
+  const double moving = displacement_of_part(s, pair->moving), standing = displacement_of_part(s, pair->standing);
+  const bool is_other = start_clock_of(s->motion, pair->moving) == s->starts->other;
+  *other = is_other ? moving : standing;
+  *lead = is_other ? standing : moving;
+}
+
+double robot_scene_travel(robot_scene *s, int32_t index, double lead, double other) {
+  const double clock = robot_scene_clock(s, lead, other), t0 = s->q->t0 - clock, t1 = s->q->t1 - clock;
+  const bool shifted = s->starts && (s->lead_tolerance > 0.0 || robot_scene_has_two_times(s));
+  const motion_interval over =
+      shifted ? motion_interval_of(s->motion, lead + t0, lead + t1) : motion_interval_of(s->motion, s->q->t0, s->q->t1);
+  const motion_interval late = shifted ? motion_interval_of(s->motion, other + t0, other + t1) : over;
+  robot_scene_enter_both(s, &over, &late);
+  const robot_pair *pair = &s->pairs[index];
+  const robot_body *moving = robot_scene_moving(s, pair), *standing = robot_scene_standing(s, pair);
+  return ROUND_UP * 2.0 * (robot_scene_displacement(s, pair, moving) + moving->side.error + standing->side.error);
 }
 
 const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,

@@ -8,6 +8,7 @@
 #include "robot_query/element.h"
 #include "robot_query/pair_distance.h"
 #include "robot_query/pair_table.h"
+#include "robot_query/starts.h"
 
 /* A pair of a part of the robot that moves and what it is held against. */
 typedef struct robot_pair {
@@ -44,7 +45,9 @@ typedef struct track_state {
 typedef struct robot_scene {
   const query *q;
   const cprox_motion *motion;
-  bool self; /* there are pairs with itself */
+  bool self;                              /* there are pairs with itself */
+  const start_class *starts;              /* only pairs of this class; NULL: all, as if all starts were known */
+  double lead_tolerance, other_tolerance; /* [s] of its clocks */
   robot_body *obstacles;
   part_state *parts;
   axis_state *axes;      /* those above the parts that were asked for on the present node, */
@@ -63,9 +66,12 @@ typedef struct robot_scene {
   struct robot_groups *groups; /* of parts, where pairs with itself are found by them (robot_query/groups.h), or NULL */
   robot_element element[2];    /* those of the pair that was placed last: moving, standing */
   uint32_t node;               /* counts the nodes, so that states know whether they are of the present one */
-  motion_interval over;        /* that node; */
+  motion_interval over;        /* that node; where the class has another clock, of its lead, */
+  motion_interval other;       /* and that of the other clock */
   span_centre centre; /* everything stands as it does here: in its middle, or near that of a span. A bent span is only
                          bounded by how far parts move */
+  span_centre other_centre; /* the same of the other clock */
+  two_times times;
 } robot_scene;
 
 /* So many pairs of a robot with itself are listed one by one; groups of parts would cost more. */
@@ -79,6 +85,31 @@ typedef struct robot_scene {
  * far apart to matter are left out; `cutoff`: an upper bound known from elsewhere, or infinity. */
 bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last, size_t most_listed,
                        double cutoff);
+
+/* The same of the pairs of a class, which is kept by reference. */
+bool robot_scene_begin_class(robot_scene *scene, const query *q, const start_class *starts, size_t first, size_t last,
+                             size_t most_listed, double cutoff);
+
+/* Whether the class's pairs are at two times. */
+static inline bool robot_scene_has_two_times(const robot_scene *scene) {
+  return scene->starts && scene->starts->other != CLOCK_NONE;
+}
+
+/* All times of the class's clocks that are asked about. */
+void robot_scene_range(const robot_scene *scene, motion_interval *lead, motion_interval *other);
+
+/* Takes off what is not possible of both intervals together; false: nothing is left. */
+bool robot_scene_fit(const robot_scene *scene, motion_interval *lead, motion_interval *other);
+
+/* The earliest time of the clock of all at which its two clocks can be at these times, or later; rounded down. */
+double robot_scene_clock(const robot_scene *scene, double lead, double other);
+
+/* A bound on how far the sides of a pair move towards or away from each other between any two times that are asked
+ * about, with the same starts as where it was measured, at these times. */
+double robot_scene_travel(robot_scene *scene, int32_t pair, double lead, double other);
+
+/* Of two times: how far the side of the pair moves that is on the other clock, and the one on the lead. */
+void robot_scene_displacements(robot_scene *scene, const robot_pair *pair, double *other, double *lead);
 
 /* Of a geometry. */
 int32_t robot_scene_first_part(const robot_scene *scene, int32_t geometry);
@@ -96,9 +127,20 @@ bool robot_scene_asks(const robot_scene *scene, size_t part);
  * all obstacles in memory. */
 int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
 
-/* A new node: of one segment, or of any number. */
+/* A new node: of one segment, or of any number; another clock is at the same times, or at its own. */
 void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
 void robot_scene_enter_span(robot_scene *scene, const motion_interval *over);
+void robot_scene_enter_both(robot_scene *scene, const motion_interval *lead, const motion_interval *other);
+
+/* Whether the middle of the node, where everything is measured, is possible. */
+bool robot_scene_is_possible(const robot_scene *scene);
+
+static inline bool robot_scene_is_bent(const robot_scene *scene) {
+  return scene->centre.bent || scene->other_centre.bent;
+}
+
+/* The time of the other clock in the middle of the node. */
+double robot_scene_other_time(const robot_scene *scene);
 
 /* Looks at the tracks that move a pair, or at all: whether a span is bent is known of those that were looked at.
  * Nothing is done twice on a node. */

@@ -4,6 +4,11 @@
 
 #include "robot_query/measure.h"
 
+/* Times here are those of the lead of the class of starts. */
+static double time_of(const robot_search *o, const robot_sample *sample) {
+  return sample->pair < 0 ? INFINITY : motion_time_below(o->scene.motion, sample->segment, sample->u);
+}
+
 /* The distance of a pair at a time, as exactly as arithmetic has it, or of every pair that may touch (-1); what it
  * proves stands in o->touch. */
 static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, double *upper) {
@@ -11,7 +16,10 @@ static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, dou
   const size_t segment = motion_segment_at(m, t);
   const double from = m->times[segment], to = m->times[segment + 1];
   const double u = fmin(fmax((t - from) / (to - from), 0.0), 1.0), known = o->touch_at;
-  robot_scene_enter(&o->scene, segment, u, u);
+  const motion_interval at = {.a = u, .b = u, .first = segment, .last = segment + 1};
+  const double other = t + (o->best.other - time_of(o, &o->best)); /* with the same starts as at the best place */
+  const motion_interval late = robot_scene_has_two_times(&o->scene) ? motion_interval_of(m, other, other) : at;
+  robot_scene_enter_both(&o->scene, &at, &late);
 
   /* what was found stays the best, whatever is seen here */
   const robot_sample best = o->best;
@@ -35,7 +43,7 @@ static cprox_status prove_by_speed(robot_search *o, int32_t pair, double t, doub
   enum { MOST_STEPS = 8 };
   double before, now, step = first;
   cprox_status status = measure_pair_at(o, pair, t, &before);
-  for (int i = 0; i < MOST_STEPS && status >= 0 && t + step < o->touch_at; i++) {
+  for (int i = 0; i < MOST_STEPS && status >= 0 && t + step < time_of(o, &o->touch); i++) {
     const double next = fmin(t + step, end);
     if (!(next > t)) break;
     status = measure_pair_at(o, pair, next, &now);
@@ -63,28 +71,28 @@ static int32_t whole_pair(const robot_search *o, int32_t index) {
 
 cprox_status robot_search_prove(robot_search *o, double end) {
   enum { MOST_STEPS = 24, MOST_CUTS = 40, EVERY_PAIR = -1 };
-  const double begin = o->best_bound.at, range = end - begin;
+  const double begin = time_of(o, &o->best), range = end - begin;
   if (o->best.pair < 0 || !(o->best_bound.upper <= o->goal.epsilon) || !(o->best_bound.upper > 0.0) || !(range > 0.0))
     return CPROX_OK;
-  const double known = o->touch_at;
+  const double known = time_of(o, &o->touch);
   double unused;
   cprox_status status = prove_by_speed(o, whole_pair(o, o->best.pair), begin, 1e-6 * range, end);
-  if (status < 0 || o->touch_at < known) return status;
+  if (status < 0 || time_of(o, &o->touch) < known) return status;
 
   /* farther along in growing steps, and then back to where it is not proven */
   double step = 1e-7 * range, before = begin;
   for (int i = 0; i < MOST_STEPS && step < range && begin + step < known; i++, step *= 2.0) {
     status = measure_pair_at(o, EVERY_PAIR, begin + step, &unused);
-    if (status < 0 || o->touch_at < known) break;
+    if (status < 0 || time_of(o, &o->touch) < known) break;
     before = begin + step;
   }
-  if (status < 0 || !(o->touch_at < known)) return status;
+  if (status < 0 || !(time_of(o, &o->touch) < known)) return status;
   const int32_t pair = o->touch.pair;
-  for (int i = 0; i < MOST_CUTS && o->touch_at - before > 1e-9 * range; i++) {
-    const double middle = 0.5 * (before + o->touch_at);
+  for (int i = 0; i < MOST_CUTS && time_of(o, &o->touch) - before > 1e-9 * range; i++) {
+    const double middle = 0.5 * (before + time_of(o, &o->touch));
     status = measure_pair_at(o, pair, middle, &unused);
     if (status < 0) return status;
-    if (o->touch_at > middle) before = middle;
+    if (time_of(o, &o->touch) > middle) before = middle;
   }
   return CPROX_OK;
 }

@@ -96,7 +96,8 @@ pair_rank *robot_rank_pairs(const query *q) {
     look_over_segment(&r, &one, (PIECES + segments - 1) / segments);
   }
   /* where it was ended, not all of the motion was looked at */
-  for (size_t i = 0; r.stopped && i < r.n; i++) r.rank[i].lower = -INFINITY;
+  const bool vague = r.stopped || start_class_is_one_of_many(q->mover.motion); /* or starts are not known */
+  for (size_t i = 0; vague && i < r.n; i++) r.rank[i].lower = -INFINITY;
   qsort(r.rank, r.n, sizeof *r.rank, nearer_first);
   return r.rank;
 }

@@ -264,7 +264,7 @@ static cprox_status run(gradient_search *g, search_outcome *found) {
     return CPROX_OK;
   }
   search_node root;
-  if (!robot_search_root(o, &g->within, &root)) return robot_no_memory(o);
+  if (!robot_search_root(o, &g->within, &g->within, &root)) return robot_no_memory(o);
   const search_oracle oracle = {.self = g, .filter = filter, .probe = probe, .split = split, .release = release};
   const cprox_status status = search_run(&goal, &oracle, root, q->workspace, found);
   if (g->failure < 0) return g->failure;
@@ -348,6 +348,8 @@ static void fill_nothing(const gradient_search *g, cprox_motion_gradient *to) {
 cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox_result *result,
                                 cprox_motion_gradient *gradient) {
   gradient_search g = {.q = q, .lower = INFINITY, .previous = INFINITY};
+  if (start_class_is_one_of_many(q->mover.motion))
+    return workspace_fail(q->workspace, CPROX_INVALID, "there is no gradient where starts have tolerances");
   if (!robot_scene_begin(&g.o.scene, q, first, last, SIZE_MAX, INFINITY))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   g.within = motion_interval_of(q->mover.motion, q->t0, q->t1);
