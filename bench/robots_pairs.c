@@ -72,7 +72,7 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   search_outcome found;
   search_node root;
   const motion_interval over = {.b = 1.0, .last = c->motion->n_segments};
-  if (!robot_search_root(&w.search, &over, &root)) return false;
+  if (!robot_search_root(&w.search, &over, &over, &root)) return false;
   if (search_run(&goal, &outer, root, ws, &found) != CPROX_OK) return false;
   *looks += w.looks, *measured += w.search.gaps;
   return found.nodes == r.nodes && w.search.gaps == r.distance_queries;

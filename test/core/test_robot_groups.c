@@ -266,7 +266,7 @@ static searched search(const crowded_robot *c, search_goal goal, size_t most_lis
   robot_search_begin(&o, &goal);
   const motion_interval over = {.b = 1.0, .last = c->motion->n_segments};
   search_node root;
-  assert_true(robot_search_root(&o, &over, &root));
+  assert_true(robot_search_root(&o, &over, &over, &root));
   const search_oracle oracle = robot_search_oracle(&o);
   search_outcome found;
   searched s;
