@@ -18,7 +18,7 @@
 /** The version of these headers. Before 1.0 a new minor version may break the ABI: the SONAME carries both numbers. */
 #define CPROX_VERSION_MAJOR 0
 /** The minor version. */
-#define CPROX_VERSION_MINOR 1
+#define CPROX_VERSION_MINOR 2
 /** The patch version. */
 #define CPROX_VERSION_PATCH 0
 
