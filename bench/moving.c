@@ -244,14 +244,14 @@ static void verdict(const void *problems, size_t i, void *state, bench_answer *a
   answer_with(r.verdict == CPROX_VERDICT_CLEAR ? status : CPROX_INVALID, &r, r.lower, r.lower, answer);
 }
 
-static void sphere_beside_box(const bench_size *size, cprox_workspace *ws) {
-  const double y = 0.5 + 0.2 + 1e-6, from[7] = {-2, y, 0, 0, 0, 0, 1}, to[7] = {2, y, 0, 0, 0, 0.6, 0.8};
-  cprox_body *small = NULL;
-  cprox_body_create_sphere(0.2, NULL, &small);
+static void sphere_beside_box(const bench_size *size, cprox_workspace *ws, double radius, const char *parameter) {
+  const double y = 0.5 + radius + 1e-6, from[7] = {-2, y, 0, 0, 0, 0, 1}, to[7] = {2, y, 0, 0, 0, 0.6, 0.8};
+  cprox_body *body = NULL;
+  cprox_body_create_sphere(radius, NULL, &body);
   scene s;
-  begin(&s, "sphere beside box", small, box(), HERE);
+  begin(&s, "sphere beside box", body, box(), HERE);
   go(&s, from, to, CPROX_TURNING_SLERP);
-  const bench_workload w = {"moving", "sphere beside box", "clearance 1e-06", &s, 1, NULL, 0.0};
+  const bench_workload w = {"moving", "sphere beside box", parameter, &s, 1, NULL, 0.0};
   const bench_method ours = {"curve_proximity", verdict, ws};
   bench_measure(&w, size, &ours, 1);
   end(&s);
@@ -390,7 +390,10 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "contact")) contacts(&size, ws);
   if (bench_wanted(&size, "turning box")) turning_box(&size, ws);
   if (bench_wanted(&size, "quadrotors")) quadrotors(&size, ws);
-  if (bench_wanted(&size, "sphere beside box")) sphere_beside_box(&size, ws);
+  if (bench_wanted(&size, "sphere beside box")) {
+    sphere_beside_box(&size, ws, 0.2, "clearance 1e-06");
+    sphere_beside_box(&size, ws, 0.5, "clearance 1e-06 radius 0.5");
+  }
   if (bench_wanted(&size, "two arms in one cell")) cells(&size, ws);
   if (bench_wanted(&size, "box among falling boxes")) among_many(&size, ws);
   cprox_workspace_free(ws);

@@ -232,6 +232,19 @@ static double largest_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t count) {
   return sqrt(largest);
 }
 
+size_t motion_derivative_bounds(const cprox_motion *m, int32_t axis, const motion_interval *own, double *rates) {
+  const robot_axis *of = &m->robot->axes[axis];
+  const size_t degree = m->tracks[m->track_of[of->variable]].degree[own->first];
+  double c[4][MOTION_MAX_DEGREE + 1], factor = 1.0;
+  const double error = coordinates_over(m, own, of, c);
+  for (size_t order = 1; order <= degree; order++) {
+    for (int k = 0; k < 4; k++) differentiate(c[k], degree - order + 1);
+    factor *= 2.0 * (double)(degree - order + 1);
+    rates[order] = ROUND_UP * largest_norm(c, degree - order + 1) + factor * error;
+  }
+  return degree;
+}
+
 /* Twice the vector part of p q*, quaternions as x, y, z, w. */
 static vec3 twice_product(const double *p, const double *q) {
   const vec3 u = vec(p[0], p[1], p[2]), v = vec(q[0], q[1], q[2]);
@@ -535,6 +548,13 @@ static double value_at(const double *root, size_t degree, double u) {
   for (size_t r = 1; r <= degree; r++)
     for (size_t i = 0; i + r <= degree; i++) c[i] = (1.0 - u) * c[i] + u * c[i + 1];
   return c[0];
+}
+
+double motion_value(const cprox_motion *m, int32_t variable, size_t own, double u) {
+  const int32_t slot = m->slot[variable];
+  if (slot < 0) return m->rest[variable];
+  const motion_track *t = &m->tracks[m->track_of[variable]];
+  return value_at(t->coefficients + (own * t->n_moving + (size_t)slot - t->first_slot) * t->stride, t->degree[own], u);
 }
 
 static void values_at(const cprox_motion *m, size_t segment, double at, double *values) {

@@ -113,6 +113,13 @@ static inline const motion_arc *motion_arc_at(const cprox_motion *m, size_t axis
 /* The values of such a joint at u of that segment: its own seven; x, y and z only of a screw. */
 void motion_arc_values(const cprox_motion *motion, size_t axis, size_t segment, double u, double values[7]);
 
+/* The value of a variable at u of a segment of its track. */
+double motion_value(const cprox_motion *motion, int32_t variable, size_t own, double u);
+
+/* Bounds on all derivatives of an axis's variables (of a ball, of their vector) over an interval of its track, by the
+ * interval's own parameter: rates[1] … rates[n]. Returns n, their degree. */
+size_t motion_derivative_bounds(const cprox_motion *motion, int32_t axis, const motion_interval *own, double *rates);
+
 /* The numbers in one row, and in all. */
 size_t motion_rows_stride(const cprox_motion *motion);
 size_t motion_rows_size(const cprox_motion *motion);

@@ -110,17 +110,20 @@ static void take_block(walk *w, const double *begin, const double *end, const do
 /* A polynomial by its coefficients: those of its place along the chord are in [0, 1], so that its place is. By time it
  * is a straight line between the places of both ends, which are given. */
 static void take_polynomial(walk *w, const double *c, size_t stride, size_t degree, double along[2]) {
-  const double from = along[0], to = along[1];
+  double places[MOTION_MAX_DEGREE + 1];
   for (size_t i = 0; i <= degree; i++) {
     const double share = (double)i / (double)degree;
-    const double s = w->by_time ? (1.0 - share) * from + share * to : clamped(along_of(w, c + i, stride));
-    if (i == 0) along[0] = s;
-    along[1] = s;
-    for (size_t j = 0; j < w->n; j++) {
-      const double value = c[j * stride + i], e = beside(w, s, value, j);
-      w->low[j] = lesser(value, w->low[j]), w->high[j] = greater(value, w->high[j]);
-      w->below[j] = lesser(e, w->below[j]), w->above[j] = greater(e, w->above[j]);
+    places[i] = w->by_time ? (1.0 - share) * along[0] + share * along[1] : clamped(along_of(w, c + i, stride));
+  }
+  along[0] = places[0], along[1] = places[degree];
+  for (size_t j = 0; j < w->n; j++, c += stride) {
+    double low = w->low[j], high = w->high[j], below = w->below[j], above = w->above[j];
+    for (size_t i = 0; i <= degree; i++) {
+      const double e = beside(w, places[i], c[i], j);
+      low = lesser(c[i], low), high = greater(c[i], high);
+      below = lesser(e, below), above = greater(e, above);
     }
+    w->low[j] = low, w->high[j] = high, w->below[j] = below, w->above[j] = above;
   }
 }
 
@@ -216,6 +219,23 @@ static void cut_segment(const motion_track *t, size_t segment, double a, double 
     const double s = (b - a) / (1.0 - a);
     for (size_t r = 1; r <= degree; r++)
       for (size_t i = degree; i >= r; i--) c[i] = (1.0 - s) * c[i - 1] + s * c[i];
+  }
+}
+
+/* The values of all variables at u of a segment; no term is negative, so that each is off by less than 7 u of a degree.
+ */
+static void values_at(const motion_track *t, size_t segment, double u, double *values) {
+  const size_t degree = t->degree[segment];
+  double weights[MOTION_MAX_DEGREE + 1] = {1.0};
+  for (size_t r = 1; r <= degree; r++) {
+    for (size_t i = r; i > 0; i--) weights[i] = u * weights[i - 1] + (1.0 - u) * weights[i];
+    weights[0] *= 1.0 - u;
+  }
+  const double *c = coefficients_of(t, segment);
+  for (size_t j = 0; j < t->n_moving; j++, c += t->stride) {
+    double sum = 0.0;
+    for (size_t i = 0; i <= degree; i++) sum += weights[i] * c[i];
+    values[j] = sum;
   }
 }
 
@@ -338,11 +358,8 @@ void motion_fill_span(const cprox_motion *m, const motion_track *t, const motion
   const duration whole = duration_of(m, over);
   rows += t->first_slot;
   double *from = rows + MOTION_FROM * stride, *to = rows + MOTION_TO * stride;
-  const size_t end_degree = t->degree[own->last - 1];
-  for (size_t j = 0; j < n; j++) {
-    from[j] = value_at(coefficients_of(t, own->first) + j * t->stride, t->degree[own->first], own->a);
-    to[j] = value_at(coefficients_of(t, own->last - 1) + j * t->stride, end_degree, own->b);
-  }
+  values_at(t, own->first, own->a, from);
+  values_at(t, own->last - 1, own->b, to);
   piece pieces[MOST_PIECES];
   walk w = walk_along(n, from, to, t->by_time ? &whole : NULL, rows + MOTION_LOW * stride, rows + MOTION_HIGH * stride,
                       rows + MOTION_BELOW * stride, rows + MOTION_ABOVE * stride);
@@ -362,8 +379,7 @@ void motion_fill_span(const cprox_motion *m, const motion_track *t, const motion
   segment = motion_track_place(m, t, centre->segment, &u);
 
   double *value = rows + MOTION_VALUE * stride;
-  for (size_t j = 0; j < n; j++)
-    value[j] = value_at(coefficients_of(t, segment) + j * t->stride, t->degree[segment], u);
+  values_at(t, segment, u, value);
   place_arcs(m, t, segment, u, value - t->first_slot);
   const double along = t->by_time ? 0.5 : clamped(along_of(&w, value, 1)),
                reach = ROUND_UP * greater(along, 1.0 - along);

@@ -69,7 +69,7 @@ static cprox_status answer_class(const query *q, const start_class *starts, size
   robot_search_report(&o, &r);
   r.lower = fmin(found.lower, o.dropped);
   r.lower = fmin(q->is_signed ? r.lower : fmax(r.lower, 0.0), r.upper);
-  r.nodes = found.nodes;
+  r.nodes = found.nodes + o.flights;
   if (goal.share) cutoff = lesser(cutoff, goal.share(goal.share_user, r.upper));
   query_conclude(q, cutoff, status, &r);
   const double at = o.best.pair >= 0 ? motion_time(q->mover.motion, o.best.segment, o.best.u) : 0.0;
@@ -134,7 +134,7 @@ static cprox_status contact_of_class(const query *q, const start_class *starts, 
   r.verdict = touch ? CPROX_VERDICT_VIOLATED : isinf(found.free_until) ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_UNDECIDED;
   if (sample->pair < 0) r.t = NAN;
   if (touch) r.t = fmax(r.t, r.t_contact_lower); /* one is rounded, the other rounded down */
-  r.nodes = found.nodes, r.distance_queries = o.gaps;
+  r.nodes = found.nodes + o.flights, r.distance_queries = o.gaps;
   r.lod = lod_of(&o);
   r.status = status;
   if (status == CPROX_OK && near && found.free_until < o.best_bound.at) r.status = CPROX_PRECISION;

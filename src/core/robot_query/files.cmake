@@ -4,6 +4,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/bound_node.c
   ${CMAKE_CURRENT_LIST_DIR}/cull.c
   ${CMAKE_CURRENT_LIST_DIR}/element.c
+  ${CMAKE_CURRENT_LIST_DIR}/flight.c
   ${CMAKE_CURRENT_LIST_DIR}/groups.c
   ${CMAKE_CURRENT_LIST_DIR}/measure.c
   ${CMAKE_CURRENT_LIST_DIR}/oracle.c
@@ -14,5 +15,6 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/prove_contact.c
   ${CMAKE_CURRENT_LIST_DIR}/rank.c
   ${CMAKE_CURRENT_LIST_DIR}/refine.c
+  ${CMAKE_CURRENT_LIST_DIR}/settle_flight.c
   ${CMAKE_CURRENT_LIST_DIR}/starts.c
 )

@@ -26,11 +26,9 @@ static cprox_status refuse_callback(const robot_search *o) {
   return workspace_fail(o->scene.q->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
 }
 
-/* What was measured may be the least so far, or a contact. */
-static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
-  if (!robot_scene_is_possible(&o->scene)) return;
-  const size_t segment = o->scene.centre.segment;
-  const double u = o->scene.centre.u, other = robot_scene_other_time(&o->scene);
+/* What was measured at u of a segment may be the least so far, or a contact; `other`: the other clock's time there. */
+static void keep_sample_at(robot_search *o, int32_t index, const robot_gap *gap, size_t segment, double u,
+                           double other) {
   const double upper = o->goal.is_signed ? gap->upper : fmax(gap->upper, 0.0),
                at = robot_scene_clock(&o->scene, motion_time_below(o->scene.motion, segment, u), other);
   const robot_sample sample = {.gap = *gap, .pair = index, .segment = segment, .u = u, .other = other};
@@ -44,23 +42,48 @@ static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
   }
 }
 
-void robot_place_normal(const robot_search *o, robot_pair *pair, vec3 normal) {
+static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
+  if (!robot_scene_is_possible(&o->scene)) return;
+  keep_sample_at(o, index, gap, o->scene.centre.segment, o->scene.centre.u, robot_scene_other_time(&o->scene));
+}
+
+static void place_normal_at(const robot_search *o, robot_pair *pair, vec3 normal, size_t segment, double u) {
   pair->normal = normal;
   pair->normal_rate = vec(0, 0, 0);
-  pair->found = pair->from = pair->to = robot_scene_place(&o->scene, o->scene.centre.segment, o->scene.centre.u);
+  pair->found = pair->from = pair->to = robot_scene_place(&o->scene, segment, u);
   pair->normal_known = true;
+}
+
+void robot_place_normal(const robot_search *o, robot_pair *pair, vec3 normal) {
+  place_normal_at(o, pair, normal, o->scene.centre.segment, o->scene.centre.u);
 }
 
 void robot_keep_normal(const robot_search *o, robot_pair *pair, const robot_body *standing, const robot_gap *gap) {
   if (vec_norm2(gap->normal) > 0.0) robot_place_normal(o, pair, placement_turn_back(&standing->side.at, gap->normal));
 }
 
+static cprox_status measure_bodies(robot_search *o, const robot_body *moving, const robot_body *standing,
+                                   robot_accuracy accuracy, robot_gap *gap) {
+  robot_pair_measure(moving, standing, accuracy, gap);
+  o->gaps++;
+  return gap->support_failed ? refuse_callback(o) : CPROX_OK;
+}
+
+cprox_status robot_measure_placed(robot_search *o, int32_t index, const robot_body *moving, const robot_body *standing,
+                                  robot_accuracy accuracy, size_t segment, double u, robot_gap *gap) {
+  const cprox_status status = measure_bodies(o, moving, standing, accuracy, gap);
+  if (status < 0) return status;
+  if (vec_norm2(gap->normal) > 0.0)
+    place_normal_at(o, &o->scene.pairs[index], placement_turn_back(&standing->side.at, gap->normal), segment, u);
+  keep_sample_at(o, index, gap, segment, u, motion_time(o->scene.motion, segment, u));
+  return CPROX_OK;
+}
+
 cprox_status robot_measure(robot_search *o, int32_t index, robot_accuracy accuracy, robot_gap *gap) {
   robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  robot_pair_measure(moving, standing, accuracy, gap);
-  o->gaps++;
-  if (gap->support_failed) return refuse_callback(o);
+  const cprox_status status = measure_bodies(o, moving, standing, accuracy, gap);
+  if (status < 0) return status;
   robot_keep_normal(o, pair, standing, gap);
   if (robot_is_convex(moving, standing)) keep_sample(o, index, gap);
   return CPROX_OK;

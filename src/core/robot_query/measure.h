@@ -36,6 +36,10 @@ void robot_keep_normal(const robot_search *o, robot_pair *pair, const robot_body
 /* The distance of the convex sides of a pair; it is that of the pair itself where that has no elements. */
 cprox_status robot_measure(robot_search *o, int32_t index, robot_accuracy accuracy, robot_gap *gap);
 
+/* The same of two convex bodies as they are at u of a segment. The class of starts has one clock. */
+cprox_status robot_measure_placed(robot_search *o, int32_t index, const robot_body *moving, const robot_body *standing,
+                                  robot_accuracy accuracy, size_t segment, double u, robot_gap *gap);
+
 /* Sets out from what is known of the hulls. No element is farther from the other side than the hulls' distance and
  * their sizes. */
 robot_refinement robot_refinement_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach,

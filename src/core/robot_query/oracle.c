@@ -6,6 +6,7 @@
 #include "broadphase/obstacle_set.h"
 #include "robot_query/bound_node.h"
 #include "robot_query/measure.h"
+#include "robot_query/settle_flight.h"
 
 #define SHORTEST_INTERVAL 0x1p-46
 
@@ -59,7 +60,13 @@ static bool others_seeded(const robot_search *o) {
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   robot_search *o = self;
-  cprox_status status = CPROX_OK;
+  bool served;
+  o->nodes++;
+  cprox_status status = robot_bound_flight(o, node, &served);
+  if (status < 0 || served) {
+    *best = o->best_bound;
+    return status;
+  }
   if (!o->seeded) {
     o->seeded = true;
     if (o->goal.order == SEARCH_LEFT_TO_RIGHT) status = robot_measure_start(o, node);
@@ -145,7 +152,7 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->dropped = o->scene.beyond, o->touch_at = INFINITY;
   o->seeded = o->refined = false;
-  o->gaps = o->planes = 0;
+  o->gaps = o->planes = o->nodes = o->flights = 0;
   lists_begin(&o->lists, o->scene.q->workspace);
 }
 search_oracle robot_search_oracle(robot_search *o) {

@@ -71,6 +71,8 @@ typedef struct robot_search {
   double touch_at;
   bool seeded;
   uint32_t gaps, planes; /* distances measured, plane bounds asked for */
+  uint32_t nodes;        /* looked at, */
+  uint32_t flights;      /* and more intervals inside them, for one pair */
   bool refined;          /* elements of meshes were looked at */
   double pieces;         /* into so many the node at hand is best cut, */
   bool cut_other;        /* of two times: the other clock's interval */

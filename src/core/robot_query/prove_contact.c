@@ -11,7 +11,7 @@ static double time_of(const robot_search *o, const robot_sample *sample) {
 
 /* The distance of a pair at a time, as exactly as arithmetic has it, or of every pair that may touch (-1); what it
  * proves stands in o->touch. */
-static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, double *upper) {
+static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, search_best *found) {
   const cprox_motion *m = o->scene.motion;
   const size_t segment = motion_segment_at(m, t);
   const double from = m->times[segment], to = m->times[segment + 1];
@@ -33,7 +33,7 @@ static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, dou
   for (size_t i = 0; i < n && status >= 0 && o->touch_at == known; i++) status = robot_measure_if_near(o, (int32_t)i);
   if (pair < 0 && o->scene.groups && status >= 0 && o->touch_at == known)
     status = robot_measure_near_groups(o, (group_pair){{0, 0}});
-  *upper = o->best_bound.upper;
+  *found = o->best_bound;
   o->best = best, o->best_bound = bound, o->goal.epsilon = epsilon;
   return status;
 }
@@ -41,17 +41,18 @@ static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, dou
 /* By the speed at which the two approach each other. */
 static cprox_status prove_by_speed(robot_search *o, int32_t pair, double t, double first, double end) {
   enum { MOST_STEPS = 8 };
-  double before, now, step = first;
+  search_best before, now;
+  double step = first;
   cprox_status status = measure_pair_at(o, pair, t, &before);
   for (int i = 0; i < MOST_STEPS && status >= 0 && t + step < time_of(o, &o->touch); i++) {
     const double next = fmin(t + step, end);
     if (!(next > t)) break;
     status = measure_pair_at(o, pair, next, &now);
-    if (status < 0 || !(now > 0.0)) break;
-    const double speed = (before - now) / (next - t);
+    if (status < 0 || !(now.upper > 0.0)) break;
+    const double speed = (before.upper - now.upper) / (next - t);
     if (!(speed > 0.0)) break;
     /* a little deeper than the surface, or rounding hides it */
-    step = now / speed * (1.0 + 1e-6) + 1e-9 * first;
+    step = (now.upper * (1.0 + 1e-6) + 4.0 * now.slack) / speed + 1e-9 * first;
     t = next, before = now;
   }
   return status;
@@ -75,7 +76,7 @@ cprox_status robot_search_prove(robot_search *o, double end) {
   if (o->best.pair < 0 || !(o->best_bound.upper <= o->goal.epsilon) || !(o->best_bound.upper > 0.0) || !(range > 0.0))
     return CPROX_OK;
   const double known = time_of(o, &o->touch);
-  double unused;
+  search_best unused;
   cprox_status status = prove_by_speed(o, whole_pair(o, o->best.pair), begin, 1e-6 * range, end);
   if (status < 0 || time_of(o, &o->touch) < known) return status;
 

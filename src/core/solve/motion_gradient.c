@@ -367,7 +367,7 @@ cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox
   robot_search_report(&g.o, &r);
   r.lower = fmin(fmin(found.lower, g.o.dropped), g.lower);
   r.lower = fmin(q->is_signed ? r.lower : fmax(r.lower, 0.0), r.upper);
-  r.nodes = found.nodes, r.distance_queries += g.pair.gaps;
+  r.nodes = found.nodes + g.o.flights, r.distance_queries += g.pair.gaps;
   query_conclude(q, INFINITY, status, &r);
 
   if (!g.ended && !(g.previous > g.spot.gap.upper + g.apart))
