@@ -36,6 +36,11 @@ struct ResourceOptions {
    *  by the content of the mesh file, its scale and the version of this library. Files that are damaged or belong to
    *  another user are ignored and made again. At most 1 GiB is kept. */
   std::string cache_dir = userCacheDir();
+
+  /** [m] >= 0. Where it is above 0, a mesh is replaced by one with fewer triangles, and with a margin so that it
+   * contains the mesh: at most this, and at most twice this stands out. Nothing is clear that the mesh would hit. What
+   * is less than twice this away may read as a hit. */
+  double mesh_tolerance = 0.0;
 };
 
 /** How long it took to load one mesh file. */
@@ -46,11 +51,12 @@ struct MeshTiming {
     CACHE_DIR, /**< ResourceOptions::cache_dir */
     MEMORY     /**< this process had read the same content before */
   };
-  std::string file;   /**< its path */
-  Source from = FILE; /**< where it came from */
-  double read = 0.0;  /**< [s] for vertices and triangles */
-  double hull = 0.0;  /**< [s] for the convex hull, and for keeping it */
-  double tree = 0.0;  /**< [s] for the bounding-volume hierarchy over the triangles */
+  std::string file;          /**< its path */
+  Source from = FILE;        /**< where it came from */
+  double read = 0.0;         /**< [s] for vertices and triangles */
+  std::size_t triangles = 0; /**< that count, after ResourceOptions::mesh_tolerance */
+  double hull = 0.0;         /**< [s] for the convex hull, and for keeping it */
+  double tree = 0.0;         /**< [s] for the bounding-volume hierarchy over the triangles */
 };
 
 /** The file of a URI: package://NAME/path, file:///path, an absolute path, or a path relative to base_dir.
@@ -68,6 +74,7 @@ struct Geometry {
   /** [m] No point of the mesh is farther than this from `hull`: the hull computation drops vertices at the scale of
    *  rounding. The body takes it into account. */
   double hull_excess = 0.0;
+  double margin = 0.0;  /**< [m] a margin that belongs to all three bodies: that of a mesh that was simplified */
   bool is_mesh = false; /**< the shape is a MESH */
   bool is_open = false; /**< `solid` was requested, but the mesh is not closed: only its surface counts */
 };

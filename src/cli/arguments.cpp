@@ -59,6 +59,7 @@ const std::map<std::string, Option> &options() {
       {"--max-lod", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
       {"--timings", {false, {Action::CURVES}}},
+      {"--mesh-tolerance", {true, {Action::CURVES, Action::REPORT}}},
       {"--per-link", {false, {Action::CURVES}}},
       {"--intervals", {true, {Action::CURVES, Action::REPORT}}},
       {"--breaks", {true, {Action::CURVES, Action::REPORT}}},
@@ -295,7 +296,7 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
 /* Curves against curves: there is no scene, and a row has one answer. */
 void readAgainst(const Words &words, Arguments &out) {
   for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings",
-                           "--max-lod", "--per-link", "--links", "--objects", "--second-opinion"}) {
+                           "--mesh-tolerance", "--max-lod", "--per-link", "--links", "--objects", "--second-opinion"}) {
     if (words.has(name))
       throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
   }
@@ -483,6 +484,8 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   }
   out.skipped = split.has("--skipped");
   out.timings = split.has("--timings");
+  if (split.has("--mesh-tolerance"))
+    out.mesh_tolerance = readNumber(split, "--mesh-tolerance", 0.0, true, "of at least 0 (metres)");
   out.threads = std::max(1u, std::thread::hardware_concurrency());
   if (split.has("--threads")) out.threads = static_cast<std::size_t>(readCount(split, "--threads", kMostThreads));
   return out;
@@ -566,6 +569,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --progress P      'certify': line (default, on a terminal) or json, a line a second on standard error
   --skipped         tell on standard error what takes no part, and why
   --timings         tell on standard error how long loading the robot and the scene takes, mesh by mesh
+  --mesh-tolerance M  replace meshes by ones with fewer triangles that contain them: nothing is clear that the mesh would
+                    hit; what is closer than 2 M metres may read as a hit
   --out FILE        the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page
   --replace         'send': the file takes the place of the node's scene (default, unless the file says is_diff: true)
   --add             'send': the file is added to the node's scene

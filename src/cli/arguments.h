@@ -74,8 +74,9 @@ struct Arguments {
   std::string shard_folder;          /**< MERGE */
   std::string out;                   /**< file of the results; empty: standard output */
   std::size_t threads = 1;
-  bool skipped = false; /**< tell on standard error what takes no part, and why */
-  bool timings = false; /**< tell on standard error how long loading takes */
+  bool skipped = false;        /**< tell on standard error what takes no part, and why */
+  bool timings = false;        /**< tell on standard error how long loading takes */
+  double mesh_tolerance = 0.0; /**< [m] of ResourceOptions */
 };
 
 /** Reads the words after the program's name. Throws BadUsage with one line for words, options and values that are not

@@ -22,10 +22,11 @@ std::string readText(const std::string &path) {
 
 } // namespace
 
-std::shared_ptr<const Robot> readRobot(const std::string &path) {
+std::shared_ptr<const Robot> readRobot(const std::string &path, double mesh_tolerance) {
   RobotOptions options;
   options.resources.base_dir = folderOf(path);
   options.resources.find_package = packageFinder(options.resources.base_dir);
+  options.resources.mesh_tolerance = mesh_tolerance;
   try {
     return Robot::fromUrdf(readText(path), options);
   } catch (const Error &e) {

@@ -28,7 +28,7 @@ PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, const 
                        Warnings &warnings) {
   PlacedRobot out;
   if (arguments.robot.empty()) return out;
-  out.robot = robots ? robots(arguments.robot) : readRobot(arguments.robot);
+  out.robot = robots ? robots(arguments.robot) : readRobot(arguments.robot, arguments.mesh_tolerance);
   out.fixed.insert(out.robot->rootLink());
   if (!arguments.srdf.empty()) {
     /* the robot stands in the parent frame of its first virtual joint */
@@ -97,7 +97,8 @@ std::vector<std::string> timingsOf(const PlacedRobot &robot, double robot_second
   if (robot.robot) {
     for (const MeshTiming &t : robot.robot->meshTimings())
       out.push_back("mesh '" + t.file + "': " + milliseconds(t.read) + " to read it from " + sourceName(t.from) + ", " +
-                    milliseconds(t.hull) + " for the hull, " + milliseconds(t.tree) + " for the triangles");
+                    milliseconds(t.hull) + " for the hull, " + milliseconds(t.tree) + " for " +
+                    std::to_string(t.triangles) + " triangles");
     out.push_back("robot: " + milliseconds(robot_seconds));
   }
   out.push_back("robot and scene: " + milliseconds(all_seconds));
@@ -122,6 +123,7 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
   ResourceOptions resources;
   resources.base_dir = folderOf(arguments.scene);
   resources.find_package = packageFinder(resources.base_dir);
+  resources.mesh_tolerance = arguments.mesh_tolerance;
   Scene scene(robot.robot, resources, allowedPairs(robot.srdf));
   try {
     apply(scene, toFixedChange(file, frames, robot.robot.get(), robot.links_of_scene, warnings));

@@ -86,7 +86,7 @@ ConstraintBody::Part toPart(const ShapeDescription &given, const ResourceOptions
   ShapeDescription shape = given;
   if (!shape.resource.empty()) shape.resource = resolveResource(shape.resource, resources, shapeTypeName(shape.type));
   const Geometry geometry = sideGeometry(shape, resources);
-  return {shape, geometry.hull, geometry.hull_excess};
+  return {shape, geometry.hull, geometry.hull_excess + geometry.margin};
 }
 
 ConstraintBody toBody(const ObjectDescription &object, const char *name, const ResourceOptions &resources) {

@@ -276,7 +276,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
   const SnapshotPtr snapshot = live_.scene.snapshot();
   response.scene = live_.state(*snapshot);
   live_.demand(*snapshot, request.scene_epoch, request.scene_version);
-  const ResourceOptions resources = resourceOptions("", parameters_.max_shape_mb);
+  const ResourceOptions resources = resourceOptions("", parameters_);
   const WorkspacePool::Lease workspace(workspaces_);
   Work work{
       snapshot, deadline, stop_, turn, FrameLookup(frames_, turn), 0, NONE, nullptr, Eigen::Isometry3d::Identity()};

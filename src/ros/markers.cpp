@@ -38,7 +38,8 @@ void addScene(Canvas &canvas, const Snapshot &scene, const ResourceOptions &reso
       const bool is_large = !is_seen && !(object.shapes[i].placed.box.sizes().norm() < LARGE);
       const std_msgs::ColorRGBA tint = is_large ? colour(0.72, 0.76, 0.8, 0.35) : colour(0.55, 0.6, 0.66, 1.0);
       canvas.addShape("scene", shape, object.shapes[i].geometry.hull, resources, pose, tint);
-      placed.push_back({object.shapes[i].geometry.body.get(), pose, object.description.padding});
+      placed.push_back(
+          {object.shapes[i].geometry.body.get(), pose, object.description.padding + object.shapes[i].geometry.margin});
     }
   }
 }

@@ -58,6 +58,7 @@ struct Parameters {
   int max_control_points = 2000000;
   int max_results = 200000;
   int max_shape_mb = 1024;
+  double mesh_tolerance = 0.0;
   std::string cloud_id = "cloud";
   double cloud_radius = 0.01;
   std::string octomap_id = "<octomap>";
@@ -116,6 +117,7 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("max_control_points", parameters.max_control_points, Range{1.0, false, count});
   visit("max_results", parameters.max_results, Range{1.0, false, count});
   visit("max_shape_mb", parameters.max_shape_mb, Range{1.0, false, count});
+  visit("mesh_tolerance", parameters.mesh_tolerance, Range{0.0, false, 1e6});
   visit("cloud_id", parameters.cloud_id);
   visit("cloud_radius", parameters.cloud_radius, Range{0.0, false, 1e6});
   visit("octomap_id", parameters.octomap_id);

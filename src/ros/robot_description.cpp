@@ -8,9 +8,10 @@
 
 namespace curve_proximity {
 
-ResourceOptions resourceOptions(const std::string &base_dir, int max_shape_mb) {
+ResourceOptions resourceOptions(const std::string &base_dir, const Parameters &parameters) {
   ResourceOptions options;
-  options.memory_limit = static_cast<std::size_t>(max_shape_mb) << 20;
+  options.memory_limit = static_cast<std::size_t>(parameters.max_shape_mb) << 20;
+  options.mesh_tolerance = parameters.mesh_tolerance;
   options.base_dir = base_dir;
   options.find_package = [](const std::string &package) { return ros::package::getPath(package); };
   return options;
@@ -55,7 +56,7 @@ namespace {
 std::shared_ptr<const Robot> parseRobot(const std::string &xml, const std::string &name, const Parameters &parameters) {
   // Geometry that is left out must never read as free space without a word.
   RobotOptions options;
-  options.resources = resourceOptions(parameters.urdf_dir, parameters.max_shape_mb);
+  options.resources = resourceOptions(parameters.urdf_dir, parameters);
   options.allow_missing_geometry = parameters.allow_missing_geometry;
   std::shared_ptr<const Robot> robot;
   try {

@@ -16,8 +16,8 @@
 
 namespace curve_proximity {
 
-/** Finds files of packages by rospack. max_shape_mb: what one mesh, cloud or octree may take. */
-ResourceOptions resourceOptions(const std::string &base_dir, int max_shape_mb);
+/** Finds files of packages by rospack. */
+ResourceOptions resourceOptions(const std::string &base_dir, const Parameters &parameters);
 
 /** The robot whose URDF stands in the parameter that ~robot_description names, searched upwards from the handle's
  *  namespace; null, with a line in the log, where nobody has set one.

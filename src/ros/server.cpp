@@ -134,7 +134,7 @@ std::string joined(const std::vector<std::string> &sentences) {
 
 std::shared_ptr<const SecondOpinions> secondOpinions(const Parameters &parameters) {
   const std::optional<Peer> peer = peerFromName(parameters.second_opinion);
-  return peer ? std::make_shared<const SecondOpinions>(*peer, resourceOptions("", parameters.max_shape_mb)) : nullptr;
+  return peer ? std::make_shared<const SecondOpinions>(*peer, resourceOptions("", parameters)) : nullptr;
 }
 
 } // namespace
@@ -148,8 +148,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       turns_(parameters_.threads),
       scene_turns_(LARGE_CHANGES),
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
-      live_(loadRobot(handle, parameters_), loadSrdf(handle, parameters_),
-            resourceOptions("", parameters_.max_shape_mb)),
+      live_(loadRobot(handle, parameters_), loadSrdf(handle, parameters_), resourceOptions("", parameters_)),
       state_file_(handle, parameters_, live_),
       queries_(parameters_, tuning_, live_, frames_, statistics_, stop_,
                loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf),
@@ -163,8 +162,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   state_file_.watch(parameters_.fixed_frame);
   markers_ = std::make_unique<MarkerPublisher>(
       control_handle_, live_.scene, parameters_.fixed_frame,
-      MarkerResources{resourceOptions("", parameters_.max_shape_mb),
-                      resourceOptions(parameters_.urdf_dir, parameters_.max_shape_mb)});
+      MarkerResources{resourceOptions("", parameters_), resourceOptions(parameters_.urdf_dir, parameters_)});
   sensors_ = std::make_unique<Sensors>(handle, parameters_, live_, frames_);
   services_ = {
       advertise<Distance>(handle_, "distance", queryHandler<Distance>(QueryType::DISTANCE)),

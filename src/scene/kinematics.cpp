@@ -132,7 +132,7 @@ class Builder {
     const int link = static_cast<int>(out_.links.at(name));
     for (std::size_t i = 0; i < geometries.size(); ++i) {
       const Geometry &geometry = geometries[i].geometry;
-      geometries_.push_back({geometry.surface.get(), toPose(geometries[i].pose), link, padding});
+      geometries_.push_back({geometry.surface.get(), toPose(geometries[i].pose), link, padding + geometry.margin});
       out_.geometries.push_back(
           {&name, attached, static_cast<int>(i), geometry.excess, geometry.is_mesh, geometry.surface.get()});
     }

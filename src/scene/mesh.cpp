@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "hull.h"
 #include "mesh_cache.h"
 #include "mesh_process.h"
+#include "simplify.h"
 
 namespace curve_proximity {
 namespace {
@@ -57,9 +59,10 @@ void checkTime(const ResourceOptions &options) {
   if (options.stop && options.stop()) throw Error("stopped before its BVH was built", CPROX_STOPPED);
 }
 
-Geometry geometryOf(const MeshData &mesh, const HullPoints &hull_points, const Eigen::Vector3d &scale, bool solid,
+Geometry geometryOf(const MeshData &mesh, const PreparedMesh &prepared, const Eigen::Vector3d &scale, bool solid,
                     const ResourceOptions &options) {
   checkTime(options);
+  const HullPoints &hull_points = prepared.hull;
   const BodyHandle hull = polytopeOf(hull_points.kept);
   const Eigen::Matrix3Xd vertices = scale.asDiagonal() * mesh.vertices;
   const BodyHandle triangles =
@@ -72,22 +75,28 @@ Geometry geometryOf(const MeshData &mesh, const HullPoints &hull_points, const E
   out.surface = has_inside ? makeLod(hull, hull_points.excess, makeSurface(triangles)) : out.body;
   out.hull = hull;
   out.hull_excess = hull_points.excess;
+  out.margin = prepared.moved;
   out.is_mesh = true;
-  out.is_open = solid && !has_inside;
+  out.is_open = solid && !has_inside && mesh.vertices.cols() > 1; // what has become a point was small
   return out;
 }
 
-Digest keyOfFile(const Digest &content, const Eigen::Vector3d &scale) {
-  return keyOf("file").add(content.data(), content.size()).add(scale.data(), 3 * sizeof(double)).finish();
+Digest keyOfFile(const Digest &content, const Eigen::Vector3d &scale, double tolerance) {
+  return keyOf("file")
+      .add(content.data(), content.size())
+      .add(scale.data(), 3 * sizeof(double))
+      .add(&tolerance, sizeof tolerance)
+      .finish();
 }
 
-Digest keyOfArrays(const MeshData &mesh, const Eigen::Vector3d &scale) {
+Digest keyOfArrays(const MeshData &mesh, const Eigen::Vector3d &scale, double tolerance) {
   const std::array<Eigen::Index, 2> counts = {mesh.vertices.cols(), mesh.triangles.cols()};
   return keyOf("arrays")
       .add(counts.data(), sizeof counts)
       .add(mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size()) * sizeof(double))
       .add(mesh.triangles.data(), static_cast<std::size_t>(mesh.triangles.size()) * sizeof(int))
       .add(scale.data(), 3 * sizeof(double))
+      .add(&tolerance, sizeof tolerance)
       .finish();
 }
 
@@ -113,26 +122,35 @@ struct Found {
   std::optional<Digest> key; /* of what may be kept */
 };
 
-Found find(const MeshRequest &request, const std::string &cache_dir, MeshTiming &timing) {
+Found find(const MeshRequest &request, const ResourceOptions &options, MeshTiming &timing) {
   const MeshFile file(request.file);
   Found out;
-  if (file.digest()) out.key = keyOfFile(*file.digest(), request.scale);
+  if (file.digest()) out.key = keyOfFile(*file.digest(), request.scale, options.mesh_tolerance);
   if (out.key && (out.kept = recallMesh(*out.key))) timing.from = MeshTiming::MEMORY;
-  if (out.key && !out.kept && (out.kept = loadMesh(cache_dir, *out.key))) timing.from = MeshTiming::CACHE_DIR;
+  if (out.key && !out.kept && (out.kept = loadMesh(options.cache_dir, *out.key))) timing.from = MeshTiming::CACHE_DIR;
   if (out.kept) return out;
   out.read = std::make_shared<PreparedMesh>();
   out.read->mesh = file.readBy(readerProgram());
   return out;
 }
 
+void simplifyAsAsked(PreparedMesh &mesh, const Eigen::Vector3d &scale, double tolerance) {
+  if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) throw Error("mesh_tolerance must be finite and not below 0");
+  if (!(tolerance > 0.0)) return;
+  SimplifiedMesh simple = simplify(mesh.mesh, scale, tolerance);
+  mesh.mesh = std::move(simple.mesh);
+  mesh.moved = simple.moved;
+}
+
 /* The hull, made now where it is not kept. */
-PreparedMeshPtr complete(const Found &found, const MeshRequest &request, const std::string &cache_dir) {
+PreparedMeshPtr complete(const Found &found, const MeshRequest &request, const ResourceOptions &options) {
   const PreparedMesh &mesh = found.kept ? *found.kept : *found.read;
   checkMesh(mesh.mesh, request.scale);
+  if (!found.kept) simplifyAsAsked(*found.read, request.scale, options.mesh_tolerance);
   if (!found.kept) found.read->hull = hullPointsOf(usedVertices(mesh.mesh, request.scale));
   const PreparedMeshPtr out = found.kept ? found.kept : found.read;
   if (found.key) keepMesh(*found.key, out);
-  if (found.key && !found.kept) saveMesh(cache_dir, *found.key, *out);
+  if (found.key && !found.kept) saveMesh(options.cache_dir, *found.key, *out);
   return out;
 }
 
@@ -146,15 +164,17 @@ Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bo
                           const ResourceOptions &options) {
   checkMesh(mesh, scale);
   checkTime(options);
-  const Digest key = keyOfArrays(mesh, scale);
-  PreparedMeshPtr hull = recallMesh(key);
-  if (!hull) {
+  const Digest key = keyOfArrays(mesh, scale, options.mesh_tolerance);
+  PreparedMeshPtr prepared = recallMesh(key);
+  if (!prepared) {
     auto made = std::make_shared<PreparedMesh>();
-    made->hull = hullPointsOf(usedVertices(mesh, scale));
+    if (options.mesh_tolerance != 0.0) made->mesh = mesh; // else the caller has it, and it is not kept
+    simplifyAsAsked(*made, scale, options.mesh_tolerance);
+    made->hull = hullPointsOf(usedVertices(options.mesh_tolerance > 0.0 ? made->mesh : mesh, scale));
     keepMesh(key, made);
-    hull = made;
+    prepared = made;
   }
-  return geometryOf(mesh, hull->hull, scale, solid, options);
+  return geometryOf(options.mesh_tolerance > 0.0 ? prepared->mesh : mesh, *prepared, scale, solid, options);
 }
 
 bool MeshRequest::operator<(const MeshRequest &other) const {
@@ -173,12 +193,13 @@ Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &opt
     const Clock::time_point before = std::exchange(start, Clock::now());
     return std::chrono::duration<double>(start - before).count();
   };
-  const Found found = ofMesh(request.file, [&] { return find(request, options.cache_dir, times); });
+  const Found found = ofMesh(request.file, [&] { return find(request, options, times); });
   times.read = lap();
   return ofMesh(request.uri, [&] {
-    const PreparedMeshPtr mesh = complete(found, request, options.cache_dir);
+    const PreparedMeshPtr mesh = complete(found, request, options);
     times.hull = lap();
-    Geometry out = geometryOf(mesh->mesh, mesh->hull, request.scale, request.solid, options);
+    Geometry out = geometryOf(mesh->mesh, *mesh, request.scale, request.solid, options);
+    times.triangles = static_cast<std::size_t>(mesh->mesh.triangles.cols());
     times.tree = lap();
     return out;
   });

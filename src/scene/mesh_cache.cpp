@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /* Counts changes of what a file holds and of how hulls are made, between versions of the library. */
-constexpr std::uint64_t FORMAT = 1;
+constexpr std::uint64_t FORMAT = 2;
 
 constexpr std::size_t MEMORY_LIMIT = std::size_t{64} << 20;
 constexpr std::uintmax_t FOLDER_LIMIT = std::uintmax_t{1} << 30, FOLDER_AFTER = FOLDER_LIMIT / 4 * 3;
@@ -84,7 +84,7 @@ struct Head {
   std::uint64_t format;
   Digest key;
   std::uint64_t vertices, triangles, kept;
-  double excess;
+  double excess, moved;
 };
 constexpr char MAGIC[16] = "cprox mesh\n\x1a\r\n";
 
@@ -208,6 +208,7 @@ PreparedMeshPtr loadMesh(const std::string &folder, const Digest &key) {
   out->mesh.triangles.resize(3, static_cast<Eigen::Index>(head.triangles));
   out->hull.kept.resize(head.kept);
   out->hull.excess = head.excess;
+  out->moved = head.moved;
   const char *at = bytes.data() + sizeof head;
   at = take(at, out->mesh.vertices.data(), 3 * head.vertices);
   for (Eigen::Vector3d &p : out->hull.kept) at = take(at, p.data(), 3);
@@ -225,6 +226,7 @@ void saveMesh(const std::string &folder, const Digest &key, const PreparedMesh &
   head.triangles = static_cast<std::uint64_t>(mesh.mesh.triangles.cols());
   head.kept = mesh.hull.kept.size();
   head.excess = mesh.hull.excess;
+  head.moved = mesh.moved;
   std::vector<char> bytes;
   append(bytes, &head, 1);
   append(bytes, mesh.mesh.vertices.data(), 3 * head.vertices);

@@ -16,7 +16,8 @@ namespace curve_proximity {
 
 /* A mesh and what covers it at a scale. The mesh is empty where it came from no file. */
 struct PreparedMesh {
-  MeshData mesh; /* not scaled */
+  MeshData mesh;      /* not scaled; simplified where that was asked for */
+  double moved = 0.0; /* [m] what that moved, at most */
   HullPoints hull;
 };
 using PreparedMeshPtr = std::shared_ptr<const PreparedMesh>;

@@ -38,7 +38,7 @@ struct Element {
 
 Element makeElement(const std::string *owner, const AttachedObject *attached, std::size_t link, int part,
                     const LinkGeometry &geometry, double margin) {
-  Element out{owner, attached, link, part, &geometry, margin, 0.0, {}, {}, 0.0, {}};
+  Element out{owner, attached, link, part, &geometry, margin + geometry.geometry.margin, 0.0, {}, {}, 0.0, {}};
   const cprox_body *body = geometry.geometry.surface.get();
   const cprox_body_info info = cprox_body_get_info(body);
   out.ball = toEigen(info.centre);

@@ -65,9 +65,10 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
 
   PlacedShape out;
   const BodyHandle &body = geometry.body;
-  out.target = at(body, pose, padding);
-  out.hull = at(geometry.hull, pose, padding);
-  out.surface = at(geometry.surface, pose, padding);
+  const double margin = padding + geometry.margin;
+  out.target = at(body, pose, margin);
+  out.hull = at(geometry.hull, pose, margin);
+  out.surface = at(geometry.surface, pose, margin);
   out.hull_excess = geometry.hull_excess;
   out.is_mesh = geometry.is_mesh;
   out.is_open = geometry.is_open;
@@ -84,7 +85,7 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
   if (!bounded && (isRotated(outer) || isRotated(inner))) out.turning = COMPOSING;
 
   const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  out.box = std::isfinite(reach) ? boxOf(body.get(), pose, padding + out.rounding + out.hull_excess, reach)
+  out.box = std::isfinite(reach) ? boxOf(body.get(), pose, margin + out.rounding + out.hull_excess, reach)
                                  : Eigen::AlignedBox3d(-everywhere, everywhere);
   return out;
 }

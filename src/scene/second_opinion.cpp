@@ -251,11 +251,17 @@ std::string numberOf(double x) {
   return text.str();
 }
 
+/* How far meshes that were simplified may be from those that a peer measures. */
+double simplifiedBy(const ResourceOptions &objects, const Robot *robot) {
+  return 2.0 *
+         (objects.mesh_tolerance + std::max(objects.mesh_tolerance, robot ? robot->resources().mesh_tolerance : 0.0));
+}
+
 /* Both sides at the times that are looked at: the witness time first. */
 using SidesAt = std::function<std::pair<Side, Side>(double t)>;
 
 SecondOpinion opinionOf(Peer peer, const std::vector<double> &times, const SidesAt &sidesAt, double lower, double upper,
-                        const Stop &stop = nullptr) {
+                        double simplified, const Stop &stop = nullptr) {
   SecondOpinion out;
   const double least = std::max(0.0, lower), most = std::max(0.0, upper);
   try {
@@ -263,7 +269,7 @@ SecondOpinion opinionOf(Peer peer, const std::vector<double> &times, const Sides
       const std::pair<Side, Side> sides = sidesAt(t);
       const bool at_witness = t == times.front();
       const double found = distanceOf(sides.first, sides.second, peer, stop);
-      const double accuracy = ACCURACY * std::max(sizeOf(sides.first), sizeOf(sides.second));
+      const double accuracy = ACCURACY * std::max(sizeOf(sides.first), sizeOf(sides.second)) + simplified;
       if (at_witness && found > accuracy && most == 0.0 && (sides.first.is_solid || sides.second.is_solid))
         throw Error(std::string(peerName(peer)) + " knows meshes as surfaces: it measures " + numberOf(found) +
                     " m, and cannot tell that something is inside");
@@ -404,7 +410,7 @@ SecondOpinion SecondOpinions::ofPair(const ShapeDescription &a, const Eigen::Iso
     return std::make_pair(sideOf(a, pose_a, 0.0, false, data_->objects, *data_),
                           sideOf(b, pose_b, 0.0, false, data_->objects, *data_));
   };
-  return opinionOf(data_->peer, {0.0}, sidesAt, lower, upper);
+  return opinionOf(data_->peer, {0.0}, sidesAt, lower, upper, simplifiedBy(data_->objects, nullptr));
 }
 
 void refuseSecondOpinion(const Query &query, const std::string &why, Answer &answer) {
@@ -446,7 +452,7 @@ void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, 
                           sideOf(shape, toIsometry(placed.pose), placed.margin, hullsAnswer(query), resources, data));
   };
   tell(opinionOf(data.peer, timesOf(answer, info.t0, info.t1), sidesAt, answer.result.lower, answer.result.upper,
-                 stopOf(query)),
+                 simplifiedBy(data.objects, snapshot.robot().get()), stopOf(query)),
        answer);
 }
 
@@ -476,7 +482,7 @@ void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answe
                           sideOf(shape, toIsometry(placed.pose), placed.margin, by_hull || solid, data.objects, data));
   };
   tell(opinionOf(data.peer, timesOf(answer, info.t0, info.t1), sidesAt, answer.result.lower, answer.result.upper,
-                 stopOf(query)),
+                 simplifiedBy(data.objects, snapshot.robot().get()), stopOf(query)),
        answer);
 }
 
