@@ -136,6 +136,8 @@ struct ObjectTrajectory {
   /** [ns] The moment of time 0, on the clock of stamps: since 1970 or by a simulation. 0: when the motion begins that a
    *  query is about. */
   std::int64_t start = 0;
+  /** [s] The start is only known to within this, before or after; infinity: anywhere on the way at any time. */
+  double tolerance = 0.0;
 };
 
 /** A curve of any basis that needs no functions. msg/Curve.msg says what points, knots and parameters of each basis

@@ -21,6 +21,7 @@ struct MovingRobotFile {
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity(); /**< its root link, or its virtual joint's parent frame */
   TrajectoryDescription trajectory;                       /**< its fixed_joints are joints at rest */
   double start = 0.0;                                     /**< [s] is added to all times */
+  double tolerance = 0.0;                                 /**< of the start, as MovingRobot has it */
 };
 
 /** What a scene file says. */

@@ -19,6 +19,8 @@ struct MovingObject {
   std::vector<TimedPose> poses;     /**< in the fixed frame; at least one; one: it stands there */
   Turning turning = Turning::SLERP; /**< between two poses */
   double start = 0.0;               /**< [s] is added to all times */
+  /** [s] The start is only known to within this, before or after; infinity: anywhere on its way at any time. */
+  double tolerance = 0.0;
 
   /** What Snapshot::moving() has made of object, poses and turning; null: it is made of them. */
   std::shared_ptr<const MovingBody> body;
@@ -32,6 +34,8 @@ struct MovingRobot {
   std::string name;                          /**< names it in answers: its link L is "name/L" */
   std::shared_ptr<const RobotMotion> motion; /**< its trajectory, base and SRDF */
   double start = 0.0;                        /**< [s] is added to all times */
+  /** [s] The start is only known to within this, before or after; infinity: anywhere on its way at any time. */
+  double tolerance = 0.0;
 };
 
 /** What movers are tested against. */
@@ -43,7 +47,9 @@ enum class Against {
 };
 
 /** Robots and objects on one clock. It begins with the first of them and ends with the last one; a mover that has not
- *  begun stands at its first pose, one that has ended at its last one. Immutable; shared by any number of threads. */
+ *  begun stands at its first pose, one that has ended at its last one. Where starts are only known to a tolerance,
+ *  answers hold for all that are possible: the clock begins with the earliest and ends with the latest one, and a time
+ *  that is told is the earliest at which that can be. Immutable; shared by any number of threads. */
 class Movers {
  public:
   /** snapshot   the objects that stand, and allowed pairs; its robot does not count. Of a robot's own snapshot only the
@@ -69,7 +75,8 @@ class Movers {
   /** The first start and the last end [s]. */
   std::array<double, 2> domain() const;
 
-  /** Where a moving object's frame is at the time t [s] of the clock. Throws Error for a name that is none. */
+  /** Where a moving object's frame is at the time t [s] of the clock, if it starts on time. Throws Error for a name
+   * that is none. */
   Eigen::Isometry3d objectPose(const std::string &name, double t) const;
 
   struct Data;

@@ -36,7 +36,7 @@ MovingRobot load(const MovingRobotFile &file, const std::string &scene) {
     return {file.name,
             std::make_shared<const RobotMotion>(own.snapshot(), trajectory, trajectory.fixed_joints, srdf.disabled,
                                                 file.base),
-            file.start};
+            file.start, file.tolerance};
   } catch (const Error &e) {
     throw BadUsage(place + e.what());
   } catch (const BadUsage &e) {
@@ -165,7 +165,7 @@ int answer(const Arguments &arguments, const World &world, std::shared_ptr<const
 
 MovingWorld gatherMovers(const Arguments &arguments, const World &world, std::shared_ptr<const RobotMotion> subject) {
   std::optional<MovingRobot> robot;
-  if (subject) robot = MovingRobot{world.snapshot->robot()->name(), std::move(subject), 0.0};
+  if (subject) robot = MovingRobot{world.snapshot->robot()->name(), std::move(subject), 0.0, 0.0};
   std::vector<MovingRobot> others;
   for (const MovingRobotFile &file : world.moving_robots) others.push_back(load(file, arguments.scene));
   const std::vector<MovingObject> objects = movingObjects(*world.snapshot);

@@ -2,6 +2,7 @@
 /* Queries about robots and objects that move at the same time. */
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <set>
@@ -177,8 +178,9 @@ struct OfRobot {
   OfRobot(const MovingRobot &robot, const Query &asked) : query(asked) {
     for (std::string &link : query.links) link = robot.name + "/" + link;
     if (query.links.empty()) query.links = {robot.name};
-    if (robot.motion->stands()) return;
-    for (std::size_t i = 0; i < interval.size(); ++i) interval[i] = robot.motion->domain()[i] + robot.start;
+    if (robot.motion->stands() || std::isinf(robot.tolerance)) return;
+    for (std::size_t i = 0; i < interval.size(); ++i)
+      interval[i] = robot.motion->domain()[i] + robot.start + (i == 0 ? -robot.tolerance : robot.tolerance);
     query.options.interval = interval.data();
   }
   OfRobot(const OfRobot &) = delete;

@@ -126,7 +126,7 @@ class Joiner {
     }
     for (const cprox_robot_pair &pair : data.self) out_.among.push_back({pair.geometry + first, pair.other + first});
     cores_.push_back(data.kinematics->core.get());
-    motions_.push_back({data.core.get(), robot.start, 0.0});
+    motions_.push_back({data.core.get(), robot.start, robot.tolerance});
     names_.push_back(robot.name);
     out_.robots.push_back(robot.motion);
   }
@@ -136,7 +136,7 @@ class Joiner {
       out_.geometries.push_back(
           {cores_.size(), object.object.id, static_cast<int>(i), made.geometries[i].excess, object.poses.size() > 1});
     cores_.push_back(made.robot.get());
-    motions_.push_back({made.motion.get(), object.start, 0.0});
+    motions_.push_back({made.motion.get(), object.start, object.tolerance});
     names_.push_back(object.object.id);
   }
 
@@ -255,6 +255,7 @@ std::vector<MovingObject> movingObjects(const Snapshot &snapshot, std::int64_t o
     mover.turning = object->trajectory.turning;
     if (object->trajectory.start != 0)
       mover.start = NANOSECOND * static_cast<double>(object->trajectory.start - origin);
+    mover.tolerance = object->trajectory.tolerance;
     mover.body = object->body;
     out.push_back(std::move(mover));
   }
@@ -265,8 +266,10 @@ void checkClocks(const MovingRobot &subject, const std::vector<MovingRobot> &rob
                  const std::vector<MovingObject> &objects) {
   if (subject.motion->stands()) return;
   const auto domain = subject.motion->domain();
-  const double begin = domain[0] + subject.start, end = domain[1] + subject.start;
-  const auto check = [&](const std::string &who, double first, double last) {
+  const double begin = domain[0] + subject.start - subject.tolerance,
+               end = domain[1] + subject.start + subject.tolerance;
+  const auto check = [&](const std::string &who, double earliest, double latest, double tolerance) {
+    const double first = earliest - tolerance, last = latest + tolerance;
     char seconds[40];
     if (last < begin) {
       std::snprintf(seconds, sizeof seconds, "%.6g", begin - last);
@@ -282,12 +285,12 @@ void checkClocks(const MovingRobot &subject, const std::vector<MovingRobot> &rob
   for (const MovingRobot &robot : robots) {
     if (!robot.motion || robot.motion->stands()) continue;
     const auto of = robot.motion->domain();
-    check("robot '" + robot.name + "'", of[0] + robot.start, of[1] + robot.start);
+    check("robot '" + robot.name + "'", of[0] + robot.start, of[1] + robot.start, robot.tolerance);
   }
   for (const MovingObject &object : objects)
     if (object.poses.size() > 1)
       check("object '" + object.object.id + "'", object.poses.front().time + object.start,
-            object.poses.back().time + object.start);
+            object.poses.back().time + object.start, object.tolerance);
 }
 
 std::array<double, 2> Movers::domain() const {

@@ -302,12 +302,14 @@ void readMovingRobots(const YamlValue &root, const std::string &folder, SceneFil
     MovingRobotFile robot;
     robot.name = plain.at("name").text();
     const YamlValue value = plain.named(robot.name);
-    value.warnOfOthers({"name", "robot", "srdf", "base", "trajectory", "start"}, warnings);
+    value.warnOfOthers({"name", "robot", "srdf", "base", "trajectory", "start", "start_tolerance", "any_time"},
+                       warnings);
     robot.urdf = fileOf(value.at("robot"));
     if (const auto srdf = value.find("srdf")) robot.srdf = fileOf(*srdf);
     if (const auto base = value.find("base")) robot.base = toIsometry(base->pose(warnings));
     robot.trajectory = readTrajectoryValue(value.at("trajectory"), folder, warnings);
     if (const auto start = value.find("start")) robot.start = readTime(*start);
+    robot.tolerance = readStartTolerance(value);
     out.moving_robots.push_back(std::move(robot));
   }
 }

@@ -117,11 +117,20 @@ double readTime(const YamlValue &value) {
   return parts[0] + 1e-9 * parts[1];
 }
 
+double readStartTolerance(const YamlValue &value) {
+  const auto tolerance = value.find("start_tolerance"), anywhere = value.find("any_time");
+  double out = 0.0;
+  if (tolerance) out = tolerance->number();
+  if (!(out >= 0.0)) tolerance->fail("is " + tolerance->text() + ": it must be at least 0");
+  return anywhere && anywhere->truth() ? std::numeric_limits<double>::infinity() : out;
+}
+
 ObjectTrajectory readObjectTrajectory(const YamlValue &value, Warnings &warnings) {
   if (!value.isMap()) value.fail("must be a map with waypoints: [{time, pose}]");
-  value.warnOfOthers({"start", "turning", "waypoints"}, warnings);
+  value.warnOfOthers({"start", "start_tolerance", "any_time", "turning", "waypoints"}, warnings);
   ObjectTrajectory out;
   if (const auto start = value.find("start")) out.start = readStamp(*start);
+  out.tolerance = readStartTolerance(value);
   if (const auto turning = value.find("turning")) {
     const std::optional<Turning> known = turningFromName(turning->text());
     if (!known) turning->fail("the turning '" + turning->text() + "' is none of slerp, screw");

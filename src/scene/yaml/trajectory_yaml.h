@@ -16,6 +16,9 @@ namespace curve_proximity::yaml {
 double readTime(const YamlValue &value);
 
 /** The trajectory of an object: {start, turning, waypoints: [{time, pose}]}. */
+/* `start_tolerance` and `any_time` of what moves: [s], infinity where that is true. */
+double readStartTolerance(const YamlValue &value);
+
 ObjectTrajectory readObjectTrajectory(const YamlValue &value, Warnings &warnings);
 
 /** A trajectory as a map in another file, or as the path of its file, relative to `folder`. */
