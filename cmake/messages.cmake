@@ -25,6 +25,7 @@ set(CURVE_PROXIMITY_MESSAGES
   SceneState.msg
   SensorState.msg
   TrajectoryConstraint.msg
+  ViolationIntervals.msg
   Waypoint.msg
 )
 set(CURVE_PROXIMITY_SERVICES
@@ -34,6 +35,7 @@ set(CURVE_PROXIMITY_SERVICES
   Distance.srv
   EvaluateConstraints.srv
   GetScene.srv
+  ListViolations.srv
   NearestPairs.srv
   TimeOfContact.srv
   Tolerance.srv

@@ -15,7 +15,7 @@ import rospy
 from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, Curve, ProximityQuery
 from curve_proximity.srv import (ApplyScene, ApplySceneRequest, ClearanceProfile, ClearanceProfileRequest, Collision,
                                  CollisionRequest, Distance, DistanceRequest, EvaluateConstraints, EvaluateConstraintsRequest,
-                                 NearestPairs, NearestPairsRequest, TimeOfContact, TimeOfContactRequest, Tolerance,
+                                 ListViolations, ListViolationsRequest, NearestPairs, NearestPairsRequest, TimeOfContact, TimeOfContactRequest, Tolerance,
                                  ToleranceRequest)
 from geometry_msgs.msg import Point, Pose, Quaternion
 
@@ -109,6 +109,11 @@ class Client:
         own.update(per_link=per_link, horizon=float(horizon))
         return self._ask('clearance_profile', ClearanceProfile, ClearanceProfileRequest, curves, dict(fields, **own))
 
+    def violations(self, curves, delta, resolution=0.0, **fields):
+        """All intervals of the parameter within delta [m] of something: a ViolationIntervals message, or a list of them for a list."""
+        own = dict(delta=float(delta), resolution=float(resolution))
+        return self._ask('violations', ListViolations, ListViolationsRequest, curves, dict(fields, **own))
+
     def gradient(self, curves, **fields):
         """The derivatives of distance(): a Gradient message, or a list of them for a list. Where valid is false there is none, and message
         says why."""
@@ -169,6 +174,8 @@ class Client:
         response = self._call(service, kind, whole)
         if asked.gradient:
             return response.gradients
+        if service == 'violations':
+            return response.violations
         return response.profiles if service == 'clearance_profile' else response.results
 
     def _call(self, service, kind, request):

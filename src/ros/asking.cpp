@@ -18,6 +18,11 @@ std::vector<double> breaksOf(const Asking &asking, double t0, double t1) {
   return breaks;
 }
 
+double resolutionOf(const Asking &asking, double t0, double t1) {
+  constexpr double PART = 1e-3;
+  return asking.resolution > 0.0 ? asking.resolution : PART * (t1 - t0);
+}
+
 void askCurve(const Targets &targets, const CompiledCurve &curve, const Query &query, const Asking &asking,
               Workspace &workspace, std::vector<Answer> &answers) {
   if (asking.kind == Asking::CONTACT) {
@@ -37,6 +42,12 @@ Profile profileOf(const Targets &targets, const CompiledCurve &curve, const Quer
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
   return toMessage(
       clearanceProfile(targets, curve, breaksOf(asking, info.t0, info.t1), query, workspace, asking.horizon));
+}
+
+ViolationIntervals violationsOf(const Targets &targets, const CompiledCurve &curve, const Query &query,
+                                const Asking &asking, Workspace &workspace) {
+  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  return toMessage(violations(targets, curve, resolutionOf(asking, info.t0, info.t1), query, workspace));
 }
 
 void fillRow(const Answer &answer, const Query &query, const Asking &asking, Proximity &row) {
@@ -62,6 +73,11 @@ void askMotion(const RobotMotion &motion, const Query &query, bool self, const A
     ClearanceRow row = clearanceGradient(motion, pairs, query, workspace);
     out.gradients.push_back(std::move(row.gradient));
     answers = {std::move(row.answer)};
+  }
+  if (asking.kind == Asking::VIOLATIONS) {
+    const double resolution = resolutionOf(asking, motion.domain()[0], motion.domain()[1]);
+    answers = plainly(query);
+    out.violations.push_back(toMessage(violations(motion, self, resolution, query, workspace)));
   }
   if (asking.kind == Asking::PROFILE) {
     const std::vector<double> breaks = breaksOf(asking, motion.domain()[0], motion.domain()[1]);

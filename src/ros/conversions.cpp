@@ -2,6 +2,7 @@
 #include "conversions.h"
 
 #include "../scene/curve_basis.h"
+#include "asking.h"
 #include "cloud.h"
 
 #include <algorithm>
@@ -203,6 +204,7 @@ ObjectTrajectory toTrajectory(const PoseTrajectory &message) {
   ObjectTrajectory out;
   out.turning = *turning;
   out.start = static_cast<std::int64_t>(message.start.toNSec());
+  out.tolerance = toStartTolerance(message.start_tolerance, message.any_time != 0);
   for (const Waypoint &waypoint : message.waypoints) {
     try {
       if (!std::isfinite(waypoint.time)) throw Error("the time is not finite");
@@ -220,6 +222,8 @@ PoseTrajectory toTrajectoryMessage(const ObjectTrajectory &trajectory) {
     throw Error("a trajectory starts at a time that no stamp has: " + std::to_string(trajectory.start / SECOND) + " s");
   PoseTrajectory message;
   message.start.fromNSec(static_cast<std::uint64_t>(trajectory.start));
+  message.any_time = std::isinf(trajectory.tolerance);
+  message.start_tolerance = message.any_time ? 0.0 : trajectory.tolerance;
   message.turning = turningName(trajectory.turning);
   for (const TimedPose &pose : trajectory.poses) {
     message.waypoints.emplace_back();
@@ -649,6 +653,31 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   message.a = id;
   message.lod = cprox_lod_name(CPROX_LOD_NONE);
   message.message = why;
+  return message;
+}
+
+double toStartTolerance(double tolerance, bool any_time) {
+  if (!(tolerance >= 0.0 && std::isfinite(tolerance)))
+    throw Error("start_tolerance is " + std::to_string(tolerance) + " s: it must be at least 0 and finite");
+  return any_time ? std::numeric_limits<double>::infinity() : tolerance;
+}
+
+ViolationIntervals toMessage(const Violations &violations) {
+  if (violations.list.size() > MOST_VIOLATIONS)
+    throw Error("there are more than " + std::to_string(MOST_VIOLATIONS) +
+                " violations: a larger resolution has fewer");
+  ViolationIntervals message;
+  for (const Violation &one : violations.list) {
+    message.enter_lower.push_back(one.enter_lower);
+    message.enter_upper.push_back(one.enter_upper);
+    message.leave_lower.push_back(one.leave_lower);
+    message.leave_upper.push_back(one.leave_upper);
+    message.verdict.emplace_back(cprox_verdict_name(one.verdict));
+    message.upper.push_back(one.upper);
+    message.t.push_back(one.t);
+    message.a.push_back(one.a);
+    message.b.push_back(one.b);
+  }
   return message;
 }
 

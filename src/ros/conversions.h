@@ -13,6 +13,7 @@
 #include <curve_proximity/LinkScale.h>
 #include <curve_proximity/Profile.h>
 #include <curve_proximity/Proximity.h>
+#include <curve_proximity/ViolationIntervals.h>
 #include <geometry_msgs/Pose.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
@@ -65,6 +66,12 @@ ApplySceneRequest toMessage(const SceneChange &change);
 
 /** Fills one row of the results, which is as it was made. What has no answer has NaN for numbers. */
 void fillRow(const Answer &answer, QueryType query_type, Proximity &message);
+
+/** [s] of a start; infinity: any time. Throws Error for a tolerance below 0. */
+double toStartTolerance(double tolerance, bool any_time);
+
+/** The intervals of what the summary is about, without that. */
+ViolationIntervals toMessage(const Violations &violations);
 
 /** The profile of what the summary is about, without that. */
 Profile toMessage(const std::vector<ClearanceInterval> &intervals);

@@ -93,7 +93,8 @@ void addRobot(Canvas &canvas, const Snapshot &scene, const LinkPoses &links, con
     const Parts parts = partsOf(scene, link.first);
     addLink(canvas, "robot", parts, link.second, resources, colour(0.93, 0.93, 0.91, 1.0));
     for (const Part &part : parts)
-      placed.push_back({part.element->geometry.body.get(), link.second * part.element->pose, part.padding + part.element->geometry.margin});
+      placed.push_back({part.element->geometry.body.get(), link.second * part.element->pose,
+                        part.padding + part.element->geometry.margin});
   }
 }
 

@@ -72,7 +72,80 @@ void Queries::answerMultiDofTrajectories(Work &work) {
   }
 }
 
+/** The request's body along poses in the frame of the header. */
+void Queries::answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp,
+                         std::vector<TimedPose> poses, Work &work) {
+  const QueryRequest &request = work.request;
+  const std::size_t before = work.response.results.size();
+  if (request.turn) request.turn->yield();
+  work.lookup.begin();
+  try {
+    Operation operation = toOperation(request.more.body);
+    if (operation.kind != Operation::Kind::ADD || operation.trajectory)
+      throw Error("body: it is no plain object: its operation is ADD, and it has no trajectory");
+    if (!work.query.links.empty()) throw Error("links and group do not apply to a body");
+    MovingObject rides;
+    rides.object = std::move(operation.object);
+    const Eigen::Isometry3d in_fixed = work.lookup.toFixed(frame, stamp);
+    for (TimedPose &pose : poses) pose.pose = in_fixed * pose.pose * rides.object.pose;
+    rides.object.pose = Eigen::Isometry3d::Identity();
+    rides.poses = std::move(poses);
+    const Surroundings around(work.snapshot, request.more, robots_, rides, stamp, work.lookup, mostBytes(),
+                              stopOf(work.query));
+    const WorkspacePool::Lease workspace(workspaces_);
+    MotionRows rows;
+    around.ask(work.query, false, request.asking, *workspace, rows);
+    std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(work.response.profiles));
+    std::move(rows.violations.begin(), rows.violations.end(), std::back_inserter(work.response.violations));
+    for (Answer &answer : rows.answers) {
+      answer.kind = Proximity::KIND_MOVERS;
+      answer.id = id;
+      work.response.results.emplace_back();
+      fillRow(answer, work.query, request.asking, work.response.results.back());
+      work.doubts.objects(work.query);
+      work.doubts.ages(work.lookup.age(), NAN);
+      work.doubts.apply(work.response.results.back());
+    }
+  } catch (const Error &error) {
+    work.response.results.push_back(toFailedRow(id, Proximity::KIND_MOVERS, error.what()));
+    work.response.fillUp(request.asking);
+  }
+  tellFailure(id, before, work.response);
+}
+
+void Queries::answerPath(const nav_msgs::Path &path, const std::string &id, Work &work) {
+  std::vector<TimedPose> poses;
+  try {
+    poses = toPoses(path);
+  } catch (const Error &error) {
+    work.response.results.push_back(toFailedRow(id, Proximity::KIND_MOVERS, error.what()));
+    work.response.fillUp(work.request.asking);
+    tellFailure(id, work.response.results.size() - 1, work.response);
+    return;
+  }
+  const ros::Time &first = path.poses.front().header.stamp;
+  const bool by_stamps = poses.size() > 1 && poses[1].time == (path.poses[1].header.stamp - first).toSec();
+  answerRide(id, path.header.frame_id, by_stamps && !first.isZero() ? first : path.header.stamp, std::move(poses),
+             work);
+}
+
 void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work) {
+  if (!work.request.more.body.id.empty()) {
+    for (std::size_t i = 0; i < trajectory.joint_names.size(); ++i) {
+      std::vector<TimedPose> poses;
+      try {
+        poses = toPoses(trajectory, i);
+      } catch (const Error &error) {
+        work.response.results.push_back(toFailedRow(trajectory.joint_names[i], Proximity::KIND_MOVERS, error.what()));
+        work.response.fillUp(work.request.asking);
+        tellFailure(trajectory.joint_names[i], work.response.results.size() - 1, work.response);
+        continue;
+      }
+      answerRide(trajectory.joint_names[i], trajectory.header.frame_id, trajectory.header.stamp, std::move(poses),
+                 work);
+    }
+    return;
+  }
   CurveSearch &search = curveSearch(work);
   try {
     if (!work.request.more.moving_robots.empty())
@@ -129,6 +202,7 @@ void Queries::answerMovers(Work &work) {
     MotionRows rows;
     around.ask(work.query, request.more.self_collision != 0, request.asking, *workspace, rows);
     std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(work.response.profiles));
+    std::move(rows.violations.begin(), rows.violations.end(), std::back_inserter(work.response.violations));
     for (Answer &answer : rows.answers) {
       answer.kind = Proximity::KIND_MOVERS;
       work.response.results.emplace_back();
@@ -194,6 +268,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     }
     std::vector<Answer> &answers = rows.answers;
     std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(response.profiles));
+    std::move(rows.violations.begin(), rows.violations.end(), std::back_inserter(response.violations));
     for (const ClearanceGradient &gradient : rows.gradients)
       response.gradients.push_back(toMessage(gradient, trajectory));
     for (const Answer &answer : answers) {

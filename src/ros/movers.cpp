@@ -41,6 +41,7 @@ MovingRobot toMovingRobot(const RobotTrajectory &message, const FurtherRobots &r
     out.name = message.name;
     out.motion = std::make_shared<const RobotMotion>(robot.alone, trajectory, rest, robot.srdf.disabled, base);
     out.start = stamp != 0 ? NANOSECOND * static_cast<double>(stamp - origin) : 0.0;
+    out.tolerance = toStartTolerance(message.start_tolerance, message.any_time != 0);
     return out;
   } catch (const Error &error) {
     throw Error("robot '" + message.name + "': " + error.what(), error.status());
@@ -79,19 +80,38 @@ Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &qu
     : snapshot_(snapshot), has_subject_(subject != nullptr) {
   const std::int64_t origin = originOf(query, *snapshot, has_subject_, stamp);
   const std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
-  std::size_t polynomials = has_subject_ ? snapshot->robot()->links().size() * (points + 2) : 0;
-  for (const RobotTrajectory &message : query.moving_robots) {
-    robots_.push_back(toMovingRobot(message, robots, origin, lookup));
-    polynomials += robots.at(message.robot).robot->links().size() * (message.trajectory.points.size() + 2);
-  }
-  share_.emplace(bytesOf(objects, polynomials), most_bytes);
+  const std::size_t own = has_subject_ ? snapshot->robot()->links().size() * (points + 2) : 0;
+  share_.emplace(bytesOf(objects, own + gather(query, robots, origin, lookup)), most_bytes);
   if (subject) {
-    const MovingRobot robot{snapshot->robot()->name(), std::move(subject), 0.0};
+    const MovingRobot robot{snapshot->robot()->name(), std::move(subject), 0.0, 0.0};
     checkClocks(robot, robots_, objects);
     robots_.insert(robots_.begin(), robot);
   }
   const std::vector<std::array<std::string, 2>> none;
   movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, ResourceOptions(), stop);
+}
+
+Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
+                           const MovingObject &rides, const ros::Time &stamp, FrameLookup &lookup,
+                           std::size_t most_bytes, const Stop &stop)
+    : snapshot_(snapshot), rides_(rides.object.id), rides_over_{rides.poses.front().time, rides.poses.back().time} {
+  const std::int64_t origin = originOf(query, *snapshot, true, stamp);
+  std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
+  objects.push_back(rides);
+  share_.emplace(bytesOf(objects, gather(query, robots, origin, lookup)), most_bytes);
+  const std::vector<std::array<std::string, 2>> none;
+  movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, ResourceOptions(), stop);
+}
+
+/** The further robots; returns variables times waypoints. */
+std::size_t Surroundings::gather(const ProximityQuery &query, const FurtherRobots &robots, std::int64_t origin,
+                                 FrameLookup &lookup) {
+  std::size_t polynomials = 0;
+  for (const RobotTrajectory &message : query.moving_robots) {
+    robots_.push_back(toMovingRobot(message, robots, origin, lookup));
+    polynomials += robots.at(message.robot).robot->links().size() * (message.trajectory.points.size() + 2);
+  }
+  return polynomials;
 }
 
 /** What the subject is measured against by name: objects that stand, objects and robots that move. */
@@ -117,12 +137,27 @@ void Surroundings::ask(const Query &query, bool against_self, const Asking &aski
   }
 }
 
-void Surroundings::askOnce(const Query &query, Against against, const Asking &asking, Workspace &workspace,
+/** Side a is what rides. */
+void Surroundings::name(Answer &answer) const {
+  if (rides_.empty() || answer.a == rides_ || answer.b != rides_) return;
+  std::swap(answer.a, answer.b);
+  std::swap(answer.result.witness_mover, answer.result.witness_obstacle);
+  std::swap(answer.result.mover_part, answer.result.obstacle_index);
+  cprox_vec3 &normal = answer.result.normal;
+  normal = {-normal.x, -normal.y, -normal.z};
+}
+
+void Surroundings::askOnce(const Query &asked, Against against, const Asking &asking, Workspace &workspace,
                            MotionRows &out) const {
+  Query query = asked;
+  if (!rides_.empty()) {
+    query.links = {rides_};
+    if (rides_over_[0] < rides_over_[1] && asking.kind != Asking::PROFILE) query.options.interval = rides_over_.data();
+  }
   const MovingRobot *subject = has_subject_ ? &robots_.front() : nullptr;
-  const auto plainly = [&](const Query &asked) {
-    return subject ? curve_proximity::ask(*movers_, *subject, asked, workspace)
-                   : curve_proximity::ask(*movers_, against, asked, workspace);
+  const auto plainly = [&](const Query &one) {
+    return subject ? curve_proximity::ask(*movers_, *subject, one, workspace)
+                   : curve_proximity::ask(*movers_, against, one, workspace);
   };
   if (asking.kind == Asking::ANSWER) out.answers.push_back(plainly(query));
   if (asking.kind == Asking::CONTACT)
@@ -134,9 +169,16 @@ void Surroundings::askOnce(const Query &query, Against against, const Asking &as
     if (pairs.empty() && !std::isfinite(asking.limits.within)) pairs = {plainly(query)};
     std::move(pairs.begin(), pairs.end(), std::back_inserter(out.answers));
   }
+  std::array<double, 2> domain = movers_->domain();
+  if (subject && !subject->motion->stands()) domain = subject->motion->domain();
+  if (rides_over_[0] < rides_over_[1]) domain = rides_over_;
+  if (asking.kind == Asking::VIOLATIONS) {
+    const double resolution = resolutionOf(asking, domain[0], domain[1]);
+    out.answers.push_back(plainly(query));
+    out.violations.push_back(toMessage(subject ? violations(*movers_, *subject, resolution, query, workspace)
+                                               : violations(*movers_, against, resolution, query, workspace)));
+  }
   if (asking.kind == Asking::PROFILE) {
-    const std::array<double, 2> domain =
-        subject && !subject->motion->stands() ? subject->motion->domain() : movers_->domain();
     const std::vector<double> breaks = breaksOf(asking, domain[0], domain[1]);
     std::vector<std::string> links{""};
     if (asking.per_link && subject) links = query.links.empty() ? movingNames(*subject->motion) : query.links;
@@ -151,6 +193,7 @@ void Surroundings::askOnce(const Query &query, Against against, const Asking &as
       out.profiles.back().link = link;
     }
   }
+  for (Answer &answer : out.answers) name(answer);
 }
 
 } // namespace curve_proximity

@@ -29,6 +29,11 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot);
 /** Robots and objects on one clock, and how they are asked about. */
 class Surroundings {
  public:
+  /** rides: a body that moves beside all of these, and is asked about alone. Else as below, without a subject. */
+  Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
+               const MovingObject &rides, const ros::Time &stamp, FrameLookup &lookup, std::size_t most_bytes,
+               const Stop &stop);
+
   /** subject: the robot that is asked about, with its stamp and the number of its points; null: nobody. most_bytes:
    * what the joined motion may take. stop: asked while it is made, ends that. Throws Error, which names the mover: a
    * robot that is not known, what RobotMotion and Movers refuse, a trajectory that is stale or in the future; and where
@@ -49,11 +54,16 @@ class Surroundings {
   }
 
  private:
+  std::size_t gather(const ProximityQuery &query, const FurtherRobots &robots, std::int64_t origin,
+                     FrameLookup &lookup);
+  void name(Answer &answer) const;
   void askOnce(const Query &query, Against against, const Asking &asking, Workspace &workspace, MotionRows &out) const;
   std::vector<std::string> namesBeside() const;
 
   SnapshotPtr snapshot_;
   bool has_subject_ = false;
+  std::string rides_;                  /* the body that is asked about; else empty */
+  std::array<double, 2> rides_over_{}; /* [s] from when to when */
   std::optional<memory::Share> share_;
   std::vector<MovingRobot> robots_; /* the subject first */
   std::shared_ptr<const Movers> movers_;

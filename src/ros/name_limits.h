@@ -51,6 +51,7 @@ class NameLimits {
     check("the name of a link", query.links);
     check("the name of a group", query.group);
     check("the name of a joint", query.joint_state.name);
+    check(query.body);
     for (const RobotTrajectory &robot : query.moving_robots) {
       check("the name of a robot", robot.name);
       check("the name of a robot", robot.robot);

@@ -212,10 +212,11 @@ struct Queries::CurvePlace {
 struct Queries::CurveRows {
   Proximity *in_place = nullptr; /* in the response, which has room for one a curve; null: in `rows` */
   std::vector<Proximity> rows;
-  std::vector<std::size_t> counts;  /* of rows, for each curve */
-  std::vector<Drawing::Line> lines; /* of those that are drawn */
-  std::vector<Profile> profiles;    /* of Asking::PROFILE: one for each row */
-  std::vector<Gradient> gradients;  /* of Asking::GRADIENT likewise */
+  std::vector<std::size_t> counts;            /* of rows, for each curve */
+  std::vector<Drawing::Line> lines;           /* of those that are drawn */
+  std::vector<Profile> profiles;              /* of Asking::PROFILE: one for each row */
+  std::vector<Gradient> gradients;            /* of Asking::GRADIENT likewise */
+  std::vector<ViolationIntervals> violations; /* of Asking::VIOLATIONS likewise */
 
   /* One more, for the curve after those that are counted. */
   Proximity &add() {
@@ -226,6 +227,7 @@ struct Queries::CurveRows {
     add() = toFailedRow(id, Proximity::KIND_CURVE, why);
     if (asking.kind == Asking::PROFILE) profiles.emplace_back();
     if (asking.kind == Asking::GRADIENT) gradients.emplace_back();
+    if (asking.kind == Asking::VIOLATIONS) violations.emplace_back();
   }
 };
 
@@ -248,6 +250,16 @@ std::vector<Profile> takeProfiles(QueryResponse &answer) {
   return profiles;
 }
 
+std::vector<ViolationIntervals> takeViolations(QueryResponse &answer) {
+  std::vector<ViolationIntervals> violations = std::move(answer.violations);
+  for (std::size_t i = 0; i < violations.size(); ++i) {
+    violations[i].summary = std::move(answer.results[i]);
+    for (std::string &a : violations[i].a)
+      if (a.empty()) a = violations[i].summary.a; // a curve is one thing
+  }
+  return violations;
+}
+
 std::size_t Queries::mostBytes() const {
   return static_cast<std::size_t>(parameters_.max_request_mb) << 20;
 }
@@ -267,6 +279,8 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   const std::size_t motions = request.trajectories.size() + request.multi_dof_trajectories.size();
   const bool own_rows = request.asking.kind != Asking::ANSWER && request.asking.kind != Asking::GRADIENT;
   if (own_rows && more.per_object) throw Error("per_object does not apply: it is of distance, tolerance and collision");
+  if (!more.body.id.empty() && request.paths.empty() && request.multi_dof_trajectories.empty())
+    throw Error("body applies to paths and multi_dof_trajectories: there is none");
   if (more.gradient && request.asking.kind != Asking::GRADIENT)
     throw Error("gradient does not apply: it is of the service distance");
   if (more.gradient && more.per_object)
@@ -346,6 +360,7 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   const Asking &asking = request.asking;
   if (asking.kind == Asking::NEAREST) targets = asking.limits.count;
   if (asking.kind == Asking::PROFILE) targets = std::max(asking.intervals, asking.breaks.size());
+  if (asking.kind == Asking::VIOLATIONS) targets = MOST_VIOLATIONS;
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), targets, "results");
   const bool often = asking.kind != Asking::ANSWER && asking.kind != Asking::GRADIENT &&
                      request.more.self_collision; // as many rows of kind self
@@ -483,6 +498,11 @@ void Queries::answerCurves(Work &work) {
   for (const nav_msgs::Path &path : request.paths) {
     const auto i = static_cast<std::size_t>(&path - request.paths.begin());
     const std::string id = numbered("path", i, request.paths.size());
+    if (!request.more.body.id.empty()) {
+      answerPath(path, id, work);
+      tellProgress(work);
+      continue;
+    }
     try {
       Curve curve = toCurve(path, parameters_.path_radius);
       curve.id = id;
@@ -527,6 +547,8 @@ void Queries::search(const Curve &message, const CurvePlace &place, const Query 
       askCurve(targets, curve, query, asking, workspace, answers);
     }
     if (asking.kind == Asking::PROFILE) out.profiles.push_back(profileOf(targets, curve, query, asking, workspace));
+    if (asking.kind == Asking::VIOLATIONS)
+      out.violations.push_back(violationsOf(targets, curve, query, asking, workspace));
     for (const Answer &answer : answers) fillRow(answer, query, asking, out.add());
     count = answers.size();
     if (drawn) out.lines.push_back({std::move(curve), std::move(answers)});
@@ -553,6 +575,7 @@ void Queries::gather(const CurvePlace *places, CurveRows &&found, CurveSearch &s
   std::move(found.lines.begin(), found.lines.end(), std::back_inserter(work.drawing.lines));
   std::move(found.profiles.begin(), found.profiles.end(), std::back_inserter(work.response.profiles));
   std::move(found.gradients.begin(), found.gradients.end(), std::back_inserter(work.response.gradients));
+  std::move(found.violations.begin(), found.violations.end(), std::back_inserter(work.response.violations));
 }
 
 void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work) {

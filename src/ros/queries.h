@@ -10,6 +10,7 @@
 #include <curve_proximity/Proximity.h>
 #include <curve_proximity/ProximityQuery.h>
 #include <curve_proximity/SceneState.h>
+#include <curve_proximity/ViolationIntervals.h>
 #include <nav_msgs/Path.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
@@ -114,17 +115,23 @@ struct QueryResponse {
   SceneState scene;
   std::vector<Proximity> results;
   std::vector<Profile> profiles; /**< of Asking::PROFILE: one for each of the results, their summaries not filled in */
-  std::vector<Gradient> gradients; /**< of Asking::GRADIENT: one for each of the results */
+  std::vector<Gradient> gradients;            /**< of Asking::GRADIENT: one for each of the results */
+  std::vector<ViolationIntervals> violations; /**< of Asking::VIOLATIONS likewise, their summaries not filled in */
 
   /** Rows without an answer have no profile and no gradient: fills up what is asked for. */
   void fillUp(const Asking &asking) {
     if (asking.kind == Asking::PROFILE) profiles.resize(results.size());
     if (asking.kind == Asking::GRADIENT) gradients.resize(results.size());
+    if (asking.kind == Asking::VIOLATIONS) violations.resize(results.size());
   }
 };
 
 /** The profiles of an answer with their summaries. What rests on nothing or on data too old has lower bounds of 0. */
 std::vector<Profile> takeProfiles(QueryResponse &answer);
+
+/** The same of violations. Where the answer rests on data too old, there may be more of them than there are intervals.
+ */
+std::vector<ViolationIntervals> takeViolations(QueryResponse &answer);
 
 /** What the markers show of a query. */
 struct Drawing {
@@ -209,6 +216,9 @@ class Queries {
   void answerTrajectories(Work &work);
   void answerMultiDofTrajectories(Work &work);
   void answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work);
+  void answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp, std::vector<TimedPose> poses,
+                  Work &work);
+  void answerPath(const nav_msgs::Path &path, const std::string &id, Work &work);
   void answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not = "");
   void answerState(Work &work);
   void answerMovers(Work &work);

@@ -51,6 +51,9 @@ double deltaOf(const Request &) {
 double deltaOf(const Tolerance::Request &request) {
   return request.delta;
 }
+double deltaOf(const ListViolations::Request &request) {
+  return request.delta;
+}
 
 template <class Request>
 Asking askingOf(const Request &) {
@@ -90,6 +93,15 @@ Asking askingOf(const ClearanceProfile::Request &request) {
   return out;
 }
 
+Asking askingOf(const ListViolations::Request &request) {
+  if (!(request.resolution >= 0.0 && std::isfinite(request.resolution)))
+    throw Error("resolution is " + std::to_string(request.resolution) + ": it must be at least 0 and finite");
+  Asking out;
+  out.kind = Asking::VIOLATIONS;
+  out.resolution = request.resolution;
+  return out;
+}
+
 template <class Response>
 void deliver(QueryResponse &answer, Response &response) {
   response.results = std::move(answer.results);
@@ -100,6 +112,10 @@ void deliver(QueryResponse &answer, Distance::Response &response) {
 }
 void deliver(QueryResponse &answer, ClearanceProfile::Response &response) {
   response.profiles = takeProfiles(answer);
+}
+
+void deliver(QueryResponse &answer, ListViolations::Response &response) {
+  response.violations = takeViolations(answer);
 }
 
 /** Once, here: not in every answer. */
@@ -171,6 +187,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       advertise<NearestPairs>(handle_, "nearest_pairs", queryHandler<NearestPairs>(QueryType::DISTANCE)),
       advertise<TimeOfContact>(handle_, "time_of_contact", queryHandler<TimeOfContact>(QueryType::COLLISION)),
       advertise<ClearanceProfile>(handle_, "clearance_profile", queryHandler<ClearanceProfile>(QueryType::DISTANCE)),
+      advertise<ListViolations>(handle_, "violations", queryHandler<ListViolations>(QueryType::TOLERANCE)),
       advertise<ApplyScene>(handle_, "apply_scene",
                             handler<ApplyScene>(SCENE_TIMES_WIRE,
                                                 [this](const Call &call, const RequestThreads::AtWork &at_work,

@@ -11,6 +11,7 @@
 #include <curve_proximity/Distance.h>
 #include <curve_proximity/EvaluateConstraints.h>
 #include <curve_proximity/GetScene.h>
+#include <curve_proximity/ListViolations.h>
 #include <curve_proximity/NearestPairs.h>
 #include <curve_proximity/TimeOfContact.h>
 #include <curve_proximity/Tolerance.h>

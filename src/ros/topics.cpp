@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "topics.h"
 
+#include "conversions.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -222,6 +224,49 @@ trajectory_msgs::JointTrajectory toJointTrajectory(const MultiDOFJointTrajectory
     addColumns(trajectory, j, *joint, out);
   }
   return out;
+}
+
+std::vector<TimedPose> toPoses(const MultiDOFJointTrajectory &trajectory, std::size_t joint) {
+  if (trajectory.points.empty()) throw Error("the trajectory has no points");
+  std::vector<TimedPose> poses;
+  for (std::size_t i = 0; i < trajectory.points.size(); ++i) {
+    const std::string where = "point " + std::to_string(i);
+    const double time = trajectory.points[i].time_from_start.toSec();
+    if (i > 0 && !(time > poses.back().time)) throw Error(where + ": its time is not after that of the point before");
+    const geometry_msgs::Transform &transform = transformOf(trajectory, i, joint);
+    const Eigen::Quaterniond before =
+        i > 0 ? Eigen::Quaterniond(poses.back().pose.linear()) : Eigen::Quaterniond::Identity();
+    TimedPose pose;
+    pose.time = time;
+    pose.pose.linear() = rotationOf(transform, where, before).toRotationMatrix();
+    pose.pose.translation() << transform.translation.x, transform.translation.y, transform.translation.z;
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+std::vector<TimedPose> toPoses(const nav_msgs::Path &path) {
+  if (path.poses.empty()) throw Error("the path has no poses");
+  std::vector<TimedPose> poses;
+  bool ascends = true;
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    const geometry_msgs::PoseStamped &given = path.poses[i];
+    const std::string where = "pose " + std::to_string(i);
+    const std::string &frame = given.header.frame_id;
+    if (!frame.empty() && frame != path.header.frame_id)
+      throw Error(where + " is in frame '" + frame + "', the path in '" + path.header.frame_id + "'");
+    TimedPose pose;
+    try {
+      pose.pose = toIsometry(given.pose);
+    } catch (const Error &error) {
+      throw Error(where + ": " + error.what());
+    }
+    pose.time = (given.header.stamp - path.poses.front().header.stamp).toSec();
+    ascends = ascends && (i == 0 || pose.time > poses.back().time);
+    poses.push_back(pose);
+  }
+  for (std::size_t i = 0; i < poses.size() && !ascends; ++i) poses[i].time = static_cast<double>(i);
+  return poses;
 }
 
 std::vector<Curve> toCurves(const MultiDOFJointTrajectory &trajectory, double radius) {

@@ -8,6 +8,7 @@
 #include <trajectory_msgs/JointTrajectory.h>
 #include <trajectory_msgs/MultiDOFJointTrajectory.h>
 
+#include <curve_proximity/description.hpp>
 #include <curve_proximity/robot.hpp>
 #include <curve_proximity/srdf.hpp>
 #include <vector>
@@ -23,6 +24,15 @@ void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std
  * Poses that repeat the position before them are left out; a path of one position is that point. The curve's id is
  * "path". Throws Error: no poses, a position that is not finite, a pose in another frame than the path's. */
 Curve toCurve(const nav_msgs::Path &path, double radius);
+
+/** The poses of what rides along a path, in the path's frame, at the stamps of its poses: the first one's is 0. Where
+ *  these do not ascend, pose i is at i. Throws Error: no poses, one that is no pose, or in another frame than the
+ *  path's. */
+std::vector<TimedPose> toPoses(const nav_msgs::Path &path);
+
+/** The same of what a joint of a trajectory moves that is no robot's, by its number. Throws Error also for times that
+ *  do not ascend, and for counts that differ. */
+std::vector<TimedPose> toPoses(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, std::size_t joint);
 
 /** Is it about planar or floating joints of the robot? robot: may be null. */
 bool movesRobot(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, const Robot *robot, const Srdf &srdf);

@@ -93,6 +93,17 @@ class Movers(Case):
         self.assertAnswer(self.robot('distance', BALL.replace('START', '3').replace('[1,', '[2.5,')).row('go'),
                           math.hypot(0.4, 0.4) - 0.1)
 
+    def starts_may_be_known_to_a_tolerance(self):
+        """A ball that comes t seconds late crosses half t behind the cart: both are nearest half of that from the crossing."""
+        for tolerance in (0.0, 0.5, 1.0):
+            answer = self.robot('distance', BALL.replace('START', f'2\n        start_tolerance: {tolerance}'))
+            self.assertEqual((answer.code, answer.err), (0, ''))
+            late = 2 - tolerance
+            self.assertAnswer(answer.row('go'), math.sqrt(2) * (late / 4 - 0.1) - 0.1)
+        self.assertAnswer(self.robot('distance', BALL.replace('START', '2\n        any_time: true')).row('go'), 0)
+        self.assertEqual(self.robot('collision', BALL.replace('START', '2\n        any_time: true')).row('go')['verdict'], 'violated')
+        self.assertRefused(self.robot('distance', BALL.replace('START', '2\n        start_tolerance: -1')), 'start_tolerance', 'at least 0')
+
     def two_robots_are_on_one_clock(self):
         answer = self.robot('distance', SECOND.replace('NAME', 'other').replace('START', '0'), '--self')
         self.assertEqual(answer.code, 0, answer.err)  # the slide moves no pair of links of its own

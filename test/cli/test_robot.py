@@ -112,6 +112,24 @@ class Robot(Case):
 
 
 class Panda(Case):
+    def meshes_with_fewer_triangles_contain_those_they_stand_for(self):
+        """The Fanuc's own meshes, past which a point moves: with a tolerance it is nearer, by at most twice that."""
+        words = ['distance', '--curves', self.file('curves.csv', bezier('c', (1.5, -1, 0.9), (1.2, 1, 1.2))), '--robot',
+                 DATA + '/robots/fanuc_m10ia/fanuc_m10ia.urdf', '--timings']
+        exact, counts = None, []
+        for tolerance in ('0', '0.002', '0.02', '1'):
+            answer = cprox(*words, '--mesh-tolerance', tolerance)
+            self.assertEqual(answer.code, 0, answer.err)
+            row = answer.row('c')
+            lower, upper = float(row['lower']), float(row['upper'])
+            exact = exact or (lower, upper)
+            self.assertLessEqual(lower, exact[1])
+            self.assertGreaterEqual(upper, exact[0] - 2 * float(tolerance))
+            counts.append(sum(int(line.split(' triangles')[0].split()[-1]) for line in answer.err.splitlines() if ' triangles' in line))
+        self.assertEqual(counts, sorted(counts, reverse=True))
+        self.assertLess(counts[2], counts[0] / 2)
+        self.assertRefused(cprox(*words, '--mesh-tolerance', '-1'), '--mesh-tolerance')
+
     def the_panda_among_the_shelves_answers_with_links_and_objects(self):
         scene = DATA + '/scenes/mbm/bookshelf_small_panda/scene0001.yaml'
         curves = self.file('curves.csv', bezier('c', (0.6, -0.6, 0.7), (0.2, 0.2, 0.9), (0.1, 0.4, 0.3)))

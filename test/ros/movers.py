@@ -14,7 +14,7 @@ import yaml
 from curve_proximity.msg import CollisionObject, PoseTrajectory, RobotTrajectory, Waypoint
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest, TimeOfContact,
                                  TimeOfContactRequest)
-from helpers import Server, bezier, box, joints, pose, query, run, sphere, until
+from helpers import Server, bezier, box, joints, path, pose, query, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -311,6 +311,48 @@ class Movers(unittest.TestCase):
         self.assertEqual(again.scene.objects, 1)
         self.assertTrue(self.server.apply(CollisionObject(id='box', operation=CollisionObject.REMOVE)).success)
         self.assertEqual(len(self.server.scene().objects), 0)
+
+    def least(self, *things):
+        """The least distance between the two things, which both move."""
+        self.server.replace(*things)
+        response = self.server.distance([], movers=True, self_collision=True)
+        self.assertTrue(response.success, response.message)
+        row, = [row for row in response.results if {row.a, row.b} == {'a', 'b'}]
+        return row
+
+    def test_starts_are_known_to_a_tolerance(self):
+        """Two balls cross at a right angle, one of them a second after the other: so late by s they come within |1 + s| / sqrt 2."""
+        a = moving(sphere('a', 0.1), waypoint(0, (-1, 0, 3)), waypoint(2, (1, 0, 3)))
+
+        def b(**fields):
+            return moving(sphere('b', 0.1), waypoint(1, (0, -1, 3)), waypoint(3, (0, 1, 3)), **fields)
+        for tolerance, expected in ((0.0, 1.0), (0.25, 0.75), (0.5, 0.5)):
+            row = self.least(a, b(start_tolerance=tolerance))
+            self.assertLessEqual(row.lower, expected / math.sqrt(2) - 0.2 + 1e-12)
+            self.assertGreaterEqual(row.upper, expected / math.sqrt(2) - 0.2 - 1e-12)
+            self.assertLess(row.upper - row.lower, 1.01e-6)
+        self.assertEqual(self.least(a, b(any_time=True)).upper, 0.0)
+        kept, = self.server.scene('b').objects
+        self.assertTrue(kept.trajectory.any_time)
+        self.assertRefused(self.server.apply(b(start_tolerance=-1.0)), "object 'b'", 'start_tolerance')
+
+    def test_a_body_rides_a_path(self):
+        """A box of .2 x .2 x .6 past a ball of .25: upright, and turned so that its length points at the ball."""
+        self.server.replace(sphere('ball', 0.25, (0, 3, 3)))
+        carried = box('carried', (0.2, 0.2, 0.6))
+        lying = (0, math.sqrt(0.5), 0, math.sqrt(0.5))  # its z axis is x
+        for orientation, half in (((0, 0, 0, 1), 0.3), (lying, 0.1)):
+            way = path((-1, 3, 4), (1, 3, 4), frame='world')
+            for at in way.poses:
+                at.pose = pose((at.pose.position.x, 3, 4), orientation)
+            response = self.server.distance([], paths=[way], body=carried, objects=['ball'])
+            self.assertTrue(response.success, response.message)
+            row, = response.results
+            self.assertEqual((row.kind, row.a, row.b), ('movers', 'carried', 'ball'))
+            self.assertLessEqual(row.lower, 1.0 - half - 0.25 + 1e-12)
+            self.assertGreaterEqual(row.upper, 1.0 - half - 0.25 - 1e-12)
+            self.assertLess(row.upper - row.lower, 1.01e-6)
+        self.assertRefused(self.server.distance(bezier((0, 0, 0), (1, 0, 0)), body=carried), 'body applies to paths')
 
     def assertRefused(self, response, *parts):
         self.assertFalse(response.success)

@@ -7,8 +7,8 @@ import unittest
 
 import rospy
 from curve_proximity.msg import Clearance, Curve
-from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest,
-                                 TimeOfContact, TimeOfContactRequest)
+from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest,
+                                 NearestPairs, NearestPairsRequest, TimeOfContact, TimeOfContactRequest)
 from helpers import Server, bezier, joint_trajectory, query, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory
 
@@ -24,7 +24,8 @@ class Stretches(unittest.TestCase):
     def setUpClass(cls):
         cls.server = Server()
         cls.services = {}
-        for name, kind in (('nearest_pairs', NearestPairs), ('time_of_contact', TimeOfContact), ('clearance_profile', ClearanceProfile)):
+        for name, kind in (('nearest_pairs', NearestPairs), ('time_of_contact', TimeOfContact), ('clearance_profile', ClearanceProfile),
+                           ('violations', ListViolations)):
             rospy.wait_for_service('/curve_proximity/' + name, 20)
             cls.services[name] = rospy.ServiceProxy('/curve_proximity/' + name, kind, persistent=True)
         assert until(lambda: cls.server.distance([], trajectory=QUARTER).success, 20)
@@ -41,9 +42,13 @@ class Stretches(unittest.TestCase):
     def profile(self, asked, **fields):
         return self.services['clearance_profile'](ClearanceProfileRequest(query=asked, **fields))
 
+    def violations(self, asked, **fields):
+        return self.services['violations'](ListViolationsRequest(query=asked, **fields))
+
     def good(self, response):
         self.assertTrue(response.success, response.message)
-        return response.profiles if hasattr(response, 'profiles') else response.results
+        lists = [name for name in ('profiles', 'violations') if hasattr(response, name)]
+        return getattr(response, lists[0] if lists else 'results')
 
     def assertIs(self, lower, upper, expected):
         self.assertLessEqual(lower, expected + 1e-12)
@@ -132,6 +137,39 @@ class Stretches(unittest.TestCase):
         profile, = self.good(self.profile(query(trajectory=QUARTER, **ONLY), horizon=0.2, intervals=10))
         self.assertTrue(all(upper - lower <= EPSILON or lower > 0.2 for lower, upper in zip(profile.lower, profile.upper)))
         self.assertRefused(self.profile(query(LINE), horizon=-1.0), 'horizon')
+
+    def assertEnds(self, found, *intervals):
+        """found is within delta in just these intervals, and where it is not known it is so for no longer than asked."""
+        self.assertEqual(list(found.verdict), ['violated'] * len(intervals))
+        for i, (enter, leave) in enumerate(intervals):
+            for lower, upper, expected in ((found.enter_lower[i], found.enter_upper[i], enter), (found.leave_lower[i], found.leave_upper[i], leave)):
+                self.assertLessEqual(lower, expected + 1e-12)
+                self.assertGreaterEqual(upper, expected - 1e-12)
+                self.assertLess(upper - lower, 1e-4)
+
+    def test_violations_begin_and_end_where_the_distance_says_so(self):
+        self.server.replace(sphere('ball', 0.25, (-0.5, 0, 0.1)), sphere('other', 0.1, (0.5, 0, 0.1)))
+        found, = self.good(self.violations(query(THROUGH, objects=['ball', 'other']), delta=0.05, resolution=1e-5))
+        self.assertEqual((found.summary.verdict, list(found.b)), ('violated', ['ball', 'other']))
+        self.assertEqual(list(found.a), [found.summary.a] * 2)
+        self.assertEnds(found, (0.1, 0.4), (0.675, 0.825))
+        found, = self.good(self.violations(query(LINE, **ONLY), delta=0.05))
+        self.assertEqual((found.summary.verdict, list(found.verdict)), ('clear', []))
+
+    def test_violations_of_a_motion(self):
+        self.server.replace(sphere('ball', 0.1, (0, 0.5, 0.5)))
+        found, = self.good(self.violations(query(trajectory=QUARTER), delta=0.1, resolution=1e-5))
+        enter = (math.pi / 2 - 2 * math.asin(0.3)) / (math.pi / 2)
+        self.assertEqual((list(found.a), list(found.b)), (['arm'], ['ball']))
+        self.assertEnds(found, (enter, 1.0))
+
+    def test_bad_questions_about_violations_are_refused(self):
+        self.assertRefused(self.violations(query(LINE, **ONLY), delta=-1.0), 'delta')
+        self.assertRefused(self.violations(query(LINE, **ONLY), delta=0.1, resolution=math.nan), 'resolution')
+        response = self.violations(query([LINE, bezier((math.nan, 0, 0), (1, 0, 0))], **ONLY), delta=0.1)
+        self.assertFalse(response.success)
+        self.assertEqual([len(v.verdict) for v in response.violations], [0, 0])
+        self.assertEqual(response.violations[0].summary.verdict, 'clear')
 
     def test_a_profile_for_each_link(self):
         post = sphere('ball', 0.1, (0, 0.5, 0.5))
