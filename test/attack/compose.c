@@ -65,7 +65,10 @@ static void check_witness(query *q, size_t i, const cprox_result *x) {
   for (int k = -1; k <= 1; k++) {
     const double t = fmax(s->path.t0, fmin(s->path.t1, x->t + k * step));
     off = fminl(off, scene_off_mover(s, t, ref_vec(x->witness_mover)));
-    off_obstacle = fminl(off_obstacle, scene_off_obstacle(s, i, t, x->t_obstacle, ref_vec(x->witness_obstacle)));
+    /* where an obstacle is a curve that jumps, both limits belong to it */
+    const double either[2] = {x->t_obstacle, nextafter(x->t_obstacle, -INFINITY)};
+    for (int side = 0; side < 2; side++)
+      off_obstacle = fminl(off_obstacle, scene_off_obstacle(s, i, t, either[side], ref_vec(x->witness_obstacle)));
   }
   const long double apart = ref_norm(ref_sub(ref_vec(x->witness_mover), ref_vec(x->witness_obstacle)));
   attack_check(q->a, off <= room, "%s: " RESULT ", witness_mover is %.3Lg off", q->query, SHOWN(x), off);
