@@ -192,7 +192,7 @@ cprox_status solid_create_clipped(const cprox_solid_description *d, cprox_worksp
   if (status == CPROX_OK) status = check_pieces(solid, d->body != NULL, workspace);
   if (status != CPROX_OK) return status;
   const size_t n = d->n + (!d->body ? 0 : solid->dimension == 2 ? TANGENTS_IN_PLANE : TANGENTS_IN_SPACE);
-  double(*region)[4] = malloc(n * sizeof *region);
+  double(*region)[4] = malloc((n + 1) * sizeof *region);
   if (!region) return solid_out_of_memory(workspace);
   if (d->n > 0) memcpy(region, d->region, d->n * sizeof *region);
   if (d->body) status = add_tangents(d->body, solid->dimension, workspace, region + d->n);

@@ -86,8 +86,8 @@ static cprox_status answer(const query *q, size_t first, size_t last, double cut
   if (failure < 0 || !start_class_is_one_of_many(q->mover.motion)) return failure;
   cprox_result all = *result;
   while (start_class_next(q->mover.motion, &starts) && all.verdict != CPROX_VERDICT_VIOLATED) {
-    cprox_result r;
-    double moves;
+    cprox_result r = {0};
+    double moves = 0.0;
     const cprox_status status =
         answer_class(q, &starts, first, last, lesser(cutoff, all.upper), &r, travel ? &moves : NULL);
     if (status < 0) return status;
@@ -158,7 +158,7 @@ cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   if (status < 0 || !start_class_is_one_of_many(q->mover.motion)) return status;
   cprox_result all = *result;
   while (start_class_next(q->mover.motion, &starts)) {
-    cprox_result r;
+    cprox_result r = {0};
     const cprox_status one = contact_of_class(q, &starts, all.verdict == CPROX_VERDICT_VIOLATED ? all.t : INFINITY, &r);
     if (one < 0) return one;
     if (one != CPROX_OK) status = one;
