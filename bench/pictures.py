@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures of Lakshmanan et al. (2019) that show what a query does, with the Python package cprox: Fig. 6 (stages of a search), Fig. 8
-(glyphs). scripts/run /usr/bin/python3 bench/pictures.py [FOLDER] writes them; without a folder to doc/charts."""
+(glyphs), §V-D (confidence regions). scripts/run /usr/bin/python3 bench/pictures.py [FOLDER] writes them; without a folder to doc/charts."""
 import os
 import sys
 
@@ -10,7 +10,7 @@ import matplotlib
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.patches import Polygon  # noqa: E402
+from matplotlib.patches import Circle, Polygon  # noqa: E402
 from matplotlib.path import Path  # noqa: E402
 from matplotlib.textpath import TextPath  # noqa: E402
 
@@ -124,10 +124,31 @@ def figure_8():
     return figure
 
 
+def section_5d():
+    """Two vehicles on one clock, each within a disc that grows with time."""
+    first = cprox.bezier(flat([[0, 0], [1.2, 0.2], [2.0, 1.6], [3.4, 1.4]]))
+    second = cprox.bezier(flat([[3.2, -0.2], [2.2, -0.2], [1.4, 2.0], [0.2, 1.9]]))
+    radii = ([0.1, 0.1, 0.06], [0.08, 0.14])
+    a, b = (cprox.tube(curve, radius) for curve, radius in zip((first, second), radii))
+    found = cprox.distance(a, cprox.Obstacle.synchronized(b), epsilon=1e-9)
+    figure, axes = plt.subplots(figsize=(5.5, 3.4))
+    for curve, radius, colour in ((first, radii[0], BLUE), (second, radii[1], ORANGE)):
+        t = np.linspace(0, 1, 200)
+        axes.plot(*curve(t)[:, :2].T, color=colour)
+        for moment in np.linspace(0, 1, 9):
+            axes.add_patch(Circle(curve(moment)[:2], np.polyval(radius[::-1], moment), color=colour, alpha=0.15))
+        axes.add_patch(Circle(curve(found.t)[:2], np.polyval(radius[::-1], found.t), fill=False, color=colour, linewidth=1.5))
+    axes.plot(*np.array([found.witness_mover, found.witness_obstacle])[:, :2].T, 'o-', color=RED, markersize=3)
+    axes.set_title(f'least distance {found.upper:.4f} m, at t = {found.t:.3f}, in {found.nodes} intervals', fontsize=10)
+    axes.set_aspect('equal')
+    axes.axis('off')
+    return figure
+
+
 def main():
     out = sys.argv[1] if len(sys.argv) > 1 else os.path.join(HERE, '..', 'doc', 'charts')
     os.makedirs(out, exist_ok=True)
-    for name, draw in (('papers_figure_6', figure_6), ('papers_figure_8', figure_8)):
+    for name, draw in (('papers_figure_6', figure_6), ('papers_figure_8', figure_8), ('papers_section_5d', section_5d)):
         figure = draw()
         figure.savefig(os.path.join(out, name + '.png'), bbox_inches='tight', dpi=130, metadata={'Software': None})
         plt.close(figure)

@@ -15,6 +15,7 @@ set(CURVE_PROXIMITY_MESSAGES
   LinkPadding.msg
   LinkScale.msg
   Octree.msg
+  PairQuery.msg
   PoseTrajectory.msg
   Profile.msg
   Proximity.msg
@@ -36,6 +37,7 @@ set(CURVE_PROXIMITY_SERVICES
   EvaluateConstraints.srv
   GetScene.srv
   ListViolations.srv
+  MeasurePairs.srv
   NearestPairs.srv
   TimeOfContact.srv
   Tolerance.srv

@@ -154,7 +154,7 @@ int run(const std::string &scene_file, const char *out) {
     ConstraintPair pair;
     pair.along_curve = true;
     for (const ShapeDescription &shape : object.second->description.shapes)
-      pair.b.parts.push_back({shape, makeGeometry(shape).body, 0.0});
+      pair.b.parts.push_back({shape, makeGeometry(shape).body, 0.0, {}});
     problem.objects.push_back(provider->prepare(pair));
     problem.poses.push_back(toPose(object.second->description.pose));
   }

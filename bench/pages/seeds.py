@@ -129,7 +129,7 @@ method" is the published method, written again as described (`bench/paper`).
 
 {ellipsoids(figures)}
 
-**Fig. 10 b**, memory: `seeds_figure_10_memory`.
+**§V-D**, confidence regions: `papers_section_5d`, by `bench/pictures.py`. **Fig. 10 b**, memory: `seeds_figure_10_memory`.
 
 **Fig. 10**, ten random Bézier curves of each order and a point, medians:
 

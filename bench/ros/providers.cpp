@@ -65,7 +65,7 @@ ConstraintBody sideOf(ShapeType type, std::vector<double> dimensions) {
   shape.type = type;
   shape.dimensions = std::move(dimensions);
   ConstraintBody side;
-  side.parts.push_back({shape, makeGeometry(shape).body, 0.0});
+  side.parts.push_back({shape, makeGeometry(shape).body, 0.0, {}});
   return side;
 }
 

@@ -25,13 +25,15 @@ namespace curve_proximity {
 
 /* ---- what a constraint is about ---- */
 
-/** One side of a constraint: convex parts that move together, in the side's own frame. */
+/** One side of a constraint: parts that move together, in the side's own frame. Parts are convex, but for points,
+ * octrees and height fields. */
 struct ConstraintBody {
-  /** One convex shape. */
+  /** One shape. */
   struct Part {
     ShapeDescription shape; /**< the description; shape.pose is its pose in the side's frame */
-    BodyHandle body;        /**< the body, in the shape's frame; never null */
+    BodyHandle body;        /**< the body, in the shape's frame, a mesh by its hull; never null */
     double excess = 0.0;    /**< [m] no point of the shape is farther from the body than this (mesh hulls) */
+    BodyHandle exact;       /**< a mesh with all of its triangles; else the body */
   };
   std::vector<Part> parts; /**< the side is their union */
   double padding = 0.0;    /**< [m] >= 0, a ball that is added to the parts */
@@ -45,6 +47,10 @@ struct ConstraintPair {
   /** false: each evaluation gives the poses of both sides. true: each evaluation gives a curve. Side a then moves along
    *  the curve without turning, with its origin on the curve. Without parts, a is the curve's ball alone. */
   bool along_curve = false;
+
+  /** false: the request names no providers, so that one that is second to another for such pairs may throw
+   *  DoesNotApply. */
+  bool is_named = true;
 };
 
 /** A compiled curve with its description, from compile() or makeConstraintCurve(). */
@@ -91,6 +97,9 @@ struct ConstraintValue {
   Eigen::Vector3d witness_a = Eigen::Vector3d::Zero(); /**< [m] witness point of a, fixed frame */
   Eigen::Vector3d witness_b = Eigen::Vector3d::Zero(); /**< [m] witness point of b, fixed frame */
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    /**< unit, from b to a */
+
+  /** Where the search ended, for an evaluation into the same value at a place nearby. Zeros: from scratch. */
+  cprox_pair_start start{};
 };
 
 /* ---- joint trajectories ---- */
@@ -173,7 +182,7 @@ class Constraint {
 
 /** The version of the plugin interface. It is raised when the order of virtual functions or the meaning of a member
  *  changes. */
-constexpr std::uint64_t PROVIDER_VERSION = 2;
+constexpr std::uint64_t PROVIDER_VERSION = 3;
 
 /** One number that a plugin and its loader must have in common: the interface version, the sizes of all shared types,
  *  and Eigen's alignment (-mavx changes how Eigen frees memory). */
@@ -264,15 +273,19 @@ inline void curveWeights(const CurveDescription &curve, double t, double *weight
   if (!findCurveWeights(curve, t, weights)) throw Error("no weights are known of the basis '" + curve.basis + "'");
 }
 
-/** The side as one body: its only part if that stands at the side's origin, otherwise a compound of all parts. */
-inline BodyHandle joinedBody(const ConstraintBody &side) {
+/** The side as one body: its only part if that stands at the side's origin, otherwise a compound of all parts. exact:
+ * of meshes with all of their triangles. */
+inline BodyHandle joinedBody(const ConstraintBody &side, bool exact = false) {
   if (side.parts.empty()) throw Error("the side has no shape");
+  const auto bodyOf = [exact](const ConstraintBody::Part &part) {
+    return exact && part.exact ? part.exact : part.body;
+  };
   const ConstraintBody::Part &first = side.parts.front();
-  if (side.parts.size() == 1 && first.shape.pose.matrix().isIdentity(0.0)) return first.body;
+  if (side.parts.size() == 1 && first.shape.pose.matrix().isIdentity(0.0)) return bodyOf(first);
   std::vector<BodyHandle> bodies;
   std::vector<Eigen::Isometry3d> poses;
   for (const ConstraintBody::Part &part : side.parts) {
-    bodies.push_back(part.body);
+    bodies.push_back(bodyOf(part));
     poses.push_back(part.shape.pose);
   }
   return makeCompound(bodies, poses);

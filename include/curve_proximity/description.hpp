@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <Eigen/Geometry>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,9 +39,12 @@ using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
  *    POINTS     none, or [radius] >= 0: a ball of that radius about each of `vertices` (a point cloud)
  *    OCTREE     none; the occupied cells of `octree`, or of the .bt or .ot file `resource`
  *    HEIGHT_FIELD   [cell_x, cell_y, n_x, n_y] or with a floor; n_x n_y heights in `values`, x running fastest, the
- * first one above the frame's origin. The ground is solid down to the floor; without one it is a surface DISTANCE_GRID
- * [cell, n_x, n_y, n_z], then the error of the values and where they are truncated; n_x n_y n_z signed distances in
- * `values`, x running fastest, from the frame's origin on (an ESDF). For curves only */
+ *               first one above the frame's origin. The ground is solid down to the floor; without one it is a
+ *               surface
+ *    DISTANCE_GRID  [cell, n_x, n_y, n_z], then the error of the values and where they are truncated; n_x n_y n_z
+ *               signed distances in `values`, x running fastest, from the frame's origin on (an ESDF). For curves only
+ *    CURVE      none; the ball of `curve.radius` at all points of `curve`; with `synchronized` at one moment only where
+ *               the curve that is asked about is at the same parameter. For curves only */
 enum class ShapeType {
   POINT,
   SPHERE,
@@ -58,7 +62,8 @@ enum class ShapeType {
   POINTS,
   OCTREE,
   HEIGHT_FIELD,
-  DISTANCE_GRID
+  DISTANCE_GRID,
+  CURVE
 };
 
 /** "point", "sphere", …, "mesh". */
@@ -83,6 +88,41 @@ struct OctreeData {
 /** A hyperquadric: the sum over its terms [a, b, c, d, n] of |a x + b y + c z + d|^n is <= 1. */
 using HyperquadricTerms = std::vector<std::array<double, 5>>;
 
+/** A curve of any basis that needs no functions. msg/Curve.msg says what points, knots and parameters of each basis
+ * mean.
+ */
+struct CurveDescription {
+  std::string id; /**< names the curve in results */
+  /** "bezier", "bspline", "polynomial", "legendre", "lagrange", "trigonometric", "rational_bezier", "nurbs",
+   * "clothoid", "dubins" (with a word: "dubins_lsl" …), "involute", "pythagorean_hodograph" or "piecewise" */
+  std::string basis = "bezier";
+  std::size_t degree = 0; /**< bezier, rational_bezier: 0, or the number of points minus one */
+  double t0 = 0.0;        /**< the parameter range begins here; not read for dubins and piecewise */
+  double t1 = 1.0;        /**< and ends here, t0 < t1 */
+  double radius = 0.0;    /**< [m] >= 0, radius of the ball that moves along the curve */
+  /** [m/(unit of t)^k] Of t, t², …: the radius at t is `radius` and this polynomial. Empty: it does not change. */
+  std::vector<double> radius_polynomial;
+  /** [m] Control points, coefficients or values, one a column, in the fixed frame or in that of `pose`: degree + 1
+   *  columns; a bspline has more, a trigonometric series has 2 degree + 1. */
+  Eigen::Matrix3Xd points;
+  /** bspline, nurbs: points.cols() + degree + 1 knots, non-decreasing. lagrange: the nodes. Otherwise empty. */
+  std::vector<double> knots;
+  /** weights of a rational basis; the numbers of a curve that is known by more than points */
+  std::vector<double> parameters;
+  /** of a piecewise curve: curves end to end, none of them piecewise; their ids and radii are not read */
+  std::vector<CurveDescription> pieces;
+  double restrict_t0 = 0.0; /**< with restrict_t1: only this part of the curve, at the parameters that it has there */
+  double restrict_t1 = 0.0; /**< both 0: all of the curve */
+  std::optional<Eigen::Isometry3d> pose; /**< of the frame of the points in the fixed frame; none: the identity */
+};
+
+/** How a SUPERQUADRIC or IMPLICIT shape is deformed: x -> linear x + translation. */
+struct ShapeDeformation {
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();  /**< invertible */
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero(); /**< [m] */
+  std::vector<double> exponents; /**< in the place of those of the terms, one each; empty: as they are */
+};
+
 /** A shape in the frame of its object. */
 struct ShapeDescription {
   ShapeType type = ShapeType::BOX;              /**< selects the members that are used */
@@ -97,6 +137,9 @@ struct ShapeDescription {
   bool solid = false;         /**< MESH: its interior belongs to it, if it is closed; results say if it is not */
   std::string resource;       /**< URI or path of a MESH or OCTREE file; replaces vertices, triangles, octree */
   OctreeData octree;          /**< OCTREE that is given by its bytes */
+  std::shared_ptr<const CurveDescription> curve; /**< CURVE */
+  bool synchronized = false; /**< CURVE: at the parameter of the curve that is asked about; both have one range */
+  std::optional<ShapeDeformation> deformed; /**< SUPERQUADRIC, IMPLICIT: applied in the shape's frame */
   /** OCTREE: unmeasured cells inside the bounding box of the measured cells count as occupied; otherwise as free. */
   bool unknown_is_occupied = false;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */
@@ -138,32 +181,6 @@ struct ObjectTrajectory {
   std::int64_t start = 0;
   /** [s] The start is only known to within this, before or after; infinity: anywhere on the way at any time. */
   double tolerance = 0.0;
-};
-
-/** A curve of any basis that needs no functions. msg/Curve.msg says what points, knots and parameters of each basis
- * mean.
- */
-struct CurveDescription {
-  std::string id; /**< names the curve in results */
-  /** "bezier", "bspline", "polynomial", "legendre", "lagrange", "trigonometric", "rational_bezier", "nurbs",
-   * "clothoid", "dubins" (with a word: "dubins_lsl" …), "involute", "pythagorean_hodograph" or "piecewise" */
-  std::string basis = "bezier";
-  std::size_t degree = 0; /**< bezier, rational_bezier: 0, or the number of points minus one */
-  double t0 = 0.0;        /**< the parameter range begins here; not read for dubins and piecewise */
-  double t1 = 1.0;        /**< and ends here, t0 < t1 */
-  double radius = 0.0;    /**< [m] >= 0, radius of the ball that moves along the curve */
-  /** [m] Control points, coefficients or values, one a column, in the fixed frame or in that of `pose`: degree + 1
-   *  columns; a bspline has more, a trigonometric series has 2 degree + 1. */
-  Eigen::Matrix3Xd points;
-  /** bspline, nurbs: points.cols() + degree + 1 knots, non-decreasing. lagrange: the nodes. Otherwise empty. */
-  std::vector<double> knots;
-  /** weights of a rational basis; the numbers of a curve that is known by more than points */
-  std::vector<double> parameters;
-  /** of a piecewise curve: curves end to end, none of them piecewise; their ids and radii are not read */
-  std::vector<CurveDescription> pieces;
-  double restrict_t0 = 0.0; /**< with restrict_t1: only this part of the curve, at the parameters that it has there */
-  double restrict_t1 = 0.0; /**< both 0: all of the curve */
-  std::optional<Eigen::Isometry3d> pose; /**< of the frame of the points in the fixed frame; none: the identity */
 };
 
 } // namespace curve_proximity

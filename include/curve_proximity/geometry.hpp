@@ -67,8 +67,8 @@ std::string resolveResource(const std::string &uri, const ResourceOptions &optio
 
 /** A body made from a description. */
 struct Geometry {
-  BodyHandle body;     /**< of a mesh: with its convex hull as a coarser level of detail; null: an empty octree */
-  BodyHandle hull;     /**< the convex hull of a mesh; otherwise the body */
+  BodyHandle body; /**< of a mesh: with its convex hull as a coarser level of detail; null: an empty octree, a curve */
+  BodyHandle hull; /**< the convex hull of a mesh; otherwise the body */
   BodyHandle surface;  /**< a solid mesh without its interior; otherwise the body */
   double excess = 0.0; /**< [m] how far points of the shape may be outside the body; set by the caller */
   /** [m] No point of the mesh is farther than this from `hull`: the hull computation drops vertices at the scale of
@@ -77,6 +77,16 @@ struct Geometry {
   double margin = 0.0;  /**< [m] a margin that belongs to all three bodies: that of a mesh that was simplified */
   bool is_mesh = false; /**< the shape is a MESH */
   bool is_open = false; /**< `solid` was requested, but the mesh is not closed: only its surface counts */
+
+  CurveHandle curve;         /**< of a CURVE; null: the shape is none */
+  CurveHandle radius_curve;  /**< its x is added to `radius` at each parameter; null: nothing is */
+  double radius = 0.0;       /**< [m] of the ball along the curve */
+  bool synchronized = false; /**< the curve is on the clock of the one that is asked about */
+
+  /** True if there is nothing there: an octree without an occupied cell. */
+  bool isEmpty() const {
+    return !body && !curve;
+  }
 };
 
 /** Checks a description and makes its body, in the shape's own frame; shape.pose is not used.
@@ -86,8 +96,8 @@ struct Geometry {
  *  range, a scale that is 0 or not finite; a resource that cannot be read (see resolveResource), has no triangle or a
  *  vertex that is not finite; points that are none; an octree that is cut short or of an unknown kind; CPROX_MEMORY,
  *  with the bytes that it needs, for what would exceed the memory limit. Flat meshes and
- *  polytopes of any dimension are accepted. An octree without an occupied cell is the empty set: the body is null.
- *  Thread safety: any number of threads. */
+ *  polytopes of any dimension are accepted. An octree without an occupied cell is the empty set: the body is null. So
+ * is that of a curve, which has a handle of its own. Thread safety: any number of threads. */
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options = {});
 
 /** Axis-aligned boxes [m]. */

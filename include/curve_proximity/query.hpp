@@ -72,9 +72,11 @@ struct Answer {
 
 /** A compiled curve for any number of queries by any number of threads. */
 struct CompiledCurve {
-  std::string id;      /**< of the description */
-  CurveHandle curve;   /**< compiled */
-  double radius = 0.0; /**< [m] of the ball along the curve */
+  std::string id;           /**< of the description */
+  CurveHandle curve;        /**< compiled */
+  double radius = 0.0;      /**< [m] of the ball along the curve */
+  CurveHandle radius_curve; /**< its x is added to the radius at each parameter; null: the radius does not change */
+  double reach = 0.0;       /**< [m] the radius is never larger */
 
   /** Boxes that together contain the curve (the radius left out), rounding included; or none. */
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -87,8 +89,16 @@ enum class CurveBoxes {
 };
 
 /** Checks and compiles a curve. Throws Error: a basis that is not available, points that are too few or not finite,
- *  a degree that does not fit, knots that descend or are too few, t0 >= t1, a radius that is negative or not finite. */
+ *  a degree that does not fit, knots that descend or are too few, t0 >= t1, a radius that is negative or not finite.
+ *  Where a radius that changes is below 0, queries say so. */
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes = CurveBoxes::MANY);
+
+/** What moves along a compiled curve, which must outlive it. */
+cprox_mover moverOf(const CompiledCurve &curve);
+cprox_mover moverOf(CompiledCurve &&curve) = delete;
+
+/** [m] The radius at t. */
+double radiusAt(const CompiledCurve &curve, double t);
 
 /** The same for many curves: `workspace` saves each curve one of its own. */
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes, Workspace &workspace);

@@ -19,10 +19,12 @@ struct RowPair {
   std::optional<CsvRow> first, second;
 };
 
-cprox_status search(const CompiledCurve &a, const CompiledCurve &b, const Query &query, Workspace &workspace,
-                    cprox_result &result) {
-  const cprox_mover mover = along(a.curve, a.radius);
-  const cprox_obstacle target = cprox_obstacle_curve(b.curve.get(), b.radius);
+cprox_status search(const CompiledCurve &a, const CompiledCurve &b, bool synchronized, const Query &query,
+                    Workspace &workspace, cprox_result &result) {
+  const cprox_mover mover = moverOf(a);
+  const cprox_obstacle target =
+      synchronized ? cprox_synchronized(moverOf(b)) : cprox_obstacle_curve(b.curve.get(), b.radius);
+  if (!synchronized && b.radius_curve) throw Error("the radius of the second curve changes: give --synchronized");
   switch (query.query_type) {
     case QueryType::DISTANCE: return cprox_distance(mover, target, &query.options, workspace.get(), &result);
     case QueryType::TOLERANCE:
@@ -62,7 +64,7 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Query 
     const CompiledCurve a = curveOf(rows.first, arguments.curves, with_proof),
                         b = curveOf(rows.second, arguments.against, with_proof);
     const Clock::time_point start = Clock::now();
-    row.result.status = search(a, b, query, workspace, row.result);
+    row.result.status = search(a, b, arguments.synchronized, query, workspace, row.result);
     row.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
     row.has_t = row.has_t_b = row.has_points = row.result.obstacle_index >= 0;
     out.stopped = row.result.status == CPROX_STOPPED;

@@ -27,6 +27,7 @@ const std::map<std::string, Option> &options() {
   static const std::map<std::string, Option> table = {
       {"--curves", {true, {Action::CURVES, Action::REPORT, Action::CHECK}}},
       {"--against", {true, {Action::CURVES, Action::CHECK}}},
+      {"--synchronized", {false, {Action::CURVES}}},
       {"--trajectory", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
       {"--movers", {false, {Action::CURVES}}},
       {"--self", {false, {Action::CURVES, Action::REPORT, Action::CHECK}}},
@@ -302,6 +303,7 @@ void readAgainst(const Words &words, Arguments &out) {
   }
   if (out.action == Action::CURVES) out.action = Action::AGAINST;
   out.against = words.text("--against");
+  out.synchronized = words.has("--synchronized");
 }
 
 /* The robot along a trajectory, instead of curves. */
@@ -380,6 +382,8 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       if (words.has("--per-link"))
         throw BadUsage("--per-link needs --trajectory T.yaml; --per-object has a row for each link that a curve meets");
       out.curves = required("--curves", "CURVES.csv");
+      if (words.has("--synchronized") && !words.has("--against"))
+        throw BadUsage("--synchronized needs --against: it is about two curves on one clock");
       if (words.has("--against")) {
         readAgainst(words, out);
         break;
@@ -424,10 +428,13 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
         readTrajectoryWords(words, out);
         break;
       }
-      for (const char *name : {"--robot", "--srdf", "--state"})
-        if (words.has(name)) throw BadUsage(std::string(name) + " needs --trajectory T.yaml");
       out.cases = required("--in", "CASES.yaml, or --trajectory T.yaml");
       out.scene = words.text("--scene");
+      out.robot = words.text("--robot");
+      out.srdf = words.text("--srdf");
+      out.state = words.text("--state");
+      for (const char *name : {"--srdf", "--state"})
+        if (words.has(name) && out.robot.empty()) throw BadUsage(std::string(name) + " needs --robot URDF");
       break;
     case Action::SEND:
       if (plain.empty()) throw BadUsage("'send' needs a file: cprox send SCENE.yaml");
@@ -521,8 +528,10 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
                     [,restrict_t0,restrict_t1]; basis bezier, bspline, polynomial, legendre, lagrange (nodes for
                     knots), trigonometric, rational_bezier, nurbs (weights for parameters), clothoid, dubins,
                     involute, pythagorean_hodograph or piecewise (the next n rows); doc/formats.md has them all.
+                    A radius that changes has the coefficients of 1, t, t², ..., separated by blanks.
                     Lines that begin with # and a header row are skipped
   --against FILE    curves, too: instead of a scene
+  --synchronized    with --against: both curves are at the same parameter, so that they may cross each other's way
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
   --robot FILE      a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)
   --trajectory FILE a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint

@@ -47,6 +47,7 @@ struct Arguments {
   bool has_delta = false; /**< REPORT: ask for a verdict at query.delta, too */
 
   std::string curves, scene;   /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
+  bool synchronized = false;   /**< AGAINST: both curves are at the same parameter */
   std::string against;         /**< file of AGAINST; of CHECK where it was given */
   std::string trajectory;      /**< file of TRAJECTORY; of CHECK and CONSTRAINTS where it was given */
   bool self = false;           /**< with a trajectory, or of MOVERS: ask about the robot itself, too */

@@ -93,6 +93,7 @@ void requireCheckable(const CurveDescription &curve) {
   static constexpr const char *bases[] = {"bezier", "bspline", "polynomial", "legendre", "lagrange", "trigonometric"};
   if (curve.restrict_t0 != 0.0 || curve.restrict_t1 != 0.0)
     throw BadInput("a curve that is restricted has no certificate; cut it by its t0 and t1 or its control points");
+  if (!curve.radius_polynomial.empty()) throw BadInput("a curve whose radius changes has no certificate");
   for (const char *basis : bases)
     if (curve.basis == basis) return;
   throw BadInput("a " + curve.basis + " curve has no certificate");

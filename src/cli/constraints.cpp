@@ -20,10 +20,13 @@
 namespace curve_proximity::cli {
 namespace {
 
-/* The objects of --scene; none without. */
-SnapshotPtr readObjects(const Arguments &arguments, const ResourceOptions &resources, Warnings &warnings) {
-  if (!arguments.scene.empty()) return readStandingWorld(arguments, "'constraints'", warnings).snapshot;
-  return Scene(nullptr, resources).snapshot();
+/* The objects of --scene and the links of --robot; none without. */
+World readSides(const Arguments &arguments, const ResourceOptions &resources, Warnings &warnings) {
+  if (!arguments.scene.empty() || !arguments.robot.empty())
+    return readStandingWorld(arguments, "'constraints'", warnings);
+  World nothing;
+  nothing.snapshot = Scene(nullptr, resources).snapshot();
+  return nothing;
 }
 
 /* The one provider. Whatever is wrong with it, there is nothing to answer. */
@@ -92,7 +95,7 @@ int answerCases(const Arguments &arguments, Console &console) {
   ResourceOptions resources;
   resources.base_dir = folderOf(arguments.cases);
   resources.find_package = packageFinder(resources.base_dir);
-  const SnapshotPtr snapshot = readObjects(arguments, resources, warnings);
+  const World world = readSides(arguments, resources, warnings);
   const std::unique_ptr<ProviderSet> providers = loadProvider(arguments);
   const Session session{*providers, arguments, resources};
   ResultsFile results(arguments.out, {arguments.cases, arguments.scene});
@@ -108,7 +111,7 @@ int answerCases(const Arguments &arguments, Console &console) {
     ConstraintCase described;
     described.id = caseId(entry);
     const std::string place = arguments.cases + ": case " + std::to_string(given) + " (id '" + described.id + "')";
-    const std::string fault = sentenceOf([&] { described = parseCase(entry, *snapshot, warnings); });
+    const std::string fault = sentenceOf([&] { described = parseCase(entry, world, warnings); });
     for (; warned < warnings.sentences().size(); ++warned) console.say("warning: " + warnings.sentences()[warned]);
     return [&, described, fault, place](Workspace &workspace) {
       return answerOne(session, described, fault, place, workspace);

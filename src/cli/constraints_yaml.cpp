@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "constraints_yaml.h"
 
-#include "../ros/conversions.h"
+#include "../scene/yaml/curve_yaml.h"
 #include "../scene/yaml/numbers.h"
 #include "../scene/yaml/scene_yaml.h"
 
@@ -13,7 +13,8 @@ void requireFixed(const YamlValue &value, const std::string &frame) {
     value.fail("frame '" + frame + "': without a node everything stands in the fixed frame, '' or 'world'");
 }
 
-ObjectDescription readSide(const YamlValue &value, bool rides, const Snapshot &snapshot, Warnings &warnings) {
+ObjectDescription readSide(const YamlValue &value, bool rides, const World &world, Warnings &warnings,
+                           std::optional<ResourceOptions> &resources) {
   value.warnOfOthers({"id", "header", "pose", "padding", "primitives", "primitive_poses", "meshes", "mesh_poses",
                       "planes", "plane_poses", "bodies", "body_poses", "operation"},
                      warnings);
@@ -22,45 +23,19 @@ ObjectDescription readSide(const YamlValue &value, bool rides, const Snapshot &s
   const std::optional<YamlValue> id = value.find("id");
   if (!side.shapes.empty() || !id || id->text().empty()) return side;
 
-  // An object of the scene, perhaps elsewhere.
-  const auto found = snapshot.objects().find(id->text());
-  if (found == snapshot.objects().end()) id->fail("there is no object '" + id->text() + "' in the scene");
-  ObjectDescription object = found->second->description;
+  // An object of the scene, perhaps elsewhere, or what is on the robot.
+  ConstraintSide found;
+  try {
+    found = sideOf(*world.snapshot, id->text(), [&](const std::string &link) { return world.links.at(link); });
+  } catch (const Error &error) {
+    id->fail(error.what());
+  }
+  if (found.is_on_robot && value.find("pose"))
+    id->fail("'" + id->text() + "' is on the robot: its joint values say where it is, it takes no pose");
+  resources = std::move(found.resources);
+  ObjectDescription object = std::move(found.object);
   if (rides || value.find("pose")) object.pose = side.pose;
   return object;
-}
-
-/* What a curve and a piece have in common. */
-template <typename Message>
-void readBasis(const YamlValue &value, Message &message) {
-  message.basis = value.at("basis").text();
-  if (const auto degree = value.find("degree")) message.degree = static_cast<std::uint32_t>(degree->count());
-  if (const auto t0 = value.find("t0")) message.t0 = t0->number();
-  if (const auto t1 = value.find("t1")) message.t1 = t1->number();
-  if (const auto knots = value.find("knots")) message.knots = knots->numbers();
-  if (const auto parameters = value.find("parameters")) message.parameters = parameters->numbers();
-  if (message.basis == Curve::PIECEWISE) return;
-  for (const YamlValue &point : value.at("points").items())
-    message.points.push_back(toPointMessage(toVec3(point.vector())));
-}
-
-CurveDescription readCurve(const YamlValue &value, Warnings &warnings) {
-  value.warnOfOthers({"header", "id", "basis", "degree", "t0", "t1", "radius", "points", "knots", "parameters",
-                      "pieces", "restrict_t0", "restrict_t1"},
-                     warnings);
-  if (const auto header = value.find("header"))
-    if (const auto frame = header->find("frame_id")) requireFixed(value, frame->text());
-  Curve message;
-  readBasis(value, message);
-  if (const auto radius = value.find("radius")) message.radius = radius->number();
-  if (const auto from = value.find("restrict_t0")) message.restrict_t0 = from->number();
-  if (const auto to = value.find("restrict_t1")) message.restrict_t1 = to->number();
-  for (const YamlValue &piece : value.itemsOf("pieces")) {
-    piece.warnOfOthers({"basis", "degree", "t0", "t1", "points", "knots", "parameters"}, warnings);
-    message.pieces.emplace_back();
-    readBasis(piece, message.pieces.back());
-  }
-  return toDescription(message, Eigen::Isometry3d::Identity());
 }
 
 ParameterValue toParameterValue(const YAML::Node &node, const std::string &name) {
@@ -99,7 +74,7 @@ std::string caseId(const YamlValue &entry) {
   return id && id->isScalar() ? id->text() : "";
 }
 
-ConstraintCase parseCase(const YamlValue &entry, const Snapshot &snapshot, Warnings &warnings) {
+ConstraintCase parseCase(const YamlValue &entry, const World &world, Warnings &warnings) {
   const YamlValue value(entry.named(caseId(entry)));
   if (const auto trajectory = value.find("trajectory"))
     trajectory->fail("is given by --trajectory T.yaml and --robot URDF, without --in");
@@ -107,8 +82,8 @@ ConstraintCase parseCase(const YamlValue &entry, const Snapshot &snapshot, Warni
   ConstraintCase out;
   out.id = caseId(entry);
   if (const auto curve = value.find("curve")) out.curve = readCurve(*curve, warnings);
-  if (const auto a = value.find("a")) out.a = readSide(*a, out.curve.has_value(), snapshot, warnings);
-  out.b = readSide(value.at("b"), false, snapshot, warnings);
+  if (const auto a = value.find("a")) out.a = readSide(*a, out.curve.has_value(), world, warnings, out.resources_a);
+  out.b = readSide(value.at("b"), false, world, warnings, out.resources_b);
   return out;
 }
 

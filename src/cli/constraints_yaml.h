@@ -11,6 +11,7 @@
 #include "../providers/constraint_case.h"
 #include "../scene/yaml/yaml_value.h"
 #include "failure.h"
+#include "world.h"
 
 namespace curve_proximity::cli {
 
@@ -20,9 +21,9 @@ std::vector<YamlValue> readCases(const std::string &path, Warnings &warnings);
 /** The id of an entry, "" where it has none. Never throws. */
 std::string caseId(const YamlValue &entry);
 
-/** One entry; objects without shapes are those of the snapshot. All stands in the fixed frame, '' or 'world'. The
- * entry's `providers` are not read. Throws BadInput and Error with what is wrong. */
-ConstraintCase parseCase(const YamlValue &entry, const Snapshot &snapshot, Warnings &warnings);
+/** One entry; sides without shapes are objects of the scene, links, or what links carry. All stands in the fixed frame,
+ * '' or 'world'. The entry's `providers` are not read. Throws BadInput and Error with what is wrong. */
+ConstraintCase parseCase(const YamlValue &entry, const World &world, Warnings &warnings);
 
 /** "mode: signal, samples: 9" as parameters. Throws BadUsage. */
 ParameterMap parseParameters(const std::string &text);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <curve_proximity/core.hpp>
 #include <filesystem>
+#include <sstream>
 
 #include "../scene/curve_basis.h"
 #include "../scene/yaml/numbers.h"
@@ -233,6 +234,25 @@ std::string rowId(const std::string &text) {
 
 namespace {
 
+/* The coefficients of 1, t, t², …, separated by blanks; one alone does not change. */
+void readRadius(const std::vector<std::string> &fields, CurveDescription &curve) {
+  constexpr std::size_t kRadius = 5;
+  std::istringstream text(fields[kRadius]);
+  std::vector<std::string> words;
+  for (std::string word; text >> word;) words.push_back(word);
+  if (words.size() < 2) {
+    curve.radius = number(fields, kRadius, 0);
+    return;
+  }
+  for (const std::string &word : words) {
+    const std::optional<double> value = parseFinite(word);
+    if (!value) throw BadInput(columnName(kRadius, 0) + ": " + shown(word) + " is not a finite number");
+    curve.radius_polynomial.push_back(*value);
+  }
+  curve.radius = curve.radius_polynomial.front();
+  curve.radius_polynomial.erase(curve.radius_polynomial.begin());
+}
+
 /* The columns from `id` to `n`. */
 CurveDescription readHead(std::vector<std::string> &fields) {
   /* empty fields at the end: spreadsheets make all rows as long as the longest */
@@ -247,7 +267,7 @@ CurveDescription readHead(std::vector<std::string> &fields) {
   curve.degree = count(fields, 2);
   curve.t0 = number(fields, 3, 0);
   curve.t1 = number(fields, 4, 0);
-  curve.radius = number(fields, 5, 0);
+  readRadius(fields, curve);
   return curve;
 }
 
@@ -302,7 +322,7 @@ CurveDescription parsePieces(const std::vector<std::string> &rows) {
     } catch (const BadInput &error) {
       throw BadInput("piece " + std::to_string(i - 1) + ": " + error.what());
     }
-    if (curve.pieces.back().radius != 0.0) {
+    if (curve.pieces.back().radius != 0.0 || !curve.pieces.back().radius_polynomial.empty()) {
       throw BadInput("piece " + std::to_string(i - 1) + ": its radius must be 0; that of the piecewise row counts");
     }
   }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include <chrono>
 #include <variant>
 
+#include "../scene/pair_query.h"
 #include "../scene/yaml/scene_change.h"
 #include "commands.h"
 #include "failure.h"
@@ -23,70 +23,20 @@ struct PairRow {
   std::variant<PairDescription, std::string> pair;
 };
 
-cprox_obstacle place(const Geometry &geometry, const PlacedShape &shape) {
-  return cprox_obstacle_at(geometry.body.get(), shape.pose);
-}
-
-/* What is asked of two bodies, without the time that it takes. */
-cprox_result ask(const PairDescription &pair, const cprox_obstacle &a, const cprox_obstacle &b,
-                 const cprox_options &options, Workspace &workspace) {
-  const auto moving = [&](const auto &query, const cprox_options &with) {
-    return query(translating(a, pair.velocity_a), translating(b, pair.velocity_b), pair.duration, with, workspace);
-  };
-  cprox_options unstopped = options; /* it is short and does not poll */
-  unstopped.stop = nullptr;
-  switch (pair.asked) {
-    case PairDescription::TRANSLATING_DISTANCE: return moving(translatingDistance, unstopped);
-    case PairDescription::TRANSLATING_CONTACT: return moving(translatingContact, options);
-    case PairDescription::DISTANCE: return curve_proximity::pair(a, b, options, workspace);
-    case PairDescription::GROWTH: break;
-  }
-  const cprox_growth growth = growthDistance(a, b, options, workspace);
-  cprox_result out{};
-  out.status = growth.status, out.lower = growth.lower, out.upper = growth.upper;
-  out.distance_queries = growth.pairs;
-  return out;
-}
-
-const char *kindOf(PairDescription::Asked asked) {
-  switch (asked) {
-    case PairDescription::GROWTH: return "growth";
-    case PairDescription::TRANSLATING_DISTANCE: return "translating_distance";
-    case PairDescription::TRANSLATING_CONTACT: return "translating_contact";
-    case PairDescription::DISTANCE: break;
-  }
-  return "pair";
-}
-
-/* What a peer says of bodies that stand. */
-void addOpinion(const PairDescription &pair, const Query &query, ResultRow &row) {
-  if (!query.second_opinion || row.result.status < 0) return;
-  if (pair.asked == PairDescription::DISTANCE) {
-    row.second_opinion = query.second_opinion->ofPair(pair.a.shape, toIsometry(pair.a.pose), pair.b.shape,
-                                                      toIsometry(pair.b.pose), row.result.lower, row.result.upper);
-  } else {
-    row.second_opinion.verdict = SecondOpinion::UNKNOWN;
-    row.second_opinion.message = "no second opinion: peers are asked about bodies that stand";
-  }
-  if (!row.second_opinion.message.empty())
-    row.message += (row.message.empty() ? "" : "; ") + row.second_opinion.message;
-}
-
 /* The answer; throws Error where there is none. */
 ResultRow measure(const PairDescription &pair, const Query &query, const ResourceOptions &resources,
                   Workspace &workspace) {
-  const Geometry a = makeGeometry(pair.a.shape, resources), b = makeGeometry(pair.b.shape, resources);
+  const Answer answer = askPair(pair, query, resources, workspace);
   ResultRow row;
-  row.kind = kindOf(pair.asked);
-  row.id = row.a = row.b = pair.id;
+  row.kind = answer.kind;
+  row.id = answer.id, row.a = answer.a, row.b = answer.b;
+  row.result = answer.result;
+  row.microseconds = answer.microseconds;
+  row.second_opinion = answer.second_opinion;
+  row.message = answer.message;
   row.has_points = pair.asked != PairDescription::GROWTH;
   row.has_contact = pair.asked == PairDescription::TRANSLATING_CONTACT;
-  row.has_t = row.has_verdict = row.has_contact || pair.asked == PairDescription::TRANSLATING_DISTANCE;
-  const auto begin = std::chrono::steady_clock::now();
-  row.result = ask(pair, place(a, pair.a), place(b, pair.b), query.options, workspace);
-  row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
-  if (row.result.status != CPROX_OK) row.message = cprox_status_text(row.result.status);
-  addOpinion(pair, query, row);
+  row.has_t = row.has_verdict = isTranslating(pair.asked);
   return row;
 }
 

@@ -7,20 +7,19 @@
 namespace curve_proximity::cli {
 namespace {
 
-PlacedShape readPlaced(const YamlValue &value, Warnings &warnings) {
-  PlacedShape out;
+PlacedBody readPlaced(const YamlValue &value, Warnings &warnings) {
+  PlacedBody out;
   out.shape = readBody(value, warnings);
   if (const auto pose = value.find("pose")) out.pose = pose->pose(warnings);
   return out;
 }
 
 PairDescription::Asked readAsked(const YamlValue &value) {
-  const std::string name = value.text();
-  if (name == "distance") return PairDescription::DISTANCE;
-  if (name == "growth") return PairDescription::GROWTH;
-  if (name == "translating_distance") return PairDescription::TRANSLATING_DISTANCE;
-  if (name == "translating_contact") return PairDescription::TRANSLATING_CONTACT;
-  value.fail("ask '" + name + "' is unknown; it must be distance, growth, translating_distance or translating_contact");
+  const std::optional<PairDescription::Asked> asked = pairQuestion(value.text());
+  if (!asked)
+    value.fail("ask '" + value.text() +
+               "' is unknown; it must be distance, growth, translating_distance or translating_contact");
+  return *asked;
 }
 
 } // namespace
@@ -45,8 +44,7 @@ PairDescription parsePair(const YamlValue &entry, Warnings &warnings) {
   out.a = readPlaced(value.at("a"), warnings);
   out.b = readPlaced(value.at("b"), warnings);
   if (const auto asked = value.find("ask")) out.asked = readAsked(*asked);
-  const bool moves =
-      out.asked == PairDescription::TRANSLATING_DISTANCE || out.asked == PairDescription::TRANSLATING_CONTACT;
+  const bool moves = isTranslating(out.asked);
   for (const char *key : {"velocity_a", "velocity_b", "duration"})
     if (!moves && value.find(key))
       value.fail(std::string("has a ") + key + ": bodies move with ask: translating_distance");

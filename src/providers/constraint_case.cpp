@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <curve_proximity/nearest_name.hpp>
 #include <curve_proximity/query.hpp>
 
 namespace curve_proximity {
@@ -52,6 +53,13 @@ class Key {
       add(shape.octree.data);
       add(std::size_t{shape.unknown_is_occupied});
       addMatrix(shape.pose.matrix());
+      addRows(shape.values);
+      add(std::size_t{shape.deformed.has_value()});
+      if (shape.deformed) {
+        addMatrix(shape.deformed->linear);
+        addMatrix(shape.deformed->translation);
+        addRows(shape.deformed->exponents);
+      }
     }
   }
 
@@ -81,12 +89,14 @@ bool turnsBothWays(const Eigen::Matrix3Xd &outline) {
 
 /* With files by their absolute paths. */
 ConstraintBody::Part toPart(const ShapeDescription &given, const ResourceOptions &resources) {
-  if (given.type == ShapeType::HEIGHT_FIELD || given.type == ShapeType::DISTANCE_GRID)
-    throw Error(std::string(shapeTypeName(given.type)) + ": constraints take bodies, meshes, points and octrees");
+  if (given.type == ShapeType::DISTANCE_GRID || given.type == ShapeType::CURVE)
+    throw Error(std::string(shapeTypeName(given.type)) + ": its distance has no gradient here");
   ShapeDescription shape = given;
   if (!shape.resource.empty()) shape.resource = resolveResource(shape.resource, resources, shapeTypeName(shape.type));
   const Geometry geometry = sideGeometry(shape, resources);
-  return {shape, geometry.hull, geometry.hull_excess + geometry.margin};
+  BodyHandle exact; // a mesh that was simplified is not
+  if (geometry.margin == 0.0) exact = geometry.body;
+  return {shape, geometry.hull, geometry.hull_excess + geometry.margin, exact};
 }
 
 ConstraintBody toBody(const ObjectDescription &object, const char *name, const ResourceOptions &resources) {
@@ -129,6 +139,8 @@ void makeReady(const ConstraintCase &described, Asked &asked) {
   if (described.curve) {
     if (!described.a.pose.matrix().isIdentity(0.0))
       throw Error("a: what rides a curve stands where the curve is: its pose must be the identity");
+    if (!described.curve->radius_polynomial.empty())
+      throw Error("curve: constraints are about tubes whose radius does not change");
     asked.curve.curve = compile(*described.curve).curve;
     asked.curve.description = *described.curve;
     asked.place.curve = &asked.curve;
@@ -137,11 +149,14 @@ void makeReady(const ConstraintCase &described, Asked &asked) {
   key.add(described.a);
   key.add(described.b);
   key.add(std::size_t{described.curve.has_value()});
+  key.add(std::size_t{described.providers.empty()});
   asked.key = key.text();
 }
 
 ConstraintPair toPair(const ConstraintCase &described, const ResourceOptions &resources) {
-  return {toBody(described.a, "a", resources), toBody(described.b, "b", resources), described.curve.has_value()};
+  return {toBody(described.a, "a", described.resources_a.value_or(resources)),
+          toBody(described.b, "b", described.resources_b.value_or(resources)), described.curve.has_value(),
+          !described.providers.empty()};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -198,6 +213,39 @@ Geometry sideGeometry(const ShapeDescription &shape, const ResourceOptions &reso
   Geometry geometry = makeGeometry(outline ? hull : shape, resources);
   if (!geometry.hull) throw Error("the octree has no occupied cell");
   return geometry;
+}
+
+ConstraintSide sideOf(const Snapshot &scene, const std::string &id, const LinkPlaces &places) {
+  ConstraintSide out;
+  const auto object = scene.objects().find(id);
+  if (object != scene.objects().end()) {
+    out.object = object->second->description;
+    return out;
+  }
+  out.object.id = id;
+  std::string link = id;
+  const std::vector<LinkGeometry> *shapes = nullptr;
+  const auto attached = scene.attached().find(id);
+  if (attached != scene.attached().end()) {
+    link = attached->second->link;
+    shapes = &attached->second->shapes;
+    out.object.padding = scene.attachedPadding(*attached->second);
+  } else if (scene.robot() && scene.robot()->links().count(id) > 0) {
+    shapes = &scene.linkGeometry(id);
+    out.object.padding = scene.linkPadding(id);
+    out.resources = scene.robot()->resources();
+    if (shapes->empty()) throw Error("link '" + id + "' has no collision geometry");
+  } else {
+    throw Error("there is no object '" + id + "' in the scene" + didYouMean(id, namesOf(scene.objects())) +
+                (scene.robot() ? ", and no link of that name" : ""));
+  }
+  for (const LinkGeometry &shape : *shapes) {
+    out.object.shapes.push_back(shape.description);
+    out.object.shapes.back().pose = shape.pose;
+  }
+  out.object.pose = places(link);
+  out.is_on_robot = true;
+  return out;
 }
 
 ConstraintRow failedRow(const std::string &id, const std::string &why, cprox_status status) {

@@ -6,6 +6,8 @@
 
 #include <curve_proximity/constraint_provider.hpp>
 #include <curve_proximity/geometry.hpp>
+#include <curve_proximity/scene.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,11 +29,26 @@ struct MotionCase {
 /** What is asked, all poses in the fixed frame. */
 struct ConstraintCase {
   std::string id;
-  std::vector<std::string> providers;    /**< by name; none: every one that applies */
-  ObjectDescription a, b;                /**< shapes, pose, padding */
-  std::optional<CurveDescription> curve; /**< a rides it; a may then have no shape */
-  std::optional<MotionCase> motion;      /**< this, and neither a, b nor curve */
+  std::vector<std::string> providers;                      /**< by name; none: every one that applies */
+  ObjectDescription a, b;                                  /**< shapes, pose, padding */
+  std::optional<ResourceOptions> resources_a, resources_b; /**< where its mesh files are, if not where all are */
+  std::optional<CurveDescription> curve;                   /**< a rides it; a may then have no shape */
+  std::optional<MotionCase> motion;                        /**< this, and neither a, b nor curve */
 };
+
+/** A side that is named. */
+struct ConstraintSide {
+  ObjectDescription object;
+  std::optional<ResourceOptions> resources; /**< of a link: where its mesh files are */
+  bool is_on_robot = false;                 /**< a link, or what one carries: its pose is that of the link */
+};
+
+/** Where a link is. May throw Error. */
+using LinkPlaces = std::function<Eigen::Isometry3d(const std::string &link)>;
+
+/** The object of the scene with that name, at its pose; else what a link carries, or the link, with padding and scale
+ *  of the link. Throws Error: there is none; a link without geometry. */
+ConstraintSide sideOf(const Snapshot &scene, const std::string &id, const LinkPlaces &places);
 
 /** One provider's answer. */
 struct ConstraintRow {

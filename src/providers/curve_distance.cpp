@@ -3,23 +3,19 @@
  */
 #include <pluginlib/class_list_macros.hpp>
 
-#include <curve_proximity/constraint_provider.hpp>
+#include "distance_constraints.h"
 
 namespace curve_proximity {
 namespace {
 
-struct CurveDistanceParameters {
-  cprox_options options = CPROX_OPTIONS_DEFAULT;
-  double margin = 0.0; /* [m] */
-};
-
 class CurveDistanceConstraint : public Constraint {
  public:
   CurveDistanceConstraint(const CurveDistanceParameters &parameters, const ConstraintPair &pair)
-      : parameters_(parameters), pair_(pair), excess_(excessOf(pair.a) + excessOf(pair.b)) {
-    if (!pair.along_curve) throw DoesNotApply("CurveDistance is about curves: give one, or ask SuperquadricDistance");
+      : parameters_(parameters),
+        pair_(pair),
+        excess_(excessOf(pair.a) + (parameters.exact_meshes ? 0.0 : excessOf(pair.b))) {
     if (!pair.a.parts.empty()) carried_ = joinedBody(pair.a);
-    target_ = joinedBody(pair.b);
+    target_ = joinedBody(pair.b, parameters.exact_meshes);
   }
 
   void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
@@ -99,6 +95,10 @@ class CurveDistanceConstraint : public Constraint {
 
 } // namespace
 
+std::unique_ptr<const Constraint> curveDistance(const CurveDistanceParameters &parameters, const ConstraintPair &pair) {
+  return std::make_unique<CurveDistanceConstraint>(parameters, pair);
+}
+
 class CurveDistance : public ConstraintProvider {
  public:
   void initialise(const ParameterMap &parameters) override {
@@ -107,11 +107,19 @@ class CurveDistance : public ConstraintProvider {
     parameters_.options.max_nodes = static_cast<std::uint32_t>(reader.count("max_nodes", 20000, 1, 2000000000));
     parameters_.options.signed_distance = reader.truth("signed", true);
     parameters_.margin = reader.number("margin", 0.0, 0.0);
+    const std::string meshes = reader.word("meshes", "hull", {"hull", "exact"});
+    parameters_.exact_meshes = meshes == "exact";
     reader.end();
   }
 
   std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {
-    return std::make_unique<CurveDistanceConstraint>(parameters_, pair);
+    if (pair.along_curve) return curveDistance(parameters_, pair);
+    if (!pair.is_named) throw DoesNotApply("SuperquadricDistance answers about standing bodies");
+    StandingDistanceParameters standing;
+    standing.options.epsilon = parameters_.options.epsilon;
+    standing.options.max_nodes = parameters_.options.max_nodes;
+    standing.margin = parameters_.margin;
+    return standingDistance(standing, pair);
   }
 
  private:

@@ -364,7 +364,9 @@ SolidHandle planarSolid(const ConstraintBody::Part &part, double padding) {
       std::vector<Point> corners = planarPoints(shape.vertices);
       return padding > 0.0 ? polygonRound(part.body, padding) : polygonSolid(std::move(corners));
     }
-    case ShapeType::SUPERQUADRIC: return polygonRound(part.body, padding); // its shadow is its section
+    case ShapeType::SUPERQUADRIC:
+      if (shape.deformed) throw Error("FourierGap takes no deformed bodies in the plane");
+      return polygonRound(part.body, padding); // its shadow is its section
     default: throw Error("FourierGap has no solid for it in the plane");
   }
 }

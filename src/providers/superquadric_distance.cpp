@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <optional>
 
-#include <curve_proximity/constraint_provider.hpp>
-#include <curve_proximity/superquadric_fit.hpp>
+#include "distance_constraints.h"
 
 namespace curve_proximity {
 namespace {
@@ -25,11 +23,7 @@ bool isJump(double near, double far, double noise) {
   return near > noise && near > LEAST_LEFT * far;
 }
 
-struct Parameters {
-  cprox_options options = CPROX_OPTIONS_DEFAULT;
-  std::optional<SuperquadricFitOptions> fit; /* superquadrics in place of what is not smooth */
-  double margin = 0.0;                       /* [m] */
-};
+using Parameters = StandingDistanceParameters;
 
 /* A side as single bodies, and how far they stand out of what was described. */
 struct Side {
@@ -45,7 +39,7 @@ constexpr double LEAST_ROUND = 1.05, MOST_ROUND = 64.0;
 bool mayBeFlat(const ShapeDescription &shape) {
   if (shape.type == ShapeType::POINT || shape.type == ShapeType::SPHERE || shape.type == ShapeType::ELLIPSOID)
     return false;
-  if (shape.type != ShapeType::SUPERQUADRIC) return true;
+  if (shape.type != ShapeType::SUPERQUADRIC || shape.deformed) return true;
   for (std::size_t i = 3; i < 6; ++i)
     if (shape.dimensions[i] < LEAST_ROUND || shape.dimensions[i] > MOST_ROUND) return true;
   return false;
@@ -92,9 +86,6 @@ Side makeSide(const ConstraintBody &described, const Parameters &parameters, con
   side.padding = described.padding;
   side.missing = excessOf(described);
   for (const ConstraintBody::Part &part : described.parts) {
-    if (part.shape.type == ShapeType::POINTS || part.shape.type == ShapeType::OCTREE)
-      throw DoesNotApply(std::string("side ") + name + ": SuperquadricDistance takes no " +
-                         shapeTypeName(part.shape.type) + ": ask FourierGap, or CurveDistance along a curve");
     ConstraintBody alone;
     const bool enclose = parameters.fit && !isSmooth(part.shape.type);
     alone.parts = {enclose ? enclosed(part, *parameters.fit, side.excess) : asItIs(part)};
@@ -113,12 +104,13 @@ class SuperquadricConstraint : public Constraint {
   void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
     if (place.curve) throw Error("there is a curve, and the pair is not along one");
 
-    // The nearest of all pairs of parts, and the next.
+    // The nearest of all pairs of parts, and the next. Of a single pair the search goes on from where it ended before.
+    cprox_pair_start *start = a_.bodies.size() == 1 && b_.bodies.size() == 1 ? &out.start : nullptr;
     Nearest best;
     double lower = std::numeric_limits<double>::infinity(), next = lower;
     for (const BodyHandle &a : a_.bodies) {
       for (const BodyHandle &b : b_.bodies) {
-        const Nearest found = ask(a, b, place, workspace);
+        const Nearest found = ask(a, b, place, start, workspace);
         lower = std::min(lower, found.result.lower);
         next = std::min(next, std::max(found.result.upper, best.result.upper));
         if (!best.a || found.result.upper < best.result.upper) best = found;
@@ -137,13 +129,16 @@ class SuperquadricConstraint : public Constraint {
     }
   };
 
-  Nearest ask(const BodyHandle &a, const BodyHandle &b, const ConstraintPlace &place, Workspace &workspace) const {
+  Nearest ask(const BodyHandle &a, const BodyHandle &b, const ConstraintPlace &place, cprox_pair_start *start,
+              Workspace &workspace) const {
+    cprox_options options = parameters_.options;
+    options.start = start;
     Nearest out;
     out.a = a.get();
     out.b = b.get();
     require(cprox_pair(cprox_with_margin(cprox_obstacle_at(out.a, place.a), a_.padding),
-                       cprox_with_margin(cprox_obstacle_at(out.b, place.b), b_.padding), &parameters_.options,
-                       workspace.get(), &out.result),
+                       cprox_with_margin(cprox_obstacle_at(out.b, place.b), b_.padding), &options, workspace.get(),
+                       &out.result),
             workspace);
     return out;
   }
@@ -254,6 +249,11 @@ class SuperquadricConstraint : public Constraint {
 
 } // namespace
 
+std::unique_ptr<const Constraint> standingDistance(const StandingDistanceParameters &parameters,
+                                                   const ConstraintPair &pair) {
+  return std::make_unique<SuperquadricConstraint>(parameters, pair);
+}
+
 class SuperquadricDistance : public ConstraintProvider {
  public:
   void initialise(const ParameterMap &parameters) override {
@@ -268,9 +268,14 @@ class SuperquadricDistance : public ConstraintProvider {
   }
 
   std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {
-    if (pair.along_curve)
-      throw DoesNotApply("SuperquadricDistance is about standing bodies: ask CurveDistance about curves");
-    return std::make_unique<SuperquadricConstraint>(parameters_, pair);
+    if (!pair.along_curve) return standingDistance(parameters_, pair);
+    if (!pair.is_named) throw DoesNotApply("CurveDistance answers about curves");
+    if (parameters_.fit) throw Error("most_exponent is about standing bodies: bodies along curves are as they are");
+    CurveDistanceParameters along;
+    along.options.epsilon = parameters_.options.epsilon;
+    along.options.signed_distance = true;
+    along.margin = parameters_.margin;
+    return curveDistance(along, pair);
   }
 
  private:

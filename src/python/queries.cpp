@@ -12,7 +12,7 @@ namespace {
 /* A mover, and what it refers to. */
 struct Mover {
   cprox_mover mover{};
-  CurveHandle curve;
+  CurveHandle curve, radius;
   BodyHandle body;
 };
 
@@ -278,12 +278,19 @@ void addQueries(py::module &module) {
   py::class_<Mover, std::shared_ptr<Mover>>(module, "Mover", "What moves: a point, a ball or a shape along a curve.");
   module.def(
       "tube",
-      [](const Curve &curve, double radius) {
+      [](const Curve &curve, const Array &radius) {
+        if (radius.ndim() > 1 || radius.size() == 0) throw Error("radius must be a number or an array of shape (n,)");
         auto out = std::make_shared<Mover>();
-        out->curve = curve.curve, out->mover = cprox_tube_along(out->curve.get(), radius);
+        out->curve = curve.curve, out->mover = cprox_tube_along(out->curve.get(), radius.data()[0]);
+        if (radius.size() == 1) return out;
+        Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(radius.size()));
+        for (py::ssize_t i = 1; i < radius.size(); ++i) points(0, static_cast<Eigen::Index>(i)) = radius.data()[i];
+        const cprox_curve_info info = cprox_curve_get_info(out->curve.get());
+        out->radius = makePolynomial(points, info.t0, info.t1), out->mover.radius_curve = out->radius.get();
         return out;
       },
-      py::arg("curve"), py::arg("radius"), "A ball of the radius >= 0 [m] along the curve.");
+      py::arg("curve"), py::arg("radius"),
+      "A ball along the curve. radius: [m] >= 0, or the coefficients of 1, t, t², … of a radius that changes.");
   module.def(
       "carried",
       [](const Shape &shape, const Curve &curve, double margin) {

@@ -37,7 +37,8 @@ bool hasPose(const CollisionObject &side) {
 }
 
 /** A side as described, or the scene's object of that id; its pose in the fixed frame, unless it rides a curve. */
-ObjectDescription toSide(const CollisionObject &message, const Snapshot &snapshot, FrameLookup &lookup, bool rides) {
+ObjectDescription toSide(const CollisionObject &message, const Snapshot &snapshot, FrameLookup &lookup, bool rides,
+                         const LinkPlaces &places, std::optional<ResourceOptions> &resources) {
   ObjectDescription side;
   if (!message.trajectory.waypoints.empty()) throw Error("a side of a constraint takes no trajectory of its own");
   if (snapshot.moving().count(message.id) > 0 && !hasShapes(message))
@@ -47,9 +48,11 @@ ObjectDescription toSide(const CollisionObject &message, const Snapshot &snapsho
     object.operation = CollisionObject::ADD;
     side = toOperation(object).object;
   } else if (!message.id.empty()) {
-    const auto found = snapshot.objects().find(message.id);
-    if (found == snapshot.objects().end()) throw Error("there is no object '" + message.id + "' in the scene");
-    side = found->second->description;
+    ConstraintSide found = sideOf(snapshot, message.id, places);
+    side = std::move(found.object);
+    resources = std::move(found.resources);
+    if (found.is_on_robot && hasPose(message))
+      throw Error("'" + message.id + "' is on the robot: its joint values say where it is, leave its pose unset");
     if (rides) side.pose = Eigen::Isometry3d::Identity();
     if (!hasPose(message)) return side;
     side.pose = toIsometry(message.pose);
@@ -62,6 +65,11 @@ ObjectDescription toSide(const CollisionObject &message, const Snapshot &snapsho
 
 bool hasTrajectory(const ConstraintQuery &message) {
   return !message.trajectory.joint_names.empty() || !message.trajectory.points.empty();
+}
+
+/** A piecewise curve has no points of its own. */
+bool isSet(const Curve &curve) {
+  return !curve.points.empty() || !curve.pieces.empty();
 }
 
 bool isNamed(const CollisionObject &side) {
@@ -216,7 +224,7 @@ struct Constraints::Work {
 
 MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work) const {
   if (!work.snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
-  if (isNamed(message.a) || isNamed(message.b) || !message.curve.points.empty())
+  if (isNamed(message.a) || isNamed(message.b) || isSet(message.curve))
     throw Error("a case is about a trajectory or about two sides: give one of them");
   MotionCase out;
   const CurrentJoints joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
@@ -246,6 +254,18 @@ MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work)
   return out;
 }
 
+Eigen::Isometry3d Constraints::linkPose(const ConstraintQuery &message, const std::string &link, LinkPoses &poses,
+                                        Work &work) const {
+  if (message.joint_state.name.empty() && !message.current_joints) return work.lookup.toFixed(link, ros::Time());
+  if (poses.empty()) {
+    const Robot &robot = *work.snapshot->robot();
+    const CurrentJoints joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
+    work.joints_age = joints.age;
+    poses = robot.linkPoses(joints.positions, rootPose(robot, live_.srdf, ros::Time(), work.lookup));
+  }
+  return poses.at(link);
+}
+
 ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) const {
   ConstraintCase out;
   out.id = message.id;
@@ -254,11 +274,13 @@ ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) c
     out.motion = toMotionCase(message, work);
     return out;
   }
-  if (!message.joint_state.name.empty() || message.current_joints)
-    throw Error("joint_state and current_joints are about a trajectory, and there is none");
-  const bool rides = !message.curve.points.empty();
-  out.a = toSide(message.a, *work.snapshot, work.lookup, rides);
-  out.b = toSide(message.b, *work.snapshot, work.lookup, false);
+  const bool rides = isSet(message.curve);
+  LinkPoses poses; /* by joint values; without any tf2 knows */
+  const LinkPlaces places = [&](const std::string &link) { return linkPose(message, link, poses, work); };
+  out.a = toSide(message.a, *work.snapshot, work.lookup, rides, places, out.resources_a);
+  out.b = toSide(message.b, *work.snapshot, work.lookup, false, places, out.resources_b);
+  if (poses.empty() && (!message.joint_state.name.empty() || message.current_joints))
+    throw Error("joint_state and current_joints are about a trajectory or a link, and there is neither");
   if (rides) {
     const std_msgs::Header &header = message.curve.header;
     out.curve = toDescription(message.curve, work.lookup.toFixed(header.frame_id, header.stamp));

@@ -42,6 +42,8 @@ class Constraints {
   struct Work;
   void checkLimits(const EvaluateConstraints::Request &request) const;
   ConstraintCase toCase(const ConstraintQuery &message, Work &work) const;
+  Eigen::Isometry3d linkPose(const ConstraintQuery &message, const std::string &link, LinkPoses &poses,
+                             Work &work) const;
   MotionCase toMotionCase(const ConstraintQuery &message, Work &work) const;
 
   const Parameters &parameters_;

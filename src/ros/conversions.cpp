@@ -137,6 +137,44 @@ std::vector<double> toNumbers(const std::vector<std::array<double, N>> &rows) {
   return out;
 }
 
+void fillDeformation(const Body &body, ShapeDescription &shape) {
+  if (body.linear.empty() && body.translation.empty() && body.exponents.empty()) return;
+  ShapeDeformation &out = shape.deformed.emplace();
+  if (!body.linear.empty() && body.linear.size() != 9)
+    throw Error("linear has " + std::to_string(body.linear.size()) + " numbers, must be none or 9");
+  if (!body.translation.empty() && body.translation.size() != 3)
+    throw Error("translation has " + std::to_string(body.translation.size()) + " numbers, must be none or 3");
+  if (!body.linear.empty())
+    out.linear = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(body.linear.data());
+  if (!body.translation.empty()) out.translation = Eigen::Map<const Eigen::Vector3d>(body.translation.data());
+  out.exponents = body.exponents;
+}
+
+/** The way back, for what was a message. */
+template <class Message>
+void fillMessage(const CurveDescription &curve, Message &message) {
+  message.basis = curve.basis;
+  message.degree = static_cast<std::uint32_t>(curve.degree);
+  if (!hasOwnRange(curve.basis)) message.t0 = curve.t0, message.t1 = curve.t1;
+  message.points = toPointMessages(curve.points);
+  message.knots = curve.knots;
+  message.parameters = curve.parameters;
+}
+
+Curve toCurveMessage(const CurveDescription &curve) {
+  if (curve.pose) throw Error("curve '" + curve.id + "' has a pose of its own, which no message has");
+  Curve message;
+  fillMessage(curve, message);
+  message.id = curve.id;
+  message.radius = curve.radius;
+  message.radius_polynomial = curve.radius_polynomial;
+  message.restrict_t0 = curve.restrict_t0;
+  message.restrict_t1 = curve.restrict_t1;
+  message.pieces.resize(curve.pieces.size());
+  for (std::size_t i = 0; i < curve.pieces.size(); ++i) fillMessage(curve.pieces[i], message.pieces[i]);
+  return message;
+}
+
 ShapeDescription toShape(const Body &body) {
   const std::optional<ShapeType> type = shapeTypeFromName(body.type);
   if (!type) throw Error("unknown type '" + body.type + "'");
@@ -158,6 +196,12 @@ ShapeDescription toShape(const Body &body) {
   shape.planes = toRows<4>(body.planes, "planes");
   shape.quadrics = toRows<10>(body.quadrics, "quadrics");
   shape.values = body.values;
+  if (shape.type == ShapeType::CURVE)
+    shape.curve = std::make_shared<const CurveDescription>(toDescription(body.curve, Eigen::Isometry3d::Identity()));
+  else if (!body.curve.basis.empty())
+    throw Error("'" + body.type + "' takes no curve");
+  shape.synchronized = body.synchronized != 0;
+  fillDeformation(body, shape);
   return shape;
 }
 
@@ -347,6 +391,14 @@ void addBody(CollisionObject &message, const ShapeDescription &shape) {
   body.planes = toNumbers(shape.planes);
   body.quadrics = toNumbers(shape.quadrics);
   body.values = shape.values;
+  if (shape.curve) body.curve = toCurveMessage(*shape.curve);
+  body.synchronized = shape.synchronized;
+  if (shape.deformed) {
+    const Eigen::Matrix3d rows = shape.deformed->linear.transpose();
+    body.linear.assign(rows.data(), rows.data() + rows.size());
+    body.translation.assign(shape.deformed->translation.data(), shape.deformed->translation.data() + 3);
+    body.exponents = shape.deformed->exponents;
+  }
   message.bodies.push_back(body);
   message.body_poses.push_back(toMessage(shape.pose));
 }
@@ -436,25 +488,14 @@ static void fillBasis(const Message &curve, CurveDescription &out) {
   fillPoints(curve.points, out.points);
   out.knots = curve.knots;
   out.parameters = curve.parameters;
-  if (out.t0 != 0.0 || out.t1 != 0.0) {
-    if (hasOwnRange(out.basis)) throw Error("a " + out.basis + " curve has a range of its own: t0 and t1 must be 0");
-    return;
-  }
-
-  // The whole of the curve; where its knots are too few for that compile() says so.
-  out.t1 = 1.0;
-  const std::size_t n = curve.points.size();
-  const bool has_knots = curve.degree < n && n < curve.knots.size();
-  if (has_knots && (out.basis == Curve::BSPLINE || out.basis == Curve::NURBS)) {
-    out.t0 = curve.knots[curve.degree];
-    out.t1 = curve.knots[n];
-  }
+  takeWholeRange(out);
 }
 
 void toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed, CurveDescription &out) {
   fillBasis(curve, out);
   out.id = curve.id;
   out.radius = curve.radius;
+  out.radius_polynomial = curve.radius_polynomial;
   out.restrict_t0 = curve.restrict_t0;
   out.restrict_t1 = curve.restrict_t1;
   out.pieces.resize(curve.pieces.size());
@@ -470,6 +511,41 @@ void toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed, 
   out.points = frame_in_fixed.linear() * out.points;
   const Eigen::Index moved = isSeries(out.basis) ? std::min<Eigen::Index>(1, out.points.cols()) : out.points.cols();
   out.points.leftCols(moved).colwise() += frame_in_fixed.translation();
+}
+
+/* ---- pairs ---- */
+
+static PlacedBody toPlacedBody(const Body &body, const geometry_msgs::Pose &pose, const char *name) {
+  try {
+    PlacedBody out;
+    out.shape = toShape(body);
+    if (isUnset(pose)) return out;
+    toIsometry(pose); // so that it is finite, and the quaternion a rotation
+    out.pose = {{pose.position.x, pose.position.y, pose.position.z},
+                {pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z}};
+    return out;
+  } catch (const Error &error) {
+    throw Error(std::string(name) + ": " + error.what(), error.status());
+  }
+}
+
+PairDescription toDescription(const PairQuery &message) {
+  const std::optional<PairDescription::Asked> asked = pairQuestion(message.ask);
+  if (!asked)
+    throw Error("ask '" + message.ask +
+                "' is unknown; it must be distance, growth, translating_distance or translating_contact");
+  PairDescription out;
+  out.asked = *asked;
+  out.id = message.id;
+  out.a = toPlacedBody(message.a, message.pose_a, "a");
+  out.b = toPlacedBody(message.b, message.pose_b, "b");
+  out.velocity_a = {message.velocity_a.x, message.velocity_a.y, message.velocity_a.z};
+  out.velocity_b = {message.velocity_b.x, message.velocity_b.y, message.velocity_b.z};
+  out.duration = message.duration;
+  const bool moves = !out.velocity_a.isZero(0.0) || !out.velocity_b.isZero(0.0) || out.duration != 0.0;
+  if (moves && !isTranslating(out.asked))
+    throw Error("there is a velocity or a duration: bodies move with translating_distance and translating_contact");
+  return out;
 }
 
 /* ---- the scene ---- */
@@ -622,6 +698,8 @@ void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
   message.lower = result.lower;
   message.upper = result.upper;
   message.t = result.t;
+  const bool on_curve = answer.kind == Proximity::KIND_CURVE && result.obstacle_index >= 0;
+  message.t_b = on_curve ? result.t_obstacle : std::numeric_limits<double>::quiet_NaN();
   message.t_contact_lower = std::numeric_limits<double>::quiet_NaN();
   message.second_opinion = secondOpinionName(answer.second_opinion.verdict);
   message.second_distance = answer.second_opinion.distance;
@@ -645,7 +723,7 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   message.id = id;
   message.kind = kind;
   message.status = cprox_status_name(CPROX_INVALID);
-  message.lower = message.upper = message.t = message.t_contact_lower = message.second_distance = none;
+  message.lower = message.upper = message.t = message.t_b = message.t_contact_lower = message.second_distance = none;
   message.witness_a.x = message.witness_a.y = message.witness_a.z = none;
   message.witness_b = message.witness_a;
   message.normal.x = message.normal.y = message.normal.z = none;

@@ -11,6 +11,7 @@
 #include <curve_proximity/GetScene.h>
 #include <curve_proximity/LinkPadding.h>
 #include <curve_proximity/LinkScale.h>
+#include <curve_proximity/PairQuery.h>
 #include <curve_proximity/Profile.h>
 #include <curve_proximity/Proximity.h>
 #include <curve_proximity/ViolationIntervals.h>
@@ -24,6 +25,8 @@
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "../scene/pair_query.h"
 
 namespace curve_proximity {
 
@@ -43,6 +46,10 @@ void toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed, 
  *  Throws Error, which names the object and the shape: an unknown type or operation, poses that do not match the
  * shapes, triangles with an index that is none. Dimensions are left to the scene. */
 Operation toOperation(const CollisionObject &object);
+
+/** A pair as ~measure_pairs takes it. Throws Error: an unknown question, a velocity or duration of bodies that stand.
+ */
+PairDescription toDescription(const PairQuery &message);
 
 /** The whole request of ~apply_scene. The poses of objects are brought to the fixed frame by `to_fixed(header)`, which
  * may throw. An object that cannot be converted becomes a sentence in `faults`, and the others stay. */

@@ -62,9 +62,9 @@ void addHull(Canvas &canvas, const std::vector<cprox_vec3> &points, double radiu
 
 } // namespace
 
-double clearance(const cprox_vec3 &centre, double radius, const PlacedBodies &placed) {
+double clearance(const cprox_vec3 &centre, double radius, const StandingBodies &placed) {
   double least = std::numeric_limits<double>::infinity();
-  for (const PlacedBody &p : placed) {
+  for (const StandingBody &p : placed) {
     const double d = cprox_body_nearest(p.body, toVec3(p.pose.inverse() * toEigen(centre)), nullptr);
     least = std::min(least, d - radius - p.padding);
   }
@@ -107,7 +107,22 @@ void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::
   }
 }
 
-void addCurve(Canvas &canvas, const CompiledCurve &curve, const PlacedBodies &placed, std::size_t samples) {
+void addObstacleCurve(Canvas &canvas, const Geometry &geometry, const Eigen::Isometry3d &pose, double padding) {
+  constexpr std::size_t SAMPLES = 100;
+  const cprox_curve_info info = cprox_curve_get_info(geometry.curve.get());
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i <= SAMPLES; ++i) {
+    const double s = static_cast<double>(i) / static_cast<double>(SAMPLES);
+    cprox_vec3 point;
+    if (cprox_curve_evaluate(geometry.curve.get(), i == SAMPLES ? info.t1 : info.t0 + s * (info.t1 - info.t0), nullptr,
+                             &point, nullptr, nullptr) == CPROX_OK)
+      points.push_back(pose * toEigen(point));
+  }
+  const std::vector<std_msgs::ColorRGBA> tints(points.size(), colour(0.55, 0.6, 0.66, 1.0));
+  addTube(canvas, "scene", points, tints, geometry.radius + padding);
+}
+
+void addCurve(Canvas &canvas, const CompiledCurve &curve, const StandingBodies &placed, std::size_t samples) {
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
   const double t0 = info.t0, t1 = info.t1;
   std::vector<Eigen::Vector3d> points;
@@ -119,9 +134,9 @@ void addCurve(Canvas &canvas, const CompiledCurve &curve, const PlacedBodies &pl
                              nullptr) != CPROX_OK)
       continue;
     points.push_back(toEigen(point));
-    tints.push_back(clearanceColour(clearance(point, curve.radius, placed)));
+    tints.push_back(clearanceColour(clearance(point, curve.reach, placed)));
   }
-  addTube(canvas, "curves", points, tints, curve.radius);
+  addTube(canvas, "curves", points, tints, curve.reach);
 }
 
 /* ---- pairs ---- */
@@ -184,7 +199,7 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
   options.max_nodes = NODES;
   ObstaclesHandle obstacles;
   if (makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles) < 0 ||
-      cprox_obstacles_profile(obstacles.get(), cprox_tube_along(curve, line.curve.radius), breaks.data(), INTERVALS,
+      cprox_obstacles_profile(obstacles.get(), cprox_tube_along(curve, line.curve.reach), breaks.data(), INTERVALS,
                               answer.result.upper, &options, workspace.get(), intervals.data()) < 0)
     return;
   for (const cprox_profile_interval &interval : intervals) {
@@ -192,7 +207,7 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
     if (interval.lower > answer.result.upper) continue;
     std::vector<cprox_vec3> points;
     addControlPoints(curve, interval.t0, interval.t1, HALVINGS, degree, points);
-    addHull(canvas, points, line.curve.radius);
+    addHull(canvas, points, line.curve.reach);
   }
 }
 

@@ -11,21 +11,24 @@
 namespace curve_proximity {
 
 /** A body where it stands, for the colours of what comes near it. */
-struct PlacedBody {
+struct StandingBody {
   const cprox_body *body;
   Eigen::Isometry3d pose; /**< in the fixed frame */
   double padding;         /**< [m] */
 };
-using PlacedBodies = std::vector<PlacedBody>;
+using StandingBodies = std::vector<StandingBody>;
 
 /** [m] The least plain distance of a ball to the bodies; infinite where there are none. */
-double clearance(const cprox_vec3 &centre, double radius, const PlacedBodies &placed);
+double clearance(const cprox_vec3 &centre, double radius, const StandingBodies &placed);
 
 /** A tube along the points, a colour a point; of radius 0 a thin one. */
 void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::Vector3d> &points,
              const std::vector<std_msgs::ColorRGBA> &tints, double radius);
 
-void addCurve(Canvas &canvas, const CompiledCurve &curve, const PlacedBodies &placed, std::size_t samples);
+/** A curve of the scene, at its object's pose. */
+void addObstacleCurve(Canvas &canvas, const Geometry &geometry, const Eigen::Isometry3d &pose, double padding);
+
+void addCurve(Canvas &canvas, const CompiledCurve &curve, const StandingBodies &placed, std::size_t samples);
 
 /** The two points with a line between them, and the distance in words. Nothing where there is no pair. */
 void addPair(Canvas &canvas, const Answer &answer);

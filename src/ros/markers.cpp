@@ -25,13 +25,17 @@ constexpr std::size_t MAX_SAMPLES = 2000; /* of all curves of a drawing together
 constexpr std::size_t MAX_CURVE_SAMPLES = 160;
 constexpr double LARGE = 0.4; /* [m] the diagonal from which on an object is drawn translucent */
 
-void addScene(Canvas &canvas, const Snapshot &scene, const ResourceOptions &resources, PlacedBodies &placed) {
+void addScene(Canvas &canvas, const Snapshot &scene, const ResourceOptions &resources, StandingBodies &placed) {
   for (const auto &entry : scene.objects()) {
     const SceneObject &object = *entry.second;
     for (std::size_t i = 0; i < object.shapes.size(); ++i) {
       const ShapeDescription &shape = object.description.shapes[i];
-      if (!object.shapes[i].geometry.body) continue; // an empty octree
+      if (object.shapes[i].geometry.isEmpty()) continue;
       const Eigen::Isometry3d pose = object.description.pose * shape.pose;
+      if (object.shapes[i].geometry.curve) {
+        addObstacleCurve(canvas, object.shapes[i].geometry, pose, object.description.padding);
+        continue;
+      }
       // What is large, a shelf say, must not hide what it holds.
       const bool is_seen =
           shape.type == ShapeType::OCTREE || shape.type == ShapeType::POINTS; // as a sensor sees it: from outside
@@ -44,7 +48,7 @@ void addScene(Canvas &canvas, const Snapshot &scene, const ResourceOptions &reso
   }
 }
 
-void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, const PlacedBodies &placed) {
+void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, const StandingBodies &placed) {
   const std::size_t samples = std::clamp<std::size_t>(MAX_SAMPLES / drawing.lines.size(), 2, MAX_CURVE_SAMPLES);
   for (const Drawing::Line &line : drawing.lines) {
     addCurve(canvas, line.curve, placed, samples);
@@ -63,11 +67,11 @@ void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
 MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion, const LevelDrawing *levels,
                       const std::string &frame, const MarkerResources &resources) {
   Canvas canvas(frame);
-  PlacedBodies objects;
+  StandingBodies objects;
   addScene(canvas, scene, resources.objects, objects);
 
   // One robot: at the closest moment of the trajectory, or where the curves met it.
-  PlacedBodies everything = objects;
+  StandingBodies everything = objects;
   addMovers(canvas, scene, motion, resources.objects, resources.robot);
   if (motion && motion->motion) {
     addMotion(canvas, scene, *motion, resources.robot, objects);

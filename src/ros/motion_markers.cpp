@@ -34,14 +34,14 @@ Parts partsOf(const Snapshot &scene, const std::string &link) {
 }
 
 /** [m] The least plain distance of the parts of a link to the bodies; where they overlap 0 less the paddings. */
-double linkClearance(const Parts &parts, const Eigen::Isometry3d &link, const PlacedBodies &objects,
+double linkClearance(const Parts &parts, const Eigen::Isometry3d &link, const StandingBodies &objects,
                      Workspace &workspace) {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-4;
   double least = std::numeric_limits<double>::infinity();
   for (const Part &part : parts) {
     const cprox_obstacle a = cprox_obstacle_at(part.element->geometry.hull.get(), toPose(link * part.element->pose));
-    for (const PlacedBody &object : objects) {
+    for (const StandingBody &object : objects) {
       cprox_result result{};
       if (cprox_pair(a, cprox_obstacle_at(object.body, toPose(object.pose)), &options, workspace.get(), &result) < 0)
         continue;
@@ -71,7 +71,7 @@ const Answer *nearestOf(const std::vector<Answer> &answers) {
 
 /** The way of a point that is fixed to a link, coloured by the link's clearance. */
 void addSweep(Canvas &canvas, const Snapshot &scene, const RobotMotion &motion, const std::string &link,
-              const Eigen::Vector3d &point, const PlacedBodies &objects, Workspace &workspace) {
+              const Eigen::Vector3d &point, const StandingBodies &objects, Workspace &workspace) {
   const Parts parts = partsOf(scene, link);
   const std::array<double, 2> domain = motion.domain();
   std::vector<Eigen::Vector3d> points;
@@ -88,7 +88,7 @@ void addSweep(Canvas &canvas, const Snapshot &scene, const RobotMotion &motion, 
 } // namespace
 
 void addRobot(Canvas &canvas, const Snapshot &scene, const LinkPoses &links, const ResourceOptions &resources,
-              PlacedBodies &placed) {
+              StandingBodies &placed) {
   for (const auto &link : links) {
     const Parts parts = partsOf(scene, link.first);
     addLink(canvas, "robot", parts, link.second, resources, colour(0.93, 0.93, 0.91, 1.0));
@@ -99,7 +99,7 @@ void addRobot(Canvas &canvas, const Snapshot &scene, const LinkPoses &links, con
 }
 
 void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, const ResourceOptions &resources,
-               const PlacedBodies &objects) {
+               const StandingBodies &objects) {
   const RobotMotion &motion = *drawing.motion;
   const std::array<double, 2> domain = motion.domain();
   const Answer *nearest = nearestOf(drawing.motion_answers);

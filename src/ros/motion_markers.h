@@ -11,12 +11,12 @@ namespace curve_proximity {
 
 /** The links where they stand; they join the bodies that colours are measured against. */
 void addRobot(Canvas &canvas, const Snapshot &scene, const LinkPoses &links, const ResourceOptions &resources,
-              PlacedBodies &placed);
+              StandingBodies &placed);
 
 /** The robot of drawing.motion at its closest moment, on its way, and the way of the point that comes closest. scene:
  * as it is now; objects: those of it. */
 void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, const ResourceOptions &resources,
-               const PlacedBodies &objects);
+               const StandingBodies &objects);
 
 } // namespace curve_proximity
 #endif

@@ -6,6 +6,7 @@
 #include <curve_proximity/ApplyScene.h>
 #include <curve_proximity/EvaluateConstraints.h>
 #include <curve_proximity/GetScene.h>
+#include <curve_proximity/MeasurePairs.h>
 #include <curve_proximity/ProximityQuery.h>
 
 #include <curve_proximity/core.hpp>
@@ -61,15 +62,27 @@ class NameLimits {
     }
   }
 
+  void check(const Body &body) const {
+    check("a body's type", body.type);
+    check("an octree's id", body.octree.id);
+    check(body.curve);
+    if (body.resource.size() > LONGEST_PATH) throw Error("a body's resource is longer than any path");
+  }
+
+  void check(const MeasurePairsRequest &request) const {
+    for (const PairQuery &pair : request.pairs) {
+      check("a pair's id", pair.id);
+      check("what is asked of a pair", pair.ask);
+      check(pair.a);
+      check(pair.b);
+    }
+  }
+
   void check(const CollisionObject &object) const {
     check("an object's id", object.id);
     check("an object's frame", object.header.frame_id);
     check("the turning of a trajectory", object.trajectory.turning);
-    for (const Body &body : object.bodies) {
-      check("a body's type", body.type);
-      check("an octree's id", body.octree.id);
-      if (body.resource.size() > LONGEST_PATH) throw Error("a body's resource is longer than any path");
-    }
+    for (const Body &body : object.bodies) check(body);
   }
 
   void check(const ApplySceneRequest &request) const {

@@ -65,7 +65,10 @@ struct Parameters {
   bool unknown_is_occupied = false;
   bool empty_cloud_clears = false;
   double max_age = 0.0;
-  std::vector<ProviderSpec> constraint_providers;
+  std::vector<ProviderSpec> constraint_providers = {
+      {"curve_proximity/CurveDistance", "curve_proximity/CurveDistance", {}},
+      {"curve_proximity/SuperquadricDistance", "curve_proximity/SuperquadricDistance", {}},
+      {"curve_proximity/FourierGap", "curve_proximity/FourierGap", {}}};
 };
 
 /** The values a number may take: least < value or least <= value, value <= most. */

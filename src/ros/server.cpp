@@ -169,7 +169,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       queries_(parameters_, tuning_, live_, frames_, statistics_, stop_,
                loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf),
                secondOpinions(parameters_)),
-      constraints_(parameters_, live_, frames_, stop_) {
+      constraints_(parameters_, live_, frames_, stop_),
+      pairs_(parameters_, tuning_, statistics_, stop_, secondOpinions(parameters_)) {
   memory::setLimit(static_cast<std::size_t>(parameters_.memory_limit_mb) << 20);
   warnOfOtherLinks(live_);
   loadScene();
@@ -202,14 +203,23 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       advertise<EvaluateConstraints>(
           handle_, "evaluate_constraints",
           handler<EvaluateConstraints>(
-              SCENE_TIMES_WIRE, [this](const Call &call, const RequestThreads::AtWork &at_work,
-                                       EvaluateConstraints::Request &request, EvaluateConstraints::Response &response) {
+              SCENE_TIMES_WIRE,
+              [this](const Call &call, const RequestThreads::AtWork &at_work, EvaluateConstraints::Request &request,
+                     EvaluateConstraints::Response &response) {
                 Turn turn(turns_, call.client, waitUntil(call, at_work));
                 response.frame_id = frames_.fixedFrame();
                 std::shared_ptr<const LevelDrawing> drawing;
                 constraints_.answer(request, response, drawing, &turn);
                 if (drawing) markers_->show(std::move(drawing));
-              }))};
+              })),
+      advertise<MeasurePairs>(
+          handle_, "measure_pairs",
+          handler<MeasurePairs>(SCENE_TIMES_WIRE,
+                                [this](const Call &call, const RequestThreads::AtWork &at_work,
+                                       MeasurePairs::Request &request, MeasurePairs::Response &response) {
+                                  Turn turn(turns_, call.client, waitUntil(call, at_work));
+                                  pairs_.answer(request, response, &turn);
+                                }))};
   const auto take_object = [this](const CollisionObjectConstPtr &object) { takeObject(object); };
   const auto take_attached = [this](const AttachedCollisionObjectConstPtr &object) { takeAttached(object); };
   ros::SubscribeOptions topics[] = {

@@ -32,6 +32,7 @@
 #include "frames.h"
 #include "live_scene.h"
 #include "markers.h"
+#include "pairs.h"
 #include "parameters.h"
 #include "pipeline.h"
 #include "planning_scene_topic.h"
@@ -96,6 +97,7 @@ class ProximityServer {
   StateFile state_file_;
   Queries queries_;
   Constraints constraints_;
+  Pairs pairs_;
   std::unique_ptr<MarkerPublisher> markers_;
   std::unique_ptr<Sensors> sensors_;
   std::unique_ptr<PlanningSceneTopic> planning_scene_;

@@ -26,7 +26,7 @@ double farthest(const CompiledCurve &curve, const cprox_vec3 &from) {
   };
   for (const Eigen::AlignedBox3d &box : curve.boxes) look(box);
   if (curve.boxes.empty()) look(boxOf(curve.curve.get()));
-  return far + curve.radius;
+  return far + curve.reach;
 }
 
 /* What of a mesh has answered. */
@@ -81,6 +81,11 @@ std::string faultOfMoving(const Snapshot &snapshot, const std::vector<std::strin
   for (const std::string &object : objects)
     if (moving.count(object) > 0) name = object;
   return name.empty() ? "" : "object '" + name + "' moves along a trajectory, and this query takes objects that stand";
+}
+
+void requireBody(const Item &item) {
+  if (!item.shape->target.body)
+    throw Error("object '" + *item.owner + "' is a curve: it is asked about curves, not about robots");
 }
 
 Answer refusal(const std::string &id, const std::string &kind, const std::string &why) {

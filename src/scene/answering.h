@@ -25,6 +25,9 @@ std::string faultOfMotion(const Query &query, bool in_all);
  * where it can. */
 std::string faultOfMoving(const Snapshot &snapshot, const std::vector<std::string> &objects);
 
+/* Throws Error where the item is a curve, as robots are asked about bodies. */
+void requireBody(const Item &item);
+
 /* The answer to such a query. */
 Answer refusal(const std::string &id, const std::string &kind, const std::string &why);
 

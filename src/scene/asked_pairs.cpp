@@ -82,6 +82,7 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
   for (const std::size_t k : asked.items) {
     number[k] = static_cast<std::int32_t>(asked.targets.size());
     const PlacedShape &shape = *items[k].shape;
+    requireBody(items[k]);
     const cprox_body_kind kind = cprox_body_get_info(shape.target.body).kind;
     if (kind == CPROX_BODY_DISTANCE_GRID)
       throw Error("object '" + *items[k].owner + "' is a distance_grid: it is asked about curves, not about robots");

@@ -15,7 +15,8 @@ namespace {
 /* One shape in the link's frame; the rounding of the two poses becomes the geometry's excess. */
 LinkGeometry shapeOnLink(const ShapeDescription &shape, const Eigen::Isometry3d &object, double scale,
                          const ResourceOptions &resources) {
-  if (shape.type == ShapeType::HALFSPACE) throw Error("a link cannot carry a halfspace");
+  if (shape.type == ShapeType::HALFSPACE || shape.type == ShapeType::CURVE)
+    throw Error(std::string("a link cannot carry a ") + shapeTypeName(shape.type));
   checkPose(shape.pose, "its pose");
   LinkGeometry out;
   out.description = scale == 1.0 ? shape : scaledShape(shape, scale, resources);

@@ -245,7 +245,36 @@ CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
   return makeSeries(curve);
 }
 
+/* What a radius that changes adds: a polynomial over the range of the curve, as the x of a curve. */
+CurveHandle makeRadius(const std::vector<double> &coefficients, const CurveHandle &curve) {
+  if (coefficients.empty()) return nullptr;
+  const auto n = static_cast<Eigen::Index>(coefficients.size());
+  if (n > CPROX_MAX_DEGREE)
+    throw Error("radius_polynomial has " + std::to_string(n) + " coefficients, at most " +
+                std::to_string(CPROX_MAX_DEGREE) + " are allowed");
+  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, n + 1);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    points(0, i + 1) = coefficients[static_cast<std::size_t>(i)];
+    if (!std::isfinite(points(0, i + 1)))
+      throw Error("radius_polynomial: coefficient " + std::to_string(i) + " is not finite");
+  }
+  const cprox_curve_info info = cprox_curve_get_info(curve.get());
+  return makePolynomial(points, info.t0, info.t1);
+}
+
 } // namespace
+
+cprox_mover moverOf(const CompiledCurve &curve) {
+  cprox_mover mover = along(curve.curve, curve.radius);
+  mover.radius_curve = curve.radius_curve.get();
+  return mover;
+}
+
+double radiusAt(const CompiledCurve &curve, double t) {
+  cprox_vec3 more{};
+  if (curve.radius_curve) cprox_curve_evaluate(curve.radius_curve.get(), t, nullptr, &more, nullptr, nullptr);
+  return std::max(0.0, curve.radius + more.x);
+}
 
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes) {
   Workspace workspace;
@@ -258,6 +287,9 @@ CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes, Workspace
   out.id = curve.id;
   out.radius = curve.radius;
   out.curve = makeWithPlace(curve, workspace);
+  out.radius_curve = makeRadius(curve.radius_polynomial, out.curve);
+  const double more = out.radius_curve ? cprox_curve_get_info(out.radius_curve.get()).highest.x : 0.0;
+  out.reach = more > 0.0 ? (out.radius + more) * (1.0 + 1e-15) : out.radius;
   if (boxes == CurveBoxes::MANY) {
     const bool whole = cprox_curve_get_info(out.curve.get()).kind == CPROX_CURVE_BSPLINE;
     out.boxes = whole ? splineBoxes(curve, out.curve.get()) : pieceBoxes(out.curve.get());

@@ -24,6 +24,22 @@ bool hasOwnRange(const std::string &basis) {
   return isDubins(basis) || basis == "piecewise";
 }
 
+/* Where its knots are too few for that compile() says so. */
+void takeWholeRange(CurveDescription &curve) {
+  if (curve.t0 != 0.0 || curve.t1 != 0.0) {
+    if (hasOwnRange(curve.basis))
+      throw Error("a " + curve.basis + " curve has a range of its own: t0 and t1 must be 0");
+    return;
+  }
+  curve.t1 = 1.0;
+  const auto n = static_cast<std::size_t>(curve.points.cols());
+  const bool has_knots = curve.degree < n && n < curve.knots.size();
+  if (has_knots && (curve.basis == "bspline" || curve.basis == "nurbs")) {
+    curve.t0 = curve.knots[curve.degree];
+    curve.t1 = curve.knots[n];
+  }
+}
+
 CurveCounts countsOf(const std::string &basis, std::size_t degree, std::size_t n) {
   if (degree > CPROX_MAX_DEGREE)
     throw Error("the degree is " + std::to_string(degree) + ", above " + std::to_string(CPROX_MAX_DEGREE));

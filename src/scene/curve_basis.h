@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <string>
 
+#include <curve_proximity/description.hpp>
+
 namespace curve_proximity {
 
 /** How many points, knots and parameters a curve takes. */
@@ -23,6 +25,10 @@ bool isNamedBasis(const std::string &basis);
 
 /** rational_bezier or nurbs. */
 bool isRationalBasis(const std::string &basis);
+
+/** A range [0, 0] becomes that of the whole curve: [0, 1], or of a bspline and nurbs that of its knots. Throws Error
+ * for a range of a basis that has its own. */
+void takeWholeRange(CurveDescription &curve);
 
 /** dubins and piecewise: t0 and t1 are not read. */
 bool hasOwnRange(const std::string &basis);

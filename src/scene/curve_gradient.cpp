@@ -53,7 +53,7 @@ CurveClearance clearanceGradient(const Targets &targets, const CompiledCurve &cu
     gradient.reason = "there is nothing to measure against";
   } else {
     const Item &item = targets.data().items[static_cast<std::size_t>(nearest)];
-    const cprox_mover mover = along(curve.curve, curve.radius);
+    const cprox_mover mover = moverOf(curve);
     cprox_result result{};
     cprox_gradient found{};
     cprox_status status = cprox_distance(mover, item.shape->target, &query.options, workspace.get(), &result);

@@ -51,8 +51,8 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
   const cprox_options options = withoutRounding(query.options, rounding);
   std::vector<cprox_result> results(std::min(limits.count, items.size()));
   std::size_t count = 0;
-  const cprox_status status = cprox_obstacles_nearest(obstacles.get(), along(curve.curve, curve.radius), limits.count,
-                                                      &options, workspace.get(), results.data(), &count);
+  const cprox_status status = cprox_obstacles_nearest(obstacles.get(), moverOf(curve), limits.count, &options,
+                                                      workspace.get(), results.data(), &count);
   if (status < 0) throw Error(workspace.reason(), status);
 
   /* nearest first; what is proven to be beyond the limit is left out */
@@ -81,8 +81,7 @@ std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const Co
     out.a = curve.id;
     if (found.obstacle_index >= 0) out.b = *items[static_cast<std::size_t>(found.obstacle_index)].owner;
   };
-  return searchProfile(obstacles, along(curve.curve, curve.radius), roundingOf(curve, items), breaks, horizon, query,
-                       workspace, name);
+  return searchProfile(obstacles, moverOf(curve), roundingOf(curve, items), breaks, horizon, query, workspace, name);
 }
 
 Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
@@ -106,8 +105,8 @@ Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Q
   ObstaclesHandle handle;
   result.status = makeObstacles(obstacles, CPROX_INDEX_NONE, workspace, handle);
   if (result.status >= 0)
-    result.status = cprox_obstacles_time_of_contact(handle.get(), along(curve.curve, curve.radius), &query.options,
-                                                    workspace.get(), &result);
+    result.status =
+        cprox_obstacles_time_of_contact(handle.get(), moverOf(curve), &query.options, workspace.get(), &result);
   Answer answer = answerOf(curve, result, start);
   if (result.status >= 0) {
     widen(query, 2.0 * roundingOf(curve, items), INFINITE, answer.result);

@@ -7,7 +7,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr std::array<std::pair<ShapeType, const char *>, 17> SHAPE_TYPES = {
+constexpr std::array<std::pair<ShapeType, const char *>, 18> SHAPE_TYPES = {
     {{ShapeType::POINT, "point"},
      {ShapeType::SPHERE, "sphere"},
      {ShapeType::BOX, "box"},
@@ -24,7 +24,8 @@ constexpr std::array<std::pair<ShapeType, const char *>, 17> SHAPE_TYPES = {
      {ShapeType::POINTS, "points"},
      {ShapeType::OCTREE, "octree"},
      {ShapeType::HEIGHT_FIELD, "height_field"},
-     {ShapeType::DISTANCE_GRID, "distance_grid"}}};
+     {ShapeType::DISTANCE_GRID, "distance_grid"},
+     {ShapeType::CURVE, "curve"}}};
 
 } // namespace
 

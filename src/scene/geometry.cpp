@@ -40,6 +40,7 @@ Expected expectedDimensions(ShapeType type) {
     case ShapeType::IMPLICIT:
     case ShapeType::OCTREE:
     case ShapeType::HEIGHT_FIELD:
+    case ShapeType::CURVE:
     case ShapeType::DISTANCE_GRID: break;
   }
   return {0, ""};
@@ -225,10 +226,38 @@ BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &option
       return makePoints(shape.vertices, d.empty() ? 0.0 : d[0], options.memory_limit, options.stop);
     case ShapeType::OCTREE: return makeCells(shape, options);
     case ShapeType::DISTANCE_GRID: return makeDistances(shape, options);
+    case ShapeType::CURVE:
     case ShapeType::HEIGHT_FIELD:
     case ShapeType::MESH: break;
   }
   throw Error("a shape's type is not known");
+}
+
+Geometry makeCurveGeometry(const ShapeDescription &shape) {
+  if (!shape.curve) throw Error("curve: there is none");
+  if (!shape.curve->radius_polynomial.empty() && !shape.synchronized)
+    throw Error("curve: its radius changes, so it must be synchronized");
+  try {
+    const CompiledCurve curve = compile(*shape.curve, CurveBoxes::NONE);
+    Geometry out;
+    out.curve = curve.curve;
+    out.radius_curve = curve.radius_curve;
+    out.radius = curve.radius;
+    out.synchronized = shape.synchronized;
+    return out;
+  } catch (const Error &error) {
+    throw Error(std::string("curve: ") + error.what(), error.status());
+  }
+}
+
+/* The image of the body under x -> A x + b. */
+BodyHandle deform(const BodyHandle &body, const ShapeDescription &shape) {
+  const ShapeDeformation &by = *shape.deformed;
+  try {
+    return makeDeformed(body, by.linear, by.translation, by.exponents);
+  } catch (const Error &error) {
+    throw Error(std::string(shapeTypeName(shape.type)) + ", deformed: " + error.what(), error.status());
+  }
 }
 
 bool startsWith(const std::string &text, const std::string &start) {
@@ -315,10 +344,17 @@ Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &opti
   checkDimensions(shape);
   checkVertices(shape);
   checkConstraints(shape);
+  if (shape.type != ShapeType::CURVE && (shape.curve || shape.synchronized))
+    throw Error(std::string(shapeTypeName(shape.type)) + " takes no curve, and is not synchronized");
+  if (shape.deformed && shape.type != ShapeType::SUPERQUADRIC && shape.type != ShapeType::IMPLICIT)
+    throw Error(std::string(shapeTypeName(shape.type)) + " cannot be deformed: superquadrics and implicit bodies can");
   if (shape.type == ShapeType::MESH) return makeMesh(shape, options, loader);
   if (shape.type == ShapeType::HEIGHT_FIELD) return makeGround(shape, options);
+  if (shape.type == ShapeType::CURVE) return makeCurveGeometry(shape);
   Geometry out;
-  out.body = out.hull = out.surface = makeBody(shape, options);
+  out.body = makeBody(shape, options);
+  if (shape.deformed) out.body = deform(out.body, shape);
+  out.hull = out.surface = out.body;
   return out;
 }
 

@@ -157,7 +157,7 @@ std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const 
   const Asked asked = askedOf(motion, againstOf(self), query);
   std::vector<std::string> sentences;
   const auto look = [&](const std::string &who, const cprox_body *body) {
-    const std::string sentence = unprovableBody(who, body);
+    const std::string sentence = unprovable(who, cprox_obstacle_at(body, CPROX_POSE_IDENTITY));
     if (!sentence.empty()) sentences.push_back(sentence);
   };
   for (const MovingGeometry &geometry : asked.data.kinematics->geometries)

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <set>
 
+#include "answering.h"
 #include "motion_data.h"
 #include "movers_data.h"
 
@@ -196,6 +197,7 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
   double most = 0.0, rounding = 0.0;
   for (const Item &item : items) {
     const PlacedShape &shape = *item.shape;
+    requireBody(item);
     const bool by_hull = shape.is_mesh && cprox_body_get_info(shape.target.body).is_solid;
     data.targets.push_back(by_hull ? shape.hull : shape.target);
     rounding = std::max(rounding, shape.rounding + (by_hull ? shape.hull_excess : 0.0));

@@ -19,6 +19,7 @@ void makeRobot(const ObjectDescription &object, MovingBody &out) {
     throw Error("its padding must be finite and not below 0");
   std::vector<cprox_link_geometry> geometries;
   for (std::size_t i = 0; i < object.shapes.size(); ++i) {
+    if (out.geometries[i].curve) throw Error("a curve stands where it is: it takes no trajectory");
     if (!out.geometries[i].surface) throw Error("its octree has no occupied cell");
     geometries.push_back(
         {out.geometries[i].surface.get(), toPose(object.shapes[i].pose), 0, object.padding + out.geometries[i].margin});

@@ -90,6 +90,7 @@ Body placeElement(const Element &element, const Eigen::Isometry3d &link, bool wa
 }
 
 Body bodyOf(const Item &item) {
+  requireBody(item);
   const PlacedShape &shape = *item.shape;
   return {{item.owner, BodyOwner::OBJECT, item.part},
           nullptr,

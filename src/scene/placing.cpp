@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "placing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -36,6 +37,34 @@ Eigen::AlignedBox3d boxOf(const cprox_body *body, const Eigen::Isometry3d &pose,
   return box;
 }
 
+cprox_obstacle obstacleOf(const Geometry &geometry, const Eigen::Isometry3d &pose, double padding) {
+  cprox_obstacle out = cprox_obstacle_curve(geometry.curve.get(), geometry.radius + padding);
+  out.synchronized = geometry.synchronized;
+  out.radius_curve = geometry.radius_curve.get();
+  out.pose = toPose(pose);
+  return out;
+}
+
+/* The curve's own box has the rounding of its points in it. */
+PlacedShape placeCurve(const Geometry &geometry, const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner,
+                       double padding) {
+  const Eigen::Isometry3d pose = outer * inner;
+  PlacedShape out;
+  out.target = out.hull = out.surface = obstacleOf(geometry, pose, padding);
+  const cprox_curve_info info = cprox_curve_get_info(geometry.curve.get());
+  const Eigen::Vector3d low = toEigen(info.lowest), high = toEigen(info.highest);
+  const double reach = low.cwiseAbs().cwiseMax(high.cwiseAbs()).norm();
+  const double more = geometry.radius_curve ? cprox_curve_get_info(geometry.radius_curve.get()).highest.x : 0.0;
+  out.rounding = placingError(outer, inner, reach);
+  const double spread = geometry.radius + std::max(0.0, more) + padding + out.rounding;
+  const Eigen::Vector3d middle = pose * (0.5 * (low + high));
+  const Eigen::Vector3d half = pose.linear().cwiseAbs() * (0.5 * (high - low));
+  const double margin = spread + BOXING * (reach + spread + pose.translation().norm());
+  const Eigen::Vector3d out_to = half + Eigen::Vector3d::Constant(margin);
+  out.box = Eigen::AlignedBox3d(middle - out_to, middle + out_to);
+  return out;
+}
+
 } // namespace
 
 void checkPose(const Eigen::Isometry3d &pose, const std::string &who) {
@@ -63,6 +92,7 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
   const Eigen::Isometry3d pose = outer * inner;
   if (!pose.matrix().allFinite()) throw Error("a shape's pose is not finite");
 
+  if (geometry.curve) return placeCurve(geometry, outer, inner, padding);
   PlacedShape out;
   const BodyHandle &body = geometry.body;
   const double margin = padding + geometry.margin;

@@ -17,10 +17,6 @@ double claimOf(const Query &query, const cprox_result &result) {
   return result.lower > 0.0 ? result.lower : std::max(result.upper, 0.0);
 }
 
-cprox_obstacle targetOf(const cprox_body *body) {
-  return cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
-}
-
 } // namespace
 
 void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
@@ -44,10 +40,10 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
   if (status != CPROX_OK) answer.unproven = workspace.reason();
 }
 
-std::string unprovableBody(const std::string &who, const cprox_body *body) {
-  const cprox_obstacle target = targetOf(body);
+std::string unprovable(const std::string &who, const cprox_obstacle &target) {
   if (cprox_obstacle_describe(&target, nullptr, 0) > 0) return {};
-  return who + " is of a kind that has no certificates: " + cprox_body_kind_name(cprox_body_get_info(body).kind);
+  return who + " is of a kind that has no certificates: " +
+         (target.body ? cprox_body_kind_name(cprox_body_get_info(target.body).kind) : "curve");
 }
 
 std::string wordOf(const std::string &text) {

@@ -17,7 +17,7 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
                 const cprox_result &result, Workspace &workspace, Answer &answer);
 
 /* Why nothing at all can be proven where this body takes part; empty where it can. `who`: "object 'can'". */
-std::string unprovableBody(const std::string &who, const cprox_body *body);
+std::string unprovable(const std::string &who, const cprox_obstacle &target);
 
 /* The number of lines and a line a convex part, with the name of its owner; empty where a body is of a kind that has no
  * certificates. */

@@ -101,27 +101,27 @@ void chooseForDistance(const Seed &seed, const Targets::Data &data, Search &sear
   cprox_options rough = search.query.options;
   rough.relative_epsilon = std::max(rough.relative_epsilon, 0.1);
   cprox_result result{};
-  const cprox_status status = cprox_distance(along(search.curve.curve, search.curve.radius),
-                                             search.shape(seed.index).target, &rough, search.workspace.get(), &result);
+  const cprox_status status =
+      cprox_distance(moverOf(search.curve), search.shape(seed.index).target, &rough, search.workspace.get(), &result);
   if (status < 0) { // the core will refuse again, and say why
     search.chosen.push_back(seed.index);
     return;
   }
   const double upper = result.upper + search.shape(seed.index).rounding;
-  chooseWithin((upper + search.curve.radius) * (1.0 + SUMS), seed, data, search);
+  chooseWithin((upper + search.curve.reach) * (1.0 + SUMS), seed, data, search);
   search.left_out = upper;
 }
 
 /* Verdicts: nothing whose box is farther than the limit, and a little more, can touch them. */
 void chooseForVerdict(double limit, const Seed &seed, const Targets::Data &data, Search &search) {
-  const double wide = limit + search.curve.radius;
+  const double wide = limit + search.curve.reach;
   const double more = std::max({search.query.options.epsilon, 1e-3 * wide, 1e-6});
   if (!std::isfinite(wide + more) || wide < 0.0) { // the core will refuse, and say why
     search.chosen.push_back(seed.index);
     return;
   }
   chooseWithin(wide + more, seed, data, search);
-  const double boxes_apart = seed.gap * (1.0 - 1e-12) - search.curve.radius * (1.0 + SUMS);
+  const double boxes_apart = seed.gap * (1.0 - 1e-12) - search.curve.reach * (1.0 + SUMS);
   search.left_out = std::max(limit + 0.5 * more, boxes_apart);
 }
 
@@ -143,7 +143,7 @@ void choose(const Targets::Data &data, Search &search) {
 /* ---- the search ---- */
 
 cprox_status runCore(const Search &search, const cprox_options &options, cprox_result &result) {
-  const cprox_mover mover = along(search.curve.curve, search.curve.radius);
+  const cprox_mover mover = moverOf(search.curve);
   if (search.all && search.chosen.size() == search.items.size())
     return askCore(search.query, options, mover, search.all, search.workspace, result);
   std::vector<cprox_obstacle> targets;
@@ -187,7 +187,7 @@ Answer askWithProof(const Targets &targets, const CompiledCurve &curve, const Qu
   Answer answer = ask(targets, curve, bare, workspace).front();
   cprox_result named = answer.result;
   named.obstacle_index = coreTargetOf(targets, answer);
-  leaveProof(query, along(curve.curve, curve.radius), coreTargets(targets), named, workspace, answer);
+  leaveProof(query, moverOf(curve), coreTargets(targets), named, workspace, answer);
   return answer;
 }
 

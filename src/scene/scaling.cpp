@@ -42,6 +42,7 @@ ShapeDescription loadedShape(const ShapeDescription &shape, const ResourceOption
 
 ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const ResourceOptions &resources) {
   ShapeDescription out = shape;
+  if (out.deformed) out.deformed->translation *= scale;
   switch (shape.type) {
     case ShapeType::MESH: scaleMesh(out, scale, resources); break;
     case ShapeType::POINT:
@@ -53,6 +54,7 @@ ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const 
       break;
     case ShapeType::OCTREE: throw Error("an octree has no other size than its own");
     case ShapeType::HEIGHT_FIELD:
+    case ShapeType::CURVE:
     case ShapeType::DISTANCE_GRID:
       throw Error(std::string("a ") + shapeTypeName(shape.type) + " has no other size than its own");
     case ShapeType::IMPLICIT: scaleConstraints(out, scale); break;

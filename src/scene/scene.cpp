@@ -71,7 +71,7 @@ void placeShapes(SceneObject &object) {
   const ObjectDescription &description = object.description;
   for (std::size_t i = 0; i < object.shapes.size(); ++i) {
     ObjectShape &shape = object.shapes[i];
-    if (shape.geometry.body)
+    if (!shape.geometry.isEmpty())
       shape.placed = place(shape.geometry, description.pose, description.shapes[i].pose, description.padding);
   }
 }
@@ -289,7 +289,7 @@ World::World(const Objects &objects) {
   for (const auto &[id, object] : objects) {
     for (std::size_t i = 0; i < object->shapes.size(); ++i) {
       const PlacedShape &shape = object->shapes[i].placed;
-      if (!object->shapes[i].geometry.body) continue;
+      if (object->shapes[i].geometry.isEmpty()) continue;
       const auto index = static_cast<std::uint32_t>(items_.size());
       items_.push_back({&shape, &object->description.id, false, static_cast<int>(i)});
       if (curve_proximity::unbounded(shape)) {

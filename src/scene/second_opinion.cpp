@@ -445,7 +445,7 @@ void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, 
     cprox_vec3 point{};
     cprox_curve_evaluate(curve.curve.get(), t, workspace.get(), &point, nullptr, nullptr);
     Side ball;
-    ball.margin = curve.radius;
+    ball.margin = radiusAt(curve, t);
     ball.pieces.push_back(
         pieceOf(ShapeType::POINT, Eigen::Vector3d::Zero(), Eigen::Isometry3d(Eigen::Translation3d(toEigen(point)))));
     return std::make_pair(std::move(ball),

@@ -146,6 +146,25 @@ Surface pointsSurface(const ShapeDescription &shape, std::size_t most) {
   return sheet.take();
 }
 
+/* Balls along the curve. */
+Surface tubeSurface(const ShapeDescription &shape, std::size_t most) {
+  if (!shape.curve) return {};
+  const CompiledCurve curve = compile(*shape.curve, CurveBoxes::NONE);
+  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  constexpr double VISIBLE = 0.004; /* [m] */
+  constexpr std::size_t TRIANGLES = 8, BALLS = 200;
+  const std::size_t balls = std::clamp<std::size_t>(most / TRIANGLES, 2, BALLS);
+  Sheet sheet;
+  for (std::size_t i = 0; i < balls; ++i) {
+    const double s = static_cast<double>(i) / static_cast<double>(balls - 1);
+    const double t = i + 1 == balls ? info.t1 : info.t0 + s * (info.t1 - info.t0);
+    cprox_vec3 point{};
+    if (cprox_curve_evaluate(curve.curve.get(), t, nullptr, &point, nullptr, nullptr) == CPROX_OK)
+      sheet.addPoint(toEigen(point), std::max(VISIBLE, radiusAt(curve, t)));
+  }
+  return sheet.take();
+}
+
 Surface cellsSurface(const ShapeDescription &shape, const ResourceOptions &resources, std::size_t most) {
   constexpr std::size_t TRIANGLES = 12;
   Boxes cells;
@@ -214,6 +233,7 @@ Surface surfaceOf(const ShapeDescription &shape, const BodyHandle &body, const R
     case ShapeType::HALFSPACE: return planeSurface(shape, plane_size);
     case ShapeType::POINTS: return pointsSurface(shape, most);
     case ShapeType::OCTREE: return cellsSurface(shape, resources, most);
+    case ShapeType::CURVE: return tubeSurface(shape, most);
     default: return body ? convexSurface(body.get(), most) : Surface();
   }
 }

@@ -130,7 +130,7 @@ std::vector<std::string> unprovable(const Targets &targets) {
   std::vector<std::string> sentences;
   for (const Item &item : targets.data().items) {
     const std::string who = (item.is_link ? "link '" : "object '") + *item.owner + "'";
-    const std::string sentence = unprovableBody(who, item.shape->target.body);
+    const std::string sentence = unprovable(who, item.shape->target);
     if (!sentence.empty()) sentences.push_back(sentence);
   }
   return sentences;

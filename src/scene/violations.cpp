@@ -59,8 +59,7 @@ Violations violations(const Targets &targets, const CompiledCurve &curve, double
     out.a = curve.id;
     if (found.obstacle_index >= 0) out.b = *items[static_cast<std::size_t>(found.obstacle_index)].owner;
   };
-  return searchViolations(obstacles, along(curve.curve, curve.radius), roundingOf(curve, items), resolution, query,
-                          workspace, name);
+  return searchViolations(obstacles, moverOf(curve), roundingOf(curve, items), resolution, query, workspace, name);
 }
 
 Violations violations(const RobotMotion &motion, bool self, double resolution, const Query &query,

@@ -188,7 +188,7 @@ joint_trajectory:
         self.assertRefused(self.constraints('--in', 'x'), '--trajectory takes no --in')
         self.assertRefused(self.constraints('--parameters', 'against: walls'), 'environment, self, whole')
         self.assertRefused(self.constraints('--parameters', 'horizon: -1'), 'parameter horizon')
-        self.assertRefused(cprox('constraints', '--provider', ROBOT, '--in', 'x', '--robot', 'y'), '--robot needs --trajectory')
+        self.assertRefused(cprox('constraints', '--provider', CURVES, '--in', 'x', '--state', 'y'), '--state needs --robot')
         self.assertRefused(cprox('constraints', '--provider', ROBOT, '--trajectory', 'x'), '--trajectory needs --robot')
 
 

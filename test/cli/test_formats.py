@@ -26,7 +26,7 @@ class Formats(Case):
         with open(os.path.join(REPO, 'doc/formats.md'), encoding='utf-8') as page:
             text = page.read().replace('\\\n', ' ')
         commands = re.findall(r'^    cprox (.*)$', text, re.M)
-        self.assertEqual(len(commands), 12)
+        self.assertEqual(len(commands), 14)
         for command in commands:
             with self.subTest(command=command):
                 answer = run(*shlex.split(command.replace('/tmp/', self.folder + '/')))
@@ -90,6 +90,13 @@ class Formats(Case):
         self.assertAnswer(answer.row('balls'), 1.0)
         self.assertAnswer(answer.row('overlap'), -0.2)
         self.assertAnswer(answer.row('ramp_and_point'), 1.0)
+
+    def curves_as_obstacles_are_as_far_as_the_files_say(self):
+        # the line y = 0, z = 1 and the cable at y = 0.5, whose height is 1.2 + 1 - 4 s (1 - s) between 1.2 and 2.2: at s = 1/2
+        answer = run('distance', '--curves', FILES + 'curves.csv', '--scene', FILES + 'cable.yaml')
+        self.assertAnswer(answer.row('line'), math.hypot(0.5, 0.2) - 0.01 - 0.005)
+        row = run('distance', '--curves', FILES + 'crossing.csv', '--scene', FILES + 'crossing.yaml').row('vehicle')
+        self.assertEqual((row['b'], row['t']), ('other', row['t_b']))
 
     def cases_have_the_value_that_the_file_says(self):
         answer = run('constraints', '--provider', 'curve_proximity/CurveDistance', '--in', FILES + 'cases.yaml', *WORLD)

@@ -193,3 +193,24 @@ class Pairs(Case):
         answer = self.pairs(pair('p', '{type: sphere, dimensions: [1], colour: red}', f'{{type: point, colour: red, {at(3)}}}') * 3)
         self.assertEqual(answer.code, 0)
         self.assertLessEqual(answer.err.count('colour'), 2, answer.err)
+
+    def deformed_bodies_are_those_made_anew(self):
+        """x -> A x + b of a superquadric, and other exponents; Table III's scales of Objects I and III."""
+        diamond = '{type: superquadric, dimensions: [1, 0.7, 1.5, 1.3333333333333333, 1.4, 1.1538461538461537]'
+        cuboid = '{type: superquadric, dimensions: [1, 1, 1.5, 8.444444444444445, 14.2, 13.76923076923077]'
+        rows = self.pairs(
+            pair('deformed', diamond + ', deform: {linear: [1, 0, 0, 0, 0.5, 0, 0, 0, 2]}}',
+                 cuboid + ', deform: {linear: [0.5, 0, 0, 0, 3, 0, 0, 0, 0.67], translation: [0, 0, 1]}, ' + at(5, 1, 0) + '}')
+            + pair('anew', '{type: superquadric, dimensions: [1, 0.35, 3, 1.3333333333333333, 1.4, 1.1538461538461537]}',
+                   '{type: superquadric, dimensions: [0.5, 3, 1.005, 8.444444444444445, 14.2, 13.76923076923077], ' + at(5, 1, 1) + '}')
+            + pair('exponents', diamond + ', deform: {exponents: [2, 2, 2]}}', '{type: point, ' + at(4) + '}')
+            + pair('ball', '{type: ellipsoid, dimensions: [1, 0.7, 1.5]}', '{type: point, ' + at(4) + '}'), '--epsilon', '1e-9')
+        self.assertEqual(rows.err, '')
+        for one, other in (('deformed', 'anew'), ('exponents', 'ball')):
+            self.assertAlmostEqual(float(rows.row(one)['upper']), float(rows.row(other)['upper']), delta=1e-8)
+        wrong = self.pairs(pair('x', '{type: box, dimensions: [1, 1, 1], deform: {linear: [1, 0, 0, 0, 1, 0, 0, 0, 2]}}', UNIT_BALL))
+        self.assertFailedRow(wrong, 'x', 'box cannot be deformed')
+        wrong = self.pairs(pair('x', cuboid + ', deform: {linear: [1, 2]}}', UNIT_BALL))
+        self.assertFailedRow(wrong, 'x', 'nine numbers')
+        wrong = self.pairs(pair('x', cuboid + ', deform: {linear: [0, 0, 0, 0, 0, 0, 0, 0, 0]}}', UNIT_BALL))
+        self.assertFailedRow(wrong, 'x', 'deformed:')

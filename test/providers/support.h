@@ -31,7 +31,7 @@ inline ShapeDescription polytope(const Eigen::Matrix3Xd &vertices) {
 
 inline ConstraintBody side(const std::vector<ShapeDescription> &shapes, double padding = 0.0) {
   ConstraintBody out;
-  for (const ShapeDescription &s : shapes) out.parts.push_back({s, makeGeometry(s).body, 0.0});
+  for (const ShapeDescription &s : shapes) out.parts.push_back({s, makeGeometry(s).body, 0.0, {}});
   out.padding = padding;
   return out;
 }

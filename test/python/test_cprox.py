@@ -45,6 +45,22 @@ class Curves(unittest.TestCase):
             apart = numpy.linalg.norm(answer.witness_mover - answer.witness_obstacle)
             self.assertAlmostEqual(apart, answer.upper, places=9)
 
+    def test_a_radius_may_change(self):
+        """Coefficients of 1, t, t²; against samples, which are above the least distance by less than 1e-6 here."""
+        points, other = [[-1, 0, 2], [0, 1, 2], [1, 0, 2]], [[-1, 1, 3], [0, -1, 4], [1, 1, 3]]
+        t = numpy.linspace(0, 1, 20001)
+        tube, radii = cprox.tube(cprox.bezier(points), [.1, .2, .3]), .1 + .2 * t + .3 * t * t
+        answer = cprox.distance(tube, cprox.Obstacle(cprox.box([1, 1, 1])))
+        sampled = (box_distance(de_casteljau(points, t), [1, 1, 1]) - radii).min()
+        self.assertLessEqual(answer.lower, sampled)
+        self.assertAlmostEqual(answer.upper, sampled, delta=2e-6)
+        moving = cprox.tube(cprox.bezier(other), [.05, .1])
+        answer = cprox.distance(tube, cprox.Obstacle.synchronized(moving))
+        apart = numpy.linalg.norm(de_casteljau(points, t) - de_casteljau(other, t), axis=1)
+        self.assertAlmostEqual(answer.upper, (apart - radii - .05 - .1 * t).min(), delta=2e-6)
+        with self.assertRaises(ValueError):
+            cprox.tube(cprox.bezier(points), [[.1]])
+
     def test_sets_by_their_distance_hold_dense_samples(self):
         random = numpy.random.default_rng(7)
         t = numpy.linspace(0, 1, 4001)

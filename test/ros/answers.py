@@ -5,8 +5,10 @@ import math
 import os
 import unittest
 
-from curve_proximity.msg import AllowedContact, Body, CollisionObject, LinkPadding, SceneState
-from geometry_msgs.msg import Pose
+import rospy
+from curve_proximity import srv
+from curve_proximity.msg import AllowedContact, Body, CollisionObject, LinkPadding, PairQuery, SceneState
+from geometry_msgs.msg import Pose, Vector3
 from helpers import (BOX, CONE, CYLINDER, SPHERE, Server, bezier, body, box, bspline, grid, implicit, mesh, plane, point, pose,
                      run, solid, sphere, thing)
 
@@ -343,6 +345,91 @@ class BadInput(TestCase):
         self.assertRefused(self.server.distance(long), 'max_control_points', '100000', '100001')
         self.server.replace(sphere('ball', 0.25, (1, 0, 0)), sphere('b', 1, (9, 9, 9)), sphere('c', 1, (9, 9, 9)))
         self.assertRefused(self.server.distance([ABOVE] * 7000, per_object=True), 'max_results', '20000', '21000')
+
+
+class Curves(TestCase):
+    """Curves as obstacles, and tubes whose radius changes."""
+
+    def cable(self, **fields):
+        """One metre beside the middle of ABOVE, along y: from (1, -1, 2) to (1, 1, 2)."""
+        return thing('cable', bodies=[Body(type='curve', curve=bezier((1, -1, 2), (1, 1, 2), radius=0.1), **fields)])
+
+    def test_a_curve_of_the_scene_is_an_obstacle(self):
+        self.server.replace(self.cable())
+        row = self.distance()
+        self.assertContains(row, 0.9)
+        self.assertEqual(row.b, 'cable')
+        self.assertAlmostEqual(row.t_b, 0.5, delta=1e-4)
+        self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.89)).verdict, 'clear')
+        kept = self.server.scene('cable').objects[0]
+        self.assertEqual((kept.bodies[0].type, len(kept.bodies[0].curve.points), kept.bodies[0].curve.radius), ('curve', 2, 0.1))
+        self.server.replace(kept)
+        self.assertContains(self.distance(), 0.9)
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
+        self.assertTrue(math.isnan(self.distance().t_b))
+
+    def test_on_one_clock_both_radii_may_change(self):
+        cable = self.cable(synchronized=True)
+        cable.bodies[0].curve.radius_polynomial = [0.2]
+        self.server.replace(cable)
+        tube = bezier((0, 0, 1), (2, 0, 1), radius=0.1)
+        tube.radius_polynomial = [0.1]
+        # at t the centres are (2t - 1, -(2t - 1), -1) apart: least the radii 0.2 + 0.3 t
+        least = min(math.hypot(math.sqrt(2) * (2 * t - 1), 1) - 0.2 - 0.3 * t for t in (0.5 + 1e-5 * i for i in range(20000)))
+        row = self.row(self.server.distance(tube, epsilon=EPSILON))
+        self.assertLessEqual(row.lower, least)
+        self.assertAlmostEqual(row.upper, least, delta=1e-8)
+        self.assertEqual(row.t, row.t_b)
+        alone = bezier((0, 0, 1), (2, 0, 1))
+        alone.t1 = 2.0
+        self.assertRefused(self.server.distance(alone), "on the mover's clock")
+
+    def test_what_is_no_obstacle_is_told(self):
+        bad = self.cable()
+        bad.bodies[0].curve.radius_polynomial = [0.2]
+        self.assertRefused(self.server.apply(bad), "'cable'", 'must be synchronized')
+        self.assertRefused(self.server.apply(thing('c', bodies=[Body(type='curve')])), "'c'")
+        wrong = Body(type='sphere', dimensions=[1], curve=bezier((0, 0, 0), (1, 0, 0)))
+        self.assertRefused(self.server.apply(thing('c', bodies=[wrong])), 'takes no curve')
+
+
+class MeasurePairs(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        rospy.wait_for_service('/curve_proximity/measure_pairs', 20)
+        cls.service = rospy.ServiceProxy('/curve_proximity/measure_pairs', srv.MeasurePairs, persistent=True)
+
+    def pair(self, ask='', x=3.0, **fields):
+        ball = Body(type='sphere', dimensions=[1])
+        return PairQuery(id=ask or 'pair', ask=ask, a=ball, b=ball, pose_b=pose((x, 0, 0)), **fields)
+
+    def test_every_question_is_answered_by_hand(self):
+        aside = Vector3(0, 1, 0)
+        rows = self.service(pairs=[self.pair(), self.pair(x=1.5), self.pair('growth', 6.0),
+                                   self.pair('translating_distance', velocity_b=aside, duration=2.0),
+                                   self.pair('translating_contact', velocity_b=Vector3(-1, 0, 0), duration=2.0)], epsilon=EPSILON)
+        self.assertTrue(rows.success, rows.message)
+        for row, value in zip(rows.results, (1, -0.5, 3, 1)):
+            self.assertContains(row, value)
+        contact = rows.results[4]
+        self.assertEqual((contact.kind, contact.verdict), ('translating_contact', 'violated'))
+        self.assertLessEqual(contact.t_contact_lower, 1)
+        self.assertAlmostEqual(contact.t_contact_lower, 1, delta=1e-6)
+        self.assertEqual([row.kind for row in rows.results[:3]], ['pair', 'pair', 'growth'])
+
+    def test_deformed_bodies_are_measured(self):
+        round_ = Body(type='superquadric', dimensions=[1, 1, 1, 2, 2, 2], linear=[0.5, 0, 0, 0, 3, 0, 0, 0, 0.67], translation=[1, 0, 0])
+        row = self.service(pairs=[PairQuery(a=round_, b=Body(type='point'), pose_b=pose((4, 0, 0)))], epsilon=EPSILON).results[0]
+        self.assertContains(row, 2.5)
+
+    def test_what_is_wrong_fails_alone(self):
+        rows = self.service(pairs=[self.pair(), self.pair('nearness'), self.pair(duration=1.0),
+                                   PairQuery(id='empty', a=Body(type='sphere', dimensions=[1]))])
+        self.assertFalse(rows.success)
+        self.assertIn("pair 1 ('nearness')", rows.message)
+        self.assertEqual([row.status for row in rows.results], ['ok', 'invalid', 'invalid', 'invalid'])
+        self.assertFalse(self.service(epsilon=-1).success)
 
 
 class Large(TestCase):

@@ -206,7 +206,7 @@ class WrongProviders(unittest.TestCase):
             node.end()
 
     def test_without_providers_the_service_says_so(self):
-        node = Node('bare')
+        node = Node('bare', constraint_providers=[])
         try:
             rospy.wait_for_service('/bare/evaluate_constraints', 20)
             response = rospy.ServiceProxy('/bare/evaluate_constraints', EvaluateConstraints)(cases=[query()])

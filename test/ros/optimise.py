@@ -6,7 +6,7 @@ import math
 import unittest
 
 import rospy
-from curve_proximity.msg import ConstraintQuery
+from curve_proximity.msg import CollisionObject, ConstraintQuery
 from curve_proximity.srv import EvaluateConstraints
 from helpers import Server, bezier, box, joints, run, sphere
 from sensor_msgs.msg import JointState
@@ -47,6 +47,24 @@ class Optimise(unittest.TestCase):
         self.assertEqual(response.results[0].status, 'invalid')
         self.assertEqual(response.results[0].rows, [])
         return response.results[0].message
+
+    def test_links_are_sides_by_joint_values(self):
+        """Against ~distance about the same link, which measures its triangles: exact, and by the hull never more."""
+        state = JointState(name=ARM, position=POSES[0])
+        line = bezier((0.5, -0.9, 0.5), (0.9, 0.3, 1.0), radius=0.01)
+        link = CollisionObject(id='panda_link5')
+        true = self.server.distance(line, links=['panda_link5'], joint_state=state, epsilon=1e-9).results[0]
+        self.assertEqual(true.b, 'panda_link5')
+        exact, hull = self.results(*(ConstraintQuery(id=name, providers=[name], b=link, curve=line, joint_state=state)
+                                     for name in ('mesh', 'curve_proximity/CurveDistance')))
+        self.assertAlmostEqual(exact.value, true.upper, delta=1e-8)
+        self.assertLessEqual(hull.lower, true.upper + 1e-9)
+        self.assertGreater(true.upper, 0.0)
+        other = self.results(ConstraintQuery(providers=['mesh'], b=link, curve=line, joint_state=JointState(name=ARM, position=POSES[2])))[0]
+        self.assertNotAlmostEqual(other.value, exact.value, delta=1e-3)
+        link.pose.orientation.w = 1.0
+        self.assertIn('is on the robot', self.refused(ConstraintQuery(providers=['mesh'], b=link, curve=line, joint_state=state)))
+        self.assertIn('no link of that name', self.refused(ConstraintQuery(providers=['mesh'], b=CollisionObject(id='panda_link55'), curve=line)))
 
     def test_the_gradient_is_that_of_differences_through_the_service(self):
         """Central differences, steps of 2e-4, of values that are exact to 1e-9 m: 5e-6; a third derivative of up to 100 times the

@@ -99,5 +99,13 @@ class PythonClient(unittest.TestCase):
         self.assertEqual(said.count('\n'), 8, said)
 
 
+    def test_each_provider_is_climbed_to_a_proof(self):
+        done = subprocess.run([sys.executable, EXAMPLE.replace('client.py', 'client_constraints.py')], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, timeout=60)
+        said = done.stdout.decode()
+        self.assertEqual(done.returncode, 0, said)
+        self.assertEqual(said.count(': proven after'), 3, said)
+
+
 if __name__ == '__main__':
     run('python_client')

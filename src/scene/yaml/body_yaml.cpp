@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "curve_yaml.h"
 #include "failure.h"
 
 namespace curve_proximity::yaml {
@@ -37,8 +38,30 @@ std::vector<std::array<double, N>> readRows(const std::vector<YamlValue> &rows, 
   return out;
 }
 
+/* deform: {linear: nine numbers, translation: [x, y, z], exponents: one a term}. */
+void readDeformation(const YamlValue &value, ShapeDescription &shape, Warnings &warnings) {
+  const std::optional<YamlValue> deform = value.find("deform");
+  if (!deform) return;
+  deform->warnOfOthers({"linear", "translation", "exponents"}, warnings);
+  shape.deformed.emplace();
+  if (const auto linear = deform->find("linear")) {
+    const std::vector<double> numbers = linear->numbers();
+    if (numbers.size() != 9) linear->fail("has nine numbers, row by row, not " + std::to_string(numbers.size()));
+    shape.deformed->linear = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
+  }
+  if (const auto translation = deform->find("translation")) shape.deformed->translation = translation->vector();
+  if (const auto exponents = deform->find("exponents")) shape.deformed->exponents = exponents->numbers();
+}
+
+void readCurveBody(const YamlValue &value, ShapeDescription &shape, Warnings &warnings) {
+  value.warnOfOthers({"type", "curve", "synchronized", "pose"}, warnings);
+  shape.curve = std::make_shared<const CurveDescription>(readCurve(value.at("curve"), warnings));
+  if (const auto synchronized = value.find("synchronized")) shape.synchronized = synchronized->truth();
+}
+
 void readImplicit(const YamlValue &value, ShapeDescription &shape, Warnings &warnings) {
-  value.warnOfOthers({"type", "terms", "planes", "quadrics", "pose"}, warnings);
+  value.warnOfOthers({"type", "terms", "planes", "quadrics", "deform", "pose"}, warnings);
+  readDeformation(value, shape, warnings);
   for (const YamlValue &hyperquadric : value.itemsOf("terms"))
     shape.hyperquadrics.push_back(readRows<5>(hyperquadric.items(), "a term [a, b, c, d, n]"));
   shape.planes = readRows<4>(value.itemsOf("planes"), "a plane [b1, b2, b3, c]");
@@ -60,7 +83,11 @@ void readGrid(const YamlValue &value, ShapeDescription &shape, Warnings &warning
 } // namespace
 
 Eigen::Matrix3Xd readVertices(const YamlValue &value) {
-  const std::vector<YamlValue> items = value.itemsOf("vertices");
+  return readPoints(value, "vertices");
+}
+
+Eigen::Matrix3Xd readPoints(const YamlValue &value, const char *key) {
+  const std::vector<YamlValue> items = value.itemsOf(key);
   Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(items.size()));
   for (std::size_t i = 0; i < items.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = items[i].vector();
   return out;
@@ -99,9 +126,9 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   const std::string name = type.text();
   const std::optional<ShapeType> known = shapeTypeFromName(name);
   if (!known) {
-    type.fail(
-        "type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
-        "halfspace, polytope, polygon, mesh, points, octree, superquadric, implicit, height_field or distance_grid");
+    type.fail("type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
+              "halfspace, polytope, polygon, mesh, points, octree, superquadric, implicit, height_field, distance_grid "
+              "or curve");
   }
   shape.type = *known;
 
@@ -129,8 +156,14 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
     return shape;
   }
 
+  if (shape.type == ShapeType::CURVE) {
+    readCurveBody(value, shape, warnings);
+    return shape;
+  }
+
   /* numbers, or points */
-  value.warnOfOthers({"type", "dimensions", "vertices", "pose"}, warnings);
+  value.warnOfOthers({"type", "dimensions", "vertices", "deform", "pose"}, warnings);
+  readDeformation(value, shape, warnings);
   if (const auto dimensions = value.find("dimensions")) shape.dimensions = dimensions->numbers();
   shape.vertices = readVertices(value);
   const bool by_vertices = shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POLYGON ||

@@ -16,6 +16,9 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings);
 /** vertices: points [m], one a column; none where the key is not there. */
 Eigen::Matrix3Xd readVertices(const YamlValue &value);
 
+/** The same under another key. */
+Eigen::Matrix3Xd readPoints(const YamlValue &value, const char *key);
+
 /** A mesh into `shape`: {vertices, triangles} or {resource}, either with a scale in `dimensions` or `scale`. */
 void readMesh(const YamlValue &value, ShapeDescription &shape, Warnings &warnings);
 

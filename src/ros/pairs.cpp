@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "pairs.h"
+
+#include <ros/console.h>
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "../providers/provider_set.h"
+#include "../scene/pair_query.h"
+#include "conversions.h"
+#include "name_limits.h"
+#include "robot_description.h"
+
+namespace curve_proximity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/* What ends a search. */
+struct Watch {
+  const std::atomic<bool> &stop;
+  const Clock::time_point deadline;
+  Turn *const turn;
+
+  /* In the shape of cprox_options.stop. */
+  static bool isOver(void *user) {
+    const Watch &watch = *static_cast<const Watch *>(user);
+    if (watch.turn) watch.turn->yield();
+    return watch.stop || Clock::now() >= watch.deadline;
+  }
+};
+
+Proximity toRow(const Answer &answer, PairDescription::Asked asked) {
+  Proximity row;
+  const bool translates = isTranslating(asked);
+  fillRow(answer, translates ? QueryType::COLLISION : QueryType::DISTANCE, row);
+  if (asked == PairDescription::TRANSLATING_CONTACT && answer.result.status >= 0)
+    row.t_contact_lower = answer.result.t_contact_lower;
+  return row;
+}
+
+} // namespace
+
+Pairs::Pairs(const Parameters &parameters, const Tuning &tuning, Statistics &statistics, const std::atomic<bool> &stop,
+             std::shared_ptr<const SecondOpinions> opinions)
+    : parameters_(parameters), tuning_(tuning), statistics_(statistics), stop_(stop), opinions_(std::move(opinions)) {}
+
+void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response &response, Turn *turn) {
+  const Clock::time_point begin = Clock::now();
+  if (request.pairs.size() > static_cast<std::size_t>(parameters_.max_curves))
+    throw Error(std::to_string(request.pairs.size()) +
+                " pairs are more than ~max_curves = " + std::to_string(parameters_.max_curves));
+  NameLimits(parameters_.max_name_length).check(request);
+  if (!(request.epsilon >= 0.0) || !std::isfinite(request.epsilon))
+    throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be finite and at least 0");
+
+  Watch watch{stop_,
+              begin + std::chrono::duration_cast<Clock::duration>(
+                          std::chrono::duration<double, std::milli>(tuning_.budget_ms.load())),
+              turn};
+  Query query;
+  query.options.epsilon = request.epsilon > 0.0 ? request.epsilon : tuning_.epsilon.load();
+  query.options.max_nodes = static_cast<std::uint32_t>(tuning_.max_nodes.load());
+  query.options.stop = Watch::isOver;
+  query.options.stop_user = &watch;
+  query.second_opinion = opinions_;
+  ResourceOptions resources = resourceOptions("", parameters_.max_shape_mb);
+  resources.stop = [&watch] { return Watch::isOver(&watch); };
+  const WorkspacePool::Lease workspace(workspaces_);
+
+  std::size_t failed = 0;
+  for (std::size_t i = 0; i < request.pairs.size(); ++i) {
+    const PairQuery &asked = request.pairs[i];
+    Proximity row;
+    const std::string why = sentenceOf([&] {
+      if (stop_) throw Error("the server is shutting down");
+      if (Clock::now() >= watch.deadline) throw Error("~budget_ms are over");
+      const PairDescription pair = toDescription(asked);
+      row = toRow(askPair(pair, query, resources, *workspace), pair.asked);
+    });
+    if (!why.empty()) {
+      row = toFailedRow(asked.id, asked.ask.empty() || asked.ask == PairQuery::DISTANCE ? "pair" : asked.ask, why);
+      row.b = asked.id;
+      if (failed++ == 0) response.message = "pair " + std::to_string(i) + " ('" + asked.id + "'): " + why;
+    }
+    if (row.second_opinion == Proximity::OPINION_DISAGREES)
+      ROS_WARN("pair '%s': %s", asked.id.c_str(), row.message.c_str());
+    response.results.push_back(std::move(row));
+  }
+  response.success = failed == 0;
+  if (failed > 0)
+    response.message =
+        std::to_string(failed) + " of " + std::to_string(request.pairs.size()) + " rows failed; " + response.message;
+  statistics_.record(Clock::now() - begin, response.success != 0, response.results);
+}
+
+} // namespace curve_proximity
