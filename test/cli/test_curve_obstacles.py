@@ -72,6 +72,23 @@ class CurveObstacles(Case):
         row = cprox('collision', '--curves', files[0], '--against', files[1]).row('x')
         self.assertEqual(row['verdict'], 'violated')
 
+    def curves_without_length_are_balls(self):
+        """Points that stay where they are, as mover, obstacle or both, on one clock or not."""
+        still = bezier('x', (0, 0, 0), (0, 0, 0), (0, 0, 0), radius=0.2)
+        constant = 'x,polynomial,2,0,1,0.2,3,0,0,0,0,0,0,0,0,0'
+        body = '{type: curve, %scurve: {basis: bezier, radius: 0.1, points: [[0, 0, 2], [0, 0, 2]]}}'
+        for mover in (ALONG_X, still, constant):
+            for clock in ('', 'synchronized: true, '):
+                with self.subTest(mover=mover, clock=clock):
+                    point = scene(body % clock)
+                    self.assertAnswer(self.ask('distance', [mover], point).row('x'), 1.7)
+                    self.assertEqual(self.ask('collision', [mover], point).row('x')['verdict'], 'clear')
+                    self.assertEqual(self.ask('tolerance', [mover], point, '--delta', '1.71').row('x')['verdict'], 'violated')
+                    self.assertEqual(self.ask('time-of-contact', [mover], point).row('x')['verdict'], 'clear')
+                    self.assertAnswer(self.ask('distance', [mover], scene(body.replace('2]', '0]') % clock)).row('x'), 0)
+            with self.subTest(mover=mover, obstacle='line'):
+                self.assertAnswer(self.ask('distance', [mover], scene(CABLE)).row('x'), 1.7)
+
     def what_cannot_be_asked_is_told(self):
         short = bezier('short', (-1, 0, 0), (1, 0, 0), t1=2)
         answer = self.ask('distance', [short], scene(f'{{type: curve, synchronized: true, {OTHER % ""}}}'))
