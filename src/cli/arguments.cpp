@@ -370,6 +370,8 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       plain.erase(plain.begin());
       [[fallthrough]];
     case Action::CURVES:
+      if (words.has("--synchronized") && !words.has("--against"))
+        throw BadUsage("--synchronized needs --against: it is about two curves on one clock");
       if (words.has("--movers")) {
         readMoversWords(words, out);
         break;
@@ -382,8 +384,6 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       if (words.has("--per-link"))
         throw BadUsage("--per-link needs --trajectory T.yaml; --per-object has a row for each link that a curve meets");
       out.curves = required("--curves", "CURVES.csv");
-      if (words.has("--synchronized") && !words.has("--against"))
-        throw BadUsage("--synchronized needs --against: it is about two curves on one clock");
       if (words.has("--against")) {
         readAgainst(words, out);
         break;

@@ -60,11 +60,11 @@ class Usage(Case):
                   '--certificate': 'f', '--in': 'i', '--provider': 'p', '--parameters': 'k: 1', '--node': '/n', '--epsilon': '1e-3',
                   '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-lod': 'hull', '--out': 'o', '--self': None,
                   '--replace': None, '--add': None, '--signed': None, '--per-object': None, '--skipped': None, '--per-link': None,
-                  '--intervals': '9', '--breaks': '0, 1', '--horizon': '1', '--pairs': '2', '--within': '1', '--check-gradient': None, '--movers': None,
+                  '--intervals': '9', '--breaks': '0, 1', '--horizon': '1', '--pairs': '2', '--within': '1', '--check-gradient': None, '--movers': None, '--synchronized': None,
                   '--second-opinion': 'fcl', '--links': 'l', '--objects': 'o'}
         run = {'--epsilon', '--max-nodes', '--threads', '--out'}
         rows = [('pairs', ['--in', 'i'], run | {'--max-lod', '--skipped', '--second-opinion'}),
-                ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--threads', '--out', '--check-gradient'}),
+                ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--robot', '--threads', '--out', '--check-gradient'}),
                 ('constraints', ['--trajectory', 't', '--robot', 'r', '--provider', 'p'],
                  {'--parameters', '--scene', '--srdf', '--state', '--threads', '--out', '--check-gradient'}),
                 ('send', ['s'], {'--node', '--replace', '--add'})]
@@ -72,7 +72,7 @@ class Usage(Case):
             start = ['--delta', '1'] if command == 'tolerance' else []
             rows += [(command, start + ['--curves', 'c', '--robot', 'r'],
                       run | own | {'--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-lod', '--skipped', '--against', '--second-opinion', '--links', '--objects'}),
-                     (command, start + ['--curves', 'c', '--against', 'd'], run | own | {'--certificate', '--scene', '--robot'}),
+                     (command, start + ['--curves', 'c', '--against', 'd'], run | own | {'--certificate', '--scene', '--robot', '--synchronized'}),
                      (command, start + ['--trajectory', 't', '--robot', 'r'], run | own | {
                          '--scene', '--srdf', '--state', '--certificate', '--per-object', '--per-link', '--max-lod', '--skipped', '--self', '--second-opinion',
                          '--links', '--objects'})]

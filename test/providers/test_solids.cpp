@@ -232,7 +232,7 @@ TEST(Octrees, are_the_cells_that_they_meet) {
   tree.type = ShapeType::OCTREE;
   tree.octree.resolution = 1.0 / 32768.0;
   tree.octree.data = std::string("\x02\x00", 2);
-  const double measure = cprox_solid_get_info(makeSolid({{{tree, nullptr, 0.0}}, 0.0}, 3).get()).measure;
+  const double measure = cprox_solid_get_info(makeSolid({{{tree, nullptr, 0.0, nullptr}}, 0.0}, 3).get()).measure;
   EXPECT_GE(measure, 1.0);
   EXPECT_LE(measure, 1.12);
   ProviderSet providers({{"gap", "curve_proximity/FourierGap", {{"samples", 17}}}});
