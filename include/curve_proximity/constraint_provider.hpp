@@ -33,7 +33,7 @@ struct ConstraintBody {
     ShapeDescription shape; /**< the description; shape.pose is its pose in the side's frame */
     BodyHandle body;        /**< the body, in the shape's frame, a mesh by its hull; never null */
     double excess = 0.0;    /**< [m] no point of the shape is farther from the body than this (mesh hulls) */
-    BodyHandle exact;       /**< a mesh with all of its triangles; else the body */
+    BodyHandle exact;       /**< a mesh with all of its triangles; else the body; null: the body stands for it */
   };
   std::vector<Part> parts; /**< the side is their union */
   double padding = 0.0;    /**< [m] >= 0, a ball that is added to the parts */
@@ -292,9 +292,10 @@ inline BodyHandle joinedBody(const ConstraintBody &side, bool exact = false) {
 }
 
 /** The largest excess of a side's parts [m]. */
-inline double excessOf(const ConstraintBody &side) {
+inline double excessOf(const ConstraintBody &side, bool exact = false) {
   double excess = 0.0;
-  for (const ConstraintBody::Part &part : side.parts) excess = std::max(excess, part.excess);
+  for (const ConstraintBody::Part &part : side.parts)
+    if (!exact || !part.exact) excess = std::max(excess, part.excess);
   return excess;
 }
 

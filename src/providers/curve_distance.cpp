@@ -11,9 +11,7 @@ namespace {
 class CurveDistanceConstraint : public Constraint {
  public:
   CurveDistanceConstraint(const CurveDistanceParameters &parameters, const ConstraintPair &pair)
-      : parameters_(parameters),
-        pair_(pair),
-        excess_(excessOf(pair.a) + (parameters.exact_meshes ? 0.0 : excessOf(pair.b))) {
+      : parameters_(parameters), pair_(pair), excess_(excessOf(pair.a) + excessOf(pair.b, parameters.exact_meshes)) {
     if (!pair.a.parts.empty()) carried_ = joinedBody(pair.a);
     target_ = joinedBody(pair.b, parameters.exact_meshes);
   }

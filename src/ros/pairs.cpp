@@ -66,7 +66,8 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
   query.options.stop = Watch::isOver;
   query.options.stop_user = &watch;
   query.second_opinion = opinions_;
-  ResourceOptions resources = resourceOptions("", parameters_.max_shape_mb);
+  ResourceOptions resources = resourceOptions("", parameters_);
+  resources.mesh_tolerance = 0.0; // pairs are of the meshes themselves
   resources.stop = [&watch] { return Watch::isOver(&watch); };
   const WorkspacePool::Lease workspace(workspaces_);
 
