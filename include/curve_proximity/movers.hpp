@@ -49,7 +49,7 @@ enum class Against {
 /** Robots and objects on one clock. It begins with the first of them and ends with the last one; a mover that has not
  *  begun stands at its first pose, one that has ended at its last one. Where starts are only known to a tolerance,
  *  answers hold for all that are possible: the clock begins with the earliest and ends with the latest one, and a time
- *  that is told is the earliest at which that can be. Immutable; shared by any number of threads. */
+ *  in an answer is the earliest at which that can be. Immutable; shared by any number of threads. */
 class Movers {
  public:
   /** snapshot   the objects that stand, and allowed pairs; its robot does not count. Of a robot's own snapshot only the

@@ -29,7 +29,7 @@ struct Asking {
 /** Where the intervals of a profile over [t0, t1] begin and end. */
 std::vector<double> breaksOf(const Asking &asking, double t0, double t1);
 
-/** So many violations of one curve or motion are told at most; where there are more, that is an error. */
+/** So many violations of one curve or motion are listed at most; where there are more, that is an error. */
 constexpr std::size_t MOST_VIOLATIONS = 256;
 
 /** How finely the ends of violations over [t0, t1] are searched. */
