@@ -10,7 +10,7 @@ from curve_proximity.msg import Curve
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import TransformStamped
-from helpers import Server, bezier, ring_and_shells, run, sphere, until
+from helpers import Server, bezier, connected, ring_and_shells, run, sphere, until
 from sensor_msgs.msg import PointCloud2, PointField
 from tf2_msgs.msg import TFMessage
 
@@ -67,11 +67,11 @@ class Diagnostics(unittest.TestCase):
     def test_dropped_messages_are_told(self):
         ring, balls, _ = ring_and_shells(shells=100)
         publisher = rospy.Publisher('/curve_proximity/curve', Curve, queue_size=200)
-        self.assertTrue(until(publisher.get_num_connections, 10))
+        self.assertTrue(connected(publisher))
         lost = TransformStamped(child_frame_id='island')
         lost.header.frame_id, lost.header.stamp, lost.transform.rotation.w = 'sea', rospy.Time.now(), 1.0
         transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
-        self.assertTrue(until(transforms.get_num_connections, 10))
+        self.assertTrue(connected(transforms))
         transforms.publish(TFMessage([lost]))
         time.sleep(0.3)
         for i in range(100):
@@ -81,7 +81,7 @@ class Diagnostics(unittest.TestCase):
 
     def test_what_sensors_send_is_counted(self):
         publisher = rospy.Publisher('/curve_proximity/cloud', PointCloud2, queue_size=100)
-        self.assertTrue(until(publisher.get_num_connections, 10))
+        self.assertTrue(connected(publisher))
         self.addCleanup(self.server.replace)
         fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate('xyz')]
 
@@ -97,7 +97,7 @@ class Diagnostics(unittest.TestCase):
         lost = TransformStamped(child_frame_id='nowhere')
         lost.header.frame_id, lost.header.stamp, lost.transform.rotation.w = 'elsewhere', rospy.Time.now(), 1.0
         transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
-        self.assertTrue(until(transforms.get_num_connections, 10))
+        self.assertTrue(connected(transforms))
         transforms.publish(TFMessage([lost]))
         time.sleep(0.3)
         for _ in range(20):
@@ -113,7 +113,7 @@ class Diagnostics(unittest.TestCase):
         self.assertEqual(status.level, DiagnosticStatus.WARN)
         self.assertIn("'arm'", status.message)
         publisher = rospy.Publisher('/tf', TFMessage, queue_size=10)
-        self.assertTrue(until(publisher.get_num_connections, 10))
+        self.assertTrue(connected(publisher))
         sent = rospy.Time.now()
 
         def publish():

@@ -10,7 +10,7 @@ import genpy.dynamic
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
 from curve_proximity.msg import CollisionObject, Proximity, ProximityResults, Refusal, SceneState
-from helpers import Server, bezier, fingerprint, free_flight, joints, path, run, sphere, thing, until
+from helpers import Server, bezier, connected, fingerprint, free_flight, joints, path, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -76,13 +76,13 @@ class Gate(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.server, cls.controller, cls.refused, cls.passed = Server(), Controller(), [], []
-        rospy.Subscriber('/gate/refused', Refusal, cls.refused.append)
-        rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.passed.append)
+        heard = [rospy.Subscriber('/gate/refused', Refusal, cls.refused.append),
+                 rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.passed.append)]
         cls.topic = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
         cls.states = rospy.Publisher('/curve_proximity/joint_states', JointState, queue_size=5)
         cls.client = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
         assert cls.client.wait_for_server(rospy.Duration(20))
-        assert until(lambda: cls.states.get_num_connections() and cls.topic.get_num_connections(), 20)
+        assert connected(cls.states, cls.topic, *heard)
         time.sleep(1.0)  # the gate finds the controller
         cls.states.publish(joints(turn=0.0))
         time.sleep(0.2)
@@ -142,8 +142,7 @@ class Gate(unittest.TestCase):
         topics = {name: rospy.Publisher('/gate/' + name, type(message), queue_size=5) for name, message in messages.items()}
         passed = []
         out = [rospy.Subscriber('/gate/clear_' + name, type(message), passed.append) for name, message in messages.items()]
-        everything = [answers, *topics.values(), *out]
-        self.assertTrue(until(lambda: all(one.get_num_connections() for one in everything), 10))
+        self.assertTrue(connected(answers, *topics.values(), *out))
         old = self.server.scene().scene
         for blocked in (False, True):
             self.server.apply(sphere('post' if blocked else 'elsewhere', 0.1, (0, 0.5, 0.5 if blocked else 3)))
@@ -203,7 +202,7 @@ class Gate(unittest.TestCase):
                   rospy.Subscriber('/aging_gate/refused', Refusal, refused.append)]
         out = rospy.Publisher('/aging/trajectory', JointTrajectory, queue_size=5)
         states = rospy.Publisher('/aging/joint_states', JointState, queue_size=5)
-        self.assertTrue(until(lambda: all(one.get_num_connections() for one in (*topics, out, states)), 10))
+        self.assertTrue(connected(*topics, out, states))
         Server('/aging').replace(sphere('far', 0.1, (0, 0, 5)))
 
         def ask():  # the first joint states may come after the question

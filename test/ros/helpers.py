@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import xmlrpc.client
 
 import rosgraph
 import rospy
@@ -348,6 +349,27 @@ def until(condition, seconds, step=0.02):
             return value
         time.sleep(step)
     return condition()
+
+
+def connected(*ends, seconds=20):
+    """Waits until what these publishers and subscribers send or await gets through; whether it does.
+
+    rospy counts a subscriber's connection before it is made, and what is published meanwhile is lost: so the publishers are asked."""
+    return until(lambda: all(map(_is_connected, ends)), seconds)
+
+
+def _is_connected(end):
+    if isinstance(end, rospy.Publisher):
+        return end.get_num_connections() > 0
+    master = rosgraph.Master(rospy.get_name())
+    publishers = set(dict(master.getSystemState()[0]).get(end.resolved_name, [])) - {rospy.get_name()}
+    return bool(publishers) and all(_sends_here(master.lookupNode(name), end.resolved_name) for name in publishers)
+
+
+def _sends_here(uri, topic):
+    with xmlrpc.client.ServerProxy(uri) as node:
+        links = node.getBusInfo(rospy.get_name())[2]
+    return any(to == rospy.get_name() and direction == 'o' and name == topic for _, to, direction, _, name, *_ in links)
 
 
 def ring_and_shells(shells=200, n=20000):

@@ -15,7 +15,7 @@ from curve_proximity.msg import CollisionObject, ConstraintQuery
 from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
 from geometry_msgs.msg import TransformStamped
-from helpers import Node, Server, bezier, joints, run, sphere, thing, until
+from helpers import Node, Server, bezier, connected, joints, run, sphere, thing, until
 from sensor_msgs.msg import JointState, PointCloud2, PointField
 from tf2_msgs.msg import TFMessage
 
@@ -39,7 +39,7 @@ class Known(unittest.TestCase):
 
     def publisher(self, topic, kind):
         publisher = rospy.Publisher(topic, kind, queue_size=5)
-        self.assertTrue(until(publisher.get_num_connections, 10))
+        self.assertTrue(connected(publisher))
         return publisher
 
     def test_every_answer_says_which_scene_it_is_about_and_a_request_may_demand_one(self):

@@ -12,7 +12,7 @@ import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import Curve, QueryAction, QueryGoal
-from helpers import Call, Server, bezier, executable, free_port, query, ring_and_shells, run, until
+from helpers import Call, Server, bezier, connected, executable, free_port, query, ring_and_shells, run, until
 
 LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
 
@@ -54,7 +54,7 @@ class Managers(unittest.TestCase):
         self.assertTrue(client.wait_for_server(rospy.Duration(10)))
         client.send_goal(QueryGoal(query_type='distance', query=query([ring] * 100, **fields)))
         topic = rospy.Publisher('/stopped_server/curve', Curve, queue_size=100)
-        self.assertTrue(until(topic.get_num_connections, 10))
+        self.assertTrue(connected(topic))
         for i in range(50):
             topic.publish(bezier((0, 0, 1), (1, 0, 1)))
             topic.publish(Curve(basis='bspline', degree=3, points=ring.points, knots=ring.knots))

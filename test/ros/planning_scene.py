@@ -8,7 +8,7 @@ import unittest
 import rospy
 from curve_proximity.msg import AllowedContact, AttachedCollisionObject, LinkPadding, LinkScale, ProximityResults
 from diagnostic_msgs.msg import DiagnosticArray
-from helpers import Server, bezier, box, joint_trajectory, joints, mesh, pose, run, sphere, until
+from helpers import Server, bezier, box, connected, joint_trajectory, joints, mesh, pose, run, sphere, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 
@@ -114,7 +114,7 @@ class PlanningScene(unittest.TestCase):
     @classmethod
     def publisher(cls, node):
         publisher = rospy.Publisher(node + '/planning_scene', moveit.PlanningScene, queue_size=10)
-        assert until(publisher.get_num_connections, PATIENCE), 'the node has another type than moveit_msgs'
+        assert connected(publisher), 'the node has another type than moveit_msgs'
         return publisher
 
     def version(self, server):
@@ -250,7 +250,7 @@ class PlanningScene(unittest.TestCase):
         reader = rospy.Subscriber(NODE + '/proximity', ProximityResults, answers.append)
         publisher = rospy.Publisher('%s/%s' % (NODE, topic), type(message), queue_size=10)
         try:
-            self.assertTrue(until(lambda: publisher.get_num_connections() and reader.get_num_connections(), PATIENCE))
+            self.assertTrue(connected(publisher, reader))
             publisher.publish(message)
             found = until(lambda: [a for a in answers if a.source == topic and a.header.stamp == stamp], PATIENCE)
             self.assertTrue(found, 'no answer')
@@ -300,7 +300,7 @@ class PlanningScene(unittest.TestCase):
         shown.trajectory_start.attached_collision_objects = [attached('arm', foreign(sphere('pen', .1), frame='arm'))]
         contacts = []
         reader = rospy.Subscriber(NODE + '/contacts', moveit.ContactInformation, contacts.append)
-        self.assertTrue(until(reader.get_num_connections, PATIENCE))
+        self.assertTrue(connected(reader))
         answer = self.ask('display_trajectory', shown, stamp)
         self.assertTrue(answer.success, answer.message)
         self.assertSameRows(answer.results, asked[0] + asked[1])

@@ -12,7 +12,7 @@ import unittest
 import rospy
 import yaml
 from curve_proximity.msg import CollisionObject
-from helpers import Node, Server, bezier, joints, run, sphere, until
+from helpers import Node, Server, bezier, connected, joints, run, sphere, until
 from sensor_msgs.msg import JointState
 
 DATA = os.path.dirname(os.path.abspath(__file__)) + '/../data'
@@ -57,7 +57,7 @@ class Robots(unittest.TestCase):
     def assertViewFits(self):
         """RViz shows the robot as it stands, though nobody has asked, and looks at all of it."""
         states = rospy.Publisher('/joint_states', JointState, queue_size=1)
-        self.assertTrue(until(states.get_num_connections, 10))
+        self.assertTrue(connected(states))
         states.publish(self.ready())
         printed = subprocess.check_output([NODES + '/show_in_rviz.py', CONFIG, '--server', 'any', '--print'], timeout=30)
         config = yaml.safe_load(printed)['Visualization Manager']
@@ -97,7 +97,7 @@ class Robots(unittest.TestCase):
         self.assertNotEqual(left.scene().scene.epoch, right.scene().scene.epoch)
         # a topic is one server's, too
         topic = rospy.Publisher('/left/curve_proximity/collision_object', CollisionObject, queue_size=5)
-        self.assertTrue(until(topic.get_num_connections, 10))
+        self.assertTrue(connected(topic))
         topic.publish(sphere('third', 0.1, (0, 0, 5)))
         self.assertTrue(until(lambda: len(left.scene().objects) == 2, 10))
         self.assertEqual([o.id for o in right.scene().objects], ['other'])

@@ -9,7 +9,7 @@ import unittest
 
 import rospy
 from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject, Octree, Proximity, ProximityResults)
-from helpers import Node, Server, bezier, body, joints, run, sphere, thing, until
+from helpers import Node, Server, bezier, body, connected, joints, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -43,7 +43,7 @@ class States(unittest.TestCase):
         cls.node = Node('chain', tf_timeout=0.3, state_rate=50.0, query_type='distance')
         cls.server = Server('/chain')
         cls.states = rospy.Publisher('/chain/joint_states', JointState, queue_size=5)
-        assert until(cls.states.get_num_connections, 10)
+        assert connected(cls.states)
         time.sleep(3.2)  # by then the virtual joint counts without a wait for tf2
 
     @classmethod

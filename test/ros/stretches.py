@@ -9,7 +9,7 @@ import rospy
 from curve_proximity.msg import Clearance, Curve
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest,
                                  NearestPairs, NearestPairsRequest, TimeOfContact, TimeOfContactRequest)
-from helpers import Server, bezier, joint_trajectory, query, run, sphere, until
+from helpers import Server, bezier, connected, joint_trajectory, query, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory
 
 EPSILON = 1e-6  # [m] ~epsilon
@@ -196,7 +196,7 @@ class Stretches(unittest.TestCase):
         subscribers = [rospy.Subscriber('/curve_proximity/clearance/' + name, Clearance, messages.append) for name, messages in told.items()]
         motions = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
         curves = rospy.Publisher('/curve_proximity/curve', Curve, queue_size=5)
-        self.assertTrue(until(lambda: all(s.get_num_connections() > 0 for s in [*subscribers, motions, curves]), 10))
+        self.assertTrue(connected(*subscribers, motions, curves))
         moved = copy.deepcopy(QUARTER)
         moved.header.stamp = rospy.Time(1000, 500000000)
         motions.publish(moved)

@@ -9,7 +9,7 @@ import unittest
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, Curve, ProximityResults
 from geometry_msgs.msg import TransformStamped
-from helpers import Server, bezier, box, fingerprint, free_flight, joint_trajectory, mesh, path, run, sphere, until
+from helpers import Server, bezier, box, connected, fingerprint, free_flight, joint_trajectory, mesh, path, run, sphere, until
 from nav_msgs.msg import Path
 from tf2_msgs.msg import TFMessage
 from trajectory_msgs.msg import JointTrajectory, MultiDOFJointTrajectory
@@ -27,12 +27,12 @@ class Topics(unittest.TestCase):
         cls.publishers = {topic: rospy.Publisher('/curve_proximity/' + topic, kind, queue_size=200)
                           for topic, kind in cls.TYPES.items()}
         cls.objects = rospy.Publisher('/curve_proximity/collision_object', CollisionObject, queue_size=200)
-        rospy.Subscriber('/curve_proximity/proximity', ProximityResults, cls.results.append)
-        gate = [rospy.Subscriber('/gate/clear_' + topic, kind, cls.passed.append) for topic, kind in cls.TYPES.items()]
+        heard = [rospy.Subscriber('/curve_proximity/proximity', ProximityResults, cls.results.append)]
+        heard += [rospy.Subscriber('/gate/clear_' + topic, kind, cls.passed.append) for topic, kind in cls.TYPES.items()]
         cls.carried = rospy.Publisher('/curve_proximity/attached_collision_object', AttachedCollisionObject, queue_size=20)
         cls.transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
         # the manager listens to each publisher once, for the server and the gate
-        assert until(lambda: all(p.get_num_connections() for p in [*cls.publishers.values(), cls.objects, cls.carried, *gate]), 20)
+        assert connected(*cls.publishers.values(), cls.objects, cls.carried, *heard)
         time.sleep(0.5)
 
     def setUp(self):

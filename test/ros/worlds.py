@@ -11,7 +11,7 @@ import numpy
 import rospy
 from curve_proximity.msg import Body, Octree
 from geometry_msgs.msg import Point
-from helpers import Server, bezier, mesh, run, thing, until
+from helpers import Server, bezier, connected, mesh, run, thing, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import PointCloud2, PointField
 from shape_msgs.msg import MeshTriangle
@@ -77,9 +77,7 @@ class TestCase(unittest.TestCase):
         cls.log = rospy.Subscriber('/rosout', Log, lambda line: cls.lines.append(line.msg))
         cls.clouds = rospy.Publisher(NODE + '/cloud', PointCloud2, queue_size=1)
         cls.octomaps = rospy.Publisher(NODE + '/octomap', OCTOMAP, queue_size=1)
-        connected = until(lambda: cls.clouds.get_num_connections() and cls.octomaps.get_num_connections()
-                          and cls.log.get_num_connections(), PATIENCE)
-        assert connected, 'the node does not subscribe, or has other message types than octomap_msgs'
+        assert connected(cls.clouds, cls.octomaps, cls.log), 'the node does not subscribe, or has other message types than octomap_msgs'
 
     def setUp(self):
         self.server.replace()
