@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/bernstein.h"
+
 /* ---- points by variables ---- */
 
 /* A quaternion p of any norm turns by 2 vec(dp p*) / |p|² in the frame that its axis stands in; doc/robot-bounds.md. */
@@ -74,9 +76,7 @@ static void add_polynomial_rates(const motion_track *t, size_t segment, double u
     const double *root = t->coefficients + (segment * t->n_moving + k) * t->stride;
     double c[MOTION_MAX_DEGREE + 1] = {0};
     for (size_t i = 0; i < degree; i++) c[i] = root[i + 1] - root[i];
-    for (size_t r = 1; r < degree; r++)
-      for (size_t i = 0; i + r < degree; i++) c[i] = (1.0 - u) * c[i] + u * c[i + 1];
-    rates[t->moving[k]] = scale * c[0];
+    rates[t->moving[k]] = scale * bernstein_at(c, degree - 1, u);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/bernstein.h"
 #include "base/round_down.h"
 #include "base/rounding.h"
 #include "simd/dispatch.h"
@@ -185,14 +186,6 @@ span_centre motion_middle(const cprox_motion *m, const motion_interval *over) {
 
 /* ---- one variable ---- */
 
-static double at_middle(const double *c, size_t degree) {
-  double v[MOTION_MAX_DEGREE + 1] = {0};
-  memcpy(v, c, (degree + 1) * sizeof *v);
-  for (size_t r = 1; r <= degree; r++)
-    for (size_t i = 0; i + r <= degree; i++) v[i] = 0.5 * (v[i] + v[i + 1]);
-  return v[0];
-}
-
 /* The coefficients of the derivative take the place of those of the polynomial. */
 static void differentiate(double *c, size_t degree) {
   for (size_t i = 0; i < degree; i++) c[i] = (double)degree * (c[i + 1] - c[i]);
@@ -306,11 +299,11 @@ static void ball_over(const cprox_motion *m, const motion_interval *own, size_t 
   const double n = (double)degree;
   double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n;
   const double error = coordinates_over(m, own, axis, c);
-  for (int k = 0; k < 4; k++) p[0][k] = at_middle(c[k], degree);
+  for (int k = 0; k < 4; k++) p[0][k] = bernstein_at(c[k], degree, 0.5);
   for (size_t order = 1; order <= 3 && order <= degree; order++) {
     for (int k = 0; k < 4; k++) {
       differentiate(c[k], degree - order + 1);
-      if (order < 3) p[order][k] = at_middle(c[k], degree - order);
+      if (order < 3) p[order][k] = bernstein_at(c[k], degree - order, 0.5);
     }
     bound[order] = ROUND_UP * largest_norm(c, degree - order + 1) + factor * error;
     factor *= 2.0 * (n - (double)order);
@@ -385,13 +378,13 @@ static void vector_over(const cprox_motion *m, const motion_interval *own, const
   const double n = (double)degree;
   double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n, shift = 0.0;
   const double error = coordinates_over(m, own, axis, c);
-  for (int k = 0; k < 3; k++) p[0][k] = at_middle(c[k], degree);
+  for (int k = 0; k < 3; k++) p[0][k] = bernstein_at(c[k], degree, 0.5);
   for (size_t i = 0; i <= degree; i++)
     shift = greater(vec_norm(vec(c[0][i] - p[0][0], c[1][i] - p[0][1], c[2][i] - p[0][2])), shift);
   for (size_t order = 1; order <= 3 && order <= degree; order++) {
     for (int k = 0; k < 3; k++) {
       differentiate(c[k], degree - order + 1);
-      if (order < 3) p[order][k] = at_middle(c[k], degree - order);
+      if (order < 3) p[order][k] = bernstein_at(c[k], degree - order, 0.5);
     }
     bound[order] = ROUND_UP * largest_norm(c, degree - order + 1) + factor * error;
     factor *= 2.0 * (n - (double)order);
@@ -542,19 +535,11 @@ void motion_node(const cprox_motion *m, size_t segment, double a, double b, doub
 
 /* ---- one time ---- */
 
-static double value_at(const double *root, size_t degree, double u) {
-  double c[MOTION_MAX_DEGREE + 1];
-  memcpy(c, root, (degree + 1) * sizeof *c);
-  for (size_t r = 1; r <= degree; r++)
-    for (size_t i = 0; i + r <= degree; i++) c[i] = (1.0 - u) * c[i] + u * c[i + 1];
-  return c[0];
-}
-
 double motion_value(const cprox_motion *m, int32_t variable, size_t own, double u) {
   const int32_t slot = m->slot[variable];
   if (slot < 0) return m->rest[variable];
   const motion_track *t = &m->tracks[m->track_of[variable]];
-  return value_at(t->coefficients + (own * t->n_moving + (size_t)slot - t->first_slot) * t->stride, t->degree[own], u);
+  return bernstein_at(t->coefficients + (own * t->n_moving + (size_t)slot - t->first_slot) * t->stride, t->degree[own], u);
 }
 
 static void values_at(const cprox_motion *m, size_t segment, double at, double *values) {
@@ -564,7 +549,7 @@ static void values_at(const cprox_motion *m, size_t segment, double at, double *
     double u = at;
     const size_t own = motion_track_place(m, t, segment, &u);
     for (size_t k = 0; k < t->n_moving; k++)
-      values[t->moving[k]] = value_at(t->coefficients + (own * t->n_moving + k) * t->stride, t->degree[own], u);
+      values[t->moving[k]] = bernstein_at(t->coefficients + (own * t->n_moving + k) * t->stride, t->degree[own], u);
     for (size_t k = 0; k < t->n_arcs; k++) {
       const size_t i = (size_t)t->arc_axes[k];
       if (m->axis_moves[i]) motion_arc_values(m, i, own, u, values + m->robot->axes[i].variable - 3);

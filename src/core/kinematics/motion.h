@@ -4,6 +4,7 @@
 #ifndef CPROX_KINEMATICS_MOTION_H
 #define CPROX_KINEMATICS_MOTION_H
 
+#include "base/bernstein.h"
 #include "kinematics/arcs.h"
 #include "kinematics/given.h"
 #include "kinematics/joint_tree.h"
@@ -11,7 +12,7 @@
 #include "kinematics/sweeps.h"
 
 /* Variables are worked on so many at a time; rows are padded to whole lanes. */
-enum { MOTION_MAX_DEGREE = 9, MOTION_LANES = 8 };
+enum { MOTION_MAX_DEGREE = BERNSTEIN_MOST, MOTION_LANES = 8 };
 
 /* Variables that share their segments: all of a motion that was given at once. A joined motion has a track for each
  * motion that was joined, and its own segments end wherever a track has a segment's end. */

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/bernstein.h"
 #include "base/rounding.h"
 #include "kinematics/motion.h"
 
@@ -212,39 +213,15 @@ static void cut_segment(const motion_track *t, size_t segment, double a, double 
   for (size_t j = 0; j < t->n_moving; j++) {
     double *c = out + j * t->stride;
     memcpy(c, coefficients_of(t, segment) + j * t->stride, (degree + 1) * sizeof *c);
-    if (a > 0.0)
-      for (size_t r = 1; r <= degree; r++)
-        for (size_t i = 0; i + r <= degree; i++) c[i] = (1.0 - a) * c[i] + a * c[i + 1];
-    if (b >= 1.0) continue;
-    const double s = (b - a) / (1.0 - a);
-    for (size_t r = 1; r <= degree; r++)
-      for (size_t i = degree; i >= r; i--) c[i] = (1.0 - s) * c[i - 1] + s * c[i];
+    if (a > 0.0) bernstein_cut_front(c, degree, a);
+    if (b < 1.0) bernstein_cut_back(c, degree, (b - a) / (1.0 - a));
   }
 }
 
-/* The values of all variables at u of a segment; no term is negative, so that each is off by less than 7 u of a degree.
- */
+/* The values of all variables at u of a segment; each is off by less than 4 u of a degree. */
 static void values_at(const motion_track *t, size_t segment, double u, double *values) {
-  const size_t degree = t->degree[segment];
-  double weights[MOTION_MAX_DEGREE + 1] = {1.0};
-  for (size_t r = 1; r <= degree; r++) {
-    for (size_t i = r; i > 0; i--) weights[i] = u * weights[i - 1] + (1.0 - u) * weights[i];
-    weights[0] *= 1.0 - u;
-  }
   const double *c = coefficients_of(t, segment);
-  for (size_t j = 0; j < t->n_moving; j++, c += t->stride) {
-    double sum = 0.0;
-    for (size_t i = 0; i <= degree; i++) sum += weights[i] * c[i];
-    values[j] = sum;
-  }
-}
-
-static double value_at(const double *coefficients, size_t degree, double u) {
-  double c[MOTION_MAX_DEGREE + 1] = {0};
-  memcpy(c, coefficients, (degree + 1) * sizeof *c);
-  for (size_t r = 1; r <= degree; r++)
-    for (size_t i = 0; i + r <= degree; i++) c[i] = (1.0 - u) * c[i] + u * c[i + 1];
-  return c[0];
+  for (size_t j = 0; j < t->n_moving; j++, c += t->stride) values[j] = bernstein_at(c, t->degree[segment], u);
 }
 
 /* The largest block that begins at the segment and ends by `last`; 0: only the segment itself. */
@@ -293,7 +270,7 @@ static double middle_within(const motion_track *t, const walk *w, size_t segment
   if (degree == 1) return lesser(greater((0.5 - along[0]) / (along[1] - along[0]), a), b);
   for (int i = 0; i < HALVINGS; i++) {
     const double middle = 0.5 * (a + b);
-    if (value_at(along, degree, middle) < 0.5)
+    if (bernstein_at(along, degree, middle) < 0.5)
       a = middle;
     else
       b = middle;

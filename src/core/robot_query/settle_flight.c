@@ -131,12 +131,13 @@ static void turn_plane(settling *s) {
 
 /* ---- Newton's method ---- */
 
-/* A polynomial by its Bernstein coefficients, with two derivatives. */
+/* A polynomial by its Bernstein coefficients, with two derivatives: the scheme of base/bernstein.h as far as its row of
+ * three. */
 static void polynomial_at(const double *c, size_t n, double x, double value[3]) {
   double v[POSE_FIT_POINTS] = {0.0};
   for (size_t i = 0; i <= n; i++) v[i] = c[i];
-  for (size_t r = n; r > 2; r--)
-    for (size_t i = 0; i < r; i++) v[i] += x * (v[i + 1] - v[i]);
+  for (size_t j = 1; j <= n; j++)
+    for (size_t i = j; i > 0 && j - i + 2 < n; i--) v[i - 1] += x * (v[i] - v[i - 1]);
   value[2] = (double)(n * (n - 1)) * (v[2] - 2.0 * v[1] + v[0]);
   value[1] = (double)n * ((1.0 - x) * (v[1] - v[0]) + x * (v[2] - v[1]));
   value[0] = (1.0 - x) * ((1.0 - x) * v[0] + x * v[1]) + x * ((1.0 - x) * v[1] + x * v[2]);
