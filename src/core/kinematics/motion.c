@@ -539,7 +539,8 @@ double motion_value(const cprox_motion *m, int32_t variable, size_t own, double 
   const int32_t slot = m->slot[variable];
   if (slot < 0) return m->rest[variable];
   const motion_track *t = &m->tracks[m->track_of[variable]];
-  return bernstein_at(t->coefficients + (own * t->n_moving + (size_t)slot - t->first_slot) * t->stride, t->degree[own], u);
+  return bernstein_at(t->coefficients + (own * t->n_moving + (size_t)slot - t->first_slot) * t->stride, t->degree[own],
+                      u);
 }
 
 static void values_at(const cprox_motion *m, size_t segment, double at, double *values) {
