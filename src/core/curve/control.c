@@ -13,15 +13,15 @@ static inline double least_of_few(const double *points, size_t degree, vec3 n) {
   return least;
 }
 
+/* Along the diagonals of de Casteljau's scheme (base/bernstein.h says why). */
 static inline void split_few(double *left, double *right, size_t degree, double s) {
   const double r = 1.0 - s;
   for (size_t k = 0; k < 3; k++) {
     double w[6], *at = right + k * (degree + 1), *l = left + k * (degree + 1);
-    for (size_t i = 0; i <= degree; i++) w[i] = at[i];
-    l[0] = w[0];
-    for (size_t level = 1; level <= degree; level++) {
-      for (size_t i = 0; i <= degree - level; i++) w[i] = r * w[i] + s * w[i + 1];
-      l[level] = w[0];
+    for (size_t j = 0; j <= degree; j++) {
+      w[j] = at[j];
+      for (size_t i = j; i > 0; i--) w[i - 1] = r * w[i - 1] + s * w[i];
+      l[j] = w[0];
     }
     for (size_t i = 0; i <= degree; i++) at[i] = w[i];
   }
