@@ -63,6 +63,24 @@ static void assembly_free(assembly *a) {
   for (size_t i = 0; i < MEMBERS; i++) robot_free(&a->members[i]);
 }
 
+/* The frames at one time, axis by axis. */
+static void place_each_axis(const cprox_motion *m, size_t segment, double at, placement *frames) {
+  axis_state axes[MAX_AXES + 1];
+  for (size_t i = 0; i < m->robot->n_axes; i++) {
+    double u = at;
+    const size_t own = motion_track_place(m, motion_track_of(m, i), segment, &u);
+    motion_place_axis(m, own, u, i, axes);
+    frames[i] = axes[i].frame;
+  }
+}
+
+/* Some segments of the track that shifts a part, round one of the clock. */
+static motion_interval own_interval(rng *r, const cprox_motion *m, const part_sweep *sweep, size_t segment) {
+  motion_interval over = {.first = segment - rng_index(r, segment + 1), .last = segment + 1, .a = 0.0, .b = 1.0};
+  over.last += rng_index(r, m->n_segments - segment);
+  return sweep->n_shifts ? motion_track_interval(m, motion_track_of(m, sweep->axes[0]), &over) : over;
+}
+
 /* The tolerance is what the core says of itself. */
 CASE(every_part_is_where_its_own_robot_has_it_at_that_time) {
   rng r = rng_seed(7001);
@@ -75,7 +93,10 @@ CASE(every_part_is_where_its_own_robot_has_it_at_that_time) {
       const double u = k == 0 ? 0.0 : k == 1 ? 1.0 : rng_uniform(&r, 0, 1);
       double values[MAX_VARIABLES + 1];
       placement frames[MAX_AXES + 1];
-      motion_place(a.motion, segment, u, values, frames);
+      if (k % 2)
+        place_each_axis(a.motion, segment, u, frames);
+      else
+        motion_place(a.motion, segment, u, values, frames);
       const long double t0 = a.motion->times[segment], t1 = a.motion->times[segment + 1];
       const long double time = (1 - (long double)u) * t0 + u * t1;
       size_t part = 0;
@@ -98,9 +119,12 @@ CASE(every_part_is_where_its_own_robot_has_it_at_that_time) {
             worst = fmax(worst, (double)off / a.motion->part_error[part]);
             const part_sweep *sweep = &a.motion->sweeps[part];
             const vec3l x = ref_to_world(&a.bases[m], vertices[v]);
-            const vec3l inside = {fminl(fmaxl(x.x, sweep->low.x), sweep->high.x),
-                                  fminl(fmaxl(x.y, sweep->low.y), sweep->high.y),
-                                  fminl(fmaxl(x.z, sweep->low.z), sweep->high.z)};
+            const motion_interval over = own_interval(&r, a.motion, sweep, segment);
+            const sweep_box part_box = motion_sweep_over(a.motion, sweep, over.first, over.last),
+                            *box = k % 3 ? &sweep->box : &part_box;
+            const vec3l inside = {fminl(fmaxl(x.x, box->low.x), box->high.x),
+                                  fminl(fmaxl(x.y, box->low.y), box->high.y),
+                                  fminl(fmaxl(x.z, box->low.z), box->high.z)};
             if (ref_norm(ref_sub(x, inside)) > sweep->radius)
               fail_msg("assembly %zu part %zu leaves its sweep", i, part);
             reached = fmax(reached, (double)ref_norm(ref_sub(x, inside)) / sweep->radius);

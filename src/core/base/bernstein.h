@@ -22,28 +22,6 @@ static inline bernstein_cubic bernstein_cubic_at(const double c[4], double u) {
   return (bernstein_cubic){{f0, f1, f2}, {g0, g1}, s * g0 + u * g1};
 }
 
-/* c becomes the part in [u, 1], as a polynomial on [0, 1]. */
-static inline void bernstein_cut_front(double *c, size_t degree, double u) {
-  if (degree == 3) {
-    const bernstein_cubic at = bernstein_cubic_at(c, u);
-    c[0] = at.value, c[1] = at.second[1], c[2] = at.first[2];
-    return;
-  }
-  for (size_t j = 1; j <= degree; j++)
-    for (size_t i = j; i > 0; i--) c[i - 1] = (1.0 - u) * c[i - 1] + u * c[i];
-}
-
-/* c becomes the part in [0, u]. */
-static inline void bernstein_cut_back(double *c, size_t degree, double u) {
-  if (degree == 3) {
-    const bernstein_cubic at = bernstein_cubic_at(c, u);
-    c[1] = at.first[0], c[2] = at.second[0], c[3] = at.value;
-    return;
-  }
-  for (size_t j = degree; j > 0; j--)
-    for (size_t i = j; i <= degree; i++) c[i] = (1.0 - u) * c[i - 1] + u * c[i];
-}
-
 static inline double bernstein_at(const double *coefficients, size_t degree, double u) {
   if (degree == 3) return bernstein_cubic_at(coefficients, u).value;
   double c[BERNSTEIN_MOST + 1];

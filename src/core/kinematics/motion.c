@@ -9,30 +9,10 @@
 #include "base/bernstein.h"
 #include "base/round_down.h"
 #include "base/rounding.h"
+#include "kinematics/lanes.h"
 #include "simd/dispatch.h"
 
 /* ---- variables ---- */
-
-/* The Bernstein coefficients of some variables, one a lane. */
-typedef double lane_row[MOTION_LANES];
-
-/* c = r c + s d in every lane. */
-static inline void blend(double r, double s, const double *d, double *c) {
-#pragma omp simd
-  for (int l = 0; l < MOTION_LANES; l++) c[l] = r * c[l] + s * d[l];
-}
-
-/* The coefficients of [a, b], by two cuts. Both cuts of neighbours need not be the same point to the last bit: the
- * error of a segment covers that (doc/robot-bounds.md). */
-static inline void section(size_t degree, double a, double b, lane_row *c) {
-  if (a > 0.0)
-    for (size_t r = 1; r <= degree; r++)
-      for (size_t i = 0; i + r <= degree; i++) blend(1.0 - a, a, c[i + 1], c[i]);
-  if (b >= 1.0) return;
-  const double s = (b - a) / (1.0 - a);
-  for (size_t r = 1; r <= degree; r++)
-    for (size_t i = degree; i >= r; i--) blend(s, 1.0 - s, c[i - 1], c[i]);
-}
 
 static inline void lanes_middle(const lane_row *c, size_t degree, double *middle) {
   lane_row v[MOTION_MAX_DEGREE + 1];
@@ -72,7 +52,7 @@ static void fill_lanes(lane_row *c, size_t degree, double a, double b, const dou
   double *acceleration = out + MOTION_A * stride, *shift = out + MOTION_SHIFT * stride,
          *variation = out + MOTION_VARIATION * stride, *line = out + MOTION_LINE * stride,
          *stray = out + MOTION_STRAY * stride;
-  section(degree, a, b, c);
+  lanes_cut(degree, a, b, c);
   lanes_middle((const lane_row *)c, degree, value);
 #pragma omp simd
   for (int l = 0; l < MOTION_LANES; l++) shift[l] = variation[l] = 0.0;
@@ -135,7 +115,7 @@ motion_interval motion_track_interval(const cprox_motion *m, const motion_track 
 
 size_t motion_rows_stride(const cprox_motion *m) {
   const motion_track *last = &m->tracks[m->n_tracks - 1];
-  return last->first_slot + (last->n_moving + MOTION_LANES - 1) / MOTION_LANES * MOTION_LANES;
+  return last->first_slot + lanes_padded(last->n_moving);
 }
 
 size_t motion_rows_size(const cprox_motion *m) {
@@ -145,12 +125,8 @@ size_t motion_rows_size(const cprox_motion *m) {
 static void fill_segment(const motion_track *t, const motion_interval *own, double *rows, size_t stride) {
   const size_t segment = own->first, degree = t->degree[segment];
   for (size_t first = 0; first < t->n_moving; first += MOTION_LANES) {
-    lane_row c[MOTION_MAX_DEGREE + 1], error;
-    for (size_t l = 0; l < MOTION_LANES; l++) {
-      const size_t k = first + l < t->n_moving ? first + l : t->n_moving - 1, at = segment * t->n_moving + k;
-      for (size_t i = 0; i <= degree; i++) c[i][l] = t->coefficients[at * t->stride + i];
-      error[l] = t->error[at];
-    }
+    lane_row c[LANE_ROWS], error;
+    lanes_load(t, segment, first, c, error);
     fill_lanes(c, degree, own->a, own->b, error, rows + t->first_slot + first, stride);
   }
 }
@@ -206,7 +182,7 @@ static double coordinates_over(const cprox_motion *m, const motion_interval *own
       lanes[i][k] = slot < 0 ? m->rest[variable + k] : t->coefficients[at * t->stride + i];
     error += slot < 0 ? 0.0 : t->error[at];
   }
-  section(degree, own->a, own->b, lanes);
+  lanes_cut(degree, own->a, own->b, lanes);
   for (int k = 0; k < 4; k++)
     for (size_t i = 0; i <= degree; i++) c[k][i] = lanes[i][k];
   return error;
@@ -541,6 +517,27 @@ double motion_value(const cprox_motion *m, int32_t variable, size_t own, double 
   const motion_track *t = &m->tracks[m->track_of[variable]];
   return bernstein_at(t->coefficients + (own * t->n_moving + (size_t)slot - t->first_slot) * t->stride, t->degree[own],
                       u);
+}
+
+void motion_place_axis(const cprox_motion *m, size_t own, double u, size_t i, axis_state *axes) {
+  const robot_axis *axis = &m->robot->axes[i];
+  const placement *parent = axis->parent < 0 ? NULL : &axes[axis->parent].frame;
+  axis_state *state = &axes[i];
+  *state = (axis_state){.kind = axis->kind};
+  if (!m->axis_moves[i]) {
+    state->frame = parent ? placement_compose(parent, &m->still[i]) : m->still[i];
+    return;
+  }
+  double joint[7];
+  const double *values = joint;
+  if (m->arc_of && m->arc_of[i] >= 0) {
+    const int32_t ball = motion_track_of(m, i)->arc_axes[m->arc_of[i]];
+    motion_arc_values(m, i, own, u, joint);
+    values += axis->variable - (m->robot->axes[ball].variable - 3);
+  } else {
+    for (int32_t k = 0; k < axis_variables(axis->kind); k++) joint[k] = motion_value(m, axis->variable + k, own, u);
+  }
+  state->frame = axis_move(axis, parent, axis->multiplier * values[0] + axis->offset, values);
 }
 
 static void values_at(const cprox_motion *m, size_t segment, double at, double *values) {

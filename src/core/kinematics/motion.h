@@ -82,14 +82,14 @@ typedef enum motion_row {
   MOTION_VARIATION,
   MOTION_LINE,
   MOTION_STRAY,
-  MOTION_FROM, /* of a span: its ends, its range, how far it is beside its chord; room for a part of a segment */
+  MOTION_FROM, /* of a span: its ends, its range, how far it is beside its chord; room for two segments */
   MOTION_TO,
   MOTION_LOW,
   MOTION_HIGH,
   MOTION_BELOW,
   MOTION_ABOVE,
   MOTION_CUT,
-  MOTION_ROWS = MOTION_CUT + MOTION_MAX_DEGREE + 1
+  MOTION_ROWS = MOTION_CUT + 2 * (MOTION_MAX_DEGREE + 1)
 } motion_row;
 
 /* Whether certificates can be about it. */
@@ -138,6 +138,10 @@ span_centre motion_middle(const cprox_motion *motion, const motion_interval *ove
  * not move, only the frame. */
 void motion_find_axis(const cprox_motion *motion, const motion_interval *own, const double *rows, size_t axis,
                       axis_state *axes);
+
+/* The frame of one axis at u of a segment of its track; that of its parent must be known. All else in its state is 0.
+ */
+void motion_place_axis(const cprox_motion *motion, size_t own, double u, size_t axis, axis_state *axes);
 
 /* Changes a motion of the kind CPROX_MOTION_STATE, which no query may be using, to these values of all variables.
  * Allocates nothing; untouched on failure. */

@@ -8,7 +8,8 @@
 
 #include "base/bernstein.h"
 #include "base/rounding.h"
-#include "kinematics/motion.h"
+#include "kinematics/lanes.h"
+#include "simd/dispatch.h"
 
 /* The finest blocks that are stored are of 4 segments. */
 enum { FINEST = 2, FINEST_SIZE = 1 << FINEST, MOST_PIECES = 2 * (SPAN_MOST_LEVELS + FINEST_SIZE) };
@@ -46,7 +47,7 @@ typedef struct duration {
   double base, begin, length;
 } duration;
 
-/* A chord, and what the pieces so far say of the way beside it. */
+/* A chord, and what the pieces so far say of the way beside it: rows of whole lanes. */
 typedef struct walk {
   size_t n;
   const double *from, *to;
@@ -55,23 +56,25 @@ typedef struct walk {
   double *low, *high, *below, *above;
 } walk;
 
-static walk walk_along(size_t n, const double *from, const double *to, const duration *by_time, double *low,
-                       double *high, double *below, double *above) {
+/* The rows are `stride` apart, as those of a motion are: from MOTION_FROM, which is given with MOTION_TO, to
+ * MOTION_ABOVE. */
+static walk walk_along(size_t n, const duration *by_time, double *rows, size_t stride) {
+  walk w = {.n = n,
+            .from = rows,
+            .to = rows + (MOTION_TO - MOTION_FROM) * stride,
+            .by_time = by_time,
+            .low = rows + (MOTION_LOW - MOTION_FROM) * stride,
+            .high = rows + (MOTION_HIGH - MOTION_FROM) * stride,
+            .below = rows + (MOTION_BELOW - MOTION_FROM) * stride,
+            .above = rows + (MOTION_ABOVE - MOTION_FROM) * stride};
   double length2 = 0.0;
-  for (size_t j = 0; j < n; j++) {
-    length2 += (to[j] - from[j]) * (to[j] - from[j]);
-    low[j] = below[j] = INFINITY, high[j] = above[j] = -INFINITY;
+  for (size_t j = 0; j < n; j++) length2 += (w.to[j] - w.from[j]) * (w.to[j] - w.from[j]);
+  w.inverse = length2 > 1e-280 ? 1.0 / length2 : 0.0;
+  for (size_t j = 0; j < lanes_padded(n); j++) {
+    w.low[j] = w.below[j] = INFINITY;
+    w.high[j] = w.above[j] = -INFINITY;
   }
-  const double inverse = length2 > 1e-280 ? 1.0 / length2 : 0.0;
-  return (walk){.n = n,
-                .from = from,
-                .to = to,
-                .inverse = inverse,
-                .by_time = by_time,
-                .low = low,
-                .high = high,
-                .below = below,
-                .above = above};
+  return w;
 }
 
 /* Where on the chord a point is seen to be, in units of its length; points of all variables, `stride` apart. */
@@ -91,40 +94,52 @@ static double place_of(const walk *w, double t, const double *point, size_t stri
   return clamped(d ? (t - d->base - d->begin) / d->length : along_of(w, point, stride));
 }
 
-static double beside(const walk *w, double along, double value, size_t j) {
-  return value - ((1.0 - along) * w->from[j] + along * w->to[j]);
-}
-
 /* A piece by its own ends, their places, and what it says of the way beside its own chord: that chord strays as far as
  * its ends. */
-static void take_block(walk *w, const double *begin, const double *end, const double *block, const double along[2]) {
+static inline void take_block(const walk *w, const double *begin, const double *end, const double *block,
+                              const double along[2]) {
   const size_t n = w->n;
+  const double *from = w->from, *to = w->to, a = along[0], b = along[1];
+  double *low = w->low, *high = w->high, *below = w->below, *above = w->above;
+#pragma omp simd
   for (size_t j = 0; j < n; j++) {
-    const double e0 = beside(w, along[0], begin[j], j), e1 = beside(w, along[1], end[j], j);
-    w->low[j] = lesser(block[BLOCK_LOW * n + j], w->low[j]);
-    w->high[j] = greater(block[BLOCK_HIGH * n + j], w->high[j]);
-    w->below[j] = lesser(lesser(e0, e1) + block[BLOCK_BELOW * n + j], w->below[j]);
-    w->above[j] = greater(greater(e0, e1) + block[BLOCK_ABOVE * n + j], w->above[j]);
+    const double e0 = begin[j] - ((1.0 - a) * from[j] + a * to[j]), e1 = end[j] - ((1.0 - b) * from[j] + b * to[j]);
+    low[j] = lesser(block[BLOCK_LOW * n + j], low[j]), high[j] = greater(block[BLOCK_HIGH * n + j], high[j]);
+    below[j] = lesser(lesser(e0, e1) + block[BLOCK_BELOW * n + j], below[j]);
+    above[j] = greater(greater(e0, e1) + block[BLOCK_ABOVE * n + j], above[j]);
   }
+}
+
+static double along_of_lanes(const walk *w, const lane_row *c, size_t i) {
+  double along = 0.0;
+  for (size_t j = 0; j < w->n; j++) {
+    const double value = c[j / MOTION_LANES * LANE_ROWS + i][j % MOTION_LANES];
+    along += (value - w->from[j]) * (w->to[j] - w->from[j]);
+  }
+  return along * w->inverse;
 }
 
 /* A polynomial by its coefficients: those of its place along the chord are in [0, 1], so that its place is. By time it
  * is a straight line between the places of both ends, which are given. */
-static void take_polynomial(walk *w, const double *c, size_t stride, size_t degree, double along[2]) {
-  double places[MOTION_MAX_DEGREE + 1];
+static inline void take_polynomial(walk *w, const lane_row *c, size_t degree, double along[2]) {
+  double places[LANE_ROWS];
   for (size_t i = 0; i <= degree; i++) {
     const double share = (double)i / (double)degree;
-    places[i] = w->by_time ? (1.0 - share) * along[0] + share * along[1] : clamped(along_of(w, c + i, stride));
+    places[i] = w->by_time ? (1.0 - share) * along[0] + share * along[1] : clamped(along_of_lanes(w, c, i));
   }
   along[0] = places[0], along[1] = places[degree];
-  for (size_t j = 0; j < w->n; j++, c += stride) {
-    double low = w->low[j], high = w->high[j], below = w->below[j], above = w->above[j];
+  for (size_t first = 0; first < w->n; first += MOTION_LANES, c += LANE_ROWS) {
+    const double *from = w->from + first, *to = w->to + first;
+    double *low = w->low + first, *high = w->high + first, *below = w->below + first, *above = w->above + first;
     for (size_t i = 0; i <= degree; i++) {
-      const double e = beside(w, places[i], c[i], j);
-      low = lesser(c[i], low), high = greater(c[i], high);
-      below = lesser(e, below), above = greater(e, above);
+      const double place = places[i];
+#pragma omp simd
+      for (int l = 0; l < MOTION_LANES; l++) {
+        const double e = c[i][l] - ((1.0 - place) * from[l] + place * to[l]);
+        low[l] = lesser(c[i][l], low[l]), high[l] = greater(c[i][l], high[l]);
+        below[l] = lesser(e, below[l]), above[l] = greater(e, above[l]);
+      }
     }
-    w->low[j] = low, w->high[j] = high, w->below[j] = below, w->above[j] = above;
   }
 }
 
@@ -137,19 +152,29 @@ static void round_outward(const walk *w) {
   }
 }
 
+static inline void load_segment(const motion_track *t, size_t segment, lane_row *c) {
+  for (size_t first = 0; first < t->n_moving; first += MOTION_LANES, c += LANE_ROWS)
+    lanes_load(t, segment, first, c, NULL);
+}
+
 /* ---- the tree ---- */
 
-static void make_block(const motion_track *t, size_t level, size_t k) {
-  const size_t n = t->n_moving, size = (size_t)1 << level, first = k * size;
+/* `rows`: room for BLOCK_SCRATCH rows of whole lanes. */
+enum { BLOCK_SCRATCH = MOTION_CUT - MOTION_FROM + LANE_ROWS };
+
+static void make_block(const motion_track *t, size_t level, size_t k, double *rows) {
+  const size_t n = t->n_moving, stride = lanes_padded(n), size = (size_t)1 << level, first = k * size;
   const size_t last = first + size < t->n_segments ? first + size : t->n_segments;
   const duration whole = {.base = t->times[first], .length = t->times[last] - t->times[first]};
-  double *block = block_at(t, level, k);
-  walk w = walk_along(n, knot_at(t, first), knot_at(t, last), t->by_time ? &whole : NULL, block, block + BLOCK_HIGH * n,
-                      block + BLOCK_BELOW * n, block + BLOCK_ABOVE * n);
+  memcpy(rows, knot_at(t, first), n * sizeof *rows);
+  memcpy(rows + stride, knot_at(t, last), n * sizeof *rows);
+  walk w = walk_along(n, t->by_time ? &whole : NULL, rows, stride);
   for (size_t i = first; i < last && level == FINEST; i++) {
     double along[2] = {0.0, 1.0};
     for (size_t end = 0; end < 2 && t->by_time; end++) along[end] = place_of(&w, t->times[i + end], NULL, 0);
-    take_polynomial(&w, coefficients_of(t, i), t->stride, t->degree[i], along);
+    lane_row *segment = (lane_row *)(rows + (MOTION_CUT - MOTION_FROM) * stride);
+    load_segment(t, i, segment);
+    take_polynomial(&w, (const lane_row *)segment, t->degree[i], along);
   }
   for (size_t i = first; i < last && level > FINEST; i += size / 2) {
     const size_t end = i + size / 2 < last ? i + size / 2 : last;
@@ -158,6 +183,8 @@ static void make_block(const motion_track *t, size_t level, size_t k) {
     take_block(&w, from, to, block_at(t, level - 1, i >> (level - 1)), along);
   }
   round_outward(&w);
+  for (size_t row = 0; row < BLOCK_ROWS; row++)
+    memcpy(block_at(t, level, k) + row * n, w.low + row * stride, n * sizeof *rows);
 }
 
 bool motion_spans_make(motion_track *t) {
@@ -174,8 +201,10 @@ bool motion_spans_make(motion_track *t) {
   const size_t knots = blocks_of_level(t, FINEST);
   s->blocks = malloc(blocks * BLOCK_ROWS * n * sizeof *s->blocks);
   s->knots = malloc((knots + 1) * n * sizeof *s->knots);
-  s->error = calloc(n, sizeof *s->error);
-  if (!s->blocks || !s->knots || !s->error) {
+  s->error = calloc(lanes_padded(n), sizeof *s->error);
+  double *rows = calloc(BLOCK_SCRATCH * lanes_padded(n), sizeof *rows);
+  if (!s->blocks || !s->knots || !s->error || !rows) {
+    free(rows);
     motion_spans_free(s);
     return false;
   }
@@ -187,7 +216,8 @@ bool motion_spans_make(motion_track *t) {
   for (size_t i = 0; i < t->n_segments; i++)
     for (size_t j = 0; j < n; j++) s->error[j] = greater(t->error[i * n + j], s->error[j]);
   for (size_t level = FINEST; level <= top; level++)
-    for (size_t k = 0; k < blocks_of_level(t, level); k++) make_block(t, level, k);
+    for (size_t k = 0; k < blocks_of_level(t, level); k++) make_block(t, level, k, rows);
+  free(rows);
   return true;
 }
 
@@ -207,15 +237,11 @@ typedef struct piece {
   double along[2]; /* where on the chord its ends are seen */
 } piece;
 
-/* A part of a segment, [variable][stride]. */
-static void cut_segment(const motion_track *t, size_t segment, double a, double b, double *out) {
-  const size_t degree = t->degree[segment];
-  for (size_t j = 0; j < t->n_moving; j++) {
-    double *c = out + j * t->stride;
-    memcpy(c, coefficients_of(t, segment) + j * t->stride, (degree + 1) * sizeof *c);
-    if (a > 0.0) bernstein_cut_front(c, degree, a);
-    if (b < 1.0) bernstein_cut_back(c, degree, (b - a) / (1.0 - a));
-  }
+/* A part of a segment. */
+static inline void cut_segment(const motion_track *t, size_t segment, double a, double b, lane_row *c) {
+  load_segment(t, segment, c);
+  for (size_t first = 0; first < t->n_moving; first += MOTION_LANES, c += LANE_ROWS)
+    lanes_cut(t->degree[segment], a, b, c);
 }
 
 /* The values of all variables at u of a segment; each is off by less than 4 u of a degree. */
@@ -236,25 +262,43 @@ static size_t level_of_block(const motion_track *t, size_t segment, size_t last)
   return level;
 }
 
-static size_t take_pieces(const motion_track *t, walk *w, const motion_interval *own, double *cut, piece *pieces) {
+void motion_track_range(const motion_track *t, size_t column, size_t first, size_t last, double *low, double *high) {
+  double least = INFINITY, most = -INFINITY;
+  for (size_t i = first; i < last;) {
+    const size_t level = level_of_block(t, i, last);
+    if (level > 0) {
+      const double *block = block_at(t, level, i >> level) + column;
+      least = lesser(block[BLOCK_LOW * t->n_moving], least), most = greater(block[BLOCK_HIGH * t->n_moving], most);
+    }
+    const double *c = coefficients_of(t, i) + column * t->stride;
+    for (size_t k = 0; k <= t->degree[i] && level == 0; k++) least = lesser(c[k], least), most = greater(c[k], most);
+    i += (size_t)1 << level;
+  }
+  *low = least, *high = most;
+}
+
+/* `ends`: the first segment's part and the last one's, where they are cut; room for the others. */
+static inline size_t take_pieces(const motion_track *t, walk *w, const motion_interval *own, lane_row *ends[2],
+                                 piece *pieces) {
   size_t count = 0, i = own->first;
   while (i < own->last) {
-    const bool begins = i == own->first && own->a > 0.0, ends = i + 1 == own->last && own->b < 1.0;
+    const bool begins = i == own->first && own->a > 0.0, ends_here = i + 1 == own->last && own->b < 1.0;
     piece *p = &pieces[count++];
-    *p = (piece){.segment = i, .a = begins ? own->a : 0.0, .b = ends ? own->b : 1.0};
-    p->level = begins || ends ? 0 : level_of_block(t, i, own->b < 1.0 ? own->last - 1 : own->last);
+    *p = (piece){.segment = i, .a = begins ? own->a : 0.0, .b = ends_here ? own->b : 1.0};
+    p->level = begins || ends_here ? 0 : level_of_block(t, i, own->b < 1.0 ? own->last - 1 : own->last);
     const size_t size = (size_t)1 << p->level, end = i + size < t->n_segments ? i + size : t->n_segments;
     if (w->by_time) {
       p->along[0] = begins ? 0.0 : place_of(w, t->times[i], NULL, 0);
-      p->along[1] = ends ? 1.0 : place_of(w, t->times[end], NULL, 0);
+      p->along[1] = ends_here ? 1.0 : place_of(w, t->times[end], NULL, 0);
     }
     if (p->level > 0) {
       const double *from = knot_at(t, i), *to = knot_at(t, end);
       p->along[0] = place_of(w, t->times[i], from, 1), p->along[1] = place_of(w, t->times[end], to, 1);
       take_block(w, from, to, block_at(t, p->level, i >> p->level), p->along);
     } else {
-      if (begins || ends) cut_segment(t, i, p->a, p->b, cut);
-      take_polynomial(w, begins || ends ? cut : coefficients_of(t, i), t->stride, t->degree[i], p->along);
+      lane_row *c = ends[i + 1 == own->last];
+      if (!begins && !ends_here) load_segment(t, i, c);
+      take_polynomial(w, (const lane_row *)c, t->degree[i], p->along);
     }
     i = end;
   }
@@ -329,19 +373,73 @@ static duration duration_of(const cprox_motion *m, const motion_interval *over) 
   return (duration){.base = base, .begin = begin, .length = end - begin};
 }
 
+/* The straight line through the values at the centre, which are `along` the chord, and how far the motion is from it.
+ */
+SIMD_CLONES
+static void fill_rows(const walk *w, double along, double off_place, const double *spans_error, double *rows,
+                      size_t stride) {
+  const double reach = ROUND_UP * greater(along, 1.0 - along), round = 32.0 * ROUND_U * (1.0 + reach);
+  const double *value = rows + MOTION_VALUE * stride, *from = w->from, *to = w->to, *low = w->low, *high = w->high,
+               *below = w->below, *above = w->above;
+  double *first = rows + MOTION_FIRST * stride, *rate = rows + MOTION_W * stride,
+         *second = rows + MOTION_SECOND * stride, *acceleration = rows + MOTION_A * stride,
+         *third = rows + MOTION_G * stride, *shift = rows + MOTION_SHIFT * stride,
+         *variation = rows + MOTION_VARIATION * stride, *lines = rows + MOTION_LINE * stride,
+         *strays = rows + MOTION_STRAY * stride;
+  const size_t n = lanes_padded(w->n);
+#pragma omp simd
+  for (size_t j = 0; j < n; j++) {
+    const double slope = 2.0 * reach * (to[j] - from[j]);
+    const double off = value[j] - ((1.0 - along) * from[j] + along * to[j]);
+    const double size = greater(fabs(low[j]), fabs(high[j]));
+    const double error = 2.0 * spans_error[j] + round * size + 2.0 * off_place * fabs(slope);
+    const double stray = greater(above[j] - off, off - below[j]) + error;
+    const double by_range = greater(high[j] - value[j], value[j] - low[j]) + error;
+    const double line = 0.5 * fabs(slope);
+    first[j] = slope, rate[j] = fabs(slope);
+    second[j] = acceleration[j] = third[j] = 0.0;
+    shift[j] = lesser(by_range, line + stray);
+    variation[j] = INFINITY;
+    lines[j] = line, strays[j] = stray;
+  }
+}
+
+/* The span's own range, and its range beside its chord. */
+SIMD_CLONES
+static size_t walk_over(const motion_track *t, const motion_interval *own, walk *w, lane_row *ends[2], piece *pieces) {
+  const size_t count = take_pieces(t, w, own, ends, pieces);
+  round_outward(w);
+  return count;
+}
+
+/* The values where the span begins, or ends; there the segment is cut, if it is. */
+SIMD_CLONES
+static void cut_end(const motion_track *t, const motion_interval *own, bool at_end, lane_row *c, double *values) {
+  const size_t segment = at_end ? own->last - 1 : own->first, i = at_end ? t->degree[segment] : 0;
+  const double a = at_end ? 0.0 : own->a, b = at_end ? own->b : 1.0;
+  if (a > 0.0 || b < 1.0) {
+    cut_segment(t, segment, a, b, c);
+    for (size_t first = 0; first < t->n_moving; first += MOTION_LANES, c += LANE_ROWS)
+      memcpy(values + first, c[i], sizeof c[i]);
+  } else {
+    const double *of = coefficients_of(t, segment) + i;
+    for (size_t j = 0; j < t->n_moving; j++) values[j] = of[j * t->stride];
+  }
+}
+
 void motion_fill_span(const cprox_motion *m, const motion_track *t, const motion_interval *over,
                       const motion_interval *own, span_centre *centre, double *rows) {
   const size_t n = t->n_moving, stride = motion_rows_stride(m);
   const duration whole = duration_of(m, over);
+  double *cut = rows + MOTION_CUT * stride;
+  lane_row *ends[2] = {(lane_row *)cut, (lane_row *)(cut + LANE_ROWS * lanes_padded(n))};
   rows += t->first_slot;
-  double *from = rows + MOTION_FROM * stride, *to = rows + MOTION_TO * stride;
-  values_at(t, own->first, own->a, from);
-  values_at(t, own->last - 1, own->b, to);
+  double *span = rows + MOTION_FROM * stride;
+  cut_end(t, own, false, ends[0], span);
+  cut_end(t, own, true, ends[1], rows + MOTION_TO * stride);
+  walk w = walk_along(n, t->by_time ? &whole : NULL, span, stride);
   piece pieces[MOST_PIECES];
-  walk w = walk_along(n, from, to, t->by_time ? &whole : NULL, rows + MOTION_LOW * stride, rows + MOTION_HIGH * stride,
-                      rows + MOTION_BELOW * stride, rows + MOTION_ABOVE * stride);
-  const size_t count = n > 0 ? take_pieces(t, &w, own, rows + MOTION_CUT * stride, pieces) : 0;
-  round_outward(&w);
+  const size_t count = n > 0 ? walk_over(t, own, &w, ends, pieces) : 0;
   look_at(&w, centre);
 
   double off_place = 0.0;
@@ -358,22 +456,6 @@ void motion_fill_span(const cprox_motion *m, const motion_track *t, const motion
   double *value = rows + MOTION_VALUE * stride;
   values_at(t, segment, u, value);
   place_arcs(m, t, segment, u, value - t->first_slot);
-  const double along = t->by_time ? 0.5 : clamped(along_of(&w, value, 1)),
-               reach = ROUND_UP * greater(along, 1.0 - along);
-  for (size_t j = 0; j < n; j++) {
-    const double slope = 2.0 * reach * (to[j] - from[j]), off = beside(&w, along, value[j], j);
-    const double size = greater(fabs(w.low[j]), fabs(w.high[j]));
-    const double error =
-        2.0 * t->spans.error[j] + 32.0 * ROUND_U * (1.0 + reach) * size + 2.0 * off_place * fabs(slope);
-    const double stray = greater(w.above[j] - off, off - w.below[j]) + error;
-    const double by_range = greater(w.high[j] - value[j], value[j] - w.low[j]) + error;
-    const double line = 0.5 * fabs(slope);
-    rows[MOTION_FIRST * stride + j] = slope;
-    rows[MOTION_W * stride + j] = fabs(slope);
-    rows[MOTION_SECOND * stride + j] = rows[MOTION_A * stride + j] = rows[MOTION_G * stride + j] = 0.0;
-    rows[MOTION_SHIFT * stride + j] = lesser(by_range, line + stray);
-    rows[MOTION_VARIATION * stride + j] = INFINITY;
-    rows[MOTION_LINE * stride + j] = line;
-    rows[MOTION_STRAY * stride + j] = stray;
-  }
+  const double along = t->by_time ? 0.5 : clamped(along_of(&w, value, 1));
+  if (n > 0) fill_rows(&w, along, off_place, t->spans.error, rows, stride);
 }

@@ -35,6 +35,10 @@ typedef struct motion_spans {
 bool motion_spans_make(struct motion_track *track);
 void motion_spans_free(motion_spans *spans);
 
+/* Between these are all values of a moving variable over segments first … last - 1. */
+void motion_track_range(const struct motion_track *track, size_t column, size_t first, size_t last, double *low,
+                        double *high);
+
 /* Where a span has its centre, and what it looks like. */
 typedef struct span_centre {
   size_t segment;

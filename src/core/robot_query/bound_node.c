@@ -406,6 +406,7 @@ static bool other_moves_farther(robot_search *o) {
 static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   const int32_t list = robot_known(node)->list;
   const size_t n = lists_count(&o->lists, list);
+  const bool sweeps = o->scene.motion->sweeps != NULL;
   cluster_view view = {.part = -1};
   cprox_status status = CPROX_OK;
   for (size_t i = 0; i < n && status == CPROX_OK; i++) {
@@ -418,7 +419,8 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node) {
     } else if (entry.pair < 0) {
       status = open_groups_of(o, node, &entry);
     } else {
-      bound_pair_roughly(o, node, &entry);
+      if (sweeps) entry.lower = greater(robot_scene_swept_apart(&o->scene, &o->scene.pairs[entry.pair]), entry.lower);
+      if (!sweeps || !robot_is_pruned(o, entry.lower)) bound_pair_roughly(o, node, &entry);
       status = keep_open(o, &entry);
     }
   }

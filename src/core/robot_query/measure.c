@@ -283,11 +283,24 @@ static void look_at_list(robot_search *o, int32_t list) {
   }
 }
 
-/* In the middle of a span, or where it is bent of its halves, `places` at most. */
+/* Whether halves of a span are to be looked at: bent ones, and all of several tracks, whose looks cost more than
+ * places. Otherwise the scene is in the middle of the span. */
+static bool wants_halves(robot_search *o, int32_t list, const motion_interval *over, size_t places) {
+  robot_scene *s = &o->scene;
+  if (s->motion->n_tracks == 1 || robot_scene_has_two_times(s)) {
+    robot_scene_enter_span(s, over);
+    look_at_list(o, list);
+    return s->centre.bent && places > 1;
+  }
+  if (places > 1 && motion_is_span(over)) return true;
+  const span_centre middle = motion_middle(s->motion, over);
+  robot_scene_enter_place(s, middle.segment, middle.u);
+  return false;
+}
+
+/* In the middle of a span, or of its halves, `places` at most. */
 static cprox_status seed_span(robot_search *o, int32_t list, const motion_interval *over, size_t places) {
-  robot_scene_enter_span(&o->scene, over);
-  look_at_list(o, list);
-  if (!o->scene.centre.bent || places < 2) return seed_here(o, list);
+  if (!wants_halves(o, list, over, places)) return seed_here(o, list);
   const cprox_motion *m = o->scene.motion;
   const double t0 = motion_time(m, over->first, over->a), t1 = motion_time(m, over->last - 1, over->b);
   const size_t knot =
@@ -379,7 +392,11 @@ cprox_status robot_seed(robot_search *o, const search_node *node) {
   cprox_status status = seed_span(o, list, &over, places);
   for (int end = 0; end < 2 && status >= 0 && !robot_is_answered(o); end++) {
     const double u = end == 0 ? over.a : over.b;
-    robot_scene_enter(&o->scene, end == 0 ? over.first : over.last - 1, u, u);
+    const size_t segment = end == 0 ? over.first : over.last - 1;
+    if (robot_scene_has_two_times(&o->scene))
+      robot_scene_enter(&o->scene, segment, u, u);
+    else
+      robot_scene_enter_place(&o->scene, segment, u);
     status = seed_here(o, list);
   }
   return status;

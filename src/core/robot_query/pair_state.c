@@ -234,7 +234,7 @@ static double measured_apart(robot_scene *s, const size_t parts[2]) {
   for (int k = 0; k <= PLACES; k++) {
     const double t = s->q->t0 + (s->q->t1 - s->q->t0) * k / PLACES;
     const motion_interval at = motion_interval_of(s->motion, t, t);
-    robot_scene_enter(s, at.first, at.a, at.a);
+    robot_scene_enter_place(s, at.first, at.a);
     const robot_body *a = robot_scene_moving(s, &pair), *b = robot_scene_standing(s, &pair);
     const double apart = vec_norm(vec_sub(a->side.at.p, b->side.at.p));
     least = lesser(apart + a->radius + b->radius + a->side.error + b->side.error, least);
@@ -345,7 +345,7 @@ bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *
   s->displacements = all_displacements ? s->scratch + n_axes : NULL;
   s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes + all_displacements);
   for (size_t i = 0; i < n_axes; i++) s->axis_placed[i] = 0;
-  for (size_t i = 0; i < s->motion->n_tracks; i++) s->tracks[i].filled = 0;
+  for (size_t i = 0; i < s->motion->n_tracks; i++) s->tracks[i].found = s->tracks[i].filled = 0;
 
   const size_t listed = q->set ? q->set->n_unbounded : last - first;
   for (size_t i = 0; i < listed; i++)
@@ -401,24 +401,50 @@ void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
   robot_scene_enter_span(s, &over);
 }
 
-static void fill_track(robot_scene *s, size_t track) {
+static bool is_on_other_clock(const robot_scene *s, const motion_track *t) {
+  return robot_scene_has_two_times(s) && t->clock == s->starts->other;
+}
+
+static track_state *find_track(robot_scene *s, size_t track) {
   track_state *state = &s->tracks[track];
-  if (state->filled == s->node) return;
+  if (state->found == s->node) return state;
   const motion_track *t = &s->motion->tracks[track];
-  const bool other = robot_scene_has_two_times(s) && t->clock == s->starts->other;
-  const motion_interval *over = other ? &s->other : &s->over;
+  const motion_interval *over = is_on_other_clock(s, t) ? &s->other : &s->over;
+  state->found = s->node;
+  if (s->at_place) {
+    state->own = *over;
+    state->own.first = motion_track_place(s->motion, t, over->first, &state->own.a);
+  } else {
+    state->own = motion_track_interval(s->motion, t, over);
+  }
+  return state;
+}
+
+static void fill_track(robot_scene *s, size_t track) {
+  track_state *state = find_track(s, track);
+  if (state->filled == s->node || s->at_place) return;
+  const bool other = is_on_other_clock(s, &s->motion->tracks[track]);
   state->filled = s->node;
-  state->own = motion_track_interval(s->motion, t, over);
-  motion_fill_track(s->motion, track, over, &state->own, other ? &s->other_centre : &s->centre, s->rows);
+  motion_fill_track(s->motion, track, other ? &s->other : &s->over, &state->own, other ? &s->other_centre : &s->centre,
+                    s->rows);
 }
 
 static bool is_same(const motion_interval *a, const motion_interval *b) {
   return a->first == b->first && a->last == b->last && a->a == b->a && a->b == b->b;
 }
 
-void robot_scene_enter_both(robot_scene *s, const motion_interval *lead, const motion_interval *other) {
-  if (s->node > 0 && is_same(lead, &s->over) && is_same(other, &s->other)) return; /* everything is known */
+void robot_scene_enter_place(robot_scene *s, size_t segment, double u) {
   s->node++;
+  s->at_place = true;
+  s->over = s->other = (motion_interval){.a = u, .b = u, .first = segment, .last = segment + 1};
+  s->centre = s->other_centre = (span_centre){.segment = segment, .u = u};
+}
+
+void robot_scene_enter_both(robot_scene *s, const motion_interval *lead, const motion_interval *other) {
+  const bool known = s->node > 0 && !s->at_place && is_same(lead, &s->over) && is_same(other, &s->other);
+  if (known) return;
+  s->node++;
+  s->at_place = false;
   s->over = *lead, s->other = *other;
   s->centre = motion_middle(s->motion, lead);
   s->other_centre = (span_centre){.u = s->centre.u, .segment = s->centre.segment};
@@ -482,7 +508,11 @@ static void place_axis(robot_scene *s, int32_t axis) {
     const int32_t next = s->chain[--n].axis;
     const size_t track = (size_t)s->motion->track_of[axes[next].variable];
     if (s->motion->axis_moves[next]) fill_track(s, track);
-    motion_find_axis(s->motion, &s->tracks[track].own, s->rows, (size_t)next, s->axes);
+    const motion_interval *own = &s->tracks[track].own;
+    if (s->at_place)
+      motion_place_axis(s->motion, own->first, own->a, (size_t)next, s->axes);
+    else
+      motion_find_axis(s->motion, own, s->rows, (size_t)next, s->axes);
     s->axis_placed[next] = s->node;
   }
 }
@@ -536,6 +566,27 @@ static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body
   if (!robot_scene_has_two_times(s) || !pair->self) return;
   motion_find_standing_rates(s->axes, s->chain, n, body->side.at.p, m);
   s->times.standing = start_clock_of(s->motion, pair->standing) == s->starts->other;
+}
+
+/* Where a whole part is over the node. */
+static const sweep_box *sweep_of(robot_scene *s, int32_t index) {
+  part_state *state = &s->parts[index];
+  const part_sweep *sweep = &s->motion->sweeps[index];
+  if (sweep->n_shifts == 0) return &sweep->box;
+  if (state->swept == s->node) return &state->sweep;
+  const int32_t variable = s->motion->robot->axes[sweep->axes[0]].variable;
+  const motion_interval *own = &find_track(s, (size_t)s->motion->track_of[variable])->own;
+  state->swept = s->node;
+  state->sweep = motion_sweep_over(s->motion, sweep, own->first, own->last);
+  return &state->sweep;
+}
+
+double robot_scene_swept_apart(robot_scene *s, const robot_pair *pair) {
+  const part_sweep *sweeps = s->motion->sweeps;
+  if (!pair->self) return -INFINITY;
+  const double radii = sweeps[pair->moving].radius + sweeps[pair->standing].radius;
+  const double apart = sweep_boxes_apart(sweep_of(s, pair->moving), sweep_of(s, pair->standing), radii);
+  return apart > 0.0 ? apart : -INFINITY; /* boxes that overlap do not say how far */
 }
 
 /* How far a whole part moves, seen from the world; its displacements are known then. */

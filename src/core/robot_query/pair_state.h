@@ -33,12 +33,15 @@ typedef struct part_state {
   uint32_t placed, displaced, moved; /* the node for which `body.side.at`, `displacement` and `motion` were found */
   robot_body body;
   double displacement; /* that of the motion */
+  uint32_t swept;      /* the node for which `sweep` was found */
+  sweep_box sweep;
   chain_motion motion; /* seen from the world */
 } part_state;
 
 /* A track of the motion over the node at hand. */
 typedef struct track_state {
-  uint32_t filled;     /* the node for which its rows were found */
+  uint32_t found;      /* the node for which `own` was found */
+  uint32_t filled;     /* and its rows */
   motion_interval own; /* of its own segments */
 } track_state;
 
@@ -71,6 +74,7 @@ typedef struct robot_scene {
   span_centre centre; /* everything stands as it does here: in its middle, or near that of a span. A bent span is only
                          bounded by how far parts move */
   span_centre other_centre; /* the same of the other clock */
+  bool at_place;            /* the node is a place: of axes only the frames are known */
   two_times times;
 } robot_scene;
 
@@ -132,6 +136,10 @@ void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
 void robot_scene_enter_span(robot_scene *scene, const motion_interval *over);
 void robot_scene_enter_both(robot_scene *scene, const motion_interval *lead, const motion_interval *other);
 
+/* A single time, where nothing but distances is asked for: the frames of parts are found, and nothing moves. Not where
+ * the class has two times. */
+void robot_scene_enter_place(robot_scene *scene, size_t segment, double u);
+
 /* Whether the middle of the node, where everything is measured, is possible. */
 bool robot_scene_is_possible(const robot_scene *scene);
 
@@ -161,7 +169,10 @@ int32_t robot_scene_open_pair(robot_scene *scene, int32_t pair, uint32_t *count)
  * pairs of elements, only those of one pair at a time. */
 const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
 const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
-/* robot_scene_coarse_displacement(): how far both sides move together, as the axis above both sees it: quicker. */
+/* robot_scene_swept_apart(): of a motion of several tracks: over all of the node the sides are never nearer than this;
+ * told without a look at how they move. -infinity where that leaves open whether they touch.
+ * robot_scene_coarse_displacement(): how far both sides move together, as the axis above both sees it: quicker. */
+double robot_scene_swept_apart(robot_scene *scene, const robot_pair *pair);
 double robot_scene_coarse_displacement(robot_scene *scene, const robot_pair *pair);
 double robot_scene_displacement(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
 const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
