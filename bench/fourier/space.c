@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Gaps in space against n: what share of the clear poses a verdict calls clear, how far apart solids may be and still
- * be called colliding, and what a verdict costs, beside the certified distance of the same solids (cprox_pair). */
+ * be called colliding, and what a verdict costs, beside the certified distance of the same solids (cprox_pair). And
+ * what else could be done for them: a gap for each pair of convex parts, bounds per direction, a shorter period. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdio.h>
@@ -9,8 +10,10 @@
 
 #include "base/frame.h"
 #include "base/rotation.h"
+#include "curve_proximity/cprox.h"
+#include "fourier/gap.h"
 #include "fourier/parts.h"
-#include "fourier/shapes.h"
+#include "shape/body.h"
 #include "support/random.h"
 
 enum { MOST_POSES = 600, ROUNDS = 3, PARTS = 2 };
@@ -19,6 +22,7 @@ enum { MOST_POSES = 600, ROUNDS = 3, PARTS = 2 };
 typedef struct solid_in_space {
   const char *name;
   cprox_solid *solid;
+  cprox_solid *piece[PARTS]; /* of more than one part: each */
   cprox_body *part[PARTS];
   cprox_vec3 at[PARTS]; /* where the parts stand */
   int n;
@@ -63,7 +67,11 @@ static solid_in_space make_prism(bool mesh) {
   const double outline[6][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, -0.1}, {-0.1, -0.1}, {-0.1, 0.5}, {-0.5, 0.5}};
   const cprox_vec3 size[2] = {{1.0, 0.4, 0.5}, {0.4, 0.6, 0.5}};
   s.at[0] = (cprox_vec3){0.0, -0.3, 0.0}, s.at[1] = (cprox_vec3){-0.3, 0.2, 0.0};
-  for (int i = 0; i < 2; i++) made(cprox_body_create_box(size[i], NULL, &s.part[i]));
+  for (int i = 0; i < 2; i++) {
+    made(cprox_body_create_box(size[i], NULL, &s.part[i]));
+    made(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = size[i]}, NULL,
+                            &s.piece[i]));
+  }
   if (mesh) {
     cprox_vec3 v[12];
     for (int i = 0; i < 12; i++) v[i] = (cprox_vec3){outline[i % 6][0], outline[i % 6][1], i < 6 ? -0.25 : 0.25};
@@ -83,24 +91,21 @@ static solid_in_space make_prism(bool mesh) {
                             NULL, &s.solid));
     return s;
   }
-  cprox_solid *boxes[2];
   cprox_pose poses[2];
-  for (int i = 0; i < 2; i++) {
-    made(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = size[i]}, NULL,
-                            &boxes[i]));
-    poses[i] = CPROX_POSE_IDENTITY, poses[i].position = s.at[i];
-  }
+  for (int i = 0; i < 2; i++) poses[i] = CPROX_POSE_IDENTITY, poses[i].position = s.at[i];
   made(cprox_solid_create(
       &(cprox_solid_description){
-          .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const *)boxes, .poses = poses, .n = 2},
+          .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const *)s.piece, .poses = poses, .n = 2},
       NULL, &s.solid));
-  for (int i = 0; i < 2; i++) cprox_solid_free(boxes[i]);
   return s;
 }
 
 static void free_solid(solid_in_space *s) {
   cprox_solid_free(s->solid);
-  for (int i = 0; i < s->n; i++) cprox_body_free(s->part[i]);
+  for (int i = 0; i < s->n; i++) {
+    cprox_solid_free(s->piece[i]);
+    cprox_body_free(s->part[i]);
+  }
 }
 
 static cprox_pose part_pose(const solid_in_space *s, int i, const cprox_pose *pose) {
@@ -194,8 +199,116 @@ static bool is_clear_by_distance(const void *asked, const sample *s, size_t i, c
   return distance(of->a, &here, of->b, &s->pose[i], ws) > 0.0;
 }
 
+/* Lets V decide alone, without the bounds per direction. */
+static void decide_by_sum(cprox_gap *gap) {
+  enclosures_free(&gap->bounds_a);
+  enclosures_free(&gap->bounds_b);
+}
+
+static cprox_gap *gap_of_sum(const cprox_solid *a, const cprox_solid *b, uint32_t samples, cprox_workspace *ws) {
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
+  o.samples = samples;
+  cprox_gap *gap = NULL;
+  made(cprox_gap_create(a, b, &o, ws, &gap));
+  decide_by_sum(gap);
+  return gap;
+}
+
+/* A gap for each pair of convex parts: clear where all of them are. */
+typedef struct parts_gap {
+  const solid_in_space *a, *b;
+  cprox_gap *gap[PARTS][PARTS];
+} parts_gap;
+
+static bool is_clear_by_parts(const void *asked, const sample *s, size_t i, cprox_workspace *ws) {
+  const parts_gap *of = asked;
+  const cprox_pose here = CPROX_POSE_IDENTITY;
+  for (int j = 0; j < of->a->n; j++)
+    for (int k = 0; k < of->b->n; k++) {
+      const cprox_pose a = part_pose(of->a, j, &here), b = part_pose(of->b, k, &s->pose[i]);
+      cprox_gap_result r = {0};
+      if (cprox_gap_test(of->gap[j][k], &a, &b, ws, &r) < 0) abort();
+      if (r.verdict != CPROX_GAP_VERDICT_CLEAR && r.verdict != CPROX_GAP_VERDICT_FAR) return false;
+    }
+  return true;
+}
+
+/* By the bounds per direction alone. */
+static bool is_clear_by_directions(const void *asked, const sample *s, size_t i, cprox_workspace *ws) {
+  (void)ws;
+  const cprox_pose here = CPROX_POSE_IDENTITY;
+  return gap_clearance(asked, &here, &s->pose[i]) > 0.0;
+}
+
 /* Clear poses farther apart than this share of the size should be called clear. */
 #define BEYOND 0.05
+
+/* The share of those that are. */
+static double share_clear(asker ask, const void *asked, const sample *s, cprox_workspace *ws, unsigned long *unsound) {
+  size_t clear = 0, beyond = 0;
+  for (size_t i = 0; i < s->n; i++) {
+    const bool says_clear = ask(asked, s, i, ws);
+    *unsound += says_clear && s->distance[i] < -1e-9;
+    if (s->distance[i] > BEYOND * s->size) beyond++, clear += says_clear;
+  }
+  return (double)clear / (double)beyond;
+}
+
+/* A gap of the same samples at `share` of the least period that keeps bounding balls apart: a verdict is as good with
+ * images, which only add to V. */
+static cprox_gap *gap_of_period(const solid_in_space *a, const solid_in_space *b, uint32_t samples, double share,
+                                cprox_workspace *ws) {
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
+  o.samples = samples;
+  gap_plan plan;
+  made(gap_plan_choose(a->solid, b->solid, &o, ws, &plan));
+  plan.period = share * 2.0 * (a->solid->radius + b->solid->radius);
+  plan.offset = kernel_offset(3, (int)samples, plan.mode) * plan.period / samples;
+  double reach = 0.0;
+  cprox_gap *gap = NULL;
+  made(gap_build(&plan, solid_offset(a->solid, plan.offset, &reach), solid_offset(b->solid, plan.offset, &reach),
+                 o.memory_limit, ws, &gap));
+  gap->centre_a = a->solid->centre, gap->centre_b = b->solid->centre;
+  gap->radius_a = a->solid->radius, gap->radius_b = b->solid->radius;
+  gap->half_energy = INFINITY; /* the solids may not fit into the period */
+  return gap;
+}
+
+static void measure_others(const solid_in_space *a, const solid_in_space *b, uint32_t samples, const sample *s,
+                           cprox_workspace *ws) {
+  char parameter[32], called[64];
+  snprintf(parameter, sizeof parameter, "n %u", samples);
+  snprintf(called, sizeof called, "space: others %s %s", a->name, b->name);
+  unsigned long unsound[4] = {0};
+  if (a->n * b->n > 1) {
+    parts_gap of = {.a = a, .b = b};
+    for (int j = 0; j < a->n; j++)
+      for (int k = 0; k < b->n; k++)
+        of.gap[j][k] = gap_of_sum(a->n > 1 ? a->piece[j] : a->solid, b->n > 1 ? b->piece[k] : b->solid, samples, ws);
+    const double share = share_clear(is_clear_by_parts, &of, s, ws, &unsound[0]);
+    fourier_row(called, "curve_proximity by parts", parameter, median_time(is_clear_by_parts, &of, s, ws), 0, share,
+                unsound[0], 0);
+    for (int j = 0; j < a->n; j++)
+      for (int k = 0; k < b->n; k++) cprox_gap_free(of.gap[j][k]);
+  }
+  cprox_gap *shorter = gap_of_period(a, b, samples, 0.85, ws);
+  double share = share_clear(is_clear_by_gap, shorter, s, ws, &unsound[1]);
+  fourier_row(called, "curve_proximity period", parameter, median_time(is_clear_by_gap, shorter, s, ws), 0, share,
+              unsound[1], 0);
+  cprox_gap_free(shorter);
+
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
+  o.samples = samples;
+  cprox_gap *whole = NULL;
+  made(cprox_gap_create(a->solid, b->solid, &o, ws, &whole));
+  share = share_clear(is_clear_by_directions, whole, s, ws, &unsound[2]);
+  fourier_row(called, "curve_proximity directions", parameter, median_time(is_clear_by_directions, whole, s, ws), 0,
+              share, unsound[2], 0);
+  share = share_clear(is_clear_by_gap, whole, s, ws, &unsound[3]);
+  fourier_row(called, "curve_proximity verdict", parameter, median_time(is_clear_by_gap, whole, s, ws), 0, share,
+              unsound[3], 0);
+  cprox_gap_free(whole);
+}
 
 static void measure_gap(const solid_in_space *a, const solid_in_space *b, cprox_gap_mode mode, uint32_t samples,
                         const sample *s, cprox_workspace *ws) {
@@ -214,6 +327,7 @@ static void measure_gap(const solid_in_space *a, const solid_in_space *b, cprox_
     return;
   }
   const cprox_gap_info info = cprox_gap_get_info(gap);
+  decide_by_sum(gap);
   size_t clear = 0, beyond = 0;
   double most = 0.0;
   unsigned long unsound = 0;
@@ -250,6 +364,7 @@ void fourier_space(const bench_size *size) {
     snprintf(called, sizeof called, "space: clear %s %s", a->name, b->name);
     fourier_row(called, "curve_proximity distance", "", median_time(is_clear_by_distance, &(bodies){a, b}, s, ws), 0,
                 1.0, 0, 0);
+    for (int i = 0; i < 3; i++) measure_others(a, b, samples[i], s, ws);
     for (int i = 0; i < (full ? p == 0 ? 5 : 4 : 3); i++)
       for (int mode = 0; mode < 2; mode++) measure_gap(a, b, (cprox_gap_mode)mode, samples[i], s, ws);
   }

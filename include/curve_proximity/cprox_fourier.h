@@ -242,7 +242,7 @@ typedef enum cprox_gap_verdict {
   CPROX_GAP_VERDICT_CLEAR = 0,
   /** they may */
   CPROX_GAP_VERDICT_COLLIDE = 1,
-  /** clear by the bounding spheres alone: value is minus their distance, see `clearance` */
+  /** clear without V: by the bounding spheres, or for a verdict alone by directions that separate all parts */
   CPROX_GAP_VERDICT_FAR = 2,
   /** within rounding of the threshold, or the signal mode: counts as unsafe */
   CPROX_GAP_VERDICT_UNDECIDED = 3
@@ -260,7 +260,7 @@ typedef struct cprox_gap_result {
   double value;
   /** |exact - value| at most: the rounding, and what an early exit left out. Of V/V_ref in the signal mode */
   double error;
-  /** [m] the distance of the bounding spheres, 0 where they overlap */
+  /** [m] FAR: the solids are at least so far apart, by their bounding spheres or by directions; else 0 */
   double clearance;
   /** summed */
   uint32_t terms;
@@ -300,8 +300,8 @@ CPROX_API void cprox_gap_free(cprox_gap *gap);
 /** What a gap is made of. */
 CPROX_API cprox_gap_info cprox_gap_get_info(const cprox_gap *gap);
 
-/** The verdict alone, with early exit both ways. CPROX_INVALID for poses that are none. No allocation once the
- *  workspace has grown. In the signal mode: the value without gradients, undecided. */
+/** The verdict alone, by bounds per direction first, then with early exit both ways. CPROX_INVALID for poses that are
+ * none. No allocation once the workspace has grown. In the signal mode: the value without gradients, undecided. */
 CPROX_API cprox_status cprox_gap_test(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_pose *pose_b,
                                       cprox_workspace *workspace, cprox_gap_result *result);
 
@@ -334,12 +334,16 @@ CPROX_API cprox_status cprox_gap_cascade_test(const cprox_gap_cascade *cascade, 
 
 /* ---- Along a curve ---- */
 
-/** The second solid carried along a curve without turning, its origin at psi(t). */
+/** The second solid carried along a curve, its origin at psi(t). */
 typedef struct cprox_gap_carried {
   /** kept by reference; any but one that is known by its arc length, in the plane for a planar gap */
   const cprox_curve *curve;
   /** how the solid is turned, not (0, 0, 0, 0) */
   cprox_quat orientation;
+  /** how it turns on its way, or NULL: it does not. A curve over the same range whose point is a rotation vector [rad],
+   *  along z for a planar gap: at t the solid is turned by `orientation` first, then about this vector by its length.
+   *  Kept by reference; any but one that is known by its arc length */
+  const cprox_curve *turning;
 } cprox_gap_carried;
 
 /** Value and gradient at a parameter of the curve: result as of cprox_gap_evaluate() at that pose.

@@ -154,6 +154,8 @@ static void bound_derivatives(cprox_gap *gap, bool folded, double measure) {
     bound[m] = folded ? plain[m] : fmin(sqrt(square[m]) * sqrt(gap->half_energy), plain[m] * measure);
   gap->steepness = 2.0 * gap->inverse * bound[0] * (1.0 + 1e-9);
   gap->curvature = 2.0 * gap->inverse * bound[1] * (1.0 + 1e-9);
+  for (int m = 0; m < 2; m++)
+    gap->stirring[m] = 2.0 * gap->inverse * plain[m] * (folded ? 1.0 : measure) * (1.0 + 1e-9);
 }
 
 static size_t count_terms(const cprox_gap *gap) {
@@ -207,6 +209,7 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
     failed = !folded && !solid_find_bounds(turned, &bounds);
     gap->half_energy = 0.5 * fmax(0.0, volume * bounds.energy - measure * measure);
     bound_derivatives(gap, folded, measure);
+    gap->turned_reach = folded ? 0.0 : turned->radius + vec_norm(turned->centre);
     gap->info.rounding = rounding_bound(gap, w, fixed, turned, (double)(corners_of(fixed) + corners_of(turned)));
     gap->turned = folded ? NULL : turned;
     if (folded) cprox_solid_free(turned);
@@ -286,6 +289,13 @@ cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const 
   if (!made) return status;
   made->centre_a = a->centre, made->centre_b = b->centre;
   made->radius_a = a->radius, made->radius_b = b->radius;
+  const bool merged =
+      a->n > ENCLOSURES_MOST_PAIRS || b->n > ENCLOSURES_MOST_PAIRS || a->n * b->n > ENCLOSURES_MOST_PAIRS;
+  if (!enclosures_make(a, merged, &made->bounds_a) || !enclosures_make(b, merged, &made->bounds_b)) {
+    cprox_gap_free(made);
+    return solid_out_of_memory(workspace);
+  }
+  made->info.bytes += (made->bounds_a.n + made->bounds_b.n) * ENCLOSURE_TABLE * sizeof(double);
   *gap = made;
   return CPROX_OK;
 }
@@ -293,6 +303,8 @@ cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const 
 void cprox_gap_free(cprox_gap *gap) {
   if (!gap) return;
   cprox_solid_free(gap->turned);
+  enclosures_free(&gap->bounds_a);
+  enclosures_free(&gap->bounds_b);
   free(gap->blocks);
   free(gap->c);
   free(gap->tail);

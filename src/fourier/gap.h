@@ -4,6 +4,7 @@
 #ifndef CPROX_FOURIER_GAP_H
 #define CPROX_FOURIER_GAP_H
 
+#include "fourier/apart.h"
 #include "fourier/kernel.h"
 #include "fourier/solid.h"
 #include "simd/dispatch.h"
@@ -27,14 +28,17 @@ typedef struct gap_plan {
 
 struct cprox_gap {
   cprox_gap_info info;
-  double inverse;     /* of the threshold times L^d: the sum times this is the value */
-  double half_energy; /* (L^d integral of T² - T(0)²)/2, at least the sum over J of |T|² */
-  double constant;    /* C(0) T(0) */
-  double steepness;   /* the gradient of a value by the position is never longer [1/m] */
-  double curvature;   /* no second derivative of a value along a line of positions is larger [1/m²] */
+  double inverse;      /* of the threshold times L^d: the sum times this is the value */
+  double half_energy;  /* (L^d integral of T² - T(0)²)/2, at least the sum over J of |T|² */
+  double constant;     /* C(0) T(0) */
+  double steepness;    /* the gradient of a value by the position is never longer [1/m] */
+  double curvature;    /* no second derivative of a value along a line of positions is larger [1/m²] */
+  double stirring[2];  /* the same where each point of the turned solid moves by a vector of its own */
+  double turned_reach; /* every point of the offset turned solid is within this of its centre [m] */
   vec3 centre_a, centre_b;
-  double radius_a, radius_b; /* of the bare solids about these */
-  cprox_solid *turned;       /* offset, about its centre; NULL: a ball, folded into the coefficients */
+  double radius_a, radius_b;     /* of the bare solids about these */
+  enclosures bounds_a, bounds_b; /* per direction, of the bare solids */
+  cprox_solid *turned;           /* offset, about its centre; NULL: a ball, folded into the coefficients */
   int N;
   size_t n_blocks;
   block *blocks;   /* by descending energy of the coefficients */
@@ -60,6 +64,13 @@ typedef struct gap_job {
 size_t gap_scratch_size(const cprox_gap *gap);
 
 void gap_sum(gap_job *job);
+
+/* CPROX_OK, or why it is none. */
+cprox_status gap_check_pose(const char *name, const cprox_pose *pose, int dimension, cprox_workspace *workspace);
+
+/* The solids at these poses, which are usable, are at least so far apart: by their bounding spheres or by a direction
+ * that separates each pair of parts. 0: neither says so. */
+double gap_clearance(const cprox_gap *gap, const cprox_pose *a, const cprox_pose *b);
 
 /* Makes a gap of solids that are offset and centred already (both are taken over, also on failure). radius and centre:
  * those of the bare ones. */

@@ -136,6 +136,22 @@ double piece_radius_about(const piece *p, int dimension, vec3 point) {
   }
 }
 
+double piece_height(const piece *p, int dimension, vec3 v) {
+  double most = -INFINITY;
+  if (p->corner) {
+    for (size_t i = 0; i < p->n_corners; i++) most = fmax(most, vec_dot(v, p->corner[i]));
+    return most + (p->kind == PIECE_SWEEP ? p->size[0] * vec_norm(v) : 0.0);
+  }
+  const vec3 half = own_half(p, dimension), u = rotate_back(p->turn, v);
+  const double middle = vec_dot(v, own_middle(p, dimension));
+  switch (p->kind) {
+    case PIECE_ELLIPSOID: return middle + vec_norm(vec(half.x * u.x, half.y * u.y, half.z * u.z));
+    case PIECE_CAPSULE: return middle + p->size[0] * vec_norm(v) + p->size[1] * fabs(dimension == 2 ? u.x : u.z);
+    case PIECE_CYLINDER: return middle + half.x * hypot(u.x, u.y) + half.z * fabs(u.z);
+    default: return middle + half.x * fabs(u.x) + half.y * fabs(u.y) + half.z * fabs(u.z);
+  }
+}
+
 static void grow(vec3 *low, vec3 *high, vec3 at, vec3 half) {
   *low = vec(fmin(low->x, at.x - half.x), fmin(low->y, at.y - half.y), fmin(low->z, at.z - half.z));
   *high = vec(fmax(high->x, at.x + half.x), fmax(high->y, at.y + half.y), fmax(high->z, at.z + half.z));

@@ -61,6 +61,9 @@ double piece_slope(const piece *p, int dimension);
 /* Every point of the piece is within the answer of the point. */
 double piece_radius_about(const piece *p, int dimension, vec3 point);
 
+/* At least the largest v·x over the piece; of a grid that of its box, of what is not convex that of its hull. */
+double piece_height(const piece *p, int dimension, vec3 v);
+
 /* An axis-aligned box that holds it. */
 void piece_box(const piece *p, int dimension, vec3 *low, vec3 *high);
 

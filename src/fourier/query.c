@@ -8,7 +8,7 @@ const char *cprox_gap_verdict_name(cprox_gap_verdict verdict) {
   return (unsigned)verdict < 4 ? names[verdict] : "unknown";
 }
 
-static cprox_status check_pose(const char *name, const cprox_pose *pose, int dimension, cprox_workspace *workspace) {
+cprox_status gap_check_pose(const char *name, const cprox_pose *pose, int dimension, cprox_workspace *workspace) {
   if (!pose) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", name);
   const char *support_failed = frame_pose_error(pose);
   if (!support_failed && dimension == 2 && (pose->orientation.x != 0.0 || pose->orientation.y != 0.0))
@@ -87,28 +87,42 @@ static cprox_gap_verdict decide(double value, double error) {
   return value - error > 1.0 ? CPROX_GAP_VERDICT_COLLIDE : CPROX_GAP_VERDICT_UNDECIDED;
 }
 
+/* The distance between the bounding spheres, or a bound of that of the solids by directions that separate them; 0:
+ * there is neither. Relative to the sizes that went into it, the distance of the spheres is within 1e-14. */
+static double clearance_of(const cprox_gap *gap, const relative *r, bool by_directions) {
+  const double away = vec_norm(r->x), centres = vec_norm(r->fixed_centre) + vec_norm(r->turned_centre);
+  const double spheres = away - gap->radius_a - gap->radius_b - 1e-14 * (away + centres);
+  if (spheres > 0.0) return spheres;
+  if (!by_directions) return 0.0;
+  const bool first = gap->info.turned_first;
+  return enclosures_apart(first ? &gap->bounds_b : &gap->bounds_a, first ? &gap->bounds_a : &gap->bounds_b,
+                          gap->info.dimension, r->turn, r->x, centres + gap->radius_a + gap->radius_b);
+}
+
+double gap_clearance(const cprox_gap *gap, const cprox_pose *a, const cprox_pose *b) {
+  const relative r = relate(gap, a, b);
+  return clearance_of(gap, &r, true);
+}
+
 static cprox_status ask(const cprox_gap *gap, const cprox_pose *a, const cprox_pose *b, bool gradient,
                         cprox_workspace *workspace, cprox_gap_result *result) {
   fourier_clear(workspace);
   if (!gap || !workspace || !result)
     return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !gap ? "gap" : !workspace ? "workspace" : "result");
-  cprox_status status = check_pose("pose_a", a, gap->info.dimension, workspace);
-  if (status == CPROX_OK) status = check_pose("pose_b", b, gap->info.dimension, workspace);
+  cprox_status status = gap_check_pose("pose_a", a, gap->info.dimension, workspace);
+  if (status == CPROX_OK) status = gap_check_pose("pose_b", b, gap->info.dimension, workspace);
   if (status != CPROX_OK) return status;
 
   const relative r = relate(gap, a, b);
-  cprox_gap_result out = {0};
-  /* relative to the sizes that went into it, the distance is within 1e-14 */
-  const double away = vec_norm(r.x), sizes = away + vec_norm(r.fixed_centre) + vec_norm(r.turned_centre);
-  out.clearance = fmax(0.0, away - gap->radius_a - gap->radius_b - 1e-14 * sizes);
+  const bool verdict_alone = !gradient && gap->info.mode != CPROX_GAP_MODE_SIGNAL;
+  cprox_gap_result out = {.clearance = clearance_of(gap, &r, verdict_alone)};
   if (out.clearance > 0.0) {
     answer_far(gap, &out);
     *result = out;
     return CPROX_OK;
   }
 
-  gap_job job = {
-      .gap = gap, .x = r.x, .gradient = gradient, .early = !gradient && gap->info.mode != CPROX_GAP_MODE_SIGNAL};
+  gap_job job = {.gap = gap, .x = r.x, .gradient = gradient, .early = verdict_alone};
   for (int i = 0; i < 9; i++) job.turn[i] = r.turn[i];
   job.scratch = cprox_workspace_reserve(workspace, gap_scratch_size(gap));
   if (!job.scratch) return fourier_fail(workspace, CPROX_MEMORY, "no memory for a gap's tables");

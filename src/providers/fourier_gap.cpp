@@ -209,7 +209,7 @@ class FourierGapConstraint : public Constraint {
   }
 
   bool isProvenClear(const ConstraintPlace &place, const cprox_curve_info &info, Workspace &workspace) const {
-    const cprox_gap_carried carried{place.curve->curve.get(), {1, 0, 0, 0}};
+    const cprox_gap_carried carried{place.curve->curve.get(), {1, 0, 0, 0}, nullptr};
     cprox_gap_along_result r;
     require(cprox_gap_along_test(gap_.get(), &place.b, &carried, info.t0, info.t1, PROOF_NODES, workspace.get(), &r),
             workspace);
@@ -257,7 +257,7 @@ class FourierGapConstraint : public Constraint {
     cprox_pose b = CPROX_POSE_IDENTITY;
     b.position = toVec3(sphere_a_->centre - sphere_b_->centre);
     cprox_gap_result r;
-    require(cprox_gap_test(gap_.get(), &a, &b, workspace.get(), &r), workspace);
+    require(cprox_gap_evaluate(gap_.get(), &a, &b, workspace.get(), &r), workspace);
     return std::max(1.0, r.value);
   }
 

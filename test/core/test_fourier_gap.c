@@ -17,11 +17,14 @@ static cprox_pose planar(double x, double y, double angle) {
   return (cprox_pose){.position = {x, y, 0}, .orientation = {cos(0.5 * angle), 0, 0, sin(0.5 * angle)}};
 }
 
+/* Without bounds per direction: V decides. */
 static cprox_gap *gap_of(const cprox_solid *a, const cprox_solid *b, cprox_gap_mode mode, uint32_t samples) {
   cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.mode = mode, o.samples = samples;
   cprox_gap *gap = NULL;
   if (cprox_gap_create(a, b, &o, ws, &gap) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
+  enclosures_free(&gap->bounds_a);
+  enclosures_free(&gap->bounds_b);
   return gap;
 }
 

@@ -52,6 +52,10 @@ static void visit_pairs(rng *r, int dimension, void (*visit)(rng *, const test_s
     }
 }
 
+static bool is_clear(cprox_gap_verdict verdict) {
+  return verdict == CPROX_GAP_VERDICT_CLEAR || verdict == CPROX_GAP_VERDICT_FAR;
+}
+
 static const char *const MODES[] = {"certified", "tuned", "signal"};
 
 static void fail_pair(const test_solid s[2], const cprox_gap_options *o, const char *what) {
@@ -145,13 +149,14 @@ static void every_call(rng *r, const test_solid s[2]) {
     cprox_gap_along_result whole;
     double derivative;
     MADE(cprox_gap_evaluate(gap, &a, &b, ws, &at));
-    MADE(cprox_gap_along(gap, &a, &(cprox_gap_carried){line, b.orientation}, 0.0, ws, &along, &derivative));
+    MADE(cprox_gap_along(gap, &a, &(cprox_gap_carried){.curve = line, .orientation = b.orientation}, 0.0, ws, &along,
+                         &derivative));
     /* the signal is -log of what has the error */
     const double x = o.mode == CPROX_GAP_MODE_SIGNAL ? exp(-at.value) : at.value,
                  y = o.mode == CPROX_GAP_MODE_SIGNAL ? exp(-along.value) : along.value;
     assert_true(along.verdict == at.verdict && fabs(x - y) <= along.error + at.error + 1e-12);
-    const cprox_status status =
-        cprox_gap_along_test(gap, &a, &(cprox_gap_carried){line, b.orientation}, 0.0, 1.0, 2, ws, &whole);
+    const cprox_status status = cprox_gap_along_test(
+        gap, &a, &(cprox_gap_carried){.curve = line, .orientation = b.orientation}, 0.0, 1.0, 2, ws, &whole);
     if (o.mode == CPROX_GAP_MODE_SIGNAL)
       assert_string_equal(cprox_workspace_error(ws), "the signal mode has no verdict");
     if (o.mode != CPROX_GAP_MODE_SIGNAL && status < CPROX_OK) fail_pair(s, &o, cprox_workspace_error(ws));
@@ -161,8 +166,7 @@ static void every_call(rng *r, const test_solid s[2]) {
       MADE(cprox_gap_cascade_create(s[0].solid, s[1].solid, &o, ws, &cascade));
       assert_int_equal(cprox_gap_get_info(cprox_gap_cascade_finest(cascade)).samples, info.samples);
       MADE(cprox_gap_cascade_test(cascade, &a, &b, ws, &along));
-      if (at.verdict == CPROX_GAP_VERDICT_CLEAR || at.verdict == CPROX_GAP_VERDICT_FAR)
-        assert_int_equal(along.verdict, at.verdict);
+      if (is_clear(at.verdict)) assert_true(is_clear(along.verdict));
       cprox_gap_cascade_free(cascade);
     }
     cprox_gap_free(gap);
@@ -179,18 +183,23 @@ CASE(every_call_takes_every_pair) {
 /* ---- What is said of a pair is true ---- */
 
 static struct {
-  size_t poses, clear, deep;
+  size_t poses, clear, deep, called;
   double most;
 } seen;
 
 static bool says_clear(const cprox_gap *gap, const test_solid s[2], const cprox_pose *a, const cprox_pose *b,
                        double over_reach) {
-  cprox_gap_result x;
-  MADE(cprox_gap_test(gap, a, b, ws, &x));
-  const bool clear = x.verdict == CPROX_GAP_VERDICT_CLEAR || x.verdict == CPROX_GAP_VERDICT_FAR;
+  cprox_gap_result x, alone;
+  cprox_gap by_sum = *gap; /* without bounds per direction */
+  by_sum.bounds_a = by_sum.bounds_b = (enclosures){0};
+  MADE(cprox_gap_test(&by_sum, a, b, ws, &x));
+  MADE(cprox_gap_test(gap, a, b, ws, &alone));
+  const bool clear = is_clear(x.verdict);
   const double d = solid_distance(&s[0], a, &s[1], b), reached = solid_reached(&s[0], a, &s[1], b);
   seen.poses++, seen.clear += clear, seen.deep += d < -1e-9;
-  if (clear && d < -1e-6)
+  if (clear && !is_clear(alone.verdict))
+    fail_msg("with bounds per direction the verdict is %d, without it is clear", alone.verdict);
+  if (is_clear(alone.verdict) && d < -1e-6)
     fail_msg("%s and %s: clear at an overlap of %g, value %g", solid_name(s[0].kind), solid_name(s[1].kind), -d,
              x.value);
   if (!clear && reached > over_reach)
@@ -235,6 +244,44 @@ CASE(over_reach_holds_for_every_pair) {
     print_message("%d-D: %zu poses, %zu clear, %zu overlapping, reached %.3f of the over-reach\n", dimension,
                   seen.poses, seen.clear, seen.deep, seen.most);
     assert_true(seen.clear > seen.poses / 10 && seen.deep > seen.poses / 50 && seen.most > 0.3);
+  }
+}
+
+/* ---- Bounds per direction ---- */
+
+static void bounds_hold(rng *r, const test_solid s[2]) {
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
+  o.samples = 7;
+  cprox_gap *gap;
+  MADE(cprox_gap_create(s[0].solid, s[1].solid, &o, ws, &gap));
+  for (size_t i = 0; i < test_cases(20); i++) {
+    const cprox_pose a = solid_pose(r, s[0].dimension, 5.0);
+    cprox_pose b = solid_pose(r, s[0].dimension, 1.0);
+    vec3 way = rng_unit(r);
+    if (s[0].dimension == 2) way.z = 0.0;
+    b.position = vec_axpy(a.position, radii(s) * rng_uniform(r, 0.2, 1.1), way);
+    const double d = solid_distance(&s[0], &a, &s[1], &b), bound = gap_clearance(gap, &a, &b);
+    seen.poses++, seen.deep += d < 0.0;
+    if (d > 0.1 * radii(s)) seen.clear++, seen.called += bound > 0.0;
+    if (bound > fmax(d, 0.0) + (s[0].kind == SOLID_SWEEP || s[1].kind == SOLID_SWEEP ? 1e-6 : 1e-9))
+      fail_msg("%d-D %s and %s: %.17g apart by directions, %.17g by their distance", s[0].dimension,
+               solid_name(s[0].kind), solid_name(s[1].kind), bound, d);
+    cprox_gap_result x;
+    MADE(cprox_gap_test(gap, &a, &b, ws, &x));
+    assert_true(x.clearance == bound && (x.verdict == CPROX_GAP_VERDICT_FAR) == (bound > 0.0));
+  }
+  cprox_gap_free(gap);
+}
+
+/* Seed 734: of every pair of kinds, against the distance of the same sets. */
+CASE(bounds_per_direction_are_below_the_distance_of_every_pair) {
+  rng r = rng_seed(734);
+  for (int dimension = 2; dimension <= 3; dimension++) {
+    memset(&seen, 0, sizeof seen);
+    for (size_t i = 0; i < test_cases(1); i++) visit_pairs(&r, dimension, bounds_hold);
+    print_message("%d-D: %zu poses, %zu overlapping, of %zu apart by a tenth of the size %zu told\n", dimension,
+                  seen.poses, seen.deep, seen.clear, seen.called);
+    assert_true(seen.deep > seen.poses / 10 && seen.called > seen.clear / 2);
   }
 }
 
