@@ -127,7 +127,7 @@ def figure_8():
 def section_5d():
     """Two vehicles on one clock, each within a disc that grows with time."""
     first = cprox.bezier(flat([[0, 0], [1.2, 0.2], [2.0, 1.6], [3.4, 1.4]]))
-    second = cprox.bezier(flat([[3.2, -0.2], [2.2, -0.2], [1.4, 2.0], [0.2, 1.9]]))
+    second = cprox.bezier(flat([[2.6, -0.6], [2.4, 0.6], [1.9, 2.2], [0.6, 2.2]]))
     radii = ([0.1, 0.1, 0.06], [0.08, 0.14])
     a, b = (cprox.tube(curve, radius) for curve, radius in zip((first, second), radii))
     found = cprox.distance(a, cprox.Obstacle.synchronized(b), epsilon=1e-9)
