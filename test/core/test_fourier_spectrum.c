@@ -485,6 +485,28 @@ CASE(bad_solids_are_refused_in_words) {
                   .kind = CPROX_SOLID_MESH, .points = v, .n = 4, .triangles = inside_out, .n_triangles = 4},
               ws, &solid),
           "the mesh holds the volume -0.166667: triangles must be counter-clockwise from outside");
+  /* without an interior: all corners in one plane or on one line, a curve that stands still */
+  const cprox_vec3 pressed[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  const uint32_t round_it[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  REFUSED(cprox_solid_create(
+              &(cprox_solid_description){
+                  .kind = CPROX_SOLID_MESH, .points = pressed, .n = 4, .triangles = round_it, .n_triangles = 4},
+              ws, &solid),
+          "the mesh holds the volume 0: triangles must be counter-clockwise from outside");
+  const double line[3][2] = {{0, 0}, {1, 1}, {3, 3}};
+  REFUSED(
+      cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = line, .n = 3}, ws, &solid),
+      "the polygon meets itself: edges 0 and 2 touch or cross");
+  const cprox_vec3 one_point[3] = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
+  cprox_curve *still;
+  MADE(curve_from(describe_bezier(one_point, 3, 0, 1), ws, &still));
+  REFUSED(cprox_solid_create(
+              &(cprox_solid_description){
+                  .kind = CPROX_SOLID_SWEEP, .dimension = 3, .curve = still, .radius = 0.1, .tolerance = 1e-3},
+              ws, &solid),
+          "the curve stands still: use a ball");
+  cprox_curve_free(still);
+
   cprox_solid *none = NULL;
   assert_int_equal(cprox_solid_create(
                        &(cprox_solid_description){

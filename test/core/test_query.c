@@ -154,6 +154,37 @@ CASE(a_curve_that_stands_still_is_answered_as_a_point) {
   cprox_curve_free(curve);
 }
 
+/* In every role: as the way, as the obstacle, both, with a body that is carried, and on one clock. */
+CASE(curves_that_stand_still_are_points_in_every_role) {
+  const vec3 here[] = {{3, 0, 0}, {3, 0, 0}, {3, 0, 0}}, there[] = {{0, 4, 0}, {0, 4, 0}, {0, 4, 0}, {0, 4, 0}};
+  cprox_curve *a = bezier(here, 3), *b = bezier(there, 4);
+  cprox_body *ball = sphere(0.5);
+  const cprox_options options = accurate(1e-12);
+  cprox_obstacle clocked = cprox_obstacle_curve(b, 1.0);
+  clocked.synchronized = true;
+  const cprox_obstacle obstacle[] = {cprox_obstacle_curve(b, 1.0), clocked};
+  const cprox_mover mover[] = {cprox_point_along(a), cprox_tube_along(a, 0.5)};
+  for (int i = 0; i < 4; i++) {
+    cprox_result r;
+    const double distance = 4.0 - (i % 2 ? 0.5 : 0.0);
+    assert_int_equal(cprox_distance(mover[i % 2], obstacle[i / 2], &options, ws, &r), CPROX_OK);
+    assert_contains(&r, distance, 0.0);
+    assert_int_equal(cprox_tolerance(mover[i % 2], obstacle[i / 2], distance - 0.01, &options, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
+    assert_int_equal(cprox_collision(mover[i % 2], obstacle[i / 2], &options, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
+  }
+  cprox_result r;
+  assert_int_equal(cprox_distance(cprox_body_along(ball, a), at(ball, 0, 4, 0), &options, ws, &r), CPROX_OK);
+  assert_contains(&r, 4.0, 0.0);
+  cprox_curve_ellipsoid e;
+  assert_int_equal(cprox_curve_get_ellipsoid(a, 0.0, 1.0, ws, &e), CPROX_OK);
+  assert_true(vec_equal(e.foci[0], here[0]) && vec_equal(e.foci[1], here[0]) && e.axis <= 1e-12 && e.radius <= 1e-6);
+  cprox_body_free(ball);
+  cprox_curve_free(a);
+  cprox_curve_free(b);
+}
+
 CASE(a_long_spline_is_searched_by_its_tree) {
   /* a helix of 100,000 control points round the z axis, radius 2; a ball on the axis */
   enum { N = 100000 };
