@@ -29,6 +29,11 @@ struct MovingObject {
 /** The objects of a snapshot that move. origin: [ns] the moment that is time 0, on the clock of stamps. */
 std::vector<MovingObject> movingObjects(const Snapshot &snapshot, std::int64_t origin = 0);
 
+/** What a link carries, to move by itself: the attached object of that id, with its pose in the link's frame, its scale
+ *  and its padding. poses: those of the link. Throws Error where no link carries such an object, and as Movers does. */
+MovingObject carriedObject(const Snapshot &snapshot, const std::string &id, std::vector<TimedPose> poses,
+                           Turning turning = Turning::SLERP);
+
 /** A robot that moves. */
 struct MovingRobot {
   std::string name;                          /**< names it in answers: its link L is "name/L" */

@@ -35,6 +35,7 @@ ClearanceTopics::ClearanceTopics(const ros::NodeHandle &handle, std::size_t inte
     topics_[name] = below.advertise<Clearance>(name, static_cast<std::uint32_t>(2 * intervals * PROFILES_KEPT));
   };
   advertise(Proximity::KIND_CURVE);
+  advertise(Proximity::KIND_MOVERS);
   if (!robot) return;
   for (const std::string &kind : {Proximity::KIND_ENVIRONMENT, Proximity::KIND_SELF}) {
     advertise(kind);

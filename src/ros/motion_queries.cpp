@@ -7,6 +7,7 @@
 #include "conversions.h"
 #include "gradient_message.h"
 #include "queries.h"
+#include "robot_description.h"
 #include "topics.h"
 
 namespace curve_proximity {
@@ -72,7 +73,31 @@ void Queries::answerMultiDofTrajectories(Work &work) {
   }
 }
 
-/** The request's body along poses in the frame of the header. */
+bool Queries::carriesBody(const QueryRequest &request) const {
+  return !request.more.body.id.empty() || !parameters_.path_body.id.empty();
+}
+
+/** The request's body, or that of ~path_body; without shapes what a link carries. Its pose is in the frame of each of
+ *  the poses. */
+MovingObject Queries::toRider(const ProximityQuery &query, const Snapshot &snapshot,
+                              std::vector<TimedPose> poses) const {
+  MovingObject out;
+  if (query.body.id.empty()) {
+    out.object = parameters_.path_body;
+  } else {
+    Operation operation = toOperation(query.body);
+    if (operation.kind != Operation::Kind::ADD || operation.trajectory)
+      throw Error("body: it is no plain object: its operation is ADD, and it has no trajectory");
+    out.object = std::move(operation.object);
+  }
+  for (TimedPose &pose : poses) pose.pose = pose.pose * out.object.pose;
+  if (out.object.shapes.empty()) return carriedObject(snapshot, out.object.id, std::move(poses));
+  out.object.pose = Eigen::Isometry3d::Identity();
+  out.poses = std::move(poses);
+  return out;
+}
+
+/** A body along poses in the frame of the header. */
 void Queries::answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp,
                          std::vector<TimedPose> poses, Work &work) {
   const QueryRequest &request = work.request;
@@ -80,18 +105,12 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
   if (request.turn) request.turn->yield();
   work.lookup.begin();
   try {
-    Operation operation = toOperation(request.more.body);
-    if (operation.kind != Operation::Kind::ADD || operation.trajectory)
-      throw Error("body: it is no plain object: its operation is ADD, and it has no trajectory");
     if (!work.query.links.empty()) throw Error("links and group do not apply to a body");
-    MovingObject rides;
-    rides.object = std::move(operation.object);
     const Eigen::Isometry3d in_fixed = work.lookup.toFixed(frame, stamp);
-    for (TimedPose &pose : poses) pose.pose = in_fixed * pose.pose * rides.object.pose;
-    rides.object.pose = Eigen::Isometry3d::Identity();
-    rides.poses = std::move(poses);
-    const Surroundings around(work.snapshot, request.more, robots_, rides, stamp, work.lookup, mostBytes(),
-                              stopOf(work.query));
+    for (TimedPose &pose : poses) pose.pose = in_fixed * pose.pose;
+    const MovingObject rides = toRider(request.more, *work.snapshot, std::move(poses));
+    const Surroundings around(work.snapshot, request.more, robots_, rides, resourceOptions("", parameters_), stamp,
+                              work.lookup, mostBytes(), stopOf(work.query));
     const WorkspacePool::Lease workspace(workspaces_);
     MotionRows rows;
     around.ask(work.query, false, request.asking, *workspace, rows);
@@ -130,7 +149,7 @@ void Queries::answerPath(const nav_msgs::Path &path, const std::string &id, Work
 }
 
 void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work) {
-  if (!work.request.more.body.id.empty()) {
+  if (carriesBody(work.request)) {
     for (std::size_t i = 0; i < trajectory.joint_names.size(); ++i) {
       std::vector<TimedPose> poses;
       try {

@@ -92,15 +92,15 @@ Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &qu
 }
 
 Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
-                           const MovingObject &rides, const ros::Time &stamp, FrameLookup &lookup,
-                           std::size_t most_bytes, const Stop &stop)
+                           const MovingObject &rides, const ResourceOptions &resources, const ros::Time &stamp,
+                           FrameLookup &lookup, std::size_t most_bytes, const Stop &stop)
     : snapshot_(snapshot), rides_(rides.object.id), rides_over_{rides.poses.front().time, rides.poses.back().time} {
   const std::int64_t origin = originOf(query, *snapshot, true, stamp);
   std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
   objects.push_back(rides);
   share_.emplace(bytesOf(objects, gather(query, robots, origin, lookup)), most_bytes);
   const std::vector<std::array<std::string, 2>> none;
-  movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, ResourceOptions(), stop);
+  movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, resources, stop);
 }
 
 /** The further robots; returns variables times waypoints. */

@@ -29,10 +29,11 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot);
 /** Robots and objects on one clock, and how they are asked about. */
 class Surroundings {
  public:
-  /** rides: a body that moves beside all of these, and is asked about alone. Else as below, without a subject. */
+  /** rides: a body that moves beside all of these, and is asked about alone; resources: of its shapes. Else as below,
+   * without a subject. */
   Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
-               const MovingObject &rides, const ros::Time &stamp, FrameLookup &lookup, std::size_t most_bytes,
-               const Stop &stop);
+               const MovingObject &rides, const ResourceOptions &resources, const ros::Time &stamp, FrameLookup &lookup,
+               std::size_t most_bytes, const Stop &stop);
 
   /** subject: the robot that is asked about, with its stamp and the number of its points; null: nobody. most_bytes:
    * what the joined motion may take. stop: asked while it is made, ends that. Throws Error, which names the mover: a

@@ -9,6 +9,9 @@
 #include <sstream>
 #include <vector>
 
+#include "../scene/yaml/failure.h"
+#include "../scene/yaml/scene_yaml.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -78,6 +81,41 @@ ProviderSpec toProviderSpec(Xml &entry) {
   return spec;
 }
 
+/* ---- ~path_body ---- */
+
+YAML::Node toYaml(Xml &value) {
+  YAML::Node out;
+  switch (value.getType()) {
+    case Xml::TypeBoolean: out = static_cast<bool>(value); break;
+    case Xml::TypeInt: out = static_cast<int>(value); break;
+    case Xml::TypeDouble: out = static_cast<double>(value); break;
+    case Xml::TypeString: out = static_cast<std::string>(value); break;
+    case Xml::TypeArray:
+      out = YAML::Node(YAML::NodeType::Sequence);
+      for (int i = 0; i < value.size(); ++i) out.push_back(toYaml(value[i]));
+      break;
+    case Xml::TypeStruct:
+      out = YAML::Node(YAML::NodeType::Map);
+      for (auto &member : value) out[member.first] = toYaml(member.second);
+      break;
+    default: break;
+  }
+  return out;
+}
+
+/** An object in the words of a scene file. Throws yaml::BadInput. */
+ObjectDescription toBody(Xml &given, const std::string &where) {
+  const yaml::YamlValue value(toYaml(given), where);
+  yaml::Warnings warnings;
+  value.warnOfOthers(
+      {"id", "pose", "padding", "primitives", "primitive_poses", "meshes", "mesh_poses", "bodies", "body_poses"},
+      warnings);
+  ObjectDescription body = yaml::readPlacedShapes(value, warnings);
+  body.id = value.at("id").text();
+  for (const std::string &warning : warnings.sentences()) ROS_WARN("%s", warning.c_str());
+  return body;
+}
+
 /** Fills one parameter after the other from the parameter server. */
 class Reader {
  public:
@@ -141,6 +179,20 @@ class Reader {
       if (member.second.getType() != Xml::TypeString)
         wrong(name, member.first + ": the name of the parameter that holds its URDF is expected");
       value[member.first] = static_cast<std::string>(member.second);
+    }
+  }
+
+  void operator()(const char *name, ObjectDescription &value) {
+    Xml given;
+    if (!get(name, given)) return;
+    if (given.getType() != Xml::TypeStruct) wrong(name, "an object is expected: {id, primitives, ...}");
+    if (given.begin() == given.end()) return;
+    try {
+      value = toBody(given, "parameter ~" + std::string(name));
+    } catch (const yaml::BadInput &error) {
+      throw ParameterError(error.what());
+    } catch (const Error &error) {
+      wrong(name, error.what());
     }
   }
 

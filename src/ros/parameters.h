@@ -5,6 +5,7 @@
 
 #include <ros/node_handle.h>
 
+#include <curve_proximity/description.hpp>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -47,6 +48,7 @@ struct Parameters {
   double delta = 0.0;
   bool self_collision = true;
   double path_radius = 0.0;
+  ObjectDescription path_body; /**< without an id: there is none */
   int queue_size = 10;
   double state_rate = 0.0;
   int profile_intervals = 0;
@@ -109,6 +111,7 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("delta", parameters.delta, Range{0.0});
   visit("self_collision", parameters.self_collision);
   visit("path_radius", parameters.path_radius, Range{0.0});
+  visit("path_body", parameters.path_body);
   visit("queue_size", parameters.queue_size, Range{1.0, false, 1e6});
   visit("state_rate", parameters.state_rate, Range{0.0, false, 1000.0});
   visit("profile_intervals", parameters.profile_intervals, Range{0.0, false, 10000.0});

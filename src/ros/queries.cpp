@@ -498,7 +498,7 @@ void Queries::answerCurves(Work &work) {
   for (const nav_msgs::Path &path : request.paths) {
     const auto i = static_cast<std::size_t>(&path - request.paths.begin());
     const std::string id = numbered("path", i, request.paths.size());
-    if (!request.more.body.id.empty()) {
+    if (carriesBody(request)) {
       answerPath(path, id, work);
       tellProgress(work);
       continue;

@@ -216,6 +216,8 @@ class Queries {
   void answerTrajectories(Work &work);
   void answerMultiDofTrajectories(Work &work);
   void answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work);
+  bool carriesBody(const QueryRequest &request) const;
+  MovingObject toRider(const ProximityQuery &query, const Snapshot &snapshot, std::vector<TimedPose> poses) const;
   void answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp, std::vector<TimedPose> poses,
                   Work &work);
   void answerPath(const nav_msgs::Path &path, const std::string &id, Work &work);

@@ -44,6 +44,16 @@ constexpr int LARGE_CHANGES = 1;
  *  with their trees. */
 constexpr std::size_t QUERY_TIMES_WIRE = 4, SCENE_TIMES_WIRE = 5;
 
+/** Throws ParameterError where its shapes are none. */
+void checkPathBody(const Parameters &parameters) {
+  try {
+    for (const ShapeDescription &shape : parameters.path_body.shapes)
+      makeGeometry(shape, resourceOptions("", parameters));
+  } catch (const Error &error) {
+    throw ParameterError(std::string("parameter ~path_body: ") + error.what());
+  }
+}
+
 template <class Request>
 double deltaOf(const Request &) {
   return 0.0;
@@ -173,6 +183,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       pairs_(parameters_, tuning_, statistics_, stop_, secondOpinions(parameters_)) {
   memory::setLimit(static_cast<std::size_t>(parameters_.memory_limit_mb) << 20);
   warnOfOtherLinks(live_);
+  checkPathBody(parameters_);
   loadScene();
   restoreScene();
   live_.sensors.appeared = [this] { state_file_.changed(); };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <curve_proximity/nearest_name.hpp>
 #include <set>
 
 #include "answering.h"
@@ -246,6 +247,32 @@ Movers::Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, con
 Movers::~Movers() = default;
 Movers::Movers(Movers &&) noexcept = default;
 Movers &Movers::operator=(Movers &&) noexcept = default;
+
+MovingObject carriedObject(const Snapshot &snapshot, const std::string &id, std::vector<TimedPose> poses,
+                           Turning turning) {
+  const auto found = snapshot.attached().find(id);
+  if (found == snapshot.attached().end())
+    throw Error("no link carries an object '" + id + "'" + didYouMean(id, namesOf(snapshot.attached())));
+  const AttachedObject &carried = *found->second;
+  MovingObject out;
+  out.object = carried.description;
+  out.object.pose = Eigen::Isometry3d::Identity();
+  out.object.padding = snapshot.attachedPadding(carried);
+  std::vector<Geometry> geometries;
+  for (std::size_t i = 0; i < carried.shapes.size(); ++i) {
+    out.object.shapes[i] = carried.shapes[i].description;
+    out.object.shapes[i].pose = carried.shapes[i].pose;
+    geometries.push_back(carried.shapes[i].geometry);
+  }
+  out.poses = std::move(poses);
+  out.turning = turning;
+  try {
+    out.body = makeMovingBody(out.object, std::move(geometries), out.poses, turning);
+  } catch (const Error &error) {
+    throw Error("object '" + id + "': " + error.what(), error.status());
+  }
+  return out;
+}
 
 std::vector<MovingObject> movingObjects(const Snapshot &snapshot, std::int64_t origin) {
   constexpr double NANOSECOND = 1e-9;

@@ -189,6 +189,22 @@ joint_trajectory:
             row = [row for row in self.robot('distance', swing, '--self', scene=scene).rows if row['kind'] == 'self'][0]
             self.assertEqual({row['a'], row['b']}, expected)
 
+    def they_ride_a_base_that_moves_and_turns(self):
+        """The base comes down by 5 m and turns by a right angle about z: a ball half a metre ahead of the cart is to its left then."""
+        turn = '0, 0, %r, %r' % (math.sqrt(0.5), math.sqrt(0.5))
+        names = ', '.join('free/' + part for part in ('trans_x', 'trans_y', 'trans_z', 'rot_x', 'rot_y', 'rot_z', 'rot_w'))
+        landing = ('virtual_joint: {name: free, type: floating, parent_frame: world, child_link: rail}\n'
+                   f'joint_trajectory: {{joint_names: [{names}], points: [\n'
+                   '  {positions: [0, 0, 10, 0, 0, 0, 1], time_from_start: 0},\n'
+                   f'  {{positions: [0, 0, 5, {turn}], time_from_start: 1}}]}}\n')
+        scene = ('robot_state: {attached_collision_objects: [{link_name: cart, object: {id: held, header: {frame_id: cart}, '
+                 'primitives: [{type: 2, dimensions: [0.1]}], primitive_poses: [{position: [0.5, 0, 0]}]}}]}\n'
+                 'world: {collision_objects: [{id: mark, primitives: [{type: 2, dimensions: [0.25]}], '
+                 'primitive_poses: [{position: [0, 2, 5]}]}]}\n')
+        row = self.robot('distance', landing, scene=scene).row('go')
+        self.assertAnswer(row, 2 - 0.5 - 0.1 - 0.25)
+        self.assertEqual((row['a'], row['b'], float(row['t'])), ('held', 'mark', 1.0))
+
     def a_link_scale_enlarges_a_link_before_its_padding(self):
         scene = WALL + 'link_scale: [{link_name: cart, scale: 2}]\nlink_padding: [{link_name: cart, padding: 0.01}]\n'
         row = self.robot('distance', SLIDE, scene=scene).row('go')

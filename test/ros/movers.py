@@ -11,10 +11,11 @@ import xml.etree.ElementTree as ElementTree
 import numpy
 import rospy
 import yaml
-from curve_proximity.msg import CollisionObject, PoseTrajectory, RobotTrajectory, Waypoint
+from curve_proximity.msg import (AttachedCollisionObject, CollisionObject, LinkPadding, PoseTrajectory, ProximityResults,
+                                 RobotTrajectory, Waypoint)
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest, TimeOfContact,
                                  TimeOfContactRequest)
-from helpers import Server, bezier, box, joints, path, pose, query, run, sphere, until
+from helpers import Server, bezier, box, free_flight, joints, path, pose, query, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -353,6 +354,72 @@ class Movers(unittest.TestCase):
             self.assertGreaterEqual(row.upper, 1.0 - half - 0.25 - 1e-12)
             self.assertLess(row.upper - row.lower, 1.01e-6)
         self.assertRefused(self.server.distance(bezier((0, 0, 0), (1, 0, 0)), body=carried), 'body applies to paths')
+
+    def hold(self, link, at):
+        """A ball of .1 that the link carries, at a place in its frame."""
+        tool = AttachedCollisionObject(link_name=link, object=sphere('tool', 0.1, at, frame=link))
+        response = self.server.apply(attached_collision_objects=[tool])
+        self.assertTrue(response.success, response.message)
+
+    def assertDistance(self, response, a, expected):
+        self.assertTrue(response.success, response.message)
+        row, = response.results
+        self.assertEqual((row.a, row.b), (a, 'ball'))
+        self.assertLessEqual(row.lower, expected + 1e-9)
+        self.assertGreaterEqual(row.upper, expected - 1e-9)
+        self.assertLess(row.upper - row.lower, 1.01e-6)
+        return row
+
+    def test_what_a_link_carries_rides_a_path(self):
+        """A tool .4 ahead of its link: the path is the link's, and lets the tool point to and fro."""
+        self.server.replace(sphere('ball', 0.25, (0, 3, 3)))
+        self.hold('panda_hand', (0, 0, 0.4))
+        for orientation, height in (((0, 0, 0, 1), 1.4), ((1, 0, 0, 0), 0.6)):
+            way = path((-1, 3, 4), (1, 3, 4), frame='world')
+            for at in way.poses:
+                at.pose.orientation = pose((0, 0, 0), orientation).orientation
+            row = self.assertDistance(self.server.distance([], paths=[way], body=CollisionObject(id='tool'), objects=['ball']), 'tool',
+                                      height - 0.25 - 0.1)
+            self.assertEqual((row.kind, row.id), ('movers', 'path'))
+        self.server.apply(link_padding=[LinkPadding('panda_hand', 0.05)])
+        self.assertDistance(self.server.distance([], paths=[way], body=CollisionObject(id='tool'), objects=['ball']), 'tool', 0.2)
+        self.assertRefused(self.server.distance([], paths=[way], body=CollisionObject(id='took')), "no link carries an object 'took'", "'tool'")
+
+    def test_what_a_link_carries_rides_a_floating_base(self):
+        """The base turns by 120 degrees about z: the tool, 2 m ahead of it, comes over the ball on the way, and goes on."""
+        self.server.replace(sphere('ball', 0.25, (math.sqrt(3), 1, 2)))
+        self.hold('panda_link0', (2, 0, 0))
+        flight = free_flight('virtual_joint', (0, 0, 3), (0, 0, 3))
+        half = math.radians(60)
+        flight.points[1].transforms[0].rotation.z, flight.points[1].transforms[0].rotation.w = math.sin(half), math.cos(half)
+        asked = dict(multi_dof_trajectories=[flight], joint_state=joints(**READY), objects=['ball'])
+        row = self.assertDistance(self.server.distance([], **asked), 'tool', 1 - 0.25 - 0.1)
+        self.assertEqual(row.kind, 'environment')
+        self.assertTrue(0.2 < row.t < 0.35, row.t)  # after 30 of 120 degrees
+
+    def test_a_body_rides_what_comes_by_topic(self):
+        """~path_body, a ball of .1 that is .5 above its origin: upside down along a path, and while it turns over on the spot."""
+        received = []
+        results = rospy.Subscriber('/curve_proximity/proximity', ProximityResults, received.append)
+        self.addCleanup(results.unregister)
+        self.server.replace(sphere('ball', 0.25, (0, 3, 3)))
+        way = path((-1, 3, 4), (1, 3, 4), frame='world')
+        for at in way.poses:
+            at.pose.orientation = pose((0, 0, 0), (1, 0, 0, 0)).orientation
+        flight = free_flight('drone', (0, 3, 4), (0, 3, 4))
+        for point, half in zip(flight.points, (math.radians(50), math.radians(120))):
+            point.transforms[0].rotation.x, point.transforms[0].rotation.w = math.sin(half), math.cos(half)
+        for topic, message, name in (('path', way, 'path'), ('multi_dof_trajectory', flight, 'drone')):
+            publisher = rospy.Publisher('/curve_proximity/' + topic, type(message), queue_size=1)
+            self.assertTrue(until(publisher.get_num_connections, 10))
+            del received[:]
+            publisher.publish(message)
+            self.assertTrue(until(lambda: received, 10))
+            row = self.assertDistance(received[0], 'lamp', 1 - 0.5 - 0.1 - 0.25)
+            self.assertEqual((row.kind, row.id), ('movers', name))
+            publisher.unregister()
+            field = 'paths' if topic == 'path' else 'multi_dof_trajectories'
+            self.assertDistance(self.server.distance([], **{field: [message]}), 'lamp', 1 - 0.5 - 0.1 - 0.25)
 
     def assertRefused(self, response, *parts):
         self.assertFalse(response.success)

@@ -43,6 +43,13 @@ class Comparer {
     EXPECT_EQ(file_[name].size(), value.size()) << name;
   }
 
+  void operator()(const char *name, const ObjectDescription &value) {
+    names.insert(name);
+    ASSERT_TRUE(file_[name]) << name << " is not documented";
+    EXPECT_EQ(file_[name].size(), 0u) << name;
+    EXPECT_TRUE(value.id.empty()) << name;
+  }
+
   std::set<std::string> names;
 
  private:

@@ -26,7 +26,9 @@ class WrongParameters(unittest.TestCase):
                  ('max_results', 0), ('fixed_frame', ''), ('fixed_frame', 3), ('urdf_dir', 1),
                  ('allow_missing_geometry', 'yes'), ('robot_description', '<robot/>'),
                  ('robot_description', 'no_such_parameter'), ('query_type', 'guess'), ('query_type', 1), ('delta', -0.1),
-                 ('delta', 'wide'), ('self_collision', 'yes'), ('path_radius', -1.0), ('queue_size', 0), ('queue_size', 2.5),
+                 ('delta', 'wide'), ('self_collision', 'yes'), ('path_radius', -1.0), ('path_body', 'crate'),
+                 ('path_body', {'primitives': [{'type': 'sphere', 'dimensions': [1.0]}]}),
+                 ('path_body', {'id': 'crate', 'primitives': [{'type': 'sphere', 'dimensions': [-1.0]}]}), ('queue_size', 0), ('queue_size', 2.5),
                  ('scene_file', 7), ('scene_file', '/no/such/scene.yaml'), ('scene_file', ARM)]
         for name, value in cases:
             with self.subTest(parameter=name, value=value):
