@@ -114,10 +114,10 @@ std::vector<double> YamlValue::numbers() const {
   out.reserve(node_.size());
   for (const YAML::Node &item : node_) {
     const std::optional<double> value = item.IsScalar() ? parseFinite(item.Scalar()) : std::nullopt;
-    if (!value) {
+    if (value)
+      out.push_back(*value);
+    else
       YamlValue(item, where_ + "[" + std::to_string(out.size()) + "]").number(); /* says so */
-    }
-    out.push_back(*value);
   }
   return out;
 }
