@@ -16,7 +16,8 @@
 namespace curve_proximity {
 
 /** The same shape, its pose the identity. A mesh is a surface. A plane is the halfspace below it, as in scenes of
- *  moveit_msgs. An octree counts its occupied cells, by its own threshold. Throws Error for a shape of another type. */
+ *  moveit_msgs. An octree counts its occupied cells, by its own threshold. Throws Error for a shape of another type,
+ *  and for an octree without its tree. */
 inline ShapeDescription fromShape(const shapes::Shape &shape) {
   ShapeDescription out;
   switch (shape.type) {
@@ -57,7 +58,9 @@ inline ShapeDescription fromShape(const shapes::Shape &shape) {
       return out;
     }
     case shapes::OCTREE: {
-      const octomap::OcTree &tree = *static_cast<const shapes::OcTree &>(shape).octree;
+      const auto &held = static_cast<const shapes::OcTree &>(shape).octree;
+      if (!held) throw Error("an octree without its tree");
+      const octomap::OcTree &tree = *held;
       std::ostringstream bytes;
       tree.writeData(bytes);
       out.type = ShapeType::OCTREE;

@@ -75,4 +75,5 @@ TEST(GeometricShapes, octrees_keep_their_occupied_cells) {
   for (Eigen::Index i = 0; i < boxes.low.cols(); ++i) volume += (boxes.high.col(i) - boxes.low.col(i)).prod();
   EXPECT_NEAR(volume, 3.0 * 1e-3, 1e-12);
   EXPECT_FALSE(makeGeometry(fromShape(shapes::OcTree(std::make_shared<octomap::OcTree>(0.1)))).body) << "no cell";
+  EXPECT_THROW(fromShape(shapes::OcTree()), Error) << "no tree";
 }
