@@ -2,6 +2,8 @@
 #include "collision_env.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <limits>
 
 #include <ros/console.h>
@@ -13,7 +15,7 @@ namespace cd = collision_detection;
 
 constexpr char LOG[] = "collision_detection.curve_proximity";
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
-constexpr double COMPLAIN_PERIOD = 5.0; /* [s] */
+constexpr std::chrono::seconds COMPLAIN_PERIOD{5};
 
 Workspace &workspace() {
   thread_local Workspace own;
@@ -99,15 +101,25 @@ class Collector {
   cd::CollisionResult &res_;
 };
 
+/* Seldom, by a clock of its own: ROS's throttle needs ROS time, which may not have begun, or stand still. */
+void complain(const std::string &what) {
+  using Clock = std::chrono::steady_clock;
+  static std::atomic<Clock::rep> next{std::numeric_limits<Clock::rep>::min()};
+  const Clock::rep now = Clock::now().time_since_epoch().count();
+  Clock::rep due = next;
+  if (now >= due && next.compare_exchange_strong(due, now + Clock::duration(COMPLAIN_PERIOD).count()))
+    ROS_ERROR_STREAM_NAMED(LOG, what);
+}
+
 /* What cannot be answered counts as a collision. */
 void fail(const std::string &why, cd::CollisionResult &res) {
-  ROS_ERROR_STREAM_THROTTLE_NAMED(COMPLAIN_PERIOD, LOG, why << ": the state counts as in collision");
+  complain(why + ": the state counts as in collision");
   res.collision = true;
   res.distance = std::min(res.distance, 0.0);
 }
 
 void fail(const std::string &why, cd::DistanceResult &res) {
-  ROS_ERROR_STREAM_THROTTLE_NAMED(COMPLAIN_PERIOD, LOG, why << ": the distance counts as 0");
+  complain(why + ": the distance counts as 0");
   res.collision = true;
   res.minimum_distance.distance = std::min(res.minimum_distance.distance, 0.0);
 }
@@ -200,10 +212,17 @@ void CollisionEnvCurveProximity::applyChanges() const {
   SceneChange change;
   if (resized_) {
     faults_.erase("");
-    change.link_padding = getLinkPadding();
+    const auto knows = [this](const std::string &link) {
+      if (robot_->links().count(link) > 0) return true;
+      ROS_WARN_STREAM_NAMED(LOG, "a padding or scale is not used: the robot has no link '" << link << "'");
+      return false;
+    };
+    for (const auto &[link, padding] : getLinkPadding())
+      if (knows(link)) change.link_padding[link] = padding;
     for (const auto &[link, scale] : getLinkScale()) {
       const auto known = before->linkScales().find(link);
-      if (scale != (known == before->linkScales().end() ? 1.0 : known->second)) change.link_scale[link] = scale;
+      if (scale == (known == before->linkScales().end() ? 1.0 : known->second)) continue;
+      if (knows(link)) change.link_scale[link] = scale;
     }
   }
   for (const std::string &id : moved_)
@@ -258,7 +277,15 @@ void CollisionEnvCurveProximity::changeObject(const std::string &id, bool only_m
 
 /* ---- one query ---- */
 
+/* Links are found in a state by their number. */
+void CollisionEnvCurveProximity::checkModel(const State &state) const {
+  const moveit::core::RobotModelConstPtr &other = state.getRobotModel();
+  if (other != robot_model_ && other->getLinkModelNames() != robot_model_->getLinkModelNames())
+    throw Error("a state of robot '" + other->getName() + "' in a scene of robot '" + robot_model_->getName() + "'");
+}
+
 CollisionEnvCurveProximity::Current CollisionEnvCurveProximity::current(const State &state) const {
+  checkModel(state);
   const std::lock_guard<std::mutex> lock(mutex_);
   applyChanges();
   const SnapshotPtr scene = scene_->snapshot();
@@ -398,6 +425,8 @@ std::shared_ptr<const PreparedRobot> CollisionEnvCurveProximity::prepared(const 
 void CollisionEnvCurveProximity::checkMotion(const Request &req, Result &res, const State &from, const State &to,
                                              const Matrix *acm) const {
   try {
+    checkModel(from);
+    checkModel(to);
     const TrajectoryDescription path = straight(from, to);
     if (path.joints.empty()) return check(req, res, from, acm, RobotPairs::ENVIRONMENT);
     const Current now = current(from);
@@ -444,12 +473,11 @@ void CollisionEnvCurveProximity::checkRobotCollision(const Request &req, Result 
   checkMotion(req, res, state1, state2, nullptr);
 }
 
-std::vector<Answer> CollisionEnvCurveProximity::ask(const TrajectoryDescription &trajectory, const State &at,
-                                                    const Matrix &acm, const Query &query) const {
+RobotMotion CollisionEnvCurveProximity::motion(const TrajectoryDescription &trajectory, const State &at,
+                                               const Matrix &acm) const {
   const Current now = current(at);
   if (!now.fault.empty()) throw Error(now.fault);
-  const RobotMotion motion(*prepared(now, &acm), trajectory, jointPositions(at));
-  return {askEnvironment(motion, query, workspace()).front(), askSelf(motion, query, workspace())};
+  return RobotMotion(*prepared(now, &acm), trajectory, jointPositions(at));
 }
 
 const std::string &CollisionDetectorAllocatorCurveProximity::getName() const {

@@ -52,10 +52,9 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
   void distanceRobot(const collision_detection::DistanceRequest &req, collision_detection::DistanceResult &res,
                      const State &state) const override;
 
-  /* How close a trajectory comes to the world and the robot to itself; `at` gives the joints that the trajectory does
-   * not move, and what is attached. Throws Error. */
-  std::vector<Answer> ask(const TrajectoryDescription &trajectory, const State &at, const Matrix &acm,
-                          const Query &query) const;
+  /* A trajectory among the objects of the world, for queries; `at` gives the joints that the trajectory does not move,
+   * and what is attached. Throws Error. */
+  RobotMotion motion(const TrajectoryDescription &trajectory, const State &at, const Matrix &acm) const;
 
  protected:
   void updatedPaddingOrScaling(const std::vector<std::string> &links) override;
@@ -68,6 +67,7 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
     std::string fault; /* what of the world could not be taken over; "": nothing */
   };
 
+  void checkModel(const State &state) const;
   Current current(const State &state) const;
   void applyChanges() const;
   void changeObject(const std::string &id, bool only_moved, const Snapshot &before, SceneChange &change) const;

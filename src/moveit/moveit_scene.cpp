@@ -211,4 +211,27 @@ TrajectoryDescription timed(const robot_trajectory::RobotTrajectory &trajectory)
   return out;
 }
 
+robot_trajectory::RobotTrajectoryPtr upTo(const robot_trajectory::RobotTrajectory &trajectory, double end) {
+  const TrajectoryDescription spline = timed(trajectory);
+  auto out = std::make_shared<robot_trajectory::RobotTrajectory>(trajectory.getRobotModel(), trajectory.getGroupName());
+  std::size_t next = 0;
+  for (; next < spline.points.size() && (next == 0 || spline.points[next].time < end); ++next)
+    out->addSuffixWayPoint(trajectory.getWayPoint(next), 0.0);
+  if (next == spline.points.size()) return out;
+  const TrajectoryPoint &a = spline.points[next - 1], &b = spline.points[next];
+  const double step = b.time - a.time, u = (end - a.time) / step, w = 1.0 - u;
+  moveit::core::RobotState last(trajectory.getWayPoint(next));
+  for (std::size_t i = 0; i < spline.joints.size(); ++i) {
+    double value = w * a.positions[i] + u * b.positions[i];
+    if (!a.velocities.empty()) { // Hermite's cubic; the accelerations bend it but little
+      value = w * w * (1.0 + 2.0 * u) * a.positions[i] + u * u * (1.0 + 2.0 * w) * b.positions[i] +
+              u * w * step * (w * a.velocities[i] - u * b.velocities[i]);
+    }
+    last.setVariablePosition(spline.joints[i], value);
+  }
+  last.update();
+  out->addSuffixWayPoint(last, 0.0);
+  return out;
+}
+
 } // namespace curve_proximity

@@ -67,5 +67,8 @@ TrajectoryDescription straight(const moveit::core::RobotState &from, const movei
  * accelerations too. Joints without limits go the shorter way from waypoint to waypoint. Throws Error. */
 TrajectoryDescription timed(const robot_trajectory::RobotTrajectory &trajectory);
 
+/* The same path up to the time `end` [s], without times. */
+robot_trajectory::RobotTrajectoryPtr upTo(const robot_trajectory::RobotTrajectory &trajectory, double end);
+
 } // namespace curve_proximity
 #endif

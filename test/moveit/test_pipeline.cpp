@@ -91,6 +91,61 @@ TEST(Pipeline, is_answered_alike_in_a_scene_of_our_detector) {
   }
 }
 
+TEST(Pipeline, ends_a_plan_before_the_post_when_asked_to_shorten_it) {
+  ros::NodeHandle("~pipeline").setParam("certify_shrink", true);
+  const auto scene = sceneWithPost(0.3, 0.0);
+  planning_interface::MotionPlanResponse res;
+  EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.01, res));
+  ros::NodeHandle("~pipeline").deleteParam("certify_shrink");
+  ASSERT_TRUE(res.trajectory_);
+  const double end = res.trajectory_->getLastWayPoint().getVariablePosition("panda_joint1");
+  EXPECT_GT(end, -0.4) << "most of the way from -.8 rad to the post is free";
+  EXPECT_LT(end, 0.3);
+  EXPECT_EQ(res.trajectory_->getLastWayPoint().getVariableVelocity("panda_joint1"), 0.0) << "it ends at rest";
+
+  /* what remains is free at 2000 moments by FCL, too */
+  EXPECT_EQ(scene->getActiveCollisionDetectorName(), "FCL");
+  auto state = std::make_shared<moveit::core::RobotState>(panda());
+  for (int i = 0; i <= 2000; ++i) {
+    res.trajectory_->getStateAtDurationFromStart(i / 2000.0 * res.trajectory_->getDuration(), state);
+    state->update();
+    ASSERT_FALSE(scene->isStateColliding(*state, "panda_arm")) << i;
+    ASSERT_GT(scene->getCollisionEnv()->distanceRobot(*state, scene->getAllowedCollisionMatrix()), 0.01 - 1e-4) << i;
+  }
+}
+
+TEST(Pipeline, rejects_a_plan_of_which_no_beginning_is_free) {
+  ros::NodeHandle("~pipeline").setParam("certify_shrink", true);
+  planning_interface::MotionPlanResponse res;
+  EXPECT_FALSE(plans(sceneWithPost(-0.8, 0.0), {OURS, TIMING}, 0.0, res));
+  ros::NodeHandle("~pipeline").deleteParam("certify_shrink");
+}
+
+TEST(Pipeline, rejects_what_the_budget_leaves_open_and_lets_pass_what_it_only_reports) {
+  const auto scene = sceneWithPost(0.3, 0.3);
+  planning_interface::MotionPlanResponse res;
+  ros::NodeHandle("~pipeline").setParam("certify_budget_ms", 0.0);
+  EXPECT_FALSE(plans(scene, {OURS, TIMING}, 0.0, res));
+  ros::NodeHandle("~pipeline").setParam("certify_reject", false);
+  EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.0, res));
+  ros::NodeHandle("~pipeline").deleteParam("certify_budget_ms");
+  ros::NodeHandle("~pipeline").deleteParam("certify_reject");
+}
+
+TEST(Pipeline, rejects_in_a_world_that_is_not_known_whole) {
+  const auto scene = sceneWithPost(0.3, 0.3);
+  planning_interface::MotionPlanResponse res;
+  Eigen::Isometry3d far = Eigen::Isometry3d::Identity();
+  far.translation().z() = 5.0;
+  const auto box = std::make_shared<shapes::Box>(0.1, 0.1, 0.1);
+  box->size[0] = -0.1;
+  scene->getWorldNonConst()->addToObject("odd", box, far);
+  EXPECT_TRUE(plans(scene, {TIMING}, 0.0, res));
+  EXPECT_FALSE(plans(scene, {OURS, TIMING}, 0.0, res));
+  scene->getWorldNonConst()->removeObject("odd");
+  EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.0, res));
+}
+
 TEST(Pipeline, refuses_a_trajectory_without_times) {
   planning_interface::MotionPlanResponse res;
   EXPECT_FALSE(plans(sceneWithPost(0.3, 0.3), {OURS}, 0.0, res));
