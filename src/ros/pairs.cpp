@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "pairs.h"
 
-#include <ros/console.h>
-
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -86,8 +84,6 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
       row.b = asked.id;
       if (failed++ == 0) response.message = "pair " + std::to_string(i) + " ('" + asked.id + "'): " + why;
     }
-    if (row.second_opinion == Proximity::OPINION_DISAGREES)
-      ROS_WARN("pair '%s': %s", asked.id.c_str(), row.message.c_str());
     response.results.push_back(std::move(row));
   }
   response.success = failed == 0;

@@ -20,7 +20,9 @@ void Statistics::record(Clock::duration took, bool success, const std::vector<Pr
     opinions += row.second_opinion == Proximity::OPINION_AGREES || row.second_opinion == Proximity::OPINION_DISAGREES;
     if (row.second_opinion != Proximity::OPINION_DISAGREES) continue;
     ++disputed;
-    ROS_WARN_THROTTLE(1.0, "%s: %s and %s: %s", row.id.c_str(), row.a.c_str(), row.b.c_str(), row.message.c_str());
+    if (disagreements_.isDue(row.id + "\n" + row.a + "\n" + row.b))
+      ROS_WARN_STREAM("'" << row.id << (row.a.empty() || row.a == row.id ? "" : "', '" + row.a) << "' and '" << row.b
+                          << "': " << row.message);
   }
 
   const std::lock_guard<std::mutex> lock(mutex_);

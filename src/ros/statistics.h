@@ -12,6 +12,8 @@
 #include <mutex>
 #include <vector>
 
+#include "complaints.h"
+
 namespace curve_proximity {
 
 /** A window of time. */
@@ -39,6 +41,7 @@ class Statistics {
 
   double percentile(double fraction) const;
 
+  Complaints disagreements_{std::chrono::seconds(60)}; /* of second opinions, by row and pair */
   std::mutex mutex_;
   Clock::time_point since_ = Clock::now();
   Summary now_;

@@ -278,7 +278,8 @@ SecondOpinion opinionOf(Peer peer, const std::vector<double> &times, const Sides
       out.verdict = SecondOpinion::DISAGREES;
       out.message = std::string(peerName(peer)) + " disagrees: it measures " + numberOf(found) + " m";
       if (times.size() > 1) out.message += " at t = " + numberOf(t);
-      out.message += (found < least ? ", and lower is " + numberOf(least) : ", and upper is " + numberOf(most)) + " m";
+      out.message += (found < least ? ", and lower is " + numberOf(least) : ", and upper is " + numberOf(most)) +
+                     " m; its accuracy is " + numberOf(accuracy) + " m";
       return out;
     }
     out.verdict = SecondOpinion::AGREES;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""With ~second_opinion another library measures each row's pair again; disagreement is told, logged and counted."""
+"""With ~second_opinion another library measures each row's pair again; disagreement is logged once a pair, and counted."""
 import os
 import tempfile
 import unittest
@@ -9,6 +9,7 @@ import rospy
 from curve_proximity.msg import Body
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from helpers import Server, bezier, body, run, sphere, thing, until
+from rosgraph_msgs.msg import Log
 
 LINE = bezier((-1, 0, 1), (1, 0, 1), id='line')
 FACET = 'facet normal 0 0 1\nouter loop\nvertex -1 -1 {z}\nvertex 1 -1 {z}\nvertex 0 1 {z}\nendloop\nendfacet\n'
@@ -20,6 +21,9 @@ class SecondOpinion(unittest.TestCase):
         cls.server = Server()
         cls.seen = []
         rospy.Subscriber('/diagnostics', DiagnosticArray, cls.seen.append)
+        cls.lines = []
+        log = rospy.Subscriber('/rosout', Log, lambda line: cls.lines.append((line.level, line.msg)))
+        assert until(log.get_num_connections, 8), 'the node has no log'
 
     def queries(self, condition):
         """The status `queries` for which the condition holds, and its values."""
@@ -66,11 +70,21 @@ class SecondOpinion(unittest.TestCase):
         row = self.row()
         self.assertEqual(row.second_opinion, 'disagrees', row.message)
         self.assertAlmostEqual(row.second_distance, 0.5, delta=1e-5)
-        self.assertIn('fcl disagrees: it measures 0.5', row.message)
+        self.assertRegex(row.message, r'fcl disagrees: it measures 0\.(5|4999)\S* m at t = \S+, and lower is (1|0\.9999\S*) m; '
+                                      r'its accuracy is \S+e-05 m$')
         self.assertAlmostEqual(row.upper, 1.0, delta=1e-5)
         status, _ = self.queries(lambda v: int(v['second opinions that disagree, ever']) > 0)
         self.assertEqual((status.level, status.message),
                          (DiagnosticStatus.WARN, 'second opinions disagree: the log says of what'))
+        # Again, and again: one line says the row, the pair, both figures and the accuracy.
+        for _ in range(2):
+            self.row()
+        self.queries(lambda v: int(v['second opinions that disagree, ever']) == 3)
+
+        def logged():
+            return [line for line in list(self.lines) if 'disagrees' in line[1]]
+        self.assertTrue(until(logged, 8))
+        self.assertEqual(logged(), [(Log.WARN, "'line' and 'sheet': " + row.message)])
 
 
 if __name__ == '__main__':
