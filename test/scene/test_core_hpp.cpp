@@ -224,3 +224,28 @@ TEST(CoreHpp, sets_by_their_distance_are_asked_like_bodies) {
   EXPECT_TRUE(cprox_body_get_info(ground.get()).is_solid);
   expectContains(errorOf([&] { makeHeightField({2, 2}, {1.0, 0.5}, {0.0}); }), "one height for each point");
 }
+
+TEST(CoreHpp, convex_functions_that_throw_are_refused_by_maker_and_query) {
+  const CurveHandle line = makeBezier((Eigen::Matrix3Xd(3, 2) << -1, 1, 0.8, 0.8, 0, 0).finished());
+  std::string says = "a ball";
+  const auto function = [&](const Eigen::Vector3d &x, Eigen::Vector3d &gradient, Eigen::Matrix3d &hessian) {
+    if (says == "throws") throw Error("mine");
+    gradient = 2.0 * x;
+    hessian = 2.0 * Eigen::Matrix3d::Identity();
+    return says == "nan" ? std::numeric_limits<double>::quiet_NaN() : x.squaredNorm() - 0.25;
+  };
+  const BodyHandle ball = makeConvexFunction(function, {0, 0, 0}, 0.6);
+  const auto distance = [&] {
+    Workspace workspace;
+    cprox_result result = {};
+    require(cprox_distance(along(line), at(ball), nullptr, workspace.get(), &result), workspace);
+    return result.upper;
+  };
+  EXPECT_NEAR(distance(), 0.3, 1e-6);
+  for (const char *word : {"throws", "nan"}) {
+    says = word;
+    EXPECT_NE(errorOf(distance), "") << word;
+    expectContains(errorOf([&] { makeConvexFunction(function, {0, 0, 0}, 0.6); }), "not finite");
+  }
+  expectContains(errorOf([] { makeConvexFunction(nullptr, {0, 0, 0}, 1.0); }), "empty");
+}
