@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy
 import rospy
 import yaml
-from curve_proximity.msg import (AttachedCollisionObject, CollisionObject, LinkPadding, PoseTrajectory, ProximityResults,
+from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject, LinkPadding, PoseTrajectory, ProximityResults,
                                  RobotTrajectory, Waypoint)
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest, TimeOfContact,
                                  TimeOfContactRequest)
@@ -354,6 +354,11 @@ class Movers(unittest.TestCase):
             self.assertGreaterEqual(row.upper, 1.0 - half - 0.25 - 1e-12)
             self.assertLess(row.upper - row.lower, 1.01e-6)
         self.assertRefused(self.server.distance(bezier((0, 0, 0), (1, 0, 0)), body=carried), 'body applies to paths')
+        file = 'package://curve_proximity/test/data/robots/panda/meshes/link7.stl'
+        for resource, found in ((file, True), (file + 'x', False)):
+            mesh = CollisionObject(id='mesh', bodies=[Body(type='mesh', resource=resource)])
+            response = self.server.distance([], paths=[way], body=mesh, objects=['ball'])
+            self.assertEqual(response.success, found, response.message)
 
     def hold(self, link, at):
         """A ball of .1 that the link carries, at a place in its frame."""
