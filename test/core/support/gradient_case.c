@@ -15,6 +15,10 @@
 #include "support/meshes.h"
 #include "support/shapes.h"
 
+/* For a distance as exact as it can be had. Depths of curved bodies may be known no better than to 1e-7, and then more
+ * nodes, each of them as dear as a depth is, say nothing more. */
+enum { MOST_NODES = 3000 };
+
 /* The core's answer; with a gradient where there is room for it. *width grows to that of the interval. */
 static double ask(const gradient_case *p, gradient_answer *a, double *width) {
   cprox_obstacles *obstacles = NULL;
@@ -24,6 +28,7 @@ static double ask(const gradient_case *p, gradient_answer *a, double *width) {
   mover.kind = p->kind;
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = a ? 1e-6 : 0.0;
+  if (!a) options.max_nodes = MOST_NODES;
   options.signed_distance = p->is_signed;
   const cprox_obstacles *against = p->kind == CPROX_MOVER_ROBOT_SELF ? NULL : obstacles;
   cprox_result r;
