@@ -277,7 +277,7 @@ py::object fromMatrix(const Eigen::MatrixXd &matrix) {
   Array out({matrix.rows(), matrix.cols()});
   for (Eigen::Index i = 0; i < matrix.rows(); ++i)
     for (Eigen::Index k = 0; k < matrix.cols(); ++k) out.mutable_at(i, k) = matrix(i, k);
-  return std::move(out);
+  return out;
 }
 
 py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
@@ -309,7 +309,7 @@ py::object stacked(const std::vector<ClearanceRow> &rows, Eigen::MatrixXd Cleara
   for (const ClearanceRow &row : rows)
     for (Eigen::Index i = 0; i < first.rows(); ++i)
       for (Eigen::Index k = 0; k < first.cols(); ++k) *to++ = (row.gradient.*matrix)(i, k);
-  return std::move(out);
+  return out;
 }
 
 /* One array of all rows' vectors (rows, 3). */
