@@ -642,9 +642,9 @@ CASE(along_a_pose_spline_the_verdict_holds_at_every_parameter) {
     turned_first += cprox_gap_get_info(gap).turned_first;
     cprox_curve *way = random_spline(&r, 3, 0.6, dimension == 2, false);
     cprox_curve *turning = random_spline(&r, 2, 1.5, false, dimension == 2);
-    const cprox_pose a = random_pose(&r, dimension, 1.3);
+    const cprox_pose a = random_pose(&r, dimension, i % 2 ? 1.3 : 2.2);
     const cprox_gap_carried carried = {way, random_pose(&r, dimension, 1).orientation, turning};
-    const double t0 = rng_uniform(&r, 0, 0.9), t1 = rng_uniform(&r, t0, 1);
+    const double t0 = rng_uniform(&r, 0, 0.5), t1 = rng_uniform(&r, t0 + 0.2, 1);
     cprox_gap_along_result v;
     MADE(cprox_gap_along_test(gap, &a, &carried, t0, t1, 100000, ws, &v));
     clear += v.verdict == CPROX_GAP_VERDICT_CLEAR, hit += v.verdict == CPROX_GAP_VERDICT_COLLIDE, nodes += v.nodes;
