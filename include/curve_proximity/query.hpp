@@ -59,7 +59,7 @@ struct Answer {
   std::string b;          /**< the nearest object or link; empty where there is none */
   bool b_is_link = false; /**< b names a link of the robot */
   /** The nearest shape is a mesh that was replaced by its convex hull or bounding ball: because options.max_lod
-   *  says so, or because it is solid and the robot moves. */
+   *  or a signed distance of a robot says so. */
   bool by_hull = false;
   double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */
   std::string status;      /**< cprox_status_name(result.status) */

@@ -71,11 +71,9 @@ cprox_mover Asked::mover() const {
   return mover;
 }
 
-/* Robots are asked about surfaces: solid meshes are answered by their hulls, which contain their inside. */
 Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted, const Query &query) {
   const Named named(data, query.links);
-  Asked asked{data, RobotPairs::ENVIRONMENT, std::move(wanted), {}, {}, {}, mostExcess(data.kinematics->geometries),
-              {}};
+  Asked asked{data, RobotPairs::ENVIRONMENT, std::move(wanted), {}, {}, {}, mostExcess(data.kinematics->geometries)};
   const std::vector<Item> &items = data.snapshot->world().items();
   std::vector<std::int32_t> number(items.size(), -1);
   double rounding = 0.0;
@@ -90,10 +88,8 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
     if (query.options.signed_distance && !has_hull)
       throw Error("signed_distance: object '" + *items[k].owner +
                   "' is a mesh without a hull, points or boxes: how deep a robot overlaps these is not measured");
-    const bool by_hull = shape.is_mesh && cprox_body_get_info(shape.target.body).is_solid;
-    asked.targets.push_back(by_hull ? shape.hull : shape.target);
-    asked.proven.push_back(shape.surface);
-    rounding = std::max(rounding, shape.rounding + (by_hull ? shape.hull_excess : 0.0));
+    asked.targets.push_back(shape.target);
+    rounding = std::max(rounding, shape.rounding);
   }
   for (const cprox_robot_pair &pair : data.environment) {
     const std::int32_t k = number[static_cast<std::size_t>(pair.other)];
@@ -104,7 +100,7 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
 }
 
 Asked askedSelf(const RobotMotion::Data &data, const std::vector<std::string> &links) {
-  Asked asked{data, RobotPairs::SELF, {}, {}, {}, {}, 2.0 * mostExcess(data.kinematics->geometries), {}};
+  Asked asked{data, RobotPairs::SELF, {}, {}, {}, {}, 2.0 * mostExcess(data.kinematics->geometries)};
   const Named named(data, links);
   for (const cprox_robot_pair &pair : data.self) {
     if (named(pair.geometry) || named(pair.other)) asked.pairs.push_back(pair);
@@ -147,8 +143,9 @@ void nameSides(const Asked &asked, const Query &query, Answer &answer) {
     const Item &item = asked.data.snapshot->world().items()[asked.items[other]];
     answer.b = *item.owner;
     result.obstacle_index = item.part;
-    answer.by_hull =
-        answer.by_hull || (item.shape->is_mesh && (coarse || cprox_body_get_info(item.shape->target.body).is_solid));
+    answer.by_hull = answer.by_hull || (item.shape->is_mesh && coarse);
+    if (item.shape->is_open && !answer.by_hull)
+      answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
   }
   if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
 }

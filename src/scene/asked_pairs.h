@@ -22,7 +22,6 @@ struct Asked {
   std::vector<cprox_robot_pair> pairs;      /* with targets; against itself: of geometries */
   std::vector<cprox_robot_pair> self_pairs; /* of both at once: of geometries */
   double rounding;                          /* [m] that the core does not know of */
-  std::vector<cprox_obstacle> proven; /* the targets as a proof takes them: it must know a hull from a convex body */
 
   /* Is a result about two geometries of the robot? */
   bool isSelf(const cprox_result &result) const {

@@ -31,7 +31,7 @@ Answer answerOf(const Asked &asked, const Query &query, Workspace &workspace) {
   Answer answer = toAnswer(asked, result, query, workspace, start);
   if (!query.options.certificate) return answer;
   if (!asked.pairs.empty() && result.status >= 0) widen(query, asked.rounding, INFINITE, result);
-  leaveProof(query, asked.mover(), asked.proven, result, workspace, answer);
+  leaveProof(query, asked.mover(), asked.targets, result, workspace, answer);
   return answer;
 }
 
@@ -138,12 +138,12 @@ std::string describeQuery(const RobotMotion &motion, bool self, const Query &que
   if (asked.pairs.empty()) return {};
   std::vector<std::string> names;
   for (const std::size_t item : asked.items) names.push_back(*asked.data.snapshot->world().items()[item].owner);
-  const std::string bodies = targetLines(asked.proven, names);
+  const std::string bodies = targetLines(asked.targets, names);
   if (bodies.empty()) return {};
   const std::string id = wordOf(motion.data().id + (self ? ".self" : ".environment"));
   Workspace workspace;
   const cprox_mover mover = asked.mover();
-  const Obstacles obstacles(asked.proven, CPROX_INDEX_NONE);
+  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
   const auto describe = [&](char *text, std::size_t size) {
     return cprox_mover_describe(&mover, obstacles.get(), id.c_str(), workspace.get(), text, size);
   };
@@ -163,7 +163,7 @@ std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const 
   for (const MovingGeometry &geometry : asked.data.kinematics->geometries)
     look((geometry.attached ? "object '" : "link '") + geometry.owner() + "'", geometry.body);
   for (std::size_t i = 0; i < asked.items.size(); ++i)
-    look("object '" + *asked.data.snapshot->world().items()[asked.items[i]].owner + "'", asked.proven[i].body);
+    look("object '" + *asked.data.snapshot->world().items()[asked.items[i]].owner + "'", asked.targets[i].body);
   return sentences;
 }
 

@@ -199,9 +199,8 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
   for (const Item &item : items) {
     const PlacedShape &shape = *item.shape;
     requireBody(item);
-    const bool by_hull = shape.is_mesh && cprox_body_get_info(shape.target.body).is_solid;
-    data.targets.push_back(by_hull ? shape.hull : shape.target);
-    rounding = std::max(rounding, shape.rounding + (by_hull ? shape.hull_excess : 0.0));
+    data.targets.push_back(shape.target);
+    rounding = std::max(rounding, shape.rounding);
   }
   const std::vector<bool> named = namedAnywhere(allowed, data);
   for (std::size_t i = 0; i < geometries.size(); ++i) {

@@ -20,9 +20,9 @@ void makeRobot(const ObjectDescription &object, MovingBody &out) {
   std::vector<cprox_link_geometry> geometries;
   for (std::size_t i = 0; i < object.shapes.size(); ++i) {
     if (out.geometries[i].curve) throw Error("a curve stands where it is: it takes no trajectory");
-    if (!out.geometries[i].surface) throw Error("its octree has no occupied cell");
+    if (!out.geometries[i].body) throw Error("its octree has no occupied cell");
     geometries.push_back(
-        {out.geometries[i].surface.get(), toPose(object.shapes[i].pose), 0, object.padding + out.geometries[i].margin});
+        {out.geometries[i].body.get(), toPose(object.shapes[i].pose), 0, object.padding + out.geometries[i].margin});
   }
   cprox_link link{};
   link.parent = -1;

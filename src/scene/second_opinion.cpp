@@ -478,9 +478,8 @@ void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answe
     const SceneObject &object = *snapshot.objects().at(answer.b);
     const cprox_obstacle &placed = object.shapes.at(part).placed.target;
     const ShapeDescription &shape = object.description.shapes.at(part);
-    const bool solid = shape.type == ShapeType::MESH && shape.solid; /* robots meet hulls of solid meshes */
     return std::make_pair(sideOfRobot(mover, poses),
-                          sideOf(shape, toIsometry(placed.pose), placed.margin, by_hull || solid, data.objects, data));
+                          sideOf(shape, toIsometry(placed.pose), placed.margin, by_hull, data.objects, data));
   };
   tell(opinionOf(data.peer, timesOf(answer, info.t0, info.t1), sidesAt, answer.result.lower, answer.result.upper,
                  simplifiedBy(data.objects, snapshot.robot().get()), stopOf(query)),

@@ -56,7 +56,7 @@ typedef struct cprox_link {
 
 /** A body on a link. */
 typedef struct cprox_link_geometry {
-  /** convex, a level-of-detail body, a mesh's surface, points, boxes, or a compound of these; no halfspace; kept by
+  /** convex, a level-of-detail body, a mesh, solid or not, points, boxes, or a compound of these; no halfspace; kept by
    *  reference */
   const cprox_body *body;
   /** in the link's frame */
@@ -273,11 +273,10 @@ typedef struct cprox_robot_pair {
   int32_t other;
 } cprox_robot_pair;
 
-/** The robot along a motion. Targets are bodies; of meshes the surface counts, and solid
- *  ones are refused. Of level-of-detail bodies, on links and as targets, the mesh is asked where the hull cannot
- *  decide; result.lod says whether. pairs: those that are asked about, kept by reference, `other` being
- *  targets; NULL: all geometries of links that the motion moves (of a state: that a joint can move), against all
- *  targets.
+/** The robot along a motion. Targets are bodies. Of solid meshes, on links and as targets, the inside counts: what is
+ *  wholly inside is in contact. Of level-of-detail bodies, on links and as targets, the mesh is asked where the hull
+ * cannot decide; result.lod says whether. pairs: those that are asked about, kept by reference, `other` being targets;
+ * NULL: all geometries of links that the motion moves (of a state: that a joint can move), against all targets.
  *
  *  Against obstacles and itself at once: set the kind CPROX_MOVER_ROBOT_WHOLE, and self_pairs where not all pairs with
  *  itself are asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of

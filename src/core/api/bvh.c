@@ -22,7 +22,7 @@ cprox_status bvh_begin(const obstacle_bvh *set, query *q, arguments_query asked)
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
   /* the targets were checked when the set was made, but for what the mover must go with */
-  const bool robot = q->mover.motion && (set->has_curves || set->has_solids || mover_is_self(&q->mover) ||
+  const bool robot = q->mover.motion && (set->has_curves || set->has_fields || mover_is_self(&q->mover) ||
                                          mover_is_whole(&q->mover) || q->mover.pairs);
   const bool by_hulls = q->mover.body || (q->mover.motion && q->options.signed_distance);
   const bool all = set->has_clock || (by_hulls && set->has_elements) || robot;

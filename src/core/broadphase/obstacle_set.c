@@ -52,7 +52,8 @@ static void sort_targets(obstacle_bvh *set) {
     set->has_clock = set->has_clock || target->synchronized;
     set->has_elements = set->has_elements || has_elements(target);
     set->has_curves = set->has_curves || !target->body;
-    set->has_solids = set->has_solids || (target->body && (part_model_is_solid(target->body) || target->body->field));
+    set->has_solids = set->has_solids || (target->body && part_model_is_solid(target->body));
+    set->has_fields = set->has_fields || (target->body && target->body->field);
     vec3 *a = &set->low[set->n_boxes], *b = &set->high[set->n_boxes];
     if (!box_of(target, a, b)) {
       set->unbounded[set->n_unbounded++] = (uint32_t)i;

@@ -16,7 +16,8 @@ typedef struct obstacle_bvh {
   uint32_t *unbounded; /* targets without a box */
   size_t n_boxes, n_unbounded;
   vec3 centre;
-  bool has_clock, has_elements, has_solids, has_curves; /* what not every mover goes with */
+  bool has_clock, has_elements, has_fields, has_curves; /* what not every mover goes with */
+  bool has_solids;                                      /* meshes with an inside */
 } obstacle_bvh;
 
 /* The BVH over the boxes of n obstacles, which were checked and must outlive it. */

@@ -3,6 +3,9 @@
 
 #include <stdlib.h>
 
+#include "base/rotation.h"
+#include "base/rounding.h"
+
 /* The dipole of a lane's triangles. */
 typedef struct dipole {
   vec3 normal; /* sum of the area vectors */
@@ -163,4 +166,95 @@ bool winding_is_inside(const winding *w, const tree *t, vec3 x) {
   for (double far = 2.0; far < 100.0 && !(error < HARMLESS); far *= 3.0) number = winding_number(w, t, x, far, &error);
   if (!(error < HARMLESS)) number = winding_number(w, t, x, INFINITY, &error);
   return fabs(number) > 0.5;
+}
+
+/* ---- one or the other side ---- */
+
+/* How far x is from the smallest box round the tree; 0 inside of it. */
+static double from_root(const tree *t, vec3 x) {
+  const tree_node *root = &t->nodes[0];
+  const double at[3] = {x.x, x.y, x.z};
+  double out[3];
+  for (int k = 0; k < 3; k++) {
+    double low = root->low[k][0], high = root->high[k][0];
+    for (int l = 1; l < TREE_LANES; l++) low = lesser(low, root->low[k][l]), high = greater(high, root->high[k][l]);
+    out[k] = greater(greater(low - at[k], at[k] - high), 0.0);
+  }
+  return vec_norm(vec(out[0], out[1], out[2]));
+}
+
+/* The side of all points of a ball. The winding number is computed farther from the surface than rounding. */
+static winding_side side_of_ball(const winding *w, const tree *t, vec3 centre, double radius, double error) {
+  static const double FARTHER = 4.0;
+  const double sizes = vec_norm(centre) + t->scale + radius;
+  double clear = ROUND_UP * (radius + FARTHER * (error + 2.0 * TREE_ROUND * ROUND_U * sizes));
+  if (from_root(t, centre) > clear) return WINDING_OUTSIDE;
+  const tree_hit hit = tree_nearest(t, centre, INFINITY);
+  clear += FARTHER * TREE_ROUND * ROUND_U * hit.upper;
+  if (!(hit.lower > clear)) return WINDING_NEAR;
+  return winding_is_inside(w, t, centre) ? WINDING_INSIDE : WINDING_OUTSIDE;
+}
+
+winding_side winding_side_of(const winding *w, const tree *t, vec3 x, double error) {
+  return side_of_ball(w, t, x, 0.0, error);
+}
+
+static vec3 to_host(const winding_guest *guest, vec3 x) {
+  return vec_add(rotate(guest->r, x), guest->at);
+}
+
+/* A corner of an element stands for all of the element. */
+static winding_side side_of_pack(const winding *w, const tree *t, const winding_guest *guest, uint32_t pack,
+                                 vec3 *point) {
+  winding_side all = WINDING_OUTSIDE;
+  for (uint32_t lane = 0; lane < TREE_LANES && !is_repeated(guest->elements, pack, lane); lane++) {
+    vec3 corner[3];
+    tree_corners(guest->elements, (tree_place){pack, lane}, corner);
+    *point = corner[0];
+    const winding_side side = winding_side_of(w, t, to_host(guest, corner[0]), guest->error);
+    if (side == WINDING_INSIDE) return side;
+    if (side == WINDING_NEAR) all = side;
+  }
+  return all;
+}
+
+static winding_side side_of_lane(const winding *w, const tree *t, const winding_guest *guest, const tree_node *node,
+                                 uint32_t l) {
+  const vec3 low = vec(node->low[0][l], node->low[1][l], node->low[2][l]);
+  const vec3 high = vec(node->high[0][l], node->high[1][l], node->high[2][l]);
+  const vec3 middle = vec_lerp(low, high, 0.5);
+  return side_of_ball(w, t, to_host(guest, middle), ROUND_UP * vec_norm(vec_sub(high, middle)), guest->error);
+}
+
+static vec3 first_corner(const tree *t, uint32_t at) {
+  vec3 corner[3];
+  while (!(at & TREE_LEAF)) at = t->nodes[at].child[0];
+  tree_corners(t, (tree_place){at & ~TREE_LEAF, 0}, corner);
+  return corner[0];
+}
+
+winding_side winding_find_inside(const winding *w, const tree *t, const winding_guest *guest, vec3 *point) {
+  uint32_t open[TREE_LANES * TREE_DEEPEST];
+  size_t count = 0;
+  winding_side all = WINDING_OUTSIDE;
+  open[count++] = 0;
+  while (count > 0) {
+    const uint32_t at = open[--count];
+    if (at & TREE_LEAF) {
+      const winding_side side = side_of_pack(w, t, guest, at & ~TREE_LEAF, point);
+      if (side == WINDING_INSIDE) return side;
+      if (side == WINDING_NEAR) all = side;
+      continue;
+    }
+    const tree_node *node = &guest->elements->nodes[at];
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      if (!(node->lanes >> l & 1u)) continue;
+      const winding_side side = side_of_lane(w, t, guest, node, l);
+      if (side == WINDING_NEAR) open[count++] = node->child[l];
+      if (side != WINDING_INSIDE) continue;
+      *point = first_corner(guest->elements, node->child[l]);
+      return side;
+    }
+  }
+  return all;
 }

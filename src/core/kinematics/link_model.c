@@ -19,7 +19,7 @@ part_model part_model_of(const cprox_body *body) {
     m.radius += body->excess;
   }
   if (!mesh->tree) return m;
-  m.tree = mesh->tree, m.clusters = body->clusters;
+  m.tree = mesh->tree, m.clusters = body->clusters, m.winding = mesh->winding;
   m.tree_margin = mesh->shape.margin;
   if (!body->mesh) {
     m.centre = body->ball_centre;

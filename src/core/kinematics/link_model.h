@@ -19,6 +19,7 @@ typedef struct part_model {
   vec3 tree_at;        /* where the tree's origin is, from the centre */
   double tree_margin;
   const cluster_hulls *clusters; /* between the shape and the elements; NULL: there are none */
+  const struct winding *winding; /* of a solid mesh: what tells its inside; else NULL */
 } part_model;
 
 /* body: no compound. */

@@ -71,9 +71,6 @@ static cprox_status check_geometry(const cprox_link_geometry *g, size_t i, size_
   if (g->margin > LENGTH_MOST || !body_is_in_reach(g->body))
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: the body or its margin reaches farther than %g m", i,
                           LENGTH_MOST);
-  if (part_model_is_solid(g->body))
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "geometry %zu is a solid mesh: robots have surfaces; fill it with convex parts", i);
   return CPROX_OK;
 }
 

@@ -334,15 +334,15 @@ static bool is_solid(const pair_side *side) {
   return side->body->winding != NULL;
 }
 
-/* Whether a corner of one's first element is inside of the other, which is solid; where the surfaces do not meet, then
- * all of it is. */
-static bool holds(const dual *d, int solid, vec3 *point) {
-  if (!is_solid(d->side[solid])) return false;
-  vec3 corner[3];
-  tree_corners(tree_of(d, 1 - solid), (tree_place){0, 0}, corner);
-  const vec3 there = across(d, 1 - solid, corner[0]);
-  *point = solid == 1 ? corner[0] : there;
-  return winding_is_inside(d->side[solid]->body->winding, tree_of(d, solid), there);
+/* Whether a connected part of one is inside of the other, which is solid; the surfaces do not meet. */
+static winding_side side_of(const dual *d, int solid, vec3 *point) {
+  if (!is_solid(d->side[solid])) return WINDING_OUTSIDE;
+  winding_guest guest = {.elements = tree_of(d, 1 - solid), .at = across(d, 1 - solid, vec(0, 0, 0))};
+  guest.error = d->rounding;
+  for (int i = 0; i < 9; i++) guest.r[i] = d->place->r[solid == 0 ? i : 3 * (i % 3) + i / 3];
+  const winding_side side = winding_find_inside(d->side[solid]->body->winding, tree_of(d, solid), &guest, point);
+  if (solid == 0) *point = across(d, 1, *point);
+  return side;
 }
 
 /* What was not looked at is a surface, which has no inside to be deep in; else it may be as deep as anything. */
@@ -365,8 +365,12 @@ static void conclude(const dual *d, pair_answer *answer) {
   if ((answer->exhausted || answer->stopped) && !apart) answer->lower = fmin(least_unseen(d), answer->upper);
 
   /* surfaces that do not meet: one inside of the other, where that is solid, or each outside of the other */
-  vec3 inner = vec(0, 0, 0);
-  if (apart && (holds(d, 1, &inner) || holds(d, 0, &inner))) overlap(d, inner, answer);
+  for (int solid = 1; apart && solid >= 0 && !answer->overlap; solid--) {
+    vec3 inner = vec(0, 0, 0);
+    const winding_side side = side_of(d, solid, &inner);
+    if (side == WINDING_INSIDE) overlap(d, inner, answer);
+    if (side == WINDING_NEAR) answer->lower = fmin(answer->lower, least_of(d));
+  }
 }
 
 bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, cprox_workspace *workspace,

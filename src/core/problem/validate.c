@@ -204,10 +204,6 @@ static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle
   }
   if (!target->body || target->curve)
     return workspace_fail(workspace, CPROX_INVALID, "target %zu is a curve: a robot is asked about bodies", index);
-  if (part_model_is_solid(target->body))
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
-                          index);
   return CPROX_OK;
 }
 

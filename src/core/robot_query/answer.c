@@ -124,6 +124,7 @@ static cprox_status contact_of_class(const query *q, const start_class *starts, 
   const cprox_status proved = robot_search_prove(&o, q->t1 + o.scene.lead_tolerance);
   if (proved < 0) return proved;
 
+  if (o.unsure) found.free_until = fmin(found.free_until, q->t0);
   const bool touch = o.touch.pair >= 0, near = o.best_bound.upper <= q->options.epsilon;
   const robot_sample *sample = touch ? &o.touch : &o.best;
   cprox_result r = {.t_obstacle = NAN, .obstacle_index = -1, .mover_part = -1};

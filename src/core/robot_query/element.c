@@ -72,7 +72,7 @@ const robot_body *robot_element_make(const robot_body *owner, int32_t code, robo
   e->body = *owner;
   robot_body *body = &e->body;
   const vec3 at = vec_add(owner->tree_at, middle);
-  body->tree = NULL, body->clusters = NULL;
+  body->tree = NULL, body->clusters = NULL, body->winding = NULL;
   body->side.shape = &e->shape;
   body->side.margin = owner->tree_margin;
   body->side.at.p = placement_apply(&owner->side.at, at);

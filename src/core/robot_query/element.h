@@ -17,6 +17,7 @@ typedef struct robot_body {
   const cluster_hulls *clusters; /* those of the tree, NULL for none */
   vec3 tree_at;                  /* its origin stands here in the shape's frame, */
   double tree_margin;            /* and elements are thickened by this */
+  const struct winding *winding; /* what tells the inside of a solid mesh, NULL for a surface and for parts of it */
 } robot_body;
 
 /* Of a ball round the core: a margin does not turn. Elements may have a smaller margin than what contains them. */

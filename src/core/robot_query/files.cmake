@@ -6,6 +6,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/element.c
   ${CMAKE_CURRENT_LIST_DIR}/flight.c
   ${CMAKE_CURRENT_LIST_DIR}/groups.c
+  ${CMAKE_CURRENT_LIST_DIR}/inside.c
   ${CMAKE_CURRENT_LIST_DIR}/measure.c
   ${CMAKE_CURRENT_LIST_DIR}/oracle.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_distance.c

@@ -47,6 +47,11 @@ static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
   keep_sample_at(o, index, gap, o->scene.centre.segment, o->scene.centre.u, robot_scene_other_time(&o->scene));
 }
 
+void robot_keep_common(robot_search *o, int32_t index, vec3 point) {
+  const robot_gap gap = {.on_moving = point, .on_standing = point};
+  keep_sample(o, index, &gap);
+}
+
 static void place_normal_at(const robot_search *o, robot_pair *pair, vec3 normal, size_t segment, double u) {
   pair->normal = normal;
   pair->normal_rate = vec(0, 0, 0);
@@ -322,8 +327,8 @@ cprox_status robot_measure_if_near(robot_search *o, int32_t index) {
   return robot_pair_ball_distance(moving, standing) > o->goal.epsilon ? CPROX_OK : robot_measure_whole(o, index);
 }
 
-/* The same of all that is under a node of the set's tree, until contact is proven. */
-static cprox_status measure_near_cluster(robot_search *o, const list_entry *entry) {
+/* Pairs under a node of the set's tree that may touch, until contact is proven. */
+static cprox_status visit_near_cluster(robot_search *o, const list_entry *entry, robot_pair_visit *visit) {
   const cluster_view view = cluster_see(&o->scene, entry->part, false);
   const double known = o->touch_at;
   cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
@@ -339,13 +344,13 @@ static cprox_status measure_near_cluster(robot_search *o, const list_entry *entr
       size_t count;
       const int32_t pairs = cluster_pairs(&o->scene, entry->part, lanes.under[l], &count);
       if (pairs < 0) return robot_no_memory(o);
-      for (size_t k = 0; k < count && status >= 0; k++) status = robot_measure_if_near(o, pairs + (int32_t)k);
+      for (size_t k = 0; k < count && status >= 0; k++) status = visit(o, pairs + (int32_t)k);
     }
   }
   return status;
 }
 
-cprox_status robot_measure_near_groups(robot_search *o, group_pair groups) {
+cprox_status robot_visit_near_groups(robot_search *o, group_pair groups, robot_pair_visit *visit) {
   const double known = o->touch_at, near = nextafter(o->goal.epsilon, INFINITY);
   group_stack stack;
   begin_groups(&stack, groups);
@@ -358,12 +363,12 @@ cprox_status robot_measure_near_groups(robot_search *o, group_pair groups) {
     }
     const int32_t pair = robot_groups_pair(&o->scene, top);
     if (pair < 0) return robot_no_memory(o);
-    status = robot_measure_if_near(o, pair);
+    status = visit(o, pair);
   }
   return status;
 }
 
-cprox_status robot_measure_start(robot_search *o, const search_node *node) {
+cprox_status robot_visit_near(robot_search *o, const search_node *node, robot_pair_visit *visit) {
   const robot_node *payload = robot_known(node);
   const double known = o->touch_at;
   const size_t n = lists_count(&o->lists, payload->list);
@@ -372,11 +377,11 @@ cprox_status robot_measure_start(robot_search *o, const search_node *node) {
   for (size_t k = 0; k < n && status >= 0 && o->touch_at == known; k++) {
     const list_entry entry = lists_at(&o->lists, payload->list)[k];
     if (entry.pair >= 0)
-      status = robot_measure_if_near(o, entry.pair);
+      status = visit(o, entry.pair);
     else if (entry.pair == LIST_CLUSTER)
-      status = measure_near_cluster(o, &entry);
+      status = visit_near_cluster(o, &entry, visit);
     else
-      status = robot_measure_near_groups(o, (group_pair){{entry.part, (int32_t)entry.under}});
+      status = robot_visit_near_groups(o, (group_pair){{entry.part, (int32_t)entry.under}}, visit);
   }
   return status;
 }

@@ -53,17 +53,23 @@ cprox_status robot_measure_whole(robot_search *o, int32_t index);
 /* Measures a pair that is near enough to touch where the scene is. */
 cprox_status robot_measure_if_near(robot_search *o, int32_t index);
 
-/* The same of all pairs of two groups, until contact is proven. */
-cprox_status robot_measure_near_groups(robot_search *o, group_pair groups);
+/* Something done with a pair. CPROX_OK, or a negative status. */
+typedef cprox_status robot_pair_visit(robot_search *o, int32_t index);
+
+/* Visits pairs of two groups that may touch where the scene is, until contact is proven. */
+cprox_status robot_visit_near_groups(robot_search *o, group_pair groups, robot_pair_visit *visit);
+
+/* The same of the pairs of a node, where that begins. */
+cprox_status robot_visit_near(robot_search *o, const search_node *node, robot_pair_visit *visit);
+
+/* The distance of a pair is 0: the point, of the world, is in both where the scene is. */
+void robot_keep_common(robot_search *o, int32_t index, vec3 point);
 
 /* The knot inside the span, a multiple of `step` where there is one, that is nearest to a time. */
 size_t robot_knot_near(const cprox_motion *m, size_t first, size_t last, size_t step, double t);
 
 /* Blocks of the motion's tree are aligned: spans that begin and end at multiples of this are made of few of them. */
 size_t robot_knot_step(size_t segments);
-
-/* Contact at the beginning answers a search from left to right at once; halves of halves would only close in on it. */
-cprox_status robot_measure_start(robot_search *o, const search_node *node);
 
 /* A few places, so that the search begins with a distance. */
 cprox_status robot_seed(robot_search *o, const search_node *node);

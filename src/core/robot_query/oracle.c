@@ -5,6 +5,7 @@
 
 #include "broadphase/obstacle_set.h"
 #include "robot_query/bound_node.h"
+#include "robot_query/inside.h"
 #include "robot_query/measure.h"
 #include "robot_query/settle_flight.h"
 
@@ -60,16 +61,19 @@ static bool others_seeded(const robot_search *o) {
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   robot_search *o = self;
-  bool served;
+  bool served = false;
   o->nodes++;
-  cprox_status status = robot_bound_flight(o, node, &served);
-  if (status < 0 || served) {
+  cprox_status status = robot_look_inside(o, node);
+  const bool known = robot_is_answered(o) || o->touch_at <= node->start;
+  if (status >= 0 && !known) status = robot_bound_flight(o, node, &served);
+  if (status < 0 || known || served) {
     *best = o->best_bound;
     return status;
   }
   if (!o->seeded) {
     o->seeded = true;
-    if (o->goal.order == SEARCH_LEFT_TO_RIGHT) status = robot_measure_start(o, node);
+    /* contact at the beginning answers at once; halves of halves would only close in on it */
+    if (o->goal.order == SEARCH_LEFT_TO_RIGHT) status = robot_visit_near(o, node, robot_measure_if_near);
     if (status >= 0 && !isfinite(o->touch_at) && !others_seeded(o)) status = robot_seed(o, node);
   }
   const bool begins_in_contact = o->touch_at <= node->start;
@@ -151,7 +155,7 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->best = o->touch = (robot_sample){.pair = -1};
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->dropped = o->scene.beyond, o->touch_at = INFINITY;
-  o->seeded = o->refined = false;
+  o->seeded = o->refined = o->looked_inside = o->unsure = false;
   o->gaps = o->planes = o->nodes = o->flights = 0;
   lists_begin(&o->lists, o->scene.q->workspace);
 }

@@ -70,6 +70,8 @@ typedef struct robot_search {
   robot_sample touch; /* left to right: the earliest place where contact is proven */
   double touch_at;
   bool seeded;
+  bool looked_inside;    /* of solid meshes, where the motion begins; */
+  bool unsure;           /* something touches one there, and may be inside */
   uint32_t gaps, planes; /* distances measured, plane bounds asked for */
   uint32_t nodes;        /* looked at, */
   uint32_t flights;      /* and more intervals inside them, for one pair */

@@ -17,7 +17,7 @@ static part_model model_for(const query *q, part_model model) {
   const bool many = model.tree && model.tree->kind != TREE_TRIANGLES && model.by_ball;
   if (q->options.max_lod == CPROX_LOD_MESH || many) return model;
   if (model.tree && model.by_ball && q->options.max_lod == CPROX_LOD_HULL) return model; /* it has no hull */
-  model.tree = NULL;
+  model.tree = NULL, model.winding = NULL;
   const bool endless = model.shape->ops->kind == CPROX_BODY_HALFSPACE;
   return q->options.max_lod == CPROX_LOD_SPHERE && !endless ? part_model_ball(&model) : model;
 }
@@ -45,7 +45,7 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
   for (int i = 0; i < 9; i++) placed.side.at.r[i] = f.r[i];
   placed.side.at.p = frame_to_world(&f, vec(0, 0, 0));
   placed.tree = m.tree, placed.clusters = m.tree ? m.clusters : NULL, placed.tree_at = m.tree_at,
-  placed.tree_margin = m.tree_margin + target->margin;
+  placed.tree_margin = m.tree_margin + target->margin, placed.winding = m.winding;
   if (robot_body_is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
   const double sizes = vec_norm(m.centre) + placed.radius;
   placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
@@ -59,7 +59,11 @@ int32_t robot_scene_add_obstacles(robot_scene *s, size_t target) {
   robot_body *all = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_OBSTACLES, (n + 1) * sizeof *all);
   if (!all) return -1;
   s->obstacles = all;
-  for (size_t i = 0; i < parts; i++) all[s->n_obstacles + i] = obstacle_of(s->q, target, i);
+  for (size_t i = 0; i < parts; i++) {
+    robot_body *made = &all[s->n_obstacles + i];
+    *made = obstacle_of(s->q, target, i);
+    s->has_solids = s->has_solids || made->winding;
+  }
   s->n_obstacles = n;
   return (int32_t)(n - parts);
 }
@@ -71,7 +75,7 @@ static robot_body part_body(const query *q, size_t i) {
   robot_body body = {.radius = m.radius, .steps = part->steps, .index = part->geometry, .part = (int32_t)i};
   body.side = (bound_side){.shape = m.shape, .margin = m.margin, .error = motion->part_error[i]};
   body.tree = m.tree, body.clusters = m.tree ? m.clusters : NULL, body.tree_at = m.tree_at,
-  body.tree_margin = m.tree_margin;
+  body.tree_margin = m.tree_margin, body.winding = m.winding;
   body.side.middle = m.middle, body.side.half = m.half;
   return body;
 }
@@ -350,7 +354,11 @@ bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *
   const size_t listed = q->set ? q->set->n_unbounded : last - first;
   for (size_t i = 0; i < listed; i++)
     if (robot_scene_add_obstacles(s, q->set ? q->set->unbounded[i] : first + i) < 0) return false;
-  for (size_t i = 0; i < robot->n_parts; i++) s->parts[i] = (part_state){.body = part_body(q, i)};
+  s->has_solids = s->has_solids || (q->set && q->set->has_solids);
+  for (size_t i = 0; i < robot->n_parts; i++) {
+    s->parts[i] = (part_state){.body = part_body(q, i)};
+    s->has_solids = s->has_solids || s->parts[i].body.winding;
+  }
 
   if (leaves_out) s->reach = reach_of(s, cutoff);
   pair_list listed_pairs = list_pairs(s, NULL);

@@ -49,6 +49,7 @@ typedef struct robot_scene {
   const query *q;
   const cprox_motion *motion;
   bool self;                              /* there are pairs with itself */
+  bool has_solids;                        /* a side of a pair may be a solid mesh */
   const start_class *starts;              /* only pairs of this class; NULL: all, as if all starts were known */
   double lead_tolerance, other_tolerance; /* [s] of its clocks */
   robot_body *obstacles;

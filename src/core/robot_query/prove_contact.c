@@ -32,7 +32,7 @@ static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, sea
   const size_t n = pair < 0 ? o->scene.n_pairs : 0;
   for (size_t i = 0; i < n && status >= 0 && o->touch_at == known; i++) status = robot_measure_if_near(o, (int32_t)i);
   if (pair < 0 && o->scene.groups && status >= 0 && o->touch_at == known)
-    status = robot_measure_near_groups(o, (group_pair){{0, 0}});
+    status = robot_visit_near_groups(o, (group_pair){{0, 0}}, robot_measure_if_near);
   *found = o->best_bound;
   o->best = best, o->best_bound = bound, o->goal.epsilon = epsilon;
   return status;
