@@ -192,6 +192,7 @@ struct ClearanceGradient {
   Eigen::MatrixXd accelerations; /**< by the accelerations, likewise */
   JointPositions joints; /**< by each joint value of the robot at t, or at rest if the trajectory does not name it */
   double duration = 0.0; /**< [m/s] by the duration: all times are stretched alike, the points' numbers are kept */
+  double start = 0.0;    /**< [m/s] by the start on the clock, beside others that move (movers.hpp); else 0 */
 
   Eigen::Vector3d base_linear = Eigen::Vector3d::Zero(); /**< by a shift of the whole robot, fixed frame */
   Eigen::Vector3d base_angular =

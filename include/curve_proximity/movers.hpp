@@ -141,6 +141,15 @@ std::vector<Answer> nearestPairs(const Movers &movers, Against against, const Pa
 std::vector<Answer> nearestPairs(const Movers &movers, const MovingRobot &robot, const PairLimits &limits,
                                  const Query &query, Workspace &workspace);
 
+/** The least distance of one of the robots, as ask() of one of them tells it, and its derivatives by what that robot's
+ *  trajectory was made of: positions, velocities, accelerations and joints, the duration with the start kept, and the
+ *  start (cprox_robot_distance_gradient()). What else moves goes on as it does. duration and start are NaN where the
+ *  minimiser is at a kink of the robot and of another mover. Of base and object there are no derivatives. Throws Error
+ *  for what ask() refuses, for another query than DISTANCE, for starts with a tolerance, and for a robot that is none
+ * of these. */
+ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, const Query &query,
+                               Workspace &workspace);
+
 /** All intervals of time [s] in which movers are within query.delta of something: as violations() of query.hpp. Throws
  *  Error for what ask() refuses. */
 Violations violations(const Movers &movers, Against against, double resolution, const Query &query,

@@ -63,6 +63,9 @@ struct RobotMotion::Data {
   mutable std::vector<std::string> skipped;
 };
 
+/* Numbers by the points of a trajectory, from the core's columns: a row a point, a column a joint. Null: all 0. */
+Eigen::MatrixXd toMatrix(const TrajectoryShape &shape, const double *values);
+
 /* The poses of all links at the time t [s]. */
 LinkPoses linkPosesOf(const RobotMotion::Data &data, double t);
 

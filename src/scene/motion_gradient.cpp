@@ -42,17 +42,6 @@ class Arrays {
   std::size_t n_variables_, n_, n_velocities_, n_accelerations_;
 };
 
-/* A row a point, a column a joint, from the core's columns. */
-Eigen::MatrixXd toMatrix(const TrajectoryShape &shape, const double *values) {
-  Eigen::MatrixXd out =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(shape.n_points), static_cast<Eigen::Index>(shape.n_joints));
-  const std::size_t n = shape.column.size();
-  for (std::size_t i = 0; values && i < shape.n_points; ++i)
-    for (std::size_t k = 0; k < n; ++k)
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(shape.column[k])) = values[i * n + k];
-  return out;
-}
-
 /* The core turns an obstacle about its own position, we the object about its origin. */
 void toObject(const Asked &asked, const cprox_result &result, const cprox_motion_gradient &in, ClearanceGradient &out) {
   if (result.obstacle_index < 0 || asked.isSelf(result)) return;
@@ -166,6 +155,16 @@ void checkLimits(const RowLimits &limits) {
 }
 
 } // namespace
+
+Eigen::MatrixXd toMatrix(const TrajectoryShape &shape, const double *values) {
+  Eigen::MatrixXd out =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(shape.n_points), static_cast<Eigen::Index>(shape.n_joints));
+  const std::size_t n = shape.column.size();
+  for (std::size_t i = 0; values && i < shape.n_points; ++i)
+    for (std::size_t k = 0; k < n; ++k)
+      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(shape.column[k])) = values[i * n + k];
+  return out;
+}
 
 ClearanceRow clearanceGradient(const RobotMotion &motion, RobotPairs against, const Query &query,
                                Workspace &workspace) {

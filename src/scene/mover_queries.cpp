@@ -301,7 +301,98 @@ Violations violationsOf(const Movers &movers, Against against, double resolution
   return searchViolations(obstacles, moverOf(data, pairs), data.rounding, resolution, query, workspace, name);
 }
 
+/* Where the numbers of one of the robots are in those of the joined one. Robots come first; one that stands has no
+ * points. */
+struct PlaceOfRobot {
+  std::size_t robot = 0, variable = 0, point_value = 0;
+  const RobotMotion::Data *data = nullptr;
+
+  PlaceOfRobot(const Movers::Data &movers, const MovingRobot &asked) {
+    for (const auto &motion : movers.robots) {
+      data = &motion->data();
+      if (motion == asked.motion) return;
+      ++robot;
+      variable += data->kinematics->rest.size();
+      if (!data->stands) point_value += data->shape.n_points * data->shape.variable.size();
+    }
+    throw Error("robot '" + asked.name + "' is none of the movers");
+  }
+};
+
+/* What the core writes derivatives of the joined robot to. */
+struct JoinedArrays {
+  std::vector<double> variables, positions, velocities, accelerations, starts, durations;
+
+  explicit JoinedArrays(const Movers::Data &data) : variables(cprox_motion_get_info(data.motion.get()).n_variables) {
+    std::size_t n = 0;
+    for (const auto &motion : data.robots)
+      if (!motion->data().stands) n += motion->data().shape.n_points * motion->data().shape.variable.size();
+    for (std::vector<double> *rows : {&positions, &velocities, &accelerations}) rows->resize(n);
+    for (std::vector<double> *each : {&starts, &durations}) each->resize(data.robots.size() + data.objects.size());
+  }
+
+  cprox_motion_gradient lend() {
+    cprox_motion_gradient out{};
+    out.t = std::numeric_limits<double>::quiet_NaN();
+    out.variables = variables.data(), out.starts = starts.data(), out.durations = durations.data();
+    out.positions = positions.data(), out.velocities = velocities.data(), out.accelerations = accelerations.data();
+    return out;
+  }
+};
+
+void fillGradient(const PlaceOfRobot &place, const JoinedArrays &in, ClearanceGradient &out) {
+  const RobotMotion::Data &data = *place.data;
+  const TrajectoryShape &shape = data.shape;
+  const auto rows = [&](const std::vector<double> &all) {
+    return toMatrix(shape, data.stands ? nullptr : all.data() + place.point_value);
+  };
+  out.positions = rows(in.positions);
+  if (shape.has_velocities) out.velocities = rows(in.velocities);
+  if (shape.has_accelerations) out.accelerations = rows(in.accelerations);
+  for (const auto &[name, variable] : data.kinematics->variables)
+    out.joints[name] = in.variables[place.variable + static_cast<std::size_t>(variable)];
+  for (std::size_t k = 0; data.stands && k < shape.variable.size(); ++k)
+    out.positions(0, static_cast<Eigen::Index>(shape.column[k])) =
+        in.variables[place.variable + static_cast<std::size_t>(shape.variable[k])];
+  out.duration = in.durations[place.robot];
+  out.start = in.starts[place.robot];
+}
+
 } // namespace
+
+ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, const Query &query,
+                               Workspace &workspace) {
+  refuse(faultOfMovers(query));
+  refuse(faultOfDistances(query));
+  const Movers::Data &data = movers.data();
+  const PlaceOfRobot place(data, robot);
+  const OfRobot asked(robot, query);
+  std::string reason = "there is nothing to measure against";
+  JoinedArrays arrays(data);
+  cprox_motion_gradient gradient = arrays.lend();
+  Answer answer =
+      answerOf(movers, Against::OTHERS, asked.query, "", workspace,
+               [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
+                 const cprox_options options = withoutRounding(asked.query.options, data.rounding);
+                 const Obstacles obstacles(targets, CPROX_INDEX_NONE);
+                 const cprox_status status = cprox_robot_distance_gradient(obstacles.get(), mover, &options,
+                                                                           workspace.get(), &result, &gradient);
+                 if (status < 0) throw Error(workspace.reason(), status);
+                 reason = workspace.reason();
+                 widen(asked.query, data.rounding, std::numeric_limits<double>::infinity(), result);
+               });
+  if (answer.result.status < 0) throw Error(answer.message, answer.result.status);
+  ClearanceRow row;
+  row.answer = ofRobot(robot, std::move(answer));
+  row.gradient.valid = gradient.valid;
+  if (!gradient.valid) row.gradient.reason = reason;
+  row.gradient.t = gradient.t;
+  row.gradient.margin = gradient.margin;
+  fillGradient(place, arrays, row.gradient);
+  const auto domain = asked.query.options.interval ? asked.interval : movers.domain();
+  row.t0 = domain[0], row.t1 = domain[1];
+  return row;
+}
 
 std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, Against against,
                                                 const std::vector<double> &breaks, const Query &query,

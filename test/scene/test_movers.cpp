@@ -144,6 +144,83 @@ TEST_F(Movement, clearance_over_time_is_that_of_each_interval) {
   EXPECT_THROW(violations(movers, b, 1e-6, Query(), workspace), Error);
 }
 
+/* A mesh of closed boxes of edge 2 about these places on the x axis. */
+ShapeDescription boxes(const std::vector<double> &places, bool solid) {
+  ShapeDescription out = shape(ShapeType::MESH, {});
+  out.solid = solid;
+  const auto n = static_cast<Eigen::Index>(places.size());
+  out.vertices.resize(3, 8 * n);
+  out.triangles.resize(3, 12 * n);
+  Eigen::Matrix<int, 3, 12> sides;
+  sides << 0, 0, 1, 1, 0, 0, 2, 2, 0, 0, 4, 4, /**/ 4, 6, 3, 7, 1, 5, 6, 7, 2, 3, 5, 7, /**/ 6, 2, 7, 5, 5, 4, 7, 3, 3,
+      1, 7, 6;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    for (int i = 0; i < 8; ++i)
+      out.vertices.col(8 * k + i) << (i & 4 ? 1 : -1) + places[static_cast<std::size_t>(k)], (i & 2 ? 1 : -1),
+          (i & 1 ? 1 : -1);
+    for (Eigen::Index i = 0; i < 12; ++i)
+      out.triangles.col(12 * k + i) = sides.col(i).array() + static_cast<int>(8 * k);
+  }
+  return out;
+}
+
+/* A cart within a closed box, 0.8 from its walls in the end, or as near to one of two, in the hull of both. */
+TEST_F(Movement, of_solid_meshes_the_inside_counts_and_not_the_hull) {
+  const auto ask = [&](const std::vector<double> &places, bool solid, bool open, bool moving) {
+    ShapeDescription mesh = boxes(places, solid);
+    if (open) mesh.triangles.conservativeResize(3, mesh.triangles.cols() - 1);
+    Scene scene{Robot::fromUrdf(CART)};
+    EXPECT_TRUE(moving || scene.apply(change({add("boxes", {mesh})})).empty());
+    const auto cart = slide(scene.snapshot(), 0, 0.1, 0);
+    if (!moving) return askEnvironment(*cart, Query(), workspace).at(0);
+    const MovingRobot robot{"a", cart, 0.0};
+    const Movers movers(scene.snapshot(), {robot},
+                        {mover("boxes", {mesh}, {{0.0, translation(0, 0, 0)}, {1.0, translation(0, 0, 0.1)}})});
+    return curve_proximity::ask(movers, robot, Query(), workspace);
+  };
+  for (const bool moving : {false, true}) {
+    EXPECT_NEAR(ask({0}, false, false, moving).result.upper, 0.8, 1e-6);
+    EXPECT_EQ(ask({0}, true, false, moving).result.upper, 0.0);
+    EXPECT_EQ(ask({5, 0}, true, false, moving).result.upper, 0.0);
+    EXPECT_NEAR(ask({-2, 2}, true, false, moving).result.lower, 0.8, 1e-5);
+    EXPECT_NEAR(ask({0}, true, true, moving).result.upper, 0.8, 1e-6);
+  }
+  EXPECT_FALSE(ask({-2, 2}, true, false, false).by_hull);
+  expectContains(ask({0}, true, true, false).message, "not closed");
+}
+
+/* A cart goes from 0 to 2 along x in a second. A ball ahead of it comes from 3 to 2.5 in half a second and leaves: they
+ * are nearest when the ball turns back. A wall stands far above. */
+TEST_F(Movement, the_gradient_of_a_robot_knows_that_others_move) {
+  const MovingRobot cart{"a", slide(carts.snapshot(), 0, 2, 0), 10.0};
+  const MovingRobot other{"b", slide(carts.snapshot(), 0, 1, 0, 5), 10.0};
+  MovingObject ball = mover("ball", {shape(ShapeType::SPHERE, {0.1})},
+                            {{0.0, translation(3, 0, 0)}, {0.5, translation(2.5, 0, 0)}, {1.0, translation(4, 0, 0)}});
+  ball.start = 10.0;
+  for (const bool first : {true, false}) {
+    const Movers movers(world.snapshot(), first ? std::vector<MovingRobot>{cart, other} : std::vector{other, cart},
+                        {ball});
+    const ClearanceRow row = clearanceGradient(movers, cart, Query(), workspace);
+    const ClearanceGradient &g = row.gradient;
+    ASSERT_TRUE(g.valid) << g.reason;
+    expectDistance(row.answer, 1.3);
+    EXPECT_EQ(row.answer.a, "cart");
+    EXPECT_EQ(row.answer.b, "ball");
+    EXPECT_NEAR(g.t, 10.5, 1e-9);
+    ASSERT_EQ(g.positions.rows(), 2);
+    EXPECT_NEAR(g.positions(0, 0), -0.5, 1e-9);
+    EXPECT_NEAR(g.positions(1, 0), -0.5, 1e-9);
+    EXPECT_NEAR(g.joints.at("slide"), -1.0, 1e-9);
+    EXPECT_NEAR(g.start, 2.0, 1e-9);    /* it is at 2 m/s less far */
+    EXPECT_NEAR(g.duration, 1.0, 1e-9); /* 2 (t - 10)/T m at half of T = 1 s */
+  }
+  const Movers movers(world.snapshot(), {other}, {ball});
+  expectContains(errorOf([&] { clearanceGradient(movers, cart, Query(), workspace); }), "'a'");
+  ball.tolerance = 0.1;
+  const Movers vague(world.snapshot(), {cart}, {ball});
+  expectContains(errorOf([&] { clearanceGradient(vague, cart, Query(), workspace); }), "tolerance");
+}
+
 /* Both at 2 m/s on one rail, 4 m apart: faces meet when the way is 3.8 m; the later one starts after half a second. */
 TEST_F(Movement, contact_is_never_told_late) {
   const auto there = slide(carts.snapshot(), 0, 2, 0), back = slide(carts.snapshot(), 0, -2, 4);

@@ -66,8 +66,9 @@ CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle
 
 /** The derivatives of the least distance of a robot's motion, at its minimiser. Set all members to 0, then those
  *  arrays that are wanted. A motion that was made of n_points waypoints or control points and gives n variables
- *  (cprox_motion_description) has n_points rows of n numbers. A state and a joined motion have none,
- *  and where floating joints turn by slerp or by screws they are not known: `variables` alone is for these. */
+ *  (cprox_motion_description) has n_points rows of n numbers. A joined motion has the rows of its first motion, then
+ *  those of the second one, and so on. A state has none, and where floating joints turn by slerp or by screws they are
+ *  not known: `variables` alone is for these. */
 typedef struct cprox_motion_gradient {
   /** NULL, or receives one number a variable of the robot: by its value at t, or at rest [m/rad], [m/m] */
   double *variables;
@@ -84,7 +85,7 @@ typedef struct cprox_motion_gradient {
   /** [s] the minimiser, as exactly as double arithmetic finds it; NaN where none was found */
   double t;
   /** [m/s] by the duration, all times being stretched alike: positions, velocities and accelerations stay what they
-   *  are. 0 without velocities, for B-splines and for joined motions */
+   *  are. 0 without velocities, for B-splines and for joined motions, which have `durations` */
   double duration;
   /** by a shift of the whole robot, world axes; 0 for a pair of the robot with itself */
   cprox_vec3 base_position;
@@ -96,8 +97,14 @@ typedef struct cprox_motion_gradient {
   cprox_vec3 rotation;
   /** by the margin of that obstacle, or of one geometry of the pair: -1 */
   double margin;
+  /** of joined motions: NULL, or receives one number for each of them [m/s]: by its start on the clock. NaN where the
+   *  minimiser is at a waypoint or an end of two of them, and the distance has a kink there */
+  double *starts;
+  /** of joined motions: NULL, or receives one number for each of them [m/s]: by its duration, its start being kept.
+   *  All its times are stretched alike; positions, velocities and accelerations stay what they are. NaN as `starts` */
+  double *durations;
   /** 0: room for later members, so that the size of the struct stays */
-  uint64_t reserved[4];
+  uint64_t reserved[2];
 } cprox_motion_gradient;
 
 /** The least distance of a robot along a motion, and its gradient, by one search.

@@ -10,7 +10,7 @@ cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cpr
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *result, cprox_motion_gradient *gradient) {
   static const arguments_query ASKED = {"the gradient of a robot's distance",
-                                        ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_SIGNED};
+                                        ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_SIGNED | ARGUMENTS_INTERVAL};
   const obstacle_bvh *set = obstacles ? obstacles->bvh : NULL;
   query q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
@@ -22,8 +22,8 @@ cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cpr
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
   const bool rows = gradient->positions || gradient->velocities || gradient->accelerations;
-  if (rows && (mover.motion->kind == CPROX_MOTION_JOINED || mover.motion->arc_of))
+  if (rows && mover.motion->kind != CPROX_MOTION_JOINED && mover.motion->arc_of)
     return workspace_fail(workspace, CPROX_INVALID,
-                          "joined motions, slerp and screws have a gradient by their variables, not by their points");
+                          "slerp and screws have a gradient by their variables, not by their points");
   return motion_gradient_answer(&q, result, gradient);
 }

@@ -43,6 +43,20 @@ bool motion_keep_spline(motion_given *g, const cprox_motion_description *d) {
   return true;
 }
 
+bool motion_keep_points(motion_given *g, const motion_given *from, int32_t first_variable) {
+  *g = (motion_given){.degree = from->degree, .n = from->n, .n_points = from->n_points};
+  g->n_times = from->degree > 0 ? from->n_times : 0;
+  g->variables = calloc(g->n + 1, sizeof *g->variables);
+  g->times = calloc(g->n_times + 1, sizeof *g->times);
+  if (!g->variables || !g->times) {
+    motion_given_free(g);
+    return false;
+  }
+  for (size_t k = 0; k < g->n; k++) g->variables[k] = first_variable + from->variables[k];
+  if (g->n_times > 0) memcpy(g->times, from->times, g->n_times * sizeof *from->times);
+  return true;
+}
+
 void motion_given_free(motion_given *g) {
   free(g->variables);
   free(g->times);

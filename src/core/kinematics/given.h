@@ -18,9 +18,11 @@ typedef struct motion_given {
   double *values;  /* waypoints: [point][order][variable], room for three orders; B-splines: [point][variable] */
 } motion_given;
 
-/* Keep a copy; false where memory is out, then nothing is kept. */
+/* Keep a copy; false where memory is out, then nothing is kept. motion_keep_points(): which points there are, with the
+ * knots of splines, and not where they are; the variables are those from first_variable on of a joined robot. */
 bool motion_keep_waypoints(motion_given *given, const cprox_motion_description *description);
 bool motion_keep_spline(motion_given *given, const cprox_motion_description *description);
+bool motion_keep_points(motion_given *given, const motion_given *from, int32_t first_variable);
 
 void motion_given_free(motion_given *given);
 

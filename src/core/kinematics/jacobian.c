@@ -116,10 +116,10 @@ static void bernstein(size_t degree, double u, double *b) {
 }
 
 /* The Bernstein coefficients of a Hermite polynomial of degree 1, 3 or 5 over h seconds, taken apart. */
-static motion_weights weights_of_waypoints(const cprox_motion *m, size_t segment, double u) {
-  const size_t degree = m->tracks->degree[segment];
-  const double h = m->times[segment + 1] - m->times[segment], n = (double)degree;
-  motion_weights w = {.first = segment, .n = 2};
+static motion_weights weights_of_waypoints(const motion_track *t, size_t own, size_t point, double u) {
+  const size_t degree = t->degree[own];
+  const double h = t->times[own + 1] - t->times[own], n = (double)degree;
+  motion_weights w = {.first = point, .n = 2};
   double b[MOTION_MAX_DEGREE + 1] = {0};
   bernstein(degree, u, b);
   w.position[0] = b[0], w.position[1] = b[degree];
@@ -134,12 +134,12 @@ static motion_weights weights_of_waypoints(const cprox_motion *m, size_t segment
 }
 
 /* Cox's and de Boor's recursion over the knots of the span. */
-static motion_weights weights_of_spline(const cprox_motion *m, size_t segment, double u) {
-  const motion_given *g = &m->given;
-  const double t = motion_time(m, segment, u), *knots = g->times;
+static motion_weights weights_of_spline(const motion_given *g, size_t span, double u) {
+  const double *knots = g->times;
   size_t r = g->degree;
-  for (size_t left = segment;; r++)
+  for (size_t left = span;; r++)
     if (knots[r] < knots[r + 1] && left-- == 0) break;
+  const double t = (1.0 - u) * knots[r] + u * knots[r + 1];
   motion_weights w = {.first = r - g->degree, .n = g->degree + 1};
   w.position[0] = 1.0;
   for (size_t k = 1; k <= g->degree; k++) {
@@ -154,7 +154,30 @@ static motion_weights weights_of_spline(const cprox_motion *m, size_t segment, d
   return w;
 }
 
-motion_weights motion_weights_at(const cprox_motion *m, size_t segment, double u) {
-  if (m->is_state || !m->given.times) return (motion_weights){0};
-  return m->given.degree > 0 ? weights_of_spline(m, segment, u) : weights_of_waypoints(m, segment, u);
+/* Where a track stands it is at its first or its last point. */
+static size_t given_segment(const motion_track *t, size_t *own, double *u) {
+  const size_t first = t->stands_first, last = t->n_segments - t->stands_last;
+  if (*own < first) *own = first, *u = 0.0;
+  if (*own >= last) *own = last - 1, *u = 1.0;
+  return *own - first;
+}
+
+motion_weights motion_weights_at(const motion_given *g, const motion_track *t, size_t own, double u) {
+  if (g->n == 0 || g->n_points == 0) return (motion_weights){0};
+  const size_t segment = given_segment(t, &own, &u);
+  return g->degree > 0 ? weights_of_spline(g, segment, u) : weights_of_waypoints(t, own, segment, u);
+}
+
+double motion_stretch_rate(const motion_given *g, const motion_track *t, size_t k, size_t own, double u) {
+  if (g->degree > 0) return 0.0;
+  given_segment(t, &own, &u);
+  const size_t degree = t->degree[own];
+  const double *c = t->coefficients + (own * t->n_moving + k) * t->stride;
+  double b[MOTION_MAX_DEGREE + 1] = {0};
+  bernstein(degree, u, b);
+  /* the second coefficient has the velocity times h/degree, the third one twice that and the acceleration times h²/20
+   */
+  if (degree == 3) return b[1] * (c[1] - c[0]) + b[2] * (c[2] - c[3]);
+  if (degree != 5) return 0.0;
+  return b[1] * (c[1] - c[0]) + 2.0 * b[2] * (c[2] - c[1]) + 2.0 * b[3] * (c[3] - c[4]) + b[4] * (c[4] - c[5]);
 }

@@ -24,7 +24,11 @@ typedef struct motion_weights {
   double velocity[2], acceleration[2]; /* of waypoints */
 } motion_weights;
 
-/* Those at u of a segment. Of a state or a joined motion there is nothing given: n is 0. */
-motion_weights motion_weights_at(const cprox_motion *motion, size_t segment, double u);
+/* Those at u of a segment of the track; n is 0 where nothing was given. */
+motion_weights motion_weights_at(const motion_given *given, const motion_track *track, size_t own, double u);
+
+/* How fast a variable of the track, its k-th that moves, grows with the logarithm of the duration: at the same fraction
+ * of the way, the points' own values being kept. */
+double motion_stretch_rate(const motion_given *given, const motion_track *track, size_t k, size_t own, double u);
 
 #endif

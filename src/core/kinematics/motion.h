@@ -32,6 +32,7 @@ typedef struct motion_track {
   int32_t clock;    /* of a joined motion: whose track it is, */
   double tolerance; /* [s] and by how much that may start earlier or later */
   bool by_time;     /* spans of it are followed by time, as those of other tracks are, and not by their chord */
+  bool stands_first, stands_last; /* it stands on its first segment, or on its last, because others move then */
 } motion_track;
 
 struct cprox_motion {
@@ -45,11 +46,13 @@ struct cprox_motion {
   double *rest;      /* the values of those; of a state, room for another one behind them */
   bool is_state;     /* nothing moves, and everything is asked about that could */
   bool *axis_moves;
-  placement *still;   /* of an axis that does not: as it stands in its parent's frame */
-  double *norm;       /* of a quaternion: at least this everywhere */
-  int32_t *arc_of;    /* of an axis, which of its track's joints by arcs; -1: none. NULL: there are none at all */
-  double *sagitta;    /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
-  motion_given given; /* of a joined one nothing */
+  placement *still;     /* of an axis that does not: as it stands in its parent's frame */
+  double *norm;         /* of a quaternion: at least this everywhere */
+  int32_t *arc_of;      /* of an axis, which of its track's joints by arcs; -1: none. NULL: there are none at all */
+  double *sagitta;      /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
+  motion_given given;   /* of a joined one nothing, but */
+  motion_given *joined; /* what each of its motions was made of (motion_keep_points()); NULL: it is none */
+  size_t n_joined;
   double *part_error; /* every point of a part is computed within this of where it is */
   part_sweep *sweeps; /* of each part, where there are several tracks; else NULL */
 };

@@ -168,6 +168,8 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion->arc_of);
   free(motion->sagitta);
   motion_given_free(&motion->given);
+  for (size_t i = 0; i < motion->n_joined; i++) motion_given_free(&motion->joined[i]);
+  free(motion->joined);
   free(motion);
 }
 

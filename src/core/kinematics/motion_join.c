@@ -226,6 +226,7 @@ static bool copy_track(const cprox_motion *m, const motion_track *from, double s
   if (before) stand(t, 0, from, false);
   copy_segments(t, before, from);
   if (after) stand(t, n - 1, from, true);
+  t->stands_first = before, t->stands_last = after;
   return true;
 }
 
@@ -249,6 +250,8 @@ static bool copy_motions(cprox_motion *m, const motion_source *s, const cprox_jo
     const cprox_joined_motion *one = &joined[i];
     const cprox_motion *from = one->motion;
     copy_robot(m, from, variable, axis, track);
+    if (!from->is_state && !from->arc_of && !motion_keep_points(&m->joined[i], &from->given, (int32_t)variable))
+      return false;
     for (size_t k = 0; k < from->n_tracks && !from->is_state; k++, track++) {
       motion_track *t = &m->tracks[track];
       if (workspace_stops(s->workspace) || !copy_track(m, &from->tracks[k], one->start, variable, axis, t))
@@ -276,7 +279,8 @@ static cprox_motion *make_joined(const motion_source *s, const clock_range *whol
   cprox_motion *m = times ? motion_allocate(s, tracks) : NULL;
   if (!m) free(times);
   if (m) m->times = times, m->n_segments = count - 1;
-  if (m && (arcs == 0 || motion_allocate_arcs(m)) && copy_motions(m, s, joined)) return m;
+  if (m && (m->joined = calloc(n, sizeof *m->joined))) m->n_joined = n;
+  if (m && m->joined && (arcs == 0 || motion_allocate_arcs(m)) && copy_motions(m, s, joined)) return m;
   cprox_motion_free(m);
   return NULL;
 }
