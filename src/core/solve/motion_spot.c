@@ -447,12 +447,18 @@ static cprox_status find_side(spot_pair *p, const motion_interval *within, const
   const double slope =
                    CONTINUED[0] * (side[0].slope - side[1].slope) + side[2].slope, /* of the parabola, at the spot */
       bend_of_slope = fabs(side[0].slope - 2.0 * side[1].slope + side[2].slope);
-  const bool is_next = vec_norm(vec_sub(next.gap.normal, led)) < fmax(SAME_WAY, SAME_WAY_BENT * bend) &&
-                       fabs(next.slope - slope) < fmax(SAME_WAY * fabs(slope), SAME_WAY_BENT * bend_of_slope);
+  const vec3 x = side[0].gap.on_moving, y = side[1].gap.on_moving, z = side[2].gap.on_moving;
+  const double bend_of_point = vec_norm(vec_axpy(vec_add(x, z), -2.0, y)), size = depth_size(moving, standing);
+  const vec3 led_to = vec_axpy(z, CONTINUED[0], vec_sub(x, y));
+  const bool is_next =
+      vec_norm(vec_sub(next.gap.normal, led)) < fmax(SAME_WAY, SAME_WAY_BENT * bend) &&
+      vec_norm(vec_sub(next.gap.on_moving, led_to)) < fmax(SAME_WAY * size, SAME_WAY_BENT * bend_of_point) &&
+      fabs(next.slope - slope) < fmax(SAME_WAY * fabs(slope), SAME_WAY_BENT * bend_of_slope);
   *depth = 3.0 * (spot_distance(&side[0]) - spot_distance(&side[1])) + spot_distance(&side[2]);
   for (int k = 0; k < SIDE_PLACES; k++) factor[k] = is_next ? (k == 0) : CONTINUED[k];
   if (is_next) side[0] = next;
-  *found = (is_next || bend < STRAIGHT_WAY) && bend_of_slope < STRAIGHT_SLOPE * fabs(slope);
+  *found = (is_next || (bend < STRAIGHT_WAY && bend_of_point < STRAIGHT_WAY * size)) &&
+           bend_of_slope < STRAIGHT_SLOPE * fabs(slope);
   return CPROX_OK;
 }
 
