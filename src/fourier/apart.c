@@ -6,7 +6,7 @@
 enum { CELLS = ENCLOSURE_CELLS, SIDE = ENCLOSURE_SIDE, TABLE = ENCLOSURE_TABLE };
 
 static size_t entry(int x, int y, int z) {
-  return (size_t)((x + CELLS) * SIDE * SIDE + (y + CELLS) * SIDE + z + CELLS);
+  return ((size_t)(x + CELLS) * SIDE + (size_t)(y + CELLS)) * SIDE + (size_t)(z + CELLS);
 }
 
 /* Calls with each of the directions until one says true. */

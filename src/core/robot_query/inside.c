@@ -63,7 +63,7 @@ static cprox_status look_at_pair(robot_search *o, int32_t index) {
   if (gap.lower > 0.0) return CPROX_OK;
   for (int k = 0; k < 2; k++) {
     const robot_body *host = side[k], *guest = side[1 - k];
-    if (!host->winding || robot_body_is_halfspace(guest)) continue; /* none is inside of what is bounded */
+    if (!host->winding || !host->tree || robot_body_is_halfspace(guest)) continue; /* none is inside what is bounded */
     winding_side found = WINDING_OUTSIDE;
     vec3 world = vec(0, 0, 0);
     o->refined = true;

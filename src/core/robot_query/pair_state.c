@@ -410,7 +410,7 @@ void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
 }
 
 static bool is_on_other_clock(const robot_scene *s, const motion_track *t) {
-  return robot_scene_has_two_times(s) && t->clock == s->starts->other;
+  return s->starts && robot_scene_has_two_times(s) && t->clock == s->starts->other;
 }
 
 static track_state *find_track(robot_scene *s, size_t track) {
