@@ -7,6 +7,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/joint_tree.c
   ${CMAKE_CURRENT_LIST_DIR}/link_model.c
   ${CMAKE_CURRENT_LIST_DIR}/motion.c
+  ${CMAKE_CURRENT_LIST_DIR}/motion_axes.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_create.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_join.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_turning.c
