@@ -279,7 +279,7 @@ CASE(bounds_per_direction_are_below_the_distance_of_every_pair) {
   for (int dimension = 2; dimension <= 3; dimension++) {
     memset(&seen, 0, sizeof seen);
     for (size_t i = 0; i < test_cases(1); i++) visit_pairs(&r, dimension, bounds_hold);
-    print_message("%d-D: %zu poses, %zu overlapping, of %zu apart by a tenth of the size %zu told\n", dimension,
+    print_message("%d-D: %zu poses, %zu overlapping, of %zu apart by a tenth of the size %zu separated\n", dimension,
                   seen.poses, seen.deep, seen.clear, seen.called);
     assert_true(seen.deep > seen.poses / 10 && seen.called > seen.clear / 2);
   }
