@@ -2,6 +2,7 @@
 """Charts of results.csv, one look for all: SVG and PNG beside the file."""
 import os
 import re
+import textwrap
 
 import matplotlib
 
@@ -49,7 +50,7 @@ class Saver:
     """Writes figures to a folder, each with a line below it that says how its rows were made."""
 
     def __init__(self, out, made):
-        self.out, self.made = out, made.replace('`', '')
+        self.out, self.made = out, textwrap.fill(made.replace('`', ''), 110)
 
     def __call__(self, figure, name):
         figure.text(*corner_below(figure, 0.12), self.made, va='top', fontsize=7, color='#777777')

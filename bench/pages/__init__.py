@@ -3,6 +3,7 @@
 import datetime
 import os
 import subprocess
+import textwrap
 
 from pages import choosing, hulls, optimise, readme, seeds, stability
 from pages.figures import Figures
@@ -36,6 +37,30 @@ def write_all(rows, drawn, out, made):
     for name, write in pages.items():
         if NEEDS.get(name, set()) <= groups:
             with open(os.path.join(out, name), 'w') as text:
-                text.write(write())
+                text.write(wrapped(write()))
             written.append(name)
     return written
+
+
+def wrapped(text, width=120):
+    """Paragraphs and items with a line beyond the width are broken anew. Tables, headings, pictures and code stay lines."""
+    blocks = []
+    for line in text.split('\n'):
+        goes_on = blocks and not _is_kept(line) and not _is_kept(blocks[-1][0]) and not line.startswith('- ')
+        if goes_on:
+            blocks[-1].append(line)
+        else:
+            blocks.append([line])
+    return '\n'.join(_broken(block, width) for block in blocks)
+
+
+def _is_kept(line):
+    return not line or line.startswith(('|', '#', '!', '`' * 3, '    '))
+
+
+def _broken(block, width):
+    if max(map(len, block)) <= width or _is_kept(block[0]):
+        return '\n'.join(block)
+    indent = '  ' if block[0].startswith('- ') else ''
+    words = ' '.join(line.strip() for line in block)
+    return textwrap.fill(words, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
