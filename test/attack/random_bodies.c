@@ -358,6 +358,7 @@ static double extent_of(const random_body *b, double scale) {
   for (size_t i = 0; i < b->n_parts; i++) {
     const part *f = &b->parts[i];
     double far = f->form == FORM_HALFSPACE ? 0.0 : vec_norm(f->size) + f->margin;
+    if (f->form == FORM_CAPSULE) far = f->size.x + f->size.z + f->margin;
     for (size_t v = 0; v < f->n; v++)
       far = fmax(far, fmax(vec_norm(f->points[v]), vec_norm(f->high[v])) + f->margin +
                           (f->form == FORM_BALLS ? f->size.x : 0.0));

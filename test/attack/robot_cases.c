@@ -7,7 +7,11 @@
  * taken in turns give two points, one of each body: their distance is an upper bound of the true one, so no lower bound
  * of the core may be above it, at any time. Supports along the line between them give a lower bound, which no upper
  * bound may be below. Witness points must lie in their bodies and be as near as said. Verdicts
- * and times of contact must follow. */
+ * and times of contact must follow.
+ *
+ * Times are drawn once for all pairs. Balls about the bodies tell which pairs, and at which times, cannot be nearer
+ * than what was answered; only the others are measured. Steps about the best time become smaller until the distance
+ * cannot come down to the answer any more. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,14 +21,37 @@
 #include "support/of_list.h"
 #include "support/robots.h"
 
-enum { OBSTACLES = 3, TURNS = 12, SAMPLES = 10, REFINEMENTS = 14, PAIRS = 3 };
-enum { MEMBERS = 3, MOST_GEOMETRIES = MEMBERS * TEST_MAX_LINKS, MOST_PAIRS = MOST_GEOMETRIES * MOST_GEOMETRIES };
+enum { OBSTACLES = 3, TURNS = 12, SAMPLES = 16, REFINEMENTS = 16, PAIRS = 5 };
+enum {
+  MEMBERS = 3,
+  MOST_GEOMETRIES = MEMBERS * TEST_MAX_LINKS,
+  MOST_PAIRS = MOST_GEOMETRIES * (MOST_GEOMETRIES + OBSTACLES)
+};
 
 /* Times are rounded to double and joints turn at up to 1e2 rad/s or m/s in reaches of 1e1 m: 1e3 * 1e-15 m, and poses
  * in double by 1e-13 m. */
 static const long double ROOM = 1e-11L;
 
 static const cprox_pose HERE = {.orientation = {1, 0, 0, 0}};
+
+/* Two bodies: a geometry, and an obstacle or another geometry. */
+typedef struct pair {
+  size_t geometry, other;
+  bool self;
+} pair;
+
+/* A body and its margin lie in it. */
+typedef struct ball {
+  vec3l centre; /* in the frame of the link; of an obstacle in the world */
+  long double radius;
+} ball;
+
+/* Where everything is at one time, with some of the possible starts. */
+typedef struct view {
+  double t, place[MEMBERS];
+  ref_pose links[MOST_GEOMETRIES];
+  vec3l centres[MOST_GEOMETRIES]; /* of the balls */
+} view;
 
 typedef struct world {
   attack *a;
@@ -43,16 +70,14 @@ typedef struct world {
   cprox_pose poses[OBSTACLES];
   double margins[OBSTACLES];
   cprox_obstacle targets[OBSTACLES];
+  ball link_balls[MOST_GEOMETRIES], body_balls[OBSTACLES];
   bool self, obstacles; /* what is asked about */
+  pair asked[MOST_PAIRS];
+  size_t n_asked;
   cprox_mover mover;
   double t0, t1;
+  view views[SAMPLES];
 } world;
-
-/* Two bodies: a geometry, and an obstacle or another geometry. */
-typedef struct pair {
-  size_t geometry, other;
-  bool self;
-} pair;
 
 /* ---- what is where ---- */
 
@@ -78,33 +103,72 @@ static int32_t link_of(const world *w, size_t g) {
   return (int32_t)(w->n_members > 1 ? g + member_of(w, g) + 1 : g);
 }
 
-/* The links of all geometries at a time. */
-static void place_links(const world *w, long double time, ref_pose *links) {
+/* The time on the clock of a member. */
+static long double own_time(const world *w, size_t m, const double *place, long double time) {
+  if (w->n_members == 1) return time;
+  const cprox_motion_info info = cprox_motion_get_info(w->members[m].motion);
+  const bool anywhere = isinf(w->tolerances[m]);
+  const long double late = anywhere ? 0.0L : (2.0L * place[m] - 1.0L) * w->tolerances[m];
+  const long double at = anywhere ? info.t0 + place[m] * ((long double)info.t1 - info.t0) : time - w->starts[m] - late;
+  return fminl(fmaxl(at, info.t0), info.t1);
+}
+
+/* The link of a geometry. */
+static ref_pose place_link(const world *w, size_t g, const double *place, long double time) {
+  const size_t m = member_of(w, g);
+  const ref_pose pose = robot_ref_link(&w->members[m], g - w->first[m], own_time(w, m, place, time));
+  return w->n_members > 1 ? ref_pose_under(&w->bases[m], &pose) : pose;
+}
+
+/* The links of all geometries. */
+static void place_links(const world *w, view *v) {
   for (size_t m = 0; m < w->n_members; m++) {
     const test_robot *t = &w->members[m];
-    const cprox_motion_info info = cprox_motion_get_info(t->motion);
-    const bool anywhere = isinf(w->tolerances[m]);
-    const long double late = anywhere ? 0.0L : (2.0L * w->place[m] - 1.0L) * w->tolerances[m];
-    const long double at =
-        anywhere ? info.t0 + w->place[m] * ((long double)info.t1 - info.t0) : time - w->starts[m] - late;
-    const long double own = w->n_members > 1 ? fminl(fmaxl(at, info.t0), info.t1) : time;
     long double values[TEST_MAX_VARIABLES + 1];
-    ref_pose *of = links + w->first[m];
-    robot_ref_values(t, own, values);
+    ref_pose *of = v->links + w->first[m];
+    robot_ref_values(t, own_time(w, m, v->place, v->t), values);
     robot_ref_links(t, values, of);
     for (size_t i = 0; i < t->n_links && w->n_members > 1; i++) of[i] = ref_pose_under(&w->bases[m], &of[i]);
   }
+  for (size_t g = 0; g < count_geometries(w); g++)
+    v->centres[g] = ref_pose_apply(&v->links[g], w->link_balls[g].centre);
 }
 
-static placed place_geometry(const world *w, const ref_pose *links, size_t g) {
+static placed place_geometry(const world *w, const ref_pose *link, size_t g) {
   const size_t m = member_of(w, g);
   const cprox_link_geometry *geometry = &w->members[m].geometries[g - w->first[m]];
-  return (placed){&w->links[g], links[g], geometry->pose, geometry->margin};
+  return (placed){&w->links[g], *link, geometry->pose, geometry->margin};
 }
 
-static placed place_other(const world *w, const ref_pose *links, pair p) {
-  if (p.self) return place_geometry(w, links, p.other);
-  return (placed){&w->bodies[p.other], {.q = {0, 0, 0, 1}}, w->poses[p.other], w->margins[p.other]};
+static placed place_obstacle(const world *w, size_t o) {
+  return (placed){&w->bodies[o], {.q = {0, 0, 0, 1}}, w->poses[o], w->margins[o]};
+}
+
+/* The geometry and the other body of a pair. */
+static void place_pair(const world *w, pair p, const double *place, long double time, placed two[2]) {
+  const ref_pose link = place_link(w, p.geometry, place, time);
+  two[0] = place_geometry(w, &link, p.geometry);
+  if (!p.self) {
+    two[1] = place_obstacle(w, p.other);
+    return;
+  }
+  const ref_pose other = place_link(w, p.other, place, time);
+  two[1] = place_geometry(w, &other, p.other);
+}
+
+/* About the box of a body, or about its frame where that is smaller. */
+static ball ball_about(const random_body *body, const cprox_pose *offset, double margin) {
+  long double low[3], high[3];
+  for (int k = 0; k < 3; k++) {
+    const vec3l axis = {k == 0, k == 1, k == 2};
+    high[k] = body_support(body, &HERE, axis), low[k] = -body_support(body, &HERE, ref_scale(-1.0L, axis));
+  }
+  const vec3l half = {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2, (high[2] - low[2]) / 2};
+  ball b = {{(high[0] + low[0]) / 2, (high[1] + low[1]) / 2, (high[2] + low[2]) / 2}, ref_norm(half)};
+  const bool bounded = isfinite(b.radius);
+  if (!bounded || body->extent < b.radius) b.centre = (vec3l){0, 0, 0};
+  if (bounded && body->extent < b.radius) b.radius = body->extent;
+  return (ball){ref_to_world(offset, b.centre), b.radius * (1.0L + 1e-12L) + margin};
 }
 
 static vec3l nearest_on(const placed *s, vec3l x) {
@@ -133,39 +197,39 @@ static long double plane_between(const placed *a, const placed *b, vec3l x, vec3
   return isfinite(low) ? low : -HUGE_VALL;
 }
 
-/* The same of the balls about the frames of both. */
-static long double balls_between(const placed *a, const placed *b) {
-  const vec3l from = ref_pose_apply(&a->link, ref_vec(a->offset.position)),
-              to = ref_pose_apply(&b->link, ref_vec(b->offset.position));
-  return ref_norm(ref_sub(from, to)) - a->body->extent * (1.0L + 1e-12L) - b->body->extent * (1.0L + 1e-12L) -
-         a->margin - b->margin;
+/* How deep a point is in a body, where that is known. */
+static long double depth_in(const placed *s, vec3l x) {
+  return s->body->depth ? body_depth(s->body, &HERE, ref_to_local(&s->offset, ref_pose_undo(&s->link, x))) : 0.0L;
 }
 
-/* Where it is known that the upper bound will not be below `most`, that is infinite. */
-static gap gap_below(const world *w, pair p, long double time, long double most) {
-  ref_pose links[MOST_GEOMETRIES];
-  place_links(w, time, links);
-  const placed a = place_geometry(w, links, p.geometry), b = place_other(w, links, p);
-  gap g = {
-      .upper = HUGE_VALL, .lower = -HUGE_VALL, .room = ROOM + (long double)a.body->slack + (long double)b.body->slack};
-  if (balls_between(&a, &b) >= most) return g;
-  vec3l x = ref_pose_apply(&a.link, ref_vec(a.offset.position)), y = x;
-  long double before = HUGE_VALL, apart = HUGE_VALL;
+/* By nearest points taken in turns. They end where planes prove that the pair is not below `limit`, by bounds that are
+ * near enough to compare times by, or that it is not below `best`. They begin at a point of the link of a, which moves
+ * to the last nearest one. */
+static gap gap_between(const placed *a, const placed *b, long double limit, long double best, vec3l *begin) {
+  const long double margins = (long double)a->margin + b->margin;
+  gap g = {.room = ROOM + (long double)a->body->slack + (long double)b->body->slack};
+  vec3l x = ref_pose_apply(&a->link, *begin), y = x;
+  long double before = HUGE_VALL;
   for (int i = 0; i < TURNS; i++) {
-    y = nearest_on(&b, x);
-    x = nearest_on(&a, y);
-    apart = ref_norm(ref_sub(x, y));
-    if (most < HUGE_VALL && plane_between(&a, &b, x, y) >= most) return g;
+    y = nearest_on(b, x);
+    x = nearest_on(a, y);
+    const long double apart = ref_norm(ref_sub(x, y));
+    g.upper = apart - margins;
+    g.lower = plane_between(a, b, x, y);
+    if (g.lower >= best || (g.lower >= limit && g.upper - g.lower <= 0.25L * (g.upper - limit))) break;
     if (!(apart < before * (1.0L - 1e-9L))) break;
     before = apart;
   }
-  g.upper = apart - a.margin - b.margin;
-  g.lower = plane_between(&a, &b, x, y);
+  if (g.upper == -margins) g.upper -= fmaxl(depth_in(a, x), depth_in(b, x));
+  *begin = ref_pose_undo(&a->link, x);
   return g;
 }
 
-static gap gap_at(const world *w, pair p, long double time) {
-  return gap_below(w, p, time, HUGE_VALL);
+static gap gap_at(const world *w, pair p, double time) {
+  placed two[2];
+  place_pair(w, p, w->place, time, two);
+  vec3l begin = w->link_balls[p.geometry].centre;
+  return gap_between(&two[0], &two[1], HUGE_VALL, HUGE_VALL, &begin);
 }
 
 /* ---- random worlds ---- */
@@ -203,6 +267,7 @@ static bool make_links(world *w, size_t m, double scale) {
     } while (!link_takes(w->links[i].body));
     cprox_body_free((cprox_body *)t->geometries[k].body);
     t->geometries[k].body = w->links[i].body;
+    w->link_balls[i] = ball_about(&w->links[i], &t->geometries[k].pose, t->geometries[k].margin);
   }
   return true;
 }
@@ -219,6 +284,7 @@ static bool make_obstacles(world *w, double scale) {
     w->poses[i] = rng_pose(w->r, 1.5);
     w->margins[i] = rng_index(w->r, 2) ? 0.0 : rng_uniform(w->r, 0.0, 0.05);
     w->targets[i] = cprox_with_margin(cprox_obstacle_at(w->bodies[i].body, w->poses[i]), w->margins[i]);
+    w->body_balls[i] = ball_about(&w->bodies[i], &w->poses[i], w->margins[i]);
   }
   return true;
 }
@@ -302,13 +368,14 @@ static bool is_asked(const world *w, pair p) {
   return between.n_joints >= 2 && between.n_moved > 0;
 }
 
-static bool draw_pair(const world *w, pair *p) {
-  for (int tries = 0; tries < 20; tries++) {
-    const bool self = w->self && (!w->obstacles || rng_index(w->r, 2));
-    *p = (pair){rng_index(w->r, count_geometries(w)), rng_index(w->r, self ? count_geometries(w) : OBSTACLES), self};
-    if (is_asked(w, *p)) return true;
+static void list_pairs(world *w) {
+  w->n_asked = 0;
+  for (size_t g = 0; g < count_geometries(w); g++) {
+    for (size_t k = 0; k < g + OBSTACLES; k++) {
+      const pair p = {g, k < g ? k : k - g, k < g};
+      if (is_asked(w, p)) w->asked[w->n_asked++] = p;
+    }
   }
-  return false;
 }
 
 /* The pair that a result is about. */
@@ -324,64 +391,207 @@ static bool pair_of_result(const world *w, const cprox_result *x, pair *p) {
 #define RESULT "[%.17g, %.17g] (%s, %s) at t = %.17g"
 #define SHOWN(x) (x)->lower, (x)->upper, cprox_status_name((x)->status), cprox_verdict_name((x)->verdict), (x)->t
 
-static void draw_places(world *w) {
+static void draw_places(world *w, double *place) {
   for (size_t m = 0; m < w->n_members && w->vague; m++)
-    w->place[m] = rng_index(w->r, 4) ? rng_uniform(w->r, 0.0, 1.0) : (double)rng_index(w->r, 2);
+    place[m] = rng_index(w->r, 4) ? rng_uniform(w->r, 0.0, 1.0) : (double)rng_index(w->r, 2);
 }
 
-/* The least distance of a pair that is found over [t0, t1]: samples, then smaller and smaller steps about the best. */
-static gap least_gap(world *w, pair p, double t0, double t1, double begin, double *where) {
-  draw_places(w);
-  gap best = gap_at(w, p, begin);
-  double places[MEMBERS];
-  *where = begin;
-  memcpy(places, w->place, sizeof places);
-  for (int i = 0; i <= SAMPLES; i++) {
-    const double t = fmin(t0 + (t1 - t0) * (i + rng_uniform(w->r, 0.0, 1.0)) / SAMPLES, t1);
-    draw_places(w);
-    const gap g = gap_below(w, p, t, best.upper);
-    if (g.upper < best.upper) best = g, *where = t, memcpy(places, w->place, sizeof places);
+/* Times in [t0, t1], one of them `begin`, ascending but for that. */
+static void draw_views(world *w, double t0, double t1, double begin) {
+  for (int i = 0; i < SAMPLES; i++) {
+    view *v = &w->views[i];
+    v->t = i == 0 ? begin : fmin(t0 + (t1 - t0) * (i - 1 + rng_uniform(w->r, 0.0, 1.0)) / (SAMPLES - 1), t1);
+    draw_places(w, v->place);
+    place_links(w, v);
   }
-  memcpy(w->place, places, sizeof places);
-  double step = (t1 - t0) / SAMPLES;
-  for (int i = 0; i < REFINEMENTS; i++, step *= 0.5) {
-    for (int side = -1; side <= 1; side += 2) {
-      const double t = fmin(fmax(*where + side * step, t0), t1);
-      const gap g = gap_below(w, p, t, best.upper);
-      if (g.upper < best.upper) best = g, *where = t;
-      for (size_t m = 0; m < w->n_members && w->vague; m++) {
-        const double kept = w->place[m];
-        w->place[m] = fmin(fmax(kept + side * ldexp(0.5, -i), 0.0), 1.0);
-        const gap moved = gap_below(w, p, *where, best.upper);
-        if (moved.upper < best.upper)
-          best = moved;
-        else
-          w->place[m] = kept;
-      }
-    }
-  }
-  return best;
 }
 
-/* No pair comes nearer than `lower` over [t0, t1]: drawn pairs, and that of the result. */
-static void check_lower(world *w, const cprox_result *x, double t0, double t1) {
+static long double balls_apart(const world *w, pair p, vec3l a, vec3l other) {
+  const long double other_radius = p.self ? w->link_balls[p.other].radius : w->body_balls[p.other].radius;
+  return ref_norm(ref_sub(a, other)) - w->link_balls[p.geometry].radius - other_radius;
+}
+
+/* Of the balls of a pair in a view. */
+static long double balls_in_view(const world *w, pair p, const view *v) {
+  return balls_apart(w, p, v->centres[p.geometry], p.self ? v->centres[p.other] : w->body_balls[p.other].centre);
+}
+
+/* What a search has found of a pair: the least distance, and where. The value is what times are compared by: a lower
+ * bound where that is not below the limit, else the distance. */
+typedef struct finding {
   pair p;
-  for (int i = 0; i <= PAIRS && !attack_failed(w->a); i++) {
-    if (i == 0 ? !pair_of_result(w, x, &p) : !draw_pair(w, &p)) continue;
-    double where;
-    const double begin = i == 0 && x->t > t0 && x->t < t1 ? x->t : t0;
-    const gap g = least_gap(w, p, t0, t1, begin, &where);
-    attack_check(w->a, fmaxl(g.upper, 0.0L) >= x->lower - g.room,
-                 RESULT ", but geometry %zu and %s %zu (%s, %s) are %.19Lg apart at %.17g", SHOWN(x), p.geometry,
-                 p.self ? "geometry" : "obstacle", p.other, w->links[p.geometry].name,
-                 p.self ? w->links[p.other].name : w->bodies[p.other].name, g.upper, where);
+  long double limit, value;
+  gap least;
+  double t, place[MEMBERS];
+  vec3l begin;
+} finding;
+
+static bool is_below(const finding *f) {
+  return f->least.upper < f->limit - f->least.room;
+}
+
+static bool keep_better(finding *f, const gap *g, long double value, double t, const double *place, vec3l begin) {
+  if (g->upper < f->least.upper) f->least = *g;
+  if (!(value < f->value) && !is_below(f)) return false;
+  f->value = value, f->t = t, f->begin = begin;
+  memcpy(f->place, place, sizeof f->place);
+  return true;
+}
+
+static void measure_view(const world *w, const view *v, finding *f) {
+  const long double apart = balls_in_view(w, f->p, v);
+  const gap unknown = {.upper = HUGE_VALL};
+  vec3l begin = w->link_balls[f->p.geometry].centre;
+  if (apart >= f->limit) {
+    keep_better(f, &unknown, apart, v->t, v->place, begin);
+    return;
   }
+  const placed a = place_geometry(w, &v->links[f->p.geometry], f->p.geometry),
+               b = f->p.self ? place_geometry(w, &v->links[f->p.other], f->p.other) : place_obstacle(w, f->p.other);
+  const gap g = gap_between(&a, &b, f->limit, fmaxl(f->value, f->limit), &begin);
+  keep_better(f, &g, g.lower >= f->limit ? g.lower : g.upper, v->t, v->place, begin);
+}
+
+/* The value at a time and places beside the best one. */
+static long double measure(const world *w, finding *f, double t, const double *place) {
+  placed two[2];
+  place_pair(w, f->p, place, t, two);
+  const gap unknown = {.upper = HUGE_VALL};
+  vec3l begin = f->begin;
+  const vec3l centre = ref_pose_apply(&two[0].link, w->link_balls[f->p.geometry].centre),
+              other = f->p.self ? ref_pose_apply(&two[1].link, w->link_balls[f->p.other].centre)
+                                : w->body_balls[f->p.other].centre;
+  const long double apart = balls_apart(w, f->p, centre, other);
+  if (apart >= f->limit) {
+    keep_better(f, &unknown, apart, t, place, begin);
+    return apart;
+  }
+  const gap g = gap_between(&two[0], &two[1], f->limit, HUGE_VALL, &begin);
+  const long double value = g.lower >= f->limit ? g.lower : g.upper;
+  keep_better(f, &g, value, t, place, begin);
+  return value;
+}
+
+/* One step to both sides of the best value along a coordinate (below 0: time; else the place of that member), and
+ * where a parabola through the three is least. Returns how much the value changes; `inside` if the best one is not at
+ * an end. */
+static long double step_about(const world *w, finding *f, int coordinate, double low, double high, double step,
+                              bool *inside) {
+  const double middle = coordinate < 0 ? f->t : f->place[coordinate];
+  const double at[2] = {fmax(middle - step, low), fmin(middle + step, high)};
+  const long double value = f->value;
+  long double ends[2];
+  double place[MEMBERS];
+  const double t = f->t;
+  memcpy(place, f->place, sizeof place);
+  for (int side = 0; side < 2; side++) {
+    if (coordinate >= 0) place[coordinate] = at[side];
+    ends[side] = measure(w, f, coordinate < 0 ? at[side] : t, place);
+  }
+  *inside = !(ends[0] < value && at[0] > low) && !(ends[1] < value && at[1] < high);
+  const long double left = middle - at[0], right = at[1] - middle, down = ends[0] - value, up = ends[1] - value;
+  const long double bend = down * right + up * left;
+  if (bend > 0.0L) {
+    const double best = middle + (double)((down * right * right - up * left * left) / (2.0L * bend));
+    if (coordinate >= 0) place[coordinate] = fmin(fmax(best, low), high);
+    measure(w, f, coordinate < 0 ? fmin(fmax(best, low), high) : t, place);
+  }
+  return fmaxl(fabsl(down), fabsl(up));
+}
+
+/* Smaller and smaller steps about the best view, until the distance cannot come down to the limit. */
+static void refine(const world *w, double t0, double t1, finding *f) {
+  double steps[MEMBERS + 1] = {(t1 - t0) / SAMPLES, 0.5, 0.5, 0.5};
+  const size_t members[2] = {member_of(w, f->p.geometry), f->p.self ? member_of(w, f->p.other) : 0};
+  for (int i = 0; i < REFINEMENTS && !is_below(f); i++) {
+    long double change = 0.0L;
+    for (int c = -1; c < (int)w->n_members; c++) {
+      const bool moves = c < 0 || (w->vague && w->tolerances[c] > 0.0 &&
+                                   ((size_t)c == members[0] || (f->p.self && (size_t)c == members[1])));
+      if (!moves) continue;
+      bool inside;
+      change += step_about(w, f, c, c < 0 ? t0 : 0.0, c < 0 ? t1 : 1.0, steps[c + 1], &inside);
+      if (inside) steps[c + 1] *= 0.25;
+    }
+    if (f->value - 3.0L * change > f->limit) return;
+  }
+}
+
+/* Is a pair below `limit` somewhere in the views' time? */
+static finding search_pair(const world *w, pair p, double t0, double t1, long double limit) {
+  finding f = {.p = p, .limit = limit, .value = HUGE_VALL, .least = {.upper = HUGE_VALL}};
+  for (int i = 0; i < SAMPLES && !is_below(&f); i++) measure_view(w, &w->views[i], &f);
+  refine(w, t0, t1, &f);
+  return f;
+}
+
+static void swap_pairs(pair *p, pair *q) {
+  const pair swapped = *p;
+  *p = *q;
+  *q = swapped;
+}
+
+/* The pairs whose balls come near the limit: the nearest one first, then in any order. Returns their number. */
+static size_t near_pairs(world *w, long double limit, pair *near) {
+  size_t n = 0;
+  long double least = HUGE_VALL;
+  for (size_t i = 0; i < w->n_asked; i++) {
+    long double low = balls_in_view(w, w->asked[i], &w->views[0]), before = low, change = 0.0L;
+    for (int k = 1; k < SAMPLES; k++) {
+      const long double apart = balls_in_view(w, w->asked[i], &w->views[k]);
+      if (k > 1) change = fmaxl(change, fabsl(apart - before));
+      low = fminl(low, apart), before = apart;
+    }
+    if (low - 2.0L * change > limit) continue;
+    near[n] = w->asked[i];
+    if (n > 0) swap_pairs(&near[n], &near[1 + rng_index(w->r, n)]);
+    if (low < least && n > 0) swap_pairs(&near[0], &near[n]);
+    n++;
+  }
+  return n;
+}
+
+static bool same_pair(pair p, pair q) {
+  if (p.self != q.self) return false;
+  return (p.geometry == q.geometry && p.other == q.other) || (p.self && p.geometry == q.other && p.other == q.geometry);
+}
+
+/* Pairs that come near, and that of the result: the first that is below the limit. */
+static bool find_below(world *w, const cprox_result *x, double t0, double t1, long double limit, finding *f) {
+  pair near[MOST_PAIRS + 1], of_result;
+  draw_views(w, t0, t1, x->t > t0 && x->t < t1 ? x->t : t0);
+  const bool known = pair_of_result(w, x, &of_result);
+  if (known) {
+    *f = search_pair(w, of_result, t0, t1, limit);
+    if (is_below(f)) return true;
+  }
+  const size_t n = near_pairs(w, limit, near);
+  for (size_t i = 0, searched = 0; i < n && searched < PAIRS; i++) {
+    if (known && same_pair(near[i], of_result)) continue;
+    *f = search_pair(w, near[i], t0, t1, limit);
+    if (is_below(f)) return true;
+    searched++;
+  }
+  return false;
+}
+
+static const char *name_of_other(const world *w, pair p) {
+  return p.self ? w->links[p.other].name : w->bodies[p.other].name;
+}
+
+/* No pair comes nearer than `lower` over [t0, t1]. */
+static void check_lower(world *w, const cprox_result *x, double t0, double t1) {
+  finding f;
+  if (x->lower > 0.0 && find_below(w, x, t0, t1, x->lower, &f))
+    attack_fail(w->a, RESULT ", but geometry %zu and %s %zu (%s, %s) are %.19Lg apart at %.17g", SHOWN(x), f.p.geometry,
+                f.p.self ? "geometry" : "obstacle", f.p.other, w->links[f.p.geometry].name, name_of_other(w, f.p),
+                f.least.upper, f.t);
 }
 
 static void check_witness(world *w, const cprox_result *x, pair p, const gap *g) {
-  ref_pose links[MOST_GEOMETRIES];
-  place_links(w, x->t, links);
-  const placed a = place_geometry(w, links, p.geometry), b = place_other(w, links, p);
+  placed two[2];
+  place_pair(w, p, w->place, x->t, two);
+  const placed a = two[0], b = two[1];
   const vec3l on_a = ref_vec(x->witness_mover), on_b = ref_vec(x->witness_obstacle);
   const long double off_a = ref_norm(ref_sub(nearest_on(&a, on_a), on_a)) - a.margin;
   const long double off_b = ref_norm(ref_sub(nearest_on(&b, on_b), on_b)) - b.margin;
@@ -397,18 +607,19 @@ static void check_witness(world *w, const cprox_result *x, pair p, const gap *g)
 
 /* How far a point is from a geometry at the nearest, whatever the start: places of its member side by side, then
  * smaller and smaller steps about the best. More places where that is above what is enough. */
-static long double nearest_of_all(world *w, size_t g, vec3l x, long double time, long double enough) {
+static long double nearest_of_all(world *w, size_t g, vec3l x, double time, long double enough) {
   enum { STEPS = 40, MOST = 30000 };
   double *place = &w->place[member_of(w, g)], best = 0.0;
   long double least = HUGE_VALL;
   for (int drawn = 300; drawn <= MOST && least > enough; drawn *= 10) {
-    for (int i = 0; i < drawn + 2 * STEPS; i++) {
+    for (int i = 0; i < drawn + 2 * STEPS && least > enough; i++) {
       const int k = i - drawn;
       const double step = (k % 2 ? 1.0 : -1.0) * ldexp(1.0 / drawn, -k / 4);
       *place = k < 0 ? (double)i / (drawn - 1) : fmin(fmax(best + step, 0.0), 1.0);
-      ref_pose links[MOST_GEOMETRIES];
-      place_links(w, time, links);
-      const placed a = place_geometry(w, links, g);
+      const ref_pose link = place_link(w, g, w->place, time);
+      const ball *about = &w->link_balls[g];
+      if (ref_norm(ref_sub(ref_pose_apply(&link, about->centre), x)) - about->radius >= least) continue;
+      const placed a = place_geometry(w, &link, g);
       const long double off = ref_norm(ref_sub(nearest_on(&a, x), x)) - a.margin;
       if (off < least) least = off, best = *place;
     }
@@ -516,15 +727,12 @@ static void ask_time_of_contact(world *w, const cprox_options *asked) {
   attack_check(w->a, x.t_contact_lower >= w->t0 && x.t_contact_lower <= w->t1, "t_contact_lower = %.17g",
                x.t_contact_lower);
   /* before it nothing overlaps, by more than what the reference cannot tell */
+  finding f;
   pair p;
-  for (int i = 0; i < PAIRS && !attack_failed(w->a); i++) {
-    if (!draw_pair(w, &p) || x.t_contact_lower <= w->t0) continue;
-    double where;
-    const gap g = least_gap(w, p, w->t0, x.t_contact_lower, w->t0, &where);
-    attack_check(w->a, g.upper >= -g.room,
-                 RESULT ", free before %.17g, but geometry %zu and %zu overlap by %.3Lg at %.17g", SHOWN(&x),
-                 x.t_contact_lower, p.geometry, p.other, -g.upper, where);
-  }
+  if (x.t_contact_lower > w->t0 && find_below(w, &x, w->t0, x.t_contact_lower, 0.0L, &f))
+    attack_fail(w->a, RESULT ", free before %.17g, but geometry %zu and %s %zu (%s, %s) overlap by %.3Lg at %.17g",
+                SHOWN(&x), x.t_contact_lower, f.p.geometry, f.p.self ? "geometry" : "obstacle", f.p.other,
+                w->links[f.p.geometry].name, name_of_other(w, f.p), -f.least.upper, f.t);
   if (x.verdict == CPROX_VERDICT_CLEAR) attack_check(w->a, x.lower > 0.0, RESULT, SHOWN(&x));
   if (x.verdict == CPROX_VERDICT_VIOLATED) {
     attack_check(w->a, x.t >= x.t_contact_lower, RESULT ", free before %.17g", SHOWN(&x), x.t_contact_lower);
@@ -604,6 +812,7 @@ void robot_case(attack *a, rng *r, bool several) {
     const size_t about = 1 + rng_index(r, QUERIES[which].both ? 3 : 2);
     w.obstacles = about & 1, w.self = about & 2;
     w.mover = mover_of(&w);
+    list_pairs(&w);
     const test_robot *t = &w.members[0];
     attack_kind(a, "%s: %s, %s%s", QUERIES[which].name, ABOUT[about], w.vague ? "vague starts, " : "",
                 t->spline                      ? "spline"

@@ -5,34 +5,6 @@
 
 #define MAX_DEGREE 60
 
-vec3l ref_vec(vec3 a) {
-  return (vec3l){a.x, a.y, a.z};
-}
-
-vec3l ref_add(vec3l a, vec3l b) {
-  return (vec3l){a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
-vec3l ref_sub(vec3l a, vec3l b) {
-  return (vec3l){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-vec3l ref_scale(long double s, vec3l a) {
-  return (vec3l){s * a.x, s * a.y, s * a.z};
-}
-
-long double ref_dot(vec3l a, vec3l b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-vec3l ref_cross(vec3l a, vec3l b) {
-  return (vec3l){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-long double ref_norm(vec3l a) {
-  return sqrtl(ref_dot(a, a));
-}
-
 long double ref_error(vec3l exact, vec3 computed) {
   return ref_norm(ref_sub(exact, ref_vec(computed)));
 }

@@ -4,6 +4,7 @@
 #ifndef CPROX_TEST_REFERENCE_H
 #define CPROX_TEST_REFERENCE_H
 
+#include <math.h>
 #include <stddef.h>
 
 #include "base/frame.h"
@@ -13,13 +14,33 @@ typedef struct vec3l {
   long double x, y, z;
 } vec3l;
 
-vec3l ref_vec(vec3 a);
-vec3l ref_add(vec3l a, vec3l b);
-vec3l ref_sub(vec3l a, vec3l b);
-vec3l ref_scale(long double s, vec3l a);
-long double ref_dot(vec3l a, vec3l b);
-vec3l ref_cross(vec3l a, vec3l b);
-long double ref_norm(vec3l a);
+static inline vec3l ref_vec(vec3 a) {
+  return (vec3l){a.x, a.y, a.z};
+}
+
+static inline vec3l ref_add(vec3l a, vec3l b) {
+  return (vec3l){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline vec3l ref_sub(vec3l a, vec3l b) {
+  return (vec3l){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline vec3l ref_scale(long double s, vec3l a) {
+  return (vec3l){s * a.x, s * a.y, s * a.z};
+}
+
+static inline long double ref_dot(vec3l a, vec3l b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline vec3l ref_cross(vec3l a, vec3l b) {
+  return (vec3l){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline long double ref_norm(vec3l a) {
+  return sqrtl(ref_dot(a, a));
+}
 
 /* |exact - computed|. */
 long double ref_error(vec3l exact, vec3 computed);

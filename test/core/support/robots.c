@@ -256,30 +256,24 @@ static void turn_values(const test_robot *t, size_t i, size_t v, long double tim
   values[v] = at.x, values[v + 1] = at.y, values[v + 2] = at.z;
 }
 
-void robot_ref_values(const test_robot *t, long double time, long double *values) {
+static size_t segment_at(const test_robot *t, long double time) {
   size_t i = 0;
   while (i + 2 < t->n_points && time >= t->times[i + 1]) i++;
+  return i;
+}
+
+static bool turns(const test_robot *t, size_t link) {
+  return t->turning != CPROX_TURNING_POLYNOMIAL && t->links[link].type == CPROX_JOINT_FLOATING;
+}
+
+void robot_ref_values(const test_robot *t, long double time, long double *values) {
+  const size_t i = segment_at(t, time);
   for (size_t k = 0; k < t->n_variables; k++) values[k] = t->spline ? de_boor(t, k, time) : hermite(t, i, k, time);
-  for (size_t l = 0; l < t->n_links && t->turning != CPROX_TURNING_POLYNOMIAL; l++)
-    if (t->links[l].type == CPROX_JOINT_FLOATING) turn_values(t, i, (size_t)t->links[l].variable, time, values);
+  for (size_t l = 0; l < t->n_links; l++)
+    if (turns(t, l)) turn_values(t, i, (size_t)t->links[l].variable, time, values);
 }
 
 /* ---- poses ---- */
-
-static vec3l turn(const long double *q, vec3l x) {
-  const vec3l v = {q[0], q[1], q[2]};
-  const vec3l twice = ref_scale(2.0L, ref_cross(v, x));
-  return ref_add(ref_add(x, ref_scale(q[3], twice)), ref_cross(v, twice));
-}
-
-vec3l ref_pose_apply(const ref_pose *pose, vec3l x) {
-  return ref_add(turn(pose->q, x), pose->p);
-}
-
-vec3l ref_pose_undo(const ref_pose *pose, vec3l x) {
-  const long double back[4] = {-pose->q[0], -pose->q[1], -pose->q[2], pose->q[3]};
-  return turn(back, ref_sub(x, pose->p));
-}
 
 static ref_pose unit_pose(vec3l p, long double x, long double y, long double z, long double w) {
   const long double n = sqrtl(x * x + y * y + z * z + w * w);
@@ -340,6 +334,21 @@ void robot_ref_links(const test_robot *t, const long double *values, ref_pose *l
     const ref_pose origin = given(&l->origin), moved = joint(l, values + l->variable), here = compose(&origin, &moved);
     links[i] = l->parent < 0 ? here : compose(&links[l->parent], &here);
   }
+}
+
+ref_pose robot_ref_link(const test_robot *t, size_t link, long double time) {
+  const size_t i = segment_at(t, time);
+  ref_pose pose = unit_pose((vec3l){0, 0, 0}, 0, 0, 0, 1);
+  for (int32_t l = (int32_t)link; l >= 0; l = t->links[l].parent) {
+    const size_t first = (size_t)t->links[l].variable, n = width_of(t->links[l].type);
+    long double values[TEST_MAX_VARIABLES + 1];
+    for (size_t k = first; k < first + n; k++) values[k] = t->spline ? de_boor(t, k, time) : hermite(t, i, k, time);
+    if (turns(t, (size_t)l)) turn_values(t, i, first, time, values);
+    const ref_pose origin = given(&t->links[l].origin), moved = joint(&t->links[l], values + first);
+    pose = compose(&moved, &pose);
+    pose = compose(&origin, &pose);
+  }
+  return pose;
 }
 
 void robot_ref_vertices(const test_robot *t, const ref_pose *links, size_t geometry, vec3l *vertices) {

@@ -61,14 +61,29 @@ typedef struct ref_pose {
   long double q[4]; /* x, y, z, w, unit */
 } ref_pose;
 
-vec3l ref_pose_apply(const ref_pose *pose, vec3l x);
-vec3l ref_pose_undo(const ref_pose *pose, vec3l x);
+static inline vec3l ref_turn(const long double *q, vec3l x) {
+  const vec3l v = {q[0], q[1], q[2]};
+  const vec3l twice = ref_scale(2.0L, ref_cross(v, x));
+  return ref_add(ref_add(x, ref_scale(q[3], twice)), ref_cross(v, twice));
+}
+
+static inline vec3l ref_pose_apply(const ref_pose *pose, vec3l x) {
+  return ref_add(ref_turn(pose->q, x), pose->p);
+}
+
+static inline vec3l ref_pose_undo(const ref_pose *pose, vec3l x) {
+  const long double back[4] = {-pose->q[0], -pose->q[1], -pose->q[2], pose->q[3]};
+  return ref_turn(back, ref_sub(x, pose->p));
+}
 
 /* Where a pose is in the world, given in the frame of another one. */
 ref_pose ref_pose_under(const cprox_pose *base, const ref_pose *pose);
 
 /* The frames of all links. */
 void robot_ref_links(const test_robot *t, const long double *values, ref_pose *links);
+
+/* The frame of one link at a time, by its chain of joints alone. */
+ref_pose robot_ref_link(const test_robot *t, size_t link, long double time);
 
 /* The vertices of a geometry in the world. */
 void robot_ref_vertices(const test_robot *t, const ref_pose *links, size_t geometry, vec3l *vertices);
