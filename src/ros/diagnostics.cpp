@@ -146,6 +146,7 @@ void Diagnostics::planningScene(Status &status) {
   status.add("diffs since then", report.diffs_since_full);
   status.addf("fingerprint of the last diff", "%016lx", report.diff_fingerprint);
   status.add("comparisons with ~get_planning_scene", report.checks);
+  status.add("scenes replaced after a comparison", report.replaced);
   if (!differences.empty()) status.add("differences", differences);
   if (!report.unused.empty()) status.add("not used", joined(report.unused));
 }

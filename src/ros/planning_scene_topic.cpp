@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <curve_proximity/fingerprint.hpp>
-#include <optional>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "checked_stream.h"
@@ -24,7 +25,11 @@ constexpr std::size_t TIMES_WIRE = 5;
 /** Sentences in one line of the log. */
 constexpr std::size_t MOST_SENTENCES = 10;
 
-constexpr std::chrono::seconds ASK_AGAIN{1};
+/** [s] Between requests until there is a scene, and until nothing of it differs. */
+constexpr double ASK_AGAIN = 1.0;
+
+/** How soon a new publisher is noticed: roscpp does not tell. */
+constexpr std::chrono::milliseconds LOOK_AGAIN{100};
 
 const char *const NO_FULL_SCENE =
     "~planning_scene has sent diffs and no full scene: what else is in that scene is not known";
@@ -39,6 +44,16 @@ std::string joined(const std::vector<std::string> &sentences) {
   std::string out;
   for (std::size_t i = 0; i < sentences.size() && i < MOST_SENTENCES; ++i) out += (i ? "; " : "") + sentences[i];
   if (sentences.size() > MOST_SENTENCES) out += "; and " + std::to_string(sentences.size() - MOST_SENTENCES) + " more";
+  return out;
+}
+
+/** Those of the first that are among the others, or are not. */
+std::vector<std::string> chosen(const std::vector<std::string> &sentences, const std::vector<std::string> &others,
+                                bool among) {
+  std::vector<std::string> out;
+  std::copy_if(sentences.begin(), sentences.end(), std::back_inserter(out), [&](const std::string &sentence) {
+    return (std::find(others.begin(), others.end(), sentence) != others.end()) == among;
+  });
   return out;
 }
 
@@ -116,12 +131,16 @@ PlanningSceneContext PlanningSceneTopic::context(const Snapshot &snapshot, Frame
 
 void PlanningSceneTopic::take(const moveit::PlanningScene &message, const char *source) {
   const std::lock_guard<std::mutex> lock(taking_);
+  tryToUse(message, source);
+  publishRemarks();
+}
+
+void PlanningSceneTopic::tryToUse(const moveit::PlanningScene &message, const char *source) {
   guarded([&] { use(message); },
           [&](const std::string &why) {
             keepUnused({why}, false);
             complain(std::string(source) + ": a scene is not used: " + why);
           });
-  publishRemarks();
 }
 
 void PlanningSceneTopic::use(const moveit::PlanningScene &message) {
@@ -149,23 +168,38 @@ void PlanningSceneTopic::use(const moveit::PlanningScene &message) {
   if (!wrong.empty()) complain("~planning_scene: " + joined(wrong) + "; the rest is used");
 }
 
-/** A difference that one answer shows and the next does not was a diff on its way. */
-void PlanningSceneTopic::compare(const moveit::PlanningScene &message) {
-  constexpr std::size_t MOST = 5;
+std::vector<std::string> PlanningSceneTopic::differencesTo(const moveit::PlanningScene &message) const {
+  constexpr std::size_t MOST = 100;
+  const std::size_t bytes = ros::serialization::serializationLength(message);
+  const memory::Share share(TIMES_WIRE * bytes, static_cast<std::size_t>(parameters_.max_request_mb) << 20);
+  checkNames(message, NameLimits(parameters_.max_name_length));
+  FrameLookup lookup(frames_);
+  const SnapshotPtr before = live_.scene.snapshot();
+  return differences(message, context(*before, lookup), MOST);
+}
+
+/** A difference that one answer shows and the next does not was a diff on its way. One that both show is a diff that
+ *  never came: then the scene becomes the answer. What still differs after that is reported, and is no reason to take
+ *  the next answer as well. */
+bool PlanningSceneTopic::compare(const moveit::PlanningScene &message) {
   const std::lock_guard<std::mutex> lock(taking_);
+  bool same = false;
   guarded(
       [&] {
-        const std::size_t bytes = ros::serialization::serializationLength(message);
-        const memory::Share share(TIMES_WIRE * bytes, static_cast<std::size_t>(parameters_.max_request_mb) << 20);
-        checkNames(message, NameLimits(parameters_.max_name_length));
-        FrameLookup lookup(frames_);
-        const SnapshotPtr before = live_.scene.snapshot();
-        std::vector<std::string> now = differences(message, context(*before, lookup), MOST), both;
-        for (const std::string &what : now)
-          if (std::find(suspected_.begin(), suspected_.end(), what) != suspected_.end()) both.push_back(what);
+        std::vector<std::string> now = differencesTo(message);
+        std::vector<std::string> both = chosen(now, suspected_, true);
+        const std::vector<std::string> lost = chosen(both, beyond_repair_, false);
+        if (!lost.empty()) {
+          complain("~planning_scene lacked what ~get_planning_scene has, and that scene replaces the one here: " +
+                   joined(lost));
+          tryToUse(message, "~get_planning_scene");
+          both = now = beyond_repair_ = differencesTo(message);
+        }
+        same = lost.empty() && chosen(now, beyond_repair_, false).empty();
         suspected_ = std::move(now);
         const std::lock_guard<std::mutex> report(mutex_);
         ++report_.checks;
+        report_.replaced += lost.empty() ? 0 : 1;
         report_.differences = std::move(both);
         if (suspected_.empty()) report_.unused.clear();
       },
@@ -173,6 +207,7 @@ void PlanningSceneTopic::compare(const moveit::PlanningScene &message) {
   const std::vector<std::string> found = report().differences;
   if (!found.empty()) complain("the scene differs from that of ~get_planning_scene: " + joined(found));
   publishRemarks();
+  return same;
 }
 
 /** What is missing stays missing until a full scene comes, or a comparison finds nothing. */
@@ -204,26 +239,47 @@ void PlanningSceneTopic::complain(const std::string &why) {
 
 /* ---- the service ---- */
 
-/** Until a first scene is there once a second; then as often as ~check_planning_scene says, to compare. */
+/** A diff that is published before the topic is connected is lost. So the scene is asked for when the topic has a
+ *  publisher, anew whenever it gets another one, and once where it has none. Then comparisons follow: until one finds
+ *  nothing, and after that as often as ~check_planning_scene says. */
 void PlanningSceneTopic::ask() {
+  const double never = std::numeric_limits<double>::infinity();
+  const double check = parameters_.check_planning_scene == 0.0 ? never : parameters_.check_planning_scene;
+  std::uint32_t publishers = 0;
+  double period = ASK_AGAIN;
   bool begun = false;
-  while (true) {
+  while (wait(period, publishers, begun)) {
     moveit::PlanningScene scene;
+    bool same = false;
     if (askOnce(scene)) {
-      if (begun) {
-        compare(scene);
-      } else {
-        scene.is_diff = 0;
+      scene.is_diff = scene.robot_state.is_diff = 0;
+      if (begun)
+        same = compare(scene);
+      else
         take(scene, "~get_planning_scene");
-        begun = true;
-      }
+      begun = true;
     }
-    if (begun && parameters_.check_planning_scene == 0.0) return;
-    const std::chrono::duration<double> period(begun ? parameters_.check_planning_scene
-                                                     : std::chrono::duration<double>(ASK_AGAIN).count());
-    std::unique_lock<std::mutex> lock(asking_);
-    if (wake_.wait_for(lock, period, [this] { return ending_; })) return;
+    const bool settled = begun && (same || publishers == 0);
+    period = settled ? check : ASK_AGAIN;
   }
+}
+
+/** False: the topic ends. A publisher more ends the waiting, and what had begun. */
+bool PlanningSceneTopic::wait(double period, std::uint32_t &publishers, bool &begun) {
+  const auto start = std::chrono::steady_clock::now();
+  std::unique_lock<std::mutex> lock(asking_);
+  while (!ending_) {
+    const std::uint32_t before = std::exchange(publishers, subscriber_.getNumPublishers());
+    if (publishers > before) {
+      begun = false;
+      return true;
+    }
+    const std::chrono::duration<double> left =
+        std::chrono::duration<double>(period) - (std::chrono::steady_clock::now() - start);
+    if (left.count() <= 0.0) return true;
+    wake_.wait_for(lock, std::min<std::chrono::duration<double>>(left, LOOK_AGAIN));
+  }
+  return false;
 }
 
 bool PlanningSceneTopic::askOnce(moveit::PlanningScene &scene) {

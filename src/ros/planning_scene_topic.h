@@ -38,6 +38,7 @@ struct PlanningSceneReport {
   std::vector<std::string> unused;      /**< what was not used of the last full scene and of the diffs since then */
   std::vector<std::string> differences; /**< from ~get_planning_scene, where that has been asked */
   std::uint64_t checks = 0;             /**< answers of ~get_planning_scene that were compared */
+  std::uint64_t replaced = 0;           /**< of these taken over, as the scene lacked a diff */
 };
 
 /** ~planning_scene, and ~get_planning_scene as a client. Both have threads of their own: building a scene takes no
@@ -66,12 +67,16 @@ class PlanningSceneTopic {
  private:
   void take(const moveit::PlanningScene &message, const char *source);
   void use(const moveit::PlanningScene &message);
-  void compare(const moveit::PlanningScene &message);
+  void tryToUse(const moveit::PlanningScene &message, const char *source);
+  std::vector<std::string> differencesTo(const moveit::PlanningScene &message) const;
+  /** Whether nothing differs but what a full scene does not mend. */
+  bool compare(const moveit::PlanningScene &message);
   PlanningSceneContext context(const Snapshot &snapshot, FrameLookup &lookup) const;
   void keepUnused(const std::vector<std::string> &wrong, bool full);
   void publishRemarks();
   void complain(const std::string &why);
   void ask();
+  bool wait(double period, std::uint32_t &publishers, bool &begun);
   bool askOnce(moveit::PlanningScene &scene);
 
   const Parameters &parameters_;
@@ -85,7 +90,8 @@ class PlanningSceneTopic {
   PlanningSceneState state_;
   mutable std::mutex mutex_; /* of the report */
   PlanningSceneReport report_;
-  std::vector<std::string> suspected_; /* what differed the last time */
+  std::vector<std::string> suspected_;     /* what differed the last time */
+  std::vector<std::string> beyond_repair_; /* what still differed when the last answer had been taken over */
   Complaints complaints_{std::chrono::seconds(60)};
   ros::Subscriber subscriber_;
   ros::AsyncSpinner spinner_;

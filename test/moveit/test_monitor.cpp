@@ -44,7 +44,7 @@ TEST(Monitor, is_followed_by_the_node_of_moveit_launch) {
   const auto agrees = [&] { return live.agreesWith(*copy()); };
   EXPECT_EQ(agrees(), "board") << "by the service";
   ros::NodeHandle node;
-  const ros::Publisher same = node.advertise<moveit_msgs::PlanningScene>(TOPIC, 1); // tells who hears the monitor
+  ros::Publisher same = node.advertise<moveit_msgs::PlanningScene>(TOPIC, 1); // tells who hears the monitor
   for (const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(LiveNode::PATIENCE);
        same.getNumSubscribers() == 0 && ros::WallTime::now() < end;)
     ros::WallDuration(0.1).sleep();
@@ -66,6 +66,18 @@ TEST(Monitor, is_followed_by_the_node_of_moveit_launch) {
   const double before = LiveNode::distanceIn(*copy());
   change(monitor, [](planning_scene::PlanningScene &scene) { scene.getCollisionEnvNonConst()->setPadding(0.02); });
   EXPECT_EQ(live.says(before - 0.02, *copy()), "can") << "a ball round each link; FCL moves faces, a millimetre less";
+
+  change(monitor, [](planning_scene::PlanningScene &scene) { scene.getCollisionEnvNonConst()->setPadding(0.0); });
+  EXPECT_EQ(live.says(before, *copy()), "can");
+  same.shutdown();
+  monitor->stopPublishingPlanningScene();
+  change(monitor, [](planning_scene::PlanningScene &scene) {
+    const Eigen::Vector3d hand = scene.getCurrentState().getGlobalLinkTransform("panda_hand").translation();
+    addObject(scene, "tin", std::make_shared<shapes::Box>(0.1, 0.1, 0.1), hand + Eigen::Vector3d(0.0, -0.3, 0.0));
+  });
+  ros::WallDuration(0.5).sleep(); // the node sees that the publisher is gone
+  monitor->startPublishingPlanningScene(psm::PlanningSceneMonitor::UPDATE_SCENE, TOPIC);
+  EXPECT_EQ(agrees(), "tin") << "by the service: what was published before the topic was connected is lost";
 }
 
 int main(int argc, char **argv) {

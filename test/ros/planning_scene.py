@@ -99,13 +99,18 @@ class PlanningScene(unittest.TestCase):
         cls.status_reader = rospy.Subscriber('/diagnostics', DiagnosticArray, cls.take_statuses)
         cls.scene = full_scene()                                     # of the move_group that the test plays
         cls.service = rospy.Service('/get_planning_scene', moveit.GetPlanningScene, cls.answer)
-        cls.server, cls.told, cls.late, cls.follower = [Server(name) for name in (NODE, '/told', '/late', '/follower')]
+        names = NODE, '/told', '/late', '/follower', '/beginner'
+        cls.server, cls.told, cls.late, cls.follower, cls.beginner = [Server(name) for name in names]
         cls.scenes = cls.publisher(NODE)
 
     @classmethod
     def answer(cls, request):
-        cls.components = request.components.components
-        return moveit.GetPlanningScene._response_class(scene=cls.scene)
+        cls.components, scene = request.components.components, None
+        if request._connection_header['callerid'] == '/beginner':
+            scene = cls.overtake()
+        return moveit.GetPlanningScene._response_class(scene=scene or cls.scene)
+
+    overtake = staticmethod(lambda: None)    # what /beginner is answered instead
 
     @classmethod
     def take_statuses(cls, array):
@@ -230,17 +235,35 @@ class PlanningScene(unittest.TestCase):
         self.assertStatus('late', 0, 'following')
         self.assertNotIn('no full scene', ' '.join(self.late.distance(CURVES, objects=['cup']).warnings))
 
-    def test_6_the_server_begins_with_move_groups_scene_and_tells_where_it_drifts(self):
+    def fullScenes(self, node):
+        values = {value.key: value.value for value in self.statuses['%s: planning_scene' % node].values}
+        return int(values['full scenes']), int(values['comparisons with ~get_planning_scene'])
+
+    def test_6_the_server_begins_with_move_groups_scene_and_returns_to_it(self):
         self.assertTrue(until(lambda: len(self.follower.scene().objects) == 3, PATIENCE))
         self.assertEqual(self.components, 1023)
         self.assertStatus('follower', 0, 'following', 'full scenes=1')
+
+        # diffs that never came: the service alone shows them, and a second answer confirms it
         other = copy.deepcopy(full_scene())
         other.world.collision_objects[1].pose.position.x += .01
         other.world.collision_objects.pop()
         type(self).scene = other
-        self.assertStatus('follower', 1, 'differs', "'cup' stands elsewhere", "'part' is here alone")
-        self.assertLogged('/follower', 'differs', "'cup' stands elsewhere")
+        self.assertTrue(until(lambda: [thing.id for thing in self.follower.scene().objects] == ['cup', 'table'], PATIENCE))
+        self.assertLogged('/follower', 'replaces', "'cup' stands elsewhere", "'part' is here alone")
+        self.assertStatus('follower', 0, 'following', 'full scenes=2', 'scenes replaced after a comparison=1')
+        cup = next(thing for thing in self.follower.scene().objects if thing.id == 'cup')
+        self.assertAlmostEqual(cup.pose.position.x, 1.41, 9)
+
+        # what a full scene does not mend is reported, and no reason to take each answer
+        type(self).scene = full_scene()
+        self.scene.world.collision_objects.append(foreign(sphere('lost', .1), frame='moon'))
+        self.assertStatus('follower', 1, 'differs', "'lost'", 'full scenes=3')
+        self.assertLogged('/follower', 'differs', "'lost'")
         self.assertIn('differs', ' '.join(self.follower.distance(CURVES, objects=['cup']).warnings))
+        full, checks = self.fullScenes('follower')
+        self.assertTrue(until(lambda: self.fullScenes('follower')[1] >= checks + 4, PATIENCE))
+        self.assertEqual(self.fullScenes('follower')[0], full)
         type(self).scene = full_scene()
         self.assertStatus('follower', 0, 'following')
 
@@ -316,6 +339,40 @@ class PlanningScene(unittest.TestCase):
         self.assertEqual(contact.header.frame_id, 'world')
         self.assertGreaterEqual(contact.depth, -1e-6)
         reader.unregister()
+
+    def test_8_diffs_that_are_lost_before_the_topic_is_connected_come_by_the_service(self):
+        def objects():
+            return [thing.id for thing in self.beginner.scene().objects]
+        type(self).scene = full_scene()
+        self.assertTrue(until(lambda: objects() == ['cup', 'part', 'table'], PATIENCE))
+
+        # a diff in the gap: published while nobody hears
+        self.scene.world.collision_objects.append(foreign(sphere('can', .1), at=(0, 0, 3)))
+        publisher = self.publisher('/beginner')
+        self.assertTrue(until(lambda: objects() == ['can', 'cup', 'part', 'table'], PATIENCE), objects())
+        publisher.unregister()
+        rospy.sleep(.5)                                              # the node looks for publishers each 100 ms
+
+        # a diff that overtakes an older answer of the service
+        overtaken = []
+
+        def overtake():
+            if not overtaken:
+                overtaken.append(copy.deepcopy(self.scene))
+                ball = foreign(sphere('ball', .1), at=(0, 0, 4))
+                self.scene.world.collision_objects.append(ball)
+                self.assertTrue(connected(publisher))
+                publisher.publish(diff(ball))
+                self.assertTrue(until(lambda: 'ball' in objects(), PATIENCE))
+                return overtaken[0]
+        type(self).overtake = staticmethod(overtake)
+        publisher = self.publisher('/beginner')
+        self.assertTrue(until(lambda: overtaken, PATIENCE))
+        self.assertTrue(until(lambda: 'ball' not in objects(), PATIENCE), 'the older answer does not replace the scene')
+        self.assertTrue(until(lambda: 'ball' in objects(), PATIENCE), objects())
+        self.assertStatus('beginner', 0, 'following', 'scenes replaced after a comparison=1')
+        type(self).overtake = staticmethod(lambda: None)
+        publisher.unregister()
 
 
 if __name__ == '__main__':
