@@ -2,6 +2,7 @@
 /* MoveIt's planning pipeline with and without the adapter, and its plugin loader with the collision detector. */
 #include <gtest/gtest.h>
 #include <moveit/collision_detection/collision_plugin_cache.h>
+#include <moveit/collision_plugin_loader/collision_plugin_loader.h>
 #include <moveit/planning_pipeline/planning_pipeline.h>
 #include <moveit/planning_scene/planning_scene.h>
 #include <moveit/utils/robot_model_test_utils.h>
@@ -37,12 +38,9 @@ planning_scene::PlanningScenePtr sceneWithPost(double angle, double aside) {
   return scene;
 }
 
-/* Does a pipeline with these adapters give a plan from -.8 rad to .8 rad? */
-bool plans(const planning_scene::PlanningScenePtr &scene, const std::vector<std::string> &adapters, double clearance,
+/* Does a pipeline give a plan from -.8 rad to .8 rad? */
+bool plans(const planning_scene::PlanningScenePtr &scene, const planning_pipeline::PlanningPipeline &pipeline,
            planning_interface::MotionPlanResponse &res) {
-  ros::NodeHandle node("~pipeline");
-  node.setParam("certify_clearance", clearance);
-  const planning_pipeline::PlanningPipeline pipeline(panda(), node, "straight_planner/StraightPlanner", adapters);
   planning_interface::MotionPlanRequest req;
   req.group_name = "panda_arm";
   req.max_velocity_scaling_factor = req.max_acceleration_scaling_factor = 1.0;
@@ -55,6 +53,14 @@ bool plans(const planning_scene::PlanningScenePtr &scene, const std::vector<std:
     req.goal_constraints[0].joint_constraints.push_back(constraint);
   }
   return pipeline.generatePlan(scene, req, res);
+}
+
+/* Does one with these adapters? */
+bool plans(const planning_scene::PlanningScenePtr &scene, const std::vector<std::string> &adapters, double clearance,
+           planning_interface::MotionPlanResponse &res) {
+  ros::NodeHandle node("~pipeline");
+  node.setParam("certify_clearance", clearance);
+  return plans(scene, {panda(), node, "straight_planner/StraightPlanner", adapters}, res);
 }
 
 } // namespace
@@ -149,6 +155,23 @@ TEST(Pipeline, rejects_in_a_world_that_is_not_known_whole) {
 TEST(Pipeline, refuses_a_trajectory_without_times) {
   planning_interface::MotionPlanResponse res;
   EXPECT_FALSE(plans(sceneWithPost(0.3, 0.3), {OURS}, 0.0, res));
+}
+
+/* moveit_certify.launch and moveit_collision_detector.launch have set the parameters of a move_group. */
+TEST(Pipeline, is_that_of_the_launch_files) {
+  ros::NodeHandle move_group("/move_group");
+  const planning_pipeline::PlanningPipeline pipeline(panda(), ros::NodeHandle(move_group, "planning_pipelines/ompl"),
+                                                     "planning_plugin", "request_adapters");
+  ASSERT_EQ(pipeline.getAdapterPluginNames().size(), 7u);
+  EXPECT_EQ(pipeline.getAdapterPluginNames().front(), OURS);
+  for (const double aside : {0.0, 0.3}) {
+    const auto scene = sceneWithPost(0.3, aside);
+    collision_detection::CollisionPluginLoader loader;
+    loader.setupScene(move_group, scene);
+    EXPECT_EQ(scene->getActiveCollisionDetectorName(), "CurveProximity");
+    planning_interface::MotionPlanResponse res;
+    EXPECT_EQ(plans(scene, pipeline, res), aside > 0.0);
+  }
 }
 
 int main(int argc, char **argv) {
