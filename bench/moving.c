@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Bodies that move and turn: first contacts in the scenes of DART's comparative benchmark of continuous collision, a
+/* Bodies that move and turn: first contacts in the scenes of DART's comparative benchmark of continuous collision, with
+ * Bullet and FCL beside ours where they are installed, a
  * box that turns along a cubic Bézier curve beside the same box that does not, a sphere that slides beside a box, two
  * arms in one cell, and many movers on one clock. */
 #include <math.h>
@@ -8,16 +9,20 @@
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "peers/contact_peers.h"
 #include "solve/list.h"
 #include "support/measure.h"
 #include "support/random.h"
 #include "support/robot_case.h"
 
-enum { SCENES = 9, FLYERS = 10, SEGMENTS = 100, FLYER_PAIRS = FLYERS * (FLYERS - 1) / 2 };
+enum { MOST_PEERS = 5, FLYERS = 10, SEGMENTS = 100, FLYER_PAIRS = FLYERS * (FLYERS - 1) / 2 };
 
 static const cprox_pose HERE = {.orientation = {.w = 1.0}};
 static const int32_t VARIABLES[7] = {0, 1, 2, 3, 4, 5, 6};
 static const double RIGHT_ANGLE = 1.57079632679489661923;
+
+/* DART's curve. */
+static const cprox_vec3 CURVE[4] = {{-2, 2, 0}, {-2, -2, 0}, {2, -2, 0}, {2, 2, 0}};
 
 /* A body on a joint of its own, or along a curve, and what stands. */
 typedef struct scene {
@@ -49,10 +54,13 @@ static void go(scene *s, const double from[7], const double to[7], cprox_turning
   ride(s, CPROX_JOINT_FLOATING, (cprox_motion_description){.waypoints = ends, .n_waypoints = 2, .turning = turning});
 }
 
-/* Along DART's curve, turning so far about z. */
+/* Along the curve, turning so far about z. */
 static void follow(scene *s, double turn) {
-  double control[4][6] = {{-2, 2, 0}, {-2, -2, 0}, {2, -2, 0}, {2, 2, 0}};
-  for (int i = 0; i < 4; i++) control[i][5] = turn * i / 3.0;
+  double control[4][6];
+  for (int i = 0; i < 4; i++) {
+    const double row[6] = {CURVE[i].x, CURVE[i].y, CURVE[i].z, 0, 0, turn * i / 3.0};
+    memcpy(control[i], row, sizeof row);
+  }
   static const double KNOTS[8] = {0, 0, 0, 0, 1, 1, 1, 1};
   ride(s, CPROX_JOINT_ROTATION_VECTOR,
        (cprox_motion_description){.kind = CPROX_MOTION_BSPLINE,
@@ -111,12 +119,13 @@ static void answer_with(cprox_status status, const cprox_result *r, double lower
   answer->failed = status != CPROX_OK;
 }
 
-/* The answer is the time: never after the truth. */
+/* The answer is the time: a contact that was found, and a time before which there is none. */
 static void contact(const void *problems, size_t i, void *state, bench_answer *answer) {
   const scene *s = (const scene *)problems + i;
   cprox_result r;
   const cprox_status status = list_time_of_contact(s->mover, &s->target, 1, NULL, state, &r);
-  answer_with(status, &r, r.t_contact_lower, r.t_contact_lower + 1e-6, answer);
+  answer_with(status, &r, r.t_contact_lower, r.t, answer);
+  answer->failed = answer->failed || r.verdict != CPROX_VERDICT_VIOLATED;
 }
 
 static void distance(const void *problems, size_t i, void *state, bench_answer *answer) {
@@ -133,39 +142,96 @@ static void among(const void *problems, size_t i, void *state, bench_answer *ans
   answer_with(status, &r, r.lower, r.upper, answer);
 }
 
-/* ---- workloads ---- */
+/* ---- first contacts ---- */
 
-static void contacts(const bench_size *size, cprox_workspace *ws) {
-  static const double FROM[7] = {-5, 0, 0, 0, 0, 0, 1}, TO[7] = {5, 0, 0, 0, 0, 0, 1};
-  const double h = sqrt(0.5), turn_from[7] = {-3, 0, 0, 0, 0, 0, 1}, screw_from[7] = {0, 0, -2, 0, 0, 0, 1},
-               turned[7] = {0, 0, 0, 0, 0, h, h};
-  const cprox_pose below = {.position = {0, -1, 0}, .orientation = {.w = 1.0}};
-  scene s[SCENES];
-  begin(&s[0], "box box", box(), box(), HERE);
-  begin(&s[1], "sphere sphere", sphere(), sphere(), HERE);
-  begin(&s[2], "capsule capsule", capsule(), capsule(), HERE);
-  begin(&s[3], "sphere box", sphere(), box(), HERE);
-  begin(&s[4], "octahedron octahedron", octahedron(), octahedron(), HERE);
-  begin(&s[5], "sphere cylinder", sphere(), cylinder(), HERE);
-  for (int i = 0; i < 6; i++) go(&s[i], FROM, TO, CPROX_TURNING_SLERP);
-  begin(&s[6], "box box turning", box(), box(), HERE);
-  go(&s[6], turn_from, turned, CPROX_TURNING_SLERP);
-  begin(&s[7], "box box screw", box(), box(), HERE);
-  go(&s[7], screw_from, turned, CPROX_TURNING_SCREW);
-  begin(&s[8], "box box spline", box(), box(), below);
-  follow(&s[8], 0.0);
-  static const double TRUTH[SCENES] = {0.4, 0.4, 0.42, 0.4, 0.38, 0.4, 0.600565822321, 0.5, 0.326351822333};
-  const bench_method ours = {"curve_proximity", contact, ws};
-  for (int i = 0; i < SCENES; i++) {
-    const bench_workload w = {"moving", "contact", s[i].name, &s[i], 1, &TRUTH[i], 1e-11};
-    bench_measure(&w, size, &ours, 1);
-    end(&s[i]);
+static const contact_peer *const PEERS[MOST_PEERS + 1] = {
+#ifdef CPROX_BENCH_BULLET
+    &contact_peer_bullet_convex,
+    &contact_peer_bullet_subsimplex,
+#endif
+#ifdef CPROX_BENCH_FCL
+    &contact_peer_fcl_advancement,
+    &contact_peer_fcl_other_solver,
+    &contact_peer_fcl_defaults,
+#endif
+    NULL};
+
+/* What a peer was given, and when the contact is. */
+typedef struct peer_scene {
+  const contact_peer *peer;
+  void *own;
+  double truth;
+} peer_scene;
+
+/* Wrong: later than the truth by more than the 1e-6 that all are asked for, or never. */
+static void contact_of_peer(const void *problems, size_t i, void *state, bench_answer *answer) {
+  (void)problems, (void)i;
+  const peer_scene *p = state;
+  const double t = p->own ? p->peer->answer(p->own) : NAN;
+  *answer = (bench_answer){.lower = t, .upper = t, .failed = isnan(t), .wrong = t > p->truth + 1e-6};
+}
+
+static cprox_body *body_of(contact_shape shape) {
+  switch (shape) {
+    case CONTACT_BOX: return box();
+    case CONTACT_SPHERE: return sphere();
+    case CONTACT_CAPSULE: return capsule();
+    case CONTACT_CYLINDER: return cylinder();
+    default: return octahedron();
   }
 }
 
+static void contact_in(const contact_scene *given, double truth, const bench_size *size, cprox_workspace *ws) {
+  scene s;
+  begin(&s, given->name, body_of(given->moving), body_of(given->standing), given->at);
+  const cprox_vec3 from = given->from.position, to = given->to.position;
+  const cprox_quat p = given->from.orientation, q = given->to.orientation;
+  if (given->path == CONTACT_BEZIER)
+    follow(&s, 0.0);
+  else
+    go(&s, (double[7]){from.x, from.y, from.z, p.x, p.y, p.z, p.w}, (double[7]){to.x, to.y, to.z, q.x, q.y, q.z, q.w},
+       given->path == CONTACT_SCREW ? CPROX_TURNING_SCREW : CPROX_TURNING_SLERP);
+
+  bench_method methods[MOST_PEERS + 1] = {{"curve_proximity", contact, ws}};
+  peer_scene peers[MOST_PEERS];
+  size_t n = 0;
+  for (; PEERS[n]; n++) {
+    peers[n] = (peer_scene){PEERS[n], PEERS[n]->make(given), truth};
+    methods[n + 1] = (bench_method){PEERS[n]->name, contact_of_peer, &peers[n]};
+  }
+  const bench_workload w = {"moving", "contact", given->name, &s, 1, &truth, 1e-11};
+  bench_measure(&w, size, methods, n + 1);
+  for (size_t k = 0; k < n; k++)
+    if (peers[k].own) peers[k].peer->drop(peers[k].own);
+  end(&s);
+}
+
+static void contacts(const bench_size *size, cprox_workspace *ws) {
+  const double h = sqrt(0.5);
+  const cprox_pose from = {.position = {-5, 0, 0}, .orientation = {.w = 1}},
+                   to = {.position = {5, 0, 0}, .orientation = {.w = 1}},
+                   turning = {.position = {-3, 0, 0}, .orientation = {.w = 1}},
+                   above = {.position = {0, 0, -2}, .orientation = {.w = 1}},
+                   turned = {.orientation = {.w = h, .z = h}},
+                   below = {.position = {0, -1, 0}, .orientation = {.w = 1}};
+  const contact_scene scenes[] = {
+      {"box box", CONTACT_BOX, CONTACT_BOX, CONTACT_STRAIGHT, from, to, CURVE, HERE},
+      {"sphere sphere", CONTACT_SPHERE, CONTACT_SPHERE, CONTACT_STRAIGHT, from, to, CURVE, HERE},
+      {"capsule capsule", CONTACT_CAPSULE, CONTACT_CAPSULE, CONTACT_STRAIGHT, from, to, CURVE, HERE},
+      {"sphere box", CONTACT_SPHERE, CONTACT_BOX, CONTACT_STRAIGHT, from, to, CURVE, HERE},
+      {"octahedron octahedron", CONTACT_OCTAHEDRON, CONTACT_OCTAHEDRON, CONTACT_STRAIGHT, from, to, CURVE, HERE},
+      {"sphere cylinder", CONTACT_SPHERE, CONTACT_CYLINDER, CONTACT_STRAIGHT, from, to, CURVE, HERE},
+      {"box box turning", CONTACT_BOX, CONTACT_BOX, CONTACT_STRAIGHT, turning, turned, CURVE, HERE},
+      {"box box screw", CONTACT_BOX, CONTACT_BOX, CONTACT_SCREW, above, turned, CURVE, HERE},
+      {"box box spline", CONTACT_BOX, CONTACT_BOX, CONTACT_BEZIER, HERE, HERE, CURVE, below}};
+  static const double TRUTH[] = {0.4, 0.4, 0.42, 0.4, 0.38, 0.4, 0.600565822321, 0.5, 0.326351822333};
+  for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) contact_in(&scenes[i], TRUTH[i], size, ws);
+}
+
+/* ---- other workloads ---- */
+
 /* The other box stands 1 m below the lowest point of the curve. */
 static void turning_box(const bench_size *size, cprox_workspace *ws) {
-  static const cprox_vec3 CURVE[4] = {{-2, 2, 0}, {-2, -2, 0}, {2, -2, 0}, {2, 2, 0}};
   const cprox_pose below = {.position = {0.3, -3, 0.2}, .orientation = {.w = 1.0}};
   scene s[3];
   for (int i = 0; i < 3; i++) begin(&s[i], "cubic Bezier", box(), box(), below);

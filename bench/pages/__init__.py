@@ -5,10 +5,10 @@ import os
 import subprocess
 import textwrap
 
-from pages import choosing, hulls, optimise, readme, seeds, stability
+from pages import choosing, contacts, hulls, optimise, readme, seeds, stability
 from pages.figures import Figures
 
-NEEDS = {'stability.md': {'stability'}, 'optimise.md': {'optimise'}, 'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit', 'worlds', 'certificates'}}
+NEEDS = {'stability.md': {'stability'}, 'optimise.md': {'optimise'}, 'contacts.md': {'moving'}, 'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit', 'worlds', 'certificates'}}
 
 
 def how_made(command, commit):
@@ -30,6 +30,7 @@ def write_all(rows, drawn, out, made):
     pages = {'README.md': lambda: readme.page(figures, drawn, made, out), 'seeds.md': lambda: seeds.page(figures),
              'stability.md': lambda: stability.page(figures),
              'optimise.md': lambda: optimise.page(figures),
+             'contacts.md': lambda: contacts.page(figures),
              'choosing.md': lambda: choosing.page(figures)}
     if hulls.read(out):
         pages['hulls.md'] = lambda: hulls.page(out)

@@ -135,7 +135,8 @@ def page(figures, drawn, made, out):
 
 Trust ratios and counts, not microseconds. `results.csv` has every row. [choosing.md](choosing.md) says what follows from them for a planner,
 [seeds.md](seeds.md) has the papers' own tables, [stability.md](stability.md) hard inputs: right, wrong, given up,
-[hulls.md](hulls.md) robots' meshes beside their hulls, [optimise.md](optimise.md) motions of an arm made smooth and clear.
+[hulls.md](hulls.md) robots' meshes beside their hulls, [optimise.md](optimise.md) motions of an arm made smooth and clear,
+[contacts.md](contacts.md) first contacts beside Bullet and FCL.
 
 {table(['chart', 'shows'], chart_lines)}
 

@@ -157,9 +157,11 @@ void bench_measure(const bench_workload *w, const bench_size *size, const bench_
 
   for (size_t m = 0; m < n; m++) {
     record *r = &records[m];
-    printf("%s,%s,%s,%s,%.4g,%.4g,%.4g,%.4g,", w->group, w->name, methods[m].name, w->parameter,
-           1e6 * quantile(r->time, w->n, 0.5), 1e6 * quantile(r->time, w->n, 0.95), quantile(r->nodes, w->n, 0.5),
-           quantile(r->distance_queries, w->n, 0.5));
+    const bool answers = r->failures < w->n;
+    const double typical = answers ? quantile(r->time, w->n, 0.5) : NAN,
+                 slow = answers ? quantile(r->time, w->n, 0.95) : NAN;
+    printf("%s,%s,%s,%s,%.4g,%.4g,%.4g,%.4g,", w->group, w->name, methods[m].name, w->parameter, 1e6 * typical,
+           1e6 * slow, quantile(r->nodes, w->n, 0.5), quantile(r->distance_queries, w->n, 0.5));
     if (w->truth) printf("%.3g", r->error);
     printf(",%zu,%zu\n", r->unsound, r->failures);
     free(r->time);

@@ -51,8 +51,8 @@ bool bench_wanted(const bench_size *size, const char *workload);
 
 /* Prints a row for each method: group,workload,method,parameter,median_us,p95_us,nodes,distance
  * queries,error,unsound,failures. Times are medians over the rounds, then median and 95 % over the problems, of thread
- * CPU time; nodes and distance queries are medians over the problems; error is the largest |upper - truth|; unsound
- * counts intervals that do not contain the truth and wrong verdicts. */
+ * CPU time, nan where no problem is answered; nodes and distance queries are medians over the problems; error is the
+ * largest |upper - truth|; unsound counts intervals that do not contain the truth and wrong verdicts. */
 void bench_measure(const bench_workload *workload, const bench_size *size, const bench_method *methods, size_t n);
 
 #ifdef __cplusplus

@@ -168,7 +168,7 @@ class Pages(unittest.TestCase):
     def test_the_committed_run_gives_every_page_and_a_line_for_each_target(self):
         with tempfile.TemporaryDirectory() as out:
             written = pages.write_all(committed(), ['tolerance'], out, 'Made.')
-            self.assertEqual(sorted(written), ['README.md', 'choosing.md', 'optimise.md', 'seeds.md', 'stability.md'])
+            self.assertEqual(sorted(written), ['README.md', 'choosing.md', 'contacts.md', 'optimise.md', 'seeds.md', 'stability.md'])
             with open(os.path.join(out, 'README.md')) as text:
                 said = text.read()
             for asked in targets.read_targets():
