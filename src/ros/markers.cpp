@@ -92,6 +92,15 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, co
   });
 }
 
+bool MarkerPublisher::wantsCurves() {
+  if (isWatched()) return true;
+  const auto now = std::chrono::steady_clock::now();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (now - kept_ < std::chrono::duration<double>(PERIOD)) return false;
+  kept_ = now;
+  return true;
+}
+
 void MarkerPublisher::show(std::shared_ptr<const Drawing> drawing) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (drawing->motion || drawing->movers) motion_ = drawing;

@@ -9,6 +9,7 @@
 #include <ros/wall_timer.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -60,6 +61,10 @@ class MarkerPublisher {
     return publisher_.getNumSubscribers() > 0;
   }
 
+  /** Whether the curves of a request should be kept for show(). Somebody who comes later sees what was kept: so much is
+   * enough that it is no older than the last request by more than the time between two publications. */
+  bool wantsCurves();
+
  private:
   void publishIfNew();
 
@@ -69,6 +74,7 @@ class MarkerPublisher {
   std::mutex mutex_;
   std::shared_ptr<const Drawing> curves_, motion_, state_;
   std::shared_ptr<const LevelDrawing> levels_;
+  std::chrono::steady_clock::time_point kept_{}; /* when wantsCurves() last said so */
   bool changed_ = true;
   std::uint64_t shown_scene_ = 0;
   ros::Publisher publisher_;

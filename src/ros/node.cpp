@@ -2,6 +2,7 @@
 /** The server as a process: memory limit, signals, and a watch on the master; all else is ProximityServer. */
 #include <ros/console.h>
 #include <ros/init.h>
+#include <ros/poll_manager.h>
 #include <ros/this_node.h>
 #include <signal.h>
 
@@ -33,6 +34,12 @@ void catchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+/** While a thread writes an answer, roscpp's poll thread asks again and again whether the socket is ready, and leaves
+ * the writing to that thread. On the same processor it would keep it from writing for a whole time slice. */
+void makeWayForWriters() {
+  ros::PollManager::instance()->addPollThreadListener([] { std::this_thread::yield(); });
+}
+
 /** Until a signal, a shutdown by the graph, or the end of our registration. */
 int serve() {
   unsigned long closed = 0;
@@ -61,6 +68,7 @@ int main(int argc, char **argv) {
   try {
     const curve_proximity::Parameters parameters = curve_proximity::readParameters(handle);
     curve_proximity::limitMemory(parameters.memory_limit_mb);
+    makeWayForWriters();
     const curve_proximity::ProximityServer server(handle, parameters);
     code = serve();
   } catch (const std::exception &error) {

@@ -20,12 +20,6 @@
 namespace curve_proximity {
 namespace {
 
-/** Markers show no more curves than a person can tell apart. */
-constexpr std::size_t MAX_DRAWN_CURVES = 100;
-
-/** From here on a further thread is worth its while: a curve takes a few microseconds, to wake a thread ten or more. */
-constexpr std::size_t MANY_CURVES = 64;
-
 /** Curves that a thread takes at a time. */
 constexpr std::size_t A_PART = 8;
 
@@ -570,7 +564,7 @@ void Queries::gather(const CurvePlace *places, CurveRows &&found, CurveSearch &s
       if (!found.in_place) work.response.results.push_back(std::move(*row));
     }
     ++search.curves;
-    if (place.stamped && work.drawing.lines.size() < MAX_DRAWN_CURVES) search.drawn = &place.stamped->links;
+    if (place.stamped && work.drawing.hasRoom()) search.drawn = &place.stamped->links;
   }
   std::move(found.lines.begin(), found.lines.end(), std::back_inserter(work.drawing.lines));
   std::move(found.profiles.begin(), found.profiles.end(), std::back_inserter(work.response.profiles));
@@ -582,8 +576,8 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
   if (work.request.turn) work.request.turn->yield();
   const CurvePlace where = place(message, search, work);
   CurveRows found;
-  Queries::search(message, where, work.query, work.request.asking, work.drawing.lines.size() < MAX_DRAWN_CURVES,
-                  *search.workspace, search.scratch, found);
+  Queries::search(message, where, work.query, work.request.asking, work.drawing.hasRoom(), *search.workspace,
+                  search.scratch, found);
   gather(&where, std::move(found), search, work);
 }
 
@@ -665,6 +659,7 @@ void Queries::answerManyCurves(CurveSearch &search, Work &work) {
   const Asking &asking = work.request.asking;
   std::vector<Proximity> &results = work.response.results;
   const std::size_t before = results.size();
+  const std::size_t most_drawn = work.drawing.most_lines;
   const bool one_row_each = !work.query.per_object && asking.kind != Asking::NEAREST;
   if (one_row_each) results.resize(before + curves.size());
   const auto rows = std::make_shared<SharedRows>((curves.size() + A_PART - 1) / A_PART);
@@ -675,10 +670,10 @@ void Queries::answerManyCurves(CurveSearch &search, Work &work) {
       CurveRows &out = rows->parts[part];
       if (one_row_each) out.in_place = &results[before + first];
       out.counts.reserve(last - first);
-      if (first < MAX_DRAWN_CURVES) out.lines.reserve(last - first);
+      if (first < most_drawn) out.lines.reserve(last - first);
       for (std::size_t i = first; i < last; ++i) {
         if (turn) turn->yield();
-        Queries::search(curves.begin()[i], places[i], query, asking, i < MAX_DRAWN_CURVES, workspace, scratch, out);
+        Queries::search(curves.begin()[i], places[i], query, asking, i < most_drawn, workspace, scratch, out);
       }
       claimed = rows->claim(part); // before the request may go on without this thread
       rows->finish();

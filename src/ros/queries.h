@@ -140,7 +140,8 @@ struct Drawing {
     std::vector<Answer> answers;
   };
   QueryType query_type = QueryType::DISTANCE;
-  std::vector<Line> lines; /**< of the first curves of the request */
+  std::size_t most_lines = 100; /**< no more than a person can tell apart; 0: nobody will look at them */
+  std::vector<Line> lines;      /**< of the first curves of the request */
   SnapshotPtr snapshot;
   LinkPoses links; /**< of the last of these curves; without curves those of the motion at its closest moment */
 
@@ -151,7 +152,14 @@ struct Drawing {
   /** What moved beside the robot of the last trajectory, or of the last request of movers; null: nothing. */
   std::shared_ptr<const Movers> movers;
   std::vector<MovingRobot> robots; /**< of it, without the robot of `motion` */
+
+  bool hasRoom() const {
+    return lines.size() < most_lines;
+  }
 };
+
+/** From here on a further thread is worth its while: a curve takes a few microseconds, to wake a thread ten or more. */
+constexpr std::size_t MANY_CURVES = 64;
 
 /** Answers requests, from any number of threads at once. */
 class Queries {

@@ -23,7 +23,11 @@ class Markers(unittest.TestCase):
     def setUpClass(cls):
         cls.server = Server()
         cls.arrays = []
-        rospy.Subscriber('/curve_proximity/markers', MarkerArray, cls.arrays.append)
+        cls.listen()
+
+    @classmethod
+    def listen(cls):
+        cls.subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, cls.arrays.append)
 
     def shown(self, condition, *spaces):
         """The markers of the first array from now on in which those of these namespaces meet the condition, by namespace."""
@@ -63,6 +67,24 @@ class Markers(unittest.TestCase):
         for p in coordinates(marker.points):
             value = sum(abs(x / a)**n for x, a, n in zip(p, axes, exponents))
             self.assertAlmostEqual(value, 1.0, delta=1e-9)
+
+    def test_who_comes_later_sees_the_last_curves(self):
+        """Of requests with many curves that nobody watches one in a tenth of a second is kept."""
+        self.server.replace(sphere('ball', 0.1))
+        self.subscriber.unregister()
+        rospy.sleep(0.5)  # until the node knows
+        asked = []
+        for height in range(2, 32):
+            asked.append((rospy.get_time(), float(height)))
+            lines = [bezier((-1, y, height), (1, y, height), id='line') for y in range(64)]
+            self.assertEqual(len(self.server.distance(lines).results), 64)
+        took = rospy.get_time() - asked[-1][0]
+        del self.arrays[:]
+        self.listen()
+        kept_at = lambda s: {round(p[2]) for m in s['curves'] for p in coordinates(m.points)}  # thin tubes
+        heights = kept_at(self.shown(lambda s: min(kept_at(s)) > 1, 'curves'))  # after the latched ones of before
+        kept = next(time for time, height in asked if {height} == heights)
+        self.assertLess(asked[-1][0] - kept, 0.1 + took)
 
     def test_the_pair_is_the_answers_and_the_curve_has_the_colour_of_its_clearance(self):
         self.server.replace(sphere('ball', 0.25, (0.2, 0, 0.6)))
