@@ -67,13 +67,13 @@ static inline vec3l ref_turn(const long double *q, vec3l x) {
   return ref_add(ref_add(x, ref_scale(q[3], twice)), ref_cross(v, twice));
 }
 
-static inline vec3l ref_pose_apply(const ref_pose *pose, vec3l x) {
-  return ref_add(ref_turn(pose->q, x), pose->p);
+static inline vec3l ref_pose_apply(const ref_pose *placed, vec3l x) {
+  return ref_add(ref_turn(placed->q, x), placed->p);
 }
 
-static inline vec3l ref_pose_undo(const ref_pose *pose, vec3l x) {
-  const long double back[4] = {-pose->q[0], -pose->q[1], -pose->q[2], pose->q[3]};
-  return ref_turn(back, ref_sub(x, pose->p));
+static inline vec3l ref_pose_undo(const ref_pose *placed, vec3l x) {
+  const long double back[4] = {-placed->q[0], -placed->q[1], -placed->q[2], placed->q[3]};
+  return ref_turn(back, ref_sub(x, placed->p));
 }
 
 /* Where a pose is in the world, given in the frame of another one. */
