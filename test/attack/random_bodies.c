@@ -357,11 +357,13 @@ static double extent_of(const random_body *b, double scale) {
   double most = scale;
   for (size_t i = 0; i < b->n_parts; i++) {
     const part *f = &b->parts[i];
-    double far = f->form == FORM_HALFSPACE ? 0.0 : vec_norm(f->size) + f->margin;
-    if (f->form == FORM_CAPSULE) far = f->size.x + f->size.z + f->margin;
-    for (size_t v = 0; v < f->n; v++)
-      far = fmax(far, fmax(vec_norm(f->points[v]), vec_norm(f->high[v])) + f->margin +
-                          (f->form == FORM_BALLS ? f->size.x : 0.0));
+    double far = f->form == FORM_HALFSPACE ? 0.0 : f->form == FORM_CAPSULE ? f->size.x + f->size.z : vec_norm(f->size);
+    for (size_t v = 0; v < f->n; v++) {
+      const vec3 p = f->points[v], q = f->form == FORM_BOXES ? f->high[v] : p;
+      const vec3 corner = vec(fmax(fabs(p.x), fabs(q.x)), fmax(fabs(p.y), fabs(q.y)), fmax(fabs(p.z), fabs(q.z)));
+      far = fmax(far, vec_norm(corner) + (f->form == FORM_BALLS ? f->size.x : 0.0));
+    }
+    far += f->margin;
     most = fmax(most, far + vec_norm(f->pose.position));
   }
   return most;

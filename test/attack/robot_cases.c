@@ -793,6 +793,13 @@ static cprox_options some_options(rng *r) {
   return options;
 }
 
+/* Of the starts the least known one. */
+static const char *starts_of(const world *w) {
+  double most = 0.0;
+  for (size_t m = 0; m < w->n_members; m++) most = fmax(most, w->tolerances[m]);
+  return most == 0.0 ? "" : isinf(most) ? "anywhere on its path, " : "vague starts, ";
+}
+
 void robot_case(attack *a, rng *r, bool several) {
   static const struct {
     const char *name;
@@ -814,7 +821,7 @@ void robot_case(attack *a, rng *r, bool several) {
     w.mover = mover_of(&w);
     list_pairs(&w);
     const test_robot *t = &w.members[0];
-    attack_kind(a, "%s: %s, %s%s", QUERIES[which].name, ABOUT[about], w.vague ? "vague starts, " : "",
+    attack_kind(a, "%s: %s, %s%s", QUERIES[which].name, ABOUT[about], starts_of(&w),
                 t->spline                      ? "spline"
                 : t->n_points > TEST_WAYPOINTS ? "many waypoints"
                                                : "few waypoints");
