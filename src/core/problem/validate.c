@@ -242,7 +242,7 @@ static cprox_status check_radius_against(const cprox_mover *mover, const cprox_o
         "a radius that changes: target %zu is a curve, a mesh, points, boxes or known by its distance "
         "alone, must be convex or have convex parts",
         index);
-  char whose[40];
+  char whose[48];
   snprintf(whose, sizeof whose, "the radius of target %zu", index);
   return radius_check(whose, target->radius_curve, target->margin, mover->curve, workspace);
 }
