@@ -37,7 +37,15 @@ void catchSignals() {
 /** While a thread writes an answer, roscpp's poll thread asks again and again whether the socket is ready, and leaves
  * the writing to that thread. On the same processor it would keep it from writing for a whole time slice. */
 void makeWayForWriters() {
-  ros::PollManager::instance()->addPollThreadListener([] { std::this_thread::yield(); });
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::microseconds SHORT_ROUND{5}; // one that reads or accepts takes longer
+  static constexpr int MANY = 4;
+  ros::PollManager::instance()->addPollThreadListener([before = Clock::time_point(), rounds = 0]() mutable {
+    const Clock::time_point now = Clock::now();
+    rounds = now - before < SHORT_ROUND ? rounds + 1 : 0;
+    if (rounds >= MANY) std::this_thread::yield();
+    before = now;
+  });
 }
 
 /** Until a signal, a shutdown by the graph, or the end of our registration. */
