@@ -93,7 +93,8 @@ class Field {
 
   static void addCrossing(Marker &lines, double level, const Corner &a, const Corner &b, const Corner &c) {
     std::vector<geometry_msgs::Point> met;
-    for (const auto &[from, to] : {std::make_pair(&a, &b), std::make_pair(&b, &c), std::make_pair(&c, &a)}) {
+    const std::pair<const Corner *, const Corner *> sides[] = {{&a, &b}, {&b, &c}, {&c, &a}};
+    for (const auto &[from, to] : sides) {
       if ((from->value < level) == (to->value < level)) continue;
       const double s = (level - from->value) / (to->value - from->value);
       met.push_back(toPointMessage(toVec3(from->at + s * (to->at - from->at))));

@@ -86,7 +86,7 @@ static long double widest(long double (*a)[2], size_t n, long double (*b)[2], si
   return most;
 }
 
-static long double corner_to_edges(const long double p[2], long double (*a)[2], size_t n) {
+static long double corner_to_edges(const long double *p, long double (*a)[2], size_t n) {
   long double best = INFINITY;
   for (size_t i = 0; i < n; i++) {
     const long double dx = a[(i + 1) % n][0] - a[i][0], dy = a[(i + 1) % n][1] - a[i][1];
