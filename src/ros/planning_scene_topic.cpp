@@ -188,6 +188,7 @@ bool PlanningSceneTopic::compare(const moveit::PlanningScene &message) {
       [&] {
         std::vector<std::string> now = differencesTo(message);
         std::vector<std::string> both = chosen(now, suspected_, true);
+        beyond_repair_ = chosen(beyond_repair_, now, true); // what has come right may be lost again
         const std::vector<std::string> lost = chosen(both, beyond_repair_, false);
         if (!lost.empty()) {
           complain("~planning_scene lacked what ~get_planning_scene has, and that scene replaces the one here: " +

@@ -257,7 +257,7 @@ class PlanningScene(unittest.TestCase):
 
         # what a full scene does not mend is reported, and no reason to take each answer
         type(self).scene = full_scene()
-        self.scene.world.collision_objects.append(foreign(sphere('lost', .1), frame='moon'))
+        self.scene.world.collision_objects.append(foreign(sphere('lost', -.1)))
         self.assertStatus('follower', 1, 'differs', "'lost'", 'full scenes=3')
         self.assertLogged('/follower', 'differs', "'lost'")
         self.assertIn('differs', ' '.join(self.follower.distance(CURVES, objects=['cup']).warnings))
@@ -266,6 +266,10 @@ class PlanningScene(unittest.TestCase):
         self.assertEqual(self.fullScenes('follower')[0], full)
         type(self).scene = full_scene()
         self.assertStatus('follower', 0, 'following')
+
+        # what has come right may be lost again
+        self.scene.world.collision_objects.append(foreign(sphere('lost', .1)))
+        self.assertTrue(until(lambda: 'lost' in [thing.id for thing in self.follower.scene().objects], PATIENCE))
 
     def ask(self, topic, message, stamp):
         """Publishes a trajectory; the answer to it."""
