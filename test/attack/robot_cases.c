@@ -430,12 +430,11 @@ static bool is_below(const finding *f) {
   return f->least.upper < f->limit - f->least.room;
 }
 
-static bool keep_better(finding *f, const gap *g, long double value, double t, const double *place, vec3l begin) {
+static void keep_better(finding *f, const gap *g, long double value, double t, const double *place, vec3l begin) {
   if (g->upper < f->least.upper) f->least = *g;
-  if (!(value < f->value) && !is_below(f)) return false;
+  if (!(value < f->value) && !is_below(f)) return;
   f->value = value, f->t = t, f->begin = begin;
   memcpy(f->place, place, sizeof f->place);
-  return true;
 }
 
 static void measure_view(const world *w, const view *v, finding *f) {
@@ -533,7 +532,7 @@ static void swap_pairs(pair *p, pair *q) {
 
 /* The pairs whose balls come near the limit: the nearest one first, then in any order. Returns their number. */
 static size_t near_pairs(world *w, long double limit, pair *near) {
-  size_t n = 0;
+  size_t n = 0, nearest = 0;
   long double least = HUGE_VALL;
   for (size_t i = 0; i < w->n_asked; i++) {
     long double low = balls_in_view(w, w->asked[i], &w->views[0]), before = low, change = 0.0L;
@@ -544,10 +543,11 @@ static size_t near_pairs(world *w, long double limit, pair *near) {
     }
     if (low - 2.0L * change > limit) continue;
     near[n] = w->asked[i];
-    if (n > 0) swap_pairs(&near[n], &near[1 + rng_index(w->r, n)]);
-    if (low < least && n > 0) swap_pairs(&near[0], &near[n]);
+    if (low < least) least = low, nearest = n;
     n++;
   }
+  if (n > 0) swap_pairs(&near[0], &near[nearest]);
+  for (size_t i = 1; i < n; i++) swap_pairs(&near[i], &near[i + rng_index(w->r, n - i)]);
   return n;
 }
 
