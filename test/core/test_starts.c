@@ -223,13 +223,19 @@ CASE(balls_come_as_near_as_some_start_lets_them) {
       fail_msg("case %zu: status %s (%s), %u nodes, [%.17g, %.17g]", i, cprox_status_name(status),
                cprox_workspace_error(ws), d.nodes, d.lower, d.upper);
     if (!(d.lower <= exact + HAIR && d.upper >= exact - HAIR && d.upper - d.lower <= 1.01e-6))
-      assert_true(d.t >= interval[0] && d.t <= interval[1]);
+      fail_msg("case %zu: [%.17g, %.17g], exactly %.17Lg", i, d.lower, d.upper, exact);
+    assert_true(d.t >= interval[0] && d.t <= interval[1]);
     most = fmax(most, d.nodes);
     touching += exact <= 0.0L, apart += exact > 1e-3L;
     assert_true(tolerance_of_list(mover, NULL, 0, (double)(0.9L * exact), &options, ws, &v, NULL) >= 0);
     if (exact > 1e-9L) assert_int_equal(v.verdict, CPROX_VERDICT_CLEAR);
     assert_true(tolerance_of_list(mover, NULL, 0, (double)(1.1L * exact) + 1e-5, &options, ws, &v, NULL) >= 0);
     assert_int_equal(v.verdict, CPROX_VERDICT_VIOLATED);
+    /* violated by a pair that is not the nearest one */
+    assert_true(tolerance_of_list(mover, NULL, 0, (double)(2.0L * exact) + 0.3, &options, ws, &v, NULL) >= 0);
+    assert_int_equal(v.verdict, CPROX_VERDICT_VIOLATED);
+    if (!(v.lower <= exact + HAIR))
+      fail_msg("case %zu: violated, [%.17g, %.17g], exactly %.17Lg", i, v.lower, v.upper, exact);
     scene_free(&s);
   }
   print_message("%zu touch, %zu stay apart; %.0f nodes at most\n", touching, apart, most);

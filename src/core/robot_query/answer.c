@@ -85,7 +85,11 @@ static cprox_status answer(const query *q, size_t first, size_t last, double cut
   cprox_status failure = answer_class(q, &starts, first, last, cutoff, result, travel);
   if (failure < 0 || !start_class_is_one_of_many(q->mover.motion)) return failure;
   cprox_result all = *result;
-  while (start_class_next(q->mover.motion, &starts) && all.verdict != CPROX_VERDICT_VIOLATED) {
+  while (start_class_next(q->mover.motion, &starts)) {
+    if (all.verdict == CPROX_VERDICT_VIOLATED) { /* of the classes that are left nothing is known */
+      all.lower = fmin(all.lower, 0.0);
+      break;
+    }
     cprox_result r = {0};
     double moves = 0.0;
     const cprox_status status =
