@@ -96,9 +96,10 @@ class Movers {
 
 /** How close movers come. kind is "environment" where b is an object that stands, else "movers"; a and b are names of
  *  moving objects or links ("name/link"), result.t is the time [s]. query.links: only pairs with one of these movers
- *  ("name") or links ("name/link"). query.objects: only pairs with one of these objects, that stand or move, or robots.
- *  query.options.interval: only these times. Queries take no per_object, signed_distance or certificate: such a query
- * is refused, with status "invalid". */
+ *  ("name") or links ("name/link"), and a is one of these; an object of one pose is measured against objects that stand
+ *  only if it is named. query.objects: only pairs with one of these objects, that
+ * stand or move, or robots. query.options.interval: only these times. Queries take no per_object, signed_distance or
+ * certificate: such a query is refused, with status "invalid". */
 Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace);
 
 /** How close one of the robots comes to all that stands and to all others that move, at the times of its own motion;
@@ -143,10 +144,10 @@ std::vector<Answer> nearestPairs(const Movers &movers, const MovingRobot &robot,
 
 /** The least distance of one of the robots, as ask() of one of them tells it, and its derivatives by what that robot's
  *  trajectory was made of: positions, velocities, accelerations and joints, the duration with the start kept, and the
- *  start (cprox_robot_distance_gradient()). What else moves goes on as it does. duration and start are NaN where the
- *  minimiser is at a kink of the robot and of another mover. Of base and object there are no derivatives. Throws Error
- *  for what ask() refuses, for another query than DISTANCE, for starts with a tolerance, and for a robot that is none
- * of these. */
+ *  start (cprox_robot_distance_gradient()), by steps of its base and of an object that stands or moves; 0 for a link of
+ *  another robot. What else moves goes on as it does. duration and start are NaN where the minimiser is at a kink of
+ * the robot and of another mover. Throws Error for what ask() refuses, for another query than DISTANCE, for starts with
+ * a tolerance, and for a robot that is none of these. */
 ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, const Query &query,
                                Workspace &workspace);
 

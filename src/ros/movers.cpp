@@ -59,16 +59,26 @@ std::int64_t originOf(const ProximityQuery &query, const Snapshot &snapshot, boo
   return stamps.empty() ? 0 : *std::min_element(stamps.begin(), stamps.end());
 }
 
+} // namespace
+
 /** What the joined motion takes: each variable of an object or robot has a polynomial between any two of its waypoints,
- *  and stands before and after. robots: variables times waypoints. Any two objects are a pair. */
-std::size_t bytesOf(const std::vector<MovingObject> &objects, std::size_t robots) {
+ *  and stands before and after. Any two objects are a pair. */
+std::size_t bytesOfMovers(const std::vector<MovingObject> &objects, std::size_t values) {
   constexpr std::size_t POLYNOMIAL = 128, OF_OBJECT = 7;
-  std::size_t polynomials = robots;
+  std::size_t polynomials = values;
   for (const MovingObject &object : objects) polynomials += OF_OBJECT * (object.poses.size() + 2);
   return polynomials * POLYNOMIAL + objects.size() * objects.size() * sizeof(cprox_robot_pair);
 }
 
-} // namespace
+GatheredRobots gatherRobots(const std::vector<RobotTrajectory> &messages, const FurtherRobots &robots,
+                            std::int64_t origin, FrameLookup &lookup) {
+  GatheredRobots out;
+  for (const RobotTrajectory &message : messages) {
+    out.robots.push_back(toMovingRobot(message, robots, origin, lookup));
+    out.values += robots.at(message.robot).robot->links().size() * (message.trajectory.points.size() + 2);
+  }
+  return out;
+}
 
 bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot) {
   return !query.moving_robots.empty() || !snapshot.moving().empty();
@@ -81,7 +91,7 @@ Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &qu
   const std::int64_t origin = originOf(query, *snapshot, has_subject_, stamp);
   const std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
   const std::size_t own = has_subject_ ? snapshot->robot()->links().size() * (points + 2) : 0;
-  share_.emplace(bytesOf(objects, own + gather(query, robots, origin, lookup)), most_bytes);
+  share_.emplace(bytesOfMovers(objects, own + gather(query, robots, origin, lookup)), most_bytes);
   if (subject) {
     const MovingRobot robot{snapshot->robot()->name(), std::move(subject), 0.0, 0.0};
     checkClocks(robot, robots_, objects);
@@ -98,20 +108,17 @@ Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &qu
   const std::int64_t origin = originOf(query, *snapshot, true, stamp);
   std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
   objects.push_back(rides);
-  share_.emplace(bytesOf(objects, gather(query, robots, origin, lookup)), most_bytes);
+  share_.emplace(bytesOfMovers(objects, gather(query, robots, origin, lookup)), most_bytes);
   const std::vector<std::array<std::string, 2>> none;
   movers_ = std::make_shared<const Movers>(snapshot, robots_, objects, none, resources, stop);
 }
 
-/** The further robots; returns variables times waypoints. */
+/** The further robots; returns how many values they have. */
 std::size_t Surroundings::gather(const ProximityQuery &query, const FurtherRobots &robots, std::int64_t origin,
                                  FrameLookup &lookup) {
-  std::size_t polynomials = 0;
-  for (const RobotTrajectory &message : query.moving_robots) {
-    robots_.push_back(toMovingRobot(message, robots, origin, lookup));
-    polynomials += robots.at(message.robot).robot->links().size() * (message.trajectory.points.size() + 2);
-  }
-  return polynomials;
+  GatheredRobots gathered = gatherRobots(query.moving_robots, robots, origin, lookup);
+  robots_ = std::move(gathered.robots);
+  return gathered.values;
 }
 
 /** What the subject is measured against by name: objects that stand, objects and robots that move. */
@@ -125,7 +132,8 @@ std::vector<std::string> Surroundings::namesBeside() const {
 
 void Surroundings::ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace,
                        MotionRows &out) const {
-  if (asking.kind == Asking::GRADIENT) throw Error("gradients are not available while objects or further robots move");
+  if (asking.kind == Asking::GRADIENT && !has_subject_)
+    throw Error("gradients among what moves are by a trajectory of the robot: ask about one");
   const Against against = against_self ? Against::BOTH : Against::OTHERS;
   if (!query.per_object) return askOnce(query, against, asking, workspace, out);
   for (const std::string &name : query.objects.empty() ? namesBeside() : query.objects) {
@@ -135,16 +143,6 @@ void Surroundings::ask(const Query &query, bool against_self, const Asking &aski
     askOnce(one, against, asking, workspace, out);
     if (out.answers.back().b.empty()) out.answers.back().b = name; // nothing of it is measured
   }
-}
-
-/** Side a is what rides. */
-void Surroundings::name(Answer &answer) const {
-  if (rides_.empty() || answer.a == rides_ || answer.b != rides_) return;
-  std::swap(answer.a, answer.b);
-  std::swap(answer.result.witness_mover, answer.result.witness_obstacle);
-  std::swap(answer.result.mover_part, answer.result.obstacle_index);
-  cprox_vec3 &normal = answer.result.normal;
-  normal = {-normal.x, -normal.y, -normal.z};
 }
 
 void Surroundings::askOnce(const Query &asked, Against against, const Asking &asking, Workspace &workspace,
@@ -160,6 +158,11 @@ void Surroundings::askOnce(const Query &asked, Against against, const Asking &as
                    : curve_proximity::ask(*movers_, against, one, workspace);
   };
   if (asking.kind == Asking::ANSWER) out.answers.push_back(plainly(query));
+  if (asking.kind == Asking::GRADIENT) {
+    ClearanceRow row = clearanceGradient(*movers_, *subject, query, workspace);
+    out.gradients.push_back(std::move(row.gradient));
+    out.answers.push_back(std::move(row.answer));
+  }
   if (asking.kind == Asking::CONTACT)
     out.answers.push_back(subject ? timeOfContact(*movers_, *subject, query, workspace)
                                   : timeOfContact(*movers_, against, query, workspace));
@@ -193,7 +196,6 @@ void Surroundings::askOnce(const Query &asked, Against against, const Asking &as
       out.profiles.back().link = link;
     }
   }
-  for (Answer &answer : out.answers) name(answer);
 }
 
 } // namespace curve_proximity

@@ -26,6 +26,19 @@ using FurtherRobots = std::map<std::string, FurtherRobot>;
 /** Does anything move beside the robot that is asked about? */
 bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot);
 
+/** Further robots that move, and how many variables they have at all of their waypoints. */
+struct GatheredRobots {
+  std::vector<MovingRobot> robots;
+  std::size_t values = 0;
+};
+
+/** The robots of a request. origin: [ns] the moment that is time 0. Throws Error, which names the robot. */
+GatheredRobots gatherRobots(const std::vector<RobotTrajectory> &messages, const FurtherRobots &robots,
+                            std::int64_t origin, FrameLookup &lookup);
+
+/** What Movers of these take. values: of all robots. */
+std::size_t bytesOfMovers(const std::vector<MovingObject> &objects, std::size_t values);
+
 /** Robots and objects on one clock, and how they are asked about. */
 class Surroundings {
  public:
@@ -57,7 +70,6 @@ class Surroundings {
  private:
   std::size_t gather(const ProximityQuery &query, const FurtherRobots &robots, std::int64_t origin,
                      FrameLookup &lookup);
-  void name(Answer &answer) const;
   void askOnce(const Query &query, Against against, const Asking &asking, Workspace &workspace, MotionRows &out) const;
   std::vector<std::string> namesBeside() const;
 

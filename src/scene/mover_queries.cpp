@@ -31,6 +31,12 @@ struct Pairs {
   std::vector<cprox_robot_pair> environment, among;
 };
 
+/* Does a list of movers ("name") and links ("name/link") have it? */
+bool isNamed(const std::vector<std::string> &names, const std::string &name) {
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string &one) { return one == name || one == moverOf(name); });
+}
+
 /* The geometries that query.links names; all where it names none. Throws Error for a name that is none. */
 std::vector<bool> namedGeometries(const Movers::Data &data, const std::vector<std::string> &names) {
   std::vector<bool> out(data.geometries.size(), names.empty());
@@ -74,7 +80,8 @@ Pairs pairsOf(const Movers::Data &data, Against against, const Query &query) {
   const auto at = [](std::int32_t geometry) { return static_cast<std::size_t>(geometry); };
   if (against != Against::MOVERS) {
     for (const cprox_robot_pair &pair : data.environment)
-      if (named[at(pair.geometry)] && objects.has(*data.snapshot->world().items()[at(pair.other)].owner))
+      if ((data.geometries[at(pair.geometry)].moves || !query.links.empty()) && named[at(pair.geometry)] &&
+          objects.has(*data.snapshot->world().items()[at(pair.other)].owner))
         out.environment.push_back(pair);
   }
   if (against != Against::OBJECTS) {
@@ -116,7 +123,8 @@ double microsecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-void nameSides(const Movers::Data &data, Against against, Answer &answer) {
+/* Side a is one of `links`, where there are any. */
+void nameSides(const Movers::Data &data, Against against, const std::vector<std::string> &links, Answer &answer) {
   cprox_result &result = answer.result;
   if (result.status < 0 || result.obstacle_index < 0) return;
   const MoverGeometry &moving = data.geometries[static_cast<std::size_t>(result.mover_part)];
@@ -135,6 +143,12 @@ void nameSides(const Movers::Data &data, Against against, Answer &answer) {
   answer.b = other.name;
   answer.b_is_link = other.mover < data.robots.size();
   result.obstacle_index = other.part;
+  if (isNamed(links, answer.a) || !isNamed(links, answer.b)) return;
+  answer.b_is_link = moving.mover < data.robots.size();
+  std::swap(answer.a, answer.b);
+  std::swap(result.mover_part, result.obstacle_index);
+  std::swap(result.witness_mover, result.witness_obstacle);
+  result.normal = {-result.normal.x, -result.normal.y, -result.normal.z};
 }
 
 template <class Core>
@@ -160,7 +174,7 @@ Answer answerOf(const Movers &movers, Against asked, const Query &query, const s
   } else {
     core(moverOf(data, pairs), targetsOf(data, pairs), answer.result);
     if (answer.result.status < 0) answer.message = workspace.reason();
-    nameSides(data, pairs.against, answer);
+    nameSides(data, pairs.against, query.links, answer);
   }
   answer.microseconds = microsecondsSince(start);
   if (answer.result.status != CPROX_OK && answer.message.empty())
@@ -187,17 +201,10 @@ struct OfRobot {
   OfRobot &operator=(const OfRobot &) = delete;
 };
 
-/* Side a is the robot's, by its own name. */
+/* A row of the robot, which side a is, by its own name. */
 Answer ofRobot(const MovingRobot &robot, Answer answer) {
   const std::string prefix = robot.name + "/";
   answer.kind = "environment";
-  if (answer.a.rfind(prefix, 0) != 0 && answer.b.rfind(prefix, 0) == 0) {
-    std::swap(answer.a, answer.b);
-    std::swap(answer.result.witness_mover, answer.result.witness_obstacle);
-    std::swap(answer.result.mover_part, answer.result.obstacle_index);
-    cprox_vec3 &normal = answer.result.normal;
-    normal = {-normal.x, -normal.y, -normal.z};
-  }
   if (answer.a.rfind(prefix, 0) == 0) answer.a.erase(0, prefix.size());
   return answer;
 }
@@ -234,7 +241,7 @@ std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, 
     sides.result.mover_part = found.mover_part;
     sides.result.witness_mover = found.witness_mover;
     sides.result.witness_obstacle = found.witness_obstacle;
-    nameSides(data, pairs.against, sides);
+    nameSides(data, pairs.against, query.links, sides);
     sides = view(std::move(sides));
     out.a = sides.a, out.witness_a = sides.result.witness_mover;
     out.b = sides.b, out.witness_b = sides.result.witness_obstacle;
@@ -267,7 +274,7 @@ std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairL
       answer.id = "movers", answer.kind = "environment";
       answer.result = results[i];
       widen(query, data.rounding, std::numeric_limits<double>::infinity(), answer.result);
-      nameSides(data, some.against, answer);
+      nameSides(data, some.against, query.links, answer);
       answer.microseconds = microsecondsSince(start);
       answer.status = cprox_status_name(answer.result.status);
       if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
@@ -294,7 +301,7 @@ Violations violationsOf(const Movers &movers, Against against, double resolution
     Answer sides;
     sides.result.obstacle_index = found.obstacle_index;
     sides.result.mover_part = found.mover_part;
-    nameSides(data, pairs.against, sides);
+    nameSides(data, pairs.against, query.links, sides);
     sides = view(std::move(sides));
     out.a = sides.a, out.b = sides.b;
   };
@@ -358,6 +365,21 @@ void fillGradient(const PlaceOfRobot &place, const JoinedArrays &in, ClearanceGr
   out.start = in.starts[place.robot];
 }
 
+/* By Danskin's theorem a rigid step of one side moves its nearest point along the normal. */
+void fillSteps(const Movers &movers, const Answer &answer, ClearanceGradient &out) {
+  const Eigen::Vector3d normal = toEigen(answer.result.normal);
+  if (answer.b.empty() || !normal.allFinite()) return;
+  out.base_linear = normal;
+  out.base_angular = toEigen(answer.result.witness_mover).cross(normal);
+  const auto &objects = movers.data().snapshot->objects();
+  const auto standing = objects.find(answer.b);
+  if (standing == objects.end() && answer.b.find('/') != std::string::npos) return; // a link of another robot
+  const Eigen::Isometry3d at =
+      standing != objects.end() ? standing->second->description.pose : movers.objectPose(answer.b, answer.result.t);
+  out.object_linear = -normal;
+  out.object_angular = normal.cross(toEigen(answer.result.witness_obstacle) - at.translation());
+}
+
 } // namespace
 
 ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, const Query &query,
@@ -389,6 +411,7 @@ ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, c
   row.gradient.t = gradient.t;
   row.gradient.margin = gradient.margin;
   fillGradient(place, arrays, row.gradient);
+  fillSteps(movers, row.answer, row.gradient);
   const auto domain = asked.query.options.interval ? asked.interval : movers.domain();
   row.t0 = domain[0], row.t1 = domain[1];
   return row;

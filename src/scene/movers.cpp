@@ -208,7 +208,8 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
     most = std::max(most, geometries[i].excess);
     const std::size_t mover = geometries[i].mover;
     const std::string &name = geometries[i].name;
-    for (std::size_t k = 0; k < items.size() && geometries[i].moves; ++k) {
+    const bool is_object = mover >= data.robots.size();
+    for (std::size_t k = 0; k < items.size() && (geometries[i].moves || is_object); ++k) {
       const std::string &object = *items[k].owner;
       if (!mayTouchInOwn(data, geometries[i], object) && !data.snapshot->mayTouch(name, object) &&
           !allowed.has(name, object))

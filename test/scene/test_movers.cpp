@@ -211,8 +211,11 @@ TEST_F(Movement, the_gradient_of_a_robot_knows_that_others_move) {
     EXPECT_NEAR(g.positions(0, 0), -0.5, 1e-9);
     EXPECT_NEAR(g.positions(1, 0), -0.5, 1e-9);
     EXPECT_NEAR(g.joints.at("slide"), -1.0, 1e-9);
-    EXPECT_NEAR(g.start, 2.0, 1e-9);    /* it is at 2 m/s less far */
-    EXPECT_NEAR(g.duration, 1.0, 1e-9); /* 2 (t - 10)/T m at half of T = 1 s */
+    EXPECT_NEAR(g.start, 2.0, 1e-9); /* it is at 2 m/s less far */
+    EXPECT_NEAR(g.base_linear.x(), -1.0, 1e-9);
+    EXPECT_NEAR(g.object_linear.x(), 1.0, 1e-9);
+    EXPECT_NEAR(g.object_angular.norm(), 0.0, 1e-9); /* a ball about its middle */
+    EXPECT_NEAR(g.duration, 1.0, 1e-9);              /* 2 (t - 10)/T m at half of T = 1 s */
   }
   const Movers movers(world.snapshot(), {other}, {ball});
   expectContains(errorOf([&] { clearanceGradient(movers, cart, Query(), workspace); }), "'a'");
