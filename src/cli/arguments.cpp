@@ -30,6 +30,8 @@ const std::map<std::string, Option> &options() {
       {"--synchronized", {false, {Action::CURVES}}},
       {"--trajectory", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
       {"--movers", {false, {Action::CURVES}}},
+      {"--path", {true, {Action::CURVES}}},
+      {"--body", {true, {Action::CURVES}}},
       {"--self", {false, {Action::CURVES, Action::REPORT, Action::CHECK}}},
       {"--signed", {false, {Action::CURVES}}},
       {"--scene", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
@@ -337,6 +339,25 @@ void readMoversWords(const Words &words, Arguments &out) {
   out.self = words.has("--self");
 }
 
+/* A body along a path. A robot carries it where it has no shapes of its own. */
+void readPathWords(const Words &words, Arguments &out) {
+  for (const char *name : {"--curves", "--against", "--trajectory", "--movers", "--self", "--signed", "--per-link",
+                           "--links", "--certificate", "--second-opinion"}) {
+    if (words.has(name)) throw BadUsage("--path takes no " + std::string(name));
+  }
+  if (!words.has("--body")) throw BadUsage("--path needs --body BODY.yaml, what rides along it");
+  if (!words.has("--scene")) throw BadUsage("--path needs --scene SCENE.yaml, what it is measured against");
+  for (const char *name : {"--srdf", "--state"})
+    if (words.has(name) && !words.has("--robot")) throw BadUsage(std::string(name) + " needs --robot URDF");
+  out.action = Action::MOVERS;
+  out.path = words.text("--path");
+  out.body = words.text("--body");
+  out.scene = words.text("--scene");
+  out.robot = words.text("--robot");
+  out.srdf = words.text("--srdf");
+  out.state = words.text("--state");
+}
+
 /* The number of a shard, from 0. */
 std::size_t readShard(const Words &words, std::size_t shards) {
   const std::optional<std::uint64_t> shard = parseCount(words.text("--shard"));
@@ -372,6 +393,11 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
     case Action::CURVES:
       if (words.has("--synchronized") && !words.has("--against"))
         throw BadUsage("--synchronized needs --against: it is about two curves on one clock");
+      if (words.has("--path")) {
+        readPathWords(words, out);
+        break;
+      }
+      if (words.has("--body")) throw BadUsage("--body needs --path PATH.yaml");
       if (words.has("--movers")) {
         readMoversWords(words, out);
         break;
@@ -452,8 +478,8 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
 /* "-" is standard input, for one file. */
 void readStandardInput(Arguments &out) {
   bool taken = false;
-  for (std::string *path :
-       {&out.curves, &out.against, &out.trajectory, &out.scene, &out.robot, &out.srdf, &out.pairs, &out.cases}) {
+  for (std::string *path : {&out.curves, &out.against, &out.trajectory, &out.path, &out.body, &out.scene, &out.robot,
+                            &out.srdf, &out.pairs, &out.cases}) {
     if (*path != "-") continue;
     if (taken) throw BadUsage("'-', standard input, can be only one of the files");
     taken = true;
@@ -506,6 +532,7 @@ cprox distance  --curves A.csv --against B.csv    row i of A against row i of B,
 cprox distance  --robot URDF [--srdf SRDF] --trajectory T.yaml [--scene SCENE.yaml] [--self]
                                         the robot along a joint trajectory: a row of kind environment, one of kind self
 cprox distance  --scene SCENE.yaml --movers [--self]   what moves in the scene: objects with a trajectory, moving_robots
+cprox distance  --path PATH.yaml --body BODY.yaml --scene SCENE.yaml   a body along a nav_msgs/Path, turning as its poses say
 cprox tolerance --delta D  (as above)   verdict: clear (farther than D everywhere), violated or undecided
 cprox collision            (as above)   verdict: clear (no common point), violated (a common point) or undecided
 cprox time-of-contact      (as distance, without --against)   where along the curve or trajectory the first contact is
@@ -536,6 +563,10 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --robot FILE      a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)
   --trajectory FILE a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint
   --movers          what moves in the scene, instead of curves or a robot: against what stands there, and against each other
+  --path FILE       nav_msgs/Path, as rostopic prints it: straight from pose to pose, turning at a constant rate, at the
+                    times of the stamps; where these do not ascend, t counts poses
+  --body FILE       with --path: {id, pose, padding, primitives, meshes, bodies, ...} as an object of a scene; with an id
+                    alone: the object of that id that a link of --robot carries, along poses of the link
   --self            how close the robot comes to itself, too
   --signed          distances inside a body are negative: minus the deepest penetration (a robot's meshes by their hulls)
   --srdf FILE       links that are not checked against each other, and the frame in which the robot stands
@@ -594,7 +625,7 @@ id,kind,status,t0,t1,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,message, a row an
 id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message, a row each: farther than D before
 enter_lower and after leave_upper, within D from enter_upper to leave_lower; or one row 'clear' without numbers. Of 'constraints': id,provider,status,value,lower,upper,valid,t,
 gradients ga_ and gb_ by a step of side a and b (v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,
-microseconds,message,n,g0x,g0y,g0z,... by the curve's points. Of trajectories: t0,t1,kind,a,b (as above), g_duration, and a
+microseconds,message,n,g0x,g0y,g0z,... by the curve's points. Of trajectories: t0,t1,kind,a,b (as above), g_duration, g_start, and a
 column for each number of each point: q0_JOINT, v0_JOINT, a0_JOINT by its position, velocity and acceleration; ga_ is by a step of the
 robot's base, gb_ by one of the object b. With --check-gradient: id,provider,status,verdict,derivatives (how many were compared),
 derivative (the one that fits least),gradient,difference,misfit,doubt,message; verdict: clear (all agree within 1e-3 of 1 + the

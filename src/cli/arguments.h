@@ -50,6 +50,7 @@ struct Arguments {
   bool synchronized = false;   /**< AGAINST: both curves are at the same parameter */
   std::string against;         /**< file of AGAINST; of CHECK where it was given */
   std::string trajectory;      /**< file of TRAJECTORY; of CHECK and CONSTRAINTS where it was given */
+  std::string path, body;      /**< files of MOVERS: a nav_msgs/Path and what rides along it; empty: none */
   bool self = false;           /**< with a trajectory, or of MOVERS: ask about the robot itself, too */
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
   std::size_t intervals = 100; /**< PROFILE: so many of equal length, unless there are breaks */

@@ -48,11 +48,15 @@ MovingRobot load(const MovingRobotFile &file, const std::string &scene) {
 class MoversSubject : public Subject {
  public:
   MoversSubject(const MovingWorld &moving, Against against)
-      : movers_(moving.movers), robot_(moving.subject ? &*moving.subject : nullptr), against_(against) {
+      : moving_(moving),
+        movers_(moving.movers),
+        robot_(moving.subject ? &*moving.subject : nullptr),
+        against_(against) {
     id = "movers";
     kind = robot_ ? "environment" : "movers";
   }
   std::array<double, 2> domain() const override {
+    if (rides()) return moving_.rides;
     if (!robot_ || robot_->motion->stands()) return movers_.domain();
     const std::array<double, 2> own = robot_->motion->domain();
     return {own[0] + robot_->start, own[1] + robot_->start};
@@ -63,8 +67,10 @@ class MoversSubject : public Subject {
   }
   std::vector<ClearanceInterval> profile(const std::vector<double> &breaks, double horizon, const Query &query,
                                          Workspace &workspace) const override {
-    if (robot_) return clearanceProfile(movers_, *robot_, breaks, named(query), workspace, horizon);
-    return clearanceProfile(movers_, against_, breaks, named(query), workspace, horizon);
+    Query asked = named(query);
+    asked.options.interval = query.options.interval; // breaks say which times
+    if (robot_) return clearanceProfile(movers_, *robot_, breaks, asked, workspace, horizon);
+    return clearanceProfile(movers_, against_, breaks, asked, workspace, horizon);
   }
   Answer contact(const Query &query, Workspace &workspace) const override {
     if (robot_) return timeOfContact(movers_, *robot_, named(query), workspace);
@@ -84,9 +90,15 @@ class MoversSubject : public Subject {
     Query out = query;
     if (!link.empty()) out.links = {link};
     if (!object.empty()) out.objects = {object};
+    if (!moving_.rider.empty()) out.links = {moving_.rider};
+    if (rides()) out.options.interval = moving_.rides.data();
     return out;
   }
+  bool rides() const {
+    return moving_.rides[0] < moving_.rides[1];
+  }
 
+  const MovingWorld &moving_;
   const Movers &movers_;
   const MovingRobot *robot_;
   const Against against_;
@@ -121,8 +133,9 @@ int answer(const Arguments &arguments, const World &world, std::shared_ptr<const
   Query query = arguments.query;
   query.options.stop = interrupted;
   query.second_opinion = secondOpinions(arguments, world.resources);
-  const std::string place = robot ? arguments.trajectory : arguments.scene;
-  ResultsFile results(arguments.out, {arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf});
+  const std::string place = robot ? arguments.trajectory : arguments.path.empty() ? arguments.scene : arguments.path;
+  ResultsFile results(arguments.out, {arguments.trajectory, arguments.path, arguments.body, arguments.scene,
+                                      arguments.robot, arguments.srdf});
   console.warn(warnings);
   if (arguments.timings) tellTimings(world.timings, console);
   if (arguments.skipped) tellSkipped(world.skipped, console);
@@ -161,27 +174,51 @@ int answer(const Arguments &arguments, const World &world, std::shared_ptr<const
   return finish(runRows(arguments.threads, rows, console), console);
 }
 
+MovingObject toMover(const Ride &ride, const Snapshot &scene) {
+  if (ride.body.shapes.empty()) return carriedObject(scene, ride.body.id, ride.poses);
+  MovingObject out;
+  out.object = ride.body;
+  out.poses = ride.poses;
+  return out;
+}
+
 } // namespace
+
+std::vector<MovingRobot> furtherRobots(const Arguments &arguments, const World &world, std::int64_t origin) {
+  constexpr double NANOSECOND = 1e-9;
+  std::vector<MovingRobot> out;
+  for (const MovingRobotFile &file : world.moving_robots) {
+    out.push_back(load(file, arguments.scene));
+    if (file.start != 0.0) out.back().start -= NANOSECOND * static_cast<double>(origin);
+  }
+  return out;
+}
 
 MovingWorld gatherMovers(const Arguments &arguments, const World &world, std::shared_ptr<const RobotMotion> subject) {
   std::optional<MovingRobot> robot;
   if (subject) robot = MovingRobot{world.snapshot->robot()->name(), std::move(subject), 0.0, 0.0};
-  std::vector<MovingRobot> others;
-  for (const MovingRobotFile &file : world.moving_robots) others.push_back(load(file, arguments.scene));
-  const std::vector<MovingObject> objects = movingObjects(*world.snapshot);
+  const std::int64_t origin = world.ride ? world.ride->origin : 0;
+  std::vector<MovingRobot> others = furtherRobots(arguments, world, origin);
+  std::vector<MovingObject> objects = movingObjects(*world.snapshot, origin);
   try {
     if (robot) checkClocks(*robot, others, objects);
+    if (world.ride) objects.push_back(toMover(*world.ride, *world.snapshot));
     std::vector<MovingRobot> all = others;
     if (robot) all.insert(all.begin(), *robot);
-    return {robot, std::move(others), Movers(world.snapshot, all, objects)};
+    MovingWorld out{robot, std::move(others), Movers(world.snapshot, all, objects, {}, world.resources)};
+    if (!world.ride) return out;
+    out.rider = world.ride->body.id;
+    out.rides = {world.ride->poses.front().time, world.ride->poses.back().time};
+    return out;
   } catch (const Error &e) {
-    throw BadUsage(arguments.scene + ": " + e.what());
+    throw BadUsage((arguments.path.empty() ? arguments.scene : arguments.path) + ": " + e.what());
   }
 }
 
 std::unique_ptr<Subject> subjectAmong(const MovingWorld &moving, const Arguments &arguments) {
   auto out = std::make_unique<MoversSubject>(moving, arguments.self ? Against::BOTH : Against::OTHERS);
   if (moving.subject) out->id = stemOf(arguments.trajectory);
+  if (!moving.rider.empty()) out->id = stemOf(arguments.path);
   return out;
 }
 
@@ -194,7 +231,8 @@ int answerAmongMovers(const Arguments &arguments, const World &world, Warnings &
 int answerMovers(const Arguments &arguments, Console &console) {
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
-  if (!world.moves()) throw BadUsage(arguments.scene + ": nothing moves in this scene: no object has a trajectory");
+  if (!world.moves() && !world.ride)
+    throw BadUsage(arguments.scene + ": nothing moves in this scene: no object has a trajectory");
   return answer(arguments, world, nullptr, warnings, console);
 }
 

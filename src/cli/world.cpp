@@ -6,6 +6,7 @@
 #include <set>
 
 #include "../scene/yaml/frames.h"
+#include "../scene/yaml/path_yaml.h"
 #include "../scene/yaml/scene_change.h"
 #include "../scene/yaml/scene_yaml.h"
 #include "failure.h"
@@ -76,6 +77,37 @@ std::vector<std::string> skippedOf(const SceneFile &file, const PlacedRobot &rob
   return out;
 }
 
+/* What rides along --path, in the words of a scene file. */
+ObjectDescription readBody(const Arguments &arguments, Warnings &warnings) {
+  SceneChange one;
+  try {
+    one.operations.push_back({Operation::Kind::ADD, readRider(loadYaml(arguments.body), warnings)});
+  } catch (const BadInput &e) {
+    throw BadUsage(arguments.body + ": " + e.what());
+  }
+  makeResourcesAbsolute(one, folderOf(arguments.body));
+  return one.operations.front().object;
+}
+
+Ride readRide(const Arguments &arguments, const Frames &frames, const PlacedRobot &robot, Warnings &warnings) {
+  PathFile path = readPath(arguments.path, warnings);
+  if (!path.remark.empty()) warnings.add(arguments.path + ": " + path.remark);
+  Ride out{readBody(arguments, warnings), std::move(path.poses), path.origin};
+  if (out.body.shapes.empty() && !robot.robot)
+    throw BadUsage(arguments.body + ": '" + out.body.id +
+                   "' has no shape; an object that a link carries needs --robot");
+  if (!out.body.shapes.empty() && robot.robot)
+    throw BadUsage("--path takes no --robot: a body along a path is not measured against robots that stand");
+  try {
+    const Eigen::Isometry3d frame = frames.find(path.frame);
+    for (TimedPose &pose : out.poses) pose.pose = frame * pose.pose * out.body.pose;
+  } catch (const BadInput &e) {
+    throw BadUsage(arguments.path + ": " + e.what());
+  }
+  out.body.pose = Eigen::Isometry3d::Identity();
+  return out;
+}
+
 std::string milliseconds(double seconds) {
   char text[40];
   std::snprintf(text, sizeof text, "%.1f ms", 1e3 * seconds);
@@ -131,6 +163,8 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
     throw BadUsage(arguments.scene + ": " + e.what());
   }
   warnOfOpenMeshes(*scene.snapshot(), warnings);
+  std::optional<Ride> ride;
+  if (!arguments.path.empty()) ride = readRide(arguments, frames, robot, warnings);
   return {scene.snapshot(),
           robot.links_now,
           robot.scene_joints,
@@ -139,7 +173,8 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
           skippedOf(file, robot),
           timingsOf(robot, robot_seconds, since(start)),
           file.moving_robots,
-          resources};
+          resources,
+          std::move(ride)};
 }
 
 std::shared_ptr<const SecondOpinions> secondOpinions(const Arguments &arguments, const ResourceOptions &resources) {

@@ -3,8 +3,10 @@
 #ifndef CURVE_PROXIMITY_CLI_WORLD_H
 #define CURVE_PROXIMITY_CLI_WORLD_H
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,13 @@
 
 namespace curve_proximity::cli {
 
+/** A body along --path. */
+struct Ride {
+  ObjectDescription body;       /**< its pose is the identity; without shapes it names an object that a link carries */
+  std::vector<TimedPose> poses; /**< of the body, in the fixed frame */
+  std::int64_t origin = 0;      /**< [ns] the stamp of time 0; 0: none */
+};
+
 /** The scene, and where the robot's links are. */
 struct World {
   SnapshotPtr snapshot;
@@ -29,6 +38,7 @@ struct World {
   std::vector<std::string> timings;           /**< how long loading took, a sentence each */
   std::vector<MovingRobotFile> moving_robots; /**< of the scene file */
   ResourceOptions resources;                  /**< where files of the scene's objects are */
+  std::optional<Ride> ride;                   /**< of --path */
 
   /** Does anything move beside the robot of the command line? */
   bool moves() const {
@@ -39,7 +49,8 @@ struct World {
 /** Where a robot comes from: its file, or a place where it has been read before. */
 using RobotSource = std::function<std::shared_ptr<const Robot>(const std::string &path)>;
 
-/** Reads --scene, --robot, --srdf and --state. Throws BadUsage with one line. robots: readRobot() if empty. */
+/** Reads --scene, --robot, --srdf and --state, --path and --body. Throws BadUsage with one line. robots: readRobot() if
+ * empty. */
 World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSource &robots = {});
 
 /** The same, and BadUsage where anything moves in the scene. what: the query that does not take it. */

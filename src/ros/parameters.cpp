@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../scene/yaml/failure.h"
-#include "../scene/yaml/scene_yaml.h"
+#include "../scene/yaml/path_yaml.h"
 
 namespace curve_proximity {
 namespace {
@@ -107,11 +107,7 @@ YAML::Node toYaml(Xml &value) {
 ObjectDescription toBody(Xml &given, const std::string &where) {
   const yaml::YamlValue value(toYaml(given), where);
   yaml::Warnings warnings;
-  value.warnOfOthers(
-      {"id", "pose", "padding", "primitives", "primitive_poses", "meshes", "mesh_poses", "bodies", "body_poses"},
-      warnings);
-  ObjectDescription body = yaml::readPlacedShapes(value, warnings);
-  body.id = value.at("id").text();
+  ObjectDescription body = yaml::readRider(value, warnings);
   for (const std::string &warning : warnings.sentences()) ROS_WARN("%s", warning.c_str());
   return body;
 }

@@ -26,7 +26,7 @@ class Formats(Case):
         with open(os.path.join(REPO, 'doc/formats.md'), encoding='utf-8') as page:
             text = page.read().replace('\\\n', ' ')
         commands = re.findall(r'^    cprox (.*)$', text, re.M)
-        self.assertEqual(len(commands), 14)
+        self.assertEqual(len(commands), 15)
         for command in commands:
             with self.subTest(command=command):
                 answer = run(*shlex.split(command.replace('/tmp/', self.folder + '/')))
@@ -84,6 +84,13 @@ class Formats(Case):
         self.assertEqual((row['a'], row['b']), ('box', 'shelf'))
         self.assertEqual(run('time-of-contact', *scene, '--movers').row('movers')['verdict'], 'clear')
         self.assertIn(run('distance', *ARM, *scene).row('trajectory')['b'], ('second/lower', 'shelf', 'box'))
+
+    def the_tray_rides_as_the_files_say(self):
+        # at the start its lower edge is at x = 0 .. 0.4, y = -0.5, z = 0.59; the lens: a circle of 0.6 about x at y = -1.2, z = 0.5
+        row = run('distance', '--path', FILES + 'path.yaml', '--body', FILES + 'body.yaml', *WORLD).row('path')
+        self.assertAnswer(row, math.hypot(0.7, 0.09) - 0.6 - 0.01)
+        self.assertEqual((row['a'], row['b']), ('tray', 'lens'))
+        self.assertAlmostEqual(float(row['t']), 0.0, delta=1e-3)
 
     def pairs_are_as_far_as_the_file_says(self):
         answer = run('pairs', '--in', FILES + 'pairs.yaml')

@@ -28,15 +28,6 @@ std::array<double, 2> readParts(const YamlValue &value) {
   return {part("secs"), part("nsecs")};
 }
 
-/* Nanoseconds: times since 1970 have no room in a double. */
-std::int64_t readStamp(const YamlValue &value) {
-  constexpr double BILLION = 1e9, MOST = 9.2e9; /* [s] */
-  const std::array<double, 2> parts = value.isMap() ? readParts(value) : std::array<double, 2>{value.number(), 0.0};
-  if (!(std::abs(parts[0]) < MOST && std::abs(parts[1]) < BILLION)) value.fail("is out of range");
-  const double whole = std::floor(parts[0]);
-  return static_cast<std::int64_t>(whole) * 1000000000 + std::llround((parts[0] - whole) * BILLION + parts[1]);
-}
-
 std::vector<double> readList(const YamlValue &point, const char *key) {
   const std::optional<YamlValue> list = point.find(key);
   return list ? list->numbers() : std::vector<double>();
@@ -110,6 +101,14 @@ TrajectoryDescription readFile(const YamlValue &root, Warnings &warnings) {
 }
 
 } // namespace
+
+std::int64_t readStamp(const YamlValue &value) {
+  constexpr double BILLION = 1e9, MOST = 9.2e9; /* [s] */
+  const std::array<double, 2> parts = value.isMap() ? readParts(value) : std::array<double, 2>{value.number(), 0.0};
+  if (!(std::abs(parts[0]) < MOST && std::abs(parts[1]) < BILLION)) value.fail("is out of range");
+  const double whole = std::floor(parts[0]);
+  return static_cast<std::int64_t>(whole) * 1000000000 + std::llround((parts[0] - whole) * BILLION + parts[1]);
+}
 
 double readTime(const YamlValue &value) {
   if (!value.isMap()) return value.number();

@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_YAML_TRAJECTORY_YAML_H
 #define CURVE_PROXIMITY_YAML_TRAJECTORY_YAML_H
 
+#include <cstdint>
 #include <string>
 
 #include <curve_proximity/description.hpp>
@@ -15,10 +16,13 @@ namespace curve_proximity::yaml {
 /** Seconds, or {secs, nsecs} as ROS prints a time or a duration. */
 double readTime(const YamlValue &value);
 
-/** The trajectory of an object: {start, turning, waypoints: [{time, pose}]}. */
-/* `start_tolerance` and `any_time` of what moves: [s], infinity where that is true. */
+/** A stamp [ns]: seconds, or {secs, nsecs}; times since 1970 have no room in a double. */
+std::int64_t readStamp(const YamlValue &value);
+
+/** `start_tolerance` and `any_time` of what moves: [s], infinity where that is true. */
 double readStartTolerance(const YamlValue &value);
 
+/** The trajectory of an object: {start, turning, waypoints: [{time, pose}]}. */
 ObjectTrajectory readObjectTrajectory(const YamlValue &value, Warnings &warnings);
 
 /** A trajectory as a map in another file, or as the path of its file, relative to `folder`. */

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "path_yaml.h"
+
+#include <utility>
+
+#include "../path_times.h"
+#include "failure.h"
+#include "scene_yaml.h"
+#include "trajectory_yaml.h"
+
+namespace curve_proximity::yaml {
+namespace {
+
+struct Header {
+  std::string frame;
+  std::int64_t stamp = 0; /* [ns] */
+};
+
+Header readHeader(const YamlValue &value, Warnings &warnings) {
+  Header out;
+  const std::optional<YamlValue> header = value.find("header");
+  if (!header) return out;
+  header->warnOfOthers({"seq", "stamp", "frame_id"}, warnings);
+  if (const auto frame = header->find("frame_id")) out.frame = frame->text();
+  if (const auto stamp = header->find("stamp")) out.stamp = readStamp(*stamp);
+  return out;
+}
+
+PathFile readPoses(const YamlValue &root, Warnings &warnings) {
+  if (!root.isMap()) root.fail("must be a map with header and poses, as rostopic prints a nav_msgs/Path");
+  root.warnOfOthers({"header", "poses"}, warnings);
+  const Header header = readHeader(root, warnings);
+  PathFile out;
+  out.frame = header.frame;
+  std::vector<std::int64_t> stamps;
+  for (const YamlValue &entry : root.at("poses").items()) {
+    entry.warnOfOthers({"header", "pose"}, warnings);
+    const Header own = readHeader(entry, warnings);
+    if (!own.frame.empty() && own.frame != out.frame)
+      entry.fail("is in frame '" + own.frame + "', the path in '" + out.frame + "'");
+    stamps.push_back(own.stamp);
+    out.poses.push_back({0.0, toIsometry(entry.at("pose").pose(warnings))});
+  }
+  if (out.poses.empty()) root.fail("the path has no poses");
+  PathTimes at = timesOf(stamps);
+  for (std::size_t i = 0; i < out.poses.size(); ++i) out.poses[i].time = at.times[i];
+  const bool by_stamps = out.poses.size() > 1 && at.remark.empty();
+  out.origin = by_stamps && stamps.front() != 0 ? stamps.front() : header.stamp;
+  out.remark = std::move(at.remark);
+  return out;
+}
+
+} // namespace
+
+PathFile readPath(const std::string &path, Warnings &warnings) {
+  try {
+    return readPoses(loadYaml(path), warnings);
+  } catch (const BadInput &e) {
+    throw BadUsage(path + ": " + e.what());
+  }
+}
+
+ObjectDescription readRider(const YamlValue &value, Warnings &warnings) {
+  value.warnOfOthers(
+      {"id", "pose", "padding", "primitives", "primitive_poses", "meshes", "mesh_poses", "bodies", "body_poses"},
+      warnings);
+  ObjectDescription body = readPlacedShapes(value, warnings);
+  body.id = value.at("id").text();
+  return body;
+}
+
+} // namespace curve_proximity::yaml
