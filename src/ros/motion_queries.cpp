@@ -35,6 +35,11 @@ void tellFailure(const std::string &id, std::size_t before, QueryResponse &respo
   }
 }
 
+/** Of a row that has an answer. */
+void addRemark(const std::string &remark, Proximity &row) {
+  if (!remark.empty()) row.message += (row.message.empty() ? "" : "; ") + remark;
+}
+
 /** What ends a query ends what is made for it. */
 Stop stopOf(const Query &query) {
   const cprox_options &options = query.options;
@@ -99,7 +104,7 @@ MovingObject Queries::toRider(const ProximityQuery &query, const Snapshot &snaps
 
 /** A body along poses in the frame of the header. */
 void Queries::answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp,
-                         std::vector<TimedPose> poses, Work &work) {
+                         std::vector<TimedPose> poses, const std::string &remark, Work &work) {
   const QueryRequest &request = work.request;
   const std::size_t before = work.response.results.size();
   if (request.turn) request.turn->yield();
@@ -124,6 +129,13 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
       work.doubts.objects(work.query);
       work.doubts.ages(work.lookup.age(), NAN);
       work.doubts.apply(work.response.results.back());
+      if (answer.result.status >= 0) addRemark(remark, work.response.results.back());
+    }
+    if (!work.drawing.motion) {
+      work.drawing.movers = around.movers();
+      work.drawing.robots = around.robots();
+      work.drawing.rider = rides.object;
+      work.drawing.motion_answers = std::move(rows.answers);
     }
   } catch (const Error &error) {
     work.response.results.push_back(toFailedRow(id, Proximity::KIND_MOVERS, error.what()));
@@ -134,8 +146,9 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
 
 void Queries::answerPath(const nav_msgs::Path &path, const std::string &id, Work &work) {
   std::vector<TimedPose> poses;
+  std::string remark;
   try {
-    poses = toPoses(path);
+    poses = toPoses(path, remark);
   } catch (const Error &error) {
     work.response.results.push_back(toFailedRow(id, Proximity::KIND_MOVERS, error.what()));
     work.response.fillUp(work.request.asking);
@@ -143,9 +156,9 @@ void Queries::answerPath(const nav_msgs::Path &path, const std::string &id, Work
     return;
   }
   const ros::Time &first = path.poses.front().header.stamp;
-  const bool by_stamps = poses.size() > 1 && poses[1].time == (path.poses[1].header.stamp - first).toSec();
+  const bool by_stamps = poses.size() > 1 && remark.empty();
   answerRide(id, path.header.frame_id, by_stamps && !first.isZero() ? first : path.header.stamp, std::move(poses),
-             work);
+             remark, work);
 }
 
 void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work) {
@@ -160,7 +173,7 @@ void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &traje
         tellFailure(trajectory.joint_names[i], work.response.results.size() - 1, work.response);
         continue;
       }
-      answerRide(trajectory.joint_names[i], trajectory.header.frame_id, trajectory.header.stamp, std::move(poses),
+      answerRide(trajectory.joint_names[i], trajectory.header.frame_id, trajectory.header.stamp, std::move(poses), "",
                  work);
     }
     return;
@@ -233,6 +246,7 @@ void Queries::answerMovers(Work &work) {
     if (!work.drawing.motion) {
       work.drawing.movers = around.movers();
       work.drawing.robots = around.robots();
+      work.drawing.rider.reset();
       work.drawing.motion_answers = std::move(rows.answers);
     }
   } catch (const Error &error) {
@@ -276,6 +290,8 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
       work.drawing.movers = around.movers();
       work.drawing.robots.assign(around.robots().begin() + 1, around.robots().end());
     } else {
+      work.drawing.movers = nullptr;
+      work.drawing.robots.clear();
       askMotion(*motion, environment, false, request.asking, *workspace, rows);
     }
     if (request.more.self_collision) {
@@ -294,11 +310,12 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
       response.results.emplace_back();
       Proximity &row = response.results.back();
       fillRow(answer, environment, request.asking, row);
-      if (!remark.empty() && answer.result.status >= 0) row.message += (row.message.empty() ? "" : "; ") + remark;
+      if (answer.result.status >= 0) addRemark(remark, row);
       work.doubts.objects(environment, answer.kind == Proximity::KIND_ENVIRONMENT);
       work.doubts.ages(work.lookup.age(), work.joints.age);
       work.doubts.apply(row);
     }
+    work.drawing.rider.reset();
     work.drawing.motion = std::move(motion);
     work.drawing.motion_answers = std::move(answers);
   } catch (const Error &error) {

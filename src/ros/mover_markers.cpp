@@ -16,16 +16,29 @@ constexpr double WAY_RADIUS = 0.005; /* [m] as it is drawn */
 const std_msgs::ColorRGBA OBJECT = colour(0.9, 0.6, 0.2, 1.0), GHOST = colour(0.9, 0.6, 0.2, 0.12);
 const std_msgs::ColorRGBA ROBOT = colour(0.72, 0.68, 0.86, 1.0);
 
-void addObject(Canvas &canvas, const std::string &space, const MovingSceneObject &object, const Eigen::Isometry3d &pose,
+/** An object that moves, as it is drawn. */
+struct DrawnObject {
+  const ObjectDescription &description;
+  std::vector<BodyHandle> hulls; /**< of its shapes */
+
+  explicit DrawnObject(const MovingSceneObject &object) : description(object.description) {
+    for (const Geometry &geometry : object.geometries) hulls.push_back(geometry.hull);
+  }
+  DrawnObject(const ObjectDescription &object, const ResourceOptions &resources) : description(object) {
+    for (const ShapeDescription &shape : object.shapes) hulls.push_back(makeGeometry(shape, resources).hull);
+  }
+};
+
+void addObject(Canvas &canvas, const std::string &space, const DrawnObject &object, const Eigen::Isometry3d &pose,
                const ResourceOptions &resources, const std_msgs::ColorRGBA &tint) {
-  for (std::size_t i = 0; i < object.geometries.size(); ++i) {
+  for (std::size_t i = 0; i < object.hulls.size(); ++i) {
     const ShapeDescription &shape = object.description.shapes[i];
-    canvas.addShape(space, shape, object.geometries[i].hull, resources, pose * shape.pose, tint);
+    canvas.addShape(space, shape, object.hulls[i], resources, pose * shape.pose, tint);
   }
 }
 
 /** The way of the origin, and the object on it. */
-void addWay(Canvas &canvas, const MovingSceneObject &object, const Movers &movers, const ResourceOptions &resources) {
+void addWay(Canvas &canvas, const DrawnObject &object, const Movers &movers, const ResourceOptions &resources) {
   const std::array<double, 2> domain = movers.domain();
   const auto poseAt = [&](int i, int n) {
     const double part = static_cast<double>(i) / n;
@@ -63,17 +76,20 @@ double closestTime(const Drawing &drawing) {
 void addMovers(Canvas &canvas, const Snapshot &scene, const Drawing *drawing, const ResourceOptions &objects,
                const ResourceOptions &robots) {
   const bool asked = drawing && drawing->movers && drawing->snapshot->version() == scene.version();
+  const auto addMoving = [&](const DrawnObject &object) {
+    const Eigen::Isometry3d pose = drawing->movers->objectPose(object.description.id, closestTime(*drawing));
+    addObject(canvas, "movers", object, pose, objects, OBJECT);
+    addWay(canvas, object, *drawing->movers, objects);
+  };
   for (const auto &entry : scene.moving()) {
-    const MovingSceneObject &object = *entry.second;
-    if (asked) {
-      addObject(canvas, "movers", object, drawing->movers->objectPose(entry.first, closestTime(*drawing)), objects,
-                OBJECT);
-      addWay(canvas, object, *drawing->movers, objects);
-    } else {
-      addObject(canvas, "movers", object, object.trajectory.poses.front().pose, objects, OBJECT);
-    }
+    const DrawnObject object(*entry.second);
+    if (asked)
+      addMoving(object);
+    else
+      addObject(canvas, "movers", object, entry.second->trajectory.poses.front().pose, objects, OBJECT);
   }
   if (!asked) return;
+  if (drawing->rider) addMoving(DrawnObject(*drawing->rider, objects));
   for (const MovingRobot &robot : drawing->robots) addRobotAt(canvas, robot, closestTime(*drawing), robots);
   if (drawing->motion || drawing->motion_answers.empty()) return; // the robot's own picture has the pair
   addPair(canvas, drawing->motion_answers.front());

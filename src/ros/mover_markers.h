@@ -8,8 +8,8 @@
 
 namespace curve_proximity {
 
-/** What moves, at the moment of closest approach, with the ways of the objects' origins. drawing: the last query about
- *  it; null, or one of another scene: the objects at their first poses. */
+/** What moves, the body along a path among it, at the moment of closest approach, with the ways of the objects'
+ * origins. drawing: the last query about it; null, or one of another scene: the objects at their first poses. */
 void addMovers(Canvas &canvas, const Snapshot &scene, const Drawing *drawing, const ResourceOptions &objects,
                const ResourceOptions &robots);
 

@@ -149,9 +149,11 @@ struct Drawing {
   std::shared_ptr<const RobotMotion> motion;
   std::vector<Answer> motion_answers;
 
-  /** What moved beside the robot of the last trajectory, or of the last request of movers; null: nothing. */
+  /** What moved beside the robot of the last trajectory, or of the last request of movers or of a body along a path;
+   *  null: nothing. */
   std::shared_ptr<const Movers> movers;
-  std::vector<MovingRobot> robots; /**< of it, without the robot of `motion` */
+  std::vector<MovingRobot> robots;        /**< of it, without the robot of `motion` */
+  std::optional<ObjectDescription> rider; /**< of it: the body along a path, which is none of the scene */
 
   bool hasRoom() const {
     return lines.size() < most_lines;
@@ -177,6 +179,10 @@ class Queries {
         stop_(stop),
         robots_(std::move(robots)),
         second_opinions_(std::move(second_opinions)) {}
+
+  const FurtherRobots &robots() const {
+    return robots_;
+  }
 
   /** A request of so many bytes is about to be read. */
   void expect(std::size_t bytes);
@@ -227,7 +233,7 @@ class Queries {
   bool carriesBody(const QueryRequest &request) const;
   MovingObject toRider(const ProximityQuery &query, const Snapshot &snapshot, std::vector<TimedPose> poses) const;
   void answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp, std::vector<TimedPose> poses,
-                  Work &work);
+                  const std::string &remark, Work &work);
   void answerPath(const nav_msgs::Path &path, const std::string &id, Work &work);
   void answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not = "");
   void answerState(Work &work);

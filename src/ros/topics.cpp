@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "topics.h"
 
+#include "../scene/path_times.h"
 #include "conversions.h"
 
 #include <algorithm>
@@ -245,10 +246,10 @@ std::vector<TimedPose> toPoses(const MultiDOFJointTrajectory &trajectory, std::s
   return poses;
 }
 
-std::vector<TimedPose> toPoses(const nav_msgs::Path &path) {
+std::vector<TimedPose> toPoses(const nav_msgs::Path &path, std::string &remark) {
   if (path.poses.empty()) throw Error("the path has no poses");
   std::vector<TimedPose> poses;
-  bool ascends = true;
+  std::vector<std::int64_t> stamps;
   for (std::size_t i = 0; i < path.poses.size(); ++i) {
     const geometry_msgs::PoseStamped &given = path.poses[i];
     const std::string where = "pose " + std::to_string(i);
@@ -261,11 +262,12 @@ std::vector<TimedPose> toPoses(const nav_msgs::Path &path) {
     } catch (const Error &error) {
       throw Error(where + ": " + error.what());
     }
-    pose.time = (given.header.stamp - path.poses.front().header.stamp).toSec();
-    ascends = ascends && (i == 0 || pose.time > poses.back().time);
+    stamps.push_back(static_cast<std::int64_t>(given.header.stamp.toNSec()));
     poses.push_back(pose);
   }
-  for (std::size_t i = 0; i < poses.size() && !ascends; ++i) poses[i].time = static_cast<double>(i);
+  PathTimes at = timesOf(stamps);
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].time = at.times[i];
+  remark = std::move(at.remark);
   return poses;
 }
 

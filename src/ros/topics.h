@@ -26,9 +26,9 @@ void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std
 Curve toCurve(const nav_msgs::Path &path, double radius);
 
 /** The poses of what rides along a path, in the path's frame, at the stamps of its poses: the first one's is 0. Where
- *  these do not ascend, pose i is at i. Throws Error: no poses, one that is no pose, or in another frame than the
- *  path's. */
-std::vector<TimedPose> toPoses(const nav_msgs::Path &path);
+ *  these do not ascend, pose i is at i, and the remark says so. Throws Error: no poses, one that is no pose, or in
+ *  another frame than the path's. */
+std::vector<TimedPose> toPoses(const nav_msgs::Path &path, std::string &remark);
 
 /** The same of what a joint of a trajectory moves that is no robot's, by its number. Throws Error also for times that
  *  do not ascend, and for counts that differ. */

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The gate as an action between a planner and a controller: what is clear passes, what is not is refused with its reason, and what
 stops being clear while it runs is cancelled. The types are made of control_msgs' published definition."""
+import math
 import time
 import unittest
 
@@ -158,6 +159,47 @@ class Gate(unittest.TestCase):
                 self.assertEqual((len(passed), [r.row.b for r in self.refused]), (0, ['post']) if blocked else (1, []))
         for subscriber in out:
             subscriber.unregister()
+
+    def test_a_body_that_turns_into_the_way_is_refused(self):
+        """A plank of 2 m goes along x past a post .4 beside it, and at the end turns into the post or does not."""
+        server = Server('/plank')
+        server.replace(sphere('post', 0.1, (1, 0.6, 3)))
+        server.apply(sphere('elsewhere', 0.1, (9, 9, 9)))
+        answers = rospy.Publisher('/plank/proximity', ProximityResults, queue_size=5)
+        for name in ('path', 'multi_dof_trajectory'):
+            passed, refused = [], []
+            kind = type(path()) if name == 'path' else type(free_flight('drone'))
+            ends = [rospy.Publisher('/%s/%s' % (node, name), kind, queue_size=5) for node in ('plank', 'plank_gate')]
+            out = [rospy.Subscriber('/plank_gate/clear_' + name, kind, passed.append), rospy.Subscriber('/plank_gate/refused', Refusal, refused.append)]
+            self.assertTrue(connected(answers, *ends, *out))
+            for turns in (False, True):
+                half = math.radians(45) if turns else 0.0
+                if name == 'path':
+                    message = path((-1, 0, 3), (1, 0, 3))
+                    for at, angle in zip(message.poses, (0.0, half)):
+                        at.pose.orientation.z, at.pose.orientation.w = math.sin(angle), math.cos(angle)
+                else:
+                    message = free_flight('drone', (-1, 0, 3), (1, 0, 3))
+                    turn = message.points[1].transforms[0].rotation
+                    turn.z, turn.w = math.sin(half), math.cos(half)
+                for again in (False, True):
+                    del passed[:], refused[:]
+                    ends[1].publish(message)
+                    if again:  # an answer of an older scene that has it clear
+                        scene = server.scene().scene
+                        scene.version -= 1
+                        row = Proximity(id=name, kind='movers', status='ok', verdict='clear', lower=1.0, upper=1.0)
+                        answers.publish(ProximityResults(source=name, fingerprint=fingerprint(message), query_type='tolerance', delta=0.05,
+                                                         success=True, scene=scene, results=[row]))
+                    else:
+                        ends[0].publish(message)
+                    self.assertTrue(until(lambda: passed or refused, 5), (name, turns, again))
+                    self.assertEqual((len(passed), [(r.row.a, r.row.b) for r in refused]), (0, [('plank', 'post')]) if turns else (1, []),
+                                     (name, turns, again))
+                    if turns:
+                        self.assertEqual((refused[0].source, refused[0].row.kind), (name, 'movers'))
+            for subscriber in out:
+                subscriber.unregister()
 
     def test_refused_messages_of_topics_are_told_too(self):
         self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))

@@ -15,7 +15,7 @@ from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject,
                                  RobotTrajectory, Waypoint)
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest, TimeOfContact,
                                  TimeOfContactRequest)
-from helpers import Server, bezier, box, free_flight, joints, path, pose, query, run, sphere, until
+from helpers import Server, bezier, box, connected, free_flight, joints, path, pose, query, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -294,10 +294,10 @@ class Movers(unittest.TestCase):
         subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
         self.addCleanup(subscriber.unregister)
         row, = self.server.distance([], movers=True).results
-        shown = until(lambda: next((a for a in received if {'movers', 'movers_way', 'pairs'} <= {m.ns for m in a.markers}), None), 10)
+        shown = until(lambda: next((a for a in received if {'movers', 'movers_way', 'pairs'} <= {m.ns for m in a.markers} and
+                                    [m.type for m in a.markers if m.ns == 'movers'] == [Marker.CUBE]), None), 10)
         self.assertTrue(shown)
         drawn, = [m for m in shown.markers if m.ns == 'movers']
-        self.assertEqual(drawn.type, Marker.CUBE)
         self.assertAlmostEqual(drawn.pose.position.z, at(row.t)[0][1].mean(0)[2], delta=1e-6)
 
     def test_the_scene_keeps_what_moves(self):
@@ -359,6 +359,19 @@ class Movers(unittest.TestCase):
             mesh = CollisionObject(id='mesh', bodies=[Body(type='mesh', resource=resource)])
             response = self.server.distance([], paths=[way], body=mesh, objects=['ball'])
             self.assertEqual(response.success, found, response.message)
+
+    def test_a_body_on_a_path_of_one_pose_is_measured_against_what_stands_and_moves_at_all_times(self):
+        way = path((0, 3, 4), frame='world')
+        way.poses[0].pose.orientation.w = 1.0
+        falling = moving(sphere('falling', 0.1), waypoint(0, (0, 3, 8)), waypoint(9, (0, 3, 5)))
+        for things, b, expected in (((sphere('ball', 0.25, (0, 3, 3)), falling), 'ball', 0.45),
+                                    ((sphere('ball', 0.25, (0, 3, 2)), falling), 'falling', 0.6)):
+            self.server.replace(*things)
+            response = self.server.distance([], paths=[way], body=box('carried', (0.2, 0.2, 0.6)))
+            self.assertTrue(response.success, response.message)
+            row, = response.results
+            self.assertEqual((row.a, row.b), ('carried', b))
+            self.assertAlmostEqual(row.upper, expected, delta=2e-6)
 
     def hold(self, link, at):
         """A ball of .1 that the link carries, at a place in its frame."""
@@ -425,6 +438,62 @@ class Movers(unittest.TestCase):
             publisher.unregister()
             field = 'paths' if topic == 'path' else 'multi_dof_trajectories'
             self.assertDistance(self.server.distance([], **{field: [message]}), 'lamp', 1 - 0.5 - 0.1 - 0.25)
+
+    def shown(self, ask):
+        """The markers of what moves after `ask`, and what that returns."""
+        received = []
+        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
+
+        def drawn():
+            return [m for m in received[-1].markers if m.ns == 'movers']
+        try:
+            self.assertTrue(until(lambda: received and not drawn(), 10))  # the scene is another one than in earlier drawings
+            answer = ask()
+            self.assertTrue(until(drawn, 10))
+            return drawn(), answer
+        finally:
+            subscriber.unregister()
+
+    def test_a_body_along_a_path_is_shown_where_it_comes_closest(self):
+        """A crank with a knob at its end turns from 0 to 90 degrees: the ball is 2 m away, in the direction of 30 degrees."""
+        direction = math.radians(30)
+        self.server.replace(sphere('ball', 0.25, (2 * math.cos(direction), 3 + 2 * math.sin(direction), 4)))
+        crank = box('crank', (0.2, 0.1, 0.1), primitive_poses=[pose(), pose((0.5, 0, 0))])
+        crank.primitives += sphere('knob', 0.1).primitives
+        way = path((0, 3, 4), (0, 3, 4), frame='world')
+        for at, half in zip(way.poses, (0.0, math.radians(45))):
+            at.pose.orientation = pose((0, 0, 0), (0, 0, math.sin(half), math.cos(half))).orientation
+        markers, response = self.shown(lambda: self.server.distance([], paths=[way], body=crank, objects=['ball']))
+        self.assertTrue(response.success, response.message)
+        row, = response.results
+        self.assertAlmostEqual(row.upper, 2 - 0.5 - 0.1 - 0.25, delta=2e-6)
+        self.assertAlmostEqual(row.t, 1 / 3, delta=3e-3)
+        self.assertIn('its stamps are all the same: t counts its poses', row.message)
+        drawn = {m.type: m for m in markers}
+        self.assertEqual((len(markers), set(drawn)), (2, {Marker.CUBE, Marker.SPHERE}))
+        angle = row.t * math.radians(90)
+        for marker, (x, y) in ((drawn[Marker.CUBE], (0, 3)), (drawn[Marker.SPHERE], (0.5 * math.cos(angle), 3 + 0.5 * math.sin(angle)))):
+            at = marker.pose.position
+            for told, true in ((at.x, x), (at.y, y), (at.z, 4)):
+                self.assertAlmostEqual(told, true, delta=1e-9)
+        turn = drawn[Marker.CUBE].pose.orientation
+        self.assertAlmostEqual(abs(turn.z), math.sin(angle / 2), delta=1e-9)
+        self.assertAlmostEqual(abs(turn.w), math.cos(angle / 2), delta=1e-9)
+
+    def test_the_body_of_path_body_is_shown_too(self):
+        """The lamp is .5 above its origin: upside down along a path that comes by topic, and that passes below the ball at its end."""
+        self.server.replace(sphere('ball', 0.25, (1, 3, 6)))
+        way = path((-1, 3, 4), (1, 3, 4), frame='world')
+        for at in way.poses:
+            at.pose.orientation = pose((0, 0, 0), (1, 0, 0, 0)).orientation
+        publisher = rospy.Publisher('/curve_proximity/path', type(way), queue_size=1)
+        self.assertTrue(connected(publisher))
+        (drawn,), _ = self.shown(lambda: publisher.publish(way))
+        publisher.unregister()
+        at = drawn.pose.position
+        self.assertEqual(drawn.type, Marker.SPHERE)
+        for told, true in ((at.x, 1), (at.y, 3), (at.z, 3.5)):
+            self.assertAlmostEqual(told, true, delta=1e-6)
 
     def assertRefused(self, response, *parts):
         self.assertFalse(response.success)
@@ -516,7 +585,7 @@ class Movers(unittest.TestCase):
         line = bezier((0, 0, 2), (1, 0, 2))
         self.assertRefused(self.server.distance(line, joint_state=joints(**READY)), moves)
         self.assertTrue(self.server.distance(line, objects=['table'], joint_state=joints(**READY)).success)
-        self.assertRefused(self.server.distance([], trajectory=swing(0, 1), gradient=True), 'gradients are not available')
+        self.assertRefused(self.server.distance([], movers=True, gradient=True), 'gradients among what moves are by a trajectory')
         self.assertRefused(self.server.distance(line, moving_robots=[other(swing(0, 1))]), 'moving_robots')
         self.assertTrue(self.server.distance([], robot_state=True, joint_state=joints(**READY)).success)
         self.assertRefused(self.server.apply(CollisionObject(id='ball', operation=CollisionObject.MOVE, pose=pose())), 'it moves along a trajectory')
