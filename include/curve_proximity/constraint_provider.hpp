@@ -20,6 +20,7 @@
 #include <curve_proximity/core.hpp>
 #include <curve_proximity/description.hpp>
 #include <curve_proximity/motion.hpp>
+#include <curve_proximity/movers.hpp>
 
 namespace curve_proximity {
 
@@ -112,6 +113,10 @@ struct ConstraintMotion {
   /** Called now and then; true ends the search, whose status is then CPROX_STOPPED. NULL: nothing ends it. */
   bool (*stop)(void *user) = nullptr;
   void *stop_user = nullptr; /**< handed to stop */
+
+  /** Null, or all that moves at the same time: a value is then the clearance from this, too. */
+  const Movers *movers = nullptr;
+  const MovingRobot *robot = nullptr; /**< with movers: the one of them that moves along the trajectory */
 };
 
 /** One clearance of a robot along its trajectory. Of the members of ConstraintValue, t is in seconds; a is by a rigid
@@ -130,6 +135,7 @@ struct MotionRow : ConstraintValue {
   Eigen::MatrixXd velocities;    /**< by the velocities of the points */
   Eigen::MatrixXd accelerations; /**< by the accelerations of the points */
   double duration = 0.0;         /**< by the duration, all times stretched alike [unit of value/s] */
+  double start = 0.0;            /**< among movers: by the start on their clock [unit of value/s] */
 };
 
 /** The result of an evaluation along a trajectory. */
@@ -156,6 +162,12 @@ class MotionConstraint {
   /** Computes value and gradients. Throws Error with one line that says what is wrong; the value is then unspecified.
    */
   virtual void evaluate(const ConstraintMotion &motion, Workspace &workspace, MotionValue &value) const = 0;
+
+  /** Does evaluate() measure against ConstraintMotion::movers? Where not, a case in which something moves is refused.
+   */
+  virtual bool takesMovers() const {
+    return false;
+  }
 };
 
 /* ---- providers ---- */
@@ -182,7 +194,7 @@ class Constraint {
 
 /** The version of the plugin interface. It is raised when the order of virtual functions or the meaning of a member
  *  changes. */
-constexpr std::uint64_t PROVIDER_VERSION = 3;
+constexpr std::uint64_t PROVIDER_VERSION = 4;
 
 /** One number that a plugin and its loader must have in common: the interface version, the sizes of all shared types,
  *  and Eigen's alignment (-mavx changes how Eigen frees memory). */

@@ -14,7 +14,7 @@ const char *kHeader =
 
 const char *kMotionHeader =
     "id,provider,status,value,lower,upper,valid,t,t0,t1,kind,a,b,ga_vx,ga_vy,ga_vz,ga_wx,ga_wy,ga_wz,gb_vx,gb_vy,gb_vz,"
-    "gb_wx,gb_wy,gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_duration,microseconds,message";
+    "gb_wx,gb_wy,gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_duration,g_start,microseconds,message";
 
 /* A number and the comma before it. */
 void append(std::string &line, double value) {
@@ -96,8 +96,8 @@ void appendList(std::string &line, const Eigen::MatrixXd &matrix, const Trajecto
     }
 }
 
-/* Of lines about trajectories: the columns from value to microseconds, and from t to g_duration. */
-constexpr std::size_t FROM_VALUE = 33, FROM_T = 28;
+/* Of lines about trajectories: the columns from value to microseconds, and from t to g_start. */
+constexpr std::size_t FROM_VALUE = 34, FROM_T = 29;
 
 std::string motionLine(const ConstraintRow &row, const MotionRow &one, const TrajectoryDescription &trajectory) {
   std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + cprox_status_name(row.status);
@@ -109,6 +109,7 @@ std::string motionLine(const ConstraintRow &row, const MotionRow &one, const Tra
   append(line, one.b);
   appendWitness(line, one);
   append(line, one.duration);
+  append(line, one.start);
   line += microseconds(row) + quotedField(one.reason.empty() ? row.message : one.reason);
   for (const List &list : listsOf(trajectory))
     if (list.given) appendList(line, one.*list.gradient, trajectory);

@@ -11,6 +11,7 @@
 #include "constraints_yaml.h"
 #include "failure.h"
 #include "finish.h"
+#include "movers.h"
 #include "packages.h"
 #include "results.h"
 #include "run.h"
@@ -137,6 +138,7 @@ ConstraintCase readMotionCase(const Arguments &arguments, const World &world, Wa
                                                          motion.trajectory.base_joints);
     const RobotMotion tried(*motion.robot, motion.trajectory, motion.rest);
     for (const std::string &sentence : tried.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
+    motion.other_robots = furtherRobots(arguments, world);
   } catch (const Error &e) {
     throw BadUsage(arguments.trajectory + ": " + e.what());
   }
@@ -148,7 +150,7 @@ ConstraintCase readMotionCase(const Arguments &arguments, const World &world, Wa
 /* One case: the trajectory. */
 int answerMotion(const Arguments &arguments, Console &console) {
   Warnings warnings;
-  const World world = readStandingWorld(arguments, "'constraints'", warnings);
+  const World world = readWorld(arguments, warnings);
   const ConstraintCase described = readMotionCase(arguments, world, warnings);
   const std::unique_ptr<ProviderSet> providers = loadProvider(arguments);
   const ResourceOptions resources;

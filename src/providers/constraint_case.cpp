@@ -120,16 +120,30 @@ ConstraintBody toBody(const ObjectDescription &object, const char *name, const R
 struct Asked {
   ConstraintPlace place;
   ConstraintCurve curve;
-  std::optional<RobotMotion> motion;
+  std::shared_ptr<const RobotMotion> motion;
+  std::optional<MovingRobot> robot; /* what moves beside it: this robot among movers */
+  std::optional<Movers> movers;
   std::string key;
 };
+
+void gatherMovers(const MotionCase &described, Asked &asked) {
+  const SnapshotPtr &snapshot = described.robot->snapshot();
+  asked.robot = MovingRobot{snapshot->robot()->name(), asked.motion, 0.0, 0.0};
+  const std::vector<MovingObject> objects = movingObjects(*snapshot, described.origin);
+  checkClocks(*asked.robot, described.other_robots, objects);
+  std::vector<MovingRobot> robots = described.other_robots;
+  robots.insert(robots.begin(), *asked.robot);
+  const Stop stop = [&described] { return described.stop && described.stop(described.stop_user); };
+  asked.movers.emplace(snapshot, robots, objects, std::vector<std::array<std::string, 2>>(), ResourceOptions(), stop);
+}
 
 void makeReady(const ConstraintCase &described, Asked &asked) {
   if (described.motion) {
     if (!described.a.shapes.empty() || !described.b.shapes.empty() || described.curve)
       throw Error("a case is about a trajectory or about two sides: give one of them");
     const MotionCase &motion = *described.motion;
-    asked.motion.emplace(*motion.robot, motion.trajectory, motion.rest);
+    asked.motion = std::make_shared<const RobotMotion>(*motion.robot, motion.trajectory, motion.rest);
+    if (motion.isAmongMovers()) gatherMovers(motion, asked);
     return;
   }
   if (!described.a.pose.matrix().allFinite()) throw Error("a: the pose is not finite");
@@ -180,13 +194,17 @@ void summarise(ConstraintRow &row) {
   if (value.reason.empty()) value.reason = all.message;
 }
 
-void askAboutMotion(const LoadedProvider &loaded, const MotionCase &described, const RobotMotion &motion,
-                    Workspace &workspace, ConstraintRow &row) {
+void askAboutMotion(const LoadedProvider &loaded, const MotionCase &described, const Asked &asked, Workspace &workspace,
+                    ConstraintRow &row) {
   const std::unique_ptr<const MotionConstraint> constraint = loaded.provider->prepareMotion(*described.robot);
   if (!constraint) throw Error("the provider made nothing of the robot");
+  if (asked.movers && !constraint->takesMovers())
+    throw Error("the provider answers for scenes in which nothing moves beside the robot");
   row.motion.emplace();
   const Clock::time_point begin = Clock::now();
-  constraint->evaluate({described.trajectory, motion, described.stop, described.stop_user}, workspace, *row.motion);
+  constraint->evaluate({described.trajectory, *asked.motion, described.stop, described.stop_user,
+                        asked.movers ? &*asked.movers : nullptr, asked.robot ? &*asked.robot : nullptr},
+                       workspace, *row.motion);
   row.microseconds = microsecondsSince(begin);
   summarise(row);
 }
@@ -195,7 +213,7 @@ void askProvider(ProviderSet &providers, const LoadedProvider &loaded, const Con
                  const ResourceOptions &resources, const Asked &asked, Workspace &workspace, ConstraintRow &row) {
   if (!loaded.provider) throw Error("provider '" + loaded.spec.name + "' failed to load: " + loaded.failure);
   if (described.motion) {
-    askAboutMotion(loaded, *described.motion, *asked.motion, workspace, row);
+    askAboutMotion(loaded, *described.motion, asked, workspace, row);
     return;
   }
   row.constraint = providers.prepared(loaded, asked.key, [&] { return toPair(described, resources); });

@@ -24,6 +24,12 @@ struct MotionCase {
   JointPositions rest;                /**< of joints that the trajectory does not name */
   bool (*stop)(void *user) = nullptr; /**< as ConstraintMotion::stop */
   void *stop_user = nullptr;
+  std::vector<MovingRobot> other_robots; /**< that move at the same time; objects that do are those of the scene */
+  std::int64_t origin = 0;               /**< [ns] when the trajectory begins, on the clock of the objects' stamps */
+
+  bool isAmongMovers() const {
+    return !other_robots.empty() || !robot->snapshot()->moving().empty();
+  }
 };
 
 /** What is asked, all poses in the fixed frame. */

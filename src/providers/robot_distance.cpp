@@ -65,10 +65,16 @@ class RobotDistanceConstraint : public MotionConstraint {
     query.options.stop_user = asked.stop_user;
     out = MotionValue();
     out.bounded = true;
-    if (parameters_.limits.horizon > 0.0)
+    if (asked.movers)
+      evaluateAmong(asked, query, workspace, out);
+    else if (parameters_.limits.horizon > 0.0)
       evaluateRows(clearanceRows(asked.motion, parameters_.against, parameters_.limits, query, workspace), out);
     else
       evaluateLeast(clearanceGradient(asked.motion, parameters_.against, query, workspace), out);
+  }
+
+  bool takesMovers() const override {
+    return true;
   }
 
  private:
@@ -99,7 +105,27 @@ class RobotDistanceConstraint : public MotionConstraint {
     row.velocities = std::move(gradient.velocities);
     row.accelerations = std::move(gradient.accelerations);
     row.duration = gradient.duration;
+    row.start = gradient.start;
     return row;
+  }
+
+  /* A row against all that stands and moves, and one of the robot with itself. */
+  void evaluateAmong(const ConstraintMotion &asked, const Query &query, Workspace &workspace, MotionValue &out) const {
+    if (parameters_.limits.horizon > 0.0)
+      throw Error(
+          "a horizon is not available where objects or further robots move: leave it out for the least clearance");
+    std::vector<ClearanceRow> found;
+    if (parameters_.against != RobotPairs::SELF)
+      found.push_back(clearanceGradient(*asked.movers, *asked.robot, query, workspace));
+    if (parameters_.against != RobotPairs::ENVIRONMENT)
+      found.push_back(clearanceGradient(asked.motion, RobotPairs::SELF, query, workspace));
+    std::stable_sort(found.begin(), found.end(), [](const ClearanceRow &x, const ClearanceRow &y) {
+      return x.answer.result.upper < y.answer.result.upper;
+    });
+    evaluateLeast(std::move(found.front()), out);
+    if (found.size() == 1 || found.back().answer.b.empty()) return; // nothing to measure against has no row
+    out.rows.push_back(toRow(std::move(found.back())));
+    out.lower = std::min(out.lower, out.rows.back().lower);
   }
 
   void evaluateLeast(ClearanceRow &&found, MotionValue &out) const {

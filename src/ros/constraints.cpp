@@ -109,6 +109,7 @@ TrajectoryConstraint toMessage(const MotionRow &row) {
   message.gradient_velocities = toList(row.velocities);
   message.gradient_accelerations = toList(row.accelerations);
   message.gradient_duration = row.duration;
+  message.gradient_start = row.start;
   message.gradient_a = toTwistMessage(row.a);
   message.gradient_b = toTwistMessage(row.b);
   fillWitness(row, true, message);
@@ -165,8 +166,8 @@ void limit(const char *parameter, int most, std::size_t count, const char *what)
 } // namespace
 
 Constraints::Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames,
-                         const std::atomic<bool> &stop)
-    : parameters_(parameters), live_(live), frames_(frames), stop_(stop) {
+                         const FurtherRobots &robots, const std::atomic<bool> &stop)
+    : parameters_(parameters), live_(live), frames_(frames), robots_(robots), stop_(stop) {
   try {
     providers_ = std::make_unique<ProviderSet>(parameters.constraint_providers);
   } catch (const ProviderError &error) {
@@ -192,6 +193,8 @@ void Constraints::checkLimits(const EvaluateConstraints::Request &request) const
   for (const ConstraintQuery &asked : request.cases) {
     points += asked.curve.points.size();
     values += asked.trajectory.points.size() * asked.trajectory.joint_names.size();
+    for (const RobotTrajectory &robot : asked.moving_robots)
+      values += robot.trajectory.points.size() * robot.trajectory.joint_names.size();
     results += asked.providers.empty() ? providers_->all().size() : asked.providers.size();
   }
   limit("max_control_points", parameters_.max_control_points, points, "control points");
@@ -220,6 +223,9 @@ struct Constraints::Work {
   /* The robot made ready last, for trajectories that begin at the same base. */
   std::shared_ptr<const PreparedRobot> robot;
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+
+  /* What the movers of the case at hand take. */
+  std::optional<memory::Share> share = std::nullopt;
 };
 
 MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work) const {
@@ -251,7 +257,20 @@ MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work)
   } else {
     out.robot = work.robot;
   }
+  gatherOthers(message, out, work);
   return out;
+}
+
+/* What moves beside the robot. */
+void Constraints::gatherOthers(const ConstraintQuery &message, MotionCase &out, Work &work) const {
+  const ros::Time &stamp = message.trajectory.header.stamp;
+  out.origin = static_cast<std::int64_t>((stamp.isZero() ? ros::Time::now() : stamp).toNSec());
+  GatheredRobots others = gatherRobots(message.moving_robots, robots_, out.origin, work.lookup);
+  out.other_robots = std::move(others.robots);
+  if (!out.isAmongMovers()) return;
+  const std::size_t own = work.snapshot->robot()->links().size() * (out.trajectory.points.size() + 2);
+  work.share.emplace(bytesOfMovers(movingObjects(*work.snapshot, out.origin), own + others.values),
+                     static_cast<std::size_t>(parameters_.max_request_mb) << 20);
 }
 
 Eigen::Isometry3d Constraints::linkPose(const ConstraintQuery &message, const std::string &link, LinkPoses &poses,
@@ -274,6 +293,7 @@ ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) c
     out.motion = toMotionCase(message, work);
     return out;
   }
+  if (!message.moving_robots.empty()) throw Error("moving_robots move beside a trajectory, and there is none");
   const bool rides = isSet(message.curve);
   LinkPoses poses; /* by joint values; without any tf2 knows */
   const LinkPlaces places = [&](const std::string &link) { return linkPose(message, link, poses, work); };
@@ -301,7 +321,8 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
   const ResourceOptions resources = resourceOptions("", parameters_);
   const WorkspacePool::Lease workspace(workspaces_);
   Work work{
-      snapshot, deadline, stop_, turn, FrameLookup(frames_, turn), 0, NONE, nullptr, Eigen::Isometry3d::Identity()};
+      snapshot,    deadline, stop_, turn, FrameLookup(frames_, turn), 0, NONE, nullptr, Eigen::Isometry3d::Identity(),
+      std::nullopt};
   Doubts doubts(parameters_.max_age, response.scene.sensors, live_.lost);
   std::size_t failed = 0;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
@@ -309,6 +330,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
     if (turn) turn->yield();
     work.lookup.begin();
     work.joints_age = NONE;
+    work.share.reset();
     std::vector<ConstraintRow> rows;
     ConstraintCase described;
     cprox_status fault = CPROX_OK;

@@ -17,6 +17,7 @@
 #include "frames.h"
 #include "level_markers.h"
 #include "live_scene.h"
+#include "movers.h"
 #include "parameters.h"
 #include "workspaces.h"
 
@@ -28,7 +29,8 @@ class Constraints {
   /** Loads those of parameters.constraint_providers. Throws ParameterError, naming the parameter, for a type that no
    * package declares and for parameters that a provider refuses. A plugin that does not load, or throws, is told by
    * name on the log and in every answer; the others go on. All is kept by reference. */
-  Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames, const std::atomic<bool> &stop);
+  Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames, const FurtherRobots &robots,
+              const std::atomic<bool> &stop);
 
   /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row.
    * drawing: the last case that a Fourier gap has answered, if any. */
@@ -45,10 +47,12 @@ class Constraints {
   Eigen::Isometry3d linkPose(const ConstraintQuery &message, const std::string &link, LinkPoses &poses,
                              Work &work) const;
   MotionCase toMotionCase(const ConstraintQuery &message, Work &work) const;
+  void gatherOthers(const ConstraintQuery &message, MotionCase &out, Work &work) const;
 
   const Parameters &parameters_;
   const LiveScene &live_;
   const Frames &frames_;
+  const FurtherRobots &robots_;
   const std::atomic<bool> &stop_;
   std::unique_ptr<ProviderSet> providers_;
   WorkspacePool workspaces_;

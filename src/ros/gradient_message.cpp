@@ -48,6 +48,7 @@ Gradient toMessage(const ClearanceGradient &gradient, const TrajectoryDescriptio
   message.velocities = toList(gradient.velocities);
   message.accelerations = toList(gradient.accelerations);
   message.duration = gradient.duration;
+  message.start = gradient.start;
   message.moving = toTwistMessage(gradient.base_linear, gradient.base_angular);
   message.obstacle = toTwistMessage(gradient.object_linear, gradient.object_angular);
   return message;

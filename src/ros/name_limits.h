@@ -53,7 +53,11 @@ class NameLimits {
     check("the name of a group", query.group);
     check("the name of a joint", query.joint_state.name);
     check(query.body);
-    for (const RobotTrajectory &robot : query.moving_robots) {
+    check(query.moving_robots);
+  }
+
+  void check(const std::vector<RobotTrajectory> &robots) const {
+    for (const RobotTrajectory &robot : robots) {
       check("the name of a robot", robot.name);
       check("the name of a robot", robot.robot);
       check("a robot's frame", robot.base.header.frame_id);
@@ -111,6 +115,7 @@ class NameLimits {
       check("a trajectory's frame", query.trajectory.header.frame_id);
       check("the name of a joint", query.trajectory.joint_names);
       check("the name of a joint", query.joint_state.name);
+      check(query.moving_robots);
     }
   }
 

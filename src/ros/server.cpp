@@ -179,7 +179,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       queries_(parameters_, tuning_, live_, frames_, statistics_, stop_,
                loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf),
                secondOpinions(parameters_)),
-      constraints_(parameters_, live_, frames_, stop_),
+      constraints_(parameters_, live_, frames_, queries_.robots(), stop_),
       pairs_(parameters_, tuning_, statistics_, stop_, secondOpinions(parameters_)) {
   memory::setLimit(static_cast<std::size_t>(parameters_.memory_limit_mb) << 20);
   warnOfOtherLinks(live_);

@@ -180,6 +180,33 @@ joint_trajectory:
         self.assertEqual((answer.code, answer.err, row['verdict'], row['derivative']), (1, '', 'violated', 'position 0 lift'))
         self.assertEqual((float(row['gradient']), round(float(row['difference']), 6)), (1.5, 3.0))
 
+    def among_what_moves_the_gradient_is_by_the_trajectory_and_its_start(self):
+        """A ball falls towards the tool, which rises, and goes up again."""
+        words = list(self.inputs())
+        words[5] = self.file('t.yaml', 'joint_trajectory: {joint_names: [lift], points: [{positions: [0.2], time_from_start: 0}, '
+                             '{positions: [0.4], time_from_start: 1}, {positions: [0.1], time_from_start: 3}]}')
+        words[3] = self.file('scene.yaml', """
+world:
+  collision_objects:
+    - id: ball
+      primitives: [{type: sphere, dimensions: [0.1]}]
+      trajectory: {waypoints: [{time: 0, pose: {position: [0, 0, 1.9]}}, {time: 0.5, pose: {position: [0, 0, 0.9]}}, {time: 3, pose: {position: [0, 0, 1.9]}}]}
+""")
+        answer = cprox('constraints', '--provider', ROBOT, *words)
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        row = answer.row('t')
+        self.assertEqual((row['status'], row['valid'], row['kind'], row['a'], row['b']), ('ok', 'true', 'environment', 'tool', 'ball'))
+        # at .5 s the ball is at .9 and the tool at .3, which goes up at .2 m/s
+        self.assertAlmostEqual(float(row['value']), 0.4, delta=1e-5)
+        self.assertAlmostEqual(float(row['t']), 0.5, delta=1e-6)
+        told = {name: float(row[name]) for name in ('q0_lift', 'q1_lift', 'q2_lift', 'g_start', 'g_duration', 'ga_vz', 'gb_vz')}
+        for name, true in (('q0_lift', -0.5), ('q1_lift', -0.5), ('q2_lift', 0), ('g_start', 0.2), ('g_duration', 0.1 / 3), ('ga_vz', -1), ('gb_vz', 1)):
+            self.assertAlmostEqual(told[name], true, delta=1e-6, msg=name)
+        checked = cprox('constraints', '--provider', ROBOT, *words, '--check-gradient')
+        self.assertEqual((checked.code, checked.row('t')['verdict'], checked.row('t')['derivatives']), (0, 'clear', '4'), checked.err)
+        self.assertIn('a horizon is not available', cprox('constraints', '--provider', ROBOT, *words, '--parameters', 'horizon: 0.5').err)
+        self.assertIn('nothing moves beside the robot', cprox('constraints', '--provider', 'example_provider/WrongGradient', *words).err)
+
     def what_is_wrong_is_told_by_one_line(self):
         self.assertIn('not for joint trajectories', self.constraints(provider=CURVES).err)
         self.assertEqual(self.constraints(provider=CURVES).code, 2)

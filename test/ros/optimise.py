@@ -6,8 +6,9 @@ import math
 import unittest
 
 import rospy
-from curve_proximity.msg import CollisionObject, ConstraintQuery
+from curve_proximity.msg import CollisionObject, ConstraintQuery, RobotTrajectory, Waypoint
 from curve_proximity.srv import EvaluateConstraints
+from geometry_msgs.msg import Point, Pose, Quaternion
 from helpers import Server, bezier, box, joints, run, sphere
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -116,6 +117,45 @@ class Optimise(unittest.TestCase):
             self.assertTrue(row.t0 <= row.t <= row.t1)
             self.assertEqual(len(row.gradient_positions), 21)
             self.assertTrue(row.valid or row.message)
+
+    def test_among_what_moves_the_gradient_is_that_of_differences(self):
+        """A lamp crosses the arm's way and a second Panda moves beside it."""
+        lamp = sphere('lamp', 0.12)
+        lamp.trajectory.waypoints = [Waypoint(t, Pose(Point(x, y, 0.7), Quaternion(0, 0, 0, 1))) for t, x, y in ((0.0, 0.4, 0.9), (1.6, 0.9, -0.3))]
+        second = RobotTrajectory(name='second', trajectory=trajectory(velocities=False))
+        second.base.pose = Pose(Point(1.6, 0.1, 0), Quaternion(0, 0, 1, 0))
+        try:
+            for others in ([], [second]):
+                self.server.replace(*([] if others else [lamp]))
+                row, = self.results(query(trajectory(), 'exact', moving_robots=others))
+                response = self.server.distance([], trajectory=trajectory(), moving_robots=others, epsilon=1e-9)
+                self.assertTrue(response.success, response.message)
+                self.assertAlmostEqual(row.value, response.results[0].upper, delta=1e-8)
+                least, = row.rows
+                self.assertEqual((least.kind, least.a, least.b), ('environment', response.results[0].a, response.results[0].b))
+                self.assertEqual(least.b.split('/')[0], 'second' if others else 'lamp')
+                self.assertTrue(row.valid, row.message)
+                h, cases, expected = 2e-4, [], []
+                for i in range(3):
+                    for k in range(7):
+                        for step in (h, -h):
+                            moved = trajectory()
+                            moved.points[i].positions[k] += step
+                            cases.append(query(moved, 'exact', moving_robots=others))
+                        expected.append(least.gradient_positions[7 * i + k])
+                values = [result.value for result in self.results(*cases)]
+                for found, ahead, behind in zip(expected, values[::2], values[1::2]):
+                    self.assertAlmostEqual(found, (ahead - behind) / (2 * h), delta=1e-5)
+                self.assertGreater(max(map(abs, expected)), 0.01)
+                self.assertNotEqual(least.gradient_start, 0.0)
+            self.server.replace(lamp)
+            both, = self.results(query(trajectory(), 'least'))
+            self.assertEqual({one.kind for one in both.rows}, {'environment', 'self'})
+            self.assertIn('a horizon is not available', self.refused(query(trajectory(), 'near')))
+            self.assertIn("there is no 'panda2'", self.refused(query(trajectory(), 'exact', moving_robots=[RobotTrajectory(robot='panda2', name='x')])))
+            self.assertIn('beside a trajectory', self.refused(ConstraintQuery(a=sphere('', 0.1), b=sphere('', 0.1), moving_robots=[second])))
+        finally:
+            self.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
 
     def test_beyond_the_horizon_there_is_no_row_and_the_horizon_is_the_value(self):
         self.server.replace(sphere('far', 0.1, (9, 9, 9)))
