@@ -6,6 +6,7 @@
 
 #include <curve_proximity/files.hpp>
 #include <curve_proximity/motion.hpp>
+#include <curve_proximity/movers.hpp>
 #include <curve_proximity/roadmap.hpp>
 #include <curve_proximity/srdf.hpp>
 
@@ -91,7 +92,7 @@ class PythonScene {
     }
     if (!contents.moving_robots.empty())
       throw Error(path + ": moving robot '" + contents.moving_robots.front().name +
-                  "': further robots are available in C++ and on the command line alone");
+                  "': further robots are made as Motions, and joined by Movers");
     warn(path, contents.warnings);
     change(contents.change);
     for (const auto &[joint, value] : contents.joints) joints_[joint] = value;
@@ -280,15 +281,7 @@ py::object fromMatrix(const Eigen::MatrixXd &matrix) {
   return out;
 }
 
-py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-                    const Names &objects, bool is_signed) {
-  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
-  query.options.signed_distance = is_signed;
-  ClearanceRow row;
-  {
-    const py::gil_scoped_release release;
-    row = clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, query, threadWorkspace());
-  }
+py::dict toDict(const ClearanceRow &row) {
   py::dict out = answerOf(row.answer);
   const ClearanceGradient &g = row.gradient;
   out["valid"] = g.valid, out["reason"] = g.reason, out["t"] = g.t;
@@ -298,6 +291,18 @@ py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::u
   out["object_linear"] = fromVector(toVec3(g.object_linear));
   out["object_angular"] = fromVector(toVec3(g.object_angular));
   return out;
+}
+
+py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
+                    const Names &objects, bool is_signed) {
+  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
+  query.options.signed_distance = is_signed;
+  ClearanceRow row;
+  {
+    const py::gil_scoped_release release;
+    row = clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, query, threadWorkspace());
+  }
+  return toDict(row);
 }
 
 /* One array of all rows' matrices (rows, points, joints); None if no point has such numbers. */
@@ -361,6 +366,68 @@ py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair,
   out["object_angular"] = stacked(rows, &ClearanceGradient::object_angular);
   return out;
 }
+
+/* ---- movers ---- */
+
+/* Motions by name and the objects of a scene that move, on one clock. */
+class PythonMovers {
+ public:
+  PythonMovers(const PythonScene &scene, const std::map<std::string, std::shared_ptr<RobotMotion>> &motions,
+               const std::map<std::string, double> &starts) {
+    std::vector<MovingRobot> robots;
+    for (const auto &[name, motion] : motions) {
+      if (!motion) throw Error("'" + name + "' has no motion");
+      const auto start = starts.find(name);
+      robots.push_back({name, motion, start == starts.end() ? 0.0 : start->second, 0.0});
+      robots_[name] = robots.back();
+    }
+    for (const auto &entry : starts)
+      if (motions.count(entry.first) == 0) throw Error("starts name '" + entry.first + "', which is no motion");
+    const SnapshotPtr snapshot = scene.snapshot();
+    const py::gil_scoped_release release;
+    movers_ = std::make_unique<const Movers>(snapshot, robots, movingObjects(*snapshot));
+  }
+
+  std::array<double, 2> domain() const {
+    return movers_->domain();
+  }
+
+  /* robot '': of all that moves. */
+  py::dict ask(const std::string &robot, const Query &query) const {
+    const MovingRobot *one = robot.empty() ? nullptr : &find(robot);
+    Answer answer;
+    {
+      const py::gil_scoped_release release;
+      answer = one ? curve_proximity::ask(*movers_, *one, query, threadWorkspace())
+                   : curve_proximity::ask(*movers_, Against::OTHERS, query, threadWorkspace());
+    }
+    return answerOf(answer);
+  }
+
+  py::dict gradient(const std::string &robot, double epsilon, std::uint32_t max_nodes, const Names &links,
+                    const Names &objects) const {
+    const MovingRobot &one = find(robot);
+    ClearanceRow row;
+    {
+      const py::gil_scoped_release release;
+      row = clearanceGradient(*movers_, one, queryOf("distance", 0.0, epsilon, max_nodes, links, objects),
+                              threadWorkspace());
+    }
+    py::dict out = toDict(row);
+    out["start"] = row.gradient.start;
+    return out;
+  }
+
+ private:
+  const MovingRobot &find(const std::string &robot) const {
+    const auto found = robots_.find(robot);
+    if (found == robots_.end()) throw Error("there is no motion '" + robot + "'");
+    return found->second;
+  }
+
+  std::map<std::string, MovingRobot> robots_;
+  std::unique_ptr<const Movers> movers_;
+};
 
 /* ---- roadmaps ---- */
 
@@ -608,6 +675,43 @@ void addRobots(py::module &module) {
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
            py::arg("objects") = Names{}, "The k pairs that come closest, nearest first; each as distance() gives it.");
+
+  py::class_<PythonMovers, std::shared_ptr<PythonMovers>>(
+      module, "Movers",
+      "Motions of robots, and the objects of a scene that move, on one clock: against each other and what stands in "
+      "the "
+      "scene.\n"
+      "robot of its queries: the name of the motion that is asked about, at its times; '': all that moves. links: of "
+      "that\nrobot alone, or of all 'name/link'. objects: names of objects or robots. No robot is measured against "
+      "itself.")
+      .def(py::init<const PythonScene &, const std::map<std::string, std::shared_ptr<RobotMotion>> &,
+                    const std::map<std::string, double> &>(),
+           py::arg("scene"), py::arg("motions"), py::arg("starts") = std::map<std::string, double>{},
+           "motions: Motion by name, each of a scene whose robot, paddings and allowed pairs count alone. starts: [s] "
+           "by "
+           "name,\nadded to the times of the motion; others 0.")
+      .def_property_readonly("domain", &PythonMovers::domain, "[s] The first start and the last end.")
+      .def(
+          "distance",
+          [](const PythonMovers &m, const std::string &robot, double epsilon, std::uint32_t max_nodes,
+             const Names &links, const Names &objects) {
+            return m.ask(robot, queryOf("distance", 0.0, epsilon, max_nodes, links, objects));
+          },
+          py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000, py::arg("links") = Names{},
+          py::arg("objects") = Names{}, "The least distance: the dict of Motion.distance().")
+      .def(
+          "tolerance",
+          [](const PythonMovers &m, double delta, const std::string &robot, double epsilon, std::uint32_t max_nodes,
+             const Names &links, const Names &objects) {
+            return m.ask(robot, queryOf("tolerance", delta, epsilon, max_nodes, links, objects));
+          },
+          py::arg("delta"), py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("links") = Names{}, py::arg("objects") = Names{},
+          "Are they farther apart than delta [m] at all times?")
+      .def("gradient", &PythonMovers::gradient, py::arg("robot"), py::arg("epsilon") = 1e-6,
+           py::arg("max_nodes") = 20000, py::arg("links") = Names{}, py::arg("objects") = Names{},
+           "The least distance of one of the motions and its derivatives by that motion: the dict of Motion.gradient() "
+           "with\nstart, by when it begins. What else moves goes on as it does.");
 
   module.def(
       "edge_verdicts", &edgeVerdictsOf, py::arg("scene"), py::arg("joints"), py::arg("vertices"), py::arg("edges"),

@@ -451,6 +451,51 @@ class Robots(unittest.TestCase):
                     high, low = (moved(i, k, s, of).distance(epsilon=1e-12)['result'].upper for s in (step, -step))
                     self.assertAlmostEqual(told[name][i, k], (high - low) / (2 * step), delta=1e-5)
 
+    def test_what_moves_at_the_same_time_has_distances_and_gradients(self):
+        """A ball crosses the arm's way, then a second arm stands beside it and moves as the first."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'scene.yaml')
+            with open(path, 'w') as file:
+                file.write('world: {collision_objects: [{id: ball, primitives: [{type: sphere, dimensions: [0.1]}], trajectory: {waypoints: ['
+                           '{time: 0, pose: {position: [0.6, 0.9, 1.0]}}, {time: 1.0, pose: {position: [0.8, -0.4, 0.9]}}]}}]}')
+            scene = cprox.Scene(self.robot)
+            scene.load(path)
+        n, alone, positions = 4, cprox.Scene(self.robot), numpy.array(self.positions[:4])
+        times = numpy.linspace(0.0, 1.0, n)
+        base = cprox.transform([1.5, 0.2, 0], [0, 0, 1, 0])
+
+        def movers(i=0, k=0, step=0.0, late=0.0, last=1.0, second=False):
+            rows = positions.copy()
+            rows[i, k] += step
+            motions = dict(first=cprox.Motion(alone, self.joints, last * times, rows))
+            if second:
+                motions['second'] = cprox.Motion(alone, self.joints, times, 0.8 * positions[::-1] + 0.1, base=base)
+            return cprox.Movers(scene, motions, dict(first=late))
+        for second in (False, True):
+            objects = ['second'] if second else []
+            told = movers(second=second).gradient('first', epsilon=1e-10, objects=objects)
+            self.assertTrue(told['valid'], told['reason'])
+            self.assertEqual(told['positions'].shape, (n, 7))
+            self.assertEqual((told['b'].split('/')[0], movers(second=second).domain), ('second' if second else 'ball', [0.0, 1.0]))
+
+            def least(**changed):
+                return movers(second=second, **changed).distance('first', epsilon=1e-11, objects=objects)['result'].upper
+            step = 1e-6
+            for i in range(n):
+                for k in range(7):
+                    self.assertAlmostEqual(told['positions'][i, k], (least(i=i, k=k, step=step) - least(i=i, k=k, step=-step)) / (2 * step), delta=1e-4)
+            if not second:
+                self.assertAlmostEqual(told['start'], (least(late=step) - least(late=-step)) / (2 * step), delta=1e-4)
+            self.assertAlmostEqual(told['duration'], (least(last=1 + step) - least(last=1 - step)) / (2 * step), delta=1e-4)
+            self.assertAlmostEqual(told['result'].upper, least(), places=8)
+            self.assertEqual(movers(second=second).tolerance(least() - 1e-4, 'first', objects=objects)['result'].verdict, 'clear')
+            numpy.testing.assert_allclose(told['object_linear'], 0.0 if second else -told['base_linear'], atol=1e-12)
+        self.assertLessEqual(movers(second=True).distance()['result'].upper, least() + 1e-5)
+        for wrong, words in ((lambda: movers().gradient('third'), "no motion 'third'"), (lambda: cprox.Movers(scene, {}, dict(x=1)), "starts name 'x'"),
+                             (lambda: cprox.Movers(alone, {}), 'nothing moves'), (lambda: movers().distance('first', objects=['bal']), "'bal'")):
+            with self.assertRaisesRegex(ValueError, words):
+                wrong()
+
     def test_rows_are_the_nearest_of_each_pair_between_breaks_with_their_gradients(self):
         scene = cprox.Scene(self.robot)
         scene.add('ball', 'sphere', [.1], cprox.transform([.6, .5, 1.2]))
