@@ -12,7 +12,7 @@ ASKED += [(f'{build}: T5', 100000, .1) for build in ('rounding_chain', 'rounding
 ASKED += [('certificates of robots and mutants', 10000, None)]
 ASKED += [(f'attack: {family}', 1000000, None) for family in
           ('coaxial', 'coincident', 'contact', 'flat', 'inside', 'lengths', 'starve', 'superquadrics', 'ties',
-           'time_of_contact')]
+           'time_of_contact', 'movers')]
 ASKED += [(f'attack: {family}', 100000, None) for family in ('gradients', 'links', 'robots')]
 ASKED += [('intervals of queries', 1000000, None), ('certificates and mutants', 10000, None)]
 
