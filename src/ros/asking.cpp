@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "conversions.h"
+#include "row_message.h"
 
 namespace curve_proximity {
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "conversions.h"
+#include "geometry_message.h"
 
 namespace curve_proximity {
 namespace {

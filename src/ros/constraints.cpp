@@ -9,11 +9,14 @@
 #include <limits>
 #include <utility>
 
-#include "conversions.h"
+#include "curve_message.h"
 #include "doubts.h"
+#include "geometry_message.h"
 #include "gradient_message.h"
 #include "name_limits.h"
 #include "robot_description.h"
+#include "scene_message.h"
+#include "trajectory_message.h"
 #include "turns.h"
 
 namespace curve_proximity {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "conversions.h"
+#include "geometry_message.h"
 
 namespace curve_proximity {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "conversions.h"
+#include "geometry_message.h"
 
 namespace curve_proximity {
 namespace {

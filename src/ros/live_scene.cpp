@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "conversions.h"
+#include "trajectory_message.h"
 
 namespace curve_proximity {
 namespace {

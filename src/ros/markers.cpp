@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "canvas.h"
-#include "conversions.h"
 #include "curve_markers.h"
 #include "guard.h"
 #include "motion_markers.h"

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "conversions.h"
-
 namespace curve_proximity {
 namespace {
 

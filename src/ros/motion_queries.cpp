@@ -4,11 +4,13 @@
 #include <cmath>
 #include <iterator>
 
-#include "conversions.h"
 #include "gradient_message.h"
 #include "queries.h"
 #include "robot_description.h"
+#include "row_message.h"
+#include "scene_message.h"
 #include "topics.h"
+#include "trajectory_message.h"
 
 namespace curve_proximity {
 namespace {

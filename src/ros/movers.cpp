@@ -6,7 +6,9 @@
 #include <curve_proximity/nearest_name.hpp>
 #include <iterator>
 
-#include "conversions.h"
+#include "geometry_message.h"
+#include "row_message.h"
+#include "trajectory_message.h"
 
 namespace curve_proximity {
 namespace {

@@ -7,9 +7,11 @@
 
 #include "../providers/provider_set.h"
 #include "../scene/pair_query.h"
-#include "conversions.h"
+#include "geometry_message.h"
 #include "name_limits.h"
 #include "robot_description.h"
+#include "row_message.h"
+#include "shape_message.h"
 
 namespace curve_proximity {
 namespace {
@@ -29,6 +31,40 @@ struct Watch {
     return watch.stop || Clock::now() >= watch.deadline;
   }
 };
+
+PlacedBody toPlacedBody(const Body &body, const geometry_msgs::Pose &pose, const char *name) {
+  try {
+    PlacedBody out;
+    out.shape = toShape(body);
+    if (isUnset(pose)) return out;
+    toIsometry(pose); // so that it is finite, and the quaternion a rotation
+    out.pose = {{pose.position.x, pose.position.y, pose.position.z},
+                {pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z}};
+    return out;
+  } catch (const Error &error) {
+    throw Error(std::string(name) + ": " + error.what(), error.status());
+  }
+}
+
+/** Throws Error: an unknown question, a velocity or duration of bodies that stand. */
+PairDescription toDescription(const PairQuery &message) {
+  const std::optional<PairDescription::Asked> asked = pairQuestion(message.ask);
+  if (!asked)
+    throw Error("ask '" + message.ask +
+                "' is unknown; it must be distance, growth, translating_distance or translating_contact");
+  PairDescription out;
+  out.asked = *asked;
+  out.id = message.id;
+  out.a = toPlacedBody(message.a, message.pose_a, "a");
+  out.b = toPlacedBody(message.b, message.pose_b, "b");
+  out.velocity_a = {message.velocity_a.x, message.velocity_a.y, message.velocity_a.z};
+  out.velocity_b = {message.velocity_b.x, message.velocity_b.y, message.velocity_b.z};
+  out.duration = message.duration;
+  const bool moves = !out.velocity_a.isZero(0.0) || !out.velocity_b.isZero(0.0) || out.duration != 0.0;
+  if (moves && !isTranslating(out.asked))
+    throw Error("there is a velocity or a duration: bodies move with translating_distance and translating_contact");
+  return out;
+}
 
 Proximity toRow(const Answer &answer, PairDescription::Asked asked) {
   Proximity row;

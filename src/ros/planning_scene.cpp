@@ -7,7 +7,8 @@
 #include <optional>
 #include <set>
 
-#include "conversions.h"
+#include "geometry_message.h"
+#include "scene_message.h"
 
 namespace curve_proximity {
 namespace {

@@ -10,11 +10,12 @@
 #include <mutex>
 #include <sstream>
 
-#include "conversions.h"
+#include "curve_message.h"
 #include "gradient_message.h"
 #include "guard.h"
 #include "memory_account.h"
 #include "name_limits.h"
+#include "row_message.h"
 #include "topics.h"
 
 namespace curve_proximity {

@@ -12,11 +12,11 @@
 
 #include "../scene/yaml/scene_change.h"
 #include "checked_stream.h"
-#include "conversions.h"
 #include "guard.h"
 #include "memory_account.h"
 #include "name_limits.h"
 #include "robot_description.h"
+#include "scene_message.h"
 
 namespace curve_proximity {
 namespace {

@@ -14,8 +14,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "conversions.h"
 #include "guard.h"
+#include "scene_message.h"
 
 namespace curve_proximity {
 namespace {

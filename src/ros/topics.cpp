@@ -2,7 +2,7 @@
 #include "topics.h"
 
 #include "../scene/path_times.h"
-#include "conversions.h"
+#include "geometry_message.h"
 
 #include <algorithm>
 #include <cmath>
