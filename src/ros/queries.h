@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What a service call does between its request and its response: queries.cpp for curves, motion_queries.cpp for
- * motions. */
+/** What a service call does between its request and its response: queries.cpp for all, curve_queries.cpp for curves,
+ * motion_queries.cpp for motions. */
 #ifndef CURVE_PROXIMITY_ROS_QUERIES_H
 #define CURVE_PROXIMITY_ROS_QUERIES_H
 
