@@ -212,8 +212,12 @@ void compare(const moveit::core::RobotModelPtr &model, const std::string &scene,
 } // namespace
 
 int main(int argc, char **argv) {
-  if (argc < 4 || argc % 2 != 0) {
-    std::fprintf(stderr, "usage: moveit_compare STATES SCENE TRAJECTORY [SCENE TRAJECTORY ...]\n");
+  constexpr std::size_t FEWEST = 4; // states: so many make a segment
+  const std::size_t states = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 0;
+  if (argc < 4 || argc % 2 != 0 || states < FEWEST) {
+    std::fprintf(stderr,
+                 "usage: moveit_compare STATES SCENE TRAJECTORY [SCENE TRAJECTORY ...]   STATES: at least %zu\n",
+                 FEWEST);
     return 2;
   }
   ros::Time::init();
@@ -222,6 +226,6 @@ int main(int argc, char **argv) {
   ros::console::notifyLoggerLevelsChanged();
   const auto model = panda();
   std::printf("scene,query,method,cases,hits,differs,median_us,error\n");
-  for (int i = 2; i + 1 < argc; i += 2) compare(model, argv[i], argv[i + 1], std::strtoul(argv[1], nullptr, 10));
+  for (int i = 2; i + 1 < argc; i += 2) compare(model, argv[i], argv[i + 1], states);
   return 0;
 }
