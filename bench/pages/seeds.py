@@ -110,7 +110,9 @@ Printed values come from other machines and, where inputs are not published (whe
 curves), from other problems of the same kind: compare orders of magnitude there. What was run here ran in one process, in turns; "its
 method" is the published method, written again as described (`bench/paper`).
 
-## A. Lakshmanan, A. Patterson, V. Cichella, N. Hovakimyan, "Proximity Queries for Absolutely Continuous Parametric Curves", RSS 2019
+## Proximity Queries for Absolutely Continuous Parametric Curves
+
+A. Lakshmanan, A. Patterson, V. Cichella, N. Hovakimyan, RSS 2019
 (printed: Julia, 2.3 GHz Core i5)
 
 **Table I**, the length of an interval of a curve and its bound by Eq. 6:
@@ -137,7 +139,9 @@ method" is the published method, written again as described (`bench/paper`).
 
 **Fig. 12**, replanning. {replanning(figures)}
 
-## N. Chakraborty, J. Peng, S. Akella, J. Mitchell, "Proximity Queries Between Convex Objects: An Interior Point Approach for Implicit Surfaces", 2008
+## Proximity Queries Between Convex Objects: An Interior Point Approach for Implicit Surfaces
+
+N. Chakraborty, J. Peng, S. Akella, J. Mitchell, 2008
 (printed: KNITRO 5.0 on a 2.2 GHz Athlon 64, to 1e-8)
 
 **Table I**:
@@ -157,6 +161,8 @@ triangles, which the paper gave to PQP, FCL's mesh distance beside ours: `implic
 
 **Fig. 2**, time against the number of constraints: `seeds_figure_2_planes`, `_quadrics`, `_superquadrics`; exponents in [growth](README.md#growth).
 
-## M. Lysenko, "Fourier Collision Detection", 2011
+## Fourier Collision Detection
+
+M. Lysenko, 2011
 It prints no figures, only pictures: Fig. 3 is `fourier_over_reach`, Fig. 5 `fourier_convergence`, Fig. 6 `fourier_obstacle`.
 '''
