@@ -60,6 +60,8 @@ void addShapes(py::module &module);
 void addCurves(py::module &module);
 void addQueries(py::module &module);
 void addRobots(py::module &module);
+void addMovers(py::module &module);
+void addRoadmaps(py::module &module);
 
 } // namespace curve_proximity::python
 #endif

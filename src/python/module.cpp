@@ -80,4 +80,6 @@ PYBIND11_MODULE(_cprox, module) {
   python::addCurves(module);
   python::addQueries(module);
   python::addRobots(module);
+  python::addMovers(module);
+  python::addRoadmaps(module);
 }

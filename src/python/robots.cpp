@@ -5,25 +5,29 @@
 #include <sstream>
 
 #include <curve_proximity/files.hpp>
-#include <curve_proximity/motion.hpp>
-#include <curve_proximity/movers.hpp>
-#include <curve_proximity/roadmap.hpp>
-#include <curve_proximity/srdf.hpp>
 
-#include "conversion.h"
+#include "robots.h"
 
 namespace curve_proximity::python {
 namespace {
 
-using Packages = std::map<std::string, std::string>;
-
-std::string readText(const std::string &path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw Error(path + ": the file cannot be read");
-  return text.str();
+/* As Python's warnings, which may be errors. */
+void warn(const std::string &path, const std::vector<std::string> &sentences) {
+  for (const std::string &sentence : sentences) {
+    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + sentence).c_str(), 1) != 0) throw py::error_already_set();
+  }
 }
+
+/* A matrix as an array (rows, columns); none: None. */
+py::object fromMatrix(const Eigen::MatrixXd &matrix) {
+  if (matrix.size() == 0) return py::none();
+  Array out({matrix.rows(), matrix.cols()});
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) out.mutable_at(i, k) = matrix(i, k);
+  return out;
+}
+
+} // namespace
 
 ResourceOptions resourcesOf(const std::string &path, const Packages &packages) {
   ResourceOptions out;
@@ -36,11 +40,87 @@ ResourceOptions resourcesOf(const std::string &path, const Packages &packages) {
   return out;
 }
 
-/* A robot with what its SRDF says. */
-struct LoadedRobot {
-  std::shared_ptr<const Robot> robot;
-  Srdf srdf;
-};
+void PythonScene::load(const std::string &path) {
+  SceneFileContents contents;
+  {
+    const py::gil_scoped_release release;
+    contents = robot_ ? loadSceneFile(path, robot_->robot.get(), robot_->srdf) : loadSceneFile(path);
+  }
+  if (!contents.moving_robots.empty())
+    throw Error(path + ": moving robot '" + contents.moving_robots.front().name +
+                "': further robots are made as Motions, and joined by Movers");
+  warn(path, contents.warnings);
+  change(contents.change);
+  for (const auto &[joint, value] : contents.joints) joints_[joint] = value;
+}
+
+void PythonScene::add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
+                      const std::optional<Array> &pose, double padding, const std::optional<Array> &vertices,
+                      const std::optional<py::array_t<int, py::array::c_style | py::array::forcecast>> &triangles,
+                      const std::string &resource, bool solid) {
+  const std::optional<ShapeType> known = shapeTypeFromName(type);
+  if (!known) throw Error("object '" + id + "': there is no shape '" + type + "'");
+  ShapeDescription shape;
+  shape.type = *known, shape.dimensions = dimensions, shape.resource = resource, shape.solid = solid;
+  if (vertices) {
+    const Points points(*vertices, "vertices");
+    shape.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices->data(), 3, static_cast<Eigen::Index>(points.size));
+  }
+  if (triangles) {
+    if (triangles->ndim() != 2 || triangles->shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
+    shape.triangles = Eigen::Map<const Triangles>(triangles->data(), 3, triangles->shape(0));
+  }
+  Operation add;
+  add.object.id = id, add.object.pose = toTransform(pose), add.object.padding = padding;
+  add.object.shapes.push_back(std::move(shape));
+  SceneChange change;
+  change.operations.push_back(std::move(add));
+  this->change(change);
+}
+
+Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links,
+              const Names &objects) {
+  Query out;
+  out.links = links, out.objects = objects;
+  if (type == "tolerance")
+    out.query_type = QueryType::TOLERANCE;
+  else if (type == "collision")
+    out.query_type = QueryType::COLLISION;
+  else if (type != "distance")
+    throw Error("there is no query '" + type + "'");
+  out.delta = delta, out.options.epsilon = epsilon, out.options.max_nodes = max_nodes;
+  return out;
+}
+
+py::dict answerOf(const Answer &answer) {
+  if (answer.result.status < 0) throw Error(answer.message, answer.result.status);
+  py::dict out;
+  out["result"] = answer.result, out["kind"] = answer.kind, out["a"] = answer.a, out["b"] = answer.b;
+  out["by_hull"] = answer.by_hull, out["message"] = answer.message;
+  return out;
+}
+
+py::dict toDict(const ClearanceRow &row) {
+  py::dict out = answerOf(row.answer);
+  const ClearanceGradient &g = row.gradient;
+  out["valid"] = g.valid, out["reason"] = g.reason, out["t"] = g.t;
+  out["positions"] = fromMatrix(g.positions), out["velocities"] = fromMatrix(g.velocities);
+  out["accelerations"] = fromMatrix(g.accelerations), out["duration"] = g.duration;
+  out["base_linear"] = fromVector(toVec3(g.base_linear)), out["base_angular"] = fromVector(toVec3(g.base_angular));
+  out["object_linear"] = fromVector(toVec3(g.object_linear));
+  out["object_angular"] = fromVector(toVec3(g.object_angular));
+  return out;
+}
+
+namespace {
+
+std::string readText(const std::string &path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw Error(path + ": the file cannot be read");
+  return text.str();
+}
 
 std::shared_ptr<LoadedRobot> load(const std::string &urdf, const std::optional<std::string> &srdf,
                                   const Packages &packages) {
@@ -59,101 +139,6 @@ std::shared_ptr<LoadedRobot> load(const std::string &urdf, const std::optional<s
   if (srdf) out->srdf = read(*srdf, [](const std::string &text) { return parseSrdf(text); });
   return out;
 }
-
-/* As Python's warnings, which may be errors. */
-void warn(const std::string &path, const std::vector<std::string> &sentences) {
-  for (const std::string &sentence : sentences) {
-    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + sentence).c_str(), 1) != 0) throw py::error_already_set();
-  }
-}
-
-/* A scene whose changes throw. */
-class PythonScene {
- public:
-  PythonScene(std::shared_ptr<LoadedRobot> robot, const Packages &packages)
-      : robot_(std::move(robot)),
-        scene_(robot_ ? robot_->robot : nullptr, resourcesOf("", packages),
-               robot_ ? allowedPairs(robot_->srdf) : std::vector<AllowedPair>{}) {}
-
-  void change(const SceneChange &change) {
-    std::vector<std::string> wrong;
-    {
-      const py::gil_scoped_release release;
-      wrong = scene_.apply(change);
-    }
-    if (!wrong.empty()) throw Error(wrong.front());
-  }
-
-  void load(const std::string &path) {
-    SceneFileContents contents;
-    {
-      const py::gil_scoped_release release;
-      contents = robot_ ? loadSceneFile(path, robot_->robot.get(), robot_->srdf) : loadSceneFile(path);
-    }
-    if (!contents.moving_robots.empty())
-      throw Error(path + ": moving robot '" + contents.moving_robots.front().name +
-                  "': further robots are made as Motions, and joined by Movers");
-    warn(path, contents.warnings);
-    change(contents.change);
-    for (const auto &[joint, value] : contents.joints) joints_[joint] = value;
-  }
-
-  void add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
-           const std::optional<Array> &pose, double padding, const std::optional<Array> &vertices,
-           const std::optional<py::array_t<int, py::array::c_style | py::array::forcecast>> &triangles,
-           const std::string &resource, bool solid) {
-    const std::optional<ShapeType> known = shapeTypeFromName(type);
-    if (!known) throw Error("object '" + id + "': there is no shape '" + type + "'");
-    ShapeDescription shape;
-    shape.type = *known, shape.dimensions = dimensions, shape.resource = resource, shape.solid = solid;
-    if (vertices) {
-      const Points points(*vertices, "vertices");
-      shape.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices->data(), 3, static_cast<Eigen::Index>(points.size));
-    }
-    if (triangles) {
-      if (triangles->ndim() != 2 || triangles->shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
-      shape.triangles = Eigen::Map<const Triangles>(triangles->data(), 3, triangles->shape(0));
-    }
-    Operation add;
-    add.object.id = id, add.object.pose = toTransform(pose), add.object.padding = padding;
-    add.object.shapes.push_back(std::move(shape));
-    SceneChange change;
-    change.operations.push_back(std::move(add));
-    this->change(change);
-  }
-
-  void operate(Operation::Kind kind, const std::string &id, const Eigen::Isometry3d &pose) {
-    Operation operation;
-    operation.kind = kind, operation.object.id = id, operation.object.pose = pose;
-    SceneChange change;
-    change.operations.push_back(std::move(operation));
-    this->change(change);
-  }
-
-  void allow(const std::string &a, const std::string &b, bool allowed) {
-    SceneChange change;
-    change.allowed.push_back({a, b, allowed});
-    this->change(change);
-  }
-
-  SnapshotPtr snapshot() const {
-    return scene_.snapshot();
-  }
-  const LoadedRobot *robot() const {
-    return robot_.get();
-  }
-  /* Where joints stand that a motion does not move: as the scene's files say, or better, as the caller does. */
-  JointPositions rest(const JointPositions &given) const {
-    JointPositions out = joints_;
-    for (const auto &[joint, value] : given) out[joint] = value;
-    return out;
-  }
-
- private:
-  std::shared_ptr<LoadedRobot> robot_;
-  Scene scene_;
-  JointPositions joints_;
-};
 
 /* ---- motions ---- */
 
@@ -212,30 +197,6 @@ std::shared_ptr<RobotMotion> loadMotion(const PythonScene &scene, const std::str
   return move(scene, std::move(trajectory), still, base);
 }
 
-using Names = std::vector<std::string>;
-
-Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links = {},
-              const Names &objects = {}) {
-  Query out;
-  out.links = links, out.objects = objects;
-  if (type == "tolerance")
-    out.query_type = QueryType::TOLERANCE;
-  else if (type == "collision")
-    out.query_type = QueryType::COLLISION;
-  else if (type != "distance")
-    throw Error("there is no query '" + type + "'");
-  out.delta = delta, out.options.epsilon = epsilon, out.options.max_nodes = max_nodes;
-  return out;
-}
-
-py::dict answerOf(const Answer &answer) {
-  if (answer.result.status < 0) throw Error(answer.message, answer.result.status);
-  py::dict out;
-  out["result"] = answer.result, out["kind"] = answer.kind, out["a"] = answer.a, out["b"] = answer.b;
-  out["by_hull"] = answer.by_hull, out["message"] = answer.message;
-  return out;
-}
-
 py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
   Answer answer;
   {
@@ -269,27 +230,6 @@ py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, b
   out["claim"] = info.claim == CPROX_CLAIM_APART ? "apart" : "near";
   out["record"] = py::bytes(static_cast<const char *>(info.bytes), info.size);
   out["query"] = text;
-  return out;
-}
-
-/* A matrix as an array (rows, columns); none: None. */
-py::object fromMatrix(const Eigen::MatrixXd &matrix) {
-  if (matrix.size() == 0) return py::none();
-  Array out({matrix.rows(), matrix.cols()});
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-    for (Eigen::Index k = 0; k < matrix.cols(); ++k) out.mutable_at(i, k) = matrix(i, k);
-  return out;
-}
-
-py::dict toDict(const ClearanceRow &row) {
-  py::dict out = answerOf(row.answer);
-  const ClearanceGradient &g = row.gradient;
-  out["valid"] = g.valid, out["reason"] = g.reason, out["t"] = g.t;
-  out["positions"] = fromMatrix(g.positions), out["velocities"] = fromMatrix(g.velocities);
-  out["accelerations"] = fromMatrix(g.accelerations), out["duration"] = g.duration;
-  out["base_linear"] = fromVector(toVec3(g.base_linear)), out["base_angular"] = fromVector(toVec3(g.base_angular));
-  out["object_linear"] = fromVector(toVec3(g.object_linear));
-  out["object_angular"] = fromVector(toVec3(g.object_angular));
   return out;
 }
 
@@ -364,106 +304,6 @@ py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair,
   out["base_angular"] = stacked(rows, &ClearanceGradient::base_angular);
   out["object_linear"] = stacked(rows, &ClearanceGradient::object_linear);
   out["object_angular"] = stacked(rows, &ClearanceGradient::object_angular);
-  return out;
-}
-
-/* ---- movers ---- */
-
-/* Motions by name and the objects of a scene that move, on one clock. */
-class PythonMovers {
- public:
-  PythonMovers(const PythonScene &scene, const std::map<std::string, std::shared_ptr<RobotMotion>> &motions,
-               const std::map<std::string, double> &starts) {
-    std::vector<MovingRobot> robots;
-    for (const auto &[name, motion] : motions) {
-      if (!motion) throw Error("'" + name + "' has no motion");
-      const auto start = starts.find(name);
-      robots.push_back({name, motion, start == starts.end() ? 0.0 : start->second, 0.0});
-      robots_[name] = robots.back();
-    }
-    for (const auto &entry : starts)
-      if (motions.count(entry.first) == 0) throw Error("starts name '" + entry.first + "', which is no motion");
-    const SnapshotPtr snapshot = scene.snapshot();
-    const py::gil_scoped_release release;
-    movers_ = std::make_unique<const Movers>(snapshot, robots, movingObjects(*snapshot));
-  }
-
-  std::array<double, 2> domain() const {
-    return movers_->domain();
-  }
-
-  /* robot '': of all that moves. */
-  py::dict ask(const std::string &robot, const Query &query) const {
-    const MovingRobot *one = robot.empty() ? nullptr : &find(robot);
-    Answer answer;
-    {
-      const py::gil_scoped_release release;
-      answer = one ? curve_proximity::ask(*movers_, *one, query, threadWorkspace())
-                   : curve_proximity::ask(*movers_, Against::OTHERS, query, threadWorkspace());
-    }
-    return answerOf(answer);
-  }
-
-  py::dict gradient(const std::string &robot, double epsilon, std::uint32_t max_nodes, const Names &links,
-                    const Names &objects) const {
-    const MovingRobot &one = find(robot);
-    ClearanceRow row;
-    {
-      const py::gil_scoped_release release;
-      row = clearanceGradient(*movers_, one, queryOf("distance", 0.0, epsilon, max_nodes, links, objects),
-                              threadWorkspace());
-    }
-    py::dict out = toDict(row);
-    out["start"] = row.gradient.start;
-    return out;
-  }
-
- private:
-  const MovingRobot &find(const std::string &robot) const {
-    const auto found = robots_.find(robot);
-    if (found == robots_.end()) throw Error("there is no motion '" + robot + "'");
-    return found->second;
-  }
-
-  std::map<std::string, MovingRobot> robots_;
-  std::unique_ptr<const Movers> movers_;
-};
-
-/* ---- roadmaps ---- */
-
-using Edges = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
-using Verdicts = py::array_t<std::int8_t, py::array::c_style | py::array::forcecast>;
-
-Roadmap roadmapOf(const std::vector<std::string> &joints, const Array &vertices, const Edges &edges,
-                  const JointPositions &rest) {
-  if (vertices.ndim() != 2) throw Error("vertices must be an array of shape (n, joints): one row a posture");
-  if (edges.ndim() != 2 || edges.shape(1) != 2) throw Error("edges must be an array of shape (m, 2): rows of vertices");
-  Roadmap out;
-  out.joints = joints, out.rest = rest;
-  out.vertices = Eigen::Map<const Eigen::MatrixXd>(vertices.data(), vertices.shape(1), vertices.shape(0));
-  for (py::ssize_t i = 0; i < edges.shape(0); ++i) out.edges.push_back({edges.at(i, 0), edges.at(i, 1)});
-  return out;
-}
-
-Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string> &joints, const Array &vertices,
-                        const Edges &edges, double delta, bool self, const std::optional<Verdicts> &known,
-                        const JointPositions &rest, const std::optional<Array> &base, double epsilon,
-                        std::uint32_t max_nodes, unsigned threads) {
-  if (!scene.robot()) throw Error("the scene has no robot");
-  const Roadmap roadmap = roadmapOf(joints, vertices, edges, scene.rest(rest));
-  std::vector<cprox_verdict> before;
-  for (py::ssize_t i = 0; known && i < known->size(); ++i)
-    before.push_back(static_cast<cprox_verdict>(known->data()[i]));
-  const Eigen::Isometry3d at = toTransform(base);
-  std::vector<cprox_verdict> found;
-  {
-    const py::gil_scoped_release release;
-    Pool pool(threads);
-    const PreparedRobot robot(scene.snapshot(), scene.robot()->srdf.disabled, {}, {}, at);
-    found = edgeVerdicts(robot, roadmap, self, queryOf("tolerance", delta, epsilon, max_nodes), before, pool);
-  }
-  Verdicts out(static_cast<py::ssize_t>(found.size()));
-  for (std::size_t i = 0; i < found.size(); ++i) out.mutable_data()[i] = static_cast<std::int8_t>(found[i]);
   return out;
 }
 
@@ -675,54 +515,6 @@ void addRobots(py::module &module) {
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
            py::arg("objects") = Names{}, "The k pairs that come closest, nearest first; each as distance() gives it.");
-
-  py::class_<PythonMovers, std::shared_ptr<PythonMovers>>(
-      module, "Movers",
-      "Motions of robots, and the objects of a scene that move, on one clock: against each other and what stands in "
-      "the "
-      "scene.\n"
-      "robot of its queries: the name of the motion that is asked about, at its times; '': all that moves. links: of "
-      "that\nrobot alone, or of all 'name/link'. objects: names of objects or robots. No robot is measured against "
-      "itself.")
-      .def(py::init<const PythonScene &, const std::map<std::string, std::shared_ptr<RobotMotion>> &,
-                    const std::map<std::string, double> &>(),
-           py::arg("scene"), py::arg("motions"), py::arg("starts") = std::map<std::string, double>{},
-           "motions: Motion by name, each of a scene whose robot, paddings and allowed pairs count alone. starts: [s] "
-           "by "
-           "name,\nadded to the times of the motion; others 0.")
-      .def_property_readonly("domain", &PythonMovers::domain, "[s] The first start and the last end.")
-      .def(
-          "distance",
-          [](const PythonMovers &m, const std::string &robot, double epsilon, std::uint32_t max_nodes,
-             const Names &links, const Names &objects) {
-            return m.ask(robot, queryOf("distance", 0.0, epsilon, max_nodes, links, objects));
-          },
-          py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000, py::arg("links") = Names{},
-          py::arg("objects") = Names{}, "The least distance: the dict of Motion.distance().")
-      .def(
-          "tolerance",
-          [](const PythonMovers &m, double delta, const std::string &robot, double epsilon, std::uint32_t max_nodes,
-             const Names &links, const Names &objects) {
-            return m.ask(robot, queryOf("tolerance", delta, epsilon, max_nodes, links, objects));
-          },
-          py::arg("delta"), py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
-          py::arg("links") = Names{}, py::arg("objects") = Names{},
-          "Are they farther apart than delta [m] at all times?")
-      .def("gradient", &PythonMovers::gradient, py::arg("robot"), py::arg("epsilon") = 1e-6,
-           py::arg("max_nodes") = 20000, py::arg("links") = Names{}, py::arg("objects") = Names{},
-           "The least distance of one of the motions and its derivatives by that motion: the dict of Motion.gradient() "
-           "with\nstart, by when it begins. What else moves goes on as it does.");
-
-  module.def(
-      "edge_verdicts", &edgeVerdictsOf, py::arg("scene"), py::arg("joints"), py::arg("vertices"), py::arg("edges"),
-      py::arg("delta"), py::arg("self_collision") = false, py::arg("known") = py::none(),
-      py::arg("rest") = JointPositions{}, py::arg("base") = py::none(), py::arg("epsilon") = 1e-6,
-      py::arg("max_nodes") = 20000, py::arg("threads") = 0,
-      "Straight motions between postures, the edges of a roadmap: is the robot farther than delta [m] "
-      "everywhere?\n"
-      "vertices (n, joints), edges (m, 2) of their rows. known (m,): verdicts of an earlier call; those that are "
-      "not 0\n"
-      "stand. Returns int8 (m,): 0 clear, 1 violated, 2 undecided. All threads work (0: one a processor).");
 }
 
 } // namespace curve_proximity::python

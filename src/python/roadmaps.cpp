@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Edges of roadmaps, by several threads. */
+#include <curve_proximity/roadmap.hpp>
+
+#include "robots.h"
+
+namespace curve_proximity::python {
+namespace {
+
+using Edges = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+using Verdicts = py::array_t<std::int8_t, py::array::c_style | py::array::forcecast>;
+
+Roadmap roadmapOf(const std::vector<std::string> &joints, const Array &vertices, const Edges &edges,
+                  const JointPositions &rest) {
+  if (vertices.ndim() != 2) throw Error("vertices must be an array of shape (n, joints): one row a posture");
+  if (edges.ndim() != 2 || edges.shape(1) != 2) throw Error("edges must be an array of shape (m, 2): rows of vertices");
+  Roadmap out;
+  out.joints = joints, out.rest = rest;
+  out.vertices = Eigen::Map<const Eigen::MatrixXd>(vertices.data(), vertices.shape(1), vertices.shape(0));
+  for (py::ssize_t i = 0; i < edges.shape(0); ++i) out.edges.push_back({edges.at(i, 0), edges.at(i, 1)});
+  return out;
+}
+
+Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string> &joints, const Array &vertices,
+                        const Edges &edges, double delta, bool self, const std::optional<Verdicts> &known,
+                        const JointPositions &rest, const std::optional<Array> &base, double epsilon,
+                        std::uint32_t max_nodes, unsigned threads) {
+  if (!scene.robot()) throw Error("the scene has no robot");
+  const Roadmap roadmap = roadmapOf(joints, vertices, edges, scene.rest(rest));
+  std::vector<cprox_verdict> before;
+  for (py::ssize_t i = 0; known && i < known->size(); ++i)
+    before.push_back(static_cast<cprox_verdict>(known->data()[i]));
+  const Eigen::Isometry3d at = toTransform(base);
+  std::vector<cprox_verdict> found;
+  {
+    const py::gil_scoped_release release;
+    Pool pool(threads);
+    const PreparedRobot robot(scene.snapshot(), scene.robot()->srdf.disabled, {}, {}, at);
+    found = edgeVerdicts(robot, roadmap, self, queryOf("tolerance", delta, epsilon, max_nodes), before, pool);
+  }
+  Verdicts out(static_cast<py::ssize_t>(found.size()));
+  for (std::size_t i = 0; i < found.size(); ++i) out.mutable_data()[i] = static_cast<std::int8_t>(found[i]);
+  return out;
+}
+
+} // namespace
+
+void addRoadmaps(py::module &module) {
+  module.def(
+      "edge_verdicts", &edgeVerdictsOf, py::arg("scene"), py::arg("joints"), py::arg("vertices"), py::arg("edges"),
+      py::arg("delta"), py::arg("self_collision") = false, py::arg("known") = py::none(),
+      py::arg("rest") = JointPositions{}, py::arg("base") = py::none(), py::arg("epsilon") = 1e-6,
+      py::arg("max_nodes") = 20000, py::arg("threads") = 0,
+      "Straight motions between postures, the edges of a roadmap: is the robot farther than delta [m] "
+      "everywhere?\n"
+      "vertices (n, joints), edges (m, 2) of their rows. known (m,): verdicts of an earlier call; those that are "
+      "not 0\n"
+      "stand. Returns int8 (m,): 0 clear, 1 violated, 2 undecided. All threads work (0: one a processor).");
+}
+
+} // namespace curve_proximity::python

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What robots, movers and roadmaps share: scenes, queries, answers as Python's. */
+#ifndef CURVE_PROXIMITY_PYTHON_ROBOTS_H
+#define CURVE_PROXIMITY_PYTHON_ROBOTS_H
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/motion.hpp>
+#include <curve_proximity/srdf.hpp>
+
+#include "conversion.h"
+
+namespace curve_proximity::python {
+
+using Packages = std::map<std::string, std::string>;
+
+/** Of files beside `path`, with the folders of packages. */
+ResourceOptions resourcesOf(const std::string &path, const Packages &packages);
+
+/** A robot with what its SRDF says. */
+struct LoadedRobot {
+  std::shared_ptr<const Robot> robot;
+  Srdf srdf;
+};
+
+/** A scene whose changes throw. */
+class PythonScene {
+ public:
+  PythonScene(std::shared_ptr<LoadedRobot> robot, const Packages &packages)
+      : robot_(std::move(robot)),
+        scene_(robot_ ? robot_->robot : nullptr, resourcesOf("", packages),
+               robot_ ? allowedPairs(robot_->srdf) : std::vector<AllowedPair>{}) {}
+
+  void change(const SceneChange &change) {
+    std::vector<std::string> wrong;
+    {
+      const py::gil_scoped_release release;
+      wrong = scene_.apply(change);
+    }
+    if (!wrong.empty()) throw Error(wrong.front());
+  }
+
+  void load(const std::string &path);
+
+  void add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
+           const std::optional<Array> &pose, double padding, const std::optional<Array> &vertices,
+           const std::optional<py::array_t<int, py::array::c_style | py::array::forcecast>> &triangles,
+           const std::string &resource, bool solid);
+
+  void operate(Operation::Kind kind, const std::string &id, const Eigen::Isometry3d &pose) {
+    Operation operation;
+    operation.kind = kind, operation.object.id = id, operation.object.pose = pose;
+    SceneChange change;
+    change.operations.push_back(std::move(operation));
+    this->change(change);
+  }
+
+  void allow(const std::string &a, const std::string &b, bool allowed) {
+    SceneChange change;
+    change.allowed.push_back({a, b, allowed});
+    this->change(change);
+  }
+
+  SnapshotPtr snapshot() const {
+    return scene_.snapshot();
+  }
+  const LoadedRobot *robot() const {
+    return robot_.get();
+  }
+  /** Where joints stand that a motion does not move: as the scene's files say, or better, as the caller does. */
+  JointPositions rest(const JointPositions &given) const {
+    JointPositions out = joints_;
+    for (const auto &[joint, value] : given) out[joint] = value;
+    return out;
+  }
+
+ private:
+  std::shared_ptr<LoadedRobot> robot_;
+  Scene scene_;
+  JointPositions joints_;
+};
+
+using Names = std::vector<std::string>;
+
+/** type: "distance", "tolerance" or "collision". Throws Error for another. */
+Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links = {},
+              const Names &objects = {});
+
+/** Throws Error for an answer that is a refusal. */
+py::dict answerOf(const Answer &answer);
+
+/** The answer with its derivatives. */
+py::dict toDict(const ClearanceRow &row);
+
+} // namespace curve_proximity::python
+#endif
