@@ -147,20 +147,16 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
 }
 
 void Queries::answerPath(const nav_msgs::Path &path, const std::string &id, Work &work) {
-  std::vector<TimedPose> poses;
-  std::string remark;
+  PathPoses along;
   try {
-    poses = toPoses(path, remark);
+    along = toPoses(path);
   } catch (const Error &error) {
     work.response.results.push_back(toFailedRow(id, Proximity::KIND_MOVERS, error.what()));
     work.response.fillUp(work.request.asking);
     tellFailure(id, work.response.results.size() - 1, work.response);
     return;
   }
-  const ros::Time &first = path.poses.front().header.stamp;
-  const bool by_stamps = poses.size() > 1 && remark.empty();
-  answerRide(id, path.header.frame_id, by_stamps && !first.isZero() ? first : path.header.stamp, std::move(poses),
-             remark, work);
+  answerRide(id, path.header.frame_id, along.stamp, std::move(along.poses), along.remark, work);
 }
 
 void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work) {

@@ -246,7 +246,7 @@ std::vector<TimedPose> toPoses(const MultiDOFJointTrajectory &trajectory, std::s
   return poses;
 }
 
-std::vector<TimedPose> toPoses(const nav_msgs::Path &path, std::string &remark) {
+PathPoses toPoses(const nav_msgs::Path &path) {
   if (path.poses.empty()) throw Error("the path has no poses");
   std::vector<TimedPose> poses;
   std::vector<std::int64_t> stamps;
@@ -265,10 +265,9 @@ std::vector<TimedPose> toPoses(const nav_msgs::Path &path, std::string &remark) 
     stamps.push_back(static_cast<std::int64_t>(given.header.stamp.toNSec()));
     poses.push_back(pose);
   }
-  PathTimes at = timesOf(stamps);
+  PathTimes at = timesOf(stamps, static_cast<std::int64_t>(path.header.stamp.toNSec()));
   for (std::size_t i = 0; i < poses.size(); ++i) poses[i].time = at.times[i];
-  remark = std::move(at.remark);
-  return poses;
+  return {std::move(poses), ros::Time().fromNSec(static_cast<std::uint64_t>(at.origin)), std::move(at.remark)};
 }
 
 std::vector<Curve> toCurves(const MultiDOFJointTrajectory &trajectory, double radius) {

@@ -25,10 +25,16 @@ void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std
  * "path". Throws Error: no poses, a position that is not finite, a pose in another frame than the path's. */
 Curve toCurve(const nav_msgs::Path &path, double radius);
 
-/** The poses of what rides along a path, in the path's frame, at the stamps of its poses: the first one's is 0. Where
- *  these do not ascend, pose i is at i, and the remark says so. Throws Error: no poses, one that is no pose, or in
- *  another frame than the path's. */
-std::vector<TimedPose> toPoses(const nav_msgs::Path &path, std::string &remark);
+/** What rides along a path, in the path's frame. */
+struct PathPoses {
+  std::vector<TimedPose> poses;
+  ros::Time stamp;    /**< of time 0; zero: none */
+  std::string remark; /**< what a reader should know of the times; empty: nothing */
+};
+
+/** At the stamps of the poses: the first one's is 0. Where these do not ascend, pose i is at i, and the remark says so.
+ *  Throws Error: no poses, one that is no pose, or in another frame than the path's. */
+PathPoses toPoses(const nav_msgs::Path &path);
 
 /** The same of what a joint of a trajectory moves that is no robot's, by its number. Throws Error also for times that
  *  do not ascend, and for counts that differ. */

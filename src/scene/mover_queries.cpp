@@ -371,9 +371,9 @@ void fillSteps(const Movers &movers, const Answer &answer, ClearanceGradient &ou
   if (answer.b.empty() || !normal.allFinite()) return;
   out.base_linear = normal;
   out.base_angular = toEigen(answer.result.witness_mover).cross(normal);
+  if (answer.b_is_link) return; // of another robot
   const auto &objects = movers.data().snapshot->objects();
   const auto standing = objects.find(answer.b);
-  if (standing == objects.end() && answer.b.find('/') != std::string::npos) return; // a link of another robot
   const Eigen::Isometry3d at =
       standing != objects.end() ? standing->second->description.pose : movers.objectPose(answer.b, answer.result.t);
   out.object_linear = -normal;

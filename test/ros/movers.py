@@ -439,6 +439,22 @@ class Movers(unittest.TestCase):
             field = 'paths' if topic == 'path' else 'multi_dof_trajectories'
             self.assertDistance(self.server.distance([], **{field: [message]}), 'lamp', 1 - 0.5 - 0.1 - 0.25)
 
+    def test_stamps_of_poses_put_a_body_on_the_clock_of_what_moves(self):
+        """It and the ball go past each other half way, at 1003 s; by the stamp of the header a quarter of a metre later."""
+        self.server.replace(moving(sphere('ball', 0.25), waypoint(1, (1, 3, 5)), waypoint(5, (-1, 3, 5)), start=rospy.Time(1000)))
+        way = path((-1, 3, 4), (1, 3, 4), frame='world')
+        way.header.stamp = rospy.Time(1000)
+        for at, stamp in zip(way.poses, (1001, 1005)):
+            at.header.stamp = rospy.Time(stamp)
+            at.pose.orientation.w = 1
+        row = self.assertDistance(self.server.distance([], paths=[way], body=sphere('pea', 0.1)), 'pea', 1 - 0.25 - 0.1)
+        self.assertAlmostEqual(row.witness_a.x, 0.0, delta=1e-2)
+        for at in way.poses:
+            at.header.stamp = rospy.Time(0)
+        way.poses[1].header.stamp = rospy.Time(4)
+        row = self.assertDistance(self.server.distance([], paths=[way], body=sphere('pea', 0.1)), 'pea', 1 - 0.25 - 0.1)
+        self.assertAlmostEqual(row.witness_a.x, 0.25, delta=1e-2)  # the header's, where the first pose has none
+
     def shown(self, ask):
         """The markers of what moves after `ask`, and what that returns."""
         received = []

@@ -42,10 +42,9 @@ PathFile readPoses(const YamlValue &root, Warnings &warnings) {
     out.poses.push_back({0.0, toIsometry(entry.at("pose").pose(warnings))});
   }
   if (out.poses.empty()) root.fail("the path has no poses");
-  PathTimes at = timesOf(stamps);
+  PathTimes at = timesOf(stamps, header.stamp);
   for (std::size_t i = 0; i < out.poses.size(); ++i) out.poses[i].time = at.times[i];
-  const bool by_stamps = out.poses.size() > 1 && at.remark.empty();
-  out.origin = by_stamps && stamps.front() != 0 ? stamps.front() : header.stamp;
+  out.origin = at.origin;
   out.remark = std::move(at.remark);
   return out;
 }
