@@ -32,6 +32,7 @@ const std::map<std::string, Option> &options() {
       {"--movers", {false, {Action::CURVES}}},
       {"--path", {true, {Action::CURVES}}},
       {"--body", {true, {Action::CURVES}}},
+      {"--radius", {true, {Action::CURVES}}},
       {"--self", {false, {Action::CURVES, Action::REPORT, Action::CHECK}}},
       {"--signed", {false, {Action::CURVES}}},
       {"--scene", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
@@ -339,14 +340,16 @@ void readMoversWords(const Words &words, Arguments &out) {
   out.self = words.has("--self");
 }
 
-/* A body along a path. A robot carries it where it has no shapes of its own. */
+/* A body along a path, or a ball. A robot carries the body where it has no shapes of its own. */
 void readPathWords(const Words &words, Arguments &out) {
   for (const char *name : {"--curves", "--against", "--trajectory", "--movers", "--self", "--signed", "--per-link",
                            "--links", "--certificate", "--second-opinion"}) {
     if (words.has(name)) throw BadUsage("--path takes no " + std::string(name));
   }
-  if (!words.has("--body")) throw BadUsage("--path needs --body BODY.yaml, what rides along it");
   if (!words.has("--scene")) throw BadUsage("--path needs --scene SCENE.yaml, what it is measured against");
+  if (words.has("--radius") && words.has("--body"))
+    throw BadUsage("--radius and --body exclude each other: a ball rides along the path, or the body");
+  if (words.has("--radius")) out.radius = readNumber(words, "--radius", 0.0, true, "of at least 0 (metres)");
   for (const char *name : {"--srdf", "--state"})
     if (words.has(name) && !words.has("--robot")) throw BadUsage(std::string(name) + " needs --robot URDF");
   out.action = Action::MOVERS;
@@ -398,6 +401,7 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
         break;
       }
       if (words.has("--body")) throw BadUsage("--body needs --path PATH.yaml");
+      if (words.has("--radius")) throw BadUsage("--radius needs --path PATH.yaml: curves have theirs in their rows");
       if (words.has("--movers")) {
         readMoversWords(words, out);
         break;
@@ -532,7 +536,8 @@ cprox distance  --curves A.csv --against B.csv    row i of A against row i of B,
 cprox distance  --robot URDF [--srdf SRDF] --trajectory T.yaml [--scene SCENE.yaml] [--self]
                                         the robot along a joint trajectory: a row of kind environment, one of kind self
 cprox distance  --scene SCENE.yaml --movers [--self]   what moves in the scene: objects with a trajectory, moving_robots
-cprox distance  --path PATH.yaml --body BODY.yaml --scene SCENE.yaml   a body along a nav_msgs/Path, turning as its poses say
+cprox distance  --path PATH.yaml [--radius R | --body BODY.yaml] --scene SCENE.yaml
+                                        a point, a ball or a body along a nav_msgs/Path; the body turns as its poses say
 cprox tolerance --delta D  (as above)   verdict: clear (farther than D everywhere), violated or undecided
 cprox collision            (as above)   verdict: clear (no common point), violated (a common point) or undecided
 cprox time-of-contact      (as distance, without --against)   where along the curve or trajectory the first contact is
@@ -567,6 +572,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
                     times of the stamps; where these do not ascend, t counts poses
   --body FILE       with --path: {id, pose, padding, primitives, meshes, bodies, ...} as an object of a scene; with an id
                     alone: the object of that id that a link of --robot carries, along poses of the link
+  --radius R        with --path, instead of --body: a ball of R metres (default 0, a point)
   --self            how close the robot comes to itself, too
   --signed          distances inside a body are negative: minus the deepest penetration (a robot's meshes by their hulls)
   --srdf FILE       links that are not checked against each other, and the frame in which the robot stands

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <set>
 
 #include "../scene/yaml/frames.h"
@@ -77,6 +78,15 @@ std::vector<std::string> skippedOf(const SceneFile &file, const PlacedRobot &rob
   return out;
 }
 
+/* A ball that has the name of the path. */
+ObjectDescription ballOf(const Arguments &arguments) {
+  ObjectDescription out;
+  out.id = std::filesystem::path(arguments.path).stem().string();
+  out.shapes.emplace_back().type = ShapeType::POINT;
+  out.padding = arguments.radius;
+  return out;
+}
+
 /* What rides along --path, in the words of a scene file. */
 ObjectDescription readBody(const Arguments &arguments, Warnings &warnings) {
   SceneChange one;
@@ -90,9 +100,10 @@ ObjectDescription readBody(const Arguments &arguments, Warnings &warnings) {
 }
 
 Ride readRide(const Arguments &arguments, const Frames &frames, const PlacedRobot &robot, Warnings &warnings) {
-  PathFile path = readPath(arguments.path, warnings);
+  const bool turns = !arguments.body.empty();
+  PathFile path = readPath(arguments.path, turns, warnings);
   if (!path.remark.empty()) warnings.add(arguments.path + ": " + path.remark);
-  Ride out{readBody(arguments, warnings), std::move(path.poses), path.origin};
+  Ride out{turns ? readBody(arguments, warnings) : ballOf(arguments), std::move(path.poses), path.origin};
   if (out.body.shapes.empty() && !robot.robot)
     throw BadUsage(arguments.body + ": '" + out.body.id +
                    "' has no shape; an object that a link carries needs --robot");

@@ -182,6 +182,35 @@ class Path(Case):
         self.assertRefused(self.ask('distance', way, body='id: held'), "'held' has no shape", '--robot')
         self.assertRefused(self.ask('distance', way, *robot), '--path takes no --robot', 'not measured')
 
+    def without_a_body_a_point_or_a_ball_rides_along_it(self):
+        """Past the ball of .25, 1 m above it, then sideways away from it. What orientations say does not matter."""
+        upside_down, none = (0, 0, 1, 0), (0, 0, 0, 0)
+        way = path(pose((-1, 3, 4), stamp=1), pose((1, 3, 4), upside_down, 3), pose((1, 5, 4), none, 4))
+        scene = BALL + 'fixed_frame_transforms: [{header: {frame_id: world}, child_frame_id: map, transform: {translation: [0, 0, 0.1]}}]\n'
+
+        def ask(query_type, *more, way=way, scene=scene):
+            return cprox(query_type, '--path', self.file('walk.yaml', way), '--scene', self.file('scene.yaml', scene), *more)
+        for more, radius in (((), 0.0), (('--radius', '0'), 0.0), (('--radius', '0.2'), 0.2)):
+            answer = ask('distance', *more)
+            self.assertEqual((answer.code, answer.err), (0, ''))
+            row, = answer.rows
+            self.assertAnswer(row, 0.75 - radius)
+            self.assertEqual((row['id'], row['kind'], row['a'], row['b']), ('walk', 'environment', 'walk', 'ball'))
+            self.assertAlmostEqual(float(row['t']), 1.0, delta=0.01)
+            self.assertPoint(row, 'a', (0, 3, 4 - radius), 0.01)
+        self.assertAnswer(ask('distance', way=way.replace('world', 'map')).rows[0], 0.85)
+        contact = ask('time-of-contact', '--radius', '0.85')
+        self.assertEqual((contact.code, contact.rows[0]['verdict']), (1, 'violated'))
+        self.assertAlmostEqual(float(contact.rows[0]['t_contact_lower']), 1 - math.sqrt(1.1 ** 2 - 1), delta=1e-4)
+        row, = ask('violations', '--delta', '1', '--resolution', '1e-5').rows
+        self.assertTrue(float(row['enter_lower']) <= 0.25 <= float(row['enter_upper']) <= float(row['enter_lower']) + 1e-4, row)
+        self.assertTrue(float(row['leave_lower']) <= 1.75 <= float(row['leave_upper']) <= float(row['leave_lower']) + 1e-4, row)
+        first, last = ask('profile', '--intervals', '2', '--radius', '0.1').rows
+        self.assertAnswer(first, 0.65)
+        self.assertAnswer(last, math.sqrt(1.25) - 0.35)
+        self.assertRefused(ask('distance', '--robot', self.file('robot.urdf', SLIDER)), '--path takes no --robot')
+        self.assertRefused(ask('distance', scene=BALL.replace('id: ball', 'id: walk')), "'walk' is a mover and an object that stands")
+
     def what_is_wrong_is_one_line(self):
         good = (pose((0, 0, 0), stamp=1), pose((1, 0, 0), stamp=2))
         for way, words in ((path(good[0], pose((1, 0, 0), (0, 0, 0, 0), 2)), ('poses[1].pose.orientation', "the quaternion's norm is 0")),
@@ -203,7 +232,9 @@ class Path(Case):
                             ('id: a\nprimitives: 3', ('body.yaml', 'must be a list'))):
             with self.subTest(body=body):
                 self.assertRefused(self.ask('distance', path(*good), body=body), *words)
-        self.assertRefused(cprox('distance', '--path', 'p', '--scene', 's'), '--path needs --body')
+        for radius, words in ((('--radius', '-1'), 'at least 0'), (('--radius', 'x'), "is 'x'"), (('--radius', '1', '--body', 'b'), 'exclude')):
+            self.assertRefused(cprox('distance', '--path', 'p', '--scene', 's', *radius), '--radius', words)
+        self.assertRefused(cprox('distance', '--radius', '1', '--scene', 's', '--curves', 'c'), '--radius needs --path')
         self.assertRefused(cprox('distance', '--path', 'p', '--body', 'b'), '--path needs --scene')
         self.assertRefused(cprox('distance', '--body', 'b', '--scene', 's', '--curves', 'c'), '--body needs --path')
         for more in (('--curves', 'c'), ('--trajectory', 't'), ('--movers',), ('--self',), ('--signed',), ('--certificate', 'c'), ('--links', 'l')):

@@ -26,7 +26,14 @@ Header readHeader(const YamlValue &value, Warnings &warnings) {
   return out;
 }
 
-PathFile readPoses(const YamlValue &root, Warnings &warnings) {
+Eigen::Isometry3d readPose(const YamlValue &value, bool turns, Warnings &warnings) {
+  if (turns) return toIsometry(value.pose(warnings));
+  value.warnOfOthers({"position", "orientation"}, warnings);
+  const std::optional<YamlValue> position = value.find("position");
+  return Eigen::Isometry3d(Eigen::Translation3d(position ? position->vector() : Eigen::Vector3d::Zero()));
+}
+
+PathFile readPoses(const YamlValue &root, bool turns, Warnings &warnings) {
   if (!root.isMap()) root.fail("must be a map with header and poses, as rostopic prints a nav_msgs/Path");
   root.warnOfOthers({"header", "poses"}, warnings);
   const Header header = readHeader(root, warnings);
@@ -39,7 +46,7 @@ PathFile readPoses(const YamlValue &root, Warnings &warnings) {
     if (!own.frame.empty() && own.frame != out.frame)
       entry.fail("is in frame '" + own.frame + "', the path in '" + out.frame + "'");
     stamps.push_back(own.stamp);
-    out.poses.push_back({0.0, toIsometry(entry.at("pose").pose(warnings))});
+    out.poses.push_back({0.0, readPose(entry.at("pose"), turns, warnings)});
   }
   if (out.poses.empty()) root.fail("the path has no poses");
   PathTimes at = timesOf(stamps, header.stamp);
@@ -51,9 +58,9 @@ PathFile readPoses(const YamlValue &root, Warnings &warnings) {
 
 } // namespace
 
-PathFile readPath(const std::string &path, Warnings &warnings) {
+PathFile readPath(const std::string &path, bool turns, Warnings &warnings) {
   try {
-    return readPoses(loadYaml(path), warnings);
+    return readPoses(loadYaml(path), turns, warnings);
   } catch (const BadInput &e) {
     throw BadUsage(path + ": " + e.what());
   }
