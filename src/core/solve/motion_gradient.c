@@ -327,6 +327,13 @@ static bool is_at_own_time(const motion_track *t, size_t own, double time) {
   return false;
 }
 
+/* Whether a step of the track changes the distance: else its times are no kinks of it. */
+static bool is_felt(const gradient_search *g, const motion_track *t) {
+  for (size_t k = 0; k < t->n_moving; k++)
+    if (g->pair.sum[t->moving[k]] != 0.0) return true;
+  return false;
+}
+
 /* What each motion adds to the slope of the distance along the clock, a part of it by what was found at one spot. */
 static void add_slopes(gradient_search *g, const motion_spot *spot, double part, double *slopes) {
   const cprox_motion *m = g->o.scene.motion;
@@ -350,13 +357,14 @@ static void fill_clocks(gradient_search *g, double *slopes, cprox_motion_gradien
   double u = 0.0;
   for (size_t i = 0; i < m->n_joined; i++) {
     slope += slopes[i], all += fabs(slopes[i]);
-    attached += find_track(m, i, &g->spot, &t, &own, &u) && is_at_own_time(t, own, time);
+    attached += find_track(m, i, &g->spot, &t, &own, &u) && is_felt(g, t) && is_at_own_time(t, own, time);
   }
   if (fabs(slope) <= CANCELLED * all) attached = 0;
   for (size_t i = 0; i < m->n_joined; i++) {
     const bool moves = find_track(m, i, &g->spot, &t, &own, &u);
     double by_start = moves ? -slopes[i] : 0.0;
-    if (moves && attached > 0 && is_at_own_time(t, own, time)) by_start = attached > 1 ? NAN : by_start + slope;
+    if (moves && attached > 0 && is_felt(g, t) && is_at_own_time(t, own, time))
+      by_start = attached > 1 ? NAN : by_start + slope;
     if (to->starts) to->starts[i] = by_start;
     if (!to->durations) continue;
     to->durations[i] = 0.0;
