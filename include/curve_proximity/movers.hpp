@@ -151,6 +151,28 @@ std::vector<Answer> nearestPairs(const Movers &movers, const MovingRobot &robot,
 ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, const Query &query,
                                Workspace &workspace);
 
+/** The derivatives of a clearance by one of the movers. */
+struct MoverGradient {
+  std::string name; /**< of the robot or object that moves */
+  /** Of a robot what its own clearanceGradient() tells of this pair; all numbers are 0 where neither side belongs to
+   * the robot, and steps of its base are where both do. Of an object its duration and start, and by a step of all of
+   * its poses object_linear and object_angular; no rows. */
+  ClearanceGradient gradient;
+};
+
+/** A clearance among movers with its derivatives by all of them. */
+struct MoversClearance {
+  Answer answer;                        /**< names, interval, witness points, result.t as of ask() */
+  std::vector<MoverGradient> gradients; /**< of the robots, then of the objects, in the order of the constructor's */
+};
+
+/** The least distance of all that moves, as ask() tells it, and its derivatives by each robot's trajectory and each
+ *  object's clock, by one search: for a planner that changes several motions at once. valid, reason, t and margin are
+ *  the same in all gradients. duration and start are NaN for those two at whose kinks the minimiser is. A common step
+ * of all motions and what stands changes nothing. Throws Error for what ask() refuses, for another query than DISTANCE
+ * and for starts with a tolerance. Cost: about 1.5 distances, however many move. */
+MoversClearance clearanceGradients(const Movers &movers, Against against, const Query &query, Workspace &workspace);
+
 /** All intervals of time [s] in which movers are within query.delta of something: as violations() of query.hpp. Throws
  *  Error for what ask() refuses. */
 Violations violations(const Movers &movers, Against against, double resolution, const Query &query,

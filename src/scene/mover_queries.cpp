@@ -102,7 +102,7 @@ Pairs pairsOf(const Movers::Data &data, Against against, const Query &query) {
   return out;
 }
 
-cprox_mover moverOf(const Movers::Data &data, const Pairs &pairs) {
+cprox_mover joinedMover(const Movers::Data &data, const Pairs &pairs) {
   cprox_mover mover = pairs.against == Against::MOVERS
                           ? cprox_robot_self(data.motion.get(), pairs.among.data(), pairs.among.size())
                           : cprox_robot_along(data.motion.get(), pairs.environment.data(), pairs.environment.size());
@@ -172,7 +172,7 @@ Answer answerOf(const Movers &movers, Against asked, const Query &query, const s
     answerNothing(query, answer.result);
     answer.result.t_contact_lower = movers.domain()[1];
   } else {
-    core(moverOf(data, pairs), targetsOf(data, pairs), answer.result);
+    core(joinedMover(data, pairs), targetsOf(data, pairs), answer.result);
     if (answer.result.status < 0) answer.message = workspace.reason();
     nameSides(data, pairs.against, query.links, answer);
   }
@@ -246,7 +246,7 @@ std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, 
     out.a = sides.a, out.witness_a = sides.result.witness_mover;
     out.b = sides.b, out.witness_b = sides.result.witness_obstacle;
   };
-  return searchProfile(obstacles, moverOf(data, pairs), data.rounding, breaks, horizon, query, workspace, name);
+  return searchProfile(obstacles, joinedMover(data, pairs), data.rounding, breaks, horizon, query, workspace, name);
 }
 
 std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
@@ -266,8 +266,8 @@ std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairL
     std::vector<cprox_result> results(std::min(limits.count, n));
     std::size_t count = 0;
     const cprox_status status =
-        cprox_obstacles_nearest_pairs(obstacles.get(), moverOf(data, some), limits.count, limits.within + data.rounding,
-                                      &options, workspace.get(), results.data(), &count);
+        cprox_obstacles_nearest_pairs(obstacles.get(), joinedMover(data, some), limits.count,
+                                      limits.within + data.rounding, &options, workspace.get(), results.data(), &count);
     if (status < 0) throw Error(workspace.reason(), status);
     for (std::size_t i = 0; i < count; ++i) {
       Answer answer;
@@ -305,26 +305,30 @@ Violations violationsOf(const Movers &movers, Against against, double resolution
     sides = view(std::move(sides));
     out.a = sides.a, out.b = sides.b;
   };
-  return searchViolations(obstacles, moverOf(data, pairs), data.rounding, resolution, query, workspace, name);
+  return searchViolations(obstacles, joinedMover(data, pairs), data.rounding, resolution, query, workspace, name);
 }
 
 /* Where the numbers of one of the robots are in those of the joined one. Robots come first; one that stands has no
  * points. */
 struct PlaceOfRobot {
-  std::size_t robot = 0, variable = 0, point_value = 0;
+  std::size_t variable = 0, point_value = 0;
   const RobotMotion::Data *data = nullptr;
 
-  PlaceOfRobot(const Movers::Data &movers, const MovingRobot &asked) {
-    for (const auto &motion : movers.robots) {
-      data = &motion->data();
-      if (motion == asked.motion) return;
-      ++robot;
-      variable += data->kinematics->rest.size();
-      if (!data->stands) point_value += data->shape.n_points * data->shape.variable.size();
+  PlaceOfRobot(const Movers::Data &movers, std::size_t wanted) : data(&movers.robots[wanted]->data()) {
+    for (std::size_t i = 0; i < wanted; ++i) {
+      const RobotMotion::Data &before = movers.robots[i]->data();
+      variable += before.kinematics->rest.size();
+      if (!before.stands) point_value += before.shape.n_points * before.shape.variable.size();
     }
-    throw Error("robot '" + asked.name + "' is none of the movers");
   }
 };
+
+/* Which of the robots it is: two may share a motion. */
+std::size_t numberOf(const Movers::Data &movers, const MovingRobot &robot) {
+  for (std::size_t i = 0; i < movers.robots.size(); ++i)
+    if (movers.robot_names[i] == robot.name && movers.robots[i] == robot.motion) return i;
+  throw Error("robot '" + robot.name + "' is none of the movers");
+}
 
 /* What the core writes derivatives of the joined robot to. */
 struct JoinedArrays {
@@ -347,74 +351,122 @@ struct JoinedArrays {
   }
 };
 
-void fillGradient(const PlaceOfRobot &place, const JoinedArrays &in, ClearanceGradient &out) {
+/* A least distance, and its derivatives as the core tells them. */
+struct Differentiated {
+  Answer answer;
+  JoinedArrays arrays;
+  cprox_motion_gradient gradient;
+  std::string reason = "there is nothing to measure against";
+
+  explicit Differentiated(const Movers::Data &data) : arrays(data), gradient(arrays.lend()) {}
+  Differentiated(const Differentiated &) = delete; // gradient refers to arrays
+  Differentiated &operator=(const Differentiated &) = delete;
+};
+
+void differentiate(const Movers &movers, Against against, const Query &query, Workspace &workspace,
+                   Differentiated &out) {
+  refuse(faultOfMovers(query));
+  refuse(faultOfDistances(query));
+  const double rounding = movers.data().rounding;
+  out.answer =
+      answerOf(movers, against, query, "", workspace,
+               [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
+                 const cprox_options options = withoutRounding(query.options, rounding);
+                 const Obstacles obstacles(targets, CPROX_INDEX_NONE);
+                 const cprox_status status = cprox_robot_distance_gradient(obstacles.get(), mover, &options,
+                                                                           workspace.get(), &result, &out.gradient);
+                 if (status < 0) throw Error(workspace.reason(), status);
+                 out.reason = workspace.reason();
+                 widen(query, rounding, std::numeric_limits<double>::infinity(), result);
+               });
+  if (out.answer.result.status < 0) throw Error(out.answer.message, out.answer.result.status);
+}
+
+/* By Danskin's theorem a rigid step of one side moves its nearest point along the normal. The name is that of a mover:
+ * it may be side a or b, both or neither. */
+void fillSteps(const Movers &movers, const Answer &answer, const std::string &name, bool is_robot,
+               ClearanceGradient &out) {
+  const Eigen::Vector3d normal = toEigen(answer.result.normal);
+  if (answer.b.empty() || !normal.allFinite()) return;
+  const bool is_a = moverOf(answer.a) == name, is_b = answer.kind == "movers" && moverOf(answer.b) == name;
+  if (is_a == is_b) return;
+  const Eigen::Vector3d a = toEigen(answer.result.witness_mover), b = toEigen(answer.result.witness_obstacle);
+  const auto addObject = [&](const std::string &object, const Eigen::Vector3d &point, const Eigen::Vector3d &outwards) {
+    const auto standing = movers.data().snapshot->objects().find(object);
+    const Eigen::Isometry3d at = standing != movers.data().snapshot->objects().end()
+                                     ? standing->second->description.pose
+                                     : movers.objectPose(object, answer.result.t);
+    out.object_linear = outwards;
+    out.object_angular = (point - at.translation()).cross(outwards);
+  };
+  const Eigen::Vector3d outwards = is_a ? normal : Eigen::Vector3d(-normal);
+  if (!is_robot) {
+    addObject(name, is_a ? a : b, outwards);
+    return;
+  }
+  out.base_linear = outwards;
+  out.base_angular = (is_a ? a : b).cross(outwards);
+  const bool meets_robot = is_a ? answer.b_is_link : answer.a.find('/') != std::string::npos;
+  if (!meets_robot) addObject(is_a ? answer.b : answer.a, is_a ? b : a, -outwards);
+}
+
+/* By the motion of one of the movers, robots first. */
+ClearanceGradient gradientBy(const Movers &movers, const Differentiated &in, std::size_t mover) {
+  const Movers::Data &joined = movers.data();
+  ClearanceGradient out;
+  out.valid = in.gradient.valid;
+  if (!out.valid) out.reason = in.reason;
+  out.t = in.gradient.t, out.margin = in.gradient.margin;
+  out.duration = in.arrays.durations[mover], out.start = in.arrays.starts[mover];
+  const bool is_robot = mover < joined.robots.size();
+  const std::string &name = is_robot ? joined.robot_names[mover] : joined.object_names[mover - joined.robots.size()];
+  fillSteps(movers, in.answer, name, is_robot, out);
+  if (!is_robot) return out;
+  const PlaceOfRobot place(joined, mover);
   const RobotMotion::Data &data = *place.data;
   const TrajectoryShape &shape = data.shape;
   const auto rows = [&](const std::vector<double> &all) {
     return toMatrix(shape, data.stands ? nullptr : all.data() + place.point_value);
   };
-  out.positions = rows(in.positions);
-  if (shape.has_velocities) out.velocities = rows(in.velocities);
-  if (shape.has_accelerations) out.accelerations = rows(in.accelerations);
-  for (const auto &[name, variable] : data.kinematics->variables)
-    out.joints[name] = in.variables[place.variable + static_cast<std::size_t>(variable)];
+  out.positions = rows(in.arrays.positions);
+  if (shape.has_velocities) out.velocities = rows(in.arrays.velocities);
+  if (shape.has_accelerations) out.accelerations = rows(in.arrays.accelerations);
+  for (const auto &[joint, variable] : data.kinematics->variables)
+    out.joints[joint] = in.arrays.variables[place.variable + static_cast<std::size_t>(variable)];
   for (std::size_t k = 0; data.stands && k < shape.variable.size(); ++k)
     out.positions(0, static_cast<Eigen::Index>(shape.column[k])) =
-        in.variables[place.variable + static_cast<std::size_t>(shape.variable[k])];
-  out.duration = in.durations[place.robot];
-  out.start = in.starts[place.robot];
-}
-
-/* By Danskin's theorem a rigid step of one side moves its nearest point along the normal. */
-void fillSteps(const Movers &movers, const Answer &answer, ClearanceGradient &out) {
-  const Eigen::Vector3d normal = toEigen(answer.result.normal);
-  if (answer.b.empty() || !normal.allFinite()) return;
-  out.base_linear = normal;
-  out.base_angular = toEigen(answer.result.witness_mover).cross(normal);
-  if (answer.b_is_link) return; // of another robot
-  const auto &objects = movers.data().snapshot->objects();
-  const auto standing = objects.find(answer.b);
-  const Eigen::Isometry3d at =
-      standing != objects.end() ? standing->second->description.pose : movers.objectPose(answer.b, answer.result.t);
-  out.object_linear = -normal;
-  out.object_angular = normal.cross(toEigen(answer.result.witness_obstacle) - at.translation());
+        in.arrays.variables[place.variable + static_cast<std::size_t>(shape.variable[k])];
+  return out;
 }
 
 } // namespace
 
 ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, const Query &query,
                                Workspace &workspace) {
-  refuse(faultOfMovers(query));
-  refuse(faultOfDistances(query));
-  const Movers::Data &data = movers.data();
-  const PlaceOfRobot place(data, robot);
+  const std::size_t number = numberOf(movers.data(), robot);
   const OfRobot asked(robot, query);
-  std::string reason = "there is nothing to measure against";
-  JoinedArrays arrays(data);
-  cprox_motion_gradient gradient = arrays.lend();
-  Answer answer =
-      answerOf(movers, Against::OTHERS, asked.query, "", workspace,
-               [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
-                 const cprox_options options = withoutRounding(asked.query.options, data.rounding);
-                 const Obstacles obstacles(targets, CPROX_INDEX_NONE);
-                 const cprox_status status = cprox_robot_distance_gradient(obstacles.get(), mover, &options,
-                                                                           workspace.get(), &result, &gradient);
-                 if (status < 0) throw Error(workspace.reason(), status);
-                 reason = workspace.reason();
-                 widen(asked.query, data.rounding, std::numeric_limits<double>::infinity(), result);
-               });
-  if (answer.result.status < 0) throw Error(answer.message, answer.result.status);
+  Differentiated found(movers.data());
+  differentiate(movers, Against::OTHERS, asked.query, workspace, found);
   ClearanceRow row;
-  row.answer = ofRobot(robot, std::move(answer));
-  row.gradient.valid = gradient.valid;
-  if (!gradient.valid) row.gradient.reason = reason;
-  row.gradient.t = gradient.t;
-  row.gradient.margin = gradient.margin;
-  fillGradient(place, arrays, row.gradient);
-  fillSteps(movers, row.answer, row.gradient);
+  row.gradient = gradientBy(movers, found, number);
+  row.answer = ofRobot(robot, std::move(found.answer));
   const auto domain = asked.query.options.interval ? asked.interval : movers.domain();
   row.t0 = domain[0], row.t1 = domain[1];
   return row;
+}
+
+MoversClearance clearanceGradients(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
+  const Movers::Data &data = movers.data();
+  Differentiated found(data);
+  differentiate(movers, against, query, workspace, found);
+  MoversClearance out;
+  for (std::size_t i = 0; i < data.robots.size() + data.objects.size(); ++i) {
+    const bool is_robot = i < data.robots.size();
+    out.gradients.push_back(
+        {is_robot ? data.robot_names[i] : data.object_names[i - data.robots.size()], gradientBy(movers, found, i)});
+  }
+  out.answer = std::move(found.answer);
+  return out;
 }
 
 std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, Against against,

@@ -131,6 +131,7 @@ class Joiner {
     motions_.push_back({data.core.get(), robot.start, robot.tolerance});
     names_.push_back(robot.name);
     out_.robots.push_back(robot.motion);
+    out_.robot_names.push_back(robot.name);
   }
 
   void addObject(const MovingObject &object, const MovingBody &made) {

@@ -31,6 +31,7 @@ inline std::string moverOf(const std::string &name) {
 struct Movers::Data {
   SnapshotPtr snapshot;
   std::vector<std::shared_ptr<const RobotMotion>> robots; /* kept */
+  std::vector<std::string> robot_names;
   std::vector<std::shared_ptr<const MovingBody>> objects;
   std::vector<std::string> object_names;
   std::vector<double> object_starts;

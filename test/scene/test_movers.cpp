@@ -224,6 +224,221 @@ TEST_F(Movement, the_gradient_of_a_robot_knows_that_others_move) {
   expectContains(errorOf([&] { clearanceGradient(vague, cart, Query(), workspace); }), "tolerance");
 }
 
+/* Balls on tables: three robots of two joints each, and a ball that is fixed beside the middle of a moving object. */
+struct Tables {
+  static constexpr std::size_t ROBOTS = 3;
+  std::vector<Eigen::MatrixXd> positions, velocities; /* a row a point, a column a joint */
+  std::vector<Eigen::Vector3d> shift, turn; /* of the robots' bases, of the object's poses; rotation vectors */
+  std::vector<double> start, duration;      /* of all four */
+
+  Tables() : shift(4), turn(4, Eigen::Vector3d::Zero()), start(4, 0.0), duration(4, 1.0) {
+    const double x[ROBOTS][3] = {{-1.0, 0.1, 1.1}, {0.9, 0.0, -1.0}, {-0.9, 0.2, 1.0}};
+    const double y[ROBOTS][3] = {{0.0, 0.2, -0.1}, {-0.3, -0.2, -0.4}, {0.1, 0.0, 0.2}};
+    for (std::size_t i = 0; i < ROBOTS; ++i) {
+      positions.emplace_back(3, 2), velocities.emplace_back(3, 2);
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        positions[i].row(k) << x[i][k], y[i][k];
+        velocities[i].row(k) << 2.0 - 0.3 * static_cast<double>(k), 0.1 * static_cast<double>(k);
+      }
+      shift[i] = Eigen::Vector3d(0.0, 1.2 * static_cast<double>(i), 0.1 * static_cast<double>(i));
+    }
+    velocities[1] *= -1.0;
+    shift[3].setZero();
+  }
+
+  Eigen::Matrix3d turned(std::size_t i) const {
+    const double angle = turn[i].norm();
+    return angle > 0.0 ? Eigen::AngleAxisd(angle, turn[i] / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
+  }
+
+  std::vector<MovingRobot> robots() const {
+    static const Scene table{Robot::fromUrdf(R"(<robot name="table"><link name="table"/><link name="beam"/>
+      <link name="ball"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+      <joint name="x" type="prismatic"><parent link="table"/><child link="beam"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+      <joint name="y" type="prismatic"><parent link="beam"/><child link="ball"/><axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+    </robot>)")};
+    std::vector<MovingRobot> out;
+    for (std::size_t i = 0; i < ROBOTS; ++i) {
+      TrajectoryDescription t;
+      t.id = "slide", t.joints = {"x", "y"};
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Eigen::RowVector2d at = positions[i].row(k), by = velocities[i].row(k);
+        t.points.push_back({{at.x(), at.y()}, {by.x(), by.y()}, {}, 0.5 * static_cast<double>(k) * duration[i]});
+      }
+      Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+      base.linear() = turned(i), base.translation() = turned(i) * shift[i];
+      out.push_back({"r" + std::to_string(i),
+                     std::make_shared<const RobotMotion>(table.snapshot(), t, JointPositions{},
+                                                         std::vector<std::array<std::string, 2>>{}, base),
+                     start[i]});
+    }
+    return out;
+  }
+
+  /* "r0", "r1", "r2" and "lamp". */
+  Movers join(const std::vector<MovingRobot> &robots) const {
+    ShapeDescription ball = shape(ShapeType::SPHERE, {0.1});
+    ball.pose = translation(0.2, 0.1, 0.05);
+    std::vector<TimedPose> poses;
+    for (int k = 0; k < 3; ++k) {
+      Eigen::Isometry3d pose = translation(0.5 - 0.7 * k, 1.5 + 0.1 * k, 0.9);
+      pose.linear() = turned(3) * Eigen::AngleAxisd(0.4 * k, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      pose.translation() += shift[3];
+      poses.push_back({(k == 1 ? 0.6 : 0.5 * k) * duration[3], pose});
+    }
+    MovingObject lamp = mover("lamp", {ball}, poses);
+    lamp.start = start[3];
+    return Movers(Scene().snapshot(), robots, {lamp});
+  }
+};
+
+/* Central differences of the distance that ask() tells, by every number of all four. */
+TEST_F(Movement, the_gradients_by_all_motions_are_those_of_differences_and_of_each_motion_alone) {
+  constexpr double STEP = 1e-5,
+                   TOLERANCE = 1e-6; /* the search converges to about 1e-13, the third derivatives are about 1e2 */
+  const std::vector<std::array<std::string, 2>> cases = {{"", ""}, {"r1", "r2"}, {"lamp", "r0"}, {"r2", "lamp"}};
+  for (const auto &[link, object] : cases) {
+    Query query;
+    query.options.epsilon = 1e-9;
+    if (!link.empty()) query.links = {link}, query.objects = {object};
+    Query fine = query;
+    fine.options.epsilon = 1e-12;
+    Tables tables;
+    const std::vector<MovingRobot> robots = tables.robots();
+    const Movers movers = tables.join(robots);
+    const MoversClearance found = clearanceGradients(movers, Against::OTHERS, query, workspace);
+    ASSERT_EQ(found.gradients.size(), 4u);
+    ASSERT_TRUE(found.gradients[0].gradient.valid) << found.gradients[0].gradient.reason;
+    EXPECT_EQ(found.answer.kind, "movers");
+    EXPECT_GT(found.answer.result.t, 0.05);
+    EXPECT_LT(found.answer.result.t, 0.95);
+    const double told = ask(movers, Against::OTHERS, query, workspace).result.upper;
+    EXPECT_NEAR(found.answer.result.upper, told, 1e-9);
+    const auto slope = [&](double &number) {
+      const double before = number;
+      double ends[2];
+      for (int side = 0; side < 2; ++side) {
+        number = before + (side == 0 ? -STEP : STEP);
+        ends[side] = ask(tables.join(tables.robots()), Against::OTHERS, fine, workspace).result.upper;
+      }
+      number = before;
+      return (ends[1] - ends[0]) / (2 * STEP);
+    };
+    const std::string sides = found.answer.a + " " + found.answer.b;
+    std::size_t of_the_pair = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const ClearanceGradient &g = found.gradients[i].gradient;
+      const std::string &name = found.gradients[i].name;
+      SCOPED_TRACE(name + " of " + sides);
+      ASSERT_EQ(name, i < Tables::ROBOTS ? "r" + std::to_string(i) : "lamp");
+      EXPECT_NEAR(g.t, found.answer.result.t, 1e-6);
+      const bool is_robot = i < Tables::ROBOTS, takes_part = sides.find(name) != std::string::npos;
+      of_the_pair += takes_part;
+      EXPECT_EQ(is_robot ? g.positions.rows() : 3, 3);
+      for (Eigen::Index k = 0; k < g.positions.size(); ++k) {
+        EXPECT_NEAR(g.positions(k), slope(tables.positions[i](k)), TOLERANCE) << "position " << k;
+        EXPECT_NEAR(g.velocities(k), slope(tables.velocities[i](k)), TOLERANCE) << "velocity " << k;
+      }
+      EXPECT_NEAR(g.start, slope(tables.start[i]), TOLERANCE);
+      EXPECT_NEAR(g.duration, slope(tables.duration[i]), TOLERANCE);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(is_robot ? g.base_linear(k) : g.object_linear(k), slope(tables.shift[i](k)), TOLERANCE) << k;
+        EXPECT_NEAR(is_robot ? g.base_angular(k) : g.object_angular(k), slope(tables.turn[i](k)), TOLERANCE) << k;
+      }
+      EXPECT_NEAR((is_robot ? g.base_linear : g.object_linear).norm(), takes_part ? 1.0 : 0.0, 1e-12);
+      if (!is_robot || !takes_part) continue;
+      /* the same motion asked by itself, about the other side alone */
+      const std::string other = sides.find(name) == 0 ? found.answer.b : found.answer.a;
+      Query alone = query;
+      alone.links = {}, alone.objects = {other.substr(0, other.find('/'))};
+      const ClearanceRow row = clearanceGradient(movers, robots[i], alone, workspace);
+      EXPECT_NEAR(row.answer.result.upper, found.answer.result.upper, 1e-12);
+      EXPECT_TRUE(row.gradient.positions.isApprox(g.positions, TOLERANCE));
+      EXPECT_TRUE(row.gradient.velocities.isApprox(g.velocities, TOLERANCE));
+      for (const auto &[joint, by] : row.gradient.joints) EXPECT_NEAR(g.joints.at(joint), by, TOLERANCE);
+      EXPECT_NEAR(row.gradient.start, g.start, TOLERANCE);
+      EXPECT_NEAR(row.gradient.duration, g.duration, TOLERANCE);
+      EXPECT_TRUE(row.gradient.base_linear.isApprox(g.base_linear, TOLERANCE));
+      EXPECT_TRUE(row.gradient.base_angular.isApprox(g.base_angular, TOLERANCE));
+      EXPECT_TRUE((row.gradient.object_linear - g.object_linear).isZero(TOLERANCE));
+      EXPECT_TRUE((row.gradient.object_angular - g.object_angular).isZero(TOLERANCE));
+    }
+    EXPECT_EQ(of_the_pair, 2u);
+  }
+}
+
+/* A robot that meets itself, an object that meets what stands, and no pair at all. */
+TEST_F(Movement, the_gradients_by_all_motions_of_other_pairs) {
+  const MovingRobot cart{"a", slide(carts.snapshot(), 0, 2, 0), 0.0};
+  const MovingObject ball =
+      mover("ball", {shape(ShapeType::SPHERE, {0.1})},
+            {{0.0, translation(0, 0, -1)}, {0.5, translation(0, 0, 1)}, {1.0, translation(0, 0, 0.5)}});
+  const Movers movers(world.snapshot(), {cart}, {ball});
+  Query query;
+  query.links = {"ball"}, query.objects = {"wall"};
+  const MoversClearance found = clearanceGradients(movers, Against::BOTH, query, workspace);
+  EXPECT_EQ(found.answer.a + " " + found.answer.b + " " + found.answer.kind, "ball wall environment");
+  const ClearanceGradient &a = found.gradients.at(0).gradient, &b = found.gradients.at(1).gradient;
+  ASSERT_TRUE(b.valid) << b.reason;
+  EXPECT_NEAR(found.answer.result.t, 0.5, 1e-9);
+  EXPECT_TRUE(a.positions.rows() == 2 && a.positions.isZero(0.0) && a.base_linear.isZero(0.0) && a.start == 0.0);
+  EXPECT_TRUE(b.positions.size() == 0 && b.object_linear.isApprox(-Eigen::Vector3d::UnitZ(), 1e-9));
+  EXPECT_TRUE(b.start == 0.0 && b.base_linear.isZero(0.0));
+
+  query.links = {"a"}, query.objects = {"wall"};
+  const Movers none(world.snapshot(), {cart}, {ball}, {{"a", "wall"}});
+  const MoversClearance nothing = clearanceGradients(none, Against::BOTH, query, workspace);
+  EXPECT_TRUE(std::isinf(nothing.answer.result.lower) && nothing.gradients.size() == 2);
+  EXPECT_FALSE(nothing.gradients[0].gradient.valid);
+  expectContains(nothing.gradients[0].gradient.reason, "nothing");
+  EXPECT_TRUE(nothing.gradients[0].gradient.positions.isZero(0.0));
+
+  query.query_type = QueryType::TOLERANCE;
+  EXPECT_THROW(clearanceGradients(movers, Against::BOTH, query, workspace), Error);
+  MovingRobot late = cart;
+  late.tolerance = 0.1;
+  const Movers vague(world.snapshot(), {late}, {ball});
+  expectContains(errorOf([&] { clearanceGradients(vague, Against::BOTH, Query(), workspace); }), "tolerance");
+}
+
+/* A cart leaves the wall when two others begin, too: they are no kinks of its distance. */
+TEST_F(Movement, the_starts_of_others_do_not_matter_where_a_robot_is_nearest_at_its_own) {
+  ASSERT_TRUE(world.apply(change({add("post", {shape(ShapeType::SPHERE, {0.1})}, translation(-1, 0, 0))})).empty());
+  const MovingRobot a{"a", slide(carts.snapshot(), 0, 2, 0), 0.0}, b{"b", slide(carts.snapshot(), 0, 1, 4), 0.0};
+  const MovingObject ball =
+      mover("ball", {shape(ShapeType::SPHERE, {0.1})}, {{0.0, translation(4, 4, 0)}, {1.0, translation(5, 4, 0)}});
+  const Movers movers(world.snapshot(), {a, b}, {ball});
+  Query query;
+  query.links = {"a"}, query.objects = {"post"};
+  const MoversClearance found = clearanceGradients(movers, Against::OTHERS, query, workspace);
+  expectDistance(found.answer, 0.8);
+  ASSERT_TRUE(found.gradients[0].gradient.valid) << found.gradients[0].gradient.reason;
+  EXPECT_NEAR(found.gradients[0].gradient.positions(0, 0), 1.0, 1e-9);
+  for (const MoverGradient &by : found.gradients) {
+    EXPECT_EQ(by.gradient.start, 0.0) << by.name;
+    EXPECT_EQ(by.gradient.duration, 0.0) << by.name;
+  }
+  EXPECT_EQ(clearanceGradient(movers, a, query = Query(), workspace).gradient.start, 0.0);
+}
+
+/* One cart follows the other on the same way: their motion may be the same object. */
+TEST_F(Movement, robots_that_share_a_motion_are_told_apart) {
+  const auto shared = slide(carts.snapshot(), 0, 2, 0);
+  const MovingObject ball =
+      mover("ball", {shape(ShapeType::SPHERE, {0.1})},
+            {{0.0, translation(1.1, 0.9, 0)}, {0.75, translation(1, 0.5, 0)}, {1.5, translation(0.7, 1.5, 0)}});
+  const auto derive = [&](const std::shared_ptr<const RobotMotion> &second) {
+    const MovingRobot a{"a", shared, 0.0}, b{"b", second, 0.4};
+    Query query;
+    query.objects = {"ball"};
+    return clearanceGradient(Movers(world.snapshot(), {a, b}, {ball}), b, query, workspace).gradient;
+  };
+  const ClearanceGradient same = derive(shared), apart = derive(slide(carts.snapshot(), 0, 2, 0));
+  EXPECT_GT(apart.positions.norm(), 0.05);
+  EXPECT_TRUE(same.positions.isApprox(apart.positions, 1e-12));
+  EXPECT_TRUE(same.start == apart.start && same.duration == apart.duration);
+}
+
 /* Both at 2 m/s on one rail, 4 m apart: faces meet when the way is 3.8 m; the later one starts after half a second. */
 TEST_F(Movement, contact_is_never_told_late) {
   const auto there = slide(carts.snapshot(), 0, 2, 0), back = slide(carts.snapshot(), 0, -2, 4);
