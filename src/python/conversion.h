@@ -55,6 +55,24 @@ Array fromTransform(const Eigen::Isometry3d &transform);
 /** The workspace of the calling thread. */
 Workspace &threadWorkspace();
 
+/** For options.stop: Ctrl-C ends a query. The core asks now and then. */
+bool interrupted(void *);
+
+/** Runs a query that asks interrupted(), without the GIL. Ctrl-C ends it with KeyboardInterrupt. */
+template <typename Ask>
+auto unlocked(const Ask &ask) {
+  try {
+    auto answer = [&] {
+      const py::gil_scoped_release release;
+      return ask();
+    }();
+    if (!PyErr_Occurred()) return answer;
+  } catch (const std::exception &) {
+    if (!PyErr_Occurred()) throw;
+  }
+  throw py::error_already_set();
+}
+
 /* Each adds the classes and functions of its file to the module. */
 void addShapes(py::module &module);
 void addCurves(py::module &module);

@@ -59,6 +59,11 @@ Workspace &threadWorkspace() {
   return workspace;
 }
 
+bool interrupted(void *) {
+  const py::gil_scoped_acquire gil;
+  return PyErr_Occurred() || PyErr_CheckSignals() != 0;
+}
+
 } // namespace curve_proximity::python
 
 PYBIND11_MODULE(_cprox, module) {

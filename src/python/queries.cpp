@@ -61,12 +61,6 @@ class ObstacleSet {
 
 /* ---- options ---- */
 
-/* Ctrl-C ends a query: the core asks now and then. */
-bool interrupted(void *) {
-  const py::gil_scoped_acquire gil;
-  return PyErr_CheckSignals() != 0;
-}
-
 cprox_options optionsOf(const py::kwargs &given) {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   for (const auto &[key, value] : given) {
@@ -93,16 +87,10 @@ cprox_options optionsOf(const py::kwargs &given) {
   return options;
 }
 
-/* Runs a query without the GIL. Ctrl-C ends it with KeyboardInterrupt. */
 template <typename Ask>
 auto unlocked(cprox_options &options, const Ask &ask) {
   options.stop = interrupted;
-  auto answer = [&] {
-    const py::gil_scoped_release release;
-    return ask();
-  }();
-  if (PyErr_Occurred()) throw py::error_already_set();
-  return answer;
+  return python::unlocked(ask);
 }
 
 /* A curve alone is a point along it. */

@@ -31,12 +31,14 @@ Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string>
   for (py::ssize_t i = 0; known && i < known->size(); ++i)
     before.push_back(static_cast<cprox_verdict>(known->data()[i]));
   const Eigen::Isometry3d at = toTransform(base);
+  Query query = queryOf("tolerance", delta, epsilon, max_nodes);
+  query.options.stop = nullptr; // one thread alone would be interrupted
   std::vector<cprox_verdict> found;
   {
     const py::gil_scoped_release release;
     Pool pool(threads);
     const PreparedRobot robot(scene.snapshot(), scene.robot()->srdf.disabled, {}, {}, at);
-    found = edgeVerdicts(robot, roadmap, self, queryOf("tolerance", delta, epsilon, max_nodes), before, pool);
+    found = edgeVerdicts(robot, roadmap, self, query, before, pool);
   }
   Verdicts out(static_cast<py::ssize_t>(found.size()));
   for (std::size_t i = 0; i < found.size(); ++i) out.mutable_data()[i] = static_cast<std::int8_t>(found[i]);

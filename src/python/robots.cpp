@@ -89,6 +89,7 @@ Query queryOf(const std::string &type, double delta, double epsilon, std::uint32
   else if (type != "distance")
     throw Error("there is no query '" + type + "'");
   out.delta = delta, out.options.epsilon = epsilon, out.options.max_nodes = max_nodes;
+  out.options.stop = interrupted;
   return out;
 }
 
@@ -100,15 +101,58 @@ py::dict answerOf(const Answer &answer) {
   return out;
 }
 
-py::dict toDict(const ClearanceRow &row) {
-  py::dict out = answerOf(row.answer);
-  const ClearanceGradient &g = row.gradient;
+void addValidity(const ClearanceGradient &g, py::dict &out) {
   out["valid"] = g.valid, out["reason"] = g.reason, out["t"] = g.t;
+}
+
+void addDerivatives(const ClearanceGradient &g, py::dict &out) {
   out["positions"] = fromMatrix(g.positions), out["velocities"] = fromMatrix(g.velocities);
   out["accelerations"] = fromMatrix(g.accelerations), out["duration"] = g.duration;
   out["base_linear"] = fromVector(toVec3(g.base_linear)), out["base_angular"] = fromVector(toVec3(g.base_angular));
   out["object_linear"] = fromVector(toVec3(g.object_linear));
   out["object_angular"] = fromVector(toVec3(g.object_angular));
+}
+
+py::dict toDict(const ClearanceRow &row) {
+  py::dict out = answerOf(row.answer);
+  addValidity(row.gradient, out);
+  addDerivatives(row.gradient, out);
+  return out;
+}
+
+py::dict toDict(const std::vector<ClearanceInterval> &intervals) {
+  const auto n = static_cast<py::ssize_t>(intervals.size());
+  Array lower(n), upper(n), t(n), witness_a({n, py::ssize_t{3}}), witness_b({n, py::ssize_t{3}});
+  py::list a, b;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const ClearanceInterval &one = intervals[static_cast<std::size_t>(i)];
+    setRow(witness_a, i, one.witness_a), setRow(witness_b, i, one.witness_b);
+    lower.mutable_data()[i] = one.lower, upper.mutable_data()[i] = one.upper, t.mutable_data()[i] = one.t;
+    a.append(one.a), b.append(one.b);
+  }
+  py::dict out;
+  out["lower"] = lower, out["upper"] = upper, out["t"] = t, out["a"] = a, out["b"] = b;
+  out["witness_a"] = witness_a, out["witness_b"] = witness_b;
+  return out;
+}
+
+py::list toList(const Violations &found) {
+  if (found.status != CPROX_OK) throw std::runtime_error(found.message);
+  py::list out;
+  for (const Violation &v : found.list) {
+    py::dict one;
+    one["enter_lower"] = v.enter_lower, one["enter_upper"] = v.enter_upper;
+    one["leave_lower"] = v.leave_lower, one["leave_upper"] = v.leave_upper;
+    one["verdict"] = cprox_verdict_name(v.verdict), one["upper"] = v.upper, one["t"] = v.t;
+    one["a"] = v.a, one["b"] = v.b;
+    out.append(one);
+  }
+  return out;
+}
+
+py::list toList(const std::vector<Answer> &answers) {
+  py::list out;
+  for (const Answer &answer : answers) out.append(answerOf(answer));
   return out;
 }
 
@@ -198,12 +242,18 @@ std::shared_ptr<RobotMotion> loadMotion(const PythonScene &scene, const std::str
 }
 
 py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
-  Answer answer;
-  {
-    const py::gil_scoped_release release;
-    answer =
-        self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
-  }
+  const Answer answer = unlocked([&] {
+    return self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
+  });
+  return answerOf(answer);
+}
+
+py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
+                   const Names &objects) {
+  const Answer answer = unlocked([&] {
+    return timeOfContact(motion, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects),
+                         threadWorkspace());
+  });
   return answerOf(answer);
 }
 
@@ -215,14 +265,11 @@ py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, b
   if (!certificate) throw std::bad_alloc();
   Query query = queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes, links, objects);
   query.options.certificate = certificate.get();
-  Answer answer;
   std::string text;
-  {
-    const py::gil_scoped_release release;
-    answer =
-        self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
+  const Answer answer = unlocked([&] {
     text = "cprox-problem 1\n" + describeQuery(motion, self, query);
-  }
+    return self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
+  });
   py::dict out = answerOf(answer);
   if (!answer.unproven.empty()) throw Error("no certificate: " + answer.unproven);
   const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
@@ -237,11 +284,9 @@ py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::u
                     const Names &objects, bool is_signed) {
   Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
   query.options.signed_distance = is_signed;
-  ClearanceRow row;
-  {
-    const py::gil_scoped_release release;
-    row = clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, query, threadWorkspace());
-  }
+  const ClearanceRow row = unlocked([&] {
+    return clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, query, threadWorkspace());
+  });
   return toDict(row);
 }
 
@@ -272,11 +317,9 @@ py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair,
   query.options.signed_distance = is_signed;
   RowLimits limits;
   limits.horizon = horizon, limits.per_pair = per_pair, limits.most = most, limits.breaks = breaks;
-  ClearanceRows found;
-  {
-    const py::gil_scoped_release release;
-    found = clearanceRows(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, limits, query, threadWorkspace());
-  }
+  const ClearanceRows found = unlocked([&] {
+    return clearanceRows(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, limits, query, threadWorkspace());
+  });
   if (found.status != CPROX_OK) throw std::runtime_error(found.message);
   const std::vector<ClearanceRow> &rows = found.rows;
   const auto n = static_cast<py::ssize_t>(rows.size());
@@ -311,59 +354,28 @@ py::list violationsOf(const RobotMotion &motion, double delta, std::optional<dou
                       double epsilon, const Names &links, const Names &objects) {
   constexpr double PART = 1e-3;
   const std::array<double, 2> domain = motion.domain();
-  Violations found;
-  {
-    const py::gil_scoped_release release;
-    found = violations(motion, self, resolution.value_or(PART * (domain[1] - domain[0])),
-                       queryOf("tolerance", delta, epsilon, 20000, links, objects), threadWorkspace());
-  }
-  if (found.status != CPROX_OK) throw std::runtime_error(found.message);
-  py::list out;
-  for (const Violation &v : found.list) {
-    py::dict one;
-    one["enter_lower"] = v.enter_lower, one["enter_upper"] = v.enter_upper;
-    one["leave_lower"] = v.leave_lower, one["leave_upper"] = v.leave_upper;
-    one["verdict"] = cprox_verdict_name(v.verdict), one["upper"] = v.upper, one["t"] = v.t;
-    one["a"] = v.a, one["b"] = v.b;
-    out.append(one);
-  }
-  return out;
+  const Violations found = unlocked([&] {
+    return violations(motion, self, resolution.value_or(PART * (domain[1] - domain[0])),
+                      queryOf("tolerance", delta, epsilon, 20000, links, objects), threadWorkspace());
+  });
+  return toList(found);
 }
 
 py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon,
                    const Names &links, double horizon, const Names &objects) {
   const Query query = queryOf("distance", 0.0, epsilon, 20000, links, objects);
-  std::vector<ClearanceInterval> intervals;
-  {
-    const py::gil_scoped_release release;
-    intervals = clearanceProfile(motion, self, breaks, query, threadWorkspace(), horizon);
-  }
-  const auto n = static_cast<py::ssize_t>(intervals.size());
-  Array lower(n), upper(n), t(n), witness_a({n, py::ssize_t{3}}), witness_b({n, py::ssize_t{3}});
-  py::list a, b;
-  for (py::ssize_t i = 0; i < n; ++i) {
-    const ClearanceInterval &one = intervals[static_cast<std::size_t>(i)];
-    setRow(witness_a, i, one.witness_a), setRow(witness_b, i, one.witness_b);
-    lower.mutable_data()[i] = one.lower, upper.mutable_data()[i] = one.upper, t.mutable_data()[i] = one.t;
-    a.append(one.a), b.append(one.b);
-  }
-  py::dict out;
-  out["lower"] = lower, out["upper"] = upper, out["t"] = t, out["a"] = a, out["b"] = b;
-  out["witness_a"] = witness_a, out["witness_b"] = witness_b;
-  return out;
+  const std::vector<ClearanceInterval> intervals =
+      unlocked([&] { return clearanceProfile(motion, self, breaks, query, threadWorkspace(), horizon); });
+  return toDict(intervals);
 }
 
 py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool self, double epsilon, const Names &links,
                  const Names &objects) {
-  std::vector<Answer> answers;
-  {
-    const py::gil_scoped_release release;
-    answers = nearestPairs(motion, self, {k, within}, queryOf("distance", 0.0, epsilon, 20000, links, objects),
-                           threadWorkspace());
-  }
-  py::list out;
-  for (const Answer &answer : answers) out.append(answerOf(answer));
-  return out;
+  const std::vector<Answer> answers = unlocked([&] {
+    return nearestPairs(motion, self, {k, within}, queryOf("distance", 0.0, epsilon, 20000, links, objects),
+                        threadWorkspace());
+  });
+  return toList(answers);
 }
 
 } // namespace
@@ -469,6 +481,10 @@ void addRobots(py::module &module) {
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
           py::arg("links") = Names{}, py::arg("objects") = Names{},
           "Does the robot touch or overlap an object, or itself? As distance().")
+      .def("time_of_contact", &contactOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
+           py::arg("max_nodes") = 20000, py::arg("links") = Names{}, py::arg("objects") = Names{},
+           "When the robot first touches an object, or itself: in [t_contact_lower, t] of the result [s]. Never late.\n"
+           "As distance().")
       .def("certificate", &certificateOf, py::arg("delta") = py::none(), py::arg("self_collision") = false,
            py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000, py::arg("links") = Names{},
            py::arg("objects") = Names{},

@@ -95,5 +95,20 @@ py::dict answerOf(const Answer &answer);
 /** The answer with its derivatives. */
 py::dict toDict(const ClearanceRow &row);
 
+/** Adds valid, reason and t. */
+void addValidity(const ClearanceGradient &gradient, py::dict &out);
+
+/** Adds the numbers. */
+void addDerivatives(const ClearanceGradient &gradient, py::dict &out);
+
+/** A clearance profile as columns. */
+py::dict toDict(const std::vector<ClearanceInterval> &intervals);
+
+/** Throws where the budget ended. */
+py::list toList(const Violations &found);
+
+/** Answers one by one. */
+py::list toList(const std::vector<Answer> &answers);
+
 } // namespace curve_proximity::python
 #endif

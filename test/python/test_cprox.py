@@ -491,10 +491,153 @@ class Robots(unittest.TestCase):
             self.assertEqual(movers(second=second).tolerance(least() - 1e-4, 'first', objects=objects)['result'].verdict, 'clear')
             numpy.testing.assert_allclose(told['object_linear'], 0.0 if second else -told['base_linear'], atol=1e-12)
         self.assertLessEqual(movers(second=True).distance()['result'].upper, least() + 1e-5)
+        # all motions at once: those of the pair as each by itself
+        told = movers(second=True).gradients(epsilon=1e-10, links=['first'], objects=['second'])
+        self.assertTrue(told['valid'], told['reason'])
+        self.assertEqual(list(told['gradients']), ['first', 'second', 'ball'])
+        for name, other in (('first', 'second'), ('second', 'first')):
+            one, itself = told['gradients'][name], movers(second=True).gradient(name, epsilon=1e-10, objects=[other])
+            self.assertAlmostEqual(itself['t'], told['t'], delta=1e-9)
+            self.assertGreater(numpy.linalg.norm(one['positions']), 0.1)
+            for key, number in one.items():
+                if number is None:
+                    self.assertIsNone(itself[key], key)
+                else:
+                    numpy.testing.assert_allclose(number, itself[key], atol=1e-7, err_msg=key)
+        self.assertEqual((told['gradients']['ball']['positions'], told['gradients']['ball']['start']), (None, 0.0))
+        numpy.testing.assert_array_equal(told['gradients']['ball']['object_linear'], 0.0)
         for wrong, words in ((lambda: movers().gradient('third'), "no motion 'third'"), (lambda: cprox.Movers(scene, {}, dict(x=1)), "starts name 'x'"),
                              (lambda: cprox.Movers(alone, {}), 'nothing moves'), (lambda: movers().distance('first', objects=['bal']), "'bal'")):
             with self.assertRaisesRegex(ValueError, words):
                 wrong()
+
+    def test_balls_on_rails_and_a_ball_that_flies_come_as_close_as_their_centres_say(self):
+        """Two robots of two balls each, a ball that flies between them, a block: distances of centres at many times."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'rail.urdf')
+            with open(path, 'w') as file:
+                file.write('<robot name="rail"><link name="rail"/>' + ''.join(
+                    f'<link name="{link}"><collision><geometry><sphere radius="{radius}"/></geometry></collision></link>'
+                    f'<joint name="{joint}" type="prismatic"><origin xyz="{origin}"/><parent link="rail"/><child link="{link}"/>'
+                    f'<axis xyz="{axis}"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>'
+                    for link, radius, joint, origin, axis in (('ball', 0.1, 'slide', '0 0 0', '1 0 0'),
+                                                              ('hook', 0.05, 'lift', '1 0 0.3', '0 0 1'))) + '</robot>')
+            robot = cprox.Robot.from_urdf(path)
+            path = os.path.join(folder, 'scene.yaml')
+            with open(path, 'w') as file:
+                file.write('world: {collision_objects: [{id: drone, primitives: [{type: sphere, dimensions: [0.2]}], trajectory: {waypoints: ['
+                           '{time: 0, pose: {position: [1, -1, 0]}}, {time: 2, pose: {position: [1, 1, 0]}}]}}]}')
+            flown = cprox.Scene(robot)
+            flown.load(path)
+        still, empty = cprox.Scene(robot), cprox.Scene(robot)
+        for scene in (flown, still):
+            scene.add('block', 'sphere', [0.1], cprox.transform([0, -0.6, 0]))
+        motions = dict(left=cprox.Motion(empty, ['slide'], [0, 2], [[0], [2]]),
+                       right=cprox.Motion(empty, ['slide'], [0, 2], [[2], [0]], base=cprox.transform([0, 0.5, 0])))
+        radii = {'left/ball': 0.1, 'right/ball': 0.1, 'left/hook': 0.05, 'right/hook': 0.05, 'drone': 0.2, 'block': 0.1}
+
+        def centre(name, t, late=0.0):
+            slid = numpy.clip(t - late, 0, 2)
+            return numpy.stack(numpy.broadcast_arrays(*{
+                'left/ball': (slid, 0.0, 0.0), 'right/ball': (2 - slid, 0.5, 0.0), 'left/hook': (1.0, 0.0, 0.3),
+                'right/hook': (1.0, 0.5, 0.3), 'drone': (1.0, numpy.clip(t, 0, 2) - 1, 0.0), 'block': (0.0, -0.6, 0.0)}[name] + (t,))[:3], -1)
+
+        def apart(pair, t, late=0.0):
+            return numpy.linalg.norm(centre(pair[0], t, late) - centre(pair[1], t), axis=-1) - radii[pair[0]] - radii[pair[1]]
+        t = numpy.linspace(0, 2, 20001)
+        movers, grounded = cprox.Movers(flown, motions), cprox.Movers(still, motions)
+        numpy.testing.assert_allclose(movers.object_pose('drone', 0.5), cprox.transform([1, -0.5, 0]), atol=1e-12)
+
+        # two that slide past each other, each pair by itself
+        pairs = grounded.nearest_pairs(k=20, against='both')
+        self.assertEqual({frozenset((p['a'], p['b'])) for p in pairs},
+                         {frozenset(p) for p in (('left/ball', 'left/hook'), ('right/ball', 'right/hook'), ('left/ball', 'right/ball'),
+                                                 ('left/ball', 'right/hook'), ('left/hook', 'right/ball'), ('left/hook', 'right/hook'), ('left/ball', 'block'),
+                                                 ('right/ball', 'block'))})
+        for pair in pairs:
+            self.assertAlmostEqual(pair['result'].upper, apart((pair['a'], pair['b']), t).min(), delta=1e-5)
+        self.assertEqual([p['result'].upper for p in pairs], sorted(p['result'].upper for p in pairs))
+        self.assertEqual(len(grounded.nearest_pairs(k=20, within=0.36, against='both')), 3)
+        for against, least in (('others', 0.3), ('objects', 0.4), ('movers', 0.15), ('both', 0.15)):
+            found = grounded.distance(against=against)['result']
+            self.assertTrue(found.lower <= least + 1e-9 and least - 1e-9 <= found.upper <= found.lower + 1e-6, (against, found))
+            self.assertEqual([grounded.tolerance(least + step, against=against)['result'].verdict for step in (-1e-3, 1e-3)],
+                             ['clear', 'violated'])
+            self.assertEqual(grounded.collision(against=against)['result'].verdict, 'clear')
+            self.assertEqual(grounded.time_of_contact(against=against)['result'].t_contact_lower, 2.0)
+            self.assertAlmostEqual(grounded.profile([0, 2], against=against)['upper'][0], least, delta=1e-6)
+            self.assertEqual(grounded.violations(least - 1e-3, against=against), [])
+            self.assertEqual(len(grounded.violations(least + 1e-3, against=against, resolution=1e-6)), 1)
+        self.assertAlmostEqual(cprox.Movers(still, motions, allowed=[('left', 'right')]).distance()['result'].upper, 0.4, delta=1e-5)
+
+        # the ball that flies: it meets the ball on the left rail
+        first = 1 - 0.3 / 2**0.5
+        for ask in (movers, cprox.Movers(flown, motions, dict(left=0.0, right=0.0), dict(left=0.0))):
+            contact = ask.time_of_contact('left')
+            self.assertEqual((contact['a'], contact['b'], contact['result'].verdict), ('ball', 'drone', 'violated'))
+            self.assertTrue(first - 1e-5 <= contact['result'].t_contact_lower <= first <= contact['result'].t + 1e-9 <= first + 1e-4)
+        self.assertEqual(movers.collision('left')['result'].verdict, 'violated')
+        self.assertEqual(movers.collision('left', links=['hook'])['result'].verdict, 'clear')
+        breaks = numpy.linspace(0, 2, 9)
+        for robot, links in (('left', []), ('right', []), ('right', ['hook']), ('', ['drone'])):
+            profile = movers.profile(breaks, robot, links=links)
+            asked = [n for n in radii if (n.split('/')[0] == robot if robot else n == 'drone') and (not links or n.split('/')[-1] in links)]
+            both = [(a, b) for a in asked for b in radii if a != b and a.split('/')[0] != b.split('/')[0] and (a, b) != ('drone', 'block')]
+            clear = numpy.minimum.reduce([apart(pair, t) for pair in both])
+            if not robot:
+                clear = numpy.minimum(clear, apart(('drone', 'block'), t))
+            for i, (t0, t1) in enumerate(zip(breaks, breaks[1:])):
+                least = max(0.0, clear[(t >= t0) & (t <= t1)].min())
+                self.assertTrue(profile['lower'][i] - 1e-9 <= least <= profile['upper'][i] + 1e-4, (robot, links, i, least))
+                self.assertTrue(t0 <= profile['t'][i] <= t1 and profile['upper'][i] - profile['lower'][i] <= 1e-6)
+            self.assertEqual(len(profile['a']), 8)
+        (near,) = movers.violations(0.5, 'left', resolution=1e-6, objects=['drone'], links=['ball'])
+        for side, truth in (('enter', 1 - 0.8 / 2**0.5), ('leave', 1 + 0.8 / 2**0.5)):
+            self.assertTrue(near[side + '_lower'] <= truth <= near[side + '_upper'] <= near[side + '_lower'] + 1e-5)
+
+        # a start that is known to within .1 s, and none at all
+        late = numpy.linspace(-0.1, 0.1, 401)[:, None]
+        touching = (apart(('left/ball', 'drone'), t[None], late) <= 0).any(axis=0)
+        about = cprox.Movers(flown, motions, tolerances=dict(left=0.1))
+        self.assertEqual(about.domain, [-0.1, 2.1])
+        contact = about.time_of_contact('left')['result']
+        self.assertAlmostEqual(contact.t, t[touching][0], delta=2e-4)
+        self.assertLessEqual(contact.t_contact_lower, t[touching][0])
+        swept = cprox.Movers(flown, motions, tolerances=dict(right=numpy.inf)).distance(objects=['right'], links=['drone'])['result']
+        self.assertTrue(swept.lower <= 0.0 <= swept.upper <= 1e-6)
+
+        for wrong, words in ((lambda: movers.distance(against='all'), "got 'all'"),
+                             (lambda: movers.profile([0, 1], 'left', against='movers'), "does not apply to robot 'left'"),
+                             (lambda: movers.profile([1, 0]), 'break 1 is 0'), (lambda: movers.time_of_contact('third'), "no motion 'third'"),
+                             (lambda: movers.violations(0.1, 'left', links=['elbow']), "'left/elbow'"),
+                             (lambda: movers.nearest_pairs(objects=['bal']), "'bal'"), (lambda: movers.object_pose('left', 0), "'left'"),
+                             (lambda: cprox.Movers(flown, motions, tolerances=dict(third=1)), "tolerances name 'third'")):
+            with self.assertRaisesRegex(ValueError, words):
+                wrong()
+
+    def test_a_query_of_robots_hears_signals_while_it_runs(self):
+        """The handler ends it when it is called a third time: after the query it would be called once."""
+        scene = cprox.Scene(self.robot)
+        scene.add('ball', 'sphere', [.1], cprox.transform([.6, .5, 1.2]))
+        motion = self.motion(scene)
+        movers = cprox.Movers(scene, dict(first=motion, second=cprox.Motion(scene, self.joints, self.times, self.positions,
+                                                                            base=cprox.transform([1.5, 0, 0]))))
+        breaks = numpy.linspace(*motion.domain, 1000001)
+        for profile in (motion.profile, movers.profile):
+            calls = []
+
+            def handler(*_):
+                calls.append(1)
+                if len(calls) == 3:
+                    raise KeyboardInterrupt
+            before = signal.signal(signal.SIGALRM, handler)
+            signal.setitimer(signal.ITIMER_REAL, .02, .02)
+            try:
+                with self.assertRaises(KeyboardInterrupt):
+                    profile(breaks)
+            finally:
+                signal.setitimer(signal.ITIMER_REAL, 0)
+                signal.signal(signal.SIGALRM, before)
 
     def test_rows_are_the_nearest_of_each_pair_between_breaks_with_their_gradients(self):
         scene = cprox.Scene(self.robot)
