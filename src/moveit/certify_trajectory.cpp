@@ -69,12 +69,13 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
     if (!planner(scene, req, res) || !res.trajectory_) return false;
     const Finding finding = certify(*scene, *res.trajectory_);
     if (finding.why.empty()) return true;
-    if (!reject_ && !shrink_) {
-      ROS_ERROR_STREAM_NAMED(LOG, finding.why);
+    if (shrink_ && shrink(*scene, req, finding, res)) return true;
+    const std::string why = finding.why + (shrink_ ? "; no beginning of it is proven" : "");
+    if (!reject_) {
+      ROS_ERROR_STREAM_NAMED(LOG, why << ": the plan is returned as it is, certify_reject is false");
       return true;
     }
-    if (shrink_ && shrink(*scene, req, finding, res)) return true;
-    ROS_ERROR_STREAM_NAMED(LOG, finding.why << ": the plan is rejected");
+    ROS_ERROR_STREAM_NAMED(LOG, why << ": the plan is rejected");
     res.error_code_.val = moveit_msgs::MoveItErrorCodes::INVALID_MOTION_PLAN;
     return false;
   }

@@ -55,6 +55,32 @@ bool plans(const planning_scene::PlanningScenePtr &scene, const planning_pipelin
   return pipeline.generatePlan(scene, req, res);
 }
 
+/* A parameter of the pipeline, for a scope. */
+class ParameterOfPipeline {
+ public:
+  ParameterOfPipeline(const std::string &name, bool value) : name_(name) {
+    ros::NodeHandle("~pipeline").setParam(name_, value);
+  }
+  ~ParameterOfPipeline() {
+    ros::NodeHandle("~pipeline").deleteParam(name_);
+  }
+  ParameterOfPipeline(const ParameterOfPipeline &) = delete;
+  ParameterOfPipeline &operator=(const ParameterOfPipeline &) = delete;
+
+ private:
+  std::string name_;
+};
+
+/* Are waypoints and times the same? */
+bool isSame(const robot_trajectory::RobotTrajectory &a, const robot_trajectory::RobotTrajectory &b) {
+  if (a.getWayPointCount() != b.getWayPointCount()) return false;
+  for (std::size_t i = 0; i < a.getWayPointCount(); ++i) {
+    if (a.getWayPointDurationFromStart(i) != b.getWayPointDurationFromStart(i)) return false;
+    if (a.getWayPoint(i).distance(b.getWayPoint(i)) != 0.0) return false;
+  }
+  return true;
+}
+
 /* Does one with these adapters? */
 bool plans(const planning_scene::PlanningScenePtr &scene, const std::vector<std::string> &adapters, double clearance,
            planning_interface::MotionPlanResponse &res) {
@@ -98,11 +124,10 @@ TEST(Pipeline, is_answered_alike_in_a_scene_of_our_detector) {
 }
 
 TEST(Pipeline, ends_a_plan_before_the_post_when_asked_to_shorten_it) {
-  ros::NodeHandle("~pipeline").setParam("certify_shrink", true);
+  const ParameterOfPipeline shrink("certify_shrink", true);
   const auto scene = sceneWithPost(0.3, 0.0);
   planning_interface::MotionPlanResponse res;
   EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.01, res));
-  ros::NodeHandle("~pipeline").deleteParam("certify_shrink");
   ASSERT_TRUE(res.trajectory_);
   const double end = res.trajectory_->getLastWayPoint().getVariablePosition("panda_joint1");
   EXPECT_GT(end, -0.4) << "most of the way from -.8 rad to the post is free";
@@ -120,11 +145,42 @@ TEST(Pipeline, ends_a_plan_before_the_post_when_asked_to_shorten_it) {
   }
 }
 
-TEST(Pipeline, rejects_a_plan_of_which_no_beginning_is_free) {
-  ros::NodeHandle("~pipeline").setParam("certify_shrink", true);
+/* The start is .3 m from the post: MoveIt takes the plan, and no beginning of it keeps .5 m. */
+TEST(Pipeline, lets_certify_reject_decide_where_no_beginning_is_proven) {
+  const auto scene = sceneWithPost(-0.8, 0.3);
+  planning_interface::MotionPlanResponse whole, rejected, returned;
+  ASSERT_TRUE(plans(scene, {TIMING}, 0.5, whole));
+
+  const ParameterOfPipeline shrink("certify_shrink", true);
+  EXPECT_FALSE(plans(scene, {OURS, TIMING}, 0.5, rejected));
+  EXPECT_EQ(rejected.error_code_.val, moveit_msgs::MoveItErrorCodes::INVALID_MOTION_PLAN);
+
+  const ParameterOfPipeline reject("certify_reject", false);
+  ASSERT_TRUE(plans(scene, {OURS, TIMING}, 0.5, returned));
+  EXPECT_TRUE(isSame(*returned.trajectory_, *whole.trajectory_));
+}
+
+/* Where a beginning is proven, the plan is shortened whether it would be rejected or not. */
+TEST(Pipeline, shortens_a_plan_that_it_would_not_reject) {
+  const auto scene = sceneWithPost(0.3, 0.0);
+  planning_interface::MotionPlanResponse whole, shorter;
+  ASSERT_TRUE(plans(scene, {TIMING}, 0.01, whole));
+  const ParameterOfPipeline shrink("certify_shrink", true), reject("certify_reject", false);
+  ASSERT_TRUE(plans(scene, {OURS, TIMING}, 0.01, shorter));
+  EXPECT_LT(shorter.trajectory_->getLastWayPoint().getVariablePosition("panda_joint1"), 0.3);
+  EXPECT_FALSE(isSame(*shorter.trajectory_, *whole.trajectory_));
+}
+
+/* A trajectory that cannot be certified at all: one without times. */
+TEST(Pipeline, returns_what_cannot_be_certified_where_it_does_not_reject) {
+  const auto scene = sceneWithPost(0.3, 0.3);
   planning_interface::MotionPlanResponse res;
-  EXPECT_FALSE(plans(sceneWithPost(-0.8, 0.0), {OURS, TIMING}, 0.0, res));
-  ros::NodeHandle("~pipeline").deleteParam("certify_shrink");
+  for (const bool shrinks : {false, true}) {
+    const ParameterOfPipeline shrink("certify_shrink", shrinks);
+    EXPECT_FALSE(plans(scene, {OURS}, 0.0, res)) << shrinks;
+    const ParameterOfPipeline reject("certify_reject", false);
+    EXPECT_TRUE(plans(scene, {OURS}, 0.0, res)) << shrinks;
+  }
 }
 
 TEST(Pipeline, rejects_what_the_budget_leaves_open_and_lets_pass_what_it_only_reports) {
@@ -150,11 +206,6 @@ TEST(Pipeline, rejects_in_a_world_that_is_not_known_whole) {
   EXPECT_FALSE(plans(scene, {OURS, TIMING}, 0.0, res));
   scene->getWorldNonConst()->removeObject("odd");
   EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.0, res));
-}
-
-TEST(Pipeline, refuses_a_trajectory_without_times) {
-  planning_interface::MotionPlanResponse res;
-  EXPECT_FALSE(plans(sceneWithPost(0.3, 0.3), {OURS}, 0.0, res));
 }
 
 /* moveit_certify.launch and moveit_collision_detector.launch have set the parameters of a move_group. */
