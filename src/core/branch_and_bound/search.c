@@ -122,7 +122,7 @@ cprox_status search_run(search_goal *goal, const search_oracle *oracle, search_n
   *outcome = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
   if (!frontier_push(&open, &root)) return CPROX_MEMORY;
 
-  while (open.count > 0) {
+  for (size_t looks = 0; open.count > 0; looks++) {
     search_node node = frontier_pop(&open);
     if (goal->share) goal->cutoff = lesser(goal->cutoff, goal->share(goal->share_user, outcome->best.upper));
 
@@ -139,11 +139,13 @@ cprox_status search_run(search_goal *goal, const search_oracle *oracle, search_n
       continue;
     }
 
-    if (state == NODE_OPEN) {
-      const bool poll = goal->stop && outcome->nodes % STOP_POLL_INTERVAL == 0;
-      if (poll && goal->stop(goal->stop_user)) {
-        status = CPROX_STOPPED;
-      } else if (outcome->nodes >= goal->max_nodes) {
+    /* nodes that leave take their time as well; with the last one the answer is complete */
+    const bool ends = pruned_all || (state != NODE_OPEN && open.count == 0);
+    const bool poll = goal->stop && looks % STOP_POLL_INTERVAL == 0 && !ends;
+    if (poll && goal->stop(goal->stop_user)) {
+      status = CPROX_STOPPED;
+    } else if (state == NODE_OPEN) {
+      if (outcome->nodes >= goal->max_nodes) {
         status = CPROX_BUDGET;
       } else {
         const cprox_status worked = work_on(goal, oracle, &node, &open, outcome, &state);
