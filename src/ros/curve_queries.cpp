@@ -25,6 +25,12 @@ constexpr std::size_t A_PART = 8;
 /** [bytes] A curve takes no less in a request. */
 constexpr std::size_t LEAST_CURVE = 128;
 
+CompiledCurve make(const CurveDescription &curve, CurveBoxes boxes, const cprox_options &options,
+                   Workspace &workspace) {
+  const WayWhileMaking way(workspace, options);
+  return compile(curve, boxes, workspace);
+}
+
 } // namespace
 
 /* Where a curve and all that it is measured against stand. */
@@ -134,7 +140,7 @@ void Queries::search(const Curve &message, const CurvePlace &place, const Query 
     if (!place.why_not.empty()) throw Error(place.why_not);
     const Targets &targets = place.stamped->targets;
     toDescription(message, *place.frame, scratch.curve);
-    CompiledCurve curve = compile(scratch.curve, targets.boxes(), workspace);
+    CompiledCurve curve = make(scratch.curve, targets.boxes(), query.options, workspace);
     if (asking.kind == Asking::GRADIENT) {
       CurveClearance clearance = clearanceGradient(targets, curve, scratch.curve, query, workspace);
       answers.push_back(std::move(clearance.answer));

@@ -65,5 +65,28 @@ class TimeBudget {
   Turn *const turn_;
 };
 
+/** While this lives, the making of a curve makes way for others as a query does. The budget does not end it; the query
+ *  after it ends at once. */
+class WayWhileMaking {
+ public:
+  /** options: those of the query, whose stop function is a TimeBudget's. */
+  WayWhileMaking(Workspace &workspace, const cprox_options &options) : workspace_(workspace) {
+    cprox_workspace_set_stop(workspace_.get(), options.stop_user ? makeWay : nullptr, options.stop_user);
+  }
+  ~WayWhileMaking() {
+    cprox_workspace_set_stop(workspace_.get(), nullptr, nullptr);
+  }
+  WayWhileMaking(const WayWhileMaking &) = delete;
+  WayWhileMaking &operator=(const WayWhileMaking &) = delete;
+
+ private:
+  static bool makeWay(void *budget) {
+    TimeBudget::isOver(budget);
+    return false;
+  }
+
+  Workspace &workspace_;
+};
+
 } // namespace curve_proximity
 #endif

@@ -227,6 +227,16 @@ CurveHandle makeBezier(const CurveDescription &curve, Workspace &workspace) {
   return detail::createCurve(detail::describe(CPROX_CURVE_BEZIER, curve.points, curve.t0, curve.t1), workspace);
 }
 
+/* A B-spline, or with weights a NURBS curve. */
+CurveHandle makeSpline(const CurveDescription &curve, Workspace &workspace) {
+  const bool rational = curve.basis == "nurbs";
+  cprox_curve_description d =
+      detail::describe(rational ? CPROX_CURVE_NURBS : CPROX_CURVE_BSPLINE, curve.points, curve.t0, curve.t1);
+  d.degree = curve.degree, d.knots = curve.knots.data(), d.n_knots = curve.knots.size();
+  if (rational) d.weights = curve.parameters.data();
+  return detail::createCurve(d, workspace);
+}
+
 /* Without restriction and pose. The usual basis is asked for first. */
 CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
   if (curve.basis == "piecewise") return joinPieces(curve, workspace);
@@ -236,12 +246,11 @@ CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
   if (isNamedBasis(curve.basis)) return makeNamed(curve);
   if (isRationalBasis(curve.basis)) {
     checkCounts(curve);
-    if (curve.basis == "nurbs")
-      return makeNurbs(curve.points, curve.parameters, curve.degree, curve.knots, curve.t0, curve.t1);
+    if (curve.basis == "nurbs") return makeSpline(curve, workspace);
     return makeRationalBezier(curve.points, curve.parameters, curve.t0, curve.t1);
   }
   checkNoParameters(curve);
-  if (curve.basis == "bspline") return makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
+  if (curve.basis == "bspline") return makeSpline(curve, workspace);
   return makeSeries(curve);
 }
 

@@ -302,6 +302,73 @@ CASE(a_stop_function_ends_the_search_with_a_true_interval) {
   hard_case_free(&c);
 }
 
+static bool count_calls(void *user) {
+  ++*(size_t *)user;
+  return false;
+}
+
+/* A ring about a ball: all pieces are at the same distance but for 1e-11, so that none is pruned, and each leaves when
+ * rounding allows no more. */
+static cprox_curve *ring(size_t n, cprox_workspace *workspace) {
+  cprox_vec3 *points = calloc(n, sizeof *points);
+  double *knots = calloc(n + 4, sizeof *knots);
+  assert_true(points && knots);
+  const double turn = 2.0 * acos(-1.0) / (double)n;
+  for (size_t i = 0; i < n; i++) points[i] = vec(cos(turn * (double)i), sin(turn * (double)i), 0.0);
+  for (size_t i = 0; i < n + 4; i++) knots[i] = i < 3 ? 0.0 : i > n ? (double)(n - 3) : (double)(i - 3);
+  const cprox_curve_description spline = {.kind = CPROX_CURVE_BSPLINE,
+                                          .points = points,
+                                          .n = n,
+                                          .degree = 3,
+                                          .knots = knots,
+                                          .n_knots = n + 4,
+                                          .t1 = (double)(n - 3)};
+  cprox_curve *curve = NULL;
+  cprox_curve_create(&spline, workspace, &curve);
+  free(points);
+  free(knots);
+  return curve;
+}
+
+/* One call for 16 nodes that are looked at, whether they are split or leave. */
+CASE(stop_is_also_asked_while_nodes_leave) {
+  cprox_curve *curve = ring(20000, ws);
+  assert_non_null(curve);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
+  cprox_options options = accurate(1e-13);
+  size_t calls = 0;
+  options.stop = count_calls, options.stop_user = &calls, options.max_nodes = UINT32_MAX;
+  cprox_result r;
+  assert_true(cprox_distance(cprox_point_along(curve), at(ball, 0, 0, 0), &options, ws, &r) >= 0);
+  assert_true(calls > (r.nodes + 15000) / 16);
+  cprox_body_free(ball);
+  cprox_curve_free(curve);
+}
+
+CASE(the_making_of_a_long_curve_can_be_stopped) {
+  cprox_workspace *own = cprox_workspace_create();
+  size_t calls = 0;
+  cprox_workspace_set_stop(own, count_calls, &calls);
+  cprox_curve *curve = ring(20000, own);
+  assert_non_null(curve);
+  assert_true(calls >= 3 * (20000 / 1024)); /* spans, their capsules, the tree above them */
+  cprox_curve_free(curve);
+  for (int polls = 0; polls < 60; polls += 7) {
+    int left = polls;
+    cprox_workspace_set_stop(own, stop_after, &left);
+    curve = ring(20000, own);
+    if ((size_t)polls >= calls) {
+      assert_non_null(curve);
+      cprox_curve_free(curve);
+    } else {
+      assert_null(curve);
+      assert_non_null(strstr(cprox_workspace_error(own), "stopped while a curve of 19997 pieces was being made"));
+    }
+  }
+  cprox_workspace_free(own);
+}
+
 /* ---- many targets ---- */
 
 /* Seed 5, 300 scenes of 30 targets, among them padded ones and compounds: the union's answer is the least of the

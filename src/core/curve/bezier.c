@@ -21,7 +21,5 @@ cprox_status curve_create_bezier(const cprox_curve_description *d, cprox_workspa
   memcpy(c->points, points, n_points * sizeof *points);
   c->breaks[0] = t0;
   c->breaks[1] = t1;
-  curve_finish(c);
-  *curve = c;
-  return CPROX_OK;
+  return curve_finish(c, workspace, curve);
 }

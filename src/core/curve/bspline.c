@@ -104,8 +104,7 @@ cprox_status curve_create_bspline(const cprox_curve_description *d, cprox_worksp
                                      c->points + i * (degree + 1));
     c->breaks[i++] = lo;
     c->breaks[i] = hi;
+    if (curve_stops(i, workspace)) return curve_stopped(c, workspace);
   }
-  curve_finish(c);
-  *curve = c;
-  return CPROX_OK;
+  return curve_finish(c, workspace, curve);
 }

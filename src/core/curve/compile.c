@@ -172,6 +172,9 @@ static cprox_status append_pieces(compile *c, const compile_source *source, doub
                             COMPILE_MOST_PIECES, a, h);
     const cprox_status status = append_piece(c, source, a, b, &at0, &at1);
     if (status != CPROX_OK) return status;
+    if (curve_stops(c->n, c->workspace))
+      return workspace_fail(c->workspace, CPROX_INVALID, "stopped while a curve was being made, after %zu pieces",
+                            c->n);
     at0 = at1;
     a = b;
     limit = 2.0 * h;
@@ -199,13 +202,11 @@ cprox_status compile_finish(compile *c, cprox_curve **curve) {
     memcpy(made->breaks + 1, c->breaks, c->n * sizeof *c->breaks);
     memcpy(made->points, c->points, 6 * c->n * sizeof *c->points);
     memcpy(made->error, c->error, c->n * sizeof *c->error);
-    curve_finish(made);
   }
   const size_t n = c->n;
   release_memory(c);
   if (!made) return workspace_fail(c->workspace, CPROX_MEMORY, "no memory for a curve of %zu pieces", n);
-  *curve = made;
-  return CPROX_OK;
+  return curve_finish(made, c->workspace, curve);
 }
 
 cprox_status compile_curve(const compile_source *source, double t0, double t1, cprox_workspace *workspace,

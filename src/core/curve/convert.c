@@ -144,9 +144,7 @@ static cprox_status round_pieces(const convert_piece *pieces, size_t n, size_t d
                             pieces[i].to, CURVE_LARGEST);
     }
   }
-  curve_finish(c);
-  *curve = c;
-  return CPROX_OK;
+  return curve_finish(c, workspace, curve);
 }
 
 cprox_status convert_finish(convert_piece *pieces, size_t n, size_t degree, cprox_workspace *workspace,

@@ -8,6 +8,9 @@
 #include "base/workspace.h"
 #include "curve/rectifiable.h"
 
+/* Some half a millisecond of pieces. */
+enum { STOP_INTERVAL = 1024 };
+
 /* One block: short curves are made and freed by the thousand. Packs first, which are the largest; all is aligned as
  * doubles are. */
 cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
@@ -132,15 +135,20 @@ static curve_capsule join_capsules(const cprox_curve *c, size_t node, size_t lev
 }
 
 /* From three levels below where there are so many: a radius that is made of fewer others is smaller. */
-static void build_tree(cprox_curve *c) {
+static bool build_tree(cprox_curve *c, cprox_workspace *workspace) {
   const curve_capsule none = {.radius = -1.0};
   for (size_t k = 0; k < CURVE_PACK * curve_packs(c->n_leaves); k++) set_capsule(c, k, none);
-  for (size_t i = 0; i < c->n_pieces; i++) set_capsule(c, c->n_leaves + i, piece_capsule(c, i));
+  for (size_t i = 0; i < c->n_pieces; i++) {
+    if (curve_stops(i, workspace)) return false;
+    set_capsule(c, c->n_leaves + i, piece_capsule(c, i));
+  }
   for (size_t k = c->n_leaves; k-- > 1;) {
+    if (curve_stops(k, workspace)) return false;
     size_t levels = 1;
     while (levels < 3 && k << levels < c->n_leaves) levels++;
     if (curve_capsule_at(c, k << levels).radius >= 0.0) set_capsule(c, k, join_capsules(c, k, levels));
   }
+  return true;
 }
 
 /* |x| + |y| + |z| is no less than |P|. */
@@ -154,14 +162,34 @@ static void measure_points(cprox_curve *c) {
   }
 }
 
-void curve_finish(cprox_curve *c) {
+static bool build(cprox_curve *c, cprox_workspace *workspace) {
   measure_points(c);
   curve_fill_tables(c->degree, c->tables);
   c->binomial = c->tables;
   c->square = c->tables + (c->degree < 2 ? 0 : c->degree - 1);
-  build_tree(c);
   c->worst = 0.0;
   for (size_t i = 0; i < c->n_pieces; i++) c->worst = greater(c->error[i], c->worst);
+  return build_tree(c, workspace);
+}
+
+void curve_build(cprox_curve *c) {
+  build(c, NULL);
+}
+
+cprox_status curve_finish(cprox_curve *c, cprox_workspace *workspace, cprox_curve **curve) {
+  if (!build(c, workspace)) return curve_stopped(c, workspace);
+  *curve = c;
+  return CPROX_OK;
+}
+
+bool curve_stops(size_t n_pieces, cprox_workspace *workspace) {
+  return n_pieces % STOP_INTERVAL == STOP_INTERVAL - 1 && workspace_stops(workspace);
+}
+
+cprox_status curve_stopped(cprox_curve *c, cprox_workspace *workspace) {
+  const size_t n = c->n_pieces;
+  cprox_curve_free(c);
+  return workspace_fail(workspace, CPROX_INVALID, "stopped while a curve of %zu pieces was being made", n);
 }
 
 /* ---- arithmetic ---- */
@@ -310,22 +338,24 @@ cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, doub
   return CPROX_OK;
 }
 
+/* The box of the control points, wider by the error. Where the piece is exact so is its box; else an error that is a
+ * little larger hides the rounding of the sums. */
 static void find_piece_bounds(const cprox_curve *curve, size_t piece, vec3 *lowest, vec3 *highest) {
-  *lowest = vec(INFINITY, INFINITY, INFINITY);
-  *highest = vec(-INFINITY, -INFINITY, -INFINITY);
   const vec3 *p = curve_piece(curve, piece);
-  /* where the piece is exact so is its box; else an error that is a little larger hides the rounding of the sums */
-  const double error = curve->error[piece];
-  for (size_t k = 0; k <= curve->degree; k++) {
-    const vec3 low = error > 0.0 ? vec(nextafter(p[k].x - error, -INFINITY), nextafter(p[k].y - error, -INFINITY),
-                                       nextafter(p[k].z - error, -INFINITY))
-                                 : p[k];
-    const vec3 high = error > 0.0 ? vec(nextafter(p[k].x + error, INFINITY), nextafter(p[k].y + error, INFINITY),
-                                        nextafter(p[k].z + error, INFINITY))
-                                  : p[k];
-    *lowest = vec(fmin(lowest->x, low.x), fmin(lowest->y, low.y), fmin(lowest->z, low.z));
-    *highest = vec(fmax(highest->x, high.x), fmax(highest->y, high.y), fmax(highest->z, high.z));
+  vec3 low = p[0], high = p[0];
+  for (size_t k = 1; k <= curve->degree; k++) {
+    low = vec(lesser(p[k].x, low.x), lesser(p[k].y, low.y), lesser(p[k].z, low.z));
+    high = vec(greater(p[k].x, high.x), greater(p[k].y, high.y), greater(p[k].z, high.z));
   }
+  const double error = curve->error[piece];
+  if (error > 0.0) {
+    low = vec(nextafter(low.x - error, -INFINITY), nextafter(low.y - error, -INFINITY),
+              nextafter(low.z - error, -INFINITY));
+    high = vec(nextafter(high.x + error, INFINITY), nextafter(high.y + error, INFINITY),
+               nextafter(high.z + error, INFINITY));
+  }
+  *lowest = low;
+  *highest = high;
 }
 
 cprox_curve_piece_info cprox_curve_get_piece_info(const cprox_curve *curve, size_t piece) {

@@ -77,7 +77,17 @@ size_t curve_tables_size(size_t degree);
 void curve_fill_tables(size_t degree, double *tables);
 
 /* Builds the capsules and tables over pieces that are filled in. */
-void curve_finish(cprox_curve *c);
+void curve_build(cprox_curve *c);
+
+/* The same at the end of a constructor, which hands the curve over. Where cprox_workspace_set_stop() wants an end it is
+ * freed instead. */
+cprox_status curve_finish(cprox_curve *c, cprox_workspace *workspace, cprox_curve **curve);
+
+/* Whether an end is wanted of what has made so many pieces by now; asked after every few hundred of them. */
+bool curve_stops(size_t n_pieces, cprox_workspace *workspace);
+
+/* Says so, and frees what there is of the curve. */
+cprox_status curve_stopped(cprox_curve *c, cprox_workspace *workspace);
 
 /* The constructors, one a kind: each reads and checks the members of the description that its kind has. *curve is
  * untouched on failure. create.c lists them. */

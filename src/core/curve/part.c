@@ -74,7 +74,5 @@ cprox_status curve_create_part(const cprox_curve_description *d, cprox_workspace
     part->error[i] = cut_piece(whole, first + i, part->breaks[i], part->breaks[i + 1], own);
     if (d->pose) part->error[i] = ROUND_UP * (part->error[i] + place_points(&f, own, points));
   }
-  curve_finish(part);
-  *curve = part;
-  return CPROX_OK;
+  return curve_finish(part, workspace, curve);
 }

@@ -157,7 +157,5 @@ cprox_status curve_create_piecewise(const cprox_curve_description *d, cprox_work
     cprox_curve_free(whole);
     return status;
   }
-  curve_finish(whole);
-  *curve = whole;
-  return CPROX_OK;
+  return curve_finish(whole, workspace, curve);
 }

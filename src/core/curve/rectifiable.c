@@ -152,7 +152,5 @@ cprox_status curve_create_rectifiable(const cprox_curve_description *d, cprox_wo
     cprox_curve_free(c);
     return status;
   }
-  curve_finish(c);
-  *curve = c;
-  return CPROX_OK;
+  return curve_finish(c, workspace, curve);
 }

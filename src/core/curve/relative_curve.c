@@ -134,7 +134,7 @@ static bool combine(const cprox_curve *first, const cprox_curve *second, const f
     i += first->breaks[i + 1] == right && i + 1 < first->n_pieces;
     j += second->breaks[j + 1] == right && j + 1 < second->n_pieces;
   }
-  curve_finish(relative);
+  curve_build(relative);
   return true;
 }
 
