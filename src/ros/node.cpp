@@ -14,6 +14,7 @@
 #include "memory_limit.h"
 #include "parameters.h"
 #include "server.h"
+#include "time_slice.h"
 
 namespace {
 
@@ -34,14 +35,16 @@ void catchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-/** While a thread writes an answer, roscpp's poll thread asks again and again whether the socket is ready, and leaves
- * the writing to that thread. On the same processor it would keep it from writing for a whole time slice. */
-void makeWayForWriters() {
+/** All that comes in goes through roscpp's poll thread. While a thread writes an answer, it asks again and again
+ * whether the socket is ready, and leaves the writing to that thread. On the same processor it would keep it from
+ * writing for a whole time slice. */
+void tunePollThread() {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::microseconds SHORT_ROUND{5}; // one that reads or accepts takes longer
   static constexpr int MANY = 4;
   ros::PollManager::instance()->addPollThreadListener([before = Clock::time_point(), rounds = 0]() mutable {
     const Clock::time_point now = Clock::now();
+    if (before == Clock::time_point()) curve_proximity::setTimeSlice(curve_proximity::SHORT_SLICE);
     rounds = now - before < SHORT_ROUND ? rounds + 1 : 0;
     if (rounds >= MANY) std::this_thread::yield();
     before = now;
@@ -76,7 +79,7 @@ int main(int argc, char **argv) {
   try {
     const curve_proximity::Parameters parameters = curve_proximity::readParameters(handle);
     curve_proximity::limitMemory(parameters.memory_limit_mb);
-    makeWayForWriters();
+    tunePollThread();
     const curve_proximity::ProximityServer server(handle, parameters);
     code = serve();
   } catch (const std::exception &error) {

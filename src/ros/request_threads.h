@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "time_slice.h"
+
 namespace curve_proximity {
 
 /** A thread that waits, for a turn or for tf2, costs next to nothing; so each request has one, and Turns tells how many
@@ -80,6 +82,7 @@ class RequestThreads {
   void add() {
     if (ending_) return;
     threads_.emplace_back([this] {
+      setTimeSlice(SHORT_SLICE);
       while (!ending_) queue_.callOne(ros::WallDuration(0.1));
     });
   }
