@@ -7,7 +7,7 @@ namespace curve_proximity {
 namespace {
 
 /** A turn is kept for so long before anybody else is thought of. */
-constexpr std::chrono::microseconds QUANTUM{1000};
+constexpr std::chrono::microseconds QUANTUM{250};
 
 /** Clients are forgotten beyond so many. */
 constexpr std::size_t MOST_CLIENTS = 4096;
