@@ -169,9 +169,8 @@ struct MoversClearance {
 /** The least distance of all that moves, as ask() tells it, and its derivatives by each robot's trajectory and each
  *  object's clock, by one search: for a planner that changes several motions at once. Shapes and units are those of
  *  ClearanceGradient; valid, reason, t and margin are the same in all of them. duration and start are NaN for both
- * sides where the minimiser is at a kink of both. Throws Error for what ask() refuses, for another query than DISTANCE
- * and for starts with a tolerance. Cost: 1 to 3 distances, however many move (1.7 in the middle of 12 scenes of 2 to 5
- *  arms). */
+ *  sides where the minimiser is at a kink of both. Throws Error for what ask() refuses, for another query than
+ *  DISTANCE and for starts with a tolerance. Cost: one search, as clearanceGradient(), however many move. */
 MoversClearance clearanceGradients(const Movers &movers, Against against, const Query &query, Workspace &workspace);
 
 /** All intervals of time [s] in which movers are within query.delta of something: as violations() of query.hpp. Throws

@@ -20,7 +20,7 @@ bool setTimeSlice(std::chrono::microseconds slice) noexcept;
 /** Of the calling thread; 0 where it is not known. */
 std::chrono::microseconds timeSlice() noexcept;
 
-/** Of threads that take requests. The system's own slice is some 3 ms, many times what a small request takes. */
+/** Of threads that take requests. The system's own slice is 1 to 3 ms, many times what a small request takes. */
 constexpr std::chrono::microseconds SHORT_SLICE{100};
 
 } // namespace curve_proximity

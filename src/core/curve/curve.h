@@ -83,7 +83,7 @@ void curve_build(cprox_curve *c);
  * freed instead. */
 cprox_status curve_finish(cprox_curve *c, cprox_workspace *workspace, cprox_curve **curve);
 
-/* Whether an end is wanted of what has made so many pieces by now; asked after every few hundred of them. */
+/* Whether an end is wanted of what has made so many pieces by now; asked after each thousand or so of them. */
 bool curve_stops(size_t n_pieces, cprox_workspace *workspace);
 
 /* Says so, and frees what there is of the curve. */
