@@ -113,7 +113,6 @@ def malformed(seed, end, report):
 def heavy(seed, end, report, n_clients):
     """A process of clients whose requests would take the node seconds each, were there no budget. They are made once: what the node
     is asked to do is the load, not what Python does to ask."""
-    if os.environ.get('NICE'): os.nice(int(os.environ['NICE']))
     ring, _, fields = ring_and_shells(shells=20)
     request = serialized(DistanceRequest(ProximityQuery(curves=[ring], **fields)))
     lock, counts = threading.Lock(), dict(heavy=0, closed=0)
