@@ -492,20 +492,20 @@ class Robots(unittest.TestCase):
             numpy.testing.assert_allclose(told['object_linear'], 0.0 if second else -told['base_linear'], atol=1e-12)
         self.assertLessEqual(movers(second=True).distance()['result'].upper, least() + 1e-5)
         # all motions at once: those of the pair as each by itself
-        told = movers(second=True).gradients(epsilon=1e-10, links=['first'], objects=['second'])
-        self.assertTrue(told['valid'], told['reason'])
-        self.assertEqual(list(told['gradients']), ['first', 'second', 'ball'])
+        found = movers(second=True).gradients(epsilon=1e-10, links=['first'], objects=['second'])
+        self.assertTrue(found['valid'], found['reason'])
+        self.assertEqual(list(found['gradients']), ['first', 'second', 'ball'])
         for name, other in (('first', 'second'), ('second', 'first')):
-            one, itself = told['gradients'][name], movers(second=True).gradient(name, epsilon=1e-10, objects=[other])
-            self.assertAlmostEqual(itself['t'], told['t'], delta=1e-9)
+            one, itself = found['gradients'][name], movers(second=True).gradient(name, epsilon=1e-10, objects=[other])
+            self.assertAlmostEqual(itself['t'], found['t'], delta=1e-9)
             self.assertGreater(numpy.linalg.norm(one['positions']), 0.1)
             for key, number in one.items():
                 if number is None:
                     self.assertIsNone(itself[key], key)
                 else:
                     numpy.testing.assert_allclose(number, itself[key], atol=1e-7, err_msg=key)
-        self.assertEqual((told['gradients']['ball']['positions'], told['gradients']['ball']['start']), (None, 0.0))
-        numpy.testing.assert_array_equal(told['gradients']['ball']['object_linear'], 0.0)
+        self.assertEqual((found['gradients']['ball']['positions'], found['gradients']['ball']['start']), (None, 0.0))
+        numpy.testing.assert_array_equal(found['gradients']['ball']['object_linear'], 0.0)
         for wrong, words in ((lambda: movers().gradient('third'), "no motion 'third'"), (lambda: cprox.Movers(scene, {}, dict(x=1)), "starts name 'x'"),
                              (lambda: cprox.Movers(alone, {}), 'nothing moves'), (lambda: movers().distance('first', objects=['bal']), "'bal'")):
             with self.assertRaisesRegex(ValueError, words):

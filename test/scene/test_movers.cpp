@@ -312,8 +312,8 @@ TEST_F(Movement, the_gradients_by_all_motions_are_those_of_differences_and_of_ea
     EXPECT_EQ(found.answer.kind, "movers");
     EXPECT_GT(found.answer.result.t, 0.05);
     EXPECT_LT(found.answer.result.t, 0.95);
-    const double told = ask(movers, Against::OTHERS, query, workspace).result.upper;
-    EXPECT_NEAR(found.answer.result.upper, told, 1e-9);
+    const double least = ask(movers, Against::OTHERS, query, workspace).result.upper;
+    EXPECT_NEAR(found.answer.result.upper, least, 1e-9);
     const auto slope = [&](double &number) {
       const double before = number;
       double ends[2];
