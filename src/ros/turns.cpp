@@ -2,12 +2,14 @@
 #include "turns.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <ctime>
 
 namespace curve_proximity {
 namespace {
 
 /** A turn is kept for so long before anybody else is thought of. */
-constexpr std::chrono::microseconds QUANTUM{250};
+constexpr std::chrono::microseconds QUANTUM{125};
 
 /** Clients are forgotten beyond so many. */
 constexpr std::size_t MOST_CLIENTS = 4096;
@@ -16,20 +18,39 @@ double seconds(Turns::Clock::duration time) {
   return std::chrono::duration<double>(time).count();
 }
 
+/** [s] What this thread has computed. */
+double processorTime() {
+  timespec time = {};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/** False: the deadline came first. */
+bool waitUntil(sem_t &semaphore, Turns::Clock::time_point deadline) {
+  const auto since_zero = std::chrono::duration_cast<std::chrono::nanoseconds>(deadline.time_since_epoch()).count();
+  const timespec at = {static_cast<std::time_t>(since_zero / 1000000000), static_cast<long>(since_zero % 1000000000)};
+  while (sem_clockwait(&semaphore, CLOCK_MONOTONIC, &at) != 0) {
+    if (errno != EINTR) return false;
+  }
+  return true;
+}
+
 } // namespace
 
 void Turns::setSlots(int slots) {
-  const Lock lock(mutex_);
+  Lock lock(mutex_);
   slots_ = slots;
   crowded_ = running_ > slots_;
-  grant();
+  wake(lock, grant(nullptr));
 }
 
 double Turns::takeLongestWait() {
-  const Lock lock(mutex_);
-  const double out = longest_wait_;
-  longest_wait_ = 0.0;
-  return out;
+  return longest_wait_.exchange(0.0);
+}
+
+void Turns::noteWait(double seconds) {
+  double longest = longest_wait_;
+  while (seconds > longest && !longest_wait_.compare_exchange_weak(longest, seconds)) continue;
 }
 
 Turns::Client &Turns::enter(const std::string &name) {
@@ -42,66 +63,87 @@ Turns::Client &Turns::enter(const std::string &name) {
 }
 
 /** The one that has used least; of those the first. */
-std::list<Turns::Ticket *>::iterator Turns::next() {
+std::vector<Turns::Ticket *>::iterator Turns::next() {
   return std::min_element(waiting_.begin(), waiting_.end(),
                           [](const Ticket *a, const Ticket *b) { return a->client->used < b->client->used; });
 }
 
-void Turns::grant() {
+/** Gives turns to those that wait; who has got one, and after them those of `granted`. */
+Turns::Ticket *Turns::grant(Ticket *granted) {
   while (running_ < slots_ && !waiting_.empty()) {
     const auto best = next();
     Ticket &ticket = **best;
     waiting_.erase(best);
     --waiting_count_;
-    ++running_;
+    ticket.alone = running_++ == 0 && waiting_.empty();
     floor_ = std::max(floor_, ticket.client->used);
     ticket.waits = false;
-    ticket.granted.notify_one();
+    ticket.after = granted;
+    granted = &ticket;
+  }
+  return granted;
+}
+
+/** Gives the lock back first: the system may run a thread that wakes at once, in place of this one. */
+void Turns::wake(Lock &lock, Ticket *granted) {
+  lock.unlock();
+  while (granted) {
+    Ticket &ticket = *granted;
+    granted = ticket.after;
+    sem_post(&ticket.granted); // it may be gone from here on
   }
 }
 
-/** False: the deadline came first, and the ticket waits no more. */
-bool Turns::wait(Ticket &ticket, Lock &lock, Clock::time_point deadline) {
+/** Gives the lock back, and wakes those of `granted` too. False: the deadline came first; the ticket waits no more, and
+ * the lock is held. */
+bool Turns::wait(Ticket &ticket, Lock &lock, Ticket *granted, Clock::time_point deadline) {
   ticket.waits = true;
   waiting_.push_back(&ticket);
   ++waiting_count_;
-  grant();
+  wake(lock, grant(granted));
   if (deadline == Clock::time_point::max()) {
-    while (ticket.waits) ticket.granted.wait(lock);
-  } else {
-    while (ticket.waits && ticket.granted.wait_until(lock, deadline) != std::cv_status::timeout) continue;
+    while (sem_wait(&ticket.granted) != 0) continue;
+  } else if (!waitUntil(ticket.granted, deadline)) {
+    lock.lock();
+    if (ticket.waits) {
+      waiting_.erase(std::find(waiting_.begin(), waiting_.end(), &ticket));
+      --waiting_count_;
+      return false;
+    }
+    lock.unlock();
+    while (sem_wait(&ticket.granted) != 0) continue; // it was granted in time, and is being woken
   }
-  if (ticket.waits) {
-    waiting_.remove(&ticket);
-    --waiting_count_;
-    return false;
-  }
-  ticket.began = Clock::now();
+  begin(ticket);
   return true;
 }
 
-void Turns::charge(Ticket &ticket) {
-  const Clock::time_point now = Clock::now();
-  ticket.client->used += seconds(now - ticket.began);
-  ticket.began = now;
+void Turns::begin(Ticket &ticket) {
+  ticket.began = Clock::now();
+  ticket.began_at = ticket.alone ? 0.0 : processorTime();
 }
 
-void Turns::release(Ticket &ticket) {
-  charge(ticket);
+/** [s] What the thread of this turn has computed since it began. Not under the lock: the system likes to change threads
+ * where it is asked for this. */
+double Turns::used(const Ticket &ticket) {
+  return ticket.alone ? seconds(Clock::now() - ticket.began) : processorTime() - ticket.began_at;
+}
+
+/** Those that have a turn now. */
+Turns::Ticket *Turns::release() {
   --running_;
   crowded_ = running_ > slots_;
-  grant();
+  return grant(nullptr);
 }
 
 Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point deadline)
     : turns_(turns), client_(client) {
   Turns::Lock lock(turns_.mutex_);
   ticket_.client = &turns_.enter(client);
-  ticket_.since = Turns::Clock::now();
-  const bool granted = turns_.wait(ticket_, lock, deadline);
-  const double waited = seconds(Turns::Clock::now() - ticket_.since);
-  turns_.longest_wait_ = std::max(turns_.longest_wait_, waited);
-  if (granted) return;
+  const Turns::Clock::time_point since = Turns::Clock::now();
+  const bool in_time = turns_.wait(ticket_, lock, nullptr, deadline);
+  const double waited = seconds(Turns::Clock::now() - since);
+  turns_.noteWait(waited);
+  if (in_time) return;
   --ticket_.client->active;
   throw Busy("busy: " + std::to_string(turns_.waiting_.size()) + " other requests wait, and this one has waited for " +
              std::to_string(static_cast<int>(1000.0 * waited)) + " ms");
@@ -110,7 +152,7 @@ Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point dea
 /** The lock is held. */
 Turn::Turn(Turns &turns, const std::string &client, Granted) : turns_(turns), client_(client) {
   ticket_.client = &turns_.enter(client);
-  ticket_.since = ticket_.began = Turns::Clock::now();
+  Turns::begin(ticket_);
   ++turns_.running_;
 }
 
@@ -123,31 +165,37 @@ std::function<std::unique_ptr<Turn>()> Turn::others() const {
 }
 
 Turn::~Turn() {
-  const Turns::Lock lock(turns_.mutex_);
-  turns_.release(ticket_);
+  const double used = Turns::used(ticket_);
+  Turns::Lock lock(turns_.mutex_);
+  ticket_.client->used += used;
   --ticket_.client->active;
+  Turns::wake(lock, turns_.release());
 }
 
 void Turn::yield() {
   const bool wanted = turns_.waiting() > 0 || turns_.crowded_.load(std::memory_order_relaxed);
   if (!wanted || Turns::Clock::now() - ticket_.began < QUANTUM) return;
+  const double used = Turns::used(ticket_);
+  ticket_.alone = false;
+  Turns::begin(ticket_);
   Turns::Lock lock(turns_.mutex_);
-  turns_.charge(ticket_);
+  ticket_.client->used += used;
   const auto best = turns_.next();
   const bool other = best != turns_.waiting_.end() && (*best)->client->used < ticket_.client->used;
-  if (!other && turns_.running_ <= turns_.slots_) return;
-  turns_.release(ticket_);
-  turns_.wait(ticket_, lock, Turns::Clock::time_point::max());
+  if (other || turns_.running_ > turns_.slots_)
+    turns_.wait(ticket_, lock, turns_.release(), Turns::Clock::time_point::max());
 }
 
 void Turn::giveBack() {
-  const Turns::Lock lock(turns_.mutex_);
-  turns_.release(ticket_);
+  const double used = Turns::used(ticket_);
+  Turns::Lock lock(turns_.mutex_);
+  ticket_.client->used += used;
+  Turns::wake(lock, turns_.release());
 }
 
 void Turn::takeAgain() {
   Turns::Lock lock(turns_.mutex_);
-  turns_.wait(ticket_, lock, Turns::Clock::time_point::max());
+  turns_.wait(ticket_, lock, nullptr, Turns::Clock::time_point::max());
 }
 
 } // namespace curve_proximity

@@ -3,18 +3,19 @@
 #ifndef CURVE_PROXIMITY_ROS_TURNS_H
 #define CURVE_PROXIMITY_ROS_TURNS_H
 
+#include <semaphore.h>
+
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace curve_proximity {
 
@@ -28,7 +29,8 @@ class Busy : public std::runtime_error {
  * client that was idle starts level with the others. A holder that calls Turn::yield() now and then makes way for a
  * client that has computed less, so that a small request waits for a few milliseconds behind any number of large ones.
  *
- *  Start-time fair queuing (P. Goyal, H. M. Vin, H. Cheng, SIGCOMM 1996), with the time used as the tag. */
+ *  Start-time fair queuing (P. Goyal, H. M. Vin, H. Cheng, SIGCOMM 1996). The tag is the processor time used: a holder
+ *  that the system keeps from running while others compute is not charged for that. */
 class Turns {
  public:
   using Clock = std::chrono::steady_clock;
@@ -54,26 +56,41 @@ class Turns {
     std::size_t active = 0; /* turns that are held or waited for */
   };
   struct Ticket {
+    Ticket() {
+      sem_init(&granted, 0, 0);
+    }
+    ~Ticket() {
+      sem_destroy(&granted);
+    }
+    Ticket(const Ticket &) = delete;
+    Ticket &operator=(const Ticket &) = delete;
+
     Client *client = nullptr;
-    Clock::time_point since, began;
+    Clock::time_point began;
+    double began_at = 0.0; /* [s] processor time of its thread, unless alone */
+    bool alone = false;    /* when it began: then the clock tells the time used, too, and costs less */
     bool waits = false;
-    std::condition_variable granted;
+    Ticket *after = nullptr; /* among those that are granted at the same time */
+    sem_t granted;
   };
 
   using Lock = std::unique_lock<std::mutex>;
   Client &enter(const std::string &name);
-  bool wait(Ticket &ticket, Lock &lock, Clock::time_point deadline);
-  void charge(Ticket &ticket);
-  void release(Ticket &ticket);
-  void grant();
-  std::list<Ticket *>::iterator next();
+  bool wait(Ticket &ticket, Lock &lock, Ticket *granted, Clock::time_point deadline);
+  void noteWait(double seconds);
+  static void begin(Ticket &ticket);
+  static double used(const Ticket &ticket);
+  Ticket *release();
+  Ticket *grant(Ticket *granted);
+  static void wake(Lock &lock, Ticket *granted);
+  std::vector<Ticket *>::iterator next();
 
   std::mutex mutex_;
   int slots_;
   int running_ = 0;
   double floor_ = 0.0; /* [s] what the client in turn had used: nobody starts below it */
-  double longest_wait_ = 0.0;
-  std::list<Ticket *> waiting_;
+  std::atomic<double> longest_wait_{0.0};
+  std::vector<Ticket *> waiting_; /* in the order of their coming */
   std::map<std::string, Client> clients_;
   std::atomic<std::size_t> waiting_count_{0};
   std::atomic<bool> crowded_{false}; /* more hold a turn than there are */
