@@ -11,6 +11,18 @@
 /* Some half a millisecond of pieces. */
 enum { STOP_INTERVAL = 1024 };
 
+/* From here on fresh pages from the system cost more than glibc's cache of the thread saves. */
+enum { LARGE_BLOCK = 1 << 17 };
+
+/* Zeros. calloc() does not take from that cache, which free() fills; but the pages of a large block it leaves untouched
+ * until they are written, which is between questions whether to stop. */
+static char *allocate_zeros(size_t bytes) {
+  if (bytes >= LARGE_BLOCK) return calloc(bytes, 1);
+  char *memory = malloc(bytes);
+  if (memory) memset(memory, 0, bytes);
+  return memory;
+}
+
 /* One block: short curves are made and freed by the thousand. Packs first, which are the largest; all is aligned as
  * doubles are. */
 cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
@@ -20,9 +32,8 @@ cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
   const size_t packs = curve_packs(n_leaves), points = n_pieces * (degree + 1), tables = curve_tables_size(degree);
   const size_t numbers = 3 * points + (n_pieces + 1) + n_pieces + tables;
   const size_t bytes = sizeof(cprox_curve) + packs * sizeof(curve_pack) + numbers * sizeof(double);
-  char *memory = malloc(bytes); /* calloc does not take from glibc's cache of the thread, which free fills */
+  char *memory = allocate_zeros(bytes);
   if (!memory) return NULL;
-  memset(memory, 0, bytes);
   cprox_curve *c = (cprox_curve *)(void *)memory;
   c->degree = degree;
   c->n_pieces = n_pieces;
