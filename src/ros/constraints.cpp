@@ -189,20 +189,24 @@ std::vector<std::string> Constraints::failures() const {
   return sentences;
 }
 
-void Constraints::checkLimits(const EvaluateConstraints::Request &request) const {
+/** Throws Error for what is beyond a limit; how many bytes the largest case takes, about. */
+std::size_t Constraints::checkLimits(const EvaluateConstraints::Request &request) const {
   limit("max_curves", parameters_.max_curves, request.cases.size(), "cases");
   NameLimits(parameters_.max_name_length).check(request);
-  std::size_t points = 0, values = 0, results = 0;
+  std::size_t points = 0, values = 0, results = 0, bytes = 0;
   for (const ConstraintQuery &asked : request.cases) {
+    const std::size_t points_before = points, values_before = values;
     points += asked.curve.points.size();
     values += asked.trajectory.points.size() * asked.trajectory.joint_names.size();
     for (const RobotTrajectory &robot : asked.moving_robots)
       values += robot.trajectory.points.size() * robot.trajectory.joint_names.size();
+    bytes = std::max(bytes, (points - points_before) * memory::OF_POINT + (values - values_before) * memory::OF_VALUE);
     results += asked.providers.empty() ? providers_->all().size() : asked.providers.size();
   }
   limit("max_control_points", parameters_.max_control_points, points, "control points");
   limit("max_control_points", parameters_.max_control_points, values, "joint values");
   limit("max_results", parameters_.max_results, results, "results");
+  return bytes;
 }
 
 /* A request on its way. */
@@ -314,7 +318,7 @@ ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) c
 void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
                          std::shared_ptr<const LevelDrawing> &drawing, Turn *turn) {
   if (providers_->all().empty()) throw Error("~constraint_providers names none");
-  checkLimits(request);
+  const memory::Share share(checkLimits(request), static_cast<std::size_t>(parameters_.max_request_mb) << 20);
   const auto deadline =
       std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                              std::chrono::duration<double, std::milli>(parameters_.budget_ms));

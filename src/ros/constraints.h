@@ -42,7 +42,7 @@ class Constraints {
 
  private:
   struct Work;
-  void checkLimits(const EvaluateConstraints::Request &request) const;
+  std::size_t checkLimits(const EvaluateConstraints::Request &request) const; /* bytes */
   ConstraintCase toCase(const ConstraintQuery &message, Work &work) const;
   Eigen::Isometry3d linkPose(const ConstraintQuery &message, const std::string &link, LinkPoses &poses,
                              Work &work) const;

@@ -22,16 +22,26 @@ constexpr std::size_t MEGABYTE = std::size_t{1} << 20;
 /** Less than this is not worth the look at what is resident. */
 constexpr std::size_t SMALL = MEGABYTE;
 
+/** Large requests leave this part of the limit to small ones, which are not entered. */
+constexpr std::size_t SMALL_PART = 8;
+
 /** After a share of this size memory is given back to the system. */
-constexpr std::size_t LARGE = 8 * MEGABYTE;
+constexpr std::size_t LARGE = 4 * MEGABYTE;
 
 std::atomic<std::size_t> most{0};
+std::atomic<std::size_t (*)()> counter{nullptr};
 std::mutex mutex;
 std::size_t reserved = 0;
 std::atomic<bool> untidy{false};
 
 std::string megabytes(std::size_t bytes) {
   return std::to_string((bytes + MEGABYTE - 1) / MEGABYTE) + " MB";
+}
+
+/** Of all, and what is promised. The lock is held. */
+std::size_t taken() {
+  const auto count = counter.load();
+  return std::max(resident(), count ? count() : 0) + reserved;
 }
 
 } // namespace
@@ -44,6 +54,10 @@ void setLimit(std::size_t bytes) {
 
 std::size_t limit() {
   return most;
+}
+
+void setTaken(std::size_t (*taken)()) {
+  counter = taken;
 }
 
 std::size_t resident() {
@@ -68,12 +82,13 @@ Share::Share(std::size_t bytes, std::size_t most_of_request) : bytes_(bytes < SM
     throw Error("too large: the request would take about " + megabytes(bytes_) + ", more than the " + megabytes(least) +
                 " that one may take (~max_request_mb, half of ~memory_limit_mb)");
   const std::lock_guard<std::mutex> lock(mutex);
-  if (all > 0 && resident() + reserved + bytes_ > all) {
+  const std::size_t room = all - all / SMALL_PART;
+  if (all > 0 && taken() + bytes_ > room) {
     malloc_trim(0);
-    const std::size_t taken = resident() + reserved;
-    if (taken + bytes_ > all)
-      throw Busy("busy: the request would take about " + megabytes(bytes_) + ", and " + megabytes(taken) +
-                 " of ~memory_limit_mb = " + megabytes(all) + " are taken");
+    const std::size_t now = taken();
+    if (now + bytes_ > room)
+      throw Busy("busy: the request would take about " + megabytes(bytes_) + ", and " + megabytes(now) +
+                 " of ~memory_limit_mb = " + megabytes(all) + " are taken; large requests leave an eighth of it");
   }
   reserved += bytes_;
 }
@@ -86,6 +101,10 @@ Share::~Share() {
 }
 
 void tidy() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (reserved > 0) return; // what is free now is wanted again in a moment
+  }
   if (untidy.exchange(false)) malloc_trim(0);
 }
 

@@ -7,12 +7,20 @@
 
 namespace curve_proximity::memory {
 
+/** [bytes] About what a control point takes: its curve with boxes and tables, and what a search keeps of it. And a
+ * joint value: its motion. */
+constexpr std::size_t OF_POINT = 400, OF_VALUE = 128;
+
 /** [bytes] The most that the process may take; 0: no limit. */
 void setLimit(std::size_t bytes);
 std::size_t limit();
 
 /** [bytes] What the process has resident now. */
 std::size_t resident();
+
+/** [bytes] What the process takes, also what it has not touched yet, by a program that counts its allocations. Else
+ *  what is resident is taken for it. */
+void setTaken(std::size_t (*taken)());
 
 /** Bytes of the account, for as long as this lives. Below a megabyte nothing is entered. */
 class Share {
@@ -29,7 +37,7 @@ class Share {
   std::size_t bytes_;
 };
 
-/** Gives memory back to the system, if a large share has ended since the last call. */
+/** Gives memory back to the system, if a large share has ended since the last call and there is none now. */
 void tidy();
 
 /** This thread is at a request: an allocation that the limit forbids may throw std::bad_alloc. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Replaces the process's operator new and delete; so it belongs to a program, never to a library. */
+/* Replaces the process's malloc and free, of which its operator new is made; so it belongs to a program, never to a
+ * library. glibc names its own functions __libc_malloc() and so on for this. */
 #include "memory_limit.h"
 
 #include <malloc.h>
@@ -7,18 +8,30 @@
 #include <sys/mman.h>
 
 #include <atomic>
+#include <cerrno>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <new>
 
 #include "memory_account.h"
 
+extern "C" {
+void *__libc_malloc(std::size_t size);
+void *__libc_calloc(std::size_t count, std::size_t size);
+void *__libc_realloc(void *memory, std::size_t size);
+void *__libc_memalign(std::size_t alignment, std::size_t size);
+void __libc_free(void *memory);
+}
+
 namespace {
+
+using curve_proximity::memory::at_request;
 
 /** Smaller allocations are not counted: what a request takes of them is bounded by its estimate. */
 constexpr std::size_t COUNTED = 1024;
 
-/** An allocation of this size may throw wherever it happens. */
+/** An allocation of this size may fail wherever it happens. */
 constexpr std::size_t LARGE = std::size_t{1} << 20;
 
 /** Buffers of this size and more, together, get three quarters of the limit: the rest is for small requests. */
@@ -27,36 +40,35 @@ constexpr std::size_t LARGE_BUFFER = std::size_t{8} << 20;
 /** roscpp itself drops a connection that announces more than a billion bytes. */
 constexpr std::size_t NOWHERE_SIZE = std::size_t{1} << 30;
 
-std::atomic<std::size_t> limit{std::numeric_limits<std::size_t>::max()};
-std::atomic<std::size_t> held{0};    /* by counted allocations of `new` */
-std::atomic<std::size_t> buffers{0}; /* by those of `new[]`: what roscpp receives and sends */
+constexpr std::size_t NONE = std::numeric_limits<std::size_t>::max();
+
+std::atomic<std::size_t> limit{NONE};
+std::atomic<std::size_t> held{0};    /* by all counted allocations */
+std::atomic<std::size_t> besides{0}; /* programs, libraries, stacks: what is resident and not allocated */
 std::atomic<char *> nowhere{nullptr};
 std::atomic<unsigned long> closed{0};
 thread_local bool polls = false; /* this is roscpp's thread that polls all connections */
 
-void *allocate(std::size_t size) {
-  void *memory = std::malloc(size ? size : 1);
+/** What a block counts for; free() must see what malloc() saw. */
+std::size_t countOf(void *memory) {
+  const std::size_t usable = memory ? malloc_usable_size(memory) : 0;
+  return usable < COUNTED ? 0 : usable;
+}
+
+/** Counts what has been allocated, or frees it and returns null: at a request, or from a size on. */
+void *counted(void *memory, std::size_t may_fail_from = LARGE) {
+  const std::size_t count = countOf(memory);
+  if (count == 0 || (held += count) <= limit) return memory;
+  if (count < may_fail_from && !at_request) return memory;
+  held -= count;
+  __libc_free(memory); // untouched as yet, so that it has cost nothing
+  errno = ENOMEM;
+  return nullptr;
+}
+
+void *orThrow(void *memory) {
   if (!memory) throw std::bad_alloc();
   return memory;
-}
-
-/** Counts what has been allocated, or frees it and throws, at a request or from this size on. */
-void *counted(void *memory, std::atomic<std::size_t> &account, std::size_t may_throw_from) {
-  const std::size_t usable = malloc_usable_size(memory); // as delete will see it
-  if (usable < COUNTED) return memory;
-  account += usable;
-  if (held + buffers <= limit) return memory;
-  if (usable < may_throw_from && !curve_proximity::memory::at_request) return memory;
-  account -= usable;
-  std::free(memory); // untouched as yet, so that it has cost nothing
-  throw std::bad_alloc();
-}
-
-void release(void *memory, std::atomic<std::size_t> &account) {
-  if (!memory) return;
-  const std::size_t usable = malloc_usable_size(memory);
-  if (usable >= COUNTED) account -= usable;
-  std::free(memory);
 }
 
 bool isNowhere(const void *memory) {
@@ -68,8 +80,8 @@ bool isNowhere(const void *memory) {
 /** Is a buffer of this size more than is left for what others send? */
 bool isTooMuch(std::size_t size) {
   const std::size_t most = limit;
-  if (size < COUNTED || most == std::numeric_limits<std::size_t>::max()) return false;
-  return held + buffers + size > (size >= LARGE_BUFFER ? most - most / 4 : most);
+  if (size < COUNTED || most == NONE) return false;
+  return held + size > (size >= LARGE_BUFFER ? most - most / 4 : most);
 }
 
 } // namespace
@@ -79,7 +91,10 @@ namespace curve_proximity {
 void limitMemory(int megabytes) {
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(LARGE)); // what is large goes back to the system as soon as it is freed
   if (megabytes <= 0) return;
-  limit = static_cast<std::size_t>(megabytes) << 20;
+  const std::size_t most = static_cast<std::size_t>(megabytes) << 20, resident = memory::resident(), counts = held;
+  besides = resident > counts ? resident - counts : 0;
+  limit = most > besides ? most - besides : 0;
+  memory::setTaken([] { return held + besides; });
   void *unusable = mmap(nullptr, NOWHERE_SIZE, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (unusable == MAP_FAILED) return;
   nowhere = static_cast<char *>(unusable);
@@ -92,30 +107,78 @@ unsigned long connectionsClosed() {
 
 } // namespace curve_proximity
 
+extern "C" {
+
+void *malloc(std::size_t size) {
+  return counted(__libc_malloc(size));
+}
+
+void *calloc(std::size_t count, std::size_t size) {
+  return counted(__libc_calloc(count, size));
+}
+
+void free(void *memory) {
+  if (const std::size_t count = countOf(memory)) held -= count;
+  __libc_free(memory);
+}
+
+void *realloc(void *memory, std::size_t size) {
+  const std::size_t before = countOf(memory);
+  const bool forbidden = size > before && held + (size - before) > limit;
+  if (forbidden && (size >= LARGE || (size >= COUNTED && at_request))) {
+    errno = ENOMEM;
+    return nullptr;
+  }
+  void *moved = __libc_realloc(memory, size);
+  if (!moved && size > 0) return nullptr; // the old block stays
+  const std::size_t after = countOf(moved);
+  if (after != before) held += after - before; // modulo 2^64
+  return moved;
+}
+
+void *memalign(std::size_t alignment, std::size_t size) {
+  return counted(__libc_memalign(alignment, size));
+}
+
+void *aligned_alloc(std::size_t alignment, std::size_t size) {
+  return memalign(alignment, size);
+}
+
+int posix_memalign(void **out, std::size_t alignment, std::size_t size) {
+  if (alignment % sizeof(void *) != 0 || (alignment & (alignment - 1)) != 0 || alignment == 0) return EINVAL;
+  void *memory = memalign(alignment, size);
+  if (!memory) return ENOMEM;
+  *out = memory;
+  return 0;
+}
+
+} // extern "C"
+
 void *operator new(std::size_t size) {
-  return counted(allocate(size), held, LARGE);
+  return orThrow(malloc(size ? size : 1));
 }
 
 void operator delete(void *memory) noexcept {
-  release(memory, held);
+  free(memory);
 }
 
 void operator delete(void *memory, std::size_t) noexcept {
-  release(memory, held);
+  free(memory);
 }
 
+/** What roscpp receives and sends. Its poll thread must not see an exception. */
 void *operator new[](std::size_t size) {
   if (polls && isTooMuch(size) && nowhere && size < NOWHERE_SIZE) {
     ++closed;
     return nowhere;
   }
-  return counted(allocate(size), buffers, std::numeric_limits<std::size_t>::max());
+  return orThrow(counted(__libc_malloc(size ? size : 1), NONE));
 }
 
 void operator delete[](void *memory) noexcept {
-  if (!isNowhere(memory)) release(memory, buffers);
+  if (!isNowhere(memory)) free(memory);
 }
 
 void operator delete[](void *memory, std::size_t) noexcept {
-  if (!isNowhere(memory)) release(memory, buffers);
+  if (!isNowhere(memory)) free(memory);
 }

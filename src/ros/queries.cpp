@@ -108,7 +108,7 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   return query;
 }
 
-/** Throws Error for what is beyond a limit; how many bytes the answer has at most. */
+/** Throws Error for what is beyond a limit; how many bytes curves, motions and the answer take, about. */
 std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot) const {
   const NameLimits names(parameters_.max_name_length);
   names.check(request.more);
@@ -166,7 +166,7 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   const std::size_t rows = (curves + motions * profiles + movers) * targets + motions + movers;
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
   constexpr std::size_t VECTOR = 3 * sizeof(double), COPIES = 2, KINDS = 2, DERIVATIVES = 3;
-  std::size_t bytes = rows * ROW_BYTES;
+  std::size_t bytes = rows * ROW_BYTES + points * memory::OF_POINT + values * memory::OF_VALUE;
   if (asking.kind == Asking::GRADIENT)
     bytes += COPIES * (rows * sizeof(Gradient) + points * VECTOR + values * KINDS * DERIVATIVES * sizeof(double));
   return bytes;

@@ -216,7 +216,7 @@ class Queries {
 
   std::size_t mostBytes() const; /* that a request may take */
   Query toQuery(const QueryRequest &request, const Snapshot &snapshot) const;
-  std::size_t checkLimits(const QueryRequest &request, const Snapshot &snapshot) const; /* bytes of the answer */
+  std::size_t checkLimits(const QueryRequest &request, const Snapshot &snapshot) const; /* bytes */
   void answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
   void answerCurves(Work &work);
   CurveSearch &curveSearch(Work &work);

@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Workspaces that queries take and give back, so that no more exist than have ever been in use at once. */
+/** Workspaces that queries take and give back. */
 #ifndef CURVE_PROXIMITY_ROS_WORKSPACES_H
 #define CURVE_PROXIMITY_ROS_WORKSPACES_H
 
+#include <array>
+#include <cstddef>
 #include <curve_proximity/core.hpp>
 #include <memory>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 namespace curve_proximity {
 
+/** Keeps a few that nobody uses: they have grown already. A hard query leaves megabytes in its own. */
 class WorkspacePool {
  public:
   /** One workspace, for as long as the lease lives; the pool must outlive it. */
@@ -36,24 +38,21 @@ class WorkspacePool {
   std::unique_ptr<Workspace> take() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (!idle_.empty()) {
-        std::unique_ptr<Workspace> workspace = std::move(idle_.back());
-        idle_.pop_back();
-        return workspace;
-      }
-      idle_.reserve(++made_); // so that giving back never allocates
+      if (n_idle_ > 0) return std::move(idle_[--n_idle_]);
     }
     return std::make_unique<Workspace>();
   }
 
   void giveBack(std::unique_ptr<Workspace> workspace) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    idle_.push_back(std::move(workspace));
+    if (n_idle_ < MOST_IDLE) idle_[n_idle_++] = std::move(workspace);
   }
 
+  static constexpr std::size_t MOST_IDLE = 4;
+
   std::mutex mutex_;
-  std::size_t made_ = 0;
-  std::vector<std::unique_ptr<Workspace>> idle_;
+  std::array<std::unique_ptr<Workspace>, MOST_IDLE> idle_; // so that giving back never allocates
+  std::size_t n_idle_ = 0;
 };
 
 } // namespace curve_proximity

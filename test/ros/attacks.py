@@ -12,7 +12,7 @@ import numpy
 import rosgraph
 from curve_proximity.msg import Body, CollisionObject, Curve, ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, DistanceRequest, Distance
-from helpers import Call, Node, Server, bezier, handshake, raw_call, run, serialized, sphere, until
+from helpers import Call, Node, Server, bezier, handshake, raw_call, ring_and_shells, run, serialized, sphere, until
 
 LIMIT_MB = 300
 ROOM_MB = 64
@@ -115,6 +115,24 @@ class Attacks(unittest.TestCase):
         self.assertFalse(answer.success)
         self.assertRegex(answer.message, r'too large: .* \d+ MB, more than the \d+ MB')
         self.assertTrue(self.server.distance([LINE] * 3, per_object=True).success)
+        self.assertHeld()
+
+    def test_sixty_clients_with_long_curves(self):
+        # each keeps some 15 MB: the message, the curve, what the search has grown to; in turns all of them at once
+        ring, balls, fields = ring_and_shells(shells=20)
+        self.server.apply(*balls)
+        request = serialized(DistanceRequest(ProximityQuery(curves=[ring], budget_ms=300, **fields)))
+        answers = []
+        calls = [Call(lambda: answers.extend(raw_call('/attacked/distance', Distance, request) for _ in range(4))) for _ in range(60)]
+        asked = 0
+        while any(call.is_alive() for call in calls):
+            row, = self.server.distance(LINE, objects=['ball']).results  # a small request is answered all the while
+            self.assertAlmostEqual(row.upper, 0.75, delta=2e-6)
+            asked += 1
+        self.assertGreater(asked, 20)
+        self.assertEqual([call.failure for call in calls], [None] * 60)
+        self.assertEqual({answer.status for answer in answers if not answer.success}, {Distance._response_class.BUSY})
+        self.assertGreater(sum(answer.success for answer in answers), 10)
         self.assertHeld()
 
     def test_connections_that_announce_gigabytes_and_send_little(self):
