@@ -23,7 +23,7 @@ constexpr std::size_t MEGABYTE = std::size_t{1} << 20;
 constexpr std::size_t SMALL = MEGABYTE;
 
 /** Large requests leave this part of the limit to small ones, which are not entered. */
-constexpr std::size_t SMALL_PART = 8;
+constexpr std::size_t SMALL_PART = 4;
 
 /** After a share of this size memory is given back to the system. */
 constexpr std::size_t LARGE = 4 * MEGABYTE;
@@ -88,7 +88,7 @@ Share::Share(std::size_t bytes, std::size_t most_of_request) : bytes_(bytes < SM
     const std::size_t now = taken();
     if (now + bytes_ > room)
       throw Busy("busy: the request would take about " + megabytes(bytes_) + ", and " + megabytes(now) +
-                 " of ~memory_limit_mb = " + megabytes(all) + " are taken; large requests leave an eighth of it");
+                 " of ~memory_limit_mb = " + megabytes(all) + " are taken; large requests leave a quarter of it");
   }
   reserved += bytes_;
 }

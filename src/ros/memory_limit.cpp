@@ -7,6 +7,7 @@
 #include <ros/poll_manager.h>
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
@@ -34,8 +35,8 @@ constexpr std::size_t COUNTED = 1024;
 /** An allocation of this size may fail wherever it happens. */
 constexpr std::size_t LARGE = std::size_t{1} << 20;
 
-/** Buffers of this size and more, together, get three quarters of the limit: the rest is for small requests. */
-constexpr std::size_t LARGE_BUFFER = std::size_t{8} << 20;
+/** Buffers of LARGE and more take at most half of what nothing else holds, with those of this size three quarters. */
+constexpr std::size_t MEDIUM_BUFFER = std::size_t{64} << 10;
 
 /** roscpp itself drops a connection that announces more than a billion bytes. */
 constexpr std::size_t NOWHERE_SIZE = std::size_t{1} << 30;
@@ -44,6 +45,7 @@ constexpr std::size_t NONE = std::numeric_limits<std::size_t>::max();
 
 std::atomic<std::size_t> limit{NONE};
 std::atomic<std::size_t> held{0};    /* by all counted allocations */
+std::atomic<std::size_t> buffers{0}; /* by those of `new[]` among them: what roscpp receives and sends */
 std::atomic<std::size_t> besides{0}; /* programs, libraries, stacks: what is resident and not allocated */
 std::atomic<char *> nowhere{nullptr};
 std::atomic<unsigned long> closed{0};
@@ -79,9 +81,11 @@ bool isNowhere(const void *memory) {
 
 /** Is a buffer of this size more than is left for what others send? */
 bool isTooMuch(std::size_t size) {
-  const std::size_t most = limit;
-  if (size < COUNTED || most == NONE) return false;
-  return held + size > (size >= LARGE_BUFFER ? most - most / 4 : most);
+  if (size < COUNTED || limit == NONE) return false;
+  const std::size_t in_buffers = buffers, others = held - std::min<std::size_t>(held, in_buffers);
+  const std::size_t room = limit - std::min<std::size_t>(limit, others);
+  const std::size_t part = size >= LARGE ? room / 2 : size >= MEDIUM_BUFFER ? room - room / 4 : room;
+  return in_buffers + size > part;
 }
 
 } // namespace
@@ -172,13 +176,17 @@ void *operator new[](std::size_t size) {
     ++closed;
     return nowhere;
   }
-  return orThrow(counted(__libc_malloc(size ? size : 1), NONE));
+  void *memory = orThrow(counted(__libc_malloc(size ? size : 1), NONE));
+  buffers += countOf(memory);
+  return memory;
 }
 
 void operator delete[](void *memory) noexcept {
-  if (!isNowhere(memory)) free(memory);
+  if (isNowhere(memory)) return;
+  buffers -= countOf(memory);
+  free(memory);
 }
 
 void operator delete[](void *memory, std::size_t) noexcept {
-  if (!isNowhere(memory)) free(memory);
+  operator delete[](memory);
 }

@@ -42,7 +42,7 @@ constexpr int LARGE_CHANGES = 1;
 
 /** What a request takes in memory, for a byte on the wire: its bytes and its message, its curves compiled or its shapes
  *  with their trees. */
-constexpr std::size_t QUERY_TIMES_WIRE = 4, SCENE_TIMES_WIRE = 5;
+constexpr std::size_t QUERY_TIMES_WIRE = 8, SCENE_TIMES_WIRE = 5;
 
 /** Throws ParameterError where its shapes are none. */
 void checkPathBody(const Parameters &parameters) {

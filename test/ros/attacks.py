@@ -122,8 +122,13 @@ class Attacks(unittest.TestCase):
         ring, balls, fields = ring_and_shells(shells=20)
         self.server.apply(*balls)
         request = serialized(DistanceRequest(ProximityQuery(curves=[ring], budget_ms=300, **fields)))
-        answers = []
-        calls = [Call(lambda: answers.extend(raw_call('/attacked/distance', Distance, request) for _ in range(4))) for _ in range(60)]
+        answers, end = [], time.monotonic() + 4
+
+        def ask():
+            while time.monotonic() < end:
+                answers.append(raw_call('/attacked/distance', Distance, request))
+                time.sleep(0.02)
+        calls = [Call(ask) for _ in range(60)]
         asked = 0
         while any(call.is_alive() for call in calls):
             row, = self.server.distance(LINE, objects=['ball']).results  # a small request is answered all the while
@@ -131,8 +136,9 @@ class Attacks(unittest.TestCase):
             asked += 1
         self.assertGreater(asked, 20)
         self.assertEqual([call.failure for call in calls], [None] * 60)
-        self.assertEqual({answer.status for answer in answers if not answer.success}, {Distance._response_class.BUSY})
-        self.assertGreater(sum(answer.success for answer in answers), 10)
+        came = [answer for answer in answers if answer is not None]  # as many messages at once as this are not let in
+        self.assertEqual({answer.status for answer in came if not answer.success}, {Distance._response_class.BUSY})
+        self.assertGreater(sum(answer.success for answer in came), 10)
         self.assertHeld()
 
     def test_connections_that_announce_gigabytes_and_send_little(self):
