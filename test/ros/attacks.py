@@ -118,7 +118,7 @@ class Attacks(unittest.TestCase):
         self.assertHeld()
 
     def test_sixty_clients_with_long_curves(self):
-        # each keeps some 15 MB: the message, the curve, what the search has grown to; in turns all of them at once
+        # each would keep some 15 MB: the message, the curve, what the search has grown to
         ring, balls, fields = ring_and_shells(shells=20)
         self.server.apply(*balls)
         request = serialized(DistanceRequest(ProximityQuery(curves=[ring], budget_ms=300, **fields)))

@@ -33,7 +33,7 @@ void waitFor(const Turns &turns, std::size_t waiting) {
   ASSERT_EQ(turns.waiting(), waiting);
 }
 
-/** Has each client compute, in turn, for so long. */
+/** A client takes a turn and computes for so long. */
 void use(Turns &turns, const std::string &client, Clock::duration time) {
   const Turn turn(turns, client, NEVER);
   compute(time);

@@ -11,7 +11,7 @@
 /* Some half a millisecond of pieces. */
 enum { STOP_INTERVAL = 1024 };
 
-/* From here on fresh pages from the system cost more than glibc's cache of the thread saves. */
+/* [bytes] From here on calloc() makes the zeros: more than glibc's cache of the thread holds. */
 enum { LARGE_BLOCK = 1 << 17 };
 
 /* Zeros. calloc() does not take from that cache, which free() fills; but the pages of a large block it leaves untouched
