@@ -58,7 +58,7 @@ ResultRow toRow(const Answer &answer, QueryType query_type) {
   row.microseconds = answer.microseconds;
   row.has_verdict = query_type != QueryType::DISTANCE;
   row.has_contact = query_type == QueryType::COLLISION; /* printed where the time of contact is asked for */
-  row.has_t = row.has_points = answer.result.obstacle_index >= 0;
+  row.has_t = row.has_points = answer.result.obstacle_index >= 0 && std::isfinite(answer.result.upper);
   row.has_t_b = row.has_t && answer.kind == "curve" && std::isfinite(answer.result.t_obstacle);
   row.second_opinion = answer.second_opinion;
   row.message = answer.message;

@@ -234,6 +234,52 @@ CASE(bad_input_is_refused_and_nothing_is_far) {
   cprox_curve_free(curve);
 }
 
+/* ---- stopped ---- */
+
+static size_t looks_left;
+
+static bool stop_at_a_look(void *user) {
+  (void)user;
+  if (looks_left == 0) return true;
+  looks_left--;
+  return false;
+}
+
+/* Stopped at any of its looks, from a list or a BVH: each row names an obstacle, none twice, and holds its distance. */
+CASE(a_stopped_list_of_the_nearest_names_an_obstacle_in_each_row) {
+  rng r = rng_seed(92);
+  scene s = scene_make(&r, 12, 1.0, false);
+  cprox_curve *curve = way(&r, 4, 1.0);
+  const cprox_mover mover = cprox_point_along(curve);
+  for (int index = CPROX_INDEX_NONE; index <= CPROX_INDEX_BVH; index++) {
+    cprox_obstacles *set = NULL;
+    assert_int_equal(cprox_obstacles_create(s.targets, s.n, (cprox_obstacle_index)index, ws, &set), CPROX_OK);
+    cprox_result whole[12], near[12];
+    size_t n = 0;
+    assert_int_equal(cprox_obstacles_distance(set, mover, NULL, ws, near, whole), CPROX_OK);
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.stop = stop_at_a_look;
+    cprox_status status = CPROX_STOPPED;
+    for (size_t look = 0; status == CPROX_STOPPED && look < 400; look++) {
+      looks_left = look;
+      status = cprox_obstacles_nearest(set, mover, s.n, &options, ws, near, &n);
+      assert_true(status == CPROX_OK || status == CPROX_STOPPED);
+      unsigned seen = 0;
+      for (size_t i = 0; i < n; i++) {
+        const int32_t k = near[i].obstacle_index;
+        assert_true(k >= 0 && k < 12 && !(seen >> k & 1u));
+        seen |= 1u << k;
+        assert_true(near[i].lower <= whole[k].upper && near[i].upper >= whole[k].lower);
+      }
+    }
+    assert_int_equal(status, CPROX_OK);
+    assert_int_equal(n, s.n);
+    cprox_obstacles_free(set);
+  }
+  cprox_curve_free(curve);
+  scene_free(&s);
+}
+
 int main(void) {
   return cases_run(workspace_setup, workspace_teardown);
 }

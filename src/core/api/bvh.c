@@ -142,6 +142,7 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
     const cprox_status status = query_answer(&q, target, (size_t)target + 1, cutoff, &r);
     if (status < 0) return status;
     if (failure == CPROX_OK) failure = status;
+    if (r.obstacle_index < 0) r.obstacle_index = (int32_t)target; /* stopped before anything was measured */
     query_rank(kept, &found, k, &r);
   }
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);

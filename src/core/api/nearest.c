@@ -54,6 +54,7 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
     const cprox_status status = query_answer(&q, target, target + 1, cutoff, &r);
     if (status < 0) return status;
     failure = worse(failure, status);
+    if (r.obstacle_index < 0) r.obstacle_index = rank[i].target; /* stopped before anything was measured */
     query_rank(kept, &found, k, &r);
   }
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
