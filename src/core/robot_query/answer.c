@@ -53,7 +53,7 @@ void robot_search_report(const robot_search *o, cprox_result *result) {
   result->lod = lod_of(o);
 }
 
-/* Of the pairs of one class. */
+/* Of the pairs of one class; NULL: of all, because no start has a tolerance. */
 static cprox_status answer_class(const query *q, const start_class *starts, size_t first, size_t last, double cutoff,
                                  cprox_result *result, double *travel) {
   robot_search o;
@@ -81,9 +81,10 @@ static cprox_status answer_class(const query *q, const start_class *starts, size
 /* The union of all classes. */
 static cprox_status answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
                            double *travel) {
+  if (!start_class_is_one_of_many(q->mover.motion)) return answer_class(q, NULL, first, last, cutoff, result, travel);
   start_class starts = start_class_first();
   cprox_status failure = answer_class(q, &starts, first, last, cutoff, result, travel);
-  if (failure < 0 || !start_class_is_one_of_many(q->mover.motion)) return failure;
+  if (failure < 0) return failure;
   cprox_result all = *result;
   while (start_class_next(q->mover.motion, &starts)) {
     if (all.verdict == CPROX_VERDICT_VIOLATED) { /* of the classes that are left nothing is known */
@@ -158,9 +159,10 @@ static bool tells_more(const cprox_result *r, const cprox_result *than, double e
 }
 
 cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
+  if (!start_class_is_one_of_many(q->mover.motion)) return contact_of_class(q, NULL, INFINITY, result);
   start_class starts = start_class_first();
   cprox_status status = contact_of_class(q, &starts, INFINITY, result);
-  if (status < 0 || !start_class_is_one_of_many(q->mover.motion)) return status;
+  if (status < 0) return status;
   cprox_result all = *result;
   while (start_class_next(q->mover.motion, &starts)) {
     cprox_result r = {0};
