@@ -199,6 +199,73 @@ CASE(two_movers_are_within_delta_where_they_are_said_to_be) {
   assert_true(told > 30 && within > 1000);
 }
 
+/* ---- depths ---- */
+
+/* What a query finds where it makes its own variables. */
+static __attribute__((noinline)) double fill_stack(double value) {
+  volatile double place[40000];
+  for (size_t i = 0; i < 40000; i++) place[i] = value;
+  return place[0];
+}
+
+/* A ball on an arm that turns about z begins in the middle of a ball, leaves it, and passes it again after a turn: by
+ * depths and without them, and whatever the stack held before, the intervals are those of the closed form. */
+CASE(a_robot_that_begins_in_contact_has_the_same_violations_with_depths) {
+  enum { MOST = 100 };
+  static const size_t WAYPOINTS[4] = {2, 3, 40, MOST};
+  cprox_body *ball = NULL;
+  cprox_robot *robot = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.3, ws, &ball), CPROX_OK);
+  const cprox_link link = {
+      .parent = -1, .type = CPROX_JOINT_REVOLUTE, .origin = HERE, .axis = vec(0, 0, 1), .multiplier = 1};
+  cprox_link_geometry geometry = {.body = ball, .pose = HERE};
+  geometry.pose.position.x = 1.0;
+  assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
+  cprox_obstacle at = cprox_obstacle_at(ball, HERE);
+  at.pose.position.x = 1.0;
+  const double delta = 0.05, resolution = 1e-4;
+  const double leaves = 2.0 * asin(0.5 * (0.6 + delta)); /* [rad], and at 1 rad/s [s] */
+  for (size_t k = 0; k < 4; k++) {
+    const size_t n = WAYPOINTS[k];
+    double positions[MOST];
+    cprox_waypoint waypoints[MOST];
+    memset(waypoints, 0, sizeof waypoints);
+    for (size_t i = 0; i < n; i++) {
+      positions[i] = 7.0 * (double)i / (double)(n - 1);
+      waypoints[i].time = positions[i];
+      waypoints[i].positions = positions + i;
+    }
+    const int32_t variable = 0;
+    const cprox_motion_description d = {
+        .variables = &variable, .n_variables = 1, .waypoints = waypoints, .n_waypoints = n};
+    cprox_motion *motion = NULL;
+    assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
+    for (int way = 0; way < 8; way++) {
+      static const double STACK[4] = {0.0, -3.0, 1e9, NAN};
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
+      options.signed_distance = way < 4;
+      fill_stack(STACK[way % 4]);
+      cprox_violation list[ROOM];
+      cprox_violations v = {.list = list, .room = ROOM};
+      assert_int_equal(
+          violations_of_list(cprox_robot_along(motion, NULL, 0), &at, 1, delta, resolution, &options, ws, &v),
+          CPROX_OK);
+      assert_int_equal(v.count, 2);
+      const double ends[2][2] = {{0.0, leaves}, {2.0 * acos(-1.0) - leaves, 2.0 * acos(-1.0) + leaves}};
+      for (size_t i = 0; i < 2; i++) {
+        assert_int_equal(list[i].verdict, CPROX_VERDICT_VIOLATED);
+        assert_true(list[i].enter_lower <= ends[i][0] && list[i].enter_upper >= ends[i][0]);
+        assert_true(list[i].leave_lower <= ends[i][1] && list[i].leave_upper >= ends[i][1]);
+        assert_true(list[i].enter_upper - list[i].enter_lower < 10.0 * resolution);
+        assert_true(list[i].leave_upper - list[i].leave_lower < 10.0 * resolution);
+      }
+    }
+    cprox_motion_free(motion);
+  }
+  cprox_robot_free(robot);
+  cprox_body_free(ball);
+}
+
 /* ---- limits ---- */
 
 CASE(what_has_no_room_or_no_budget_is_left_within) {

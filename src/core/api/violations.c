@@ -109,6 +109,7 @@ static double travel_of_section(const query *q) {
 static cprox_status ask(violation_search *s, const piece *p, double limit, cprox_result *r, double *travel) {
   query *q = &s->q;
   q->limit = limit;
+  q->is_signed = limit < 0.0 && q->options.signed_distance; /* of a verdict it does not matter how deep */
   s->queries++;
   if (q->mover.motion) {
     q->t0 = p->from, q->t1 = p->to;
@@ -210,7 +211,6 @@ cprox_status list_violations(cprox_mover mover, const cprox_obstacle *targets, s
                         .out = violations};
   const arguments_query asked = {"intervals of violation",
                                  ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL};
-  s.q.is_signed = s.q.options.signed_distance;
   cprox_status status = query_begin(&s.q, asked);
   if (status == CPROX_OK) status = check(&s);
   if (status != CPROX_OK) return status;

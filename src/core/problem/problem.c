@@ -43,6 +43,7 @@ cprox_status query_begin(query *q, arguments_query asked) {
 }
 
 search_goal query_goal(const query *q, search_order order, double cutoff) {
+  CORE_CHECK(!(q->is_signed && query_wants_verdict(q)), "a verdict about %g m has no sign", q->limit);
   return (search_goal){.order = order,
                        .limit = q->limit,
                        .is_signed = q->is_signed,

@@ -434,7 +434,6 @@ cprox_status robot_bound_node(robot_search *o, search_node *node) {
   const motion_interval over = robot_interval(node), other = robot_other_interval(node);
   robot_scene_enter_both(&o->scene, &over, &other);
   o->n_next = 0;
-  o->pieces = 2.0;
   const cprox_status rough = bound_roughly(o, node);
   if (rough < 0) return rough;
   if (robot_scene_has_two_times(&o->scene)) o->cut_other = other_moves_farther(o);

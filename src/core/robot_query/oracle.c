@@ -59,10 +59,17 @@ static bool others_seeded(const robot_search *o) {
   return o->goal.share && isfinite(o->goal.cutoff);
 }
 
+/* Of a node that nobody looks into it is not known how it is best cut: in two. */
+static void begin_node(robot_search *o) {
+  o->pieces = 2.0;
+  o->cut_other = o->cut = false;
+}
+
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   robot_search *o = self;
   bool served = false;
   o->nodes++;
+  begin_node(o);
   cprox_status status = robot_look_inside(o, node);
   const bool known = robot_is_answered(o) || o->touch_at <= node->start;
   if (status >= 0 && !known) status = robot_bound_flight(o, node, &served);
@@ -157,6 +164,8 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->dropped = o->scene.beyond, o->touch_at = INFINITY;
   o->seeded = o->refined = o->looked_inside = o->unsure = false;
   o->gaps = o->planes = o->nodes = o->flights = 0;
+  o->next = NULL, o->n_next = 0;
+  begin_node(o);
   lists_begin(&o->lists, o->scene.q->workspace);
 }
 search_oracle robot_search_oracle(robot_search *o) {

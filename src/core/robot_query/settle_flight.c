@@ -375,7 +375,6 @@ cprox_status robot_bound_flight(robot_search *o, search_node *node, bool *served
   const bool in_time = o->goal.order == SEARCH_LEFT_TO_RIGHT;
   const cprox_status status = in_time ? advance(&s, &from, &lower) : settle(&s, most, &lower);
   if (status < 0) return status;
-  o->pieces = 2.0;
   node->slack = s.slack;
   if (!robot_is_answered(o)) node->lower = greater(lower, node->lower);
   if (from > 0.0) {
