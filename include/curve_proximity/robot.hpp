@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <curve_proximity/core.hpp>
+#include <curve_proximity/coverage.hpp>
 #include <curve_proximity/geometry.hpp>
 
 namespace curve_proximity {
@@ -105,6 +106,11 @@ class Robot {
     return warnings_;
   }
 
+  /** What of the URDF answers about the robot do not cover. */
+  const Coverage &coverage() const {
+    return coverage_;
+  }
+
   /** How long each mesh file took. A file that several links name with the same scale is loaded once. */
   const std::vector<MeshTiming> &meshTimings() const {
     return mesh_timings_;
@@ -145,6 +151,7 @@ class Robot {
   std::vector<Joint> joints_; /* parents first */
   std::map<std::string, std::size_t> joint_by_name_;
   std::vector<std::string> variables_, warnings_;
+  Coverage coverage_;
   std::vector<MeshTiming> mesh_timings_;
 };
 

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include <curve_proximity/coverage.hpp>
 #include <curve_proximity/description.hpp>
 #include <curve_proximity/geometry.hpp>
 #include <curve_proximity/robot.hpp>
@@ -79,6 +80,9 @@ struct SceneChange {
   std::optional<double> default_link_padding; /**< [m] >= 0, of the links not named */
   std::map<std::string, double> link_scale;   /**< > 0, by link: see Snapshot::linkGeometry() */
   std::vector<AllowedPair> allowed;           /**< each replaces the entry of the same two names, in either order */
+
+  /** What of the change's source is not used: Snapshot::coverage() has it until a change that clears the scene. */
+  Coverage coverage;
 
   /** Asked before each new shape is made; true: shapes not made yet are errors. Null: never. */
   std::function<bool()> stop;
@@ -148,6 +152,11 @@ class Snapshot {
   /** The number of changes of the scene before this snapshot. */
   std::uint64_t version() const {
     return version_;
+  }
+
+  /** What of the changes since the scene was last cleared is not used: no answer is then 'clear'. */
+  const Coverage &coverage() const {
+    return coverage_;
   }
 
   /** The objects by id. */
@@ -223,6 +232,7 @@ class Snapshot {
   void scaleLinks(const std::map<std::string, double> &scales, const ResourceOptions &resources);
 
   std::uint64_t version_ = 0;
+  Coverage coverage_;
   std::map<std::string, std::shared_ptr<const SceneObject>> objects_;
   std::map<std::string, std::shared_ptr<const MovingSceneObject>> moving_;
   std::shared_ptr<const Robot> robot_;

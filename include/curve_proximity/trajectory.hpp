@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <curve_proximity/coverage.hpp>
 #include <curve_proximity/robot.hpp>
 #include <curve_proximity/srdf.hpp>
 
@@ -43,6 +44,7 @@ struct TrajectoryDescription {
   /** The names of the base joint's variables (planar: x, y, theta; floating: x, y, z and the quaternion's x, y, z, w).
    *  Empty: MoveIt's names, NAME/x … */
   std::vector<std::string> base_joints;
+  Coverage coverage; /**< what of its source is not used: no answer along it is then 'clear' */
 };
 
 /** If the trajectory names variables of one of these joints (NAME/x …) and has no base, that joint becomes its base. */

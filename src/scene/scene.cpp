@@ -310,6 +310,7 @@ Snapshot::~Snapshot() = default;
 
 Snapshot::Snapshot(const Snapshot &other)
     : version_(other.version_),
+      coverage_(other.coverage_),
       objects_(other.objects_),
       moving_(other.moving_),
       robot_(other.robot_),
@@ -406,6 +407,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   const std::shared_ptr<Snapshot> next(new Snapshot(*snapshot()));
   ++next->version_;
   if (change.clear) {
+    next->coverage_ = Coverage();
     next->objects_.clear();
     next->moving_.clear();
     next->allowed_ = first_allowed_;
@@ -415,6 +417,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
     next->link_scale_.clear();
     next->scaled_.clear();
   }
+  next->coverage_.add(change.coverage);
   if (change.clear_objects) {
     const auto clear = [&](auto &objects) {
       for (auto it = objects.begin(); it != objects.end();) {

@@ -108,6 +108,7 @@ std::string folderOf(const std::string &path) {
 SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &warnings) {
   const Frames frames({}, file.transforms, {}, warnings);
   SceneChange change;
+  change.coverage = file.coverage;
   change.clear = !file.is_diff;
   change.operations = file.operations;
   change.attachments = file.attached;
@@ -147,6 +148,7 @@ JointPositions jointsOf(const SceneFile &file, const Robot &robot, Warnings &war
 SceneChange toFixedChange(const SceneFile &file, const Frames &frames, const Robot *robot, const LinkPoses &links,
                           Warnings &warnings) {
   SceneChange change;
+  change.coverage = file.coverage;
   for (const Operation &operation : file.operations) change.operations.push_back(toFixed(operation, frames));
   for (const Attachment &attached : file.attached) attach(attached, frames, robot, links, change);
   warnOfReplaced(change.operations, warnings);

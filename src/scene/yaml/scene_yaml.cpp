@@ -328,9 +328,10 @@ ObjectDescription readPlacedShapes(const YamlValue &value, Warnings &warnings) {
   return object;
 }
 
-SceneFile readScene(const std::string &path, Warnings &warnings) {
+SceneFile readScene(const std::string &path, Warnings &told) {
   const YamlValue root = loadYaml(path);
   SceneFile out;
+  Warnings warnings;
   try {
     if (root.isEmpty()) root.fail("is empty: that is no scene");
 
@@ -353,6 +354,8 @@ SceneFile readScene(const std::string &path, Warnings &warnings) {
   } catch (const YAML::Exception &e) {
     throw BadUsage(path + ": " + e.what());
   }
+  out.coverage = warnings.coverage();
+  told.add(warnings);
   return out;
 }
 

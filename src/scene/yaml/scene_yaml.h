@@ -31,7 +31,7 @@ struct SceneFile {
   std::map<std::string, double> link_padding, link_scale;
   std::vector<AllowedPair> allowed;
   std::vector<MovingRobotFile> moving_robots;
-  std::vector<std::string> skipped; /**< what of the file takes no part, a sentence each */
+  Coverage coverage; /**< what of the file is not used */
 };
 
 /** The frame, pose, padding and shapes of an object, in the words of a collision object; each may be missing. */

@@ -77,7 +77,7 @@ void readSpline(const YamlValue &spline, TrajectoryDescription &out, Warnings &w
   }
 }
 
-TrajectoryDescription readFile(const YamlValue &root, Warnings &warnings) {
+TrajectoryDescription readTrajectoryMap(const YamlValue &root, Warnings &warnings) {
   if (!root.isMap()) root.fail("must be a map with joint_trajectory or joint_spline");
   root.warnOfOthers(
       {"joint_trajectory", "joint_spline", "interpolation", "fixed_joints", "virtual_joint", "robot", "scene"},
@@ -97,6 +97,14 @@ TrajectoryDescription readFile(const YamlValue &root, Warnings &warnings) {
   trajectory.warnOfOthers({"header", "joint_names", "points"}, warnings);
   for (const YamlValue &name : trajectory.at("joint_names").items()) out.joints.push_back(name.text());
   for (const YamlValue &point : trajectory.at("points").items()) out.points.push_back(readPoint(point, warnings));
+  return out;
+}
+
+TrajectoryDescription readFile(const YamlValue &root, Warnings &told) {
+  Warnings warnings;
+  TrajectoryDescription out = readTrajectoryMap(root, warnings);
+  out.coverage = warnings.coverage();
+  told.add(warnings);
   return out;
 }
 

@@ -14,14 +14,33 @@
 #include <vector>
 
 #include <curve_proximity/core.hpp>
+#include <curve_proximity/coverage.hpp>
 
 namespace curve_proximity::yaml {
 
 /** Sentences for a person, each once, in the order in which they were first said. */
 class Warnings {
  public:
+  /** Of what cannot change geometry. */
   void add(const std::string &sentence) {
     if (known_.insert(sentence).second) sentences_.push_back(sentence);
+  }
+
+  /** Of what is not used and could be geometry, or its place: what is read is then a part of what was given. */
+  void leaveOut(const std::string &sentence) {
+    add(sentence);
+    coverage_.add(Gap::PARTIAL, sentence);
+  }
+
+  /** The sentences and the coverage of another reading. */
+  void add(const Warnings &other) {
+    for (const std::string &sentence : other.sentences_) add(sentence);
+    coverage_.add(other.coverage_);
+  }
+
+  /** What leaveOut() said. */
+  const Coverage &coverage() const {
+    return coverage_;
   }
   const std::vector<std::string> &sentences() const {
     return sentences_;
@@ -30,6 +49,7 @@ class Warnings {
  private:
   std::set<std::string> known_;
   std::vector<std::string> sentences_;
+  Coverage coverage_;
 };
 
 /** A value and its place ("world.collision_objects[2] 'Can1'.primitives[0]"). All functions throw BadInput with the
