@@ -11,6 +11,7 @@
 #include <curve_proximity/cprox/body.h>
 #include <curve_proximity/cprox/certificate.h>
 #include <curve_proximity/cprox/curve.h>
+#include <curve_proximity/cprox/edges.h>
 #include <curve_proximity/cprox/gradient.h>
 #include <curve_proximity/cprox/implicit.h>
 #include <curve_proximity/cprox/obstacles.h>

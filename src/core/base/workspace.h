@@ -39,6 +39,7 @@ typedef enum workspace_buffer {
   WORKSPACE_ROBOT_RANKING,
   WORKSPACE_ROBOT_REST,
   WORKSPACE_POSE_BASIS,
+  WORKSPACE_EDGES,
   WORKSPACE_CALLER, /* cprox_workspace_reserve() */
   WORKSPACE_BUFFERS
 } workspace_buffer;

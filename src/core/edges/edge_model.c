@@ -1,0 +1,569 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "edges/edge_model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/workspace.h"
+#include "edges/cover.h"
+#include "problem/obstacles.h"
+
+/* Entries of rotations below this are 0. */
+#define EDGE_SNAP 1e-9
+
+/* Coordinates in lanes are no larger [m]. */
+#define EDGE_REACH_MOST 1e6
+
+static float float_above(double x) {
+  const float f = (float)x;
+  return (double)f >= x ? f : nextafterf(f, INFINITY);
+}
+
+static float float_below(double x) {
+  return -float_above(-x);
+}
+
+/* ---- frames ---- */
+
+/* A rotation that takes the z axis to the unit vector z. */
+static placement turn_to(vec3 z) {
+  const vec3 side = fabs(z.x) < 0.6 ? vec(1, 0, 0) : vec(0, 1, 0);
+  vec3 x = vec_axpy(side, -vec_dot(side, z), z);
+  x = vec_scale(1.0 / vec_norm(x), x);
+  const vec3 y = vec_cross(z, x);
+  return (placement){.r = {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
+}
+
+static placement turn_of_axis(const robot_axis *axis) {
+  static const placement HERE = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  return axis->along == 2 && axis->z.z > 0.0 ? HERE : turn_to(axis->z);
+}
+
+static placement turned_back(const placement *turn, const placement *at) {
+  placement out = {.p = rotate_back(turn->r, at->p)};
+  const double *t = turn->r;
+  const double back[9] = {t[0], t[3], t[6], t[1], t[4], t[7], t[2], t[5], t[8]};
+  rotation_compose(back, at->r, out.r);
+  return out;
+}
+
+/* Entries as they go into lanes; whether only coordinates are exchanged. */
+static bool snap(const double r[9], float out[9], int32_t from[3], float sign[3]) {
+  bool exchanges = true;
+  for (int k = 0; k < 9; k++) {
+    const double x = fabs(r[k]) < EDGE_SNAP ? 0.0 : fabs(fabs(r[k]) - 1.0) < EDGE_SNAP ? copysign(1.0, r[k]) : r[k];
+    out[k] = (float)x;
+    exchanges = exchanges && (x == 0.0 || fabs(x) == 1.0);
+  }
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < 3; k++)
+      if (out[3 * k + c] != 0.0f) from[c] = k, sign[c] = out[3 * k + c];
+  return exchanges;
+}
+
+/* ---- what is asked ---- */
+
+/* Of each geometry a row of bits: the obstacles, then the other geometries that it is asked about. */
+typedef struct asked_rows {
+  uint64_t *bits;
+  size_t words, n_obstacles;
+} asked_rows;
+
+static uint64_t *row_of(const asked_rows *rows, size_t geometry) {
+  return rows->bits + geometry * rows->words;
+}
+
+static void note(const asked_rows *rows, int32_t geometry, size_t bit) {
+  row_of(rows, (size_t)geometry)[bit / 64] |= (uint64_t)1 << (bit % 64);
+}
+
+static bool is_noted(const asked_rows *rows, int32_t geometry, size_t bit) {
+  return row_of(rows, (size_t)geometry)[bit / 64] >> (bit % 64) & 1u;
+}
+
+static bool is_asked(const asked_rows *rows, size_t geometry) {
+  for (size_t w = 0; w < rows->words; w++)
+    if (row_of(rows, geometry)[w]) return true;
+  return false;
+}
+
+static bool fill_rows(const cprox_edge_checker *c, asked_rows *rows) {
+  const size_t n = c->robot->n_geometries;
+  rows->n_obstacles = obstacles_count(c->asked.obstacles);
+  rows->words = (rows->n_obstacles + n) / 64 + 1;
+  rows->bits = calloc(n * rows->words + 1, sizeof *rows->bits);
+  if (!rows->bits) return false;
+  const cprox_robot_pair *p = c->pairs;
+  for (size_t i = 0; i < c->n_pairs; i++, p++) note(rows, p->geometry, (size_t)p->other);
+  for (size_t i = 0; i < c->n_self_pairs; i++, p++) {
+    note(rows, p->geometry, rows->n_obstacles + (size_t)p->other);
+    note(rows, p->other, rows->n_obstacles + (size_t)p->geometry);
+  }
+  return true;
+}
+
+/* Which axes carry anything that is asked about. */
+static void mark_axes(const cprox_robot *robot, const asked_rows *rows, int32_t *frame_of) {
+  for (size_t i = 0; i < robot->n_axes; i++) frame_of[i] = -1;
+  for (size_t i = 0; i < robot->n_parts; i++)
+    for (int32_t axis = is_asked(rows, (size_t)robot->parts[i].geometry) ? robot->parts[i].axis : -1;
+         axis >= 0 && frame_of[axis] < 0; axis = robot->axes[axis].parent)
+      frame_of[axis] = 0;
+}
+
+/* False: an axis is a ball. */
+static bool fill_frames(cprox_edge_checker *c, int32_t *frame_of, vec3 base) {
+  const cprox_robot *robot = c->robot;
+  c->frames[0] = (edge_frame){.parent = -1, .variable = -1};
+  c->n_frames = 1;
+  for (size_t i = 0; i < robot->n_axes; i++) {
+    if (frame_of[i] < 0) continue;
+    const robot_axis *axis = &robot->axes[i];
+    if (axis->kind != AXIS_REVOLUTE && axis->kind != AXIS_PRISMATIC) return false;
+    edge_frame *f = &c->frames[c->n_frames];
+    frame_of[i] = (int32_t)c->n_frames++;
+    placement at = axis->at;
+    if (axis->parent < 0)
+      at.p = vec_sub(at.p, base);
+    else {
+      const placement above = turn_of_axis(&robot->axes[axis->parent]);
+      at = turned_back(&above, &at);
+    }
+    const placement own = turn_of_axis(axis);
+    double r[9];
+    rotation_compose(at.r, own.r, r);
+    *f = (edge_frame){.parent = axis->parent < 0 ? 0 : frame_of[axis->parent],
+                      .variable = axis->variable,
+                      .shifts = axis->kind == AXIS_PRISMATIC,
+                      .multiplier = axis->multiplier,
+                      .offset = axis->offset,
+                      .p = {(float)at.p.x, (float)at.p.y, (float)at.p.z},
+                      .length = vec_norm(at.p)};
+    if (!snap(r, f->r, f->from, f->sign)) f->from[0] = -1;
+    f->fixed_reach = c->frames[f->parent].fixed_reach + f->length;
+  }
+  return true;
+}
+
+/* ---- parts ---- */
+
+static void add_balls(cprox_edge_checker *c, const robot_part *part, vec3 base) {
+  cover_ball balls[COVER_MOST];
+  const size_t n = cover_of_part(&part->model, balls);
+  placement at = part->at;
+  if (part->axis < 0)
+    at.p = vec_sub(at.p, base);
+  else {
+    const placement turn = turn_of_axis(&c->robot->axes[part->axis]);
+    at = turned_back(&turn, &at);
+  }
+  for (size_t k = 0; k < n; k++) {
+    const vec3 p = placement_apply(&at, balls[k].centre);
+    c->balls[c->n_balls++] = (edge_ball){.centre = {(float)p.x, (float)p.y, (float)p.z},
+                                         .outer = float_above(balls[k].outer),
+                                         .inner = float_below(balls[k].inner),
+                                         .reach = float_above(vec_norm(p) * (1.0 + EDGE_U)),
+                                         .geometry = part->geometry};
+  }
+}
+
+static vec3 centre_of(const edge_ball *ball) {
+  return vec((double)ball->centre[0], (double)ball->centre[1], (double)ball->centre[2]);
+}
+
+/* A ball round all balls of a part, about the middle of their box. */
+static void enclose(const cprox_edge_checker *c, edge_part *part) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (uint32_t i = part->first; i < part->first + part->n; i++)
+    for (int k = 0; k < 3; k++) {
+      low[k] = lesser(low[k], (double)(c->balls[i].centre[k] - c->balls[i].outer));
+      high[k] = greater(high[k], (double)(c->balls[i].centre[k] + c->balls[i].outer));
+    }
+  for (int k = 0; k < 3; k++) part->centre[k] = (float)(0.5 * (low[k] + high[k]));
+  const vec3 centre = vec((double)part->centre[0], (double)part->centre[1], (double)part->centre[2]);
+  double outer = 0.0, core = 0.0;
+  for (uint32_t i = part->first; i < part->first + part->n; i++) {
+    const edge_ball *ball = &c->balls[i];
+    const double apart = vec_norm(vec_sub(centre_of(ball), centre));
+    outer = greater(apart + (double)ball->outer, outer), core = greater(apart, core);
+    part->farthest = greater((double)ball->reach + (double)ball->outer, part->farthest);
+    part->reach_of_centre = greater((double)ball->reach, part->reach_of_centre);
+  }
+  part->outer = float_above(outer * (1.0 + 0x1p-40)), part->core = float_above(core * (1.0 + 0x1p-40));
+  part->reach = float_above(vec_norm(centre) * (1.0 + 0x1p-40));
+  part->reach_of_centre = greater((double)part->reach, part->reach_of_centre);
+}
+
+/* All parts of a geometry, which stand side by side. */
+static void add_geometry(cprox_edge_checker *c, int32_t geometry, vec3 base) {
+  for (size_t i = 0; i < c->robot->n_parts; i++)
+    if (c->robot->parts[i].geometry == geometry) add_balls(c, &c->robot->parts[i], base);
+  c->members[c->n_members++] = geometry;
+}
+
+static void fill_parts(cprox_edge_checker *c, const asked_rows *rows, const int32_t *frame_of, vec3 base) {
+  const cprox_robot *robot = c->robot;
+  for (size_t i = 0; i < robot->n_geometries; i++) {
+    const int32_t link = robot->given_geometries[i].link, axis = robot->links[link].axis;
+    bool taken = !is_asked(rows, i); /* by the part of one before it */
+    for (size_t k = 0; k < i && !taken; k++)
+      taken = robot->given_geometries[k].link == link && memcmp(row_of(rows, i), row_of(rows, k), rows->words * 8) == 0;
+    if (taken) continue;
+    edge_part part = {
+        .frame = axis < 0 ? 0 : frame_of[axis], .first_member = (uint32_t)c->n_members, .first = (uint32_t)c->n_balls};
+    for (size_t k = i; k < robot->n_geometries; k++)
+      if (robot->given_geometries[k].link == link && memcmp(row_of(rows, i), row_of(rows, k), rows->words * 8) == 0)
+        add_geometry(c, (int32_t)k, base);
+    part.n_members = (uint32_t)c->n_members - part.first_member, part.n = (uint32_t)c->n_balls - part.first;
+    enclose(c, &part);
+    c->parts[c->n_parts++] = part;
+  }
+}
+
+/* ---- obstacles ---- */
+
+static bool exchanges_axes(const float r[9]) {
+  for (int k = 0; k < 9; k++)
+    if (r[k] != 0.0f && fabsf(r[k]) != 1.0f) return false;
+  return true;
+}
+
+/* One part of a target. What its own numbers round: its place once, its axes as any rotation (7 u of a vector), its
+ * sizes once; the vector from it is at most |p| and the reach of what is tested long, the latter being counted there.
+ */
+static void add_obstacle(cprox_edge_checker *c, size_t index, size_t part, vec3 base) {
+  const cprox_obstacle *target = &c->asked.obstacles->targets[index];
+  const cprox_body *body = body_part_at(target->body, part);
+  part_model m = part_model_of(body);
+  cprox_pose pose = target->pose;
+  if (target->body->kind == CPROX_BODY_COMPOUND) pose = frame_compose(&target->pose, &target->body->parts[part].pose);
+  const frame f = frame_create(&pose, m.centre);
+  const cprox_body_kind kind = m.shape->ops->kind;
+  const double *size = m.shape->size, margin = m.margin + target->margin;
+  edge_obstacle o = {.target = (int32_t)index, .shape = EDGE_BALL};
+  vec3 p = frame_to_world(&f, vec(0, 0, 0));
+  double sizes[3] = {margin, 0, 0}, extent = m.radius + target->margin;
+  bool exact = !m.tree;
+  switch (kind) {
+    case CPROX_BODY_BOX: o.shape = EDGE_BOX, sizes[0] = size[0], sizes[1] = size[1], sizes[2] = size[2]; break;
+    case CPROX_BODY_CAPSULE: o.shape = EDGE_CAPSULE, sizes[1] = size[1]; break;
+    case CPROX_BODY_CYLINDER: o.shape = EDGE_CYLINDER, sizes[0] = size[0], sizes[1] = size[1]; break;
+    case CPROX_BODY_CONE: o.shape = EDGE_CONE, sizes[0] = size[0], sizes[1] = size[1]; break;
+    case CPROX_BODY_HALFSPACE: o.shape = EDGE_HALFSPACE, extent = 0.0; break;
+    case CPROX_BODY_SPHERE: break;
+    default:
+      if (m.shape->ops == &convex_point) break;
+      part_model_find_box(&m);
+      exact = false, o.shape = EDGE_BOX;
+      sizes[0] = m.half.x, sizes[1] = m.half.y, sizes[2] = m.half.z;
+      p = frame_to_world(&f, m.middle);
+  }
+  int32_t from[3] = {0};
+  float sign[3];
+  snap(f.r, o.r, from, sign);
+  if (o.shape == EDGE_HALFSPACE) {
+    const vec3 n = rotate(f.r, vec(size[0], size[1], size[2]));
+    o.r[0] = (float)n.x, o.r[3] = (float)n.y, o.r[6] = (float)n.z;
+    p = vec_axpy(p, -size[3], n); /* of the plane: that nearest to the base */
+    p = vec_axpy(base, -vec_dot(n, vec_sub(base, p)), n);
+    sizes[0] = 0.0;
+  }
+  const bool grows_all = o.shape == EDGE_BOX || o.shape == EDGE_CYLINDER; /* the margin goes into the sizes, outwards */
+  if (grows_all && margin > 0.0) exact = false;
+  const vec3 seen = vec_sub(p, base);
+  const double far = vec_norm(seen),
+               growth = (1.0 + 1e-6) * EDGE_U *
+                        (14.0 * far + 4.0 * (fabs(sizes[0]) + fabs(sizes[1]) + fabs(sizes[2]) + margin));
+  o.p[0] = (float)seen.x, o.p[1] = (float)seen.y, o.p[2] = (float)seen.z;
+  if (o.shape == EDGE_BOX && exchanges_axes(o.r)) {
+    o.shape = EDGE_ALIGNED_BOX;
+    double turned[3] = {0};
+    for (int k = 0; k < 3; k++) turned[from[k]] = sizes[k];
+    memcpy(sizes, turned, sizeof sizes);
+  }
+  o.margin = o.shape == EDGE_CONE || o.shape == EDGE_HALFSPACE ? float_above(margin + growth) : 0.0f;
+  const double more = (grows_all ? margin : 0.0) + growth;
+  const int grown = o.shape == EDGE_ALIGNED_BOX || o.shape == EDGE_BOX ? 3
+                    : o.shape == EDGE_CYLINDER                         ? 2
+                    : o.shape == EDGE_BALL || o.shape == EDGE_CAPSULE  ? 1
+                                                                       : 0;
+  for (int k = 0; k < 3; k++) o.size[k] = float_above(sizes[k] + (k < grown ? more : 0.0));
+  if (o.shape == EDGE_CONE) o.size[2] = (float)(1.0 / (size[0] * size[0] + 4.0 * size[1] * size[1]));
+  o.grown =
+      exact ? float_above(4.0 * growth) : INFINITY; /* at a corner of a box the root of 3 of that; and both ways */
+  c->obstacle_reach = greater(far + extent, c->obstacle_reach);
+  c->obstacles[c->n_obstacles++] = o;
+}
+
+static void fill_obstacles(cprox_edge_checker *c, vec3 base) {
+  for (size_t i = 0; i < obstacles_count(c->asked.obstacles); i++)
+    for (size_t k = 0; k < body_n_parts(c->asked.obstacles->targets[i].body); k++) add_obstacle(c, i, k, base);
+}
+
+/* Whether a part may ever come near an obstacle: by a ball round the base. Shifts have no bounds. */
+static bool is_in_reach(const cprox_edge_checker *c, const edge_part *part, const edge_obstacle *o) {
+  for (int32_t f = part->frame; f > 0; f = c->frames[f].parent)
+    if (c->frames[f].shifts) return true;
+  const vec3 p = vec((double)o->p[0], (double)o->p[1], (double)o->p[2]);
+  const double reach = c->frames[part->frame].fixed_reach + part->farthest + c->asked.delta;
+  double extent = (double)o->margin;
+  for (int k = 0; k < 3; k++) extent += (double)o->size[k];
+  return o->shape == EDGE_HALFSPACE || vec_norm(p) <= (reach + extent) * (1.0 + 1e-4) + 1e-30;
+}
+
+/* ---- pairs ---- */
+
+static void fill_near(cprox_edge_checker *c, const asked_rows *rows) {
+  for (size_t i = 0; i < c->n_parts; i++) {
+    edge_part *part = &c->parts[i];
+    part->first_near = (uint32_t)c->n_near;
+    for (size_t k = 0; k < c->n_obstacles; k++) {
+      if (!is_noted(rows, c->members[part->first_member], (size_t)c->obstacles[k].target)) continue;
+      if (is_in_reach(c, part, &c->obstacles[k])) c->near[c->n_near++] = (uint32_t)k;
+    }
+    part->n_near = (uint32_t)c->n_near - part->first_near;
+  }
+}
+
+static bool is_above(const cprox_edge_checker *c, int32_t own, int32_t other) {
+  while (other > own) other = c->frames[other].parent;
+  return other == own;
+}
+
+static int32_t common_frame(const cprox_edge_checker *c, int32_t a, int32_t b) {
+  while (!is_above(c, a, b)) a = c->frames[a].parent;
+  return a;
+}
+
+static int32_t shift_of(const cprox_edge_checker *c, int32_t own) {
+  return own > 0 && c->frames[own].shifts ? own : -1;
+}
+
+/* From b up to what is above both, then down to a. */
+static void fill_relation(cprox_edge_checker *c, edge_relation *to) {
+  const edge_frame *frames = c->frames;
+  const int32_t common = common_frame(c, to->a, to->b);
+  int32_t up = -1; /* the last axis on the way up */
+  to->first = (uint32_t)c->n_steps;
+  for (int32_t f = to->b; f != common; f = frames[f].parent) {
+    c->steps[c->n_steps++] =
+        (edge_step){.frame = f, .shifted = up < 0 ? -1 : shift_of(c, up), .length = up < 0 ? 0.0 : frames[up].length};
+    up = f;
+  }
+  const uint32_t first_down = (uint32_t)c->n_steps;
+  for (int32_t f = to->a; f != common; f = frames[f].parent) c->steps[c->n_steps++] = (edge_step){.frame = f};
+  for (uint32_t i = first_down, k = (uint32_t)c->n_steps; i + 1 < k; i++) { /* from the top down */
+    const edge_step swapped = c->steps[i];
+    c->steps[i] = c->steps[--k], c->steps[k] = swapped;
+  }
+  for (uint32_t i = first_down; i < c->n_steps; i++) {
+    edge_step *step = &c->steps[i];
+    const edge_frame *f = &frames[step->frame];
+    step->length = f->length, step->shifted = -1;
+    if (i > first_down)
+      step->shifted = shift_of(c, f->parent);
+    else if (up >= 0) {
+      const edge_frame *u = &frames[up];
+      const vec3 apart =
+          vec((double)u->p[0] - (double)f->p[0], (double)u->p[1] - (double)f->p[1], (double)u->p[2] - (double)f->p[2]);
+      step->length = vec_norm(apart) + 2.0 * EDGE_U * (u->length + f->length), step->shifted = shift_of(c, up);
+    }
+  }
+  to->n = (uint32_t)c->n_steps - to->first;
+  to->last = to->a == common
+                 ? (edge_step){.shifted = up < 0 ? -1 : shift_of(c, up), .length = up < 0 ? 0.0 : frames[up].length}
+                 : (edge_step){.shifted = shift_of(c, to->a)};
+}
+
+static uint32_t relation_of(cprox_edge_checker *c, int32_t a, int32_t b) {
+  for (size_t i = 0; i < c->n_relations; i++)
+    if (c->relations[i].a == a && c->relations[i].b == b) return (uint32_t)i;
+  edge_relation *made = &c->relations[c->n_relations];
+  *made = (edge_relation){.a = a, .b = b};
+  fill_relation(c, made);
+  return (uint32_t)c->n_relations++;
+}
+
+/* Of two parts all geometries are asked about each other, or none are. */
+static void fill_lane_pairs(cprox_edge_checker *c, const asked_rows *rows) {
+  for (uint32_t x = 0; x < c->n_parts; x++)
+    for (uint32_t y = 0; y < x; y++) {
+      const int32_t one = c->members[c->parts[x].first_member], other = c->members[c->parts[y].first_member];
+      if (!is_noted(rows, one, rows->n_obstacles + (size_t)other)) continue;
+      const bool first_moves = c->parts[x].frame >= c->parts[y].frame;
+      edge_pair pair = {.a = first_moves ? x : y, .b = first_moves ? y : x};
+      pair.relation = relation_of(c, c->parts[pair.a].frame, c->parts[pair.b].frame);
+      c->lane_pairs[c->n_lane_pairs++] = pair;
+    }
+}
+
+/* Joints above a link. */
+static size_t joints_between(const cprox_robot *robot, int32_t link_a, int32_t link_b) {
+  const int32_t a = link_a < 0 ? -1 : robot->links[link_a].axis, b = link_b < 0 ? -1 : robot->links[link_b].axis;
+  const int32_t common = robot_common_axis(robot, a, b);
+  size_t n = 0;
+  for (int32_t i = a; i != common; i = robot->axes[i].parent) n += robot->axes[i].first_of_joint;
+  for (int32_t i = b; i != common; i = robot->axes[i].parent) n += robot->axes[i].first_of_joint;
+  return n;
+}
+
+/* All pairs that are asked about, in order; `to` NULL: their number. */
+static size_t list_pairs(const cprox_robot *robot, const cprox_edge_query *q, cprox_robot_pair *to) {
+  if (q->pairs) {
+    if (to && q->n_pairs > 0) memcpy(to, q->pairs, q->n_pairs * sizeof *to);
+    return q->n_pairs;
+  }
+  size_t n = 0;
+  for (size_t g = 0; g < robot->n_geometries; g++)
+    for (size_t k = 0;
+         k < obstacles_count(q->obstacles) && joints_between(robot, robot->given_geometries[g].link, -1) > 0; k++, n++)
+      if (to) to[n] = (cprox_robot_pair){(int32_t)g, (int32_t)k};
+  return n;
+}
+
+static size_t list_self_pairs(const cprox_robot *robot, const cprox_edge_query *q, cprox_robot_pair *to) {
+  if (q->without_self) return 0;
+  if (q->self_pairs) {
+    if (to && q->n_self_pairs > 0) memcpy(to, q->self_pairs, q->n_self_pairs * sizeof *to);
+    return q->n_self_pairs;
+  }
+  size_t n = 0;
+  for (size_t g = 0; g < robot->n_geometries; g++)
+    for (size_t k = 0; k < g; k++) {
+      if (joints_between(robot, robot->given_geometries[g].link, robot->given_geometries[k].link) < 2) continue;
+      if (to) to[n] = (cprox_robot_pair){(int32_t)g, (int32_t)k};
+      n++;
+    }
+  return n;
+}
+
+/* ---- making ---- */
+
+static cprox_status check_pairs(const cprox_robot_pair *pairs, size_t n, size_t others, const char *what,
+                                size_t geometries, cprox_workspace *workspace) {
+  for (size_t i = 0; pairs && i < n; i++) {
+    const cprox_robot_pair p = pairs[i];
+    if (p.geometry < 0 || (size_t)p.geometry >= geometries)
+      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no geometry %d: the robot has %zu", i,
+                            (int)p.geometry, geometries);
+    if (p.other < 0 || (size_t)p.other >= others)
+      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no %s %d: there are %zu", i, what,
+                            (int)p.other, others);
+  }
+  return CPROX_OK;
+}
+
+static cprox_status check(const cprox_robot *robot, const cprox_edge_query *q, cprox_workspace *workspace) {
+  if (!(q->delta >= 0.0) || isinf(q->delta))
+    return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be finite and >= 0", q->delta);
+  if ((q->n_pairs > 0 && !q->pairs) || (q->n_self_pairs > 0 && !q->self_pairs))
+    return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", q->n_pairs > 0 && !q->pairs ? "pairs" : "self_pairs");
+  if (q->first && q->delta > 0.0)
+    return workspace_fail(workspace, CPROX_INVALID, "the time of contact is that of collision: first needs delta = 0");
+  for (size_t i = 0; i < obstacles_count(q->obstacles); i++) {
+    const cprox_obstacle *o = &q->obstacles->targets[i];
+    if (!o->body || o->curve || o->body->field)
+      return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is %s: a robot is asked about bodies", i,
+                            o->body && o->body->field ? "known by its distance alone" : "a curve");
+  }
+  const cprox_status status =
+      check_pairs(q->pairs, q->n_pairs, obstacles_count(q->obstacles), "obstacle", robot->n_geometries, workspace);
+  if (status != CPROX_OK) return status;
+  for (size_t i = 0; i < q->n_self_pairs; i++)
+    if (q->self_pairs[i].geometry == q->self_pairs[i].other)
+      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: geometry %d is asked about itself", i,
+                            (int)q->self_pairs[i].other);
+  return check_pairs(q->self_pairs, q->n_self_pairs, robot->n_geometries, "geometry", robot->n_geometries, workspace);
+}
+
+static bool allocate(cprox_edge_checker *c, size_t n_obstacles) {
+  const cprox_robot *robot = c->robot;
+  const size_t frames = robot->n_axes + 1;
+  c->frames = calloc(frames, sizeof *c->frames);
+  c->parts = calloc(robot->n_geometries + 1, sizeof *c->parts);
+  c->members = calloc(robot->n_geometries + 1, sizeof *c->members);
+  size_t balls = 0;
+  cover_ball made[COVER_MOST];
+  for (size_t i = 0; i < robot->n_parts; i++) balls += cover_of_part(&robot->parts[i].model, made);
+  c->balls = calloc(balls + 1, sizeof *c->balls);
+  c->obstacles = calloc(n_obstacles + 1, sizeof *c->obstacles);
+  c->near = calloc(robot->n_geometries * n_obstacles + 1, sizeof *c->near);
+  c->lane_pairs = calloc(c->n_self_pairs + 1, sizeof *c->lane_pairs);
+  c->relations = calloc(c->n_self_pairs + 1, sizeof *c->relations);
+  size_t deepest = 0;
+  for (size_t i = 0; i < robot->n_axes; i++) deepest = robot->axes[i].depth > deepest ? robot->axes[i].depth : deepest;
+  const size_t different = c->n_self_pairs < frames * frames ? c->n_self_pairs : frames * frames;
+  c->steps = calloc(different * 2 * (deepest + 1) + 1, sizeof *c->steps);
+  return c->frames && c->parts && c->members && c->balls && c->obstacles && c->near && c->lane_pairs && c->relations &&
+         c->steps;
+}
+
+/* What the lanes have to say. */
+static cprox_status fill(cprox_edge_checker *c, cprox_workspace *workspace) {
+  const cprox_robot *robot = c->robot;
+  int32_t *frame_of = calloc(robot->n_axes + 1, sizeof *frame_of);
+  asked_rows rows = {.bits = NULL};
+  size_t n_obstacles = 0;
+  for (size_t i = 0; i < obstacles_count(c->asked.obstacles); i++)
+    n_obstacles += body_n_parts(c->asked.obstacles->targets[i].body);
+  const bool room = frame_of && fill_rows(c, &rows) && allocate(c, n_obstacles);
+  if (room) {
+    mark_axes(robot, &rows, frame_of);
+    const vec3 base = robot->n_axes > 0 ? robot->axes[0].at.p : vec(0, 0, 0);
+    c->in_lanes = fill_frames(c, frame_of, base);
+    if (c->in_lanes) {
+      fill_parts(c, &rows, frame_of, base);
+      fill_obstacles(c, base);
+      fill_near(c, &rows);
+      fill_lane_pairs(c, &rows);
+      c->in_lanes = c->obstacle_reach <= EDGE_REACH_MOST;
+    }
+  }
+  free(frame_of), free(rows.bits);
+  return room ? CPROX_OK
+              : workspace_fail(workspace, CPROX_MEMORY, "no memory for %zu obstacles and %zu pairs", n_obstacles,
+                               c->n_self_pairs);
+}
+
+cprox_status cprox_edge_checker_create(const cprox_robot *robot, const cprox_edge_query *asked,
+                                       cprox_workspace *workspace, cprox_edge_checker **checker) {
+  workspace_clear(workspace);
+  if (!robot || !checker) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", robot ? "checker" : "robot");
+  const cprox_edge_query q = asked ? *asked : (cprox_edge_query){0};
+  cprox_status status = check(robot, &q, workspace);
+  if (status != CPROX_OK) return status;
+  cprox_edge_checker *c = calloc(1, sizeof *c);
+  if (c) {
+    *c = (cprox_edge_checker){.robot = robot, .asked = q};
+    c->n_pairs = list_pairs(robot, &q, NULL), c->n_self_pairs = list_self_pairs(robot, &q, NULL);
+    c->pairs = calloc(c->n_pairs + c->n_self_pairs + 1, sizeof *c->pairs);
+  }
+  if (!c || !c->pairs) {
+    free(c);
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot's pairs");
+  }
+  list_pairs(robot, &q, c->pairs), list_self_pairs(robot, &q, c->pairs + c->n_pairs);
+  status = fill(c, workspace);
+  if (status != CPROX_OK) {
+    cprox_edge_checker_free(c);
+    return status;
+  }
+  *checker = c;
+  return CPROX_OK;
+}
+
+void cprox_edge_checker_free(cprox_edge_checker *checker) {
+  if (!checker) return;
+  free(checker->pairs);
+  free(checker->frames);
+  free(checker->parts);
+  free(checker->members);
+  free(checker->balls);
+  free(checker->obstacles);
+  free(checker->near);
+  free(checker->lane_pairs);
+  free(checker->relations);
+  free(checker->steps);
+  free(checker);
+}

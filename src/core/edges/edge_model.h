@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A robot among obstacles in single precision: all that many edges share. Coordinates are seen from the base, the
+ * origin of the first axis. doc/robot-edges.md, doc/rounding.md */
+#ifndef CPROX_EDGES_EDGE_MODEL_H
+#define CPROX_EDGES_EDGE_MODEL_H
+
+#include "curve_proximity/cprox/edges.h"
+#include "kinematics/joint_tree.h"
+
+/* Unit roundoff of float. */
+#define EDGE_U 0x1p-24
+
+/* Frame 0 is the base, which stands; every other one is an axis that turns about its own z, or shifts along it. */
+typedef struct edge_frame {
+  int32_t parent; /* a frame before this one */
+  int32_t variable;
+  bool shifts;
+  double multiplier, offset;
+  float r[9], p[3];   /* where it stands at 0, in its parent's frame */
+  int32_t from[3];    /* where r only exchanges axes: column k is `sign` times the parent's column `from`; */
+  float sign[3];      /* from[0] < 0: it turns by any angle */
+  double length;      /* |p| */
+  double fixed_reach; /* of its origin from the base, shifts not counted */
+} edge_frame;
+
+typedef struct edge_ball {
+  float centre[3]; /* in the frame of its part */
+  float outer, inner;
+  float reach; /* |centre|, from above */
+  int32_t geometry;
+} edge_ball;
+
+/* Geometries on one link that are asked about the same obstacles and the same other geometries. */
+typedef struct edge_part {
+  int32_t frame;
+  uint32_t first_member, n_members; /* the geometries */
+  float centre[3];
+  float outer, core;      /* radii about that: of all outer balls, and of their centres */
+  float reach;            /* |centre|, from above */
+  double farthest;        /* the largest reach of any ball, its radius included */
+  double reach_of_centre; /* the largest |centre| of any ball */
+  uint32_t first, n;      /* balls */
+  uint32_t first_near, n_near;
+} edge_part;
+
+typedef enum edge_shape {
+  EDGE_BALL,
+  EDGE_ALIGNED_BOX, /* along the coordinates */
+  EDGE_BOX,
+  EDGE_CAPSULE,
+  EDGE_CYLINDER,
+  EDGE_CONE,
+  EDGE_HALFSPACE
+} edge_shape;
+
+/* What stands. The shape is grown by what rounding of its own numbers costs, so that distances from it are never too
+ * large on that account. */
+typedef struct edge_obstacle {
+  edge_shape shape;
+  int32_t target;
+  float p[3];
+  float r[9];    /* columns are its axes; of a halfspace the first one is the normal */
+  float size[3]; /* half extents; radius and half height; a halfspace's offset */
+  float margin;  /* a ball about each point, and of a cone the growth; the others have grown sizes */
+  float grown;   /* distances may be too small by this; infinity: it only contains what stands */
+} edge_obstacle;
+
+/* A pair of parts: `a` as `b` sees it. */
+typedef struct edge_pair {
+  uint32_t a, b;
+  uint32_t relation;
+} edge_pair;
+
+/* An axis on the way from one frame to another one, and how far its origin is from that of the one before. */
+typedef struct edge_step {
+  int32_t frame;
+  int32_t shifted; /* a frame whose shift adds to the length; -1: none */
+  double length;
+} edge_step;
+
+/* How a frame moves as another one sees it. */
+typedef struct edge_relation {
+  int32_t a, b;
+  uint32_t first, n; /* steps */
+  edge_step last;    /* from the last step's origin to that of frame a */
+} edge_relation;
+
+struct cprox_edge_checker {
+  const cprox_robot *robot;
+  cprox_edge_query asked;
+  cprox_robot_pair *pairs; /* of geometries and obstacles, then of geometries: all that are asked about */
+  size_t n_pairs, n_self_pairs;
+  bool in_lanes; /* single precision can say something */
+  size_t n_frames, n_parts, n_members, n_balls, n_obstacles, n_near, n_lane_pairs, n_relations, n_steps;
+  edge_frame *frames;
+  edge_part *parts;
+  int32_t *members; /* geometries by part */
+  edge_ball *balls;
+  edge_obstacle *obstacles;
+  uint32_t *near; /* obstacles by part */
+  edge_pair *lane_pairs;
+  edge_relation *relations;
+  edge_step *steps;
+  double obstacle_reach; /* the largest coordinate of an obstacle */
+};
+
+/* Distances of lanes are held against sums of radii that are grown by this factor: it covers the rounding of squares,
+ * roots and sums of what is positive. doc/rounding.md */
+#define EDGE_GROW 0x1p-19
+
+#endif

@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The search of one edge, compiled once for each instruction set: the including page defines EDGE_TARGET, the attribute
+ * of its functions, and EDGE_KERNEL, the name of its function. doc/robot-edges.md derives what is computed here. */
+#include <string.h>
+
+#include "edges/kernels.h"
+#include "edges/lane.h"
+
+/* Shorter intervals are left to the search. */
+#define EDGE_SHORTEST 0x1p-20f
+
+/* So many intervals wait at most: each batch takes eight of a depth and leaves sixteen of the next. */
+enum { EDGE_STACK = 512, EDGE_MOST_BATCHES = 512 };
+
+typedef struct lane_frame {
+  lane r[9];
+  lane3 o, spin, speed;
+} lane_frame;
+
+typedef struct lane_part {
+  lane3 centre, speed;
+} lane_part;
+
+typedef struct lane_interval {
+  float middle, half; /* seen from the middle of the edge */
+} lane_interval;
+
+/* Eight intervals that are looked at together. */
+typedef struct lane_batch {
+  const cprox_edge_checker *c;
+  const edge_motion *motion;
+  edge_open *open;
+  edge_found *found;
+  lane_frame *frames;
+  lane_part *parts;
+  lane_interval interval[EDGE_LANES];
+  lane middle, half, half2;
+  uint32_t all;   /* the lanes that are in use */
+  uint32_t split; /* those that are to be halved: nothing more is asked about them */
+} lane_batch;
+
+/* ---- kinematics ---- */
+
+EDGE_INLINE lane lane_row(const lane *r, const float *p) {
+  return r[0] * lane_all(p[0]) + r[1] * lane_all(p[1]) + r[2] * lane_all(p[2]);
+}
+
+EDGE_INLINE lane3 lane_turn(const lane_frame *f, const float *p) {
+  return (lane3){lane_row(f->r, p), lane_row(f->r + 3, p), lane_row(f->r + 6, p)};
+}
+
+/* The frame's axes before its own variable turns them. */
+EDGE_INLINE void lane_compose(const lane_frame *above, const edge_frame *f, lane *r) {
+  for (int row = 0; row < 9; row += 3) {
+    const lane *a = above->r + row;
+    for (int k = 0; k < 3; k++)
+      r[row + k] = f->from[0] >= 0
+                       ? a[f->from[k]] * lane_all(f->sign[k])
+                       : a[0] * lane_all(f->r[k]) + a[1] * lane_all(f->r[3 + k]) + a[2] * lane_all(f->r[6 + k]);
+  }
+}
+
+EDGE_TARGET static void place_frame(lane_batch *b, size_t i) {
+  const edge_frame *f = &b->c->frames[i];
+  const lane_frame *above = &b->frames[f->parent];
+  lane_frame *to = &b->frames[i];
+  const lane value = lane_all(b->motion->middle[i]) + b->middle * lane_all(b->motion->rate[i]);
+  const lane rate = lane_all(b->motion->rate[i]);
+  lane r[9];
+  lane_compose(above, f, r);
+  lane3 d = lane_turn(above, f->p);
+  if (f->shifts) {
+    d = lane3_add(d, (lane3){r[2] * value, r[5] * value, r[8] * value});
+    memcpy(to->r, r, sizeof r);
+    to->spin = above->spin;
+    to->speed =
+        lane3_add(lane3_add(above->speed, lane3_cross(above->spin, d)), (lane3){r[2] * rate, r[5] * rate, r[8] * rate});
+  } else {
+    lane s, c;
+    lane_sincos(value, &s, &c);
+    for (int row = 0; row < 9; row += 3) {
+      to->r[row] = r[row] * c + r[row + 1] * s;
+      to->r[row + 1] = r[row + 1] * c - r[row] * s;
+      to->r[row + 2] = r[row + 2];
+    }
+    to->spin = lane3_add(above->spin, (lane3){r[2] * rate, r[5] * rate, r[8] * rate});
+    to->speed = lane3_add(above->speed, lane3_cross(above->spin, d));
+  }
+  to->o = lane3_add(above->o, d);
+}
+
+/* A point of a frame, and its velocity. */
+EDGE_INLINE lane3 place_point(const lane_frame *f, const float *p, lane3 *speed) {
+  const lane3 d = lane_turn(f, p);
+  *speed = lane3_add(f->speed, lane3_cross(f->spin, d));
+  return lane3_add(f->o, d);
+}
+
+/* ---- distances ---- */
+
+/* The square of the distance of points from what stands; 0 inside. */
+EDGE_INLINE lane distance2_from(const edge_obstacle *o, lane3 at) {
+  const lane zero = lane_all(0.0f), first = lane_all(o->size[0]), second = lane_all(o->size[1]);
+  lane3 x = {at.x - lane_all(o->p[0]), at.y - lane_all(o->p[1]), at.z - lane_all(o->p[2])};
+  if (o->shape == EDGE_BALL) {
+    const lane d = lane_max(lane_sqrt(lane3_norm2(x)) - first, zero);
+    return d * d;
+  }
+  if (o->shape == EDGE_HALFSPACE) {
+    const lane along = x.x * lane_all(o->r[0]) + x.y * lane_all(o->r[3]) + x.z * lane_all(o->r[6]);
+    const lane d = lane_max(along - lane_all(o->margin), zero);
+    return d * d;
+  }
+  if (o->shape != EDGE_ALIGNED_BOX)
+    x = (lane3){x.x * lane_all(o->r[0]) + x.y * lane_all(o->r[3]) + x.z * lane_all(o->r[6]),
+                x.x * lane_all(o->r[1]) + x.y * lane_all(o->r[4]) + x.z * lane_all(o->r[7]),
+                x.x * lane_all(o->r[2]) + x.y * lane_all(o->r[5]) + x.z * lane_all(o->r[8])};
+  if (o->shape == EDGE_ALIGNED_BOX || o->shape == EDGE_BOX) {
+    const lane3 out = {lane_max(lane_abs(x.x) - first, zero), lane_max(lane_abs(x.y) - second, zero),
+                       lane_max(lane_abs(x.z) - lane_all(o->size[2]), zero)};
+    return lane3_norm2(out);
+  }
+  if (o->shape == EDGE_CAPSULE) {
+    x.z = x.z - lane_max(lane_min(x.z, second), -second);
+    const lane d = lane_max(lane_sqrt(lane3_norm2(x)) - first, zero);
+    return d * d;
+  }
+  const lane rho = lane_sqrt(x.x * x.x + x.y * x.y);
+  if (o->shape == EDGE_CYLINDER) {
+    const lane side = lane_max(rho - first, zero), end = lane_max(lane_abs(x.z) - second, zero);
+    return side * side + end * end;
+  }
+
+  /* a cone: from its slant or its base, whichever is nearer; size[2] is the inverse of the slant's square */
+  const lane below = x.z - second, height = second + second;
+  const lane share = lane_max(lane_min((rho * first - below * height) * lane_all(o->size[2]), lane_all(1.0f)), zero);
+  const lane across = rho - share * first, along = below + share * height;
+  const lane beside = lane_max(rho - first, zero), under = x.z + second;
+  const lane nearest = lane_min(across * across + along * along, beside * beside + under * under);
+  const lane_bits inside = (lane_bits)(under >= zero) & (lane_bits)(rho * height + below * first <= zero);
+  const lane d = lane_max(lane_sqrt(lane_choose(inside, zero, nearest)) - lane_all(o->margin), zero);
+  return d * d;
+}
+
+/* ---- verdicts ---- */
+
+/* The lanes in which a distance is at most the sum of what moves and a radius. */
+EDGE_INLINE uint32_t within(lane distance2, lane moves, float radius) {
+  const lane r = (moves + lane_all(radius)) * lane_all(1.0f + (float)EDGE_GROW);
+  return lane_mask((lane_bits)(distance2 <= r * r));
+}
+
+EDGE_INLINE uint32_t within_still(lane distance2, float radius) {
+  const float r = radius * (1.0f + (float)EDGE_GROW);
+  return lane_mask((lane_bits)(distance2 <= lane_all(r * r)));
+}
+
+/* The lanes in which it is proven to be less than the radius. */
+EDGE_INLINE uint32_t proven_within(lane distance2, float radius) {
+  const float r = radius * (1.0f - (float)EDGE_GROW);
+  return r > 0.0f ? lane_mask((lane_bits)(distance2 < lane_all(r * r))) : 0;
+}
+
+EDGE_TARGET static void leave_open(lane_batch *b, uint32_t pair, uint32_t lanes) {
+  edge_open *open = b->open;
+  if (open->seen[pair] != open->edge) {
+    open->seen[pair] = open->edge;
+    open->pairs[open->n++] = pair;
+  }
+  for (; lanes; lanes &= lanes - 1) {
+    const lane_interval *i = &b->interval[__builtin_ctz(lanes)];
+    open->from = i->middle - i->half < open->from ? i->middle - i->half : open->from;
+    open->to = i->middle + i->half > open->to ? i->middle + i->half : open->to;
+  }
+}
+
+/* A ball of the robot comes near something in some lanes. `outer` and `inner` are the radii of both sides together,
+ * with delta, and what rounding may cost. Whether contact is proven. */
+EDGE_INLINE bool settle_near(lane_batch *b, uint32_t pair, lane distance2, uint32_t near, float outer, float inner) {
+  const uint32_t touching = proven_within(distance2, inner) & b->all;
+  if (touching) {
+    b->found->verdict = CPROX_VERDICT_VIOLATED;
+    b->found->at = b->interval[__builtin_ctz(touching)].middle;
+    return true;
+  }
+  const uint32_t still = near & within_still(distance2, outer);
+  if (still) leave_open(b, pair, still);
+  b->split |= near & ~still;
+  return false;
+}
+
+/* The radius within which contact is proven of two balls, or of one and an obstacle (its inner radius 0); negative
+ * where none is known. */
+EDGE_INLINE float sure_radius(float inner, float other, float delta, float costs) {
+  if (!(inner >= 0.0f && other >= 0.0f)) return -1.0f;
+  return (inner + other + delta) * (1.0f - 0x1p-21f) -
+         costs; /* the sums' rounding, which does not shrink with what is left */
+}
+
+/* How far the centres of balls move in half an interval: by the velocity in the middle, and by all accelerations. */
+EDGE_INLINE lane moves_of(const lane_batch *b, lane3 speed, edge_half_bound bound, float reach) {
+  return b->half * lane_sqrt(lane3_norm2(speed)) + b->half2 * lane_all(bound.acceleration + bound.turn * reach);
+}
+
+/* ---- obstacles ---- */
+
+EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, const edge_obstacle *o) {
+  const edge_part *part = &b->c->parts[i];
+  const lane_frame *own = &b->frames[part->frame];
+  const float delta = (float)b->c->asked.delta, room = b->motion->room[i];
+  b->found->level = CPROX_EDGE_COVER;
+  for (uint32_t k = part->first; k < part->first + part->n; k++) {
+    const edge_ball *ball = &b->c->balls[k];
+    lane3 speed;
+    const lane distance2 = distance2_from(o, place_point(own, ball->centre, &speed));
+    const lane moves = moves_of(b, speed, b->motion->frames[part->frame], ball->reach);
+    const float outer = ball->outer + delta + room;
+    const uint32_t near = within(distance2, moves, outer) & b->all & ~b->split;
+    if (near &&
+        settle_near(b, near_at, distance2, near, outer, sure_radius(ball->inner, 0.0f, delta, room + o->grown))) {
+      b->found->geometry = ball->geometry, b->found->other = o->target, b->found->self = false;
+      return true;
+    }
+  }
+  return false;
+}
+
+EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
+  const edge_part *part = &b->c->parts[i];
+  const lane_frame *own = &b->frames[part->frame];
+  lane_part *at = &b->parts[i];
+  at->centre = place_point(own, part->centre, &at->speed);
+  if (part->n_near == 0) return false;
+  const lane moves = moves_of(b, at->speed, b->motion->frames[part->frame], (float)part->reach_of_centre) +
+                     b->half * lane_sqrt(lane3_norm2(own->spin)) * lane_all(part->core);
+  const float radius = part->outer + (float)b->c->asked.delta + b->motion->room[i];
+  for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
+    const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
+    if (!(within(distance2_from(o, at->centre), moves, radius) & b->all & ~b->split)) continue;
+    if (open_part(b, i, k, o)) return true;
+  }
+  return false;
+}
+
+/* ---- pairs of parts ---- */
+
+/* The velocity of a point of a as b sees it. */
+EDGE_INLINE lane3 relative_speed(const lane_frame *b, lane3 at, lane3 speed) {
+  return lane3_sub(lane3_sub(speed, b->speed), lane3_cross(b->spin, lane3_sub(at, b->o)));
+}
+
+EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float costs) {
+  const cprox_edge_checker *c = b->c;
+  const edge_pair *pair = &c->lane_pairs[i];
+  const edge_part *first = &c->parts[pair->a], *second = &c->parts[pair->b];
+  const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
+  b->found->level = CPROX_EDGE_COVER;
+  for (uint32_t k = first->first; k < first->first + first->n; k++) {
+    const edge_ball *ball = &c->balls[k];
+    lane3 speed;
+    const lane3 at = place_point(own, ball->centre, &speed);
+    const lane moves = moves_of(b, relative_speed(other, at, speed), b->motion->relations[pair->relation], ball->reach);
+    const lane apart2 = lane3_norm2(lane3_sub(at, b->parts[pair->b].centre));
+    if (!(within(apart2, moves, ball->outer + second->outer + room) & b->all & ~b->split)) continue;
+    for (uint32_t l = second->first; l < second->first + second->n; l++) {
+      const edge_ball *beside = &c->balls[l];
+      const lane3 its = lane3_add(other->o, lane_turn(other, beside->centre));
+      const lane distance2 = lane3_norm2(lane3_sub(at, its));
+      const float outer = ball->outer + beside->outer + room;
+      const uint32_t near = within(distance2, moves, outer) & b->all & ~b->split;
+      const float inner = sure_radius(ball->inner, beside->inner, (float)c->asked.delta, costs);
+      if (near && settle_near(b, (uint32_t)(c->n_near + i), distance2, near, outer, inner)) {
+        b->found->geometry = ball->geometry, b->found->other = beside->geometry, b->found->self = true;
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
+  const edge_pair *pair = &b->c->lane_pairs[i];
+  const edge_part *first = &b->c->parts[pair->a], *second = &b->c->parts[pair->b];
+  const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
+  const lane_part *at = &b->parts[pair->a];
+  const float costs = b->motion->room[pair->a] + b->motion->room[pair->b], room = costs + (float)b->c->asked.delta;
+  const lane distance2 = lane3_norm2(lane3_sub(at->centre, b->parts[pair->b].centre));
+  const lane3 speed = relative_speed(other, at->centre, at->speed);
+  const lane moves = moves_of(b, speed, b->motion->relations[pair->relation], (float)first->reach_of_centre) +
+                     b->half * lane_sqrt(lane3_norm2(lane3_sub(own->spin, other->spin))) * lane_all(first->core);
+  if (!(within(distance2, moves, first->outer + second->outer + room) & b->all & ~b->split)) return false;
+  return open_pair(b, i, room, costs);
+}
+
+/* ---- the search ---- */
+
+/* Whether contact is proven. */
+EDGE_TARGET static bool look_at_batch(lane_batch *b) {
+  const cprox_edge_checker *c = b->c;
+  for (size_t i = 1; i < c->n_frames; i++) place_frame(b, i);
+  for (size_t i = 0; i < c->n_parts; i++)
+    if (look_at_obstacles(b, i)) return true;
+  for (size_t i = 0; i < c->n_lane_pairs; i++)
+    if (look_at_pair(b, i)) return true;
+  return false;
+}
+
+/* The intervals on top of the stack, one a lane; lanes that are left over repeat the last one. */
+EDGE_TARGET static void load_batch(lane_batch *b, const lane_interval *stack, size_t *n) {
+  const size_t count = *n < EDGE_LANES ? *n : EDGE_LANES;
+  for (size_t i = 0; i < EDGE_LANES; i++) {
+    b->interval[i] = stack[*n - 1 - (i < count ? i : count - 1)];
+    b->middle[i] = b->interval[i].middle, b->half[i] = b->interval[i].half;
+  }
+  *n -= count;
+  b->half2 = b->half * b->half;
+  b->all = (uint32_t)((1u << count) - 1u);
+  b->split = 0;
+  b->found->intervals += (uint32_t)count;
+}
+
+/* Halves go back in the order that has the earliest on top. */
+EDGE_TARGET static void split_batch(const lane_batch *b, lane_interval *stack, size_t *n) {
+  for (int i = EDGE_LANES; i-- > 0;) {
+    if (!(b->split >> i & 1u)) continue;
+    const float half = 0.5f * b->interval[i].half, middle = b->interval[i].middle;
+    stack[(*n)++] = (lane_interval){middle + half, half};
+    stack[(*n)++] = (lane_interval){middle - half, half};
+  }
+}
+
+EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *motion, edge_lanes *lanes,
+                             edge_found *found) {
+  lane_batch b = {.c = c, .motion = motion, .open = &lanes->open, .found = found};
+  b.frames = (lane_frame *)(void *)lanes->memory;
+  b.parts = (lane_part *)(void *)(b.frames + c->n_frames);
+  memset(&b.frames[0], 0, sizeof b.frames[0]);
+  for (int k = 0; k < 9; k += 4) b.frames[0].r[k] = lane_all(1.0f);
+  *found = (edge_found){.verdict = CPROX_VERDICT_CLEAR, .level = CPROX_EDGE_BALL};
+  lanes->open.n = 0, lanes->open.from = 1.0f, lanes->open.to = -1.0f;
+
+  lane_interval stack[EDGE_STACK];
+  size_t n = 0;
+  if (motion->stands)
+    stack[n++] = (lane_interval){0.0f, 0.0f};
+  else
+    for (int i = EDGE_LANES; i-- > 0;)
+      stack[n++] = (lane_interval){((float)(2 * i + 1) - (float)EDGE_LANES) * EDGE_ROOT_HALF, EDGE_ROOT_HALF};
+  for (int batches = 0; n > 0; batches++) {
+    load_batch(&b, stack, &n);
+    if (look_at_batch(&b)) return;
+    float shortest = 1.0f;
+    for (uint32_t left = b.split; left; left &= left - 1) {
+      const float half = b.interval[__builtin_ctz(left)].half;
+      shortest = half < shortest ? half : shortest;
+    }
+    if (batches == EDGE_MOST_BATCHES || shortest < EDGE_SHORTEST || n + 2 * EDGE_LANES > EDGE_STACK) {
+      found->too_much = true, found->verdict = CPROX_VERDICT_UNDECIDED;
+      return;
+    }
+    split_batch(&b, stack, &n);
+  }
+  if (lanes->open.n > 0) found->verdict = CPROX_VERDICT_UNDECIDED;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "edges/kernels.h"
+
+edge_kernel *edge_kernel_at(simd_level level) {
+#ifdef SIMD_HAS_LEVELS
+  if (level >= SIMD_AVX2) return edge_kernel_avx2;
+#endif
+  (void)level;
+  return edge_kernel_plain;
+}
+
+/* Twelve rows of lanes a frame's state with its velocities at most 18, three a part. */
+size_t edge_lanes_size(const cprox_edge_checker *c) {
+  return (18 * c->n_frames + 6 * c->n_parts) * EDGE_LANES * sizeof(float);
+}
