@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -130,7 +131,8 @@ Eigen::Matrix3Xd reached(const SupportFunction &support) {
 SolidHandle polytopeRound(const BodyHandle &body, double padding) {
   const SupportFunction whole = enlarged(body, padding);
   const double size = cprox_body_get_info(body.get()).radius + padding, within = PROVEN_WITHIN * size;
-  double more = 0.0;
+  // Where many directions reach one corner, what is added keeps their points apart.
+  double more = padding > 0.0 ? 0.0 : 0.1 * within;
   for (int i = 0; i < 20; ++i) {
     const Hull hull = hullOf(reached(enlarged(body, padding + more)));
     Eigen::Matrix3Xd corners(3, static_cast<Eigen::Index>(hull.vertices.size()));
@@ -141,6 +143,91 @@ SolidHandle polytopeRound(const BodyHandle &body, double padding) {
     more += 1.1 * out + 0.1 * within;
   }
   throw Error("no polytope was found that contains it");
+}
+
+/* ---- intersections of halfspaces ---- */
+
+/* n·x <= h, with n of length 1, in coordinates about the body's centre; the body is within `radius` of it. */
+struct Halfspaces {
+  Halfspaces(const std::vector<std::array<double, 4>> &planes, const BodyHandle &body) {
+    const cprox_body_info info = cprox_body_get_info(body.get());
+    centre = toEigen(info.centre);
+    radius = info.radius;
+    for (const std::array<double, 4> &p : planes) {
+      const Eigen::Vector3d b(p[0], p[1], p[2]);
+      if (b.isZero(0.0)) continue;
+      normals.push_back(b.normalized());
+      heights.push_back((-p[3] - b.dot(centre)) / b.norm());
+    }
+  }
+  Eigen::Vector3d centre;
+  double radius;
+  std::vector<Eigen::Vector3d> normals;
+  std::vector<double> heights;
+};
+
+/* Triples of planes that are solved for their common point are so many at most. */
+constexpr std::size_t MOST_PLANES = 100;
+
+/* Where three planes meet and no other cuts the point off, about the centre. Where more than three planes meet their
+ * points are one. */
+std::vector<Eigen::Vector3d> cornersOf(const Halfspaces &set) {
+  constexpr double PARALLEL = 1e-9, NEAR = 1e-9, ROUND = 1e-14;
+  std::vector<Eigen::Vector3d> out;
+  const auto &n = set.normals;
+  const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
+    const Eigen::Vector3d jk = n[j].cross(n[k]), ki = n[k].cross(n[i]), ij = n[i].cross(n[j]);
+    const double determinant = n[i].dot(jk);
+    if (!(std::fabs(determinant) > PARALLEL)) return;
+    const Eigen::Vector3d x = (set.heights[i] * jk + set.heights[j] * ki + set.heights[k] * ij) / determinant;
+    const double within = (NEAR + ROUND / std::fabs(determinant)) * set.radius;
+    if (!(x.norm() <= 2.0 * set.radius)) return;
+    for (std::size_t m = 0; m < n.size(); ++m)
+      if (!(n[m].dot(x) <= set.heights[m] + within)) return;
+    for (const Eigen::Vector3d &other : out)
+      if ((x - other).norm() <= NEAR * set.radius) return;
+    out.push_back(x);
+  };
+  for (std::size_t i = 0; i < n.size(); ++i)
+    for (std::size_t j = i + 1; j < n.size(); ++j)
+      for (std::size_t k = j + 1; k < n.size(); ++k) add(i, j, k);
+  return out;
+}
+
+/* The polytope of the corners, scaled about its middle until it contains the intersection: along a face's normal m no
+ * point of that is beyond any h + |m - n| r, where r is how far it reaches from the middle. */
+Hull hullOf(const Halfspaces &set) {
+  const std::vector<Eigen::Vector3d> corners = cornersOf(set);
+  if (corners.size() < 4) throw Error("its planes have no corners");
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(corners.size()));
+  for (std::size_t i = 0; i < corners.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = corners[i];
+  Hull out = hullOf(points);
+  const double reach = set.radius + out.middle.norm();
+  double scale = 1.0;
+  for (const auto &t : out.triangles) {
+    const Eigen::Vector3d a = toEigen(out.vertices[t[0]]);
+    const Eigen::Vector3d m = (toEigen(out.vertices[t[1]]) - a).cross(toEigen(out.vertices[t[2]]) - a).normalized();
+    double height = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < set.normals.size(); ++i)
+      height = std::min(height, set.heights[i] - set.normals[i].dot(out.middle) + (m - set.normals[i]).norm() * reach);
+    scale = std::max(scale, height / m.dot(a - out.middle));
+  }
+  for (cprox_vec3 &v : out.vertices)
+    v = toVec3(set.centre + out.middle + (1.0 + 1e-12) * scale * (toEigen(v) - out.middle));
+  return out;
+}
+
+/* Planes alone make a polytope; whatever else is in the intersection, its directions are looked at. */
+SolidHandle implicitSolid(const ConstraintBody::Part &part, double padding) {
+  const ShapeDescription &shape = part.shape;
+  if (shape.deformed || !shape.quadrics.empty() || !shape.hyperquadrics.empty() || shape.planes.size() > MOST_PLANES)
+    return polytopeRound(part.body, padding);
+  const Hull hull = hullOf(Halfspaces(shape.planes, part.body));
+  if (padding == 0.0) return meshSolid(hull.vertices, hull.triangles);
+  Eigen::Matrix3Xd corners(3, static_cast<Eigen::Index>(hull.vertices.size()));
+  for (std::size_t k = 0; k < hull.vertices.size(); ++k)
+    corners.col(static_cast<Eigen::Index>(k)) = toEigen(hull.vertices[k]);
+  return polytopeRound(makePolytope(corners), padding);
 }
 
 /* ---- the plane ---- */
@@ -405,8 +492,8 @@ SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding) {
       return padding > 0.0 ? polytopeRound(part.body, padding + part.excess) : meshOf(loadedShape(shape, {}));
     case ShapeType::POINTS: return cloudSolid(shape, padding, 3);
     case ShapeType::OCTREE: return gridSolid(octreeBoxes(shape), padding, 3);
-    case ShapeType::SUPERQUADRIC:
-    case ShapeType::IMPLICIT: return polytopeRound(part.body, padding);
+    case ShapeType::SUPERQUADRIC: return polytopeRound(part.body, padding);
+    case ShapeType::IMPLICIT: return implicitSolid(part, padding);
     default: throw Error("FourierGap has no solid for it in space");
   }
 }

@@ -553,6 +553,34 @@ TEST(Values, are_negative_inside_and_a_margin_is_taken_off) {
   EXPECT_EQ(without_sign->evaluate(pair, place, workspace).lower, 0.0);
 }
 
+/* The same cube as a box and by its six planes, and a roof of five planes: V says clear at the same distance. */
+TEST(Values, of_a_certified_FourierGap_of_planes_are_those_of_the_same_box) {
+  const Loaded provider("curve_proximity/FourierGap", {});
+  Workspace workspace;
+  ShapeDescription cube, roof;
+  cube.type = roof.type = ShapeType::IMPLICIT;
+  cube.planes = {{1, 0, 0, -1}, {-1, 0, 0, -1}, {0, 1, 0, -1}, {0, -1, 0, -1}, {0, 0, 1, -1}, {0, 0, -1, -1}};
+  roof.planes = {{0, 0, -1, 0}, {1, 0, 1, -1}, {-1, 0, 1, -1}, {0, 1, 1, -1}, {0, -1, 1, -1}};
+  const auto clearFrom = [&](const ShapeDescription &s) {
+    ConstraintPair pair;
+    pair.a = side({shape(ShapeType::SPHERE, {0.2})});
+    pair.b = side({s});
+    const auto gap = provider->prepare(pair);
+    ConstraintValue value;
+    for (double away = 0.05; away < 3.0; away += 0.05) {
+      ConstraintPlace place;
+      place.a.position = {1.2 + away, 0.3, 0.2};
+      gap->evaluate(place, workspace, value);
+      if (value.lower >= 0.0) return away;
+    }
+    return 3.0;
+  };
+  const double of_box = clearFrom(shape(ShapeType::BOX, {2, 2, 2}));
+  EXPECT_LE(of_box, 0.55);
+  EXPECT_LE(std::fabs(clearFrom(cube) - of_box), 0.051);
+  EXPECT_LE(clearFrom(roof), 0.55);
+}
+
 /* Seed 820. The truth is that of the bodies and their paddings themselves, by their support functions. */
 TEST(Values, of_a_certified_FourierGap_are_positive_only_where_padded_and_implicit_bodies_do_not_overlap) {
   const Loaded provider("curve_proximity/FourierGap", {{"samples", 9}});
