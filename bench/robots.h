@@ -24,4 +24,7 @@ void bench_robot_links(const bench_size *size, cprox_workspace *workspace);
 /* States without a motion, beside FCL. */
 void bench_robot_states(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
 
+/* Straight edges, beside samples by the same lanes. */
+void bench_robot_edges(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
+
 #endif

@@ -150,6 +150,7 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
     draw_edge(&r, &b, scale, from, to);
     edge_motion motion = edge_motion_in(c, memory.motion);
     const bool fits = edge_motion_fill(c, from, to, &motion); /* a mimic joint may turn by what others shift */
+    if (fits) edge_motion_relate(c, &motion);
     edge_found found = {0};
     edge_open open = {0};
     lane_batch batch = {.c = c, .motion = &motion, .found = &found, .open = &open, .all = 0};
@@ -164,7 +165,7 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
       batch.middle[l] = (float)(-0.5 + half * (2.0 * (double)rng_index(&r, (size_t)8 << depth) + 1.0));
     }
     batch.half2 = batch.half * batch.half;
-    for (size_t k = 1; k < c->n_frames && fits; k++) place_frame(&batch, k);
+    for (size_t k = 1; k < c->n_frames && fits; k++) place_frame(&batch, k, true);
 
     const vec3 base = c->robot->n_axes > 0 ? c->robot->axes[0].at.p : vec(0, 0, 0);
     refused += !fits;

@@ -52,7 +52,7 @@ static bool find_values(const edge_frame *f, const double *from, const double *t
   const double sizes = fabs(f->multiplier) * (fabs(a) + fabs(b)) + fabs(f->offset);
   *error = 0x1p-50 * sizes;
   if (!(sizes <= EDGE_ANGLE_MOST) || (!f->shifts && fabs(rate) > EDGE_TURN_MOST)) return false;
-  if (!f->shifts) middle = remainder(middle, 2.0 * PI);
+  if (!f->shifts && fabs(middle) > PI) middle -= 2.0 * PI * floor(middle / (2.0 * PI) + 0.5);
   m->middle[i] = (float)middle, m->rate[i] = (float)rate;
   m->bounds[i].rate = fabs(rate) + *error;
   m->bounds[i].shift = f->shifts ? fabs(middle) + 0.5 * fabs(rate) + *error : 0.0;
@@ -106,14 +106,12 @@ static edge_half_bound bound_relation(const cprox_edge_checker *c, const edge_re
 /* ---- parts ---- */
 
 /* Places of a part are off by this, and so is what moves in half of the longest interval; two parts add theirs. */
-static double room_of(const cprox_edge_checker *c, const edge_part *part, const edge_motion *m, double reach,
-                      double spin) {
+static double room_of(const edge_part *part, const edge_motion *m, double reach, double spin) {
   const edge_frame_bound *b = &m->bounds[part->frame];
   const double u = EDGE_U, s = part->reach_of_centre;
   const double place = b->place_error + (b->turn_error + ROUND_PRODUCT * u) * s + ROUND_APART * u * (b->reach + s);
   const double speed = b->speed_error + b->spin_error * (s + (double)part->core + 2.0 * reach) + spin * place +
                        16.0 * u * spin * reach + 3.0 * u * b->speed;
-  (void)c;
   return EDGE_UP * (place + 2.0 * (double)EDGE_ROOT_HALF * speed) + EDGE_LEAST;
 }
 
@@ -136,7 +134,10 @@ bool edge_motion_fill(const cprox_edge_checker *c, const double *from, const dou
     reach = far > reach ? far : reach, spin = b->spin > spin ? b->spin : spin;
   }
   if (!(reach <= EDGE_REACH_MOST)) return false;
-  for (size_t i = 0; i < c->n_parts; i++) m->room[i] = above(room_of(c, &c->parts[i], m, reach, spin));
-  for (size_t i = 0; i < c->n_relations; i++) m->relations[i] = bound_relation(c, &c->relations[i], m);
+  for (size_t i = 0; i < c->n_parts; i++) m->room[i] = above(room_of(&c->parts[i], m, reach, spin));
   return true;
+}
+
+void edge_motion_relate(const cprox_edge_checker *c, const edge_motion *m) {
+  for (size_t i = 0; i < c->n_relations; i++) m->relations[i] = bound_relation(c, &c->relations[i], m);
 }

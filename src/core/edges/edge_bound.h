@@ -38,7 +38,10 @@ typedef struct edge_motion {
 size_t edge_motion_size(const cprox_edge_checker *checker);
 edge_motion edge_motion_in(const cprox_edge_checker *checker, char *memory);
 
-/* False where the edge is beyond single precision. */
+/* All but the relations. False where the edge is beyond single precision. */
 bool edge_motion_fill(const cprox_edge_checker *checker, const double *from, const double *to, edge_motion *motion);
+
+/* The relations, for pairs of parts. */
+void edge_motion_relate(const cprox_edge_checker *checker, const edge_motion *motion);
 
 #endif

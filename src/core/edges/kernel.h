@@ -37,6 +37,7 @@ typedef struct lane_batch {
   lane middle, half, half2;
   uint32_t all;   /* the lanes that are in use */
   uint32_t split; /* those that are to be halved: nothing more is asked about them */
+  bool related;   /* the motion's relations are known: edges that hit an obstacle do without */
 } lane_batch;
 
 /* ---- kinematics ---- */
@@ -60,7 +61,8 @@ EDGE_INLINE void lane_compose(const lane_frame *above, const edge_frame *f, lane
   }
 }
 
-EDGE_TARGET static void place_frame(lane_batch *b, size_t i) {
+/* moves: its velocities are wanted, too. */
+EDGE_INLINE void place_frame(lane_batch *b, size_t i, bool moves) {
   const edge_frame *f = &b->c->frames[i];
   const lane_frame *above = &b->frames[f->parent];
   lane_frame *to = &b->frames[i];
@@ -72,9 +74,6 @@ EDGE_TARGET static void place_frame(lane_batch *b, size_t i) {
   if (f->shifts) {
     d = lane3_add(d, (lane3){r[2] * value, r[5] * value, r[8] * value});
     memcpy(to->r, r, sizeof r);
-    to->spin = above->spin;
-    to->speed =
-        lane3_add(lane3_add(above->speed, lane3_cross(above->spin, d)), (lane3){r[2] * rate, r[5] * rate, r[8] * rate});
   } else {
     lane s, c;
     lane_sincos(value, &s, &c);
@@ -83,10 +82,13 @@ EDGE_TARGET static void place_frame(lane_batch *b, size_t i) {
       to->r[row + 1] = r[row + 1] * c - r[row] * s;
       to->r[row + 2] = r[row + 2];
     }
-    to->spin = lane3_add(above->spin, (lane3){r[2] * rate, r[5] * rate, r[8] * rate});
-    to->speed = lane3_add(above->speed, lane3_cross(above->spin, d));
   }
   to->o = lane3_add(above->o, d);
+  if (!moves) return;
+  const lane3 along = {r[2] * rate, r[5] * rate, r[8] * rate};
+  to->spin = f->shifts ? above->spin : lane3_add(above->spin, along);
+  to->speed = lane3_add(above->speed, lane3_cross(above->spin, d));
+  if (f->shifts) to->speed = lane3_add(to->speed, along);
 }
 
 /* A point of a frame, and its velocity. */
@@ -297,9 +299,11 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
 /* Whether contact is proven. */
 EDGE_TARGET static bool look_at_batch(lane_batch *b) {
   const cprox_edge_checker *c = b->c;
-  for (size_t i = 1; i < c->n_frames; i++) place_frame(b, i);
+  for (size_t i = 1; i < c->n_frames; i++) place_frame(b, i, true);
   for (size_t i = 0; i < c->n_parts; i++)
     if (look_at_obstacles(b, i)) return true;
+  if (!b->related) edge_motion_relate(c, b->motion);
+  b->related = true;
   for (size_t i = 0; i < c->n_lane_pairs; i++)
     if (look_at_pair(b, i)) return true;
   return false;

@@ -3,7 +3,7 @@
 """Writes robots, trajectories and scenes as plain numbers, which the core's tests and benches read (support/robot_case.c).
 
 robot_cases.py DATA OUT: DATA holds robots/, scenes/, trajectories/ and expected_hull_model.json. OUT receives a file NAME.robot for
-each robot (links, geometries, disabled pairs) and cases.txt (trajectories, scenes, expected answers); robots/ur5 has no case."""
+each robot (links, geometries, disabled pairs) and cases.txt (trajectories, scenes, expected answers); robots/ur5 and robots/panda_spheres have no case."""
 import json
 import math
 import os
@@ -152,8 +152,10 @@ def main():
             f.write('%d\n' % len(case['results']))
             for r in case['results']:
                 f.write('%s %r %r %r\n' % (r['kind'], r['lower'], r['upper'], r['sampled_min_step_0p001rad']))
-    folder = os.path.join(data, 'robots', 'ur5')
-    Robot(os.path.join(folder, 'ur5.urdf'), os.path.join(folder, 'ur5.srdf'), None).write(os.path.join(out, 'ur5.robot'))
+    robots = os.path.join(data, 'robots')
+    for urdf, srdf in (('ur5/ur5', 'ur5/ur5'), ('panda_spheres/panda_spheres', 'panda/panda')):
+        robot = Robot(os.path.join(robots, urdf + '.urdf'), os.path.join(robots, srdf + '.srdf'), None)
+        robot.write(os.path.join(out, os.path.basename(urdf) + '.robot'))
 
 
 main()
