@@ -29,7 +29,9 @@ struct SceneFileContents {
   /** For Scene::apply(). All poses are in the fixed frame, all paths of mesh files absolute. It clears the scene unless
    *  the file is a diff. */
   SceneChange change;
-  JointPositions joints;                      /**< robot_state, as far as the robot has these joints */
+  JointPositions joints; /**< robot_state, as far as the robot has these joints */
+  /** Where robot_state puts the root link, by the SRDF's virtual joint: what placeOf() takes. */
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
   std::vector<MovingRobotFile> moving_robots; /**< further robots, for Movers */
   std::vector<std::string> warnings;          /**< what was ignored, a sentence each */
 };

@@ -68,11 +68,12 @@ class Robot {
 
   /** Reads a URDF.
    *
-   *  Throws Error, naming link or joint and what is wrong: XML that is not a URDF; a tree that is none; a collision
-   *  element that urdfdom drops (an unknown geometry such as capsule, a number that is none), dimensions that are not
-   *  finite and positive, meshes that are missing, empty or unusable, a mesh scale of 0; origins or axes that are not
-   *  finite, an axis of length 0; mimic joints without a leader or in a ring. With allow_missing_geometry the faults of
-   *  collision elements become warnings().
+   *  Throws Error, naming link or joint and what is wrong: XML that is not a URDF, or that xacro has to expand first; a
+   *  tree that is none; a collision element with an unknown geometry, two geometries, or a number that is none;
+   *  dimensions that are not finite or below 0 (0 makes a point, a line or a disc); meshes that are missing, empty or
+   *  unusable, a mesh scale of 0; origins or axes that are not finite, an axis of length 0; mimic joints without a
+   *  leader or in a ring. With allow_missing_geometry the faults of collision elements become warnings(). Elements and
+   *  attributes that are not known become warnings(), and coverage() is partial.
    *  Cost: milliseconds, and about 10 ms a mesh file and thread; 1 ms once its content is in resources.cache_dir. */
   static std::shared_ptr<const Robot> fromUrdf(const std::string &xml, const RobotOptions &options = {});
 
@@ -101,7 +102,7 @@ class Robot {
     return joints_;
   }
 
-  /** The collision elements that allow_missing_geometry skipped, one message each. */
+  /** The collision elements that allow_missing_geometry skipped, and elements that are not known, one message each. */
   const std::vector<std::string> &warnings() const {
     return warnings_;
   }

@@ -45,10 +45,10 @@ std::vector<std::string> linksOfGroup(const Srdf &srdf, const Robot &robot, cons
 /** The links that an SRDF disables and a robot does not have: perhaps it is another robot's. Each once. */
 std::vector<std::string> unknownLinks(const Srdf &srdf, const Robot &robot);
 
-/** Reads an SRDF. Other elements are ignored.
+/** Reads an SRDF. Elements of other names, which say nothing of these, are ignored.
  *
- *  Throws Error for malformed XML, a missing element `robot`, a virtual joint of an unknown type and a missing
- *  attribute. The message names the element. */
+ *  Throws Error for malformed XML, a missing element `robot`, elements that xacro has left, a misspelt element, a
+ * virtual joint of an unknown type and a missing attribute. The message names the element. */
 Srdf parseSrdf(const std::string &xml);
 
 /** What the SRDF says of links by default, as MoveIt enters it into the allowed collision matrix: `true` as the default

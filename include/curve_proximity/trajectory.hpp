@@ -28,6 +28,14 @@ struct TrajectoryPoint {
   double time = 0.0;                 /**< [s] from the start, ascending */
 };
 
+/** A planar or floating joint by its poses, as trajectory_msgs/MultiDOFJointTrajectory and
+ * sensor_msgs/MultiDOFJointState have it. */
+struct FreeJointPoses {
+  std::string joint;             /**< of the robot, or a virtual joint of its SRDF */
+  std::string frame;             /**< that the poses are in: the joint's parent; empty: the same */
+  std::vector<cprox_pose> poses; /**< one a point; or a single one: it stands there */
+};
+
 /** Waypoints of named joints. */
 struct TrajectoryDescription {
   std::string id;                                         /**< names the trajectory in results */
@@ -45,10 +53,32 @@ struct TrajectoryDescription {
    *  Empty: MoveIt's names, NAME/x … */
   std::vector<std::string> base_joints;
   Coverage coverage; /**< what of its source is not used: no answer along it is then 'clear' */
+
+  /** Further joints, by their poses at the points. adoptBase() turns them into values of their variables; a RobotMotion
+   *  refuses those that are left. */
+  std::vector<FreeJointPoses> free_joints;
+  /** Continuous joints, and the angle of planar ones, turn the shorter way from waypoint to waypoint; otherwise they
+   * turn as their values say, from 3.1 to -3.1 by 6.2 rad. */
+  bool shortest_way = false;
+  /** Objects that links carry when the motion begins. A RobotMotion refuses those that its scene does not attach. */
+  std::vector<std::string> carried;
 };
 
-/** If the trajectory names variables of one of these joints (NAME/x …) and has no base, that joint becomes its base. */
-void adoptBase(const std::vector<VirtualJoint> &joints, TrajectoryDescription &trajectory);
+/** Makes the trajectory one of this robot, whose SRDF has these virtual joints. The poses of free_joints become values
+ * of their variables: of a joint that stands in fixed_joints, else at the points, with all joints going straight from
+ * point to point. If the trajectory names variables of a virtual joint (NAME/x …) and has no base, that joint becomes
+ * its base. Throws Error: a joint that is not at the identity and that the robot does not have, poses in another frame
+ * than the joint's, poses that leave a planar joint's plane. */
+void adoptBase(const std::vector<VirtualJoint> &joints, const Robot &robot, TrajectoryDescription &trajectory);
+
+/** Where the base stands that a scene's robot_state puts at `base`: the place of a trajectory without a base; else that
+ * is the identity, and the values of the base's variables go to `rest`, for those that the trajectory does not name. */
+Eigen::Isometry3d placeOf(const TrajectoryDescription &trajectory, const Eigen::Isometry3d &base, JointPositions &rest);
+
+/** A sentence for each continuous joint, and each planar joint's angle, that turns by more than half a turn between two
+ *  waypoints: a planner's states mean the short way, and the trajectory goes the long one. None of splines, and none
+ * with shortest_way. RobotMotion::warnings() has them. */
+std::vector<std::string> longWays(const Robot &robot, const TrajectoryDescription &trajectory);
 
 /** Checks a trajectory. Throws Error for missing joints or points, a name twice, counts that differ, numbers that are
  *  not finite, times that do not ascend, and missing velocities or accelerations. The message names point and joint. */

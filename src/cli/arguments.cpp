@@ -34,6 +34,8 @@ const std::map<std::string, Option> &options() {
       {"--body", {true, {Action::CURVES}}},
       {"--radius", {true, {Action::CURVES}}},
       {"--self", {false, {Action::CURVES, Action::REPORT, Action::CHECK}}},
+      {"--shortest-way",
+       {false, {Action::CURVES, Action::REPORT, Action::CHECK, Action::CERTIFY, Action::CONSTRAINTS}}},
       {"--signed", {false, {Action::CURVES}}},
       {"--scene", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
       {"--robot", {true, {Action::CURVES, Action::REPORT, Action::CONSTRAINTS, Action::CHECK}}},
@@ -319,6 +321,7 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   if (!words.has("--robot")) throw BadUsage("--trajectory needs --robot URDF");
   if (out.action == Action::CURVES) out.action = Action::TRAJECTORY;
   out.trajectory = words.text("--trajectory");
+  out.shortest_way = words.has("--shortest-way");
   out.self = words.has("--self");
   out.per_link = words.has("--per-link");
   if (out.per_link && words.has("--per-object")) throw BadUsage("--per-link and --per-object exclude each other");
@@ -434,6 +437,7 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       constexpr std::uint64_t kMostShards = 1000000;
       out.dataset = required("--dataset", "MANIFEST, JSON Lines or CSV");
       required("--out", "FOLDER, where the shards go");
+      out.shortest_way = words.has("--shortest-way");
       if (words.has("--shards")) out.shards = static_cast<std::size_t>(readCount(words, "--shards", kMostShards));
       if (words.has("--shard")) out.shard = readShard(words, out.shards);
       if (words.has("--failed") && !out.shard) throw BadUsage("--failed needs --shard I: it gives up one shard");
@@ -574,6 +578,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
                     alone: the object of that id that a link of --robot carries, along poses of the link
   --radius R        with --path, instead of --body: a ball of R metres (default 0, a point)
   --self            how close the robot comes to itself, too
+  --shortest-way    continuous joints turn the shorter way between two waypoints, from 3.1 to -3.1 by 0.083 rad
   --signed          distances inside a body are negative: minus the deepest penetration (a robot's meshes by their hulls)
   --srdf FILE       links that are not checked against each other, and the frame in which the robot stands
                     (its virtual joint's parent_frame)

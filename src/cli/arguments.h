@@ -52,6 +52,7 @@ struct Arguments {
   std::string trajectory;      /**< file of TRAJECTORY; of CHECK and CONSTRAINTS where it was given */
   std::string path, body;      /**< files of MOVERS: a nav_msgs/Path and what rides along it; empty: none */
   double radius = 0.0;         /**< [m] of the ball that rides along the path where there is no body */
+  bool shortest_way = false;   /**< with a trajectory: continuous joints turn the shorter way between two waypoints */
   bool self = false;           /**< with a trajectory, or of MOVERS: ask about the robot itself, too */
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
   std::size_t intervals = 100; /**< PROFILE: so many of equal length, unless there are breaks */

@@ -83,7 +83,13 @@ TrajectoryDescription trajectoryOf(const std::string &path) {
   return readTrajectory(path, warnings);
 }
 
-Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Query &options, Library &library,
+/* What is to be said of the trajectory itself stands in the row. */
+Answer withWays(Answer answer, const std::vector<std::string> &ways) {
+  for (const std::string &way : ways) answer.message += (answer.message.empty() ? "" : "; ") + way;
+  return answer;
+}
+
+Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Arguments &arguments, Library &library,
                   Workspace &workspace) {
   std::string id;
   try {
@@ -98,14 +104,19 @@ Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Que
     const World &world = *place->world;
     TrajectoryDescription trajectory =
         row.inline_trajectory ? std::move(*row.inline_trajectory) : trajectoryOf(row.files.trajectory);
-    adoptBase(world.srdf.virtual_joints, trajectory);
-    const RobotMotion motion(place->prepared(trajectory), trajectory, restOf(trajectory, world));
-    Query query = options;
+    trajectory.shortest_way = trajectory.shortest_way || arguments.shortest_way;
+    if (world.snapshot->robot()) adoptBase(world.srdf.virtual_joints, *world.snapshot->robot(), trajectory);
+    const Rest rest = restOf(trajectory, world);
+    const RobotMotion motion(place->prepared(trajectory, rest.place), trajectory, rest.joints);
+    Query query = arguments.query;
     query.query_type = row.query_type;
     query.delta = row.delta;
     Outcome out;
-    addAnswer(manifest.number, id, askEnvironment(motion, query, workspace).front(), row.query_type, out);
-    if (row.self) addAnswer(manifest.number, id, askSelf(motion, query, workspace), row.query_type, out);
+    const std::vector<std::string> ways = longWays(*world.snapshot->robot(), trajectory);
+    addAnswer(manifest.number, id, withWays(askEnvironment(motion, query, workspace).front(), ways), row.query_type,
+              out);
+    if (row.self)
+      addAnswer(manifest.number, id, withWays(askSelf(motion, query, workspace), ways), row.query_type, out);
     return out;
   } catch (const std::bad_alloc &) {
     return unanswered(manifest.number, id.empty() ? std::to_string(manifest.number) : id, "failed",
@@ -121,8 +132,8 @@ Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Que
 std::string fingerprintOf(const Dataset &dataset, const Arguments &arguments) {
   const cprox_options &options = arguments.query.options;
   char text[120];
-  std::snprintf(text, sizeof text, "%a %u %d", options.epsilon, static_cast<unsigned>(options.max_nodes),
-                static_cast<int>(options.max_lod));
+  std::snprintf(text, sizeof text, "%a %u %d %d", options.epsilon, static_cast<unsigned>(options.max_nodes),
+                static_cast<int>(options.max_lod), arguments.shortest_way ? 1 : 0);
   Hasher hasher;
   hasher.add(std::string(CPROX_VERSION)).add(std::string(kColumns)).add(std::string(text)).add(dataset.digest());
   return toHex(hasher.finish());
@@ -240,7 +251,7 @@ bool answerShard(const Dataset &dataset, const ShardHead &head, const Arguments 
     if (!row) return std::nullopt;
     return [&, manifest = *std::move(row)](Workspace &workspace) {
       if (arguments.failed) return unanswered(manifest.number, dataset.idOf(manifest), "failed", *arguments.failed);
-      return answerRow(dataset, manifest, arguments.query, library, workspace);
+      return answerRow(dataset, manifest, arguments, library, workspace);
     };
   };
   rows.write = [&](const std::string &text) { file.write(text); };

@@ -129,13 +129,13 @@ int answerCases(const Arguments &arguments, Console &console) {
 ConstraintCase readMotionCase(const Arguments &arguments, const World &world, Warnings &warnings) {
   ConstraintCase out;
   MotionCase motion;
-  motion.trajectory = readTrajectory(arguments.trajectory, warnings);
-  adoptBase(world.srdf.virtual_joints, motion.trajectory);
-  motion.rest = restOf(motion.trajectory, world);
+  motion.trajectory = readOwnTrajectory(arguments, world, warnings);
   motion.stop = interrupted;
   try {
+    const Rest rest = restOf(motion.trajectory, world);
+    motion.rest = rest.joints;
     motion.robot = std::make_shared<const PreparedRobot>(world.snapshot, world.srdf.disabled, motion.trajectory.base,
-                                                         motion.trajectory.base_joints);
+                                                         motion.trajectory.base_joints, rest.place);
     const RobotMotion tried(*motion.robot, motion.trajectory, motion.rest);
     for (const std::string &sentence : tried.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
     motion.other_robots = furtherRobots(arguments, world);

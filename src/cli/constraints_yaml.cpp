@@ -97,7 +97,8 @@ ParameterMap parseParameters(const std::string &text) {
   }
   for (const auto &entry : root) {
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    out[name] = toParameterValue(entry.second, name);
+    if (!out.emplace(name, toParameterValue(entry.second, name)).second)
+      throw BadUsage("--parameters: " + name + " is given twice");
   }
   return out;
 }

@@ -37,14 +37,25 @@ Interpolation interpolationFromName(const std::string &name) {
   throw BadInput("interpolation is '" + name + "'; it must be linear, cubic or quintic");
 }
 
+/* Others are not known here; the reader of YAML says what it makes of them. */
+void requireKeys(const Json &map, std::initializer_list<const char *> known) {
+  for (const auto &member : map.members)
+    if (std::find(known.begin(), known.end(), member.first) == known.end())
+      throw BadInput("the trajectory's key '" + member.first + "' is not known here: use a YAML file");
+}
+
 double timeOf(const Json &value) {
   if (value.kind != Json::Kind::MAP) return value.number("time_from_start");
-  const Json *seconds = value.find("secs"), *nanoseconds = value.find("nsecs");
+  const bool second = value.find("sec") || value.find("nanosec"); /* of ROS 2 */
+  const char *const keys[] = {second ? "sec" : "secs", second ? "nanosec" : "nsecs"};
+  requireKeys(value, {keys[0], keys[1]});
+  const Json *seconds = value.find(keys[0]), *nanoseconds = value.find(keys[1]);
   if (!seconds && !nanoseconds) throw BadInput("time_from_start needs secs or nsecs");
   return (seconds ? seconds->number("secs") : 0.0) + 1e-9 * (nanoseconds ? nanoseconds->number("nsecs") : 0.0);
 }
 
 TrajectoryPoint toPoint(const Json &value) {
+  requireKeys(value, {"positions", "velocities", "accelerations", "effort", "time_from_start"});
   TrajectoryPoint out;
   const auto list = [&](const char *key) {
     const Json *found = value.find(key);
@@ -73,16 +84,13 @@ std::string idIn(const Json &row, std::size_t number) {
 
 TrajectoryDescription toTrajectory(const Json &value) {
   if (value.kind != Json::Kind::MAP) throw BadInput("the trajectory must be a map with joint_trajectory");
-  for (const auto &member : value.members) {
-    for (const char *known : {"joint_trajectory", "interpolation", "fixed_joints", "robot", "scene", ""}) {
-      if (!*known) throw BadInput("the trajectory's key '" + member.first + "' is not known here: use a YAML file");
-      if (member.first == known) break;
-    }
-  }
+  requireKeys(value, {"joint_trajectory", "interpolation", "shortest_way", "fixed_joints", "robot", "scene"});
   TrajectoryDescription out;
   const Json *trajectory = value.find("joint_trajectory");
   if (!trajectory || !trajectory->find("joint_names") || !trajectory->find("points"))
     throw BadInput("the trajectory needs joint_trajectory with joint_names and points");
+  requireKeys(*trajectory, {"header", "joint_names", "points"});
+  if (const Json *way = value.find("shortest_way")) out.shortest_way = way->truth("shortest_way");
   if (const Json *interpolation = value.find("interpolation"))
     out.interpolation = interpolationFromName(interpolation->text("interpolation"));
   if (const Json *fixed = value.find("fixed_joints")) {

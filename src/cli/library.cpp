@@ -52,7 +52,7 @@ std::string digestOfFile(const std::string &path, bool with_meshes) {
   return toHex(hasher.finish());
 }
 
-PreparedRobot Place::prepared(const TrajectoryDescription &trajectory) const {
+PreparedRobot Place::prepared(const TrajectoryDescription &trajectory, const Eigen::Isometry3d &place) const {
   constexpr std::size_t kMostBases = 16; /* a dataset has one, or none */
   std::string key = std::to_string(trajectory.base.size());
   for (const VirtualJoint &joint : trajectory.base)
@@ -64,7 +64,8 @@ PreparedRobot Place::prepared(const TrajectoryDescription &trajectory) const {
   if (found != prepared_.end()) return found->second;
   if (prepared_.size() == kMostBases) prepared_.clear();
   return prepared_
-      .emplace(key, PreparedRobot(world->snapshot, world->srdf.disabled, trajectory.base, trajectory.base_joints))
+      .emplace(key,
+               PreparedRobot(world->snapshot, world->srdf.disabled, trajectory.base, trajectory.base_joints, place))
       .first->second;
 }
 

@@ -23,9 +23,9 @@ struct Place {
   std::string fault;
   bool missing = false; /**< a file that is named is not there */
 
-  /** The robot made ready for the motions of this trajectory's base: once for all of them. Throws Error as
-   * PreparedRobot does. Any number of threads. */
-  PreparedRobot prepared(const TrajectoryDescription &trajectory) const;
+  /** The robot made ready for the motions of this trajectory's base, or where it stands: once for all of them. Throws
+   *  Error as PreparedRobot does. Any number of threads. */
+  PreparedRobot prepared(const TrajectoryDescription &trajectory, const Eigen::Isometry3d &place) const;
 
  private:
   mutable std::mutex mutex_;

@@ -32,7 +32,7 @@ MovingRobot load(const MovingRobotFile &file, const std::string &scene) {
     const Srdf srdf = file.srdf.empty() ? Srdf() : readSrdf(file.srdf);
     const Scene own(readRobot(file.urdf), {}, allowedPairs(srdf));
     TrajectoryDescription trajectory = file.trajectory;
-    adoptBase(srdf.virtual_joints, trajectory);
+    adoptBase(srdf.virtual_joints, *own.snapshot()->robot(), trajectory);
     return {file.name,
             std::make_shared<const RobotMotion>(own.snapshot(), trajectory, trajectory.fixed_joints, srdf.disabled,
                                                 file.base),
@@ -130,6 +130,9 @@ int answer(const Arguments &arguments, const World &world, std::shared_ptr<const
   checkAsked(arguments);
   const MovingWorld moving = gatherMovers(arguments, world, std::move(motion));
   const RobotMotion *robot = moving.subject ? moving.subject->motion.get() : nullptr;
+  for (const MovingRobot &other : moving.others)
+    for (const std::string &sentence : other.motion->warnings())
+      warnings.add(arguments.scene + ": moving robot '" + other.name + "': " + sentence);
   Query query = arguments.query;
   query.options.stop = interrupted;
   query.second_opinion = secondOpinions(arguments, world.resources);

@@ -85,18 +85,31 @@ std::vector<std::string> objectsOf(const World &world, bool self, const Argument
 
 } // namespace
 
-JointPositions restOf(const TrajectoryDescription &trajectory, const World &world) {
-  JointPositions out = world.scene_joints;
-  for (const auto &[joint, value] : trajectory.fixed_joints) out[joint] = value;
-  for (const auto &[joint, value] : world.state) out[joint] = value;
+Rest restOf(const TrajectoryDescription &trajectory, const World &world) {
+  Rest out;
+  out.joints = world.scene_joints;
+  for (const auto &[joint, value] : trajectory.fixed_joints) out.joints[joint] = value;
+  for (const auto &[joint, value] : world.state) out.joints[joint] = value;
+  out.place = placeOf(trajectory, world.base, out.joints);
+  return out;
+}
+
+TrajectoryDescription readOwnTrajectory(const Arguments &arguments, const World &world, Warnings &warnings) {
+  TrajectoryDescription out = readTrajectory(arguments.trajectory, warnings);
+  out.shortest_way = out.shortest_way || arguments.shortest_way;
+  try {
+    if (world.snapshot->robot()) adoptBase(world.srdf.virtual_joints, *world.snapshot->robot(), out);
+  } catch (const Error &e) {
+    throw BadUsage(arguments.trajectory + ": " + e.what());
+  }
   return out;
 }
 
 RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings &warnings) {
-  TrajectoryDescription trajectory = readTrajectory(arguments.trajectory, warnings);
-  adoptBase(world.srdf.virtual_joints, trajectory); /* where the file does not name it itself */
+  const TrajectoryDescription trajectory = readOwnTrajectory(arguments, world, warnings);
   try {
-    return RobotMotion(world.snapshot, trajectory, restOf(trajectory, world), world.srdf.disabled);
+    const Rest rest = restOf(trajectory, world);
+    return RobotMotion(world.snapshot, trajectory, rest.joints, world.srdf.disabled, rest.place);
   } catch (const Error &e) {
     throw BadUsage(arguments.trajectory + ": " + e.what());
   }

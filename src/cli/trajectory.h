@@ -12,8 +12,15 @@ namespace curve_proximity::cli {
 /** Reads --trajectory. Throws BadUsage with one line. */
 RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings &warnings);
 
-/** Joints that the trajectory does not move: --state, then its own fixed_joints, then the scene's robot_state. */
-JointPositions restOf(const TrajectoryDescription &trajectory, const World &world);
+/** Reads --trajectory, for the world's robot. Throws BadUsage with one line. */
+TrajectoryDescription readOwnTrajectory(const Arguments &arguments, const World &world, Warnings &warnings);
+
+/** What a trajectory does not move. */
+struct Rest {
+  JointPositions joints;   /**< --state, then its own fixed_joints, then the scene's robot_state */
+  Eigen::Isometry3d place; /**< of the robot's root link, or of the frame that its base moves in */
+};
+Rest restOf(const TrajectoryDescription &trajectory, const World &world);
 
 } // namespace curve_proximity::cli
 #endif

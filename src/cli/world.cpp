@@ -20,31 +20,29 @@ namespace {
 /* The robot, and where its links are at the scene's robot_state (which frames speak of) and at the state asked for. */
 struct PlacedRobot {
   std::shared_ptr<const Robot> robot; /* null: there is none */
-  std::set<std::string> fixed;        /* names that the fixed frame has because of it */
-  LinkPoses links_of_scene, links_now;
-  JointPositions scene_joints, state;
+  RobotPlace of_scene;
+  LinkPoses links_now;
+  JointPositions state;
   Srdf srdf;
 };
 
-PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, const RobotSource &robots,
+PlacedRobot readPlaced(const Arguments &arguments, const SceneFile &file, const RobotSource &robots,
                        Warnings &warnings) {
   PlacedRobot out;
   if (arguments.robot.empty()) return out;
   out.robot = robots ? robots(arguments.robot) : readRobot(arguments.robot, arguments.mesh_tolerance);
-  out.fixed.insert(out.robot->rootLink());
-  if (!arguments.srdf.empty()) {
-    /* the robot stands in the parent frame of its first virtual joint */
-    out.srdf = readSrdf(arguments.srdf);
-    if (!out.srdf.virtual_joints.empty()) out.fixed.insert(out.srdf.virtual_joints.front().parent_frame);
-  }
-
-  out.scene_joints = jointsOf(file, *out.robot, warnings);
-  out.state = readState(arguments.state, *out.robot);
-  JointPositions joints = out.scene_joints;
+  for (const std::string &sentence : out.robot->warnings()) warnings.add(arguments.robot + ": " + sentence);
+  if (!arguments.srdf.empty()) out.srdf = readSrdf(arguments.srdf);
   try {
-    out.links_of_scene = out.robot->linkPoses(joints);
-    for (const auto &[joint, value] : out.state) joints[joint] = value;
-    out.links_now = out.robot->linkPoses(joints);
+    out.of_scene = placeRobot(file, *out.robot, out.srdf.virtual_joints, warnings);
+  } catch (const Error &e) {
+    throw BadUsage(arguments.scene + ": " + e.what());
+  }
+  out.state = readState(arguments.state, *out.robot);
+  JointPositions joints = out.of_scene.joints;
+  for (const auto &[joint, value] : out.state) joints[joint] = value;
+  try {
+    out.links_now = out.robot->linkPoses(joints, out.of_scene.base);
   } catch (const Error &e) {
     throw BadUsage(arguments.robot + ": " + e.what());
   }
@@ -68,9 +66,9 @@ void warnOfOpenMeshes(const Snapshot &snapshot, Warnings &warnings) {
   }
 }
 
-/* What takes no part: what the file holds in vain, and links that nothing can come close to. */
-std::vector<std::string> skippedOf(const SceneFile &file, const PlacedRobot &robot) {
-  std::vector<std::string> out = file.skipped;
+/* What takes no part: links that nothing can come close to. */
+std::vector<std::string> skippedOf(const PlacedRobot &robot) {
+  std::vector<std::string> out;
   if (!robot.robot) return out;
   for (const auto &[link, geometry] : robot.robot->links()) {
     if (geometry.empty()) out.push_back("link '" + link + "': it has no collision geometry");
@@ -158,9 +156,9 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
   const Clock::time_point start = Clock::now();
   const SceneFile file = arguments.scene.empty() ? SceneFile() : readScene(arguments.scene, warnings);
   const Clock::time_point robot_start = Clock::now();
-  const PlacedRobot robot = placeRobot(arguments, file, robots, warnings);
+  const PlacedRobot robot = readPlaced(arguments, file, robots, warnings);
   const double robot_seconds = since(robot_start);
-  const Frames frames(robot.fixed, file.transforms, robot.links_of_scene, warnings);
+  const Frames frames(robot.of_scene.fixed, file.transforms, robot.of_scene.links, warnings);
 
   /* mesh files of the scene are relative to its folder */
   ResourceOptions resources;
@@ -169,23 +167,21 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
   resources.mesh_tolerance = arguments.mesh_tolerance;
   Scene scene(robot.robot, resources, allowedPairs(robot.srdf));
   try {
-    apply(scene, toFixedChange(file, frames, robot.robot.get(), robot.links_of_scene, warnings));
+    apply(scene, toFixedChange(file, frames, robot.robot.get(), robot.of_scene.links, warnings));
   } catch (const BadUsage &e) {
     throw BadUsage(arguments.scene + ": " + e.what());
   }
   warnOfOpenMeshes(*scene.snapshot(), warnings);
   std::optional<Ride> ride;
   if (!arguments.path.empty()) ride = readRide(arguments, frames, robot, warnings);
-  return {scene.snapshot(),
-          robot.links_now,
-          robot.scene_joints,
-          robot.state,
-          robot.srdf,
-          skippedOf(file, robot),
-          timingsOf(robot, robot_seconds, since(start)),
-          file.moving_robots,
-          resources,
-          std::move(ride)};
+  if (ride && !warnings.coverage().complete()) { /* what was said of --path and --body, too */
+    SceneChange told;
+    told.coverage = warnings.coverage();
+    apply(scene, told);
+  }
+  return {scene.snapshot(),   robot.links_now, robot.of_scene.joints, robot.of_scene.base,
+          robot.state,        robot.srdf,      skippedOf(robot),      timingsOf(robot, robot_seconds, since(start)),
+          file.moving_robots, resources,       std::move(ride)};
 }
 
 std::shared_ptr<const SecondOpinions> secondOpinions(const Arguments &arguments, const ResourceOptions &resources) {

@@ -32,6 +32,7 @@ struct World {
   SnapshotPtr snapshot;
   LinkPoses links;                            /**< empty without a robot */
   JointPositions scene_joints;                /**< the scene's robot_state, as far as the robot has its joints */
+  Eigen::Isometry3d base;                     /**< where the scene's robot_state puts the robot's root link */
   JointPositions state;                       /**< --state */
   Srdf srdf;                                  /**< empty without --srdf */
   std::vector<std::string> skipped;           /**< what takes no part, a sentence each */

@@ -52,6 +52,7 @@ void PythonScene::load(const std::string &path) {
   warn(path, contents.warnings);
   change(contents.change);
   for (const auto &[joint, value] : contents.joints) joints_[joint] = value;
+  if (contents.change.clear || !contents.base.matrix().isIdentity(0.0)) base_ = contents.base;
 }
 
 void PythonScene::add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
@@ -178,9 +179,12 @@ std::shared_ptr<LoadedRobot> load(const std::string &urdf, const std::optional<s
       throw Error(path + ": " + e.what(), e.status());
     }
   };
-  const py::gil_scoped_release release;
-  out->robot = read(urdf, [&](const std::string &text) { return Robot::fromUrdf(text, options); });
-  if (srdf) out->srdf = read(*srdf, [](const std::string &text) { return parseSrdf(text); });
+  {
+    const py::gil_scoped_release release;
+    out->robot = read(urdf, [&](const std::string &text) { return Robot::fromUrdf(text, options); });
+    if (srdf) out->srdf = read(*srdf, [](const std::string &text) { return parseSrdf(text); });
+  }
+  warn(urdf, out->robot->warnings());
   return out;
 }
 
@@ -200,22 +204,29 @@ void requireRows(const Array &rows, std::size_t n, std::size_t joints, const cha
 std::shared_ptr<RobotMotion> move(const PythonScene &scene, TrajectoryDescription trajectory,
                                   const JointPositions &rest, const std::optional<Array> &base) {
   if (!scene.robot()) throw Error("the scene has no robot");
-  adoptBase(scene.robot()->srdf.virtual_joints, trajectory);
-  const Eigen::Isometry3d at = toTransform(base);
-  const py::gil_scoped_release release;
-  return std::make_shared<RobotMotion>(scene.snapshot(), trajectory, rest, scene.robot()->srdf.disabled, at);
+  adoptBase(scene.robot()->srdf.virtual_joints, *scene.robot()->robot, trajectory);
+  JointPositions still = scene.rest(trajectory.fixed_joints);
+  for (const auto &[joint, value] : rest) still[joint] = value;
+  const Eigen::Isometry3d at = base ? toTransform(base) : placeOf(trajectory, scene.base(), still);
+  std::shared_ptr<RobotMotion> out;
+  {
+    const py::gil_scoped_release release;
+    out = std::make_shared<RobotMotion>(scene.snapshot(), trajectory, still, scene.robot()->srdf.disabled, at);
+  }
+  warn(trajectory.id, longWays(*scene.robot()->robot, trajectory));
+  return out;
 }
 
 std::shared_ptr<RobotMotion> makeMotion(const PythonScene &scene, const std::vector<std::string> &joints,
                                         const std::vector<double> &times, const Array &positions,
                                         const std::optional<Array> &velocities,
                                         const std::optional<Array> &accelerations, const JointPositions &rest,
-                                        const std::optional<Array> &base) {
+                                        const std::optional<Array> &base, bool shortest_way) {
   requireRows(positions, times.size(), joints.size(), "positions");
   if (velocities) requireRows(*velocities, times.size(), joints.size(), "velocities");
   if (accelerations) requireRows(*accelerations, times.size(), joints.size(), "accelerations");
   TrajectoryDescription trajectory;
-  trajectory.id = "trajectory", trajectory.joints = joints;
+  trajectory.id = "trajectory", trajectory.joints = joints, trajectory.shortest_way = shortest_way;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const auto k = static_cast<py::ssize_t>(i);
     TrajectoryPoint point;
@@ -224,11 +235,11 @@ std::shared_ptr<RobotMotion> makeMotion(const PythonScene &scene, const std::vec
     if (accelerations) point.accelerations = row(*accelerations, k);
     trajectory.points.push_back(std::move(point));
   }
-  return move(scene, std::move(trajectory), scene.rest(rest), base);
+  return move(scene, std::move(trajectory), rest, base);
 }
 
 std::shared_ptr<RobotMotion> loadMotion(const PythonScene &scene, const std::string &path, const JointPositions &rest,
-                                        const std::optional<Array> &base) {
+                                        const std::optional<Array> &base, bool shortest_way) {
   std::vector<std::string> warnings;
   TrajectoryDescription trajectory;
   {
@@ -236,9 +247,8 @@ std::shared_ptr<RobotMotion> loadMotion(const PythonScene &scene, const std::str
     trajectory = loadTrajectoryFile(path, &warnings);
   }
   warn(path, warnings);
-  JointPositions still = scene.rest(trajectory.fixed_joints);
-  for (const auto &[joint, value] : rest) still[joint] = value;
-  return move(scene, std::move(trajectory), still, base);
+  trajectory.shortest_way = trajectory.shortest_way || shortest_way;
+  return move(scene, std::move(trajectory), rest, base);
 }
 
 py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
@@ -433,14 +443,18 @@ void addRobots(py::module &module) {
       "The robot of a scene along a joint trajectory, in the scene as it was when the motion was made.\n"
       "links, objects of its queries: of these alone, names of links() and of the scene; with self_collision pairs of "
       "which\na link is one, and no objects.")
-      .def(py::init(&makeMotion), py::arg("scene"), py::arg("joints"), py::arg("times"), py::arg("positions"),
-           py::arg("velocities") = py::none(), py::arg("accelerations") = py::none(),
-           py::arg("rest") = JointPositions{}, py::arg("base") = py::none(),
-           "Waypoints: times (n,) [s], positions (n, joints); with velocities the motion is cubic between them, with\n"
-           "accelerations too quintic, else linear. rest: values of the other joints by name.")
-      .def_static("from_file", &loadMotion, py::arg("scene"), py::arg("path"), py::arg("rest") = JointPositions{},
-                  py::arg("base") = py::none(),
-                  "The trajectory of a file (YAML). rest: joints that stand elsewhere than the files say.")
+      .def(
+          py::init(&makeMotion), py::arg("scene"), py::arg("joints"), py::arg("times"), py::arg("positions"),
+          py::arg("velocities") = py::none(), py::arg("accelerations") = py::none(), py::arg("rest") = JointPositions{},
+          py::arg("base") = py::none(), py::arg("shortest_way") = false,
+          "Waypoints: times (n,) [s], positions (n, joints); with velocities the motion is cubic between them, with\n"
+          "accelerations too quintic, else linear. rest: values of the other joints by name. shortest_way: continuous\n"
+          "joints turn the shorter way between two waypoints.")
+      .def_static(
+          "from_file", &loadMotion, py::arg("scene"), py::arg("path"), py::arg("rest") = JointPositions{},
+          py::arg("base") = py::none(), py::arg("shortest_way") = false,
+          "The trajectory of a file (YAML). rest: joints that stand elsewhere than the files say. shortest_way:\n"
+          "continuous joints turn the shorter way between two waypoints.")
       .def_property_readonly("domain", &RobotMotion::domain, "[s] The first and the last time.")
       .def(
           "link_poses",

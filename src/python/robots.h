@@ -70,6 +70,10 @@ class PythonScene {
   const LoadedRobot *robot() const {
     return robot_.get();
   }
+  /** Where the scene's files put the robot's root link. */
+  const Eigen::Isometry3d &base() const {
+    return base_;
+  }
   /** Where joints stand that a motion does not move: as the scene's files say, or better, as the caller does. */
   JointPositions rest(const JointPositions &given) const {
     JointPositions out = joints_;
@@ -81,6 +85,7 @@ class PythonScene {
   std::shared_ptr<LoadedRobot> robot_;
   Scene scene_;
   JointPositions joints_;
+  Eigen::Isometry3d base_ = Eigen::Isometry3d::Identity();
 };
 
 using Names = std::vector<std::string>;

@@ -251,7 +251,7 @@ MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work)
   checkTrajectory(out.trajectory);
 
   // Where the robot stands, or the frame that its virtual joint moves in.
-  adoptBase(live_.srdf.virtual_joints, out.trajectory);
+  adoptBase(live_.srdf.virtual_joints, *work.snapshot->robot(), out.trajectory);
   const bool on_joint = !out.trajectory.base.empty();
   const ros::Time &stamp = message.trajectory.header.stamp;
   const Eigen::Isometry3d base = on_joint ? work.lookup.toFixed(out.trajectory.base.front().parent_frame, stamp)

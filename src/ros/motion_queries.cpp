@@ -267,7 +267,9 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
   try {
     if (!why_not.empty()) throw Error(why_not);
     const Robot &robot = *work.snapshot->robot();
-    adoptBase(live_.srdf.virtual_joints, trajectory);
+    adoptBase(live_.srdf.virtual_joints, robot, trajectory);
+    std::string told = remark;
+    for (const std::string &way : longWays(robot, trajectory)) told += (told.empty() ? "" : "; ") + way;
     const Eigen::Isometry3d base = trajectory.base.empty()
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
                                        : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
@@ -308,7 +310,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
       response.results.emplace_back();
       Proximity &row = response.results.back();
       fillRow(answer, environment, request.asking, row);
-      if (answer.result.status >= 0) addRemark(remark, row);
+      if (answer.result.status >= 0) addRemark(told, row);
       work.doubts.objects(environment, answer.kind == Proximity::KIND_ENVIRONMENT);
       work.doubts.ages(work.lookup.age(), work.joints.age);
       work.doubts.apply(row);

@@ -35,7 +35,7 @@ MovingRobot toMovingRobot(const RobotTrajectory &message, const FurtherRobots &r
     std::string remark;
     TrajectoryDescription trajectory = toDescription(message.trajectory, rest, remark);
     if (!remark.empty()) throw Error(remark);
-    adoptBase(robot.srdf.virtual_joints, trajectory);
+    adoptBase(robot.srdf.virtual_joints, *robot.alone->robot(), trajectory);
     const std_msgs::Header &header = message.base.header;
     const Eigen::Isometry3d base = lookup.toFixed(header.frame_id, header.stamp) * poseOf(message.base.pose);
     const std::int64_t stamp = static_cast<std::int64_t>(message.trajectory.header.stamp.toNSec());

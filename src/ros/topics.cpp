@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "topics.h"
 
+#include "../scene/free_joints.h"
 #include "../scene/path_times.h"
 #include "geometry_message.h"
 
@@ -128,23 +129,6 @@ namespace {
 
 using trajectory_msgs::MultiDOFJointTrajectory;
 
-struct FreeJoint {
-  std::string name;
-  bool planar = false;
-  std::string parent;
-};
-
-std::optional<FreeJoint> findJoint(const std::string &name, const Robot &robot, const Srdf &srdf) {
-  for (const VirtualJoint &joint : srdf.virtual_joints)
-    if (joint.name == name && joint.type != "fixed") return FreeJoint{name, joint.type == "planar", joint.parent_frame};
-  for (const Robot::Joint &joint : robot.joints()) {
-    if (joint.name != name) continue;
-    if (joint.type == Robot::JointType::PLANAR) return FreeJoint{name, true, joint.parent};
-    if (joint.type == Robot::JointType::FLOATING) return FreeJoint{name, false, joint.parent};
-  }
-  return std::nullopt;
-}
-
 const geometry_msgs::Transform &transformOf(const MultiDOFJointTrajectory &trajectory, std::size_t point,
                                             std::size_t joint) {
   const auto &transforms = trajectory.points[point].transforms;
@@ -172,40 +156,26 @@ Eigen::Quaterniond rotationOf(const geometry_msgs::Transform &transform, const s
 /** Appends the columns of one joint to all points. */
 void addColumns(const MultiDOFJointTrajectory &trajectory, std::size_t j, const FreeJoint &joint,
                 trajectory_msgs::JointTrajectory &out) {
-  static const char *const planar[] = {"/x", "/y", "/theta"};
-  static const char *const floating[] = {"/trans_x", "/trans_y", "/trans_z", "/rot_x", "/rot_y", "/rot_z", "/rot_w"};
-  if (joint.planar) {
-    for (const char *part : planar) out.joint_names.push_back(joint.name + part);
-  } else {
-    for (const char *part : floating) out.joint_names.push_back(joint.name + part);
-  }
-
-  constexpr double FLAT = 1e-6; /* a rotation out of the plane by more than twice this [rad] is no planar joint's */
-  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-  double theta = 0.0;
+  std::vector<cprox_pose> poses;
   for (std::size_t i = 0; i < trajectory.points.size(); ++i) {
-    const std::string where = "point " + std::to_string(i) + ", joint '" + joint.name + "'";
     const geometry_msgs::Transform &transform = transformOf(trajectory, i, j);
-    q = rotationOf(transform, where, q);
     const auto &p = transform.translation;
-    std::vector<double> &row = out.points[i].positions;
-    if (!joint.planar) {
-      row.insert(row.end(), {p.x, p.y, p.z, q.x(), q.y(), q.z(), q.w()});
-      continue;
-    }
-    if (std::hypot(q.x(), q.y()) > FLAT || std::abs(p.z) > FLAT)
-      throw Error(where + ": the transform leaves the joint's plane");
-    const double turn = 2.0 * std::atan2(q.z(), q.w());
-    theta += std::remainder(turn - theta, 2.0 * M_PI);
-    row.insert(row.end(), {p.x, p.y, theta});
+    const auto &q = transform.rotation;
+    poses.push_back({{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
   }
+  for (const std::string &name : variablesOf(joint)) out.joint_names.push_back(name);
+  const std::vector<std::vector<double>> values = valuesAt(poses, joint);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    out.points[i].positions.insert(out.points[i].positions.end(), values[i].begin(), values[i].end());
 }
 
 } // namespace
 
 bool movesRobot(const MultiDOFJointTrajectory &trajectory, const Robot *robot, const Srdf &srdf) {
-  return robot && std::any_of(trajectory.joint_names.begin(), trajectory.joint_names.end(),
-                              [&](const std::string &name) { return findJoint(name, *robot, srdf).has_value(); });
+  return robot &&
+         std::any_of(trajectory.joint_names.begin(), trajectory.joint_names.end(), [&](const std::string &name) {
+           return findFreeJoint(name, *robot, srdf.virtual_joints).has_value();
+         });
 }
 
 trajectory_msgs::JointTrajectory toJointTrajectory(const MultiDOFJointTrajectory &trajectory, const Robot &robot,
@@ -216,7 +186,7 @@ trajectory_msgs::JointTrajectory toJointTrajectory(const MultiDOFJointTrajectory
   for (std::size_t i = 0; i < trajectory.points.size(); ++i)
     out.points[i].time_from_start = trajectory.points[i].time_from_start;
   for (std::size_t j = 0; j < trajectory.joint_names.size(); ++j) {
-    const std::optional<FreeJoint> joint = findJoint(trajectory.joint_names[j], robot, srdf);
+    const std::optional<FreeJoint> joint = findFreeJoint(trajectory.joint_names[j], robot, srdf.virtual_joints);
     if (!joint) throw Error("joint '" + trajectory.joint_names[j] + "' is no planar or floating joint of the robot");
     const std::string &frame = trajectory.header.frame_id;
     if (!frame.empty() && frame != joint->parent)

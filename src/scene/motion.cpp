@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "motion_data.h"
+#include "short_way.h"
 
 namespace curve_proximity {
 namespace {
@@ -176,6 +177,16 @@ std::unique_ptr<RobotMotion::Data> startOf(const PreparedRobot &robot, const std
   return data;
 }
 
+/* What can only be told of a scene, and what adoptBase() has not resolved. */
+void checkFor(const Snapshot &scene, const TrajectoryDescription &trajectory) {
+  if (!trajectory.free_joints.empty())
+    throw Error("the trajectory has poses of joint '" + trajectory.free_joints.front().joint +
+                "': adoptBase() makes values of them");
+  for (const std::string &id : trajectory.carried)
+    if (scene.attached().count(id) == 0)
+      throw Error("a link carries '" + id + "' when the motion begins, and in the scene none does: attach it there");
+}
+
 void finish(const std::vector<std::string> &links, RobotMotion::Data &data) {
   choosePairs(links, data);
   data.warnings = beyondLimits(*data.kinematics, *data.core);
@@ -203,9 +214,19 @@ const SnapshotPtr &PreparedRobot::snapshot() const {
 RobotMotion::RobotMotion(const PreparedRobot &robot, const TrajectoryDescription &trajectory,
                          const JointPositions &rest, const std::vector<std::string> &links) {
   checkTrajectory(trajectory);
+  checkFor(*robot.snapshot(), trajectory);
   auto data = startOf(robot, trajectory.id);
-  makeMotion(trajectory, rest, *data);
+  const Robot &model = *data->kinematics->robot;
+  if (trajectory.shortest_way) {
+    TrajectoryDescription shortened = trajectory;
+    takeShortWays(model, shortened);
+    makeMotion(shortened, rest, *data);
+  } else {
+    makeMotion(trajectory, rest, *data);
+  }
   finish(links, *data);
+  const std::vector<std::string> ways = longWays(model, trajectory);
+  data->warnings.insert(data->warnings.end(), ways.begin(), ways.end());
   data_ = std::move(data);
 }
 

@@ -10,6 +10,8 @@
 #include <curve_proximity/core.hpp>
 #include <curve_proximity/robot.hpp>
 
+#include "xacro.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -22,6 +24,15 @@ std::string required(const XMLElement &element, const char *name) {
     throw Error("line " + std::to_string(element.GetLineNum()) + ": <" + element.Name() + "> has no " + name);
   }
   return text;
+}
+
+/* Elements that others than MoveIt read are none of these, and look like none of these. */
+void refuseMisspelt(const XMLElement &parent, const std::vector<std::string> &known) {
+  for (const XMLElement *e = parent.FirstChildElement(); e; e = e->NextSiblingElement()) {
+    const std::string meant = didYouMean(e->Name(), known);
+    if (meant.empty() || std::find(known.begin(), known.end(), e->Name()) != known.end()) continue;
+    throw Error("line " + std::to_string(e->GetLineNum()) + ": <" + e->Name() + "> is not known" + meant);
+  }
 }
 
 VirtualJoint readVirtualJoint(const XMLElement &element) {
@@ -46,6 +57,7 @@ std::vector<std::string> readNames(const XMLElement &group, const char *element)
 SrdfGroup readGroup(const XMLElement &element) {
   SrdfGroup group;
   group.name = required(element, "name");
+  refuseMisspelt(element, {"link", "joint", "group", "chain"});
   group.links = readNames(element, "link");
   group.joints = readNames(element, "joint");
   group.groups = readNames(element, "group");
@@ -72,6 +84,11 @@ Srdf parseSrdf(const std::string &xml) {
   }
   const XMLElement *robot = document.FirstChildElement("robot");
   if (!robot) throw Error("no SRDF: it has no <robot>");
+  refuseXacro(*robot,
+              {"virtual_joint", "group", "disable_collisions", "enable_collisions", "disable_default_collisions"});
+  refuseMisspelt(*robot,
+                 {"virtual_joint", "group", "group_state", "end_effector", "disable_collisions", "enable_collisions",
+                  "disable_default_collisions", "passive_joint", "joint_property", "link_sphere_approximation"});
 
   Srdf out;
   for (const XMLElement *e = robot->FirstChildElement("virtual_joint"); e; e = e->NextSiblingElement("virtual_joint")) {

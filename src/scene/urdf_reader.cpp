@@ -1,146 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* From URDF text to a Robot. urdfdom parses; what it drops without a word is found by counting, and refused. */
+/* From URDF text, or from a model that urdfdom has read, to a Robot. */
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <exception>
-#include <locale>
 #include <map>
 #include <set>
-#include <sstream>
 #include <system_error>
 #include <thread>
 #include <utility>
-
-#include <tinyxml2.h>
-#include <urdf_parser/urdf_parser.h>
 
 #include <curve_proximity/urdf_model.hpp>
 
 #include "joint_parts.h"
 #include "mesh.h"
 #include "placing.h"
+#include "urdf_document.h"
 
 namespace curve_proximity {
 namespace {
-
-using tinyxml2::XMLElement;
-
-std::string attribute(const XMLElement &element, const char *name) {
-  const char *text = element.Attribute(name);
-  return text ? text : "";
-}
-
-/* ---- the document, before urdfdom sees it ---- */
-
-/* Elements that say nothing about where collision geometry is. urdfdom gives up on a whole link where it dislikes one
- * of them, so they are taken out. */
-void stripTo(XMLElement &parent, const std::set<std::string> &wanted) {
-  for (XMLElement *child = parent.FirstChildElement(); child;) {
-    XMLElement *next = child->NextSiblingElement();
-    if (!wanted.count(child->Name())) parent.DeleteChild(child);
-    child = next;
-  }
-}
-
-/* Why an attribute is not n finite numbers; "" where it is, or is not there. */
-std::string numbersFault(const XMLElement *element, const char *name, int n) {
-  const char *text = element ? element->Attribute(name) : nullptr;
-  if (!text) return "";
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  int found = 0;
-  for (double x; stream >> x;) found += std::isfinite(x) ? 1 : 0;
-  if (stream.eof() && found == n) return "";
-  const std::string wanted = n == 1 ? " is not one finite number" : " is not " + std::to_string(n) + " finite numbers";
-  return std::string(element->Name()) + " " + name + "='" + text + "'" + wanted;
-}
-
-std::string originFault(const XMLElement &parent) {
-  const XMLElement *origin = parent.FirstChildElement("origin");
-  const std::string fault = numbersFault(origin, "xyz", 3);
-  return fault.empty() ? numbersFault(origin, "rpy", 3) : fault;
-}
-
-/* What is wrong with a collision element that urdfdom will not tell; "" where nothing is seen. */
-std::string collisionFault(const XMLElement &collision) {
-  const XMLElement *geometry = collision.FirstChildElement("geometry");
-  const XMLElement *shape = geometry ? geometry->FirstChildElement() : nullptr;
-  if (!shape) return "it has no geometry";
-  static const std::map<std::string, std::vector<std::pair<const char *, int>>> known = {
-      {"box", {{"size", 3}}},
-      {"sphere", {{"radius", 1}}},
-      {"cylinder", {{"length", 1}, {"radius", 1}}},
-      {"mesh", {{"scale", 3}}}};
-  const auto kind = known.find(shape->Name());
-  if (kind == known.end()) return std::string("geometry '") + shape->Name() + "' is not known to URDF";
-  for (const auto &[name, n] : kind->second) {
-    if (!shape->Attribute(name) && kind->first != "mesh") return kind->first + " has no " + name;
-    const std::string fault = numbersFault(shape, name, n);
-    if (!fault.empty()) return fault;
-  }
-  return originFault(collision);
-}
-
-void checkJointElement(const XMLElement &joint) {
-  const std::string name = attribute(joint, "name");
-  if (name.empty()) throw Error("a joint has no name");
-  const std::string who = "joint '" + name + "': ";
-
-  // A type that there is, two ends, limits where they are needed.
-  static const std::set<std::string> types = {"revolute", "continuous", "prismatic", "fixed", "planar", "floating"};
-  const std::string type = attribute(joint, "type");
-  if (!types.count(type)) throw Error(who + "its type '" + type + "' is not known to URDF");
-  for (const char *end : {"parent", "child"}) {
-    const XMLElement *element = joint.FirstChildElement(end);
-    if (!element || attribute(*element, "link").empty()) throw Error(who + "it has no " + end + " link");
-  }
-  const XMLElement *limit = joint.FirstChildElement("limit");
-  if ((type == "revolute" || type == "prismatic") && !limit) throw Error(who + "a " + type + " joint needs limits");
-
-  // Numbers that are numbers.
-  const XMLElement *mimic = joint.FirstChildElement("mimic");
-  for (const std::string &fault :
-       {originFault(joint), numbersFault(joint.FirstChildElement("axis"), "xyz", 3), numbersFault(limit, "lower", 1),
-        numbersFault(limit, "upper", 1), numbersFault(mimic, "multiplier", 1), numbersFault(mimic, "offset", 1)}) {
-    if (!fault.empty()) throw Error(who + fault);
-  }
-}
-
-/* What stands in the document: for each link its collision elements, as the faults that are seen in them. */
-using Inventory = std::map<std::string, std::vector<std::string>>;
-
-void readLinkElements(XMLElement &robot, Inventory &inventory) {
-  for (XMLElement *link = robot.FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
-    const std::string name = attribute(*link, "name");
-    if (name.empty()) throw Error("a link has no name");
-    if (inventory.count(name)) throw Error("link '" + name + "' occurs twice");
-    stripTo(*link, {"collision"});
-    std::vector<std::string> &faults = inventory[name];
-    for (XMLElement *c = link->FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
-      faults.push_back(collisionFault(*c));
-    }
-  }
-  if (inventory.empty()) throw Error("the robot has no links");
-}
-
-void readJointElements(XMLElement &robot, const Inventory &inventory) {
-  std::set<std::string> joints, children;
-  for (XMLElement *joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint")) {
-    checkJointElement(*joint);
-    const std::string name = attribute(*joint, "name");
-    if (!joints.insert(name).second) throw Error("joint '" + name + "' occurs twice");
-    stripTo(*joint, {"parent", "child", "origin", "axis", "limit", "mimic"});
-    for (const char *end : {"parent", "child"}) {
-      const std::string link = attribute(*joint->FirstChildElement(end), "link");
-      if (!inventory.count(link)) {
-        throw Error("joint '" + name + "': its " + end + " link '" + link + "' does not exist");
-      }
-    }
-    const std::string child = attribute(*joint->FirstChildElement("child"), "link");
-    if (!children.insert(child).second) throw Error("link '" + child + "' is the child of two joints");
-  }
-}
 
 /* ---- urdfdom's types in Eigen's ---- */
 
@@ -159,9 +37,9 @@ Eigen::Isometry3d toPose(const urdf::Pose &pose, const std::string &who) {
   }
 }
 
-ShapeDescription describe(const urdf::Collision &collision, const std::string &who) {
+ShapeDescription describe(const urdf::Collision &collision) {
   ShapeDescription shape;
-  shape.pose = toPose(collision.origin, who);
+  shape.pose = toPose(collision.origin, "");
   const urdf::Geometry &geometry = *collision.geometry;
   switch (geometry.type) {
     case urdf::Geometry::SPHERE:
@@ -186,11 +64,19 @@ ShapeDescription describe(const urdf::Collision &collision, const std::string &w
       shape.resource = mesh.filename;
       shape.solid = true; // a link is made of something: what is wholly inside it hits it, where its mesh is closed
       shape.dimensions = {mesh.scale.x, mesh.scale.y, mesh.scale.z};
-      if (shape.resource.empty()) throw Error(who + "its mesh has no file name");
+      if (shape.resource.empty()) throw Error("its mesh has no file name");
       break;
     }
   }
   return shape;
+}
+
+UrdfElement elementOf(const urdf::Collision &collision) {
+  try {
+    return {describe(collision), ""};
+  } catch (const Error &error) {
+    return {{}, error.what()};
+  }
 }
 
 /* work(i) for all i < n, by so many threads (0: as many as the machine has). It must not throw. */
@@ -225,64 +111,47 @@ class RobotReader {
   explicit RobotReader(const RobotOptions &options) : options_(options), robot_(new Robot) {}
 
   std::shared_ptr<const Robot> read(const std::string &xml) {
-    // Well-formed, and structured as a URDF.
-    tinyxml2::XMLDocument document;
-    if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) {
-      throw Error("the URDF is no XML: " + std::string(document.ErrorStr()));
+    UrdfDocument document = readUrdf(xml);
+    for (const std::string &sentence : document.unknown) {
+      leaveOut(sentence);
+      robot_->coverage_.add(Gap::PARTIAL, sentence);
     }
-    XMLElement *root = document.FirstChildElement("robot");
-    if (!root) throw Error("the URDF has no <robot> element");
-    if (attribute(*root, "name").empty()) throw Error("the robot has no name");
-    stripTo(*root, {"link", "joint"});
-    Inventory inventory;
-    readLinkElements(*root, inventory);
-    readJointElements(*root, inventory);
-
-    // Parsed by urdfdom.
-    tinyxml2::XMLPrinter printer;
-    document.Print(&printer);
-    return read(*parse(printer.CStr()), std::move(inventory));
+    return read(*document.model, std::move(document.elements));
   }
 
   std::shared_ptr<const Robot> read(const urdf::ModelInterface &model) {
     if (!model.getRoot()) throw Error("robot '" + model.getName() + "': the model has no root link");
-    Inventory inventory;
+    UrdfElements elements;
     for (const auto &[name, link] : model.links_) {
-      inventory[name].resize(link->collision_array.size());
-      for (const urdf::CollisionSharedPtr &collision : link->collision_array)
+      std::vector<UrdfElement> &of_link = elements[name];
+      for (const urdf::CollisionSharedPtr &collision : link->collision_array) {
         if (!collision || !collision->geometry) throw Error("link '" + name + "': a collision element has no geometry");
+        of_link.push_back(elementOf(*collision));
+      }
     }
-    return read(model, std::move(inventory));
+    return read(model, std::move(elements));
   }
 
  private:
-  std::shared_ptr<const Robot> read(const urdf::ModelInterface &model, Inventory inventory) {
+  std::shared_ptr<const Robot> read(const urdf::ModelInterface &model, UrdfElements elements) {
     robot_->name_ = model.getName();
     robot_->resources_ = options_.resources;
     robot_->root_link_ = model.getRoot()->name;
     readJoints(model);
     for (const auto &[link, shapes] : options_.link_shapes) {
-      if (inventory.erase(link) == 0)
+      const auto replaced = elements.find(link);
+      if (replaced == elements.end())
         throw Error("link_shapes: robot '" + robot_->name_ + "' has no link '" + link + "'");
-      std::vector<LinkGeometry> &geometry = robot_->links_[link];
-      for (std::size_t i = 0; i < shapes.size(); ++i)
-        addGeometry([&] { return shapes[i]; }, elementName(link, i, shapes.size()), geometry);
+      replaced->second.clear();
+      for (const ShapeDescription &shape : shapes) replaced->second.push_back({shape, ""});
     }
-    readLinks(model, inventory);
+    readLinks(elements);
     return robot_;
   }
 
-  static urdf::ModelInterfaceSharedPtr parse(const char *xml) {
-    urdf::ModelInterfaceSharedPtr model;
-    try {
-      model = urdf::parseURDF(xml);
-    } catch (const std::exception &error) {
-      throw Error(std::string("the URDF cannot be read: ") + error.what());
-    }
-    if (!model || !model->getRoot()) {
-      throw Error("the URDF cannot be read: its links are no tree with one root, or a number is none");
-    }
-    return model;
+  /* What is neither used nor known to say nothing of geometry. */
+  void leaveOut(const std::string &sentence) {
+    robot_->warnings_.push_back(sentence + "; left out");
   }
 
   /* The joints from the root outwards; every link must be met. */
@@ -389,12 +258,9 @@ class RobotReader {
 
   /* The mesh files of all links, each once, loaded by several threads. What cannot be resolved is told where its link
    * is read. */
-  void loadMeshes(const urdf::ModelInterface &model, const Inventory &inventory) {
-    for (const auto &[name, faults] : inventory) {
-      const urdf::LinkConstSharedPtr link = model.getLink(name);
-      if (!link) continue;
-      for (const urdf::CollisionSharedPtr &collision : link->collision_array) requestMesh(*collision);
-    }
+  void loadMeshes(const UrdfElements &elements) {
+    for (const auto &[name, of_link] : elements)
+      for (const UrdfElement &element : of_link) requestMesh(element);
     std::vector<std::pair<const MeshRequest, LoadedMesh> *> files;
     for (auto &entry : meshes_) files.push_back(&entry);
     forEachInParallel(files.size(), options_.threads, [&](std::size_t i) {
@@ -410,10 +276,10 @@ class RobotReader {
       if (!loaded.error) robot_->mesh_timings_.push_back(loaded.timing);
   }
 
-  void requestMesh(const urdf::Collision &collision) {
+  void requestMesh(const UrdfElement &element) {
+    const ShapeDescription &shape = element.shape;
+    if (!element.fault.empty() || shape.type != ShapeType::MESH || shape.resource.empty()) return;
     try {
-      const ShapeDescription shape = describe(collision, "");
-      if (shape.type != ShapeType::MESH) return;
       const std::string file = resolveResource(shape.resource, options_.resources);
       meshes_[{shape.resource, file, meshScale(shape), shape.solid}];
     } catch (const Error &) { /* told later */
@@ -427,25 +293,20 @@ class RobotReader {
     return it->second.geometry;
   }
 
-  void readLinks(const urdf::ModelInterface &model, const Inventory &inventory) {
-    loadMeshes(model, inventory);
-    for (const auto &[name, faults] : inventory) {
-      const urdf::LinkConstSharedPtr link = model.getLink(name);
-      if (!link) throw Error("link '" + name + "' was not understood");
+  void readLinks(const UrdfElements &elements) {
+    loadMeshes(elements);
+    for (const auto &[name, of_link] : elements) {
       std::vector<LinkGeometry> &geometry = robot_->links_[name];
-      for (std::size_t i = 0; i < link->collision_array.size(); ++i) {
-        addGeometry([&] { return describe(*link->collision_array[i], ""); }, elementName(name, i, faults.size()),
-                    geometry);
-      }
-      reportDropped(name, faults, link->collision_array.size());
+      for (std::size_t i = 0; i < of_link.size(); ++i)
+        addGeometry(of_link[i], elementName(name, i, of_link.size()), geometry);
     }
   }
 
-  template <class Description>
-  void addGeometry(Description description, const std::string &who, std::vector<LinkGeometry> &to) {
+  void addGeometry(const UrdfElement &element, const std::string &who, std::vector<LinkGeometry> &to) {
     try {
+      if (!element.fault.empty()) throw Error(element.fault);
       LinkGeometry out;
-      out.description = description();
+      out.description = element.shape;
       out.pose = out.description.pose;
       checkPose(out.pose, "its pose");
       out.geometry = makeGeometry(out.description, options_.resources,
@@ -456,17 +317,9 @@ class RobotReader {
     }
   }
 
-  /* urdfdom stops at the first collision element of a link that it cannot read. */
-  void reportDropped(const std::string &name, const std::vector<std::string> &faults, std::size_t parsed) {
-    for (std::size_t i = parsed; i < faults.size(); ++i) {
-      const char *otherwise = i == parsed ? "it cannot be read" : "it comes after one that cannot be read";
-      fault(elementName(name, i, faults.size()) + (faults[i].empty() ? otherwise : faults[i]));
-    }
-  }
-
   void fault(const std::string &sentence) {
     if (!options_.allow_missing_geometry) throw Error(sentence);
-    robot_->warnings_.push_back(sentence + "; left out");
+    leaveOut(sentence);
   }
 
   struct LoadedMesh {

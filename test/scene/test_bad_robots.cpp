@@ -48,10 +48,10 @@ TEST(BadRobots, what_is_no_urdf_is_refused) {
   expectContains(why(urdf("")), "no links");
 }
 
-TEST(BadRobots, geometries_that_urdfdom_drops_without_a_word_are_refused_by_link) {
-  expectContains(whyLink(collision("<capsule length='1' radius='1'/>")), "'capsule' is not known");
-  expectContains(whyLink(BOX + collision("<capsule length='1' radius='1'/>")), "collision element 2");
-  expectContains(whyLink(collision("<capsule length='1' radius='1'/>") + BOX), "collision element 1");
+TEST(BadRobots, geometries_that_cannot_be_used_are_refused_by_link) {
+  expectContains(whyLink(collision("<torus length='1' radius='1'/>")), "'torus' is not known");
+  expectContains(whyLink(BOX + collision("<torus length='1' radius='1'/>")), "collision element 2");
+  expectContains(whyLink(collision("<torus length='1' radius='1'/>") + BOX), "collision element 1");
   expectContains(whyLink("<collision/>"), "no geometry");
   expectContains(whyLink(collision("")), "no geometry");
   expectContains(whyLink(collision("<box size='1 1'/>")), "box");
@@ -60,8 +60,8 @@ TEST(BadRobots, geometries_that_urdfdom_drops_without_a_word_are_refused_by_link
   expectContains(whyLink(collision("<cylinder length='1'/>")), "cylinder");
 }
 
-TEST(BadRobots, dimensions_must_be_finite_and_positive) {
-  for (const std::string bad : {"-1", "0", "nan", "inf", "-inf", "1e999"}) {
+TEST(BadRobots, dimensions_must_be_finite_and_not_negative) {
+  for (const std::string bad : {"-1", "nan", "inf", "-inf", "1e999"}) {
     whyLink(collision("<sphere radius='" + bad + "'/>"));
     whyLink(collision("<cylinder length='" + bad + "' radius='1'/>"));
     whyLink(collision("<cylinder length='1' radius='" + bad + "'/>"));
@@ -98,7 +98,7 @@ TEST(BadRobots, missing_geometry_can_be_insisted_on) {
   RobotOptions options;
   options.allow_missing_geometry = true;
   const auto robot = Robot::fromUrdf(
-      urdf(link(BOX + collision("<sphere radius='-1'/>") + collision("<capsule radius='1' length='1'/>"))), options);
+      urdf(link(BOX + collision("<sphere radius='-1'/>") + collision("<torus radius='1' length='1'/>"))), options);
   EXPECT_EQ(robot->links().at("arm").size(), 1u);
   ASSERT_EQ(robot->warnings().size(), 2u);
   expectContains(robot->warnings()[0], "link 'arm', collision element 2");

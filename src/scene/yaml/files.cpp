@@ -13,20 +13,18 @@ SceneFileContents loadSceneFile(const std::string &path, const Robot *robot, con
   Warnings warnings;
   try {
     const SceneFile file = readScene(path, warnings);
-    LinkPoses links;
-    std::set<std::string> fixed;
-    if (robot) {
-      out.joints = jointsOf(file, *robot, warnings);
-      links = robot->linkPoses(out.joints);
-      fixed.insert(robot->rootLink());
-      if (!srdf.virtual_joints.empty()) fixed.insert(srdf.virtual_joints.front().parent_frame);
-    }
-    const Frames frames(fixed, file.transforms, links, warnings);
+    RobotPlace place;
     try {
-      out.change = toFixedChange(file, frames, robot, links, warnings);
+      if (robot) place = placeRobot(file, *robot, srdf.virtual_joints, warnings);
+      const Frames frames(place.fixed, file.transforms, place.links, warnings);
+      out.change = toFixedChange(file, frames, robot, place.links, warnings);
     } catch (const BadUsage &e) {
       throw Error(path + ": " + e.what());
+    } catch (const Error &e) {
+      throw Error(path + ": " + e.what());
     }
+    out.joints = place.joints;
+    out.base = place.base;
     makeResourcesAbsolute(out.change, folderOf(path));
     out.moving_robots = file.moving_robots;
     out.change.clear = !file.is_diff;

@@ -23,9 +23,12 @@ Frames::Frames(std::set<std::string> fixed, const std::vector<FrameTransform> &t
     const bool is_identity = transform.pose.isApprox(Eigen::Isometry3d::Identity());
     if (is_identity && bare(transform.parent) == child) fixed_.insert(child);
     if (fixed_.count(child) == 0) {
-      transforms_[child] = transform;
+      const auto [known, is_new] = transforms_.emplace(child, transform);
+      const bool same = known->second.parent == transform.parent && known->second.pose.isApprox(transform.pose);
+      if (!is_new && !same)
+        warnings.leaveOut("fixed_frame_transforms: '" + child + "' comes twice; the second is ignored");
     } else if (!is_identity) {
-      warnings.add("fixed_frame_transforms: '" + child + "' is the fixed frame; its transform is ignored");
+      warnings.leaveOut("fixed_frame_transforms: '" + child + "' is the fixed frame; its transform is ignored");
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "../free_joints.h"
 #include "failure.h"
 
 namespace curve_proximity::yaml {
@@ -87,7 +88,7 @@ void warnOfReplaced(const std::vector<Operation> &operations, Warnings &warnings
     } else if (operation.kind == Operation::Kind::REMOVE) {
       there.erase(id);
     } else if (operation.kind == Operation::Kind::ADD && !there.insert(id).second) {
-      warnings.add("object '" + id + "' comes twice; the later one replaces the earlier");
+      warnings.leaveOut("object '" + id + "' comes twice; the later one replaces the earlier", Missing::GEOMETRY);
     }
   }
 }
@@ -128,20 +129,52 @@ SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &w
   change.link_padding = file.link_padding;
   change.link_scale = file.link_scale;
   change.allowed = file.allowed;
+  warnOfReplaced(change.operations, warnings);
+  change.coverage.add(warnings.coverage());
+  if (!change.coverage.complete())
+    throw BadUsage(path + ": " + change.coverage.message() + ": a live scene takes the whole of a file");
   return change;
 }
 
-JointPositions jointsOf(const SceneFile &file, const Robot &robot, Warnings &warnings) {
-  JointPositions out;
+RobotPlace placeRobot(const SceneFile &file, const Robot &robot, const std::vector<VirtualJoint> &virtual_joints,
+                      Warnings &warnings) {
+  RobotPlace out;
   std::string others;
   for (const auto &[joint, value] : file.joints) {
     if (robot.hasJoint(joint)) {
-      out.emplace(joint, value);
+      out.joints.emplace(joint, value);
     } else {
       others += (others.empty() ? "'" : ", '") + joint + "'";
     }
   }
-  if (!others.empty()) warnings.add("robot_state: the robot has no joint " + others + "; ignored");
+  const std::string none = "robot_state: the robot has no joint " + others + "; ignored";
+  const bool of_another = !file.robot.empty() && file.robot != robot.name(); /* its other joints are not this one's */
+  if (!others.empty()) of_another ? warnings.add(none) : warnings.leaveOut(none);
+
+  /* planar and floating joints */
+  for (const FreeJointPoses &given : file.free_joints) {
+    const std::optional<FreeJoint> joint = resolveFreeJoint(given, robot, virtual_joints);
+    if (!joint) continue;
+    const std::vector<double> values = valuesAt(given.poses, *joint).front();
+    if (joint->is_virtual) {
+      const Eigen::Isometry3d base = toIsometry(given.poses.front());
+      if (base.matrix().isIdentity(0.0)) continue;
+      if (joint->name != virtual_joints.front().name)
+        throw Error("joint '" + joint->name + "': the robot stands on its first virtual joint, '" +
+                    virtual_joints.front().name + "'");
+      out.base = base;
+      continue;
+    }
+    const std::vector<std::string> names = variablesOf(*joint);
+    for (std::size_t k = 0; k < names.size(); ++k) out.joints[names[k]] = values[k];
+  }
+  try {
+    out.links = robot.linkPoses(out.joints, out.base);
+  } catch (const Error &e) {
+    throw Error(std::string("robot_state: ") + e.what());
+  }
+  if (out.base.matrix().isIdentity(0.0)) out.fixed.insert(robot.rootLink());
+  if (!virtual_joints.empty()) out.fixed.insert(virtual_joints.front().parent_frame);
   return out;
 }
 
@@ -157,6 +190,7 @@ SceneChange toFixedChange(const SceneFile &file, const Frames &frames, const Rob
   if (robot) change.link_padding = file.link_padding;
   if (robot) change.link_scale = file.link_scale;
   change.allowed = file.allowed;
+  change.coverage.add(warnings.coverage());
   return change;
 }
 

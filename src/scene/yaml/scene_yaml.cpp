@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "scene_yaml.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "body_yaml.h"
 #include "failure.h"
 #include "numbers.h"
+#include "robot_state_yaml.h"
 #include "scene_change.h"
 #include "trajectory_yaml.h"
 
@@ -49,7 +53,7 @@ ShapeDescription readPrimitive(const YamlValue &value, Warnings &warnings) {
   static const std::array<const char *, 4> kNames = {"box", "sphere", "cylinder", "cone"};
   static const std::array<ShapeType, 4> kTypes = {ShapeType::BOX, ShapeType::SPHERE, ShapeType::CYLINDER,
                                                   ShapeType::CONE};
-  value.warnOfOthers({"type", "dimensions"}, warnings);
+  value.warnOfOthers({"type", "dimensions", "polygon"}, warnings); /* of ROS 2: the outline of a prism, which none is */
   ShapeDescription shape;
   shape.type = kTypes[choose(value.at("type"), kNames, 1, "the primitive")];
   shape.dimensions = value.at("dimensions").numbers();
@@ -88,14 +92,6 @@ void readShapes(const YamlValue &value, const char *key, const char *poses_key,
     shape.pose = poses[i] * shape.pose;
     object.shapes.push_back(std::move(shape));
   }
-}
-
-std::string readFrame(const YamlValue &value, Warnings &warnings) {
-  const std::optional<YamlValue> header = value.find("header");
-  if (!header) return "";
-  header->warnOfOthers({"seq", "stamp", "frame_id"}, warnings);
-  const std::optional<YamlValue> frame = header->find("frame_id");
-  return frame ? frame->text() : "";
 }
 
 Operation readObject(const YamlValue &plain, Warnings &warnings) {
@@ -153,7 +149,11 @@ void readOctomap(const YamlValue &value, SceneFile &out, Warnings &warnings) {
   octree.binary = map->at("binary").truth();
   octree.id = map->at("id").text();
   octree.resolution = map->at("resolution").number();
-  for (const YamlValue &byte : bytes) octree.data += static_cast<char>(static_cast<int>(byte.number()));
+  for (const YamlValue &byte : bytes) {
+    const double number = byte.number(); /* an int8, or a byte without sign */
+    if (!(number >= -128.0 && number <= 255.0 && number == std::floor(number))) byte.fail("is no byte");
+    octree.data += static_cast<char>(static_cast<int>(number));
+  }
   out.operations.push_back(std::move(operation));
 }
 
@@ -182,27 +182,9 @@ void readRobotState(const YamlValue &root, SceneFile &out, Warnings &warnings) {
   if (!state) return;
   state->warnOfOthers({"joint_state", "multi_dof_joint_state", "attached_collision_objects", "is_diff"}, warnings);
 
-  /* joints by name */
-  if (const auto joints = state->find("joint_state")) {
-    joints->warnOfOthers({"header", "name", "position", "velocity", "effort"}, warnings);
-    const std::vector<YamlValue> names = joints->itemsOf("name"), positions = joints->itemsOf("position");
-    if (names.size() != positions.size()) {
-      joints->fail("has " + std::to_string(names.size()) + " names and " + std::to_string(positions.size()) +
-                   " positions");
-    }
-    for (std::size_t i = 0; i < names.size(); ++i) out.joints[names[i].text()] = positions[i].number();
-  }
-
-  /* the base stands at the identity: a file that says otherwise is told so */
-  if (const auto joints = state->find("multi_dof_joint_state")) {
-    for (const YamlValue &value : joints->itemsOf("transforms")) {
-      const Eigen::Isometry3d pose = toIsometry(value.pose(warnings, "translation", "rotation"));
-      if (!pose.isApprox(Eigen::Isometry3d::Identity())) {
-        warnings.add(value.where() + " is ignored: the robot's base stands at the origin of the fixed frame");
-      }
-    }
-  }
-
+  const JointsFile joints = readJoints(*state, warnings);
+  out.joints = joints.joints;
+  out.free_joints = joints.free_joints;
   for (const YamlValue &value : state->itemsOf("attached_collision_objects")) {
     value.warnOfOthers({"link_name", "object", "touch_links", "detach_posture", "weight"}, warnings);
     const Operation operation = readObject(value.at("object"), warnings);
@@ -221,18 +203,23 @@ void readLinkSizes(const YamlValue &root, SceneFile &out, Warnings &warnings) {
     value.warnOfOthers({"link_name", "padding"}, warnings);
     const YamlValue padding = value.at("padding");
     if (padding.number() < 0.0) padding.fail("a padding below 0 is not available");
-    out.link_padding[value.at("link_name").text()] = padding.number();
+    const YamlValue link = value.at("link_name");
+    if (!out.link_padding.emplace(link.text(), padding.number()).second) link.fail("has a padding already");
   }
+  std::set<std::string> scaled;
   for (const YamlValue &value : root.itemsOf("link_scale")) {
     value.warnOfOthers({"link_name", "scale"}, warnings);
     const YamlValue scale = value.at("scale");
     if (!(scale.number() > 0.0)) scale.fail("a scale must be above 0");
-    if (scale.number() != 1.0) out.link_scale[value.at("link_name").text()] = scale.number();
+    const YamlValue link = value.at("link_name");
+    if (!scaled.insert(link.text()).second) link.fail("has a scale already");
+    if (scale.number() != 1.0) out.link_scale[link.text()] = scale.number();
   }
 }
 
 /* A row of the matrix, as AllowedCollisionEntry prints it, or as a list. */
 std::vector<YamlValue> readMatrixRow(const YamlValue &row) {
+  if (row.isMap()) row.refuseOthers({"enabled"});
   return row.isMap() ? row.itemsOf("enabled") : row.items();
 }
 
@@ -314,6 +301,19 @@ void readMovingRobots(const YamlValue &root, const std::string &folder, SceneFil
   }
 }
 
+/* Objects that stand elsewhere than in a scene's world would be left out. */
+void requireScene(const YamlValue &root) {
+  static const char *const kKeys[] = {
+      "world",        "robot_state", "fixed_frame_transforms", "allowed_collision_matrix",
+      "link_padding", "link_scale",  "moving_robots"};
+  const std::string cure = ": objects stand under world: collision_objects";
+  if (root.find("collision_objects")) root.fail("collision_objects stand at its top" + cure);
+  const bool is_object = root.find("primitives") || root.find("meshes") || root.find("planes") || root.find("bodies");
+  if (is_object) root.fail("is a collision object, not a scene" + cure);
+  if (std::none_of(std::begin(kKeys), std::end(kKeys), [&](const char *key) { return root.has(key); }))
+    root.fail("has none of the keys of a scene" + cure);
+}
+
 } // namespace
 
 ObjectDescription readPlacedShapes(const YamlValue &value, Warnings &warnings) {
@@ -335,12 +335,13 @@ SceneFile readScene(const std::string &path, Warnings &told) {
   try {
     if (root.isEmpty()) root.fail("is empty: that is no scene");
 
-    /* known keys that Cartesian curves have no use for are ignored without a word */
-    root.warnOfOthers({"name", "robot_model_name", "robot_state", "fixed_frame_transforms", "allowed_collision_matrix",
-                       "link_padding", "link_scale", "object_colors", "world", "is_diff", "virtual_joint",
-                       "fixed_joints", "robot", "scene", "moving_robots"},
-                      warnings);
+    requireScene(root);
+    root.warnOfOthers(
+        {"name", "robot_model_name", "robot_state", "fixed_frame_transforms", "allowed_collision_matrix",
+         "link_padding", "link_scale", "object_colors", "world", "is_diff", "robot", "scene", "moving_robots"},
+        warnings);
     if (const auto world = root.find("world")) readWorld(*world, out, warnings);
+    if (const auto robot = root.find("robot_model_name")) out.robot = robot->text();
     if (const auto diff = root.find("is_diff")) out.is_diff = diff->truth();
     readTransforms(root, out, warnings);
     readRobotState(root, out, warnings);

@@ -23,11 +23,13 @@ struct FrameTransform {
 
 /** The file as it stands: poses are still in the frames that the objects name. */
 struct SceneFile {
+  std::string robot;                 /**< robot_model_name; may be empty */
   bool is_diff = false;              /**< true: adds to the scene that is there; false: replaces it */
   std::vector<Operation> operations; /**< the collision objects, in order */
   std::vector<Attachment> attached;  /**< their poses in the frames that the objects name, as all others */
   std::vector<FrameTransform> transforms;
-  JointPositions joints; /**< robot_state */
+  JointPositions joints;                   /**< robot_state */
+  std::vector<FreeJointPoses> free_joints; /**< robot_state: planar and floating joints, each with one pose */
   std::map<std::string, double> link_padding, link_scale;
   std::vector<AllowedPair> allowed;
   std::vector<MovingRobotFile> moving_robots;

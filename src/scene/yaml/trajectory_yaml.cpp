@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "trajectory_yaml.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 
 #include "failure.h"
+#include "robot_state_yaml.h"
 
 namespace curve_proximity::yaml {
 namespace {
@@ -18,14 +20,14 @@ Interpolation readInterpolation(const YamlValue &value) {
   value.fail("the interpolation '" + text + "' is none of linear, cubic, quintic");
 }
 
-/* Seconds and nanoseconds, as ROS prints a duration. */
+/* Seconds and nanoseconds, as ROS prints a duration: secs and nsecs, of ROS 2 sec and nanosec. */
 std::array<double, 2> readParts(const YamlValue &value) {
-  const auto part = [&](const char *key) {
-    const std::optional<YamlValue> found = value.find(key);
-    return found ? found->number() : 0.0;
-  };
-  if (!value.find("secs") && !value.find("nsecs")) value.fail("needs secs or nsecs");
-  return {part("secs"), part("nsecs")};
+  const bool second = value.find("sec") || value.find("nanosec");
+  const char *const keys[] = {second ? "sec" : "secs", second ? "nanosec" : "nsecs"};
+  value.refuseOthers({keys[0], keys[1]});
+  const std::optional<YamlValue> whole = value.find(keys[0]), parts = value.find(keys[1]);
+  if (!whole && !parts) value.fail("needs secs or nsecs (of ROS 2 sec or nanosec)");
+  return {whole ? whole->number() : 0.0, parts ? parts->number() : 0.0};
 }
 
 std::vector<double> readList(const YamlValue &point, const char *key) {
@@ -77,26 +79,163 @@ void readSpline(const YamlValue &spline, TrajectoryDescription &out, Warnings &w
   }
 }
 
+/* A trajectory_msgs/JointTrajectory or MultiDOFJointTrajectory within a message. */
+const YamlValue &alone(const YamlValue &trajectory, Warnings &warnings) {
+  trajectory.warnOfOthers({"header", "joint_names", "points"}, warnings);
+  return trajectory;
+}
+
+void readNames(const YamlValue &trajectory, std::vector<std::string> &out) {
+  for (const YamlValue &name : trajectory.at("joint_names").items()) out.push_back(name.text());
+}
+
+/* trajectory_msgs/JointTrajectory. */
+void readJointTrajectory(const YamlValue &trajectory, TrajectoryDescription &out, Warnings &warnings) {
+  readNames(trajectory, out.joints);
+  for (const YamlValue &point : trajectory.at("points").items()) out.points.push_back(readPoint(point, warnings));
+}
+
+/* trajectory_msgs/MultiDOFJointTrajectory: poses of joints, at the points that there are, or at points of its own. */
+void readFreeJoints(const YamlValue &trajectory, TrajectoryDescription &out, Warnings &warnings) {
+  const std::string frame = readFrame(trajectory, warnings);
+  std::vector<std::string> names;
+  readNames(trajectory, names);
+  const std::vector<YamlValue> points = trajectory.itemsOf("points");
+  if (names.empty() && points.empty()) return;
+  const bool alone = out.points.empty();
+  if (!alone && out.points.size() != points.size())
+    trajectory.fail("has " + std::to_string(points.size()) + " points, joint_trajectory has " +
+                    std::to_string(out.points.size()));
+  std::vector<FreeJointPoses> joints;
+  for (const std::string &name : names) joints.push_back({name, frame, {}});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].warnOfOthers({"transforms", "velocities", "accelerations", "time_from_start"}, warnings);
+    const double time = readTime(points[i].at("time_from_start"));
+    if (alone) {
+      out.points.emplace_back();
+      out.points.back().time = time;
+    } else if (time != out.points[i].time) {
+      points[i].fail("its time is " + std::to_string(time) + " s, that of joint_trajectory's point is " +
+                     std::to_string(out.points[i].time) + " s");
+    }
+    const std::vector<cprox_pose> poses = readTransforms(points[i], warnings);
+    if (poses.size() != names.size())
+      points[i].fail("has " + std::to_string(poses.size()) + " transforms for " + std::to_string(names.size()) +
+                     " joints");
+    for (std::size_t k = 0; k < poses.size(); ++k) joints[k].poses.push_back(poses[k]);
+    const bool smooth = !points[i].itemsOf("velocities").empty() || !points[i].itemsOf("accelerations").empty();
+    if (smooth && out.interpolation != Interpolation::LINEAR)
+      warnings.leaveOut(trajectory.where() +
+                        ": velocities of poses are not used: joints go straight from pose to pose "
+                        "(interpolation: linear says that this is meant)");
+  }
+  out.free_joints.insert(out.free_joints.end(), joints.begin(), joints.end());
+}
+
+/* The parts of a moveit_msgs/RobotTrajectory. */
+void readRobotTrajectory(const YamlValue &value, TrajectoryDescription &out, Warnings &warnings) {
+  const std::optional<YamlValue> joints = value.find("joint_trajectory"),
+                                 free = value.find("multi_dof_joint_trajectory");
+  if (!joints && !free) value.fail("has no 'joint_trajectory'");
+  if (joints) readJointTrajectory(alone(*joints, warnings), out, warnings);
+  if (free) readFreeJoints(alone(*free, warnings), out, warnings);
+}
+
+/* moveit_msgs/RobotState at which the trajectory begins: joints that it does not move stand there. */
+void readStart(const YamlValue &state, TrajectoryDescription &out, Warnings &warnings) {
+  state.warnOfOthers({"joint_state", "multi_dof_joint_state", "attached_collision_objects", "is_diff"}, warnings);
+  const JointsFile start = readJoints(state, warnings);
+  for (const auto &[joint, value] : start.joints) out.fixed_joints.emplace(joint, value);
+  for (const FreeJointPoses &joint : start.free_joints) {
+    const auto same = [&](const FreeJointPoses &moved) { return moved.joint == joint.joint; };
+    if (std::none_of(out.free_joints.begin(), out.free_joints.end(), same)) out.free_joints.push_back(joint);
+  }
+  for (const YamlValue &attached : state.itemsOf("attached_collision_objects"))
+    out.carried.push_back(attached.at("object").at("id").text());
+
+  /* the way from there, as the node adds it */
+  if (out.points.empty() || !(out.points.front().time > 0.0)) return;
+  TrajectoryPoint begin;
+  for (const std::string &joint : out.joints) {
+    const auto it = start.joints.find(joint);
+    if (it == start.joints.end()) return;
+    begin.positions.push_back(it->second);
+  }
+  if (!out.points.front().velocities.empty()) begin.velocities.assign(out.joints.size(), 0.0);
+  if (!out.points.front().accelerations.empty()) begin.accelerations.assign(out.joints.size(), 0.0);
+  for (FreeJointPoses &joint : out.free_joints)
+    if (joint.poses.size() == out.points.size()) {
+      cprox_pose from = joint.poses.front();
+      for (const FreeJointPoses &standing : start.free_joints)
+        if (standing.joint == joint.joint) from = standing.poses.front();
+      joint.poses.insert(joint.poses.begin(), from);
+    }
+  out.points.insert(out.points.begin(), begin);
+}
+
+/* A trajectory under the key `trajectory`: of a DisplayTrajectory a list; of a plan, or of the goal of an action, one.
+ */
+void readUnderTrajectory(const YamlValue &value, TrajectoryDescription &out, Warnings &warnings) {
+  if (value.isSequence()) {
+    const std::vector<YamlValue> parts = value.items();
+    if (parts.size() != 1)
+      value.fail("has " + std::to_string(parts.size()) +
+                 " trajectories: a file holds one; give each a file of its own");
+    return readUnderTrajectory(parts.front(), out, warnings);
+  }
+  if (value.find("joint_names")) return readJointTrajectory(alone(value, warnings), out, warnings);
+  value.warnOfOthers({"joint_trajectory", "multi_dof_joint_trajectory"}, warnings);
+  readRobotTrajectory(value, out, warnings);
+}
+
+/* Poses have no positions beside them: a MultiDOFJointTrajectory. */
+bool hasTransforms(const YamlValue &trajectory) {
+  const std::vector<YamlValue> points = trajectory.itemsOf("points");
+  return !points.empty() && points.front().find("transforms").has_value();
+}
+
 TrajectoryDescription readTrajectoryMap(const YamlValue &root, Warnings &warnings) {
   if (!root.isMap()) root.fail("must be a map with joint_trajectory or joint_spline");
-  root.warnOfOthers(
-      {"joint_trajectory", "joint_spline", "interpolation", "fixed_joints", "virtual_joint", "robot", "scene"},
-      warnings);
+  if (const auto goal = root.find("goal")) {
+    root.warnOfOthers({"goal", "goal_id", "header"}, warnings);
+    return readTrajectoryMap(*goal, warnings);
+  }
   TrajectoryDescription out;
   if (const auto interpolation = root.find("interpolation")) out.interpolation = readInterpolation(*interpolation);
+  if (const auto way = root.find("shortest_way")) out.shortest_way = way->truth();
   if (const auto fixed = root.find("fixed_joints")) readFixed(*fixed, out.fixed_joints);
   if (const auto base = root.find("virtual_joint")) readBase(*base, out, warnings);
 
   if (const auto spline = root.find("joint_spline")) {
+    root.warnOfOthers({"joint_spline", "shortest_way", "fixed_joints", "virtual_joint", "robot", "scene"}, warnings);
     if (root.find("joint_trajectory")) root.fail("has both a joint_trajectory and a joint_spline");
     if (root.find("interpolation")) root.fail("a joint_spline has no interpolation");
     readSpline(*spline, out, warnings);
     return out;
   }
-  const YamlValue trajectory = root.at("joint_trajectory");
-  trajectory.warnOfOthers({"header", "joint_names", "points"}, warnings);
-  for (const YamlValue &name : trajectory.at("joint_names").items()) out.joints.push_back(name.text());
-  for (const YamlValue &point : trajectory.at("points").items()) out.points.push_back(readPoint(point, warnings));
+  if (root.find("joint_names") && root.find("points")) {
+    root.warnOfOthers({"header", "joint_names", "points", "interpolation", "shortest_way", "fixed_joints",
+                       "virtual_joint", "robot", "scene"},
+                      warnings);
+    hasTransforms(root) ? readFreeJoints(root, out, warnings) : readJointTrajectory(root, out, warnings);
+    return out;
+  }
+  root.warnOfOthers({"joint_trajectory", "multi_dof_joint_trajectory", "interpolation", "shortest_way", "fixed_joints",
+                     "virtual_joint", "robot", "scene",
+                     /* of moveit_msgs/DisplayTrajectory and MotionPlanResponse */
+                     "trajectory", "trajectory_start", "model_id", "group_name", "planning_time", "error_code",
+                     /* of control_msgs/FollowJointTrajectoryGoal: what a controller tolerates moves nothing */
+                     "multi_dof_trajectory", "path_tolerance", "component_path_tolerance", "goal_tolerance",
+                     "component_goal_tolerance", "goal_time_tolerance"},
+                    warnings);
+  if (const auto trajectory = root.find("trajectory")) {
+    if (root.find("joint_trajectory")) root.fail("has both a trajectory and a joint_trajectory");
+    readUnderTrajectory(*trajectory, out, warnings);
+    if (const auto free = root.find("multi_dof_trajectory")) readFreeJoints(alone(*free, warnings), out, warnings);
+  } else {
+    readRobotTrajectory(root, out, warnings);
+  }
+  if (const auto start = root.find("trajectory_start")) readStart(*start, out, warnings);
   return out;
 }
 

@@ -6,7 +6,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cstddef>
+#include <deque>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -27,9 +29,9 @@ class Warnings {
   }
 
   /** Of what is not used and could be geometry, or its place: what is read is then a part of what was given. */
-  void leaveOut(const std::string &sentence) {
+  void leaveOut(const std::string &sentence, Missing missing = Missing::ANYTHING) {
     add(sentence);
-    coverage_.add(Gap::PARTIAL, sentence);
+    coverage_.add(Gap::PARTIAL, sentence, missing);
   }
 
   /** The sentences and the coverage of another reading. */
@@ -52,11 +54,31 @@ class Warnings {
   Coverage coverage_;
 };
 
+/** A value as it stands in a text. `items` are the entries of a list; of a map its keys, which are scalars, each with
+ *  its value behind it. */
+struct YamlNode {
+  enum class Kind { NOTHING, SCALAR, LIST, MAP };
+
+  Kind kind = Kind::NOTHING;
+  int line = 0; /**< from 1; 0: no text */
+  std::string scalar;
+  std::vector<const YamlNode *> items;
+};
+
+/** A YAML text's values. Nodes that are aliases of each other are one. */
+struct YamlDocument {
+  std::deque<YamlNode> nodes;
+  const YamlNode *root = nullptr;
+};
+
 /** A value and its place ("world.collision_objects[2] 'Can1'.primitives[0]"). All functions throw BadInput with the
  * place where the value is not what they ask for. */
 class YamlValue {
  public:
-  YamlValue(YAML::Node node, std::string where) : node_(std::move(node)), where_(std::move(where)) {}
+  YamlValue(std::shared_ptr<const YamlDocument> document, std::string where)
+      : document_(std::move(document)), node_(document_->root), where_(std::move(where)) {}
+  /** A value that was made in memory. */
+  YamlValue(const YAML::Node &node, std::string where);
 
   const std::string &where() const {
     return where_;
@@ -65,18 +87,20 @@ class YamlValue {
   [[noreturn]] void fail(const std::string &what) const;
 
   bool isEmpty() const {
-    return node_.IsNull();
+    return node_->kind == YamlNode::Kind::NOTHING;
   }
   bool isMap() const {
-    return node_.IsMap();
+    return node_->kind == YamlNode::Kind::MAP;
   }
   bool isSequence() const {
-    return node_.IsSequence();
+    return node_->kind == YamlNode::Kind::LIST;
   }
   bool isScalar() const {
-    return node_.IsScalar();
+    return node_->kind == YamlNode::Kind::SCALAR;
   }
 
+  /** Whether this map has the key, with a value or without. */
+  bool has(const char *key) const;
   /** The value of a key of this map; nothing where it is not there or empty ("key:"). */
   std::optional<YamlValue> find(const char *key) const;
   /** The value of a key that must be there. */
@@ -89,12 +113,15 @@ class YamlValue {
   /** The list under a key; none where the key is not there. */
   std::vector<YamlValue> itemsOf(const char *key) const;
 
-  /** Says once which keys of this map are not among those known, and that they are ignored. */
+  /** Says once which keys of this map are not among those known: they are left out, and what was read is partial. */
   void warnOfOthers(std::initializer_list<const char *> known, Warnings &warnings) const;
+
+  /** Fails where a key of this map is not among those known. */
+  void refuseOthers(std::initializer_list<const char *> known) const;
 
   /** The same value, its place spelled with a name that helps to find it. */
   YamlValue named(const std::string &name) const {
-    return YamlValue(node_, where_ + " '" + name + "'");
+    return YamlValue(document_, node_, where_ + " '" + name + "'");
   }
 
   std::string text() const;
@@ -114,11 +141,22 @@ class YamlValue {
   cprox_pose pose(Warnings &warnings, const char *position = "position", const char *orientation = "orientation") const;
 
  private:
-  YAML::Node node_;
+  YamlValue(std::shared_ptr<const YamlDocument> document, const YamlNode *node, std::string where)
+      : document_(std::move(document)), node_(node), where_(std::move(where)) {}
+  YamlValue inside(const YamlNode *node, std::string where) const {
+    return {document_, node, std::move(where)};
+  }
+
+  /* the keys of this map that are not known */
+  std::vector<const YamlNode *> others(std::initializer_list<const char *> known) const;
+
+  std::shared_ptr<const YamlDocument> document_;
+  const YamlNode *node_;
   std::string where_;
 };
 
-/** The whole of a YAML file. Throws BadUsage where it cannot be read or is no YAML, with the line. */
+/** The whole of a YAML file. Throws BadUsage, with the line, where it cannot be read or is no YAML, where a key stands
+ *  twice in a map, and where further documents (`---`) hold anything: empty ones may follow. */
 YamlValue loadYaml(const std::string &path);
 
 } // namespace curve_proximity::yaml
