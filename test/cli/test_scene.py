@@ -258,7 +258,7 @@ class Files(Case):
         self.assertEqual(answer.err.count('\n'), 3)
 
     def keys_that_curves_have_no_use_for_are_ignored_without_a_word(self):
-        more = ('name: a\nrobot_model_name: r\nis_diff: false\nobject_colors: []\nvirtual_joint: {type: planar}\n'
+        more = ('name: a\nrobot_model_name: r\nis_diff: false\nobject_colors: []\n'
                 'allowed_collision_matrix: {entry_names: [a, b], entry_values: [[false, true], [true, false]]}\n'
                 'link_padding: [{link_name: a, padding: 0.1}]\nlink_scale: [{link_name: a, scale: 1}]\n')
         self.assertEqual(self.ask('distance', [PASSING], BOX_SCENE + more).err, '')

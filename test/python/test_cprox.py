@@ -9,6 +9,7 @@ import tempfile
 import threading
 import time
 import unittest
+import warnings
 
 import numpy
 import yaml
@@ -806,6 +807,79 @@ class Robots(unittest.TestCase):
         with self.assertRaises(ValueError) as caught:
             cprox.Motion(scene, ['elbow'], [0, 1], [[0], [1]])
         self.assertIn('elbow', str(caught.exception))
+
+
+class Files(unittest.TestCase):
+    """Parts of files that would go missing: they are used, refused or warned of."""
+    ARM = ('<robot name="m" version="1.1"><link name="base"><collision><geometry><box size="0.4 0.4 0.4"/></geometry></collision></link>'
+           '<link name="l"><collision><origin xyz="0 0 0.5"/><geometry><box size="0.1 0.1 0.4"/></geometry></collision></link>'
+           '<joint name="j" type="%s"><parent link="base"/><child link="l"/><axis xyz="0 0 1"/><limit lower="-4" upper="%s"/></joint>%s</robot>')
+    SRDF = '<robot name="m"><virtual_joint name="w" type="planar" parent_frame="world" child_link="base"/></robot>'
+    MOVE = 'joint_trajectory: {joint_names: [j], points: [{positions: [%g], time_from_start: 0}, {positions: [%g], time_from_start: 2}]}\n'
+    BASE = ('multi_dof_joint_trajectory: {joint_names: [w], points: [{transforms: [{translation: [0, 0, 0]}], time_from_start: 0}, '
+            '{transforms: [{translation: [6, 0, 0]}], time_from_start: 2}]}\n')
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def file(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, 'w') as out:
+            out.write(text)
+        return path
+
+    def robot(self, joint='revolute', upper='4', more=''):
+        return cprox.Robot.from_urdf(self.file('m.urdf', self.ARM % (joint, upper, more)), srdf=self.file('m.srdf', self.SRDF))
+
+    def scene(self, *robot):
+        return cprox.Scene(self.robot(*robot))
+
+    def test_a_base_moves_by_its_poses(self):
+        scene = self.scene()
+        scene.add('b', 'sphere', [.1], cprox.transform([3, 0, 0]))
+        with warnings.catch_warnings():
+            warnings.simplefilter('error')
+            motion = cprox.Motion.from_file(scene, self.file('t.yaml', self.MOVE % (0, .5) + self.BASE))
+        self.assertAlmostEqual(motion.link_poses(1)['base'][0, 3], 3)
+        self.assertEqual(motion.collision()['result'].verdict, 'violated')
+
+    def test_a_scene_puts_the_base_where_it_says(self):
+        scene = self.scene()
+        scene.load(self.file('s.yaml', 'robot_state: {multi_dof_joint_state: {joint_names: [w], transforms: [{translation: [3, 0, 0]}]}}\n'
+                             'world: {collision_objects: [{id: b, pose: {position: [3.1, 0, 0.5]}, primitives: [{type: 2, dimensions: [0.1]}]}]}'))
+        motion = cprox.Motion.from_file(scene, self.file('t.yaml', self.MOVE % (0, .5)))
+        self.assertAlmostEqual(motion.link_poses(0)['base'][0, 3], 3)
+        self.assertEqual(motion.collision()['result'].verdict, 'violated')
+        elsewhere = cprox.Motion(scene, ['j'], [0, 1], [[0], [1]], base=cprox.transform([0, 0, 0]))
+        self.assertAlmostEqual(elsewhere.link_poses(0)['base'][0, 3], 0)
+
+    def test_the_cause_of_a_refusal_is_told(self):
+        for more, words in (('<xacro:hand/>', 'this is xacro: expand it first'), ('<link name="other"/>', 'Two root links found')):
+            with self.assertRaisesRegex(ValueError, words):
+                self.robot('revolute', '4', more)
+        with self.assertRaisesRegex(ValueError, "joint 'j': limit upper='x' is not one finite number"):
+            self.robot('revolute', 'x')
+        with self.assertRaisesRegex(ValueError, 'line 2: a second document'):
+            cprox.Motion.from_file(self.scene(), self.file('t.yaml', self.MOVE % (0, 1) + '---\n' + self.MOVE % (0, 2)))
+        with self.assertRaisesRegex(ValueError, "'joint_trajectory' stands twice"):
+            cprox.Motion.from_file(self.scene(), self.file('t.yaml', self.MOVE % (0, 1) + self.MOVE % (0, 2)))
+
+    def test_unknown_elements_of_a_urdf_are_warned_of(self):
+        with self.assertWarnsRegex(UserWarning, '<loop_joint> .* is not known'):
+            self.robot('revolute', '4', '<loop_joint/>')
+
+    def test_a_continuous_joint_goes_the_long_way_with_a_warning(self):
+        scene, path = self.scene('continuous'), self.file('t.yaml', self.MOVE % (3.1, -3.1))
+        with self.assertWarnsRegex(UserWarning, "continuous joint 'j' turns by -6.2 rad from point 0 to point 1"):
+            self.assertAlmostEqual(cprox.Motion.from_file(scene, path).link_poses(1)['l'][0, 0], 1)
+        with warnings.catch_warnings():
+            warnings.simplefilter('error')
+            short = cprox.Motion.from_file(scene, path, shortest_way=True)
+            given = cprox.Motion(scene, ['j'], [0, 2], [[3.1], [-3.1]], shortest_way=True)
+        for motion in (short, given):
+            self.assertAlmostEqual(motion.link_poses(1)['l'][0, 0], -1)
 
 
 class Examples(unittest.TestCase):
