@@ -594,7 +594,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
                     it is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs
   --epsilon E       width of the intervals asked for, metres, above 0 (default 1e-06)
   --delta D         the clearance asked of 'tolerance' and 'violations', and of 'report' if its verdict is wanted, metres
-  --max-nodes N     budget of parameter intervals for each target (default 20000)
+  --max-nodes N     budget for each result, in distance queries (default 500000: about 1 s)
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
   --per-object      rows for each curve and object or link, not for the nearest alone
   --per-link        with --trajectory: rows for each link and each object that a link carries

@@ -102,7 +102,7 @@ class CurveDistance : public ConstraintProvider {
   void initialise(const ParameterMap &parameters) override {
     ParameterReader reader(parameters);
     parameters_.options.epsilon = reader.number("epsilon", 1e-9, 0.0);
-    parameters_.options.max_nodes = static_cast<std::uint32_t>(reader.count("max_nodes", 20000, 1, 2000000000));
+    parameters_.options.max_nodes = static_cast<std::uint32_t>(reader.count("max_nodes", 500000, 1, 2000000000));
     parameters_.options.signed_distance = reader.truth("signed", true);
     parameters_.margin = reader.number("margin", 0.0, 0.0);
     const std::string meshes = reader.word("meshes", "hull", {"hull", "exact"});

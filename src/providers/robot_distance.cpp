@@ -226,7 +226,7 @@ class RobotDistance : public ConstraintProvider {
     parameters_.limits.per_pair = static_cast<std::size_t>(reader.count("per_pair", rows, 1, 1000000));
     parameters_.limits.most = static_cast<std::size_t>(reader.count("max_rows", 1000, 1, 1000000));
     parameters_.query.options.epsilon = reader.number("epsilon", 1e-6, 0.0, true);
-    parameters_.query.options.max_nodes = static_cast<std::uint32_t>(reader.count("max_nodes", 20000, 1, 2000000000));
+    parameters_.query.options.max_nodes = static_cast<std::uint32_t>(reader.count("max_nodes", 500000, 1, 2000000000));
     parameters_.margin = reader.number("margin", 0.0, 0.0);
     parameters_.query.options.signed_distance = reader.truth("signed", false);
     reader.end();

@@ -96,7 +96,7 @@ py::dict contactOf(const PythonMovers &m, const std::string &robot, double epsil
 
 py::dict profileOf(const PythonMovers &m, const std::vector<double> &breaks, const std::string &robot, double epsilon,
                    const Names &links, double horizon, const Names &objects, const std::string &against) {
-  const Query query = queryOf("distance", 0.0, epsilon, 20000, links, objects);
+  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects);
   return toDict(m.ask(robot, against, [&](const auto &of) {
     return clearanceProfile(m.get(), of, breaks, query, threadWorkspace(), horizon);
   }));
@@ -104,7 +104,7 @@ py::dict profileOf(const PythonMovers &m, const std::vector<double> &breaks, con
 
 py::list violationsOf(const PythonMovers &m, double delta, const std::string &robot, std::optional<double> resolution,
                       double epsilon, const Names &links, const Names &objects, const std::string &against) {
-  const Query query = queryOf("tolerance", delta, epsilon, 20000, links, objects);
+  const Query query = queryOf("tolerance", delta, epsilon, DEFAULT_BUDGET, links, objects);
   const double fine = resolution.value_or(m.resolution(robot));
   return toList(
       m.ask(robot, against, [&](const auto &of) { return violations(m.get(), of, fine, query, threadWorkspace()); }));
@@ -112,7 +112,7 @@ py::list violationsOf(const PythonMovers &m, double delta, const std::string &ro
 
 py::list pairsOf(const PythonMovers &m, std::size_t k, const std::string &robot, double within, double epsilon,
                  const Names &links, const Names &objects, const std::string &against) {
-  const Query query = queryOf("distance", 0.0, epsilon, 20000, links, objects);
+  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects);
   return toList(m.ask(robot, against, [&](const auto &of) {
     return nearestPairs(m.get(), of, {k, within}, query, threadWorkspace());
   }));
@@ -181,8 +181,8 @@ void addMovers(py::module &module) {
              const Names &links, const Names &objects, const std::string &against) {
             return answer(m, robot, against, queryOf("distance", 0.0, epsilon, max_nodes, links, objects));
           },
-          py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000, py::arg("links") = Names{},
-          py::arg("objects") = Names{}, py::arg("against") = "others",
+          py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
+          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("against") = "others",
           "The least distance: the dict of Motion.distance().")
       .def(
           "tolerance",
@@ -190,7 +190,7 @@ void addMovers(py::module &module) {
              const Names &links, const Names &objects, const std::string &against) {
             return answer(m, robot, against, queryOf("tolerance", delta, epsilon, max_nodes, links, objects));
           },
-          py::arg("delta"), py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("delta"), py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("against") = "others",
           "Are they farther apart than delta [m] at all times?")
       .def(
@@ -199,17 +199,18 @@ void addMovers(py::module &module) {
              const Names &links, const Names &objects, const std::string &against) {
             return answer(m, robot, against, queryOf("collision", 0.0, epsilon, max_nodes, links, objects));
           },
-          py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000, py::arg("links") = Names{},
-          py::arg("objects") = Names{}, py::arg("against") = "others", "Do they touch or overlap at any time?")
+          py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
+          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("against") = "others",
+          "Do they touch or overlap at any time?")
       .def("time_of_contact", &contactOf, py::arg("robot") = "", py::arg("epsilon") = 1e-6,
-           py::arg("max_nodes") = 20000, py::arg("links") = Names{}, py::arg("objects") = Names{},
+           py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
            py::arg("against") = "others",
            "When they first touch: in [t_contact_lower, t] of the result [s]. Never late.")
-      .def("gradient", &gradientOf, py::arg("robot"), py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+      .def("gradient", &gradientOf, py::arg("robot"), py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
            py::arg("links") = Names{}, py::arg("objects") = Names{},
            "The least distance of one of the motions and its derivatives by that motion: the dict of\n"
            "Motion.gradient() with start, by when it begins. What else moves goes on as it does.")
-      .def("gradients", &gradientsOf, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+      .def("gradients", &gradientsOf, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
            py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("against") = "others",
            "The least distance of all that moves and its derivatives by every motion, by one search: the dict of\n"
            "distance() with valid, reason, t, and gradients: of each motion, then of each object that moves, by its "

@@ -376,7 +376,7 @@ void addQueries(py::module &module) {
       },
       py::arg("mover"), py::arg("obstacles"),
       "The least distance over the whole curve [m]. obstacles: Obstacles, one Obstacle or a list of them.\n"
-      "Options: epsilon=1e-6, relative_epsilon=0, max_nodes=20000, signed=False, max_lod='mesh'.");
+      "Options: epsilon=1e-6, relative_epsilon=0, max_nodes=500000, signed=False, max_lod='mesh'.");
   module.def(
       "tolerance",
       [](const py::object &mover, const py::object &obstacles, double delta, const py::kwargs &given) {

@@ -52,7 +52,7 @@ void addRoadmaps(py::module &module) {
       "edge_verdicts", &edgeVerdictsOf, py::arg("scene"), py::arg("joints"), py::arg("vertices"), py::arg("edges"),
       py::arg("delta"), py::arg("self_collision") = false, py::arg("known") = py::none(),
       py::arg("rest") = JointPositions{}, py::arg("base") = py::none(), py::arg("epsilon") = 1e-6,
-      py::arg("max_nodes") = 20000, py::arg("threads") = 0,
+      py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("threads") = 0,
       "Straight motions between postures, the edges of a roadmap: is the robot farther than delta [m] "
       "everywhere?\n"
       "vertices (n, joints), edges (m, 2) of their rows. known (m,): verdicts of an earlier call; those that are "

@@ -366,14 +366,14 @@ py::list violationsOf(const RobotMotion &motion, double delta, std::optional<dou
   const std::array<double, 2> domain = motion.domain();
   const Violations found = unlocked([&] {
     return violations(motion, self, resolution.value_or(PART * (domain[1] - domain[0])),
-                      queryOf("tolerance", delta, epsilon, 20000, links, objects), threadWorkspace());
+                      queryOf("tolerance", delta, epsilon, DEFAULT_BUDGET, links, objects), threadWorkspace());
   });
   return toList(found);
 }
 
 py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon,
                    const Names &links, double horizon, const Names &objects) {
-  const Query query = queryOf("distance", 0.0, epsilon, 20000, links, objects);
+  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects);
   const std::vector<ClearanceInterval> intervals =
       unlocked([&] { return clearanceProfile(motion, self, breaks, query, threadWorkspace(), horizon); });
   return toDict(intervals);
@@ -382,7 +382,7 @@ py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks,
 py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool self, double epsilon, const Names &links,
                  const Names &objects) {
   const std::vector<Answer> answers = unlocked([&] {
-    return nearestPairs(motion, self, {k, within}, queryOf("distance", 0.0, epsilon, 20000, links, objects),
+    return nearestPairs(motion, self, {k, within}, queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects),
                         threadWorkspace());
   });
   return toList(answers);
@@ -472,7 +472,7 @@ void addRobots(py::module &module) {
             query.options.signed_distance = is_signed;
             return ask(m, self, query);
           },
-          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("signed") = false, py::arg("links") = Names{}, py::arg("objects") = Names{},
           "The least distance to the objects, or of the robot to itself: a dict of result, kind, a (link), b (object "
           "or\n"
@@ -483,8 +483,8 @@ void addRobots(py::module &module) {
              const Names &objects) {
             return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes, links, objects));
           },
-          py::arg("delta"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
-          py::arg("links") = Names{}, py::arg("objects") = Names{},
+          py::arg("delta"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
+          py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
           "Is the robot farther than delta [m] everywhere? As distance().")
       .def(
           "collision",
@@ -492,21 +492,21 @@ void addRobots(py::module &module) {
              const Names &objects) {
             return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects));
           },
-          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("links") = Names{}, py::arg("objects") = Names{},
           "Does the robot touch or overlap an object, or itself? As distance().")
       .def("time_of_contact", &contactOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
-           py::arg("max_nodes") = 20000, py::arg("links") = Names{}, py::arg("objects") = Names{},
+           py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
            "When the robot first touches an object, or itself: in [t_contact_lower, t] of the result [s]. Never late.\n"
            "As distance().")
       .def("certificate", &certificateOf, py::arg("delta") = py::none(), py::arg("self_collision") = false,
-           py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000, py::arg("links") = Names{},
+           py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{},
            py::arg("objects") = Names{},
            "A proof of tolerance(delta), or without delta of distance(): their dict with claim ('apart' or 'near'), "
            "record\n"
            "(bytes) and query (str), which check() verifies. ValueError where there is no proof, with the cause.")
       .def("gradient", &gradientOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
-           py::arg("max_nodes") = 20000, py::arg("links") = Names{}, py::arg("objects") = Names{},
+           py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
            py::arg("signed") = false,
            "The least distance and its derivatives: the dict of distance() with valid, reason, t, positions (points, "
            "joints),\n"
@@ -514,7 +514,7 @@ void addRobots(py::module &module) {
            "object_angular (3,). Where valid is False there is no derivative, and reason says why.")
       .def(
           "rows", &rowsOf, py::arg("horizon"), py::arg("per_pair") = 1, py::arg("breaks") = std::vector<double>{},
-          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("signed") = false, py::arg("most") = 1000,
           "Constraints for an optimiser: of each pair that comes within the horizon [m] its least distances between "
           "each two\nof breaks [s] (empty: the trajectory's times), the per_pair nearest, with their derivatives. "

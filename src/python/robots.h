@@ -90,6 +90,9 @@ class PythonScene {
 
 using Names = std::vector<std::string>;
 
+/** Of work, where the caller names none. */
+inline constexpr std::uint32_t DEFAULT_BUDGET = 500000;
+
 /** type: "distance", "tolerance" or "collision". Throws Error for another. */
 Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links = {},
               const Names &objects = {});

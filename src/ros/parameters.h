@@ -36,7 +36,7 @@ struct Parameters {
   bool ask_planning_scene = false;
   double check_planning_scene = 0.0;
   double epsilon = 1e-6;
-  int max_nodes = 20000;
+  int max_nodes = 500000;
   std::string max_lod = "mesh";
   std::string second_opinion;
   double budget_ms = 5000.0;

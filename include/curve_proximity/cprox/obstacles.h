@@ -211,9 +211,9 @@ typedef struct cprox_violations {
  *  are proven. Convex bodies along curves: with options.signed_distance. Beside a synchronized obstacle likewise only
  *  single places are.
  *
- *  Returns CPROX_OK; CPROX_BUDGET: there was no room for all, or options.max_nodes queries were not enough, and
- *  CPROX_STOPPED: the last violation goes on to the end of what was asked, all else is true; a negative status as
- *  cprox_distance(). Of robots options.interval applies. Cost: two searches for each halving towards an end.
+ *  Returns CPROX_OK; CPROX_BUDGET: there was no room for all, or options.max_nodes was not enough for all searches
+ *  together, and CPROX_STOPPED: the last violation goes on to the end of what was asked, all else is true; a negative
+ *  status as cprox_distance(). Of robots options.interval applies. Cost: two searches for each halving towards an end.
  *  Source: doc/time-of-contact.md, Enter and leave. */
 CPROX_API cprox_status cprox_obstacles_violations(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
                                                   double resolution, const cprox_options *options,

@@ -171,9 +171,14 @@ typedef struct cprox_options {
   double epsilon;
   /** the interval may also be this fraction of upper wide; 0 … 1e60, default 0 */
   double relative_epsilon;
-  /** budget of parameter intervals examined, for each target; >= 1, default 20000 */
+  /** budget of work for each result; >= 1, default 500000, which is about a second. One unit is what a distance query
+   *  (a narrowphase call) costs, 1 to 2 microseconds. Each of these counts as one: a parameter interval examined, a
+   *  distance query, of robots a plane or 16 balls tested over an interval, of cprox_pair() an iteration or a node of a
+   *  BVH. So nodes and distance_queries of the result add up to at most max_nodes, but for what the last interval
+   *  needed. The first interval is always examined. A result is the union over all targets, or where a query answers
+   *  for each target, pair or interval the answer for one of them; violations are one result */
   uint32_t max_nodes;
-  /** polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
+  /** polled at least once in 64 units of max_nodes (0.1 ms); true ends the query with CPROX_STOPPED. NULL: never */
   bool (*stop)(void *user);
   /** handed to stop */
   void *stop_user;
@@ -210,7 +215,7 @@ typedef struct cprox_options {
 
 /** The default of all options. */
 #define CPROX_OPTIONS_DEFAULT                                                                                         \
-  (CPROX_VALUE(cprox_options){sizeof(cprox_options), 1e-6, 0.0, 20000, NULL, NULL, NULL, false, CPROX_LOD_MESH, NULL, \
+  (CPROX_VALUE(cprox_options){sizeof(cprox_options), 1e-6, 0.0, 500000, NULL, NULL, NULL, false, CPROX_LOD_MESH, NULL, \
                               NULL, NULL, NULL})
 
 /** The result of a query. */

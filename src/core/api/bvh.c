@@ -139,6 +139,7 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
     if (!set_walk_next(&walk, cutoff, &target, &lower)) return out_of_memory(&q);
     if (target == UINT32_MAX) break;
     cprox_result r;
+    workspace_forget_work(workspace);
     const cprox_status status = query_answer(&q, target, (size_t)target + 1, cutoff, &r);
     if (status < 0) return status;
     if (failure == CPROX_OK) failure = status;

@@ -80,6 +80,7 @@ static cprox_status find_row(row_search *s, const cprox_robot_pair *pair, size_t
   const size_t target = self ? 0 : (size_t)pair->other;
   q->t0 = s->breaks[interval], q->t1 = s->breaks[interval + 1];
   cprox_result near;
+  workspace_forget_work(q->workspace);
   cprox_status status = robot_answer(q, target, self ? 0 : target + 1, s->cutoff, &near);
   if (status < 0 || near.lower > s->horizon) return status < 0 ? status : CPROX_OK;
   if (s->count == s->room) {
@@ -107,6 +108,7 @@ static cprox_status find_rows(row_search *s, const cprox_robot_pair *pair) {
   s->seen = -1;
   q->t0 = s->breaks[0], q->t1 = s->breaks[s->n_intervals];
   cprox_result all;
+  workspace_forget_work(q->workspace);
   cprox_status status = robot_answer(q, target, self ? 0 : target + 1, s->cutoff, &all);
   if (status < 0 || all.lower > s->horizon) return status < 0 ? status : CPROX_OK;
   for (size_t i = 0; i < s->n_intervals && s->failure != CPROX_STOPPED && status >= 0; i++)

@@ -51,6 +51,7 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
     if (rank[i].lower > cutoff) break;
     cprox_result r;
     const size_t target = (size_t)rank[i].target;
+    workspace_forget_work(workspace);
     const cprox_status status = query_answer(&q, target, target + 1, cutoff, &r);
     if (status < 0) return status;
     failure = worse(failure, status);
@@ -80,6 +81,7 @@ cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_
   cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < n && failure != CPROX_STOPPED; i++) {
     cprox_result r;
+    workspace_forget_work(workspace);
     const cprox_status status = query_answer(&q, i, i + 1, cutoff, &r);
     if (status < 0) return status;
     if (r.lower > delta) continue;

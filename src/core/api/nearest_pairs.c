@@ -78,6 +78,7 @@ static cprox_status ask(const ranked_pairs *p, const cprox_robot_pair *pairs, si
   q.mover.pairs = pairs, q.mover.n_pairs = n;
   const bool self = mover_is_self(&q.mover);
   const size_t first = self || n > 1 ? 0 : (size_t)pairs->other, last = self ? 0 : n > 1 ? q.n : first + 1;
+  workspace_forget_work(q.workspace);
   return robot_answer(&q, first, last, cutoff_of(p), r);
 }
 

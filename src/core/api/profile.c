@@ -92,6 +92,7 @@ cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size
   size_t piece = 0;
   cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < n_intervals; i++) {
+    workspace_forget_work(workspace);
     status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], cutoff, &intervals[i])
                           : measure(&q, breaks[i], breaks[i + 1], cutoff, &piece, &intervals[i]);
     if (status < 0) return status;

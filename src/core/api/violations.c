@@ -21,7 +21,6 @@ typedef struct violation_search {
   query q;
   double delta, resolution;
   cprox_violations *out;
-  uint32_t queries;
   cprox_status failure;
 
   /* what was found from left to right */
@@ -110,7 +109,6 @@ static cprox_status ask(violation_search *s, const piece *p, double limit, cprox
   query *q = &s->q;
   q->limit = limit;
   q->is_signed = limit < 0.0 && q->options.signed_distance; /* of a verdict it does not matter how deep */
-  s->queries++;
   if (q->mover.motion) {
     q->t0 = p->from, q->t1 = p->to;
     return robot_answer_and_travel(q, r, travel);
@@ -169,7 +167,7 @@ static cprox_status look_over(violation_search *s, const piece *whole) {
     cprox_result r = query_nothing();
     piece_kind kind = PIECE_OPEN;
     cprox_status status = s->failure;
-    if (s->queries >= s->q.options.max_nodes) status = CPROX_BUDGET;
+    if (workspace_work(s->q.workspace) >= s->q.options.max_nodes) status = CPROX_BUDGET;
     if (status != CPROX_STOPPED && status != CPROX_BUDGET) status = look_at(s, &p, &kind, &r);
     if (status < 0) return status;
     if (status == CPROX_STOPPED || status == CPROX_BUDGET) s->failure = status;

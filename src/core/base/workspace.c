@@ -12,6 +12,7 @@ struct cprox_workspace {
   bool (*stop)(void *user); /* NULL: never */
   void *stop_user;
   bool stopped;
+  uint64_t work;
 };
 
 cprox_workspace *cprox_workspace_create(void) {
@@ -73,8 +74,21 @@ bool workspace_has_stopped(const cprox_workspace *workspace) {
   return workspace && workspace->stopped;
 }
 
+void workspace_add_work(cprox_workspace *workspace, uint64_t work) {
+  workspace->work += work;
+}
+
+uint64_t workspace_work(const cprox_workspace *workspace) {
+  return workspace->work;
+}
+
+void workspace_forget_work(cprox_workspace *workspace) {
+  workspace->work = 0;
+}
+
 void workspace_clear(cprox_workspace *workspace) {
   if (!workspace) return;
+  workspace->work = 0;
   workspace->reason[0] = '\0';
   workspace->stopped = false;
 }

@@ -58,7 +58,13 @@ bool workspace_stops(cprox_workspace *workspace);
 /* Whether it wanted an end when it was last asked. */
 bool workspace_has_stopped(const cprox_workspace *workspace);
 
-/* Forgets the reason of the last failure, and that an end was wanted. */
+/* The work that searches have done for the answer at hand, in the unit of cprox_options.max_nodes: they add theirs, and
+ * the next answer of the same query begins with none. */
+void workspace_add_work(cprox_workspace *workspace, uint64_t work);
+uint64_t workspace_work(const cprox_workspace *workspace);
+void workspace_forget_work(cprox_workspace *workspace);
+
+/* Forgets the reason of the last failure, that an end was wanted, and the work done. */
 void workspace_clear(cprox_workspace *workspace);
 
 #endif

@@ -142,15 +142,18 @@ cprox_status search_run(search_goal *goal, const search_oracle *oracle, search_n
     /* nodes that leave take their time as well; with the last one the answer is complete */
     const bool ends = pruned_all || (state != NODE_OPEN && open.count == 0);
     const bool poll = goal->stop && looks % STOP_POLL_INTERVAL == 0 && !ends;
-    if (poll && goal->stop(goal->stop_user)) {
+    if (goal->ended != CPROX_OK && !ends) {
+      status = goal->ended;
+    } else if (poll && goal->stop(goal->stop_user)) {
       status = CPROX_STOPPED;
     } else if (state == NODE_OPEN) {
-      if (outcome->nodes >= goal->max_nodes) {
+      if (outcome->nodes > 0 && outcome->nodes + (uint64_t)*oracle->work >= goal->max_nodes) {
         status = CPROX_BUDGET;
       } else {
         const cprox_status worked = work_on(goal, oracle, &node, &open, outcome, &state);
         if (worked < 0) return worked;
         if (state == NODE_OPEN && !search_is_answered(goal, outcome->best.upper)) continue;
+        if (state == NODE_UNRESOLVED) status = goal->ended;
       }
     }
 
@@ -166,6 +169,7 @@ cprox_status search_run(search_goal *goal, const search_oracle *oracle, search_n
     outcome->lower = lesser(open.nodes[i].lower, outcome->lower);
     outcome->free_until = lesser(outcome->free_until, open.nodes[i].start);
   }
+  workspace_add_work(workspace, outcome->nodes + (uint64_t)*oracle->work);
   if (goal->order == SEARCH_LEFT_TO_RIGHT)
     outcome->free_until = lesser(outcome->free_until, time_cutoff(goal, &outcome->best));
   if (status == CPROX_OK && goal->limit < 0.0) {

@@ -39,6 +39,9 @@ typedef struct search_best {
 typedef struct search_oracle {
   void *self;
 
+  /* The work done so far beside the nodes themselves: one for each distance query, and for what costs as much. */
+  const uint32_t *work;
+
   /* A lower bound over the node from normals already known; never computes a new distance. `goal` is what would settle
    * it. */
   double (*filter)(void *self, search_node *node, double goal);
@@ -72,9 +75,11 @@ typedef struct search_goal {
   void *share_user;
   double time_cutoff; /* left to right: parameters from here on are of no interest; infinity: all are */
   double epsilon, relative_epsilon;
-  uint32_t max_nodes;
+  uint32_t max_nodes; /* of nodes and the oracle's work together; the first node is always worked on */
   bool (*stop)(void *user);
   void *stop_user;
+  uint64_t next_look; /* the oracle's work at which it asks `stop` next */
+  cprox_status ended; /* CPROX_BUDGET, CPROX_STOPPED: what an oracle saw within a node */
 } search_goal;
 
 typedef struct search_outcome {
@@ -91,6 +96,20 @@ typedef struct search_effort {
   double good_enough;    /* an upper bound at or below this needs no refinement */
   double epsilon;
 } search_effort;
+
+/* For oracles whose nodes take long: whether the search must end within the node at hand, after so much work, nodes
+ * included. What is not bounded yet then stays as it is. */
+static inline bool search_must_end(search_goal *goal, uint64_t work) {
+  enum { WORK_BETWEEN_LOOKS = 64 };
+  if (goal->ended != CPROX_OK) return true;
+  if (work >= goal->max_nodes) {
+    goal->ended = CPROX_BUDGET;
+  } else if (goal->stop && work >= goal->next_look) {
+    goal->next_look = work + WORK_BETWEEN_LOOKS;
+    if (goal->stop(goal->stop_user)) goal->ended = CPROX_STOPPED;
+  }
+  return goal->ended != CPROX_OK;
+}
 
 /* The width that the goal allows at this upper bound. */
 static inline double search_width(const search_goal *goal, double upper) {

@@ -475,5 +475,6 @@ bool curve_tree_root(curve_tree *o, search_node *root) {
 }
 
 search_oracle curve_tree_oracle(curve_tree *o) {
-  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+  return (search_oracle){
+      .self = o, .work = &o->distance_queries, .filter = filter, .probe = probe, .split = split, .release = release};
 }

@@ -435,5 +435,6 @@ search_node curve_convex_root(const curve_convex *o) {
 }
 
 search_oracle curve_convex_oracle(curve_convex *o) {
-  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+  return (search_oracle){
+      .self = o, .work = &o->distance_queries, .filter = filter, .probe = probe, .split = split, .release = release};
 }

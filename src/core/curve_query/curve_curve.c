@@ -422,5 +422,6 @@ search_node curve_curve_root(const curve_curve *o) {
 }
 
 search_oracle curve_curve_oracle(curve_curve *o) {
-  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+  return (search_oracle){
+      .self = o, .work = &o->distance_queries, .filter = filter, .probe = probe, .split = split, .release = release};
 }

@@ -218,5 +218,6 @@ search_node curve_distance_root(const curve_distance *o) {
 }
 
 search_oracle curve_distance_oracle(curve_distance *o) {
-  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+  return (search_oracle){
+      .self = o, .work = &o->distance_queries, .filter = filter, .probe = probe, .split = split, .release = release};
 }

@@ -244,5 +244,10 @@ search_node curve_radius_root(const curve_radius *o) {
 }
 
 search_oracle curve_radius_oracle(curve_radius *o) {
-  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+  return (search_oracle){.self = o,
+                         .work = &o->base.distance_queries,
+                         .filter = filter,
+                         .probe = probe,
+                         .split = split,
+                         .release = release};
 }

@@ -373,6 +373,20 @@ static void conclude(const dual *d, pair_answer *answer) {
   }
 }
 
+/* A vertex of one inside of the other, which is solid: they overlap, whatever their surfaces do. */
+static void try_vertex(dual *d) {
+  for (int solid = 0; solid < 2 && !d->best.overlap; solid++) {
+    if (!is_solid(d->side[solid])) continue;
+    const tree *host = tree_of(d, solid), *guest = tree_of(d, 1 - solid);
+    vec3 v[3];
+    tree_corners(guest, (tree_place){0, 0}, v);
+    const vec3 x = across(d, 1 - solid, v[0]);
+    if (winding_side_of(d->side[solid]->body->winding, host, x, d->rounding) != WINDING_INSIDE) continue;
+    d->best.overlap = true;
+    d->best.common = solid == 0 ? x : v[0];
+  }
+}
+
 bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, cprox_workspace *workspace,
                 pair_answer *answer) {
   const pair_placement place = pair_place(a, b);
@@ -385,6 +399,7 @@ bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, c
   d.lower = INFINITY;
   d.least = -d.margins - d.rounding;
   seed(&d);
+  if (!d.best.overlap && !d.best.support_failed) try_vertex(&d);
   if (!d.best.overlap && !d.best.support_failed) descend(&d);
   if (d.out_of_memory) return false;
   conclude(&d, answer);

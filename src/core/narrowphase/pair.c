@@ -264,6 +264,7 @@ typedef struct pair_task {
   cprox_lod finest;
   const cprox_options *options;
   cprox_workspace *workspace;
+  uint32_t done; /* steps of the parts before */
 } pair_task;
 
 /* Parts i of a and j of b, by their finest models up to the level of detail. */
@@ -274,7 +275,9 @@ static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cp
     return workspace_fail(task->workspace, CPROX_INVALID, "two halfspaces have no distance");
   *reply = (pair_reply){.answer = {.upper = INFINITY}, .part = (int32_t)j};
   reply->lod = a.lod > b.lod ? a.lod : b.lod;
-  const cprox_status status = pair_solve(&a, &b, task->goal, task->known, task->workspace, &reply->answer);
+  pair_goal goal = *task->goal;
+  goal.max_steps = task->done < goal.max_steps ? goal.max_steps - task->done : 1;
+  const cprox_status status = pair_solve(&a, &b, &goal, task->known, task->workspace, &reply->answer);
   if (status) return status;
   if (!reply->answer.support_failed) return CPROX_OK;
   return workspace_fail(task->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
@@ -322,7 +325,7 @@ static bool pair_is_stopped(const pair_task *task) {
 
 /* The nearest of all pairs of parts; its lower is the least of all their lower bounds. Stopped: the nearest of those
  * that were looked at. */
-static cprox_status pair_over_parts(const pair_task *task, pair_reply *best) {
+static cprox_status pair_over_parts(pair_task *task, pair_reply *best) {
   *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
   for (size_t i = 0; i < body_n_parts(task->a->body); i++) {
     for (size_t j = 0; j < body_n_parts(task->b->body); j++) {
@@ -338,6 +341,7 @@ static cprox_status pair_over_parts(const pair_task *task, pair_reply *best) {
       pair_reply one = {.part = 0};
       if ((status = pair_of_models(task, i, j, task->finest, &one))) return status;
       pair_join(best, &one);
+      task->done = best->answer.steps;
     }
   }
   return CPROX_OK;
@@ -401,13 +405,13 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
                          .normal = frame_turn_to_world(&fa, asked.start->normal),
                          .distance = asked.start->distance};
   }
-  const pair_task task = {.a = &a,
-                          .b = &b,
-                          .goal = &goal,
-                          .known = pair_has_start(&asked) ? &known : NULL,
-                          .finest = finest,
-                          .options = &asked,
-                          .workspace = workspace};
+  pair_task task = {.a = &a,
+                    .b = &b,
+                    .goal = &goal,
+                    .known = pair_has_start(&asked) ? &known : NULL,
+                    .finest = finest,
+                    .options = &asked,
+                    .workspace = workspace};
   if ((status = pair_over_parts(&task, &best))) return status;
 
   const pair_answer *answer = &best.answer;

@@ -44,6 +44,7 @@ cprox_status query_begin(query *q, arguments_query asked) {
 
 search_goal query_goal(const query *q, search_order order, double cutoff) {
   CORE_CHECK(!(q->is_signed && query_wants_verdict(q)), "a verdict about %g m has no sign", q->limit);
+  const uint64_t done = workspace_work(q->workspace), most = q->options.max_nodes;
   return (search_goal){.order = order,
                        .limit = q->limit,
                        .is_signed = q->is_signed,
@@ -51,7 +52,7 @@ search_goal query_goal(const query *q, search_order order, double cutoff) {
                        .time_cutoff = INFINITY,
                        .epsilon = q->options.epsilon,
                        .relative_epsilon = q->options.relative_epsilon,
-                       .max_nodes = q->options.max_nodes,
+                       .max_nodes = done < most ? (uint32_t)(most - done) : 1,
                        .stop = q->options.stop,
                        .stop_user = q->options.stop_user};
 }
@@ -78,7 +79,7 @@ bool query_is_satisfied(const query *q, double cutoff, const cprox_result *r) {
 
 const char *query_shortfall(cprox_status status) {
   switch (status) {
-    case CPROX_BUDGET: return "the budget of nodes ended the search: raise max_nodes or epsilon";
+    case CPROX_BUDGET: return "the budget ended the search: raise max_nodes or epsilon";
     case CPROX_PRECISION: return "epsilon is below what double arithmetic allows at this scale";
     case CPROX_STOPPED: return "the stop function ended the search";
     case CPROX_OVERLAP: return cprox_status_text(status);

@@ -159,7 +159,7 @@ static cprox_status refine_pair_elements(robot_search *o, search_node *node, lis
       robot_refinement_from(o, entry->pair, hulls, robot_pruning_bound(o) + displacement + spare, displacement + spare);
   c.listing = true;
   const cprox_status status = robot_refine_elements(o, &c);
-  if (status < 0 || c.too_many) return status;
+  if (status < 0 || !c.complete) return status;
   entry->lower = fmax(entry->lower, c.rest - displacement - hulls->slack);
   const robot_pair whole = o->scene.pairs[entry->pair];
   for (size_t i = 0; i < c.n_found; i++) {
@@ -175,6 +175,7 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   const robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   entry->needs_split = false;
+  o->balls++;
   double coarse = INFINITY;
   if (pair->element[0] == ROBOT_WHOLE && pair->element[1] == ROBOT_WHOLE) {
     coarse = robot_scene_coarse_displacement(&o->scene, pair);
@@ -187,7 +188,7 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   const double displacement = robot_scene_displacement(&o->scene, pair, moving);
   entry->lower = greater(apart - displacement, entry->lower);
   const double size = greater(MOST_DISPLACEMENT * apart, moving->radius);
-  if (robot_is_pruned(o, entry->lower) || !(displacement > size) || robot_is_short(node)) return;
+  if (robot_is_pruned(o, entry->lower) || !(displacement > size) || robot_is_short(o, node)) return;
   entry->needs_split = true;
   want_pieces(o, displacement / size);
 }
@@ -214,6 +215,26 @@ static cprox_status open_pair(robot_search *o, const search_node *node, list_ent
   return status;
 }
 
+/* The nearest elements in the middle, if they are nearer than the best: less what the part moves they bound all. */
+static cprox_status bound_by_nearest(robot_search *o, list_entry *entry, const robot_gap *hulls, double displacement) {
+  robot_refinement nearest = robot_refinement_from(o, entry->pair, hulls, o->best_bound.upper, 0.0);
+  const cprox_status status = robot_refine_elements(o, &nearest);
+  if (status >= 0 && nearest.complete) entry->lower = fmax(entry->lower, nearest.rest - displacement - hulls->slack);
+  return status;
+}
+
+/* Of a posture the nearest elements say all. What is nearer than the best by no more than rounding is not looked for.
+ */
+static cprox_status bound_posture(robot_search *o, list_entry *entry, const robot_gap *hulls) {
+  const double rounding = hulls->slack;
+  const double reach =
+      o->goal.limit < 0.0 ? lesser(o->best_bound.upper, o->goal.cutoff) : robot_pruning_bound(o) + 4.0 * rounding;
+  robot_refinement c = robot_refinement_from(o, entry->pair, hulls, reach, -rounding);
+  const cprox_status status = robot_refine_elements(o, &c);
+  if (status >= 0 && c.complete) entry->lower = fmax(entry->lower, c.rest - hulls->slack);
+  return status;
+}
+
 /* The same by planes and distances, the cheapest way that settles it. */
 static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
   robot_pair *pair = &o->scene.pairs[entry->pair];
@@ -233,7 +254,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
     /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much
      * more */
     const double pieces = o->goal.limit >= 0.0 ? pieces_for(o, plane_middle(o, pair, moving, standing), bound) : 2.0;
-    if (pieces > ENOUGH_PIECES && !robot_is_short(node)) {
+    if (pieces > ENOUGH_PIECES && !robot_is_short(o, node)) {
       want_pieces(o, pieces);
       return CPROX_OK;
     }
@@ -250,27 +271,26 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   if (pair->normal_known && (gap.upper > 0.0 || o->goal.is_signed))
     entry->lower = fmax(entry->lower, bound_by_gap(o, pair, moving, standing, motion, &gap, slack));
   if (robot_is_pruned(o, entry->lower)) return CPROX_OK;
+  if (o->scene.motion->is_state && !robot_is_convex(moving, standing)) return bound_posture(o, entry, &gap);
   const double pieces = pieces_for(o, gap.lower, entry->lower);
   const robot_pair *whole = &o->scene.pairs[entry->pair];
   if (can_open && !robot_is_pruned(o, gap.lower) && o->goal.limit < 0.0 && whole->element[0] == ROBOT_WHOLE &&
       whole->element[1] == ROBOT_WHOLE) {
-    robot_refinement nearest = robot_refinement_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
-    const cprox_status refined = robot_refine_elements(o, &nearest);
-    if (refined < 0) return refined;
+    const cprox_status refined = bound_by_nearest(o, entry, &gap, displacement);
+    if (refined < 0 || robot_is_pruned(o, entry->lower)) return refined;
   }
-  const bool too_many = o->n_next > MOST_OPEN && !robot_is_short(node);
-  if (can_open && !too_many && (!robot_is_pruned(o, gap.lower) || robot_is_short(node)))
+  const bool too_many = o->n_next > MOST_OPEN && !robot_is_short(o, node);
+  if (can_open && !too_many && (!robot_is_pruned(o, gap.lower) || robot_is_short(o, node)))
     return open_pair(o, node, entry);
   want_pieces(o, pieces);
   if (can_open || robot_is_convex(moving, standing) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
   if (o->goal.limit < 0.0 && gap.lower < o->best_bound.upper) {
-    robot_refinement nearest = robot_refinement_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
-    const cprox_status refined = robot_refine_elements(o, &nearest);
-    if (refined < 0) return refined;
+    const cprox_status refined = bound_by_nearest(o, entry, &gap, displacement);
+    if (refined < 0 || robot_is_pruned(o, entry->lower)) return refined;
   }
-  if (robot_is_pruned(o, gap.lower) && !robot_is_short(node)) return CPROX_OK;
+  if (robot_is_pruned(o, gap.lower) && !robot_is_short(o, node)) return CPROX_OK;
   return refine_pair_elements(o, node, entry, &gap, displacement);
 }
 
@@ -298,7 +318,7 @@ static double pruning_bar(const robot_search *o) {
  * to be measured, nodes that hold them. */
 static cprox_status open_cluster(robot_search *o, const search_node *node, const list_entry *entry,
                                  const cluster_view *view) {
-  const bool is_short = robot_is_short(node);
+  const bool is_short = robot_is_short(o, node);
   const double bar = pruning_bar(o);
   uint32_t stack[TREE_LANES * TREE_DEEPEST];
   stack[0] = entry->under;
@@ -352,7 +372,7 @@ static bool bound_groups(robot_search *o, const search_node *node, double bar, o
   pair->lower = greater(apart - pair->displacement, pair->lower);
   if (pair->lower >= bar || robot_groups_are_parts(&o->scene, pair->groups)) return false;
   const double size = greater(MOST_DISPLACEMENT * apart, robot_groups_radius(&o->scene, pair->groups));
-  if (!(pair->displacement > GROUP_DISPLACEMENT * size) || robot_is_short(node)) return false;
+  if (!(pair->displacement > GROUP_DISPLACEMENT * size) || robot_is_short(o, node)) return false;
   want_pieces(o, pair->displacement / (GROUP_DISPLACEMENT * size));
   return true;
 }
@@ -445,7 +465,8 @@ cprox_status robot_bound_node(robot_search *o, search_node *node) {
   for (size_t i = 0; i < o->n_next; i++) {
     list_entry entry = o->next[i];
     double slack = 0.0;
-    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !entry.bounded && !robot_scene_is_bent(&o->scene)) {
+    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !entry.bounded && !robot_scene_is_bent(&o->scene) &&
+        !robot_must_end(o)) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
       if (robot_is_answered(o)) {

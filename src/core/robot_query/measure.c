@@ -104,6 +104,9 @@ robot_refinement robot_refinement_from(robot_search *o, int32_t index, const rob
                             .pair = index,
                             .reach = fmin(reach, most + room),
                             .room = room,
+                            .goal = &o->goal,
+                            .work = o->nodes + robot_work(o),
+                            .measured = o->best.pair >= 0,
                             .accuracy = ROBOT_GAP_FRACTION * o->goal.epsilon,
                             .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
 }
@@ -146,6 +149,7 @@ typedef struct nearest_pair {
 static void try_pair(robot_search *o, int32_t index, nearest_pair *nearest) {
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  o->balls++;
   if (robot_pair_balls(moving, standing) >= nearest->apart) return;
   const double apart = robot_pair_ball_distance(moving, standing);
   if (apart < nearest->apart) *nearest = (nearest_pair){.apart = apart, .pair = index};
@@ -313,7 +317,7 @@ static cprox_status seed_span(robot_search *o, int32_t list, const motion_interv
   motion_interval half = *over;
   half.last = knot, half.b = 1.0;
   const cprox_status status = seed_span(o, list, &half, places / 2);
-  if (status < 0 || robot_is_answered(o)) return status;
+  if (status < 0 || robot_is_answered(o) || robot_must_end(o)) return status;
   half = *over;
   half.first = knot, half.a = 0.0;
   return seed_span(o, list, &half, places - places / 2);
@@ -395,7 +399,7 @@ cprox_status robot_seed(robot_search *o, const search_node *node) {
   size_t places = MOST_SEEDS;
   while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
   cprox_status status = seed_span(o, list, &over, places);
-  for (int end = 0; end < 2 && status >= 0 && !robot_is_answered(o); end++) {
+  for (int end = 0; end < 2 && status >= 0 && !robot_is_answered(o) && !robot_must_end(o); end++) {
     const double u = end == 0 ? over.a : over.b;
     const size_t segment = end == 0 ? over.first : over.last - 1;
     if (robot_scene_has_two_times(&o->scene))

@@ -65,18 +65,14 @@ static void begin_node(robot_search *o) {
   o->cut_other = o->cut = false;
 }
 
-static cprox_status probe(void *self, search_node *node, search_best *best) {
-  robot_search *o = self;
+static cprox_status look_at(robot_search *o, search_node *node) {
   bool served = false;
   o->nodes++;
   begin_node(o);
   cprox_status status = robot_look_inside(o, node);
   const bool known = robot_is_answered(o) || o->touch_at <= node->start;
   if (status >= 0 && !known) status = robot_bound_flight(o, node, &served);
-  if (status < 0 || known || served) {
-    *best = o->best_bound;
-    return status;
-  }
+  if (status < 0 || known || served) return status;
   if (!o->seeded) {
     o->seeded = true;
     /* contact at the beginning answers at once; halves of halves would only close in on it */
@@ -84,8 +80,14 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     if (status >= 0 && !isfinite(o->touch_at) && !others_seeded(o)) status = robot_seed(o, node);
   }
   const bool begins_in_contact = o->touch_at <= node->start;
-  if (status == CPROX_OK && !robot_is_answered(o) && !begins_in_contact) status = robot_bound_node(o, node);
+  return status == CPROX_OK && !robot_is_answered(o) && !begins_in_contact ? robot_bound_node(o, node) : status;
+}
+
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  robot_search *o = self;
+  const cprox_status status = look_at(o, node);
   *best = o->best_bound;
+  o->work = (uint32_t)robot_work(o);
   return status;
 }
 
@@ -137,6 +139,7 @@ static int split(void *self, search_node *node, search_node *child) {
   motion_interval piece[SEARCH_MAX_CHILDREN];
   bool cut_other = two && o->cut_other;
   int pieces = 0;
+  if (s->motion->is_state) return 0; /* it is the same everywhere */
   for (int tries = 0; tries < (two ? 2 : 1) && pieces == 0; tries++) {
     if (tries > 0) cut_other = !cut_other;
     pieces = cut_other ? split_interval(o, &other, s->other_centre.bent, piece)
@@ -163,11 +166,12 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->dropped = o->scene.beyond, o->touch_at = INFINITY;
   o->seeded = o->refined = o->looked_inside = o->unsure = false;
-  o->gaps = o->planes = o->nodes = o->flights = 0;
+  o->gaps = o->planes = o->balls = o->nodes = o->flights = o->work = 0;
   o->next = NULL, o->n_next = 0;
   begin_node(o);
   lists_begin(&o->lists, o->scene.q->workspace);
 }
 search_oracle robot_search_oracle(robot_search *o) {
-  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+  return (search_oracle){
+      .self = o, .work = &o->work, .filter = filter, .probe = probe, .split = split, .release = release};
 }

@@ -39,16 +39,6 @@ static inline motion_interval robot_other_interval(const search_node *node) {
       .a = payload->other_a, .b = payload->other_b, .first = payload->other_first, .last = payload->other_last};
 }
 
-/* Intervals that are shorter are measured even where a part moves farther than its own size. */
-#define ROBOT_SHORT_INTERVAL 0x1p-8
-
-/* Whether a node is so short that everything is measured. */
-static inline bool robot_is_short(const search_node *node) {
-  const motion_interval over = robot_interval(node), other = robot_other_interval(node);
-  return !motion_is_span(&over) && !(over.b - over.a > ROBOT_SHORT_INTERVAL) && !motion_is_span(&other) &&
-         !(other.b - other.a > ROBOT_SHORT_INTERVAL);
-}
-
 /* Where the least distance was measured. */
 typedef struct robot_sample {
   robot_gap gap;
@@ -72,9 +62,11 @@ typedef struct robot_search {
   bool seeded;
   bool looked_inside;    /* of solid meshes, where the motion begins; */
   bool unsure;           /* something touches one there, and may be inside */
-  uint32_t gaps, planes; /* distances measured, plane bounds asked for */
+  uint32_t gaps, planes; /* distances measured, plane bounds asked for, */
+  uint32_t balls;        /* and pairs held against each other by their balls and boxes */
   uint32_t nodes;        /* looked at, */
   uint32_t flights;      /* and more intervals inside them, for one pair */
+  uint32_t work;         /* all this as the engine counts it, the nodes apart */
   bool refined;          /* elements of meshes were looked at */
   double pieces;         /* into so many the node at hand is best cut, */
   bool cut_other;        /* of two times: the other clock's interval */
@@ -82,6 +74,29 @@ typedef struct robot_search {
   size_t n_next;
   bool cut; /* it will be cut whatever is measured */
 } robot_search;
+
+/* Intervals that are shorter are measured even where a part moves farther than its own size. */
+#define ROBOT_SHORT_INTERVAL 0x1p-8
+
+/* Whether a node is so short that everything is measured. Of a posture parts are no shorter. */
+static inline bool robot_is_short(const robot_search *o, const search_node *node) {
+  if (o->scene.motion->is_state) return true;
+  const motion_interval over = robot_interval(node), other = robot_other_interval(node);
+  return !motion_is_span(&over) && !(over.b - over.a > ROBOT_SHORT_INTERVAL) && !motion_is_span(&other) &&
+         !(other.b - other.a > ROBOT_SHORT_INTERVAL);
+}
+
+/* The unit of work is a distance query. A test of a plane over an interval costs about as much, and so do several of
+ * balls and boxes. */
+static inline uint64_t robot_work(const robot_search *o) {
+  enum { BALLS_A_UNIT = 16 };
+  return (uint64_t)o->gaps + o->planes + o->flights + o->balls / BALLS_A_UNIT;
+}
+
+/* Whether the search must end within the node at hand. One distance is always measured. */
+static inline bool robot_must_end(robot_search *o) {
+  return o->best.pair >= 0 && search_must_end(&o->goal, o->nodes + robot_work(o));
+}
 
 /* The scene must have begun. */
 void robot_search_begin(robot_search *o, const search_goal *goal);

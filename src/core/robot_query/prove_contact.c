@@ -30,7 +30,8 @@ static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, sea
   cprox_status status = CPROX_OK;
   if (pair >= 0) status = robot_measure_whole(o, pair);
   const size_t n = pair < 0 ? o->scene.n_pairs : 0;
-  for (size_t i = 0; i < n && status >= 0 && o->touch_at == known; i++) status = robot_measure_if_near(o, (int32_t)i);
+  for (size_t i = 0; i < n && status >= 0 && o->touch_at == known && o->goal.ended != CPROX_STOPPED; i++)
+    status = robot_measure_if_near(o, (int32_t)i);
   if (pair < 0 && o->scene.groups && status >= 0 && o->touch_at == known)
     status = robot_visit_near_groups(o, (group_pair){{0, 0}}, robot_measure_if_near);
   *found = o->best_bound;

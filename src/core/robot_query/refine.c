@@ -41,17 +41,21 @@ static bool is_behind(const robot_refinement *c, const robot_body *const side[2]
   return vec_norm2(n) > 0.0 && !robot_body_is_halfspace(side[STANDING]) && apart_along(side, n) >= c->reach;
 }
 
+/* Nothing is in reach any more. */
+static void abandon(robot_refinement *c) {
+  c->reach = -INFINITY;
+  c->complete = false;
+}
+
 /* The distance of the two, and its normal for those that come next. What is out of reach need not be known well. */
 static void ask(robot_refinement *c, const robot_body *const side[2], int level, robot_gap *gap) {
   robot_accuracy accuracy = {.epsilon = c->accuracy, .floor = c->reach, .fraction = BEYOND};
   if (vec_norm2(c->last[level]) > 0.0) accuracy.start = placement_turn_back(&side[STANDING]->side.at, c->last[level]);
   robot_pair_measure(side[MOVING], side[STANDING], accuracy, gap);
   c->gaps++;
+  const bool measured = c->measured || c->nearest.gap.upper < INFINITY;
+  if (c->goal && measured && search_must_end(c->goal, c->work + c->gaps)) abandon(c);
   if (!gap->support_failed && gap->upper > 0.0) c->last[level] = gap->normal;
-}
-
-static void abandon(robot_refinement *c) {
-  c->reach = -INFINITY;
 }
 
 static void fail(robot_refinement *c) {
@@ -61,14 +65,14 @@ static void fail(robot_refinement *c) {
 
 static void keep(robot_refinement *c, const int32_t code[2], const robot_gap *gap) {
   const robot_found found = {.element = {code[0], code[1]}, .gap = *gap};
+  c->least = fmin(c->least, gap->lower);
   if (gap->upper < c->nearest.gap.upper) c->nearest = found;
   c->reach = fmin(c->reach, fmax(gap->upper, 0.0) + c->room);
   if (!c->listing) {
-    if (gap->upper <= 0.0) abandon(c); /* nothing is nearer than what touches */
+    if (gap->upper <= 0.0) c->reach = -INFINITY; /* nothing is nearer than what touches */
     return;
   }
   if (c->n_found == MOST_FOUND) {
-    c->too_many = true;
     abandon(c);
     return;
   }
@@ -229,8 +233,9 @@ void robot_refinement_run(robot_refinement *c) {
   robot_scene *s = c->scene;
   c->n_found = 0, c->gaps = 0;
   c->last[0] = c->last[1] = vec(0, 0, 0);
-  c->too_many = c->support_failed = c->no_memory = false;
-  c->nearest.gap.upper = INFINITY;
+  c->complete = true;
+  c->support_failed = c->no_memory = false;
+  c->nearest.gap.upper = c->least = INFINITY;
   if (c->listing) {
     c->found = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_FOUND, MOST_FOUND * sizeof *c->found);
     c->no_memory = c->found == NULL;
@@ -240,10 +245,10 @@ void robot_refinement_run(robot_refinement *c) {
   const robot_body *const side[2] = {robot_scene_moving(s, pair), robot_scene_standing(s, pair)};
   if (!c->listing && robot_can_open(side)) {
     descend_clusters(c, side);
-    c->rest = c->reach;
+    c->rest = fmin(c->reach, c->least);
     return;
   }
   const int32_t whole[2] = {-1, -1};
   descend(c, side, whole, side[STANDING]->tree ? STANDING : MOVING);
-  c->rest = c->reach;
+  c->rest = c->listing ? c->reach : fmin(c->reach, c->least);
 }

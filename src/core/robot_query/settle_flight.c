@@ -52,8 +52,7 @@ static bool begin(settling *s, robot_search *o, const search_node *node, int32_t
 
 /* One more interval counts like a node; false where the budget has none left. */
 static bool take_interval(robot_search *o) {
-  if (o->nodes >= o->goal.max_nodes) return false;
-  o->goal.max_nodes--;
+  if (robot_must_end(o)) return false;
   o->flights++;
   return true;
 }

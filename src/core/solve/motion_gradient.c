@@ -265,8 +265,9 @@ static cprox_status run(gradient_search *g, search_outcome *found) {
   }
   search_node root;
   if (!robot_search_root(o, &g->within, &g->within, &root)) return robot_no_memory(o);
-  const search_oracle oracle = {.self = g, .filter = filter, .probe = probe, .split = split, .release = release};
-  const cprox_status status = search_run(&goal, &oracle, root, q->workspace, found);
+  const search_oracle oracle = {
+      .self = g, .work = g->robot.work, .filter = filter, .probe = probe, .split = split, .release = release};
+  const cprox_status status = search_run(&o->goal, &oracle, root, q->workspace, found);
   if (g->failure < 0) return g->failure;
   if (status == CPROX_MEMORY) return workspace_fail(q->workspace, status, "no memory for the open intervals");
   return status;

@@ -367,7 +367,7 @@ static cprox_status elements_are_alone(spot_pair *p, const motion_spot *spot, do
   p->gaps += c.gaps;
   if (c.support_failed) return refuse(p);
   if (c.no_memory) return workspace_fail(p->scene->q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
-  *alone = !c.too_many;
+  *alone = c.complete;
   for (size_t i = 0; i < c.n_found && *alone; i++) {
     robot_gap gap;
     measure_elements(p, c.found[i].element, &gap);

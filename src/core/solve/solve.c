@@ -53,6 +53,7 @@ cprox_status query_answer_each(const query *q, cprox_result *nearest, cprox_resu
   cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < q->n; i++) {
     cprox_result one = query_nothing();
+    workspace_forget_work(q->workspace);
     const cprox_status status = query_answer(q, i, i + 1, INFINITY, &one);
     if (status < 0) return status;
     /* where the union falls short, it is for the one that is not known to be farther */

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a query may cost, in counts of nodes and distance queries: one budget over all of it, the stop function heard
+ * inside of every node, and what one node is enough for. The meshes are balls one in the other, with an even gap: each
+ * triangle has some that are as near as any. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "curve_proximity/cprox.h"
+#include "support/builders.h"
+#include "support/cases.h"
+#include "support/of_list.h"
+#include "support/random.h"
+
+/* 4 k² triangles, of which 4 k at the poles have no area. */
+static cprox_body *ball_mesh(double radius, size_t k, cprox_mesh_fill fill) {
+  const size_t n = (k + 1) * 2 * k, m = 4 * k * k;
+  vec3 *vertices = malloc(n * sizeof *vertices);
+  uint32_t(*triangles)[3] = malloc(m * sizeof *triangles);
+  assert_true(vertices && triangles);
+  const double half_turn = acos(-1.0);
+  for (size_t i = 0; i <= k; i++) {
+    const double polar = half_turn * (double)i / (double)k, across = i == 0 || i == k ? 0.0 : radius * sin(polar);
+    for (size_t j = 0; j < 2 * k; j++) {
+      const double around = half_turn * (double)j / (double)k;
+      vertices[i * 2 * k + j] = vec(across * cos(around), across * sin(around), radius * cos(polar));
+    }
+  }
+  size_t made = 0;
+  for (uint32_t i = 0; i < k; i++)
+    for (uint32_t j = 0; j < 2 * k; j++) {
+      const uint32_t a = i * 2 * (uint32_t)k + j, b = i * 2 * (uint32_t)k + (j + 1) % (2 * (uint32_t)k);
+      const uint32_t below = 2 * (uint32_t)k, quad[2][3] = {{a, a + below, b}, {b, a + below, b + below}};
+      memcpy(triangles[made], quad, sizeof quad);
+      made += 2;
+    }
+  cprox_body *body = NULL;
+  assert_int_equal(cprox_body_create_mesh(vertices, n, (const uint32_t(*)[3])triangles, m, fill, SIZE_MAX, ws, &body),
+                   CPROX_OK);
+  free(vertices);
+  free(triangles);
+  return body;
+}
+
+/* A rotor that turns by 1 rad in a housing, 10 % of its size away all round. */
+typedef struct rotor {
+  cprox_body *in, *out;
+  cprox_robot *robot;
+  cprox_motion *motion;
+  cprox_obstacle housing;
+} rotor;
+
+static void rotor_make(rotor *r, size_t k, double far) {
+  r->in = ball_mesh(0.45, k, CPROX_MESH_FILL_SURFACE), r->out = ball_mesh(0.5, k, CPROX_MESH_FILL_SURFACE);
+  cprox_link link = {.parent = -1,
+                     .type = CPROX_JOINT_REVOLUTE,
+                     .origin = CPROX_POSE_IDENTITY,
+                     .axis = {0.3, 0.2, 1.0},
+                     .multiplier = 1.0};
+  link.origin.position.x = far;
+  const cprox_link_geometry geometry = {.body = r->in, .pose = CPROX_POSE_IDENTITY};
+  assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &r->robot), CPROX_OK);
+  const int32_t variable = 0;
+  const double positions[2] = {0.0, 1.0};
+  const cprox_waypoint waypoints[2] = {{.time = 0.0, .positions = positions},
+                                       {.time = 1.0, .positions = positions + 1}};
+  const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                      .variables = &variable,
+                                      .n_variables = 1,
+                                      .waypoints = waypoints,
+                                      .n_waypoints = 2};
+  assert_int_equal(cprox_motion_create(r->robot, &d, ws, &r->motion), CPROX_OK);
+  r->housing = cprox_obstacle_at(r->out, CPROX_POSE_IDENTITY);
+  r->housing.pose.position.x = far;
+}
+
+static void rotor_free(rotor *r) {
+  cprox_motion_free(r->motion);
+  cprox_robot_free(r->robot);
+  cprox_body_free(r->in);
+  cprox_body_free(r->out);
+}
+
+static bool stop_at_last(void *user) {
+  return --*(int *)user <= 0;
+}
+
+CASE(the_budget_bounds_what_pairs_of_triangles_cost) {
+  rotor r;
+  rotor_make(&r, 16, 0.0);
+  for (uint32_t budget = 1000; budget <= 100000; budget *= 10) {
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.max_nodes = budget;
+    cprox_result found;
+    assert_int_equal(distance_of_list(cprox_robot_along(r.motion, NULL, 0), &r.housing, 1, &options, ws, &found, NULL),
+                     CPROX_BUDGET);
+    assert_true(found.nodes + found.distance_queries <= budget + 100);
+    /* the distance is 0.045219: what is left open is as wide as what an interval moves */
+    assert_true(found.lower <= 0.045219 && found.upper >= 0.045219 && found.upper < 0.0457);
+    if (budget >= 100000) assert_true(found.lower > 0.03);
+  }
+  rotor_free(&r);
+}
+
+CASE(the_stop_function_is_asked_within_a_node) {
+  rotor r;
+  rotor_make(&r, 16, 0.0);
+  for (int last = 1; last <= 100; last += 9) {
+    int polls = last;
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.stop = stop_at_last, options.stop_user = &polls;
+    cprox_result found;
+    assert_int_equal(distance_of_list(cprox_robot_along(r.motion, NULL, 0), &r.housing, 1, &options, ws, &found, NULL),
+                     CPROX_STOPPED);
+    /* at most 64 units between two polls, and the first distance */
+    assert_true(polls == 0 && found.nodes + found.distance_queries <= 64 * (uint32_t)last + 200);
+    assert_true(found.lower <= 0.045220 && (last == 1 || found.upper >= 0.045219));
+  }
+  rotor_free(&r);
+}
+
+/* However coarse places are there: at 1e10 m they are 1e-6 m apart. */
+CASE(a_posture_takes_one_node_wherever_it_is) {
+  static const double FAR[6] = {0.0, 1e7, 1e8, 1e9, 1e10, 1e11};
+  for (size_t i = 0; i < 6; i++) {
+    rotor r;
+    rotor_make(&r, 8, FAR[i]);
+    cprox_obstacles *obstacles = NULL;
+    assert_int_equal(cprox_obstacles_create(&r.housing, 1, CPROX_INDEX_NONE, ws, &obstacles), CPROX_OK);
+    const cprox_state_query asked = {.obstacles = obstacles, .distance = true};
+    const double angle = 0.3;
+    cprox_result found;
+    const cprox_status status = cprox_robot_ask_states(r.robot, &asked, &angle, 1, ws, &found, NULL);
+    assert_int_equal(status, FAR[i] < 1e8 ? CPROX_OK : CPROX_PRECISION);
+    assert_true(found.nodes == 1 && found.distance_queries < 10000);
+    assert_true(found.lower <= 0.034815 && found.upper >= 0.034813);
+    assert_true(found.upper - found.lower <= 1e-6 + 4e-13 * FAR[i]);
+    cprox_obstacles_free(obstacles);
+    rotor_free(&r);
+  }
+}
+
+/* Gaps of 10 % and of 2 %: the surfaces are not apart within the budget, but a vertex is inside. */
+CASE(a_vertex_inside_proves_that_solids_touch) {
+  static const double SMALLER[2] = {0.9, 0.98};
+  for (size_t k = 8; k <= 64; k *= 2)
+    for (int i = 0; i < 4; i++) {
+      cprox_body *large = ball_mesh(1.0, k, CPROX_MESH_FILL_SOLID);
+      cprox_body *small = ball_mesh(SMALLER[i / 2], k, CPROX_MESH_FILL_SOLID);
+      const cprox_obstacle a = cprox_obstacle_at(large, CPROX_POSE_IDENTITY),
+                           b = cprox_obstacle_at(small, CPROX_POSE_IDENTITY);
+      cprox_result found;
+      assert_int_equal(i % 2 ? cprox_pair(a, b, NULL, ws, &found) : cprox_pair(b, a, NULL, ws, &found), CPROX_OVERLAP);
+      assert_true(found.upper == 0.0 && found.nodes < 100);
+      cprox_body_free(large);
+      cprox_body_free(small);
+    }
+}
+
+CASE(nested_surfaces_are_answered_within_the_default_budget) {
+  for (size_t k = 8; k <= 32; k *= 2) {
+    cprox_body *large = ball_mesh(1.0, k, CPROX_MESH_FILL_SURFACE), *small = ball_mesh(0.9, k, CPROX_MESH_FILL_SURFACE);
+    cprox_result found;
+    assert_int_equal(cprox_pair(cprox_obstacle_at(large, CPROX_POSE_IDENTITY),
+                                cprox_obstacle_at(small, CPROX_POSE_IDENTITY), NULL, ws, &found),
+                     CPROX_OK);
+    assert_true(found.lower > 0.096 && found.upper < 0.1);
+    cprox_body_free(large);
+    cprox_body_free(small);
+  }
+}
+
+int main(void) {
+  return cases_run(workspace_setup, workspace_teardown);
+}
