@@ -38,7 +38,7 @@ class WrongParameters(unittest.TestCase):
         good = open(ARM).read()
         cases = [good.replace('<sphere radius="0.1"/>', '<sphere radius="nan"/>'),
                  good.replace('<sphere radius="0.1"/>', '<sphere radius="-1"/>'),
-                 good.replace('<sphere radius="0.1"/>', '<capsule radius="0.1" length="1"/>'),
+                 good.replace('<sphere radius="0.1"/>', '<torus radius="0.1" length="1"/>'),
                  good.replace('<sphere radius="0.1"/>', '<mesh filename="package://curve_proximity/none.stl"/>')]
         for urdf in cases:
             rospy.set_param('/robot_description', urdf)

@@ -189,9 +189,10 @@ TEST(Files, aliases_are_read_and_merges_are_refused) {
 TEST(Files, unknown_keys_make_what_is_read_partial) {
   const std::string plain = scene(ball("a", "3, 0, 0"));
   EXPECT_TRUE(readScene(plain).change.coverage.complete());
-  for (const std::string &text : std::vector<std::string>{plain + "worlds: {}\n", "world: {collision_objects: [], colision_objects: [" + ball("b", "1, 0, 0") + "]}",
-        "world: {collision_objects: [{id: a, primitives: [{type: 2, dimensions: [1]}], primitive_pose: [{}]}]}",
-        "world: {collision_objects: [{id: a, primitives: [{type: 2, dimensions: [1], pose: {}}]}]}"}) {
+  for (const std::string &text : std::vector<std::string>{
+           plain + "worlds: {}\n", "world: {collision_objects: [], colision_objects: [" + ball("b", "1, 0, 0") + "]}",
+           "world: {collision_objects: [{id: a, primitives: [{type: 2, dimensions: [1]}], primitive_pose: [{}]}]}",
+           "world: {collision_objects: [{id: a, primitives: [{type: 2, dimensions: [1], pose: {}}]}]}"}) {
     const SceneFileContents read = readScene(text);
     EXPECT_EQ(read.change.coverage.status(), "partial") << text;
     ASSERT_EQ(read.warnings.size(), 1u);
@@ -203,9 +204,10 @@ TEST(Files, unknown_keys_make_what_is_read_partial) {
 
 TEST(Files, what_is_no_scene_is_refused_with_the_cure) {
   const std::string cure = "objects stand under world: collision_objects";
-  for (const std::string &text : std::vector<std::string>{std::string("objects: [") + ball("a", "3, 0, 0") + "]", ball("a", "3, 0, 0"),
-                                  "collision_objects: [" + ball("a", "3, 0, 0") + "]", std::string("name: a"),
-                                  arm(0, 1), "world: {}\ncollision_objects: []"})
+  for (const std::string &text :
+       std::vector<std::string>{std::string("objects: [") + ball("a", "3, 0, 0") + "]", ball("a", "3, 0, 0"),
+                                "collision_objects: [" + ball("a", "3, 0, 0") + "]", std::string("{}"), arm(0, 1),
+                                "world: {}\ncollision_objects: []"})
     expectContains(whyScene(text), cure);
 }
 
@@ -476,12 +478,14 @@ TEST(Files, the_shortest_way_keeps_followers_where_they_are_or_is_refused) {
 
 TEST(Files, what_xacro_has_left_is_refused) {
   const std::string space = "xmlns:xacro='http://www.ros.org/wiki/xacro'", cure = "this is xacro: expand it first";
-  for (const std::string &xml : std::vector<std::string>{link(BOX, "<xacro:hand parent='arm'/>", space), link(BOX, "<xacro:include filename='hand.xacro'/>", space),
-        link(BOX + "<xacro:if value='1'><collision/></xacro:if>", "", space),
-        link(BOX, "<x:hand/>", "xmlns:x='http://ros.org/wiki/xacro'"), link(collision("<box size='${w} 1 1'/>")),
-        link(BOX, "<joint name='$(arg p)j' type='fixed'/>"), link(BOX, "<macro name='hand'/>"),
-        link(BOX, "<include filename='a'/>"), link(BOX, "<gazebo><xacro:a/></gazebo>", space),
-        std::string("<robot name='${name}'><link name='a'/></robot>"), link(BOX + "<visual xacro:if='1'/>", "", space)})
+  for (const std::string &xml : std::vector<std::string>{
+           link(BOX, "<xacro:hand parent='arm'/>", space), link(BOX, "<xacro:include filename='hand.xacro'/>", space),
+           link(BOX + "<xacro:if value='1'><collision/></xacro:if>", "", space),
+           link(BOX, "<x:hand/>", "xmlns:x='http://ros.org/wiki/xacro'"), link(collision("<box size='${w} 1 1'/>")),
+           link(BOX, "<joint name='$(arg p)j' type='fixed'/>"), link(BOX, "<macro name='hand'/>"),
+           link(BOX, "<include filename='a'/>"), link(BOX, "<gazebo><xacro:a/></gazebo>", space),
+           std::string("<robot name='${name}'><link name='a'/></robot>"),
+           link(BOX + "<visual xacro:if='1'/>", "", space)})
     expectContains(whyUrdf(xml), cure);
   expectContains(whyUrdf("<robot name='r'>\n<link name='a'/>\n<xacro:hand/></robot>"), "line 3: <xacro:hand>");
   EXPECT_TRUE(Robot::fromUrdf(link(BOX, "<gazebo><plugin name='a'><p>$(find b)</p></plugin></gazebo>", space))
@@ -573,10 +577,11 @@ TEST(Files, a_second_geometry_or_origin_is_refused) {
 }
 
 TEST(Files, unknown_elements_of_a_urdf_make_the_robot_partial) {
-  for (const std::string &xml : std::vector<std::string>{link(BOX, "<lnk name='b'/>"), link(BOX + "<colision/>"), link(BOX, "<loop_joint name='j'/>"),
-        link(collision("<box size='1 1 1'/>", "<orign xyz='1 0 0'/>")),
-        link(collision("<box size='1 1 1'/>", "<origin xzy='1 0 0'/>")),
-        link(collision("<box size='1 1 1' scale='2'/>"))}) {
+  for (const std::string &xml : std::vector<std::string>{
+           link(BOX, "<lnk name='b'/>"), link(BOX + "<colision/>"), link(BOX, "<loop_joint name='j'/>"),
+           link(collision("<box size='1 1 1'/>", "<orign xyz='1 0 0'/>")),
+           link(collision("<box size='1 1 1'/>", "<origin xzy='1 0 0'/>")),
+           link(collision("<box size='1 1 1' scale='2'/>"))}) {
     const auto robot = Robot::fromUrdf(xml);
     EXPECT_EQ(robot->coverage().status(), "partial") << xml;
     EXPECT_EQ(robot->warnings().size(), 1u) << xml;

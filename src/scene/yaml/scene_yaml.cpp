@@ -301,16 +301,27 @@ void readMovingRobots(const YamlValue &root, const std::string &folder, SceneFil
   }
 }
 
+constexpr std::initializer_list<const char *> kSceneKeys = {"name",
+                                                            "robot_model_name",
+                                                            "robot_state",
+                                                            "fixed_frame_transforms",
+                                                            "allowed_collision_matrix",
+                                                            "link_padding",
+                                                            "link_scale",
+                                                            "object_colors",
+                                                            "world",
+                                                            "is_diff",
+                                                            "robot",
+                                                            "scene",
+                                                            "moving_robots"};
+
 /* Objects that stand elsewhere than in a scene's world would be left out. */
 void requireScene(const YamlValue &root) {
-  static const char *const kKeys[] = {
-      "world",        "robot_state", "fixed_frame_transforms", "allowed_collision_matrix",
-      "link_padding", "link_scale",  "moving_robots"};
   const std::string cure = ": objects stand under world: collision_objects";
   if (root.find("collision_objects")) root.fail("collision_objects stand at its top" + cure);
   const bool is_object = root.find("primitives") || root.find("meshes") || root.find("planes") || root.find("bodies");
   if (is_object) root.fail("is a collision object, not a scene" + cure);
-  if (std::none_of(std::begin(kKeys), std::end(kKeys), [&](const char *key) { return root.has(key); }))
+  if (std::none_of(kSceneKeys.begin(), kSceneKeys.end(), [&](const char *key) { return root.has(key); }))
     root.fail("has none of the keys of a scene" + cure);
 }
 
@@ -336,10 +347,7 @@ SceneFile readScene(const std::string &path, Warnings &told) {
     if (root.isEmpty()) root.fail("is empty: that is no scene");
 
     requireScene(root);
-    root.warnOfOthers(
-        {"name", "robot_model_name", "robot_state", "fixed_frame_transforms", "allowed_collision_matrix",
-         "link_padding", "link_scale", "object_colors", "world", "is_diff", "robot", "scene", "moving_robots"},
-        warnings);
+    root.warnOfOthers(kSceneKeys, warnings);
     if (const auto world = root.find("world")) readWorld(*world, out, warnings);
     if (const auto robot = root.find("robot_model_name")) out.robot = robot->text();
     if (const auto diff = root.find("is_diff")) out.is_diff = diff->truth();
