@@ -170,6 +170,74 @@ CASE(nested_surfaces_are_answered_within_the_default_budget) {
   }
 }
 
+/* ---- verdicts and the distance they follow from ---- */
+
+static cprox_body *any_body(rng *r, int kind) {
+  cprox_body *body = NULL;
+  vec3 v[60];
+  cprox_status status = CPROX_OK;
+  for (size_t i = 0; i < 60; i++) v[i] = vec_scale(0.3, rng_unit(r));
+  if (kind == 0) {
+    const vec3 half = vec(rng_uniform(r, 0.05, 0.4), rng_uniform(r, 0.05, 0.4), rng_uniform(r, 0.05, 0.4));
+    status = cprox_body_create_box(half, ws, &body);
+  } else if (kind == 1) {
+    status = cprox_body_create_sphere(rng_uniform(r, 0.05, 0.4), ws, &body);
+  } else if (kind == 2) {
+    status = cprox_body_create_polytope(v, 20, ws, &body);
+  } else if (kind == 3) {
+    status = cprox_body_create_cylinder(rng_uniform(r, 0.05, 0.3), rng_uniform(r, 0.1, 0.4), ws, &body);
+  } else {
+    uint32_t triangles[20][3];
+    for (uint32_t i = 0; i < 60; i++) triangles[i / 3][i % 3] = i;
+    status = cprox_body_create_mesh(v, 60, (const uint32_t(*)[3])triangles, 20, CPROX_MESH_FILL_SURFACE, SIZE_MAX, ws,
+                                    &body);
+  }
+  assert_int_equal(status, CPROX_OK);
+  return body;
+}
+
+static uint32_t work_of(const cprox_result *r) {
+  return r->nodes + r->distance_queries;
+}
+
+/* 4,000 curves past boxes, balls, polytopes, cylinders and meshes (seed 401): a collision, and a tolerance of a limit
+ * that is between 1e-6 of the distance and all of it away, below or above. Each costs at most 1.1 of the distance and a
+ * few units that a split at another place may cost; together they cost less than the distances. */
+CASE(a_verdict_of_a_curve_costs_no_more_than_the_distance) {
+  rng r = rng_seed(401);
+  const size_t cases = test_cases(4000);
+  size_t asked = 0, dearer = 0;
+  uint64_t distances = 0, tolerances = 0, collisions = 0;
+  for (size_t i = 0; i < cases; i++) {
+    vec3 points[9];
+    const size_t n = 4 + rng_index(&r, 6);
+    for (size_t k = 0; k < n; k++)
+      points[k] = vec(rng_uniform(&r, -1, 1), rng_uniform(&r, -1, 1), rng_uniform(&r, -1, 1));
+    cprox_curve *curve = bezier(points, n);
+    cprox_body *body = any_body(&r, (int)(i % 5));
+    cprox_obstacle obstacle = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
+    obstacle.pose.position = vec(rng_uniform(&r, -1, 1), rng_uniform(&r, -1, 1), rng_uniform(&r, -1, 1));
+    const cprox_mover mover = cprox_point_along(curve);
+    cprox_result d, t, c;
+    assert_int_equal(cprox_distance(mover, obstacle, NULL, ws, &d), CPROX_OK);
+    const double by = rng_log_uniform(&r, 1e-6, 1.0);
+    if (d.lower > 0.0) {
+      const double delta = rng_index(&r, 2) ? d.lower * (1.0 - by) : d.upper * (1.0 + by);
+      assert_true(cprox_tolerance(mover, obstacle, delta, NULL, ws, &t) >= 0);
+      assert_true(cprox_collision(mover, obstacle, NULL, ws, &c) >= 0);
+      const double most = 1.1 * work_of(&d);
+      if (work_of(&t) > most + 30 || work_of(&c) > most + 30)
+        fail_msg("case %zu: distance %u, tolerance %u, collision %u", i, work_of(&d), work_of(&t), work_of(&c));
+      asked++, dearer += work_of(&t) > most + 4 || work_of(&c) > most + 4;
+      distances += work_of(&d), tolerances += work_of(&t), collisions += work_of(&c);
+    }
+    cprox_body_free(body);
+    cprox_curve_free(curve);
+  }
+  assert_true(asked > cases / 2 && dearer <= asked / 100 + 1);
+  assert_true(4 * tolerances < 3 * distances && 2 * collisions < distances);
+}
+
 int main(void) {
   return cases_run(workspace_setup, workspace_teardown);
 }

@@ -100,7 +100,8 @@ static double filter(void *self, search_node *node, double goal) {
     payload->seen = o->incumbent;
   }
   if (payload->at.slot >= 0 && node->lower < goal && payload->seen_ball != o->incumbent &&
-      o->nodes >= o->effort.newton_after && know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
+      (o->refined || o->nodes >= o->effort.newton_after) && know_cover(o) &&
+      (cover_is_the_body(o) || holds_best(o, node))) {
     bound_by_cover(o, node);
     payload->seen_ball = o->incumbent;
   }
@@ -196,6 +197,15 @@ void curve_convex_adopt(curve_convex *o, const curve_sample *sample, search_best
   o->cover_known = false;
 }
 
+/* Distances are to be had exactly; verdicts are where they do not come easily, or where the curve would cover what is
+ * left to the limit within a sixteenth of the piece. */
+static bool is_worth_refining(const curve_convex *o, double upper, const curve_jet *jet) {
+  static const double NEAR = 1.0 / 16;
+  const double left = upper - o->effort.good_enough;
+  if (!(left > 0.0)) return false;
+  return o->nodes > o->effort.newton_after || left * left < NEAR * NEAR * vec_norm2(jet->d1);
+}
+
 /* Measures at s of the loaded piece, and goes on from there by Newton's steps, the first no longer than `step`. */
 static cprox_status probe_at(curve_convex *o, size_t piece, double s, double step) {
   const double *points = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
@@ -209,8 +219,8 @@ static cprox_status probe_at(curve_convex *o, size_t piece, double s, double ste
       curve_convex_measure(o, piece, s, jet.x, curve_side_point_error(&o->side), &o->last, &bound);
   if (status < 0 || bound.upper >= o->best_bound.upper) return status;
   curve_convex_adopt(o, &o->last, bound);
-  const bool worthwhile = bound.upper > o->effort.good_enough && o->nodes > o->effort.newton_after;
-  return worthwhile ? newton_refine(o, points, &jet, step) : CPROX_OK;
+  o->refined = is_worth_refining(o, bound.upper, &jet);
+  return o->refined ? newton_refine(o, points, &jet, step) : CPROX_OK;
 }
 
 /* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a

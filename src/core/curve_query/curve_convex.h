@@ -47,6 +47,7 @@ typedef struct curve_convex {
   search_best best_bound;
   uint32_t incumbent; /* counts the best samples; 0: none */
   bool cover_known, cover_usable;
+  bool refined; /* the best point was worth Newton's steps */
   convex_cover cover;
   convex_hint hint, support_hint;
   double goal; /* what settles a node, as of the last one that was looked at */
