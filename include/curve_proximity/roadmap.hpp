@@ -32,8 +32,9 @@ struct Roadmap {
  *  known    empty, or a verdict for each edge: one that is not CPROX_VERDICT_CLEAR is kept and not asked again. So the
  *           answers for `self`, which are the same in all scenes, are found once and handed to each.
  *
- *  Returns a verdict for each edge; what could not be decided within epsilon or the budget is undecided. Cost: a motion
- *  for each edge, as long as it is not known; memory: a few bytes an edge. */
+ *  Returns a verdict for each edge; what could not be decided within epsilon or the budget is undecided. Cost: some
+ *  microseconds an edge by cprox_robot_edges(), which decides most; a motion for each other one; memory: a few bytes an
+ *  edge. */
 std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &roadmap, bool self,
                                         const Query &query, const std::vector<cprox_verdict> &known, Pool &pool);
 

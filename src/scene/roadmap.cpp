@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <curve_proximity/roadmap.hpp>
 
+#include <algorithm>
+#include <optional>
+
+#include "asked_pairs.h"
+
 namespace curve_proximity {
 namespace {
 
-/** Motions that a thread takes at a time: each takes some hundred microseconds. */
+/** Edges that a thread takes at a time: each takes some microseconds, or some hundred where it needs a motion. */
 constexpr std::size_t A_PART = 16;
 
 void check(const Roadmap &roadmap, const Query &query, const std::vector<cprox_verdict> &known) {
@@ -37,17 +42,98 @@ cprox_verdict verdictOf(const RobotMotion &motion, bool self, const Query &query
   return answer.result.status < 0 ? CPROX_VERDICT_UNDECIDED : answer.result.verdict;
 }
 
+TrajectoryPoint pointAt(const Roadmap &roadmap, std::uint32_t vertex, double time) {
+  const double *first = roadmap.vertices.col(vertex).data();
+  TrajectoryPoint point;
+  point.time = time;
+  point.positions.assign(first, first + roadmap.vertices.rows());
+  return point;
+}
+
 TrajectoryDescription straight(const Roadmap &roadmap, const std::array<std::uint32_t, 2> &edge) {
   TrajectoryDescription out;
   out.joints = roadmap.joints;
-  for (const std::uint32_t end : edge) {
-    const double *first = roadmap.vertices.col(end).data();
-    TrajectoryPoint point;
-    point.time = static_cast<double>(out.points.size());
-    point.positions.assign(first, first + roadmap.vertices.rows());
-    out.points.push_back(std::move(point));
-  }
+  out.points = {pointAt(roadmap, edge[0], 0.0), pointAt(roadmap, edge[1], 1.0)};
   return out;
+}
+
+/* A motion of all joints of the roadmap: it has all pairs that an edge can have. */
+TrajectoryDescription everyJoint(const Roadmap &roadmap) {
+  TrajectoryDescription out;
+  out.joints = roadmap.joints;
+  out.points = {pointAt(roadmap, 0, 0.0), pointAt(roadmap, 0, 1.0)};
+  for (double &position : out.points[1].positions) position += 1.0;
+  return out;
+}
+
+/* The core's handle for edges, for all pairs that an edge of the roadmap can have. */
+class Lanes {
+ public:
+  Lanes(const PreparedRobot &robot, const Roadmap &roadmap, bool self, const Query &query)
+      : roadmap_(roadmap),
+        motion_(robot, everyJoint(roadmap), roadmap.rest, query.links),
+        asked_(self ? askedSelf(motion_.data(), query.links)
+                    : askedItems(motion_.data(), namedItems(motion_.data(), query.objects), query)),
+        rest_(cprox_motion_get_info(motion_.data().core.get()).n_variables) {
+    cprox_motion_evaluate(motion_.data().core.get(), 0.0, rest_.data());
+    Workspace workspace;
+    if (makeObstacles(asked_.targets, CPROX_INDEX_NONE, workspace, obstacles_) < 0) throw Error(workspace.reason());
+    cprox_edge_query edges{};
+    edges.obstacles = obstacles_.get();
+    const cprox_robot_pair *pairs = asked_.pairs.empty() ? &NOTHING : asked_.pairs.data(); // NULL would be all
+    edges.pairs = self ? &NOTHING : pairs;
+    edges.n_pairs = self ? 0 : asked_.pairs.size();
+    edges.self_pairs = self ? pairs : &NOTHING;
+    edges.n_self_pairs = self ? asked_.pairs.size() : 0;
+    edges.without_self = !self;
+    edges.delta = (query.query_type == QueryType::TOLERANCE ? query.delta : 0.0) + asked_.rounding;
+    options_ = query.options;
+    edges.options = &options_;
+    cprox_edge_checker *made = nullptr;
+    const cprox_robot *core = motion_.data().kinematics->core.get();
+    if (cprox_edge_checker_create(core, &edges, workspace.get(), &made) < 0) throw Error(workspace.reason());
+    checker_.reset(made);
+  }
+
+  /* The verdict of an edge, if that is the verdict of its motion as well: what is clear of all pairs is; else its
+   * motion must have all pairs, as it has where all joints move, and all of them must be the core's own. */
+  std::optional<cprox_verdict> ask(const std::array<std::uint32_t, 2> &edge, Workspace &workspace) const {
+    std::vector<double> from = rest_, to = rest_;
+    const TrajectoryShape &shape = motion_.data().shape;
+    bool all_move = true;
+    for (std::size_t k = 0; k < shape.column.size(); ++k) {
+      const auto variable = static_cast<std::size_t>(shape.variable[k]);
+      const auto row = static_cast<Eigen::Index>(shape.column[k]);
+      from[variable] = roadmap_.vertices(row, edge[0]);
+      to[variable] = roadmap_.vertices(row, edge[1]);
+      all_move = all_move && from[variable] != to[variable];
+    }
+    std::uint8_t verdict = CPROX_VERDICT_UNDECIDED;
+    const cprox_status status =
+        cprox_robot_edges(checker_.get(), from.data(), to.data(), 1, workspace.get(), &verdict, nullptr);
+    if (status >= 0 && verdict == CPROX_VERDICT_CLEAR) return CPROX_VERDICT_CLEAR;
+    if (status >= 0 && verdict == CPROX_VERDICT_VIOLATED && all_move && asked_.rounding == 0.0)
+      return CPROX_VERDICT_VIOLATED;
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr cprox_robot_pair NOTHING{};
+  const Roadmap &roadmap_;
+  RobotMotion motion_;
+  Asked asked_;
+  std::vector<double> rest_;
+  cprox_options options_{};
+  ObstaclesHandle obstacles_;
+  std::unique_ptr<cprox_edge_checker, void (*)(cprox_edge_checker *)> checker_{nullptr, cprox_edge_checker_free};
+};
+
+/* Whether verdicts of the core are those of the motions: nothing is left out, and no coarser model is asked for. */
+bool speaksForAll(const PreparedRobot &robot, const Query &query) {
+  const SnapshotPtr &snapshot = robot.snapshot();
+  const cprox_lod finest = query.options.max_lod;
+  return snapshot->coverage().complete() && snapshot->robot()->coverage().complete() && !query.per_object &&
+         !query.options.signed_distance && (finest == CPROX_LOD_MESH || finest == CPROX_LOD_NONE);
 }
 
 } // namespace
@@ -58,9 +144,17 @@ std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadma
   const std::size_t n = roadmap.edges.size();
   std::vector<cprox_verdict> verdicts = known;
   if (verdicts.empty()) verdicts.assign(n, CPROX_VERDICT_CLEAR);
+  std::optional<Lanes> lanes;
+  if (n > 0 && speaksForAll(robot, query)) lanes.emplace(robot, roadmap, self, query);
   pool.run(n, A_PART, [&](std::size_t first, std::size_t last, Workspace &workspace) {
     for (std::size_t i = first; i < last; ++i) {
       if (verdicts[i] != CPROX_VERDICT_CLEAR) continue;
+      const bool stops = query.options.stop && query.options.stop(query.options.stop_user);
+      if (const std::optional<cprox_verdict> verdict =
+              lanes && !stops ? lanes->ask(roadmap.edges[i], workspace) : std::nullopt) {
+        verdicts[i] = *verdict;
+        continue;
+      }
       const RobotMotion motion(robot, straight(roadmap, roadmap.edges[i]), roadmap.rest, query.links);
       verdicts[i] = verdictOf(motion, self, query, workspace);
     }

@@ -24,6 +24,25 @@ from ._cprox import *  # noqa: E402,F401,F403
 from ._cprox import __version__  # noqa: E402,F401
 
 
+def edges(scene, joints, start, end, delta=0.0, self_collision=True, **options):
+    """Straight motions between pairs of postures: a proven verdict for each.
+
+    start, end: (n, joints), or one posture. Returns uint8 (n,): 0 clear, farther than delta [m] from all objects and, with
+    self_collision, from itself, everywhere on the way; 1 violated; 2 undecided. options: those of edge_verdicts()."""
+    import numpy
+
+    start, end = numpy.broadcast_arrays(numpy.atleast_2d(start), numpy.atleast_2d(end))
+    if start.ndim != 2:
+        raise ValueError('start and end must be arrays of shape (n, joints): one row a posture')
+    vertices = numpy.concatenate((start, end))
+    pairs = numpy.arange(len(vertices), dtype=numpy.uint32).reshape(2, -1).T
+    verdicts = edge_verdicts(scene, joints, vertices, pairs, delta, **options)  # noqa: F405
+    if self_collision:
+        verdicts = edge_verdicts(scene, joints, vertices, pairs, delta, self_collision=True, known=verdicts,  # noqa: F405
+                                 **options)
+    return verdicts.astype(numpy.uint8)
+
+
 def check(certificate, program=None):
     """What the certificate of a motion proves: the line that the program cprox_check prints.
 
