@@ -861,7 +861,7 @@ class Files(unittest.TestCase):
                 self.robot('revolute', '4', more)
         with self.assertRaisesRegex(ValueError, "joint 'j': limit upper='x' is not one finite number"):
             self.robot('revolute', 'x')
-        with self.assertRaisesRegex(ValueError, 'line 2: a second document'):
+        with self.assertRaisesRegex(ValueError, 'line 3: a second document'):
             cprox.Motion.from_file(self.scene(), self.file('t.yaml', self.MOVE % (0, 1) + '---\n' + self.MOVE % (0, 2)))
         with self.assertRaisesRegex(ValueError, "'joint_trajectory' stands twice"):
             cprox.Motion.from_file(self.scene(), self.file('t.yaml', self.MOVE % (0, 1) + self.MOVE % (0, 2)))
