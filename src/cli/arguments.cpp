@@ -524,6 +524,7 @@ Arguments parseArguments(const std::vector<std::string> &words) {
     throw BadUsage("--certificate takes no --per-object and no --per-link: a certificate is about all pairs at once");
   }
   out.skipped = split.has("--skipped");
+  if (split.has("--shortest-way") && !out.shortest_way) throw BadUsage("--shortest-way needs --trajectory T.yaml");
   out.timings = split.has("--timings");
   if (split.has("--mesh-tolerance"))
     out.mesh_tolerance = readNumber(split, "--mesh-tolerance", 0.0, true, "of at least 0 (metres)");

@@ -79,6 +79,8 @@ class Files(Case):
         self.assertEqual(answer.err.count('\n'), 1)
         self.assertEqual(self.collide(arm(3.1, -3.1), ball('b', '0, 0, 3'), '--shortest-way', **robot).err, '')
         self.assertEqual(self.collide(arm(3.1, -3.1) + 'shortest_way: true\n', ball('b', '0, 0, 3'), **robot).err, '')
+        self.assertRefused(cprox('distance', '--scene', self.file('s.yaml', ball('b', '0, 0, 3')), '--movers', '--shortest-way'),
+                           '--shortest-way needs --trajectory')
         # a corner of the bar, sqrt(2) * 0.05 m from the axis, passes the ball only on the long way
         corner = ball('b', '0.2, 0, 0.5').replace('[0.1]', '[0.05]')
         long_way = self.collide(arm(3.1, -3.1), corner, **robot).row('t')
