@@ -225,6 +225,61 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
   assert_true(worst > 0.01L && fullest > 0.99L && fullest_pair > 0.99L);
 }
 
+/* Chains whose velocities cancel in the middle, so that accelerations alone move the ball: a shift along an axis that
+ * turns (2 W g), and a turn about an axis that a shift is away from (W^2 of the shift). Half of what they reach, or a
+ * term less, would be too little, seen from the base and from a ball there. */
+CASE(accelerations_alone_are_bounded) {
+  static lane_memory memory;
+  enum { CASES = 2 };
+  static const double RATE[CASES][3] = {{-1.0, 0.1, 1.0}, {-1.0, 1.0, 0.0}}, MIDDLE[CASES] = {0.0, 1.0};
+  for (int i = 0; i < CASES; i++) {
+    const vec3 first = i == 0 ? vec(1, 0, 0) : vec(0, 1, 0);
+    const cprox_link links[4] = {
+        {.parent = -1, .type = CPROX_JOINT_FIXED, .origin = CPROX_POSE_IDENTITY, .axis = {0, 0, 1}, .multiplier = 1.0},
+        {.parent = 0, .type = CPROX_JOINT_PRISMATIC, .origin = CPROX_POSE_IDENTITY, .axis = first, .multiplier = 1.0},
+        {.parent = 1,
+         .type = CPROX_JOINT_REVOLUTE,
+         .origin = CPROX_POSE_IDENTITY,
+         .axis = {0, 0, 1},
+         .variable = 1,
+         .multiplier = 1.0},
+        {.parent = 2,
+         .type = CPROX_JOINT_PRISMATIC,
+         .origin = CPROX_POSE_IDENTITY,
+         .axis = {1, 0, 0},
+         .variable = 2,
+         .multiplier = 1.0}};
+    cprox_body *ball = NULL;
+    assert_int_equal(cprox_body_create_sphere(0.01, ws, &ball), CPROX_OK);
+    const cprox_link_geometry geometries[2] = {{.body = ball, .pose = CPROX_POSE_IDENTITY, .link = 3},
+                                               {.body = ball, .pose = CPROX_POSE_IDENTITY, .link = 0}};
+    cprox_robot *robot = NULL;
+    assert_int_equal(cprox_robot_create(links, 4, geometries, 2, 3, ws, &robot), CPROX_OK);
+    const cprox_robot_pair pair = {0, 1};
+    cprox_edge_checker *c = checker_of(robot, &(cprox_edge_query){.self_pairs = &pair, .n_self_pairs = 1});
+    double from[3], to[3];
+    for (int k = 0; k < 3; k++) {
+      const double middle = k == 2 ? MIDDLE[i] : 0.0;
+      from[k] = middle - 0.5 * RATE[i][k], to[k] = middle + 0.5 * RATE[i][k];
+    }
+    edge_motion motion = edge_motion_in(c, memory.motion);
+    assert_true(edge_motion_fill(c, from, to, &motion));
+    edge_motion_relate(c, &motion);
+    const double half = 0.0625, angle = RATE[i][1] * half, along = MIDDLE[i] + RATE[i][2] * half;
+    const double x = along * cos(angle) + (i == 0 ? RATE[i][0] * half : 0.0) - MIDDLE[i];
+    const double y = along * sin(angle) + (i == 0 ? 0.0 : RATE[i][0] * half);
+    const double moved = sqrt(x * x + y * y);
+    const edge_half_bound seen[2] = {motion.frames[c->parts[c->lane_pairs[0].a].frame], motion.relations[0]};
+    for (int k = 0; k < 2; k++)
+      assert_true(moved <= half * half * (double)seen[k].acceleration + 2.0 * (double)motion.room[0]);
+    if (!(moved > 50.0 * (double)motion.room[0]))
+      fail_msg("%d: %g is no more than %g", i, moved, (double)motion.room[0]);
+    cprox_edge_checker_free(c);
+    cprox_robot_free(robot);
+    cprox_body_free(ball);
+  }
+}
+
 /* Sine and cosine of lanes at 4 million angles up to 40, against long double: within 4 u. */
 CASE(lanes_know_sine_and_cosine) {
   rng r = rng_seed(402);
