@@ -262,32 +262,43 @@ CASE(every_convex_kind_has_the_depth_of_its_static_pairs) {
 
 /* ---- what goes by hulls, and what has none ---- */
 
-/* A mesh with a hull answers by the hull, and the result says so; of what has none the reason does. */
-CASE(meshes_are_as_deep_as_their_hulls) {
+/* A mesh that is apart has its own distance. In contact its hull says how deep at most, and the
+ * result says so; of what has no hull the reason does. */
+CASE(meshes_are_at_most_as_deep_as_their_hulls) {
   rng r = rng_seed(2103);
+  size_t apart = 0, touching = 0;
   test_mesh torus = mesh_torus(12, 9, 0.5, 0.2, 0.1);
   cprox_body *hull = NULL, *lod = NULL, *mesh = mesh_body(&torus, CPROX_MESH_FILL_SURFACE, ws), *cloud = NULL;
   assert_int_equal(cprox_body_create_polytope(torus.vertices, torus.n, NULL, &hull), CPROX_OK);
   assert_int_equal(cprox_body_create_lod(hull, 0.0, mesh, ws, &lod), CPROX_OK);
   assert_int_equal(cprox_body_create_points(torus.vertices, torus.n, 0.01, SIZE_MAX, ws, &cloud), CPROX_OK);
-  for (size_t i = 0; i < test_cases(10); i++) {
+  for (size_t i = 0; i < test_cases(30); i++) {
     test_robot t;
     robot_make(&r, 0.5, &t);
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
     const cprox_options options = asked(1e-6);
-    const cprox_pose pose = rng_pose(&r, 0.3);
-    cprox_result by_hull, by_lod, no;
+    const cprox_pose pose = rng_pose(&r, 1.0);
+    cprox_result by_hull, by_lod, by_mesh, no;
     assert_int_equal(cprox_distance(mover, cprox_obstacle_at(hull, pose), &options, ws, &by_hull), CPROX_OK);
-    assert_int_equal(cprox_distance(mover, cprox_obstacle_at(lod, pose), &options, ws, &by_lod), CPROX_OK);
-    assert_true(by_lod.lower == by_hull.lower && by_lod.upper == by_hull.upper);
-    assert_true(by_lod.lod <= CPROX_LOD_HULL);
+    assert_int_equal(cprox_distance(mover, cprox_obstacle_at(lod, pose), NULL, ws, &by_mesh), CPROX_OK);
+    const cprox_status status = cprox_distance(mover, cprox_obstacle_at(lod, pose), &options, ws, &by_lod);
+    if (by_mesh.lower > 0.0) {
+      assert_int_equal(status, CPROX_OK);
+      assert_true(by_lod.lower == by_mesh.lower && by_lod.upper == by_mesh.upper);
+      apart++;
+    } else {
+      assert_int_equal(status, CPROX_OVERLAP);
+      assert_true(by_lod.lower == by_hull.lower && by_lod.upper == by_mesh.upper);
+      assert_int_equal(by_lod.lod, CPROX_LOD_HULL);
+      touching++;
+    }
 
     /* a set with a BVH says the same; mesh and cloud are refused, in a set too */
     cprox_obstacle both[2] = {cprox_obstacle_at(lod, pose), cprox_obstacle_at(hull, rng_pose(&r, 3.0))};
     cprox_obstacles *all = NULL;
     assert_int_equal(cprox_obstacles_create(both, 2, CPROX_INDEX_BVH, ws, &all), CPROX_OK);
-    assert_int_equal(cprox_obstacles_distance(all, mover, &options, ws, &by_lod, NULL), CPROX_OK);
-    assert_true(by_lod.lower <= by_hull.upper);
+    assert_int_equal(cprox_obstacles_distance(all, mover, &options, ws, &no, NULL), status);
+    assert_true(no.lower <= by_lod.upper && no.upper <= by_lod.upper + 1e-12);
     cprox_obstacles_free(all);
     const cprox_body *const flat[] = {mesh, cloud};
     for (int k = 0; k < 2; k++) {
@@ -302,6 +313,8 @@ CASE(meshes_are_as_deep_as_their_hulls) {
   cprox_body *const bodies[] = {hull, lod, mesh, cloud};
   for (int k = 0; k < 4; k++) cprox_body_free(bodies[k]);
   mesh_free(&torus);
+  print_message("%zu apart, %zu in contact\n", apart, touching);
+  assert_true(apart > 0 && touching > 0);
 }
 
 int main(void) {

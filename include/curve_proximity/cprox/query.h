@@ -188,9 +188,10 @@ typedef struct cprox_options {
   cprox_certificate *certificate;
   /** distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve: the shortest
    *  way by which the mover, there, could leave the target (a part of it, for compounds). Curves have no inside
-   *  beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP, and lower only bounds it. Of robots
-   *  meshes answer by their hulls (as max_lod HULL); points, octrees and meshes without a hull are refused. Default
-   *  false: distances are 0 at least */
+   *  beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP, and lower only bounds it. A hull
+   *  raises lower to its own depth, and where both agree to epsilon the status is CPROX_OK. Robots: meshes that are
+   *  apart are measured; of those that overlap lower, witness points and gradient are those of the hulls, and lod says
+   *  so; points, octrees and meshes without a hull are refused. Default false: distances are 0 at least */
   bool signed_distance;
   /** the finest model of targets that may answer, CPROX_LOD_MESH (or NONE): any. HULL: level-of-detail bodies by their
    *  hulls. SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they

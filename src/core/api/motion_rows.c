@@ -21,7 +21,7 @@ typedef struct row_search {
 
   /* the interval that was looked at last and comes within the horizon; of the pair at hand, -1: none */
   int64_t seen;
-  double seen_upper, seen_at;
+  double seen_value, seen_at;
   bool seen_kept; /* the last row is of it */
 } row_search;
 
@@ -51,15 +51,20 @@ static void swap_rows(cprox_motion_row *a, cprox_motion_row *b) {
   *a = *b, *b = kept;
 }
 
+/* What a row is about: where depths are not known that of the hulls, whose gradient it has. */
+static double value_of(const cprox_result *r) {
+  return r->status == CPROX_OVERLAP ? r->lower : r->upper;
+}
+
 /* The row that was found last stays, unless it is nearest at the break to the interval before, which comes as near.
  * Where it is the other way round that one's row goes. */
 static void keep_row(row_search *s) {
   cprox_motion_row *last = &s->rows[s->count];
-  const double at = s->breaks[last->interval], t = last->result.t, upper = last->result.upper;
+  const double at = s->breaks[last->interval], t = last->result.t, value = value_of(&last->result);
   const bool joins = s->seen >= 0 && (size_t)s->seen + 1 == last->interval;
-  const bool goes = joins && t <= at && s->seen_upper <= upper;
-  const bool replaces = joins && !goes && s->seen_kept && s->seen_at >= at && upper < s->seen_upper;
-  s->seen = (int64_t)last->interval, s->seen_upper = upper, s->seen_at = t, s->seen_kept = !goes;
+  const bool goes = joins && t <= at && s->seen_value <= value;
+  const bool replaces = joins && !goes && s->seen_kept && s->seen_at >= at && value < s->seen_value;
+  s->seen = (int64_t)last->interval, s->seen_value = value, s->seen_at = t, s->seen_kept = !goes;
   if (replaces)
     swap_rows(last - 1, last);
   else if (!goes)
@@ -69,7 +74,7 @@ static void keep_row(row_search *s) {
 /* Nearest first, and no more than are wanted. */
 static void rank_rows(row_search *s, size_t first) {
   for (size_t i = first + 1; i < s->count; i++)
-    for (size_t k = i; k > first && s->rows[k].result.upper < s->rows[k - 1].result.upper; k--)
+    for (size_t k = i; k > first && value_of(&s->rows[k].result) < value_of(&s->rows[k - 1].result); k--)
       swap_rows(&s->rows[k], &s->rows[k - 1]);
   if (s->count > first + s->per_pair) s->count = first + s->per_pair;
 }
@@ -90,7 +95,7 @@ static cprox_status find_row(row_search *s, const cprox_robot_pair *pair, size_t
   cprox_motion_row *row = &s->rows[s->count];
   status = motion_gradient_of(q, target, self ? 0 : target + 1, &row->result, &row->gradient);
   if (status < 0) return status;
-  if (status != CPROX_OK) s->failure = status;
+  if (status != CPROX_OK && status != CPROX_OVERLAP) s->failure = status;
   if (row->result.lower > s->horizon) return CPROX_OK;
   row->interval = interval;
   row->result.mover_part = pair->geometry, row->result.obstacle_index = pair->other;

@@ -117,6 +117,18 @@ cprox_status candidate_rank(const query *q, candidate *c, uint32_t *nodes, uint3
   return CPROX_OK;
 }
 
+/* The mesh is no deeper than its hull. */
+static cprox_status bound_depth(const query *q, const candidate *c, double cutoff, cprox_result *result) {
+  candidate hull = *c;
+  hull.lod = CPROX_LOD_HULL;
+  cprox_result r = {0};
+  const cprox_status status = search_model(q, &hull, lesser(cutoff, result->upper), &r);
+  if (status < 0) return status;
+  result->lower = greater(result->lower, lesser(r.lower, result->upper));
+  result->nodes += r.nodes, result->distance_queries += r.distance_queries;
+  return CPROX_OK;
+}
+
 cprox_status candidate_search(const query *q, const candidate *c, double cutoff, cprox_result *result) {
   if (!candidate_may_refine(q, c)) return search_model(q, c, cutoff, result);
   bool settled;
@@ -131,5 +143,9 @@ cprox_status candidate_search(const query *q, const candidate *c, double cutoff,
   if (status < 0) return status;
   if (by_hull.lower > 0.0) result->lower = fmin(fmax(result->lower, by_hull.lower), result->upper);
   result->nodes += by_hull.nodes, result->distance_queries += by_hull.distance_queries;
+  if (q->is_signed && result->lower < 0.0) {
+    const cprox_status bounded = bound_depth(q, c, cutoff, result);
+    if (bounded < 0) return bounded;
+  }
   return status;
 }

@@ -319,6 +319,24 @@ static double pair_deepest(const pair_task *task) {
   return ROUND_UP * (balls + task->a->margin + task->b->margin);
 }
 
+/* Two parts that overlap, one of them made of many elements: the way out of one of these may lead into another. So how
+ * deep they are is not known; the balls round both and the hulls of meshes bound it. */
+static cprox_status pair_bound_depth(const pair_task *task, size_t i, size_t j, pair_reply *reply) {
+  pair_answer *answer = &reply->answer;
+  const cprox_body *a = body_part_at(task->a->body, i), *b = body_part_at(task->b->body, j);
+  const bool elements = model_of(a, task->finest).body->tree || model_of(b, task->finest).body->tree;
+  if (!elements || !(answer->upper < 0.0 || answer->overlap)) return CPROX_OK;
+  answer->overlap = true, answer->measured = false;
+  answer->lower = fmin(answer->lower, -pair_deepest(task));
+  if (!pair_has_lod(task, i, j) || task->finest < CPROX_LOD_MESH) return CPROX_OK;
+  pair_reply hulls = {.part = 0};
+  const cprox_status status = pair_of_models(task, i, j, CPROX_LOD_HULL, &hulls);
+  if (status) return status;
+  answer->lower = fmax(answer->lower, fmin(hulls.answer.lower, answer->upper));
+  answer->steps += hulls.answer.steps, answer->supports += hulls.answer.supports;
+  return CPROX_OK;
+}
+
 static bool pair_is_stopped(const pair_task *task) {
   return task->options->stop && task->options->stop(task->options->stop_user);
 }
@@ -340,6 +358,7 @@ static cprox_status pair_over_parts(pair_task *task, pair_reply *best) {
       if (ends) continue;
       pair_reply one = {.part = 0};
       if ((status = pair_of_models(task, i, j, task->finest, &one))) return status;
+      if ((status = pair_bound_depth(task, i, j, &one))) return status;
       pair_join(best, &one);
       task->done = best->answer.steps;
     }
@@ -349,8 +368,8 @@ static cprox_status pair_over_parts(pair_task *task, pair_reply *best) {
 
 static cprox_status pair_status(const pair_answer *answer, const cprox_options *options) {
   const double width = answer->upper - answer->lower;
-  if (answer->overlap && !answer->measured) return CPROX_OVERLAP;
   if (width <= width_allowed(options->epsilon, options->relative_epsilon, answer->upper)) return CPROX_OK;
+  if (answer->overlap && !answer->measured) return CPROX_OVERLAP;
   if (answer->stopped) return CPROX_STOPPED;
   return answer->exhausted ? CPROX_BUDGET : CPROX_PRECISION;
 }

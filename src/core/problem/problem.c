@@ -17,9 +17,6 @@ query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, d
              .options = arguments_options(options),
              .workspace = workspace};
   if (q.options.max_lod == CPROX_LOD_NONE) q.options.max_lod = CPROX_LOD_MESH;
-  /* how deep a robot overlaps is that of hulls */
-  if (mover.motion && q.options.signed_distance && q.options.max_lod > CPROX_LOD_HULL)
-    q.options.max_lod = CPROX_LOD_HULL;
   return q;
 }
 

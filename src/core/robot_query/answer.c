@@ -5,6 +5,7 @@
 
 #include "base/rounding.h"
 #include "problem/problem.h"
+#include "robot_query/depth.h"
 #include "robot_query/oracle.h"
 
 /* ---- the search ---- */
@@ -78,9 +79,9 @@ static cprox_status answer_class(const query *q, const start_class *starts, size
   return r.status;
 }
 
-/* The union of all classes. */
-static cprox_status answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
-                           double *travel) {
+/* The union of all classes, by the models that the query allows. */
+static cprox_status answer_models(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
+                                  double *travel) {
   if (!start_class_is_one_of_many(q->mover.motion)) return answer_class(q, NULL, first, last, cutoff, result, travel);
   start_class starts = start_class_first();
   cprox_status failure = answer_class(q, &starts, first, last, cutoff, result, travel);
@@ -104,6 +105,25 @@ static cprox_status answer(const query *q, size_t first, size_t last, double cut
   query_conclude(q, cutoff, failure, &all);
   *result = all;
   return all.status;
+}
+
+/* Depths are those of hulls, and what is apart is measured by the meshes. */
+static cprox_status answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
+                           double *travel) {
+  if (!q->is_signed) return answer_models(q, first, last, cutoff, result, travel);
+  const query apart = robot_depth_apart(q), hulls = robot_depth_hulls(q);
+  if (!robot_depth_has_meshes(q, first, last)) return answer_models(&hulls, first, last, cutoff, result, travel);
+  const cprox_status status = answer_models(&apart, first, last, cutoff, result, travel);
+  if (status < 0 || robot_depth_is_settled(q, result)) return status;
+  cprox_result deep;
+  double moves = 0.0;
+  const cprox_status measured = answer_models(&hulls, first, last, cutoff, &deep, travel ? &moves : NULL);
+  if (measured < 0) return measured;
+  const double contact = result->upper;
+  const cprox_status joined = robot_depth_join(q, cutoff, result, &deep);
+  if (travel && deep.upper < contact) *travel = moves;
+  *result = deep;
+  return joined;
 }
 
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {

@@ -11,6 +11,7 @@
 
 #include "base/workspace.h"
 #include "robot_query/answer.h"
+#include "robot_query/depth.h"
 #include "robot_query/measure.h"
 #include "solve/motion_spot.h"
 
@@ -447,8 +448,9 @@ static void fill_nothing(const gradient_search *g, cprox_motion_gradient *to) {
   to->duration = to->margin = 0.0;
 }
 
-cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox_result *result,
-                                cprox_motion_gradient *gradient) {
+/* By the models that the query allows. */
+static cprox_status gradient_of_models(const query *q, size_t first, size_t last, cprox_result *result,
+                                       cprox_motion_gradient *gradient, const char **why) {
   gradient_search g = {.q = q, .lower = INFINITY, .previous = INFINITY};
   if (start_class_is_one_of_many(q->mover.motion))
     return workspace_fail(q->workspace, CPROX_INVALID, "there is no gradient where starts have tolerances");
@@ -480,7 +482,26 @@ cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox
     fill_nothing(&g, gradient);
   }
   gradient->valid = !g.ended;
-  if (g.ended) workspace_fail(q->workspace, r.status, "no gradient: %s", g.why);
   *result = r;
+  *why = g.why;
   return r.status;
+}
+
+cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox_result *result,
+                                cprox_motion_gradient *gradient) {
+  const query apart = robot_depth_apart(q), hulls = robot_depth_hulls(q);
+  const bool two = q->is_signed && robot_depth_has_meshes(q, first, last);
+  const char *why;
+  cprox_result r;
+  cprox_status status = gradient_of_models(two || !q->is_signed ? &apart : &hulls, first, last, &r, gradient, &why);
+  if (status >= 0 && two && !robot_depth_is_settled(q, &r)) {
+    cprox_result deep;
+    status = gradient_of_models(&hulls, first, last, &deep, gradient, &why);
+    if (status >= 0) status = robot_depth_join(q, INFINITY, &r, &deep);
+    r = deep;
+  }
+  if (status < 0) return status;
+  if (!gradient->valid) workspace_fail(q->workspace, status, "no gradient: %s", why);
+  *result = r;
+  return status;
 }
