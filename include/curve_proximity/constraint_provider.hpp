@@ -34,7 +34,7 @@ struct ConstraintBody {
     ShapeDescription shape; /**< the description; shape.pose is its pose in the side's frame */
     BodyHandle body;        /**< the body, in the shape's frame, a mesh by its hull; never null */
     double excess = 0.0;    /**< [m] no point of the shape is farther from the body than this (mesh hulls) */
-    BodyHandle exact;       /**< a mesh with all of its triangles; else the body; null: the body stands for it */
+    BodyHandle exact;       /**< a mesh with all of its triangles; else the body; null: the body alone is known */
   };
   std::vector<Part> parts; /**< the side is their union */
   double padding = 0.0;    /**< [m] >= 0, a ball that is added to the parts */

@@ -109,11 +109,13 @@ class RobotMotion {
   std::unique_ptr<const Data> data_;
 };
 
-/** Queries about a robot in motion: askEnvironment(), askSelf() and the gradients take signed_distance, meshes then
- *  answer by their hulls, and Answer::by_hull says so; points, boxes and meshes without a hull are refused with it. All
- *  others refuse signed_distance. askSelf(), nearestPairs(), clearanceProfile() and timeOfContact() take no per_object,
- * none about the robot itself takes query.objects. nearestPairs() and clearanceProfile() take no other query than
- * DISTANCE, timeOfContact() none but COLLISION, and these three no certificate.
+/** Queries about a robot in motion: askEnvironment(), askSelf() and the gradients take signed_distance. Meshes that
+ *  are apart are measured. Where they overlap, their hulls bound the depth: the status is CPROX_OVERLAP, lower, witness
+ *  points and gradient are those of the hulls, upper is 0 or what convex bodies prove, and Answer::by_hull says so.
+ *  Points, boxes and meshes without a hull are refused with it. All others refuse signed_distance. askSelf(),
+ * nearestPairs(), clearanceProfile() and timeOfContact() take no per_object, none about the robot itself takes
+ * query.objects. nearestPairs() and clearanceProfile() take no other query than DISTANCE, timeOfContact() none but
+ * COLLISION, and these three no certificate.
  *
  *  query.links restricts all of these queries to pairs of the links or attached objects that it names (of the robot
  *  itself: either of the pair). Here a link does not stand for what it carries: an attached object has a name of its

@@ -580,7 +580,7 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --radius R        with --path, instead of --body: a ball of R metres (default 0, a point)
   --self            how close the robot comes to itself, too
   --shortest-way    continuous joints turn the shorter way between two waypoints, from 3.1 to -3.1 by 0.083 rad
-  --signed          distances inside a body are negative: minus the deepest penetration (a robot's meshes by their hulls)
+  --signed          distances inside a body are negative: minus the deepest penetration (of meshes a bound, by their hulls)
   --srdf FILE       links that are not checked against each other, and the frame in which the robot stands
                     (its virtual joint's parent_frame)
   --state TEXT      joint values in radians or metres; others as in the scene's robot_state, else 0

@@ -6,6 +6,8 @@
 #include <curve_proximity/nearest_name.hpp>
 #include <curve_proximity/query.hpp>
 
+#include "outline.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -74,18 +76,6 @@ class Key {
 
   std::string out_;
 };
-
-/* Whether an outline in the plane z = 0 is not convex. */
-bool turnsBothWays(const Eigen::Matrix3Xd &outline) {
-  bool left = false, right = false;
-  for (Eigen::Index i = 0, n = outline.cols(); i < n; ++i) {
-    const Eigen::Vector3d a = outline.col((i + 1) % n) - outline.col(i);
-    const double turn = a.cross(outline.col((i + 2) % n) - outline.col((i + 1) % n)).z();
-    left = left || turn > 0.0;
-    right = right || turn < 0.0;
-  }
-  return left && right;
-}
 
 /* With files by their absolute paths. */
 ConstraintBody::Part toPart(const ShapeDescription &given, const ResourceOptions &resources) {
@@ -226,9 +216,9 @@ void askProvider(ProviderSet &providers, const LoadedProvider &loaded, const Con
 
 Geometry sideGeometry(const ShapeDescription &shape, const ResourceOptions &resources) {
   const bool outline = shape.type == ShapeType::POLYGON && turnsBothWays(shape.vertices);
-  ShapeDescription hull;
-  if (outline) hull = shape, hull.type = ShapeType::POLYTOPE;
-  Geometry geometry = makeGeometry(outline ? hull : shape, resources);
+  ResourceOptions as_it_is = resources;
+  if (outline) as_it_is.mesh_tolerance = 0.0;
+  Geometry geometry = outline ? makeGeometry(filledOutline(shape), as_it_is) : makeGeometry(shape, resources);
   if (!geometry.hull) throw Error("the octree has no occupied cell");
   return geometry;
 }

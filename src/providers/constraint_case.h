@@ -71,7 +71,7 @@ struct ConstraintRow {
 std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCase &asked,
                                       const ResourceOptions &resources, Workspace &workspace);
 
-/** The geometry of a side's shape. Unlike makeGeometry() it takes outlines that are not convex, by their hulls, and
+/** The geometry of a side's shape. Unlike makeGeometry() it takes outlines that are not convex, by triangles, and
  * refuses octrees without an occupied cell. */
 Geometry sideGeometry(const ShapeDescription &shape, const ResourceOptions &resources);
 

@@ -83,10 +83,11 @@ class RobotDistanceConstraint : public MotionConstraint {
     const cprox_result &result = found.answer.result;
     ClearanceGradient &gradient = found.gradient;
     row.status = result.status;
-    row.value = result.upper - parameters_.margin;
+    /* where meshes overlap the gradient is that of their hulls, and so is the value */
+    row.value = (result.status == CPROX_OVERLAP ? result.lower : result.upper) - parameters_.margin;
     row.bounded = true;
     row.lower = result.lower - parameters_.margin;
-    row.upper = row.value;
+    row.upper = result.upper - parameters_.margin;
     row.valid = gradient.valid;
     row.reason = std::move(gradient.reason);
     row.a = {gradient.base_linear, gradient.base_angular};
@@ -148,12 +149,16 @@ class RobotDistanceConstraint : public MotionConstraint {
     std::stable_sort(out.rows.begin(), out.rows.end(),
                      [](const MotionRow &x, const MotionRow &y) { return x.value < y.value; });
     for (const MotionRow &row : out.rows) {
+      out.value = std::min(out.value, row.value);
       out.lower = std::min(out.lower, row.lower);
       out.upper = std::min(out.upper, row.upper);
+      if (row.status == CPROX_OVERLAP && out.status == CPROX_OK) {
+        out.status = CPROX_OVERLAP;
+        out.message = "meshes overlap: their convex hulls say how deep at most";
+      }
     }
-    out.value = std::min(out.value, out.upper);
     const double least = parameters_.query.options.signed_distance ? -INFINITE : -parameters_.margin;
-    if (out.status != CPROX_OK) out.lower = least;
+    if (out.status != CPROX_OK && out.status != CPROX_OVERLAP) out.lower = least;
     if (parameters_.smoothing > 0.0) soften(out);
   }
 
@@ -174,7 +179,8 @@ class RobotDistanceConstraint : public MotionConstraint {
     /* the sum of a million rows is known to 1e-10 of itself */
     const double rounding = 1e-9 * (parameters_.smoothing + parameters_.limits.horizon);
     out.lower = -std::numeric_limits<double>::infinity();
-    if (out.status == CPROX_OK) out.lower = softMinimum(out.rows, &MotionRow::lower).value() - rounding;
+    if (out.status == CPROX_OK || out.status == CPROX_OVERLAP)
+      out.lower = softMinimum(out.rows, &MotionRow::lower).value() - rounding;
     out.upper = softMinimum(out.rows, &MotionRow::upper).value() + rounding;
     if (out.rows.empty()) return;
     MotionRow sum = out.rows.front();

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "distance_constraints.h"
+#include "outline.h"
 
 namespace curve_proximity {
 namespace {
@@ -25,12 +26,23 @@ bool isJump(double near, double far, double noise) {
 
 using Parameters = StandingDistanceParameters;
 
-/* A side as single bodies, and how far they stand out of what was described. */
+/* A part as single bodies. */
+struct Element {
+  BodyHandle body;  /* what is measured */
+  BodyHandle hull;  /* contains it; what is measured where depths are asked for */
+  BodyHandle shape; /* the part itself, or null where it is not known: what bounds the distance from above */
+
+  bool isMesh() const {
+    return body != hull;
+  }
+};
+
+/* A side, and how far its bodies stand out of what was described. */
 struct Side {
-  std::vector<BodyHandle> bodies;
+  std::vector<Element> elements;
   double size = 0.0; /* [m] of the smallest of them: the radius of a ball that contains it; infinite of halfspaces */
   bool may_be_flat = false; /* there may be faces or edges, or surfaces that are all but flat */
-  double padding = 0.0, excess = 0.0, missing = 0.0; /* [m]; missing: of a mesh's hull */
+  double padding = 0.0, excess = 0.0, missing = 0.0; /* [m]; missing: of hulls that are measured */
 };
 
 /* Exponents between these give a surface that is curved nearly everywhere. */
@@ -80,18 +92,42 @@ ConstraintBody::Part enclosed(const ConstraintBody::Part &part, const Superquadr
   }
 }
 
+/* One part as a body. */
+BodyHandle bodyOf(const ConstraintBody::Part &part, bool exact) {
+  ConstraintBody alone;
+  alone.parts = {part};
+  return joinedBody(alone, exact);
+}
+
+Element makeElement(const ConstraintBody::Part &part, const Parameters &parameters, const char *name, Side &side) {
+  const bool enclose = parameters.fit && !isSmooth(part.shape.type), is_convex = !isHull(part);
+  const bool exact = parameters.meshes == Meshes::EXACT && !enclose;
+  double unused = 0.0; // a mesh bounds its distance from above itself
+  const ConstraintBody::Part hull =
+      enclose ? enclosed(part, *parameters.fit, is_convex ? side.excess : unused) : asItIs(part);
+  if (exact && !is_convex && !part.exact)
+    throw Error(std::string("side ") + name +
+                ": a mesh that was simplified has no exact distance: ask with meshes: hull, or without a tolerance");
+  side.may_be_flat = side.may_be_flat || mayBeFlat(hull.shape);
+  if (!is_convex) side.missing = std::max(side.missing, part.excess);
+  Element out;
+  out.hull = bodyOf(hull, false);
+  out.body = is_convex || !exact ? out.hull : bodyOf(part, true);
+  if (is_convex)
+    out.shape = out.hull;
+  else if (part.exact)
+    out.shape = bodyOf(part, true);
+  return out;
+}
+
 Side makeSide(const ConstraintBody &described, const Parameters &parameters, const char *name) {
   if (described.parts.empty()) throw Error(std::string("side ") + name + " has no shape");
   Side side;
   side.padding = described.padding;
-  side.missing = excessOf(described);
+  side.size = std::numeric_limits<double>::infinity();
   for (const ConstraintBody::Part &part : described.parts) {
-    ConstraintBody alone;
-    const bool enclose = parameters.fit && !isSmooth(part.shape.type);
-    alone.parts = {enclose ? enclosed(part, *parameters.fit, side.excess) : asItIs(part)};
-    side.bodies.push_back(joinedBody(alone));
-    side.may_be_flat = side.may_be_flat || mayBeFlat(alone.parts.front().shape);
-    side.size = side.bodies.size() > 1 ? std::min(side.size, sizeOf(side.bodies.back())) : sizeOf(side.bodies.back());
+    side.elements.push_back(makeElement(part, parameters, name, side));
+    side.size = std::min(side.size, sizeOf(side.elements.back().hull));
   }
   return side;
 }
@@ -105,53 +141,89 @@ class SuperquadricConstraint : public Constraint {
     if (place.curve) throw Error("there is a curve, and the pair is not along one");
 
     // The nearest of all pairs of parts, and the next. Of a single pair the search goes on from where it ended before.
-    cprox_pair_start *start = a_.bodies.size() == 1 && b_.bodies.size() == 1 ? &out.start : nullptr;
+    cprox_pair_start *start = a_.elements.size() == 1 && b_.elements.size() == 1 ? &out.start : nullptr;
+    constexpr double INFINITE = std::numeric_limits<double>::infinity();
     Nearest best;
-    double lower = std::numeric_limits<double>::infinity(), next = lower;
-    for (const BodyHandle &a : a_.bodies) {
-      for (const BodyHandle &b : b_.bodies) {
+    double lower = INFINITE, upper = INFINITE, next = INFINITE;
+    for (const Element &a : a_.elements) {
+      for (const Element &b : b_.elements) {
         const Nearest found = ask(a, b, place, start, workspace);
         lower = std::min(lower, found.result.lower);
-        next = std::min(next, std::max(found.result.upper, best.result.upper));
-        if (!best.a || found.result.upper < best.result.upper) best = found;
+        upper = std::min(upper, found.upper);
+        next = std::min(next, std::max(found.value(), best.value()));
+        if (!best.a || found.value() < best.value()) best = found;
       }
     }
-    fill(best, lower, place, out);
+    fill(best, lower, upper, place, out);
     check(best, next, place, workspace, out);
   }
 
  private:
+  /* A pair of parts: the bodies that were measured, what they say, and what the parts themselves do not exceed. The
+   * result's upper is the value, whose gradient is known. */
   struct Nearest {
     const cprox_body *a = nullptr, *b = nullptr;
     cprox_result result{};
+    double upper = std::numeric_limits<double>::infinity();
+    bool is_mesh = false; /* not convex: there may be several nearest points */
+    bool is_known = true; /* false: the value says nothing of how deep they overlap */
     Nearest() {
       result.upper = std::numeric_limits<double>::infinity();
     }
+    double value() const {
+      return result.upper;
+    }
   };
 
-  Nearest ask(const BodyHandle &a, const BodyHandle &b, const ConstraintPlace &place, cprox_pair_start *start,
+  cprox_result measure(const cprox_body *a, const cprox_body *b, const ConstraintPlace &place,
+                       const cprox_options &options, Workspace &workspace) const {
+    cprox_result result{};
+    require(
+        cprox_pair(cprox_with_margin(cprox_obstacle_at(a, place.a), a_.padding),
+                   cprox_with_margin(cprox_obstacle_at(b, place.b), b_.padding), &options, workspace.get(), &result),
+        workspace);
+    return result;
+  }
+
+  /* Apart, meshes have their own distance. Where they overlap, their hulls say how deep at most. */
+  Nearest ask(const Element &a, const Element &b, const ConstraintPlace &place, cprox_pair_start *start,
               Workspace &workspace) const {
     cprox_options options = parameters_.options;
     options.start = start;
+    const bool meshes = a.isMesh() || b.isMesh();
     Nearest out;
-    out.a = a.get();
-    out.b = b.get();
-    require(cprox_pair(cprox_with_margin(cprox_obstacle_at(out.a, place.a), a_.padding),
-                       cprox_with_margin(cprox_obstacle_at(out.b, place.b), b_.padding), &options, workspace.get(),
-                       &out.result),
-            workspace);
+    out.a = a.body.get();
+    out.b = b.body.get();
+    out.result = measure(out.a, out.b, place, options, workspace);
+    out.is_mesh = meshes && out.result.upper > 0.0;
+    out.is_known = out.result.status != CPROX_OVERLAP || out.result.upper < 0.0;
+    out.upper = out.result.upper + a_.excess + b_.excess;
+    if (meshes && !out.is_mesh) {
+      out.a = a.hull.get();
+      out.b = b.hull.get();
+      out.result = measure(out.a, out.b, place, options, workspace);
+      out.result.lower -= a_.missing + b_.missing;
+      out.is_known = out.result.status != CPROX_OVERLAP;
+      out.result.status = CPROX_OVERLAP;
+    } else if (a.shape != a.body || b.shape != b.body) { /* a hull stands for a shape */
+      out.result.lower -= a_.missing + b_.missing;
+      out.upper = std::numeric_limits<double>::infinity();
+      options.start = nullptr;
+      if (a.shape && b.shape)
+        out.upper = measure(a.shape.get(), b.shape.get(), place, options, workspace).upper + a_.excess + b_.excess;
+    }
     return out;
   }
 
   /* d = max over unit n of -h_A(-n) - h_B(n) is minus the depth inside, the distance outside: by the support points, a
    * turn w of a changes it by w·((p_a - x_a) x n), one of b by -w·((p_b - x_b) x n). */
-  void fill(const Nearest &best, double lower, const ConstraintPlace &place, ConstraintValue &out) const {
+  void fill(const Nearest &best, double lower, double upper, const ConstraintPlace &place, ConstraintValue &out) const {
     const cprox_result &r = best.result;
     out.status = r.status;
-    out.value = r.upper - parameters_.margin;
+    out.value = std::min(best.value(), upper) - parameters_.margin;
     out.bounded = true;
-    out.lower = lower - a_.missing - b_.missing - parameters_.margin;
-    out.upper = r.upper + a_.excess + b_.excess - parameters_.margin;
+    out.lower = lower - parameters_.margin;
+    out.upper = upper - parameters_.margin;
     out.has_points = true;
     out.witness_a = toEigen(r.witness_mover);
     out.witness_b = toEigen(r.witness_obstacle);
@@ -170,12 +242,16 @@ class SuperquadricConstraint : public Constraint {
              ConstraintValue &out) const {
     const double size = std::min(a_.size, b_.size);
     out.valid = false;
-    if (best.result.status == CPROX_OVERLAP || out.normal.isZero(0.0)) {
-      out.reason = best.result.status == CPROX_OVERLAP ? "how deep they overlap is not known" : "there is no normal";
+    if (!best.is_known) {
+      out.reason = "how deep they overlap is not known";
+    } else if (out.normal.isZero(0.0)) {
+      out.reason = "there is no normal";
     } else if (next <= best.result.upper + 2.0 * parameters_.options.epsilon + ALIKE * size) {
       out.reason = "two pairs of parts are equally near";
     } else if (best.result.upper < 0.0 && !wayOutIsAlone(best, place, size, workspace)) {
       out.reason = "there is more than one way out";
+    } else if (best.is_mesh && !wayOutIsAlone(best, place, size, workspace)) {
+      out.reason = "the nearest points are not the only ones";
     } else if (a_.may_be_flat && b_.may_be_flat && !nearestIsAlone(best, place, size, workspace)) {
       out.reason = "the nearest points are not the only ones";
     } else {
@@ -188,14 +264,14 @@ class SuperquadricConstraint : public Constraint {
     // A turn of 1e-6 rad changes the distance by so much less than epsilon that it would not be seen.
     cprox_options exact = parameters_.options;
     exact.epsilon = std::min(exact.epsilon, 1e-13 * std::min(a_.size, b_.size));
-    cprox_result r{};
-    require(cprox_pair(cprox_with_margin(cprox_obstacle_at(best.a, a), a_.padding),
-                       cprox_with_margin(cprox_obstacle_at(best.b, b), b_.padding), &exact, workspace.get(), &r),
-            workspace);
-    return r;
+    ConstraintPlace place;
+    place.a = a;
+    place.b = b;
+    return measure(best.a, best.b, place, exact, workspace);
   }
 
-  /* Inside, the way out may change from one side to another: then the normal jumps nearby. */
+  /* Inside, the way out may change from one side to another: then the normal jumps nearby. So it does where a mesh has
+   * two nearest points. */
   bool wayOutIsAlone(const Nearest &best, const ConstraintPlace &place, double size, Workspace &workspace) const {
     const double near = lean(best, place, NEAR * size, workspace);
     return near <= NORMAL_NOISE || !isJump(near, lean(best, place, FAR * size, workspace), NORMAL_NOISE);
@@ -260,6 +336,7 @@ class SuperquadricDistance : public ConstraintProvider {
     ParameterReader reader(parameters);
     parameters_.options.epsilon = reader.number("epsilon", 1e-9, 0.0);
     parameters_.margin = reader.number("margin", 0.0, 0.0);
+    parameters_.meshes = readMeshes(reader);
     const double most_exponent = reader.number("most_exponent", 0.0, 2.0, false, 1000.0);
     reader.end();
     if (most_exponent == 0.0) return; /* not given */
@@ -275,6 +352,7 @@ class SuperquadricDistance : public ConstraintProvider {
     along.options.epsilon = parameters_.options.epsilon;
     along.options.signed_distance = true;
     along.margin = parameters_.margin;
+    along.meshes = parameters_.meshes;
     return curveDistance(along, pair);
   }
 

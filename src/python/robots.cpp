@@ -476,7 +476,8 @@ void addRobots(py::module &module) {
           py::arg("signed") = false, py::arg("links") = Names{}, py::arg("objects") = Names{},
           "The least distance to the objects, or of the robot to itself: a dict of result, kind, a (link), b (object "
           "or\n"
-          "link), by_hull, message. With signed overlaps are negative: minus the deepest one, meshes by their hulls.")
+          "link), by_hull, message. With signed overlaps are negative: minus the deepest one. Where meshes overlap, lower is\n"
+          "that of their hulls, and the status is overlap.")
       .def(
           "tolerance",
           [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,

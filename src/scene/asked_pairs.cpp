@@ -130,7 +130,8 @@ void nameSides(const Asked &asked, const Query &query, Answer &answer) {
   const auto other = static_cast<std::size_t>(result.obstacle_index);
   answer.a = moving.owner();
   result.mover_part = moving.part;
-  const bool coarse = query.options.max_lod != CPROX_LOD_MESH || query.options.signed_distance;
+  const bool deep = query.options.signed_distance && result.status == CPROX_OVERLAP;
+  const bool coarse = query.options.max_lod != CPROX_LOD_MESH || deep;
   answer.by_hull = coarse && moving.is_mesh;
   if (asked.isSelf(result)) {
     const MovingGeometry &standing =
@@ -147,7 +148,9 @@ void nameSides(const Asked &asked, const Query &query, Answer &answer) {
     if (item.shape->is_open && !answer.by_hull)
       answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
   }
-  if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
+  if (!answer.by_hull) return;
+  answer.message = deep ? "meshes overlap: their convex hulls say how deep at most"
+                        : "the nearest shape is a mesh: its convex hull answers for it";
 }
 
 Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &query, const Workspace &workspace,

@@ -102,7 +102,8 @@ std::size_t roomFor(const Asked &asked, const RowLimits &limits, std::size_t lef
 /* Why a row has no gradient, as far as the core's last message does not say it of this row. */
 std::string reasonOf(const cprox_motion_row &row) {
   if (row.gradient.valid) return "";
-  if (row.result.upper < 0.0) return "there is more than one way out, or its minimum is not the only one";
+  if (row.result.upper < 0.0 || row.result.status == CPROX_OVERLAP)
+    return "there is more than one way out, or its minimum is not the only one";
   return row.result.upper > 0.0 ? "its minimum or its nearest points are not the only ones, or not proven to be"
                                 : "they touch or overlap: how deep is an option (signed_distance)";
 }

@@ -464,7 +464,7 @@ void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answe
   const auto part = static_cast<std::size_t>(answer.result.obstacle_index);
   const RobotShape mover = shapeOf(snapshot, answer.a, snapshot.attached().count(answer.a) == 0,
                                    static_cast<std::size_t>(answer.result.mover_part));
-  const bool by_hull = hullsAnswer(query) || query.options.signed_distance;
+  const bool by_hull = answer.by_hull;
   const auto sideOfRobot = [&](const RobotShape &shape, const LinkPoses &poses) {
     return sideOf(shape.geometry->description, poses.at(*shape.link) * shape.geometry->pose, shape.padding, by_hull,
                   shape.of_link ? snapshot.robot()->resources() : data.objects, data);

@@ -299,6 +299,11 @@ TEST(MotionGradient, rows_are_the_least_distances_of_pairs_within_the_horizon) {
   }
 }
 
+/* What a gradient with signed_distance is about: of meshes that overlap the depth of their hulls. */
+double valueOf(const Answer &answer) {
+  return answer.result.status == CPROX_OVERLAP ? answer.result.lower : answer.result.upper;
+}
+
 /* A ball of 0.2 that the arm reaches into: a step along the gradient is as much shallower, and the rows say so as well.
  */
 TEST(MotionGradient, of_overlaps_leads_out) {
@@ -315,12 +320,13 @@ TEST(MotionGradient, of_overlaps_leads_out) {
     TrajectoryDescription trajectory = randomTrajectory(random, 0);
     const auto depthOf = [&](const TrajectoryDescription &at) {
       const Answer answer = askEnvironment(RobotMotion(robot, at), query, workspace).front();
-      EXPECT_TRUE(answer.by_hull) << answer.message;
-      return answer.result.upper;
+      EXPECT_EQ(answer.by_hull, answer.result.status == CPROX_OVERLAP) << answer.message;
+      return valueOf(answer);
     };
     const RobotMotion motion(robot, trajectory);
     const ClearanceRow row = clearanceGradient(motion, RobotPairs::ENVIRONMENT, query, workspace);
-    if (!(row.answer.result.upper < -0.02) || !row.gradient.valid) continue;
+    if (!(valueOf(row.answer) < -0.02) || !row.gradient.valid) continue;
+    EXPECT_TRUE(row.answer.by_hull && row.answer.result.upper == 0.0) << row.answer.message; // links are meshes
     ++deep;
     constexpr double LENGTH = 1e-5;
     const double norm = row.gradient.positions.norm();
@@ -328,14 +334,14 @@ TEST(MotionGradient, of_overlaps_leads_out) {
       for (std::size_t k = 0; k < JOINTS.size(); ++k)
         trajectory.points[p].positions[k] +=
             LENGTH / norm * row.gradient.positions(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(k));
-    EXPECT_NEAR((depthOf(trajectory) - row.answer.result.upper) / LENGTH, norm, 1e-3 * norm);
+    EXPECT_NEAR((depthOf(trajectory) - valueOf(row.answer)) / LENGTH, norm, 1e-3 * norm);
 
     RowLimits limits;
     limits.horizon = 0.01;
     const ClearanceRows rows = clearanceRows(motion, RobotPairs::ENVIRONMENT, limits, query, workspace);
     double least = INFINITY;
-    for (const ClearanceRow &one : rows.rows) least = std::min(least, one.answer.result.upper);
-    EXPECT_NEAR(least, row.answer.result.upper, 1e-6);
+    for (const ClearanceRow &one : rows.rows) least = std::min(least, valueOf(one.answer));
+    EXPECT_NEAR(least, valueOf(row.answer), 1e-6);
   }
   EXPECT_GT(deep, 3u);
 }

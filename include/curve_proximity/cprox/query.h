@@ -215,7 +215,7 @@ typedef struct cprox_options {
 } cprox_options;
 
 /** The default of all options. */
-#define CPROX_OPTIONS_DEFAULT                                                                                         \
+#define CPROX_OPTIONS_DEFAULT                                                                                          \
   (CPROX_VALUE(cprox_options){sizeof(cprox_options), 1e-6, 0.0, 500000, NULL, NULL, NULL, false, CPROX_LOD_MESH, NULL, \
                               NULL, NULL, NULL})
 
