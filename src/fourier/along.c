@@ -3,6 +3,7 @@
  * over an interval (doc/fourier.md, "Along a curve"). */
 #include <stdlib.h>
 
+#include "base/workspace.h"
 #include "fourier/gap.h"
 
 /* Of a curve by which a solid is carried or turned; `off` names what a planar gap takes no points of. */
@@ -14,7 +15,8 @@ static cprox_status check_curve(const cprox_gap *gap, const cprox_curve *curve, 
   vec3 p[CPROX_MAX_DEGREE + 1];
   for (size_t i = 0; gap->info.dimension == 2 && i < info.n_pieces; i++) {
     const cprox_curve_piece_info part = cprox_curve_get_piece_info(curve, i);
-    const cprox_status status = cprox_curve_control_points(curve, part.t0, part.t1, workspace, p);
+    const cprox_status status =
+        WORKSPACE_LEND(workspace, cprox_curve_control_points(curve, part.t0, part.t1, workspace, p));
     if (status != CPROX_OK) return status;
     for (size_t k = 0; k <= info.degree; k++)
       if (is_off(p[k])) return fourier_fail(workspace, CPROX_INVALID, "%s", off);
@@ -70,10 +72,11 @@ static vec3 angular_velocity(vec3 by, vec3 rate) {
 static cprox_status place(const cprox_gap_carried *carried, double t, cprox_workspace *workspace, cprox_pose *pose,
                           vec3 *velocity, vec3 *spin) {
   pose->orientation = carried->orientation;
-  cprox_status status = cprox_curve_evaluate(carried->curve, t, workspace, &pose->position, velocity, NULL);
+  cprox_status status =
+      WORKSPACE_LEND(workspace, cprox_curve_evaluate(carried->curve, t, workspace, &pose->position, velocity, NULL));
   if (status != CPROX_OK || !carried->turning) return status;
   vec3 by, rate;
-  status = cprox_curve_evaluate(carried->turning, t, workspace, &by, &rate, NULL);
+  status = WORKSPACE_LEND(workspace, cprox_curve_evaluate(carried->turning, t, workspace, &by, &rate, NULL));
   pose->orientation = turned_by(by, carried->orientation);
   if (spin) *spin = angular_velocity(by, rate);
   return status;
@@ -81,6 +84,7 @@ static cprox_status place(const cprox_gap_carried *carried, double t, cprox_work
 
 cprox_status cprox_gap_along(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_gap_carried *carried, double t,
                              cprox_workspace *workspace, cprox_gap_result *result, double *derivative) {
+  WORKSPACE_USE(workspace);
   cprox_status status = check_arguments(gap, carried, result, workspace);
   if (status != CPROX_OK) return status;
   cprox_pose b;
@@ -88,7 +92,7 @@ cprox_status cprox_gap_along(const cprox_gap *gap, const cprox_pose *pose_a, con
   status = place(carried, t, workspace, &b, &velocity, &spin);
   if (status != CPROX_OK) return status;
   cprox_gap_result out;
-  status = cprox_gap_evaluate(gap, pose_a, &b, workspace, &out);
+  status = WORKSPACE_LEND(workspace, cprox_gap_evaluate(gap, pose_a, &b, workspace, &out));
   if (status < CPROX_OK) return status;
   *result = out;
   const frame at = frame_create(&b, vec(0, 0, 0));
@@ -119,8 +123,9 @@ static cprox_status spread_leg(const path_piece *path, leg at, cprox_workspace *
   if (!path->curve) return CPROX_OK;
   vec3 p[CPROX_MAX_DEGREE + 1];
   const double t = 0.5 * (at.a + at.b);
-  cprox_status status = cprox_curve_control_points(path->curve, at.a, at.b, workspace, p);
-  if (status == CPROX_OK) status = cprox_curve_evaluate(path->curve, t, workspace, &out->middle, NULL, NULL);
+  cprox_status status = WORKSPACE_LEND(workspace, cprox_curve_control_points(path->curve, at.a, at.b, workspace, p));
+  if (status == CPROX_OK)
+    status = WORKSPACE_LEND(workspace, cprox_curve_evaluate(path->curve, t, workspace, &out->middle, NULL, NULL));
   double size = 0.0;
   for (size_t i = 0; status == CPROX_OK && i <= path->degree; i++) {
     out->away[i] = vec_sub(p[i], out->middle);
@@ -162,7 +167,7 @@ static cprox_status bound_leg(const stretch *s, leg at, cprox_workspace *workspa
   *r = (cprox_gap_result){.verdict = CPROX_GAP_VERDICT_FAR, .clearance = clearance};
   *most = is_clear ? 0.0 : INFINITY;
   if (is_clear || clearance > 0.0) return CPROX_OK;
-  status = cprox_gap_evaluate(gap, s->pose_a, &b, workspace, r);
+  status = WORKSPACE_LEND(workspace, cprox_gap_evaluate(gap, s->pose_a, &b, workspace, r));
   if (status != CPROX_OK) return status;
 
   double rise = 0.0;
@@ -224,6 +229,7 @@ static void cut(const cprox_curve *curve, size_t i, path_piece *path, leg *whole
 cprox_status cprox_gap_along_test(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_gap_carried *carried,
                                   double t0, double t1, uint32_t max_nodes, cprox_workspace *workspace,
                                   cprox_gap_along_result *result) {
+  WORKSPACE_USE(workspace);
   cprox_status status = check_arguments(gap, carried, result, workspace);
   if (status != CPROX_OK) return status;
   const cprox_curve_info info = cprox_curve_get_info(carried->curve);

@@ -2,6 +2,7 @@
 /* Certified gaps of one pair from coarse to fine: a coarse "clear" is final, so that only "may collide" goes on. */
 #include <stdlib.h>
 
+#include "base/workspace.h"
 #include "fourier/gap.h"
 
 enum { MOST_LEVELS = 8 };
@@ -19,6 +20,7 @@ void cprox_gap_cascade_free(cprox_gap_cascade *cascade) {
 
 cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                                       cprox_workspace *workspace, cprox_gap_cascade **cascade) {
+  WORKSPACE_USE(workspace);
   fourier_clear(workspace);
   if (!a || !b || !cascade)
     return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "cascade");
@@ -37,12 +39,13 @@ cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b
   used.delta = 0.0;  /* and is told its samples */
   for (uint32_t n = 9; status == CPROX_OK && n < finest; n = 2 * n - 1) {
     used.samples = n;
-    status = cprox_gap_create(a, b, &used, workspace, &made->level[made->n]);
+    status = WORKSPACE_LEND(workspace, cprox_gap_create(a, b, &used, workspace, &made->level[made->n]));
     made->n += status == CPROX_OK;
   }
   used.samples = finest;
   used.period = gap_options(options).period;
-  if (status == CPROX_OK) status = cprox_gap_create(a, b, &used, workspace, &made->level[made->n]);
+  if (status == CPROX_OK)
+    status = WORKSPACE_LEND(workspace, cprox_gap_create(a, b, &used, workspace, &made->level[made->n]));
   made->n += status == CPROX_OK;
   if (status != CPROX_OK) {
     cprox_gap_cascade_free(made);
@@ -58,6 +61,7 @@ const cprox_gap *cprox_gap_cascade_finest(const cprox_gap_cascade *cascade) {
 
 cprox_status cprox_gap_cascade_test(const cprox_gap_cascade *cascade, const cprox_pose *pose_a,
                                     const cprox_pose *pose_b, cprox_workspace *workspace, cprox_gap_result *result) {
+  WORKSPACE_USE(workspace);
   if (!cascade || !workspace || !result)
     return fourier_fail(workspace, CPROX_INVALID, "%s is NULL",
                         !cascade     ? "cascade"
@@ -65,7 +69,8 @@ cprox_status cprox_gap_cascade_test(const cprox_gap_cascade *cascade, const cpro
                                      : "result");
   uint32_t terms = 0;
   for (size_t i = 0; i < cascade->n; i++) {
-    const cprox_status status = cprox_gap_test(cascade->level[i], pose_a, pose_b, workspace, result);
+    const cprox_status status =
+        WORKSPACE_LEND(workspace, cprox_gap_test(cascade->level[i], pose_a, pose_b, workspace, result));
     if (status < CPROX_OK) return status;
     terms += result->terms;
     if (result->verdict == CPROX_GAP_VERDICT_CLEAR || result->verdict == CPROX_GAP_VERDICT_FAR) break;

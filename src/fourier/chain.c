@@ -2,6 +2,7 @@
 /* Solids made of many small parts: polylines with a radius, spheres swept along curves, grids of cells. */
 #include <string.h>
 
+#include "base/workspace.h"
 #include "fourier/points.h"
 #include "fourier/solid.h"
 
@@ -113,7 +114,7 @@ cprox_status solid_create_sweep(const cprox_solid_description *d, cprox_workspac
   if (!stack) segments.failed = true;
   for (size_t i = 0; !segments.failed && status == CPROX_OK && i < info.n_pieces; i++) {
     const cprox_curve_piece_info part = cprox_curve_get_piece_info(curve, i);
-    status = cprox_curve_control_points(curve, part.t0, part.t1, workspace, stack);
+    status = WORKSPACE_LEND(workspace, cprox_curve_control_points(curve, part.t0, part.t1, workspace, stack));
     if (status == CPROX_OK) status = solid_check_points("control point", stack, width, dimension, workspace);
     if (status == CPROX_OK) flatten(stack, info.degree, tolerance - info.error, &segments);
   }

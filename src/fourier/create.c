@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Every kind of solid, one line each: how it is made, and whether it is told its dimension. */
+#include "base/workspace.h"
 #include "fourier/solid.h"
 
 typedef struct solid_maker {
@@ -19,6 +20,7 @@ static const solid_maker makers[] = {
 
 cprox_status cprox_solid_create(const cprox_solid_description *description, cprox_workspace *workspace,
                                 cprox_solid **solid) {
+  WORKSPACE_USE(workspace);
   fourier_clear(workspace);
   if (!solid) return fourier_fail(workspace, CPROX_INVALID, "solid is NULL: nowhere to put the handle");
   if (!description) return fourier_fail(workspace, CPROX_INVALID, "the description of the solid is NULL");

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/rounding.h"
+#include "base/workspace.h"
 #include "fourier/grid.h"
 
 #define TAU 6.28318530717958647693
@@ -270,6 +271,7 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
 
 cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                               cprox_workspace *workspace, cprox_gap **gap) {
+  WORKSPACE_USE(workspace);
   fourier_clear(workspace);
   if (!a || !b || !gap) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "gap");
   const cprox_gap_options used = gap_options(options);

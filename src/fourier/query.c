@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The queries to a gap: poses in, verdict, value and gradients out. */
 #include "base/rounding.h"
+#include "base/workspace.h"
 #include "fourier/gap.h"
 
 const char *cprox_gap_verdict_name(cprox_gap_verdict verdict) {
@@ -145,10 +146,12 @@ static cprox_status ask(const cprox_gap *gap, const cprox_pose *a, const cprox_p
 
 cprox_status cprox_gap_test(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_pose *pose_b,
                             cprox_workspace *workspace, cprox_gap_result *result) {
+  WORKSPACE_USE(workspace);
   return ask(gap, pose_a, pose_b, false, workspace, result);
 }
 
 cprox_status cprox_gap_evaluate(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_pose *pose_b,
                                 cprox_workspace *workspace, cprox_gap_result *result) {
+  WORKSPACE_USE(workspace);
   return ask(gap, pose_a, pose_b, true, workspace, result);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Solids of one formula, unions, and what every solid can tell. */
 #include "fourier/solid.h"
+#include "base/workspace.h"
 
 #include <stdlib.h>
 
@@ -213,6 +214,7 @@ cprox_solid_info cprox_solid_get_info(const cprox_solid *solid) {
 
 cprox_status cprox_solid_spectrum(const cprox_solid *solid, cprox_vec3 q, cprox_workspace *workspace, double value[2],
                                   cprox_vec3 gradient[2]) {
+  WORKSPACE_USE(workspace);
   fourier_clear(workspace);
   if (!solid || !value) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", solid ? "value" : "solid");
   if (!vec_finite(q) || (solid->dimension == 2 && q.z != 0.0))

@@ -51,15 +51,18 @@ cprox_status list_collision(cprox_mover mover, const cprox_obstacle *targets, si
 
 cprox_status cprox_distance(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                             cprox_workspace *workspace, cprox_result *result) {
+  WORKSPACE_USE(workspace);
   return list_distance(mover, &target, 1, options, workspace, result, NULL);
 }
 
 cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle target, double delta, const cprox_options *options,
                              cprox_workspace *workspace, cprox_result *result) {
+  WORKSPACE_USE(workspace);
   return list_tolerance(mover, &target, 1, delta, options, workspace, result, NULL);
 }
 
 cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                              cprox_workspace *workspace, cprox_result *result) {
+  WORKSPACE_USE(workspace);
   return list_collision(mover, &target, 1, options, workspace, result, NULL);
 }

@@ -102,7 +102,7 @@ static cprox_status create_motion(const edges_call *call, const double *from, co
   const size_t n = robot->n_variables;
   if (memcmp(from, to, n * sizeof *from) == 0) {
     const cprox_motion_description state = {.kind = CPROX_MOTION_STATE, .rest = from};
-    return cprox_motion_create(robot, &state, call->workspace, motion);
+    return WORKSPACE_LEND(call->workspace, cprox_motion_create(robot, &state, call->workspace, motion));
   }
   int32_t *variables = workspace_reserve(call->workspace, WORKSPACE_ORDER, (n + 1) * sizeof *variables);
   if (!variables) return workspace_fail(call->workspace, CPROX_MEMORY, "no memory for an edge");
@@ -114,7 +114,7 @@ static cprox_status create_motion(const edges_call *call, const double *from, co
                                          .waypoints = ends,
                                          .n_waypoints = 2,
                                          .interpolation = CPROX_INTERPOLATION_LINEAR};
-  return cprox_motion_create(robot, &edge, call->workspace, motion);
+  return WORKSPACE_LEND(call->workspace, cprox_motion_create(robot, &edge, call->workspace, motion));
 }
 
 /* Asks the search about the rest, or with `first` for its time of contact. */
@@ -222,6 +222,7 @@ static cprox_status ask_edge(edges_call *call, size_t index, const double *from,
 
 cprox_status cprox_robot_edges(const cprox_edge_checker *checker, const double *from, const double *to, size_t n,
                                cprox_workspace *workspace, uint8_t *verdicts, cprox_edge_result *results) {
+  WORKSPACE_USE(workspace);
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
   if (!checker) return workspace_fail(workspace, CPROX_INVALID, "checker is NULL");

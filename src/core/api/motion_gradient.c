@@ -3,12 +3,14 @@
 #include "solve/motion_gradient.h"
 
 #include "api/bvh.h"
+#include "base/workspace.h"
 #include "kinematics/motion.h"
 #include "problem/obstacles.h"
 
 cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cprox_mover mover,
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *result, cprox_motion_gradient *gradient) {
+  WORKSPACE_USE(workspace);
   static const arguments_query ASKED = {"the gradient of a robot's distance",
                                         ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_SIGNED | ARGUMENTS_INTERVAL};
   const obstacle_bvh *set = obstacles ? obstacles->bvh : NULL;

@@ -127,6 +127,7 @@ static cprox_status find_rows(row_search *s, const cprox_robot_pair *pair) {
 cprox_status cprox_robot_rows(const cprox_obstacles *obstacles, cprox_mover mover, const cprox_rows_query *asked,
                               const cprox_options *options, cprox_workspace *workspace, cprox_motion_row *rows,
                               size_t room, size_t *count) {
+  WORKSPACE_USE(workspace);
   row_search s = {.rows = rows, .room = room, .failure = CPROX_OK};
   s.q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
   query *q = &s.q;

@@ -13,6 +13,7 @@
 
 cprox_status cprox_obstacles_create(const cprox_obstacle *list, size_t n, cprox_obstacle_index index,
                                     cprox_workspace *workspace, cprox_obstacles **obstacles) {
+  WORKSPACE_USE(workspace);
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
   if (!obstacles)
@@ -64,6 +65,7 @@ static const obstacle_bvh *bvh_of(const cprox_obstacles *obstacles) {
 
 cprox_status cprox_obstacles_distance(const cprox_obstacles *obstacles, cprox_mover mover, const cprox_options *options,
                                       cprox_workspace *workspace, cprox_result *result, cprox_result *each) {
+  WORKSPACE_USE(workspace);
   const obstacle_bvh *bvh = bvh_of(obstacles);
   if (bvh && !each) return bvh_distance(bvh, mover, options, workspace, result);
   return list_distance(mover, obstacles_list(obstacles), obstacles_count(obstacles), options, workspace, result, each);
@@ -72,6 +74,7 @@ cprox_status cprox_obstacles_distance(const cprox_obstacles *obstacles, cprox_mo
 cprox_status cprox_obstacles_tolerance(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result,
                                        cprox_result *each) {
+  WORKSPACE_USE(workspace);
   const obstacle_bvh *bvh = bvh_of(obstacles);
   if (bvh && !each) return bvh_tolerance(bvh, mover, delta, options, workspace, result);
   return list_tolerance(mover, obstacles_list(obstacles), obstacles_count(obstacles), delta, options, workspace, result,
@@ -81,6 +84,7 @@ cprox_status cprox_obstacles_tolerance(const cprox_obstacles *obstacles, cprox_m
 cprox_status cprox_obstacles_collision(const cprox_obstacles *obstacles, cprox_mover mover,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result,
                                        cprox_result *each) {
+  WORKSPACE_USE(workspace);
   const obstacle_bvh *bvh = bvh_of(obstacles);
   if (bvh && !each) return bvh_collision(bvh, mover, options, workspace, result);
   return list_collision(mover, obstacles_list(obstacles), obstacles_count(obstacles), options, workspace, result, each);
@@ -89,6 +93,7 @@ cprox_status cprox_obstacles_collision(const cprox_obstacles *obstacles, cprox_m
 cprox_status cprox_obstacles_time_of_contact(const cprox_obstacles *obstacles, cprox_mover mover,
                                              const cprox_options *options, cprox_workspace *workspace,
                                              cprox_result *result) {
+  WORKSPACE_USE(workspace);
   const obstacle_bvh *bvh = bvh_of(obstacles);
   if (bvh) return bvh_time_of_contact(bvh, mover, options, workspace, result);
   return list_time_of_contact(mover, obstacles_list(obstacles), obstacles_count(obstacles), options, workspace, result);
@@ -97,6 +102,7 @@ cprox_status cprox_obstacles_time_of_contact(const cprox_obstacles *obstacles, c
 cprox_status cprox_obstacles_nearest(const cprox_obstacles *obstacles, cprox_mover mover, size_t k,
                                      const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                                      size_t *count) {
+  WORKSPACE_USE(workspace);
   const obstacle_bvh *bvh = bvh_of(obstacles);
   if (bvh) return bvh_nearest(bvh, mover, k, options, workspace, nearest, count);
   return list_nearest(mover, obstacles_list(obstacles), obstacles_count(obstacles), k, options, workspace, nearest,
@@ -106,6 +112,7 @@ cprox_status cprox_obstacles_nearest(const cprox_obstacles *obstacles, cprox_mov
 cprox_status cprox_obstacles_within(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
                                     const cprox_options *options, cprox_workspace *workspace, cprox_result *near,
                                     size_t *count) {
+  WORKSPACE_USE(workspace);
   return list_within(mover, obstacles_list(obstacles), obstacles_count(obstacles), delta, options, workspace, near,
                      count);
 }
@@ -113,6 +120,7 @@ cprox_status cprox_obstacles_within(const cprox_obstacles *obstacles, cprox_move
 cprox_status cprox_obstacles_nearest_pairs(const cprox_obstacles *obstacles, cprox_mover mover, size_t k, double delta,
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *nearest, size_t *count) {
+  WORKSPACE_USE(workspace);
   return list_nearest_pairs(mover, obstacles_list(obstacles), obstacles_count(obstacles), k, delta, options, workspace,
                             nearest, count);
 }
@@ -120,6 +128,7 @@ cprox_status cprox_obstacles_nearest_pairs(const cprox_obstacles *obstacles, cpr
 cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles, cprox_mover mover, const double *breaks,
                                      size_t n_intervals, double horizon, const cprox_options *options,
                                      cprox_workspace *workspace, cprox_profile_interval *intervals) {
+  WORKSPACE_USE(workspace);
   return list_profile(mover, obstacles_list(obstacles), obstacles_count(obstacles), breaks, n_intervals, horizon,
                       options, workspace, intervals);
 }
@@ -127,6 +136,7 @@ cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles, cprox_mov
 cprox_status cprox_obstacles_violations(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
                                         double resolution, const cprox_options *options, cprox_workspace *workspace,
                                         cprox_violations *violations) {
+  WORKSPACE_USE(workspace);
   return list_violations(mover, obstacles_list(obstacles), obstacles_count(obstacles), delta, resolution, options,
                          workspace, violations);
 }
@@ -144,6 +154,7 @@ static const obstacle_batch *batch_of(const cprox_obstacles *obstacles, cprox_wo
 cprox_status cprox_obstacles_distance_batch(const cprox_obstacles *obstacles, const cprox_mover *movers, size_t first,
                                             size_t last, const cprox_options *options, cprox_workspace *workspace,
                                             cprox_result *results) {
+  WORKSPACE_USE(workspace);
   const obstacle_batch *batch = batch_of(obstacles, workspace);
   return batch ? batch_distance(batch, movers, first, last, options, workspace, results) : CPROX_INVALID;
 }
@@ -151,6 +162,7 @@ cprox_status cprox_obstacles_distance_batch(const cprox_obstacles *obstacles, co
 cprox_status cprox_obstacles_tolerance_batch(const cprox_obstacles *obstacles, const cprox_mover *movers, size_t first,
                                              size_t last, double delta, const cprox_options *options,
                                              cprox_workspace *workspace, cprox_result *results) {
+  WORKSPACE_USE(workspace);
   const obstacle_batch *batch = batch_of(obstacles, workspace);
   return batch ? batch_tolerance(batch, movers, first, last, delta, options, workspace, results) : CPROX_INVALID;
 }

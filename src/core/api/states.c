@@ -8,9 +8,12 @@
 
 static cprox_status ask(const cprox_state_query *q, const cprox_obstacles *obstacles, cprox_mover mover,
                         cprox_workspace *workspace, cprox_result *result) {
-  if (q->distance) return cprox_obstacles_distance(obstacles, mover, q->options, workspace, result, NULL);
-  if (q->delta == 0.0) return cprox_obstacles_collision(obstacles, mover, q->options, workspace, result, NULL);
-  return cprox_obstacles_tolerance(obstacles, mover, q->delta, q->options, workspace, result, NULL);
+  if (q->distance)
+    return WORKSPACE_LEND(workspace, cprox_obstacles_distance(obstacles, mover, q->options, workspace, result, NULL));
+  if (q->delta == 0.0)
+    return WORKSPACE_LEND(workspace, cprox_obstacles_collision(obstacles, mover, q->options, workspace, result, NULL));
+  return WORKSPACE_LEND(workspace,
+                        cprox_obstacles_tolerance(obstacles, mover, q->delta, q->options, workspace, result, NULL));
 }
 
 /* The less favourable of two verdicts; undecided is between the others. */
@@ -48,6 +51,7 @@ static cprox_status ask_state(const cprox_state_query *q, const cprox_motion *st
 
 cprox_status cprox_robot_ask_states(const cprox_robot *robot, const cprox_state_query *asked, const double *states,
                                     size_t n, cprox_workspace *workspace, cprox_result *results, bool *about_self) {
+  WORKSPACE_USE(workspace);
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
   if (!robot || !asked) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", robot ? "asked" : "robot");
@@ -56,7 +60,7 @@ cprox_status cprox_robot_ask_states(const cprox_robot *robot, const cprox_state_
   if (n == 0) return CPROX_OK;
   const cprox_motion_description description = {.kind = CPROX_MOTION_STATE, .rest = states};
   cprox_motion *state = NULL;
-  cprox_status worst = cprox_motion_create(robot, &description, workspace, &state);
+  cprox_status worst = WORKSPACE_LEND(workspace, cprox_motion_create(robot, &description, workspace, &state));
   const size_t width = worst < 0 ? 0 : cprox_motion_get_info(state).n_variables;
   for (size_t i = 0; i < n && worst >= 0; i++) {
     bool self = false;

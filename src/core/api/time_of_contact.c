@@ -21,5 +21,6 @@ cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targe
 
 cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                    cprox_workspace *workspace, cprox_result *result) {
+  WORKSPACE_USE(workspace);
   return list_time_of_contact(mover, &target, 1, options, workspace, result);
 }

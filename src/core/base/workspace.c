@@ -13,6 +13,9 @@ struct cprox_workspace {
   void *stop_user;
   bool stopped;
   uint64_t work;
+  uint32_t users;   /* public functions that have begun and not returned; */
+  uint32_t lent;    /* all but the last of these have lent the workspace to the next one */
+  bool was_refused; /* the last function that wanted the workspace did not get it */
 };
 
 cprox_workspace *cprox_workspace_create(void) {
@@ -26,8 +29,36 @@ void cprox_workspace_free(cprox_workspace *workspace) {
 }
 
 const char *cprox_workspace_error(const cprox_workspace *workspace) {
+  if (workspace && workspace->was_refused)
+    return "the workspace is in use: a function that a query calls needs a workspace of its own to ask anything";
   return workspace ? workspace->reason : "";
 }
+
+/* ---- one user at a time ---- */
+
+bool workspace_enter(cprox_workspace *workspace) {
+  if (!workspace) return true;
+  workspace->was_refused = workspace->users > workspace->lent;
+  if (!workspace->was_refused) workspace->users++;
+  return !workspace->was_refused;
+}
+
+void workspace_leave(cprox_workspace *const *workspace) {
+  if (!*workspace) return;
+  (*workspace)->users--;
+  (*workspace)->was_refused = false;
+}
+
+void workspace_lend(cprox_workspace *workspace) {
+  if (workspace) workspace->lent++;
+}
+
+cprox_status workspace_take_back(cprox_workspace *workspace, cprox_status status) {
+  if (workspace) workspace->lent--;
+  return status;
+}
+
+/* ---- memory ---- */
 
 void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, size_t bytes) {
   if (bytes <= workspace->bytes[buffer]) return workspace->memory[buffer];

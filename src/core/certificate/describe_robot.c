@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A robot along a motion as text: what the checker takes as given. doc/certificates.md has the grammar. */
+#include "base/workspace.h"
 #include "certificate/describe.h"
 #include "certificate/write.h"
 #include "curve_proximity/cprox/certificate.h"
@@ -82,6 +83,7 @@ static void say_motion(text *t, const cprox_motion *motion) {
 
 size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obstacles, const char *id,
                             cprox_workspace *workspace, char *out, size_t size) {
+  WORKSPACE_USE_OR(workspace, 0);
   const cprox_obstacle *targets = obstacles_list(obstacles);
   const size_t n = obstacles_count(obstacles);
   query q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);

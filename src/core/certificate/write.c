@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "base/rounding.h"
+#include "base/workspace.h"
 #include "certificate/describe.h"
 #include "certificate/partition.h"
 #include "kinematics/motion.h"
@@ -261,6 +262,7 @@ cprox_certificate *cprox_certificate_create(void) {
 cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, double delta,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
+  WORKSPACE_USE(workspace);
   const cprox_obstacle *targets = obstacles_list(obstacles);
   const size_t n = obstacles_count(obstacles);
   const cprox_options chosen = arguments_options(options);

@@ -36,6 +36,7 @@ static const curve_maker *maker_of(cprox_curve_kind kind) {
 
 cprox_status cprox_curve_create(const cprox_curve_description *description, cprox_workspace *workspace,
                                 cprox_curve **curve) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
   if (!description) return workspace_fail(workspace, CPROX_INVALID, "the description of the curve is NULL");

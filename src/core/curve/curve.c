@@ -298,6 +298,7 @@ static cprox_status evaluate_arcs(const cprox_curve *c, double t, cprox_workspac
 
 cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_workspace *workspace, cprox_vec3 *point,
                                   cprox_vec3 *derivative, cprox_vec3 *second_derivative) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the curve is NULL");
   const double t0 = curve->breaks[0], t1 = curve->breaks[curve->n_pieces];
@@ -320,6 +321,7 @@ cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_work
 
 cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, double b, cprox_workspace *workspace,
                                         cprox_vec3 *points) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   if (!curve || !points)
     return workspace_fail(workspace, CPROX_INVALID, "the %s is NULL", curve ? "array for the points" : "curve");

@@ -28,7 +28,8 @@ static cprox_status ellipsoid_by_polygon(const cprox_curve *curve, double a, dou
   double length = 0.0, error = 0.0;
   for (size_t i = curve_piece_at(curve, a); i < curve->n_pieces && curve->breaks[i] < b; i++) {
     const double from = fmax(a, curve->breaks[i]), to = fmin(b, curve->breaks[i + 1]);
-    const cprox_status status = cprox_curve_control_points(curve, from, to, workspace, points);
+    const cprox_status status =
+        WORKSPACE_LEND(workspace, cprox_curve_control_points(curve, from, to, workspace, points));
     if (status != CPROX_OK) return status;
     double largest = vec_norm(points[0]);
     for (size_t k = 0; k < degree; k++) {
@@ -48,6 +49,7 @@ static cprox_status ellipsoid_by_polygon(const cprox_curve *curve, double a, dou
 
 cprox_status cprox_curve_get_ellipsoid(const cprox_curve *curve, double a, double b, cprox_workspace *workspace,
                                        cprox_curve_ellipsoid *ellipsoid) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   if (!curve || !ellipsoid)
     return workspace_fail(workspace, CPROX_INVALID, "the %s is NULL", curve ? "ellipsoid" : "curve");

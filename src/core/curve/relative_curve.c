@@ -153,7 +153,7 @@ static vec3 point_at(const cprox_curve *curve, double t, bool from_left, cprox_w
   const size_t i = curve_piece_at(curve, t);
   if (from_left && i > 0 && curve->breaks[i] == t) return curve_piece(curve, i - 1)[curve->degree];
   vec3 point = vec(0, 0, 0);
-  cprox_curve_evaluate(curve, t, workspace, &point, NULL, NULL);
+  (void)WORKSPACE_LEND(workspace, cprox_curve_evaluate(curve, t, workspace, &point, NULL, NULL));
   return point;
 }
 

@@ -528,6 +528,7 @@ static cprox_status fill(cprox_edge_checker *c, cprox_workspace *workspace) {
 
 cprox_status cprox_edge_checker_create(const cprox_robot *robot, const cprox_edge_query *asked,
                                        cprox_workspace *workspace, cprox_edge_checker **checker) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   if (!robot || !checker) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", robot ? "checker" : "robot");
   const cprox_edge_query q = asked ? *asked : (cprox_edge_query){0};

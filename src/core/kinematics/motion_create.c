@@ -560,6 +560,7 @@ cprox_status motion_set_state(cprox_motion *motion, const double *values, cprox_
 
 cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_description *description,
                                  cprox_workspace *workspace, cprox_motion **motion) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   if (!motion) return workspace_fail(workspace, CPROX_INVALID, "motion is NULL: nowhere to put the handle");
   if (!robot) return workspace_fail(workspace, CPROX_INVALID, "robot is NULL");

@@ -240,6 +240,7 @@ static void add_geometry(cprox_robot *robot, const cprox_link_geometry *g, size_
 cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const cprox_link_geometry *geometries,
                                 size_t n_geometries, size_t n_variables, cprox_workspace *workspace,
                                 cprox_robot **robot) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   const cprox_status checked = check_robot(links, n_links, geometries, n_geometries, robot, n_variables, workspace);
   if (checked != CPROX_OK) return checked;
@@ -300,6 +301,7 @@ static void append_robot(const cprox_robot *robot, const cprox_pose *base, robot
 
 cprox_status cprox_robot_join(const cprox_robot *const *robots, const cprox_pose *bases, size_t n,
                               cprox_workspace *workspace, cprox_robot **robot) {
+  WORKSPACE_USE(workspace);
   static const cprox_pose ORIGIN = {.orientation = {.w = 1.0}};
   workspace_clear(workspace);
   if (!robot) return workspace_fail(workspace, CPROX_INVALID, "robot is NULL: nowhere to put the handle");
@@ -320,9 +322,9 @@ cprox_status cprox_robot_join(const cprox_robot *const *robots, const cprox_pose
   for (size_t i = 0; links && geometries && i < n; i++)
     append_robot(robots[i], bases ? &bases[i] : &ORIGIN, &at, links, geometries);
   const cprox_status status =
-      links && geometries
-          ? cprox_robot_create(links, at.links, geometries, at.geometries, at.variables, workspace, robot)
-          : workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot of %zu links", all.links);
+      links && geometries ? WORKSPACE_LEND(workspace, cprox_robot_create(links, at.links, geometries, at.geometries,
+                                                                         at.variables, workspace, robot))
+                          : workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot of %zu links", all.links);
   free(links);
   free(geometries);
   return status;

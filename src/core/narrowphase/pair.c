@@ -398,6 +398,7 @@ static void pair_leave(const cprox_obstacle *a, const cprox_obstacle *b, const p
 
 cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options *options, cprox_workspace *workspace,
                         cprox_result *result) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   const cprox_options asked = arguments_options(options);
   cprox_status status;

@@ -117,7 +117,7 @@ static cprox_status cut_at(const cprox_translating *a, const cprox_translating *
   cprox_obstacle moved = b->from;
   moved.pose.position = vec_axpy(moved.pose.position, t, relative);
   cprox_result r;
-  const cprox_status status = cprox_pair(a->from, moved, options, workspace, &r);
+  const cprox_status status = WORKSPACE_LEND(workspace, cprox_pair(a->from, moved, options, workspace, &r));
   if (status < 0) return status;
   const double rounding = ROUND_UP * 8.0 * ROUND_U * (vec_norm(b->from.pose.position) + vec_norm(relative) * t);
   *cut = (time_cut){.at = t, .value = r.lower - rounding, .slope = -vec_dot(r.normal, relative)};
@@ -185,6 +185,7 @@ static cprox_status distance_of_convex(const cprox_translating *a, const cprox_t
 cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b, double duration,
                                         const cprox_options *options, cprox_workspace *workspace,
                                         cprox_result *result) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   const cprox_options asked = arguments_options(options);
   const arguments_query kind = {"the distance of bodies that translate", ARGUMENTS_RELATIVE};
@@ -222,7 +223,8 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
     /* far away a rough answer steps as far as a fine one */
     asked.epsilon = 0.25 * options->epsilon;
     asked.relative_epsilon = 1e-3;
-    const cprox_status status = cprox_pair(p->a, approach_at(p, p->free_until), &asked, workspace, &p->last);
+    const cprox_status status =
+        WORKSPACE_LEND(workspace, cprox_pair(p->a, approach_at(p, p->free_until), &asked, workspace, &p->last));
     if (status < 0) return status;
     const cprox_result *r = &p->last;
     if (r->upper <= options->epsilon || r->status == CPROX_OVERLAP) return CPROX_OK;
@@ -266,7 +268,7 @@ static cprox_status approach_prove(approach *p, const cprox_options *options, cp
     const double next = fmin(t + (r.upper + hidden) / towards * (1.0 + 1e-12), p->duration);
     if (!(next > t)) break;
     t = next;
-    const cprox_status status = cprox_pair(p->a, approach_at(p, t), &fine, workspace, &r);
+    const cprox_status status = WORKSPACE_LEND(workspace, cprox_pair(p->a, approach_at(p, t), &fine, workspace, &r));
     if (status < 0) return status;
     p->pairs++;
   }
@@ -278,6 +280,7 @@ static cprox_status approach_prove(approach *p, const cprox_options *options, cp
 
 cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   const cprox_options asked = arguments_options(options);
   const arguments_query kind = {"contact of bodies that translate", ARGUMENTS_STOP};
@@ -326,6 +329,7 @@ static cprox_status check_growing(const char *name, const cprox_body *body, cpro
  * b approaches along the line of the centres from where it is free for certain. */
 cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                    cprox_workspace *workspace, cprox_growth *growth) {
+  WORKSPACE_USE(workspace);
   workspace_clear(workspace);
   const cprox_options asked = arguments_options(options);
   const cprox_translating still_a = {.from = a}, still_b = {.from = b};
@@ -366,7 +370,8 @@ cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cpr
     const double s = most - p.free_until - beyond;
     cprox_result r;
     if (s <= 0.0) break;
-    const cprox_status found = cprox_pair(a, approach_at(&p, p.free_until + beyond), &fine, workspace, &r);
+    const cprox_status found =
+        WORKSPACE_LEND(workspace, cprox_pair(a, approach_at(&p, p.free_until + beyond), &fine, workspace, &r));
     if (found < 0) return found;
     p.pairs++;
     if (r.upper <= 0.0) growth->upper = 1.0 / (s - rounding);

@@ -11,7 +11,7 @@
 static curve_capsule reach_of(const cprox_curve *curve, size_t piece, double t0, double t1,
                               cprox_workspace *workspace) {
   vec3 p[CPROX_MAX_DEGREE + 1];
-  if (cprox_curve_control_points(curve, t0, t1, workspace, p) != CPROX_OK)
+  if (WORKSPACE_LEND(workspace, cprox_curve_control_points(curve, t0, t1, workspace, p)) != CPROX_OK)
     return curve_capsule_at(curve, curve->n_leaves + piece);
   curve_capsule c = {.a = p[0], .b = p[curve->degree]};
   double largest = 0.0;

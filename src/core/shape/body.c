@@ -89,6 +89,7 @@ static cprox_status body_create_primitive(const convex_ops *ops, const double si
 }
 
 cprox_status cprox_body_create_point(cprox_vec3 point, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if ((status = check_out(body, workspace)) || (status = check_point("the point", point, workspace))) return status;
   cprox_body *made = body_allocate(&convex_point, CPROX_BODY_POINT);
@@ -99,12 +100,14 @@ cprox_status cprox_body_create_point(cprox_vec3 point, cprox_workspace *workspac
 }
 
 cprox_status cprox_body_create_sphere(double radius, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if ((status = check_out(body, workspace)) || (status = check_length("radius", radius, workspace))) return status;
   return body_create_primitive(&convex_sphere, (double[3]){radius, 0, 0}, radius, radius, workspace, body);
 }
 
 cprox_status cprox_body_create_box(cprox_vec3 size, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if ((status = check_out(body, workspace)) || (status = check_length("size.x", size.x, workspace)) ||
       (status = check_length("size.y", size.y, workspace)) || (status = check_length("size.z", size.z, workspace)))
@@ -121,6 +124,7 @@ static cprox_status check_height_and_radius(double height, double radius, cprox_
 }
 
 cprox_status cprox_body_create_capsule(double height, double radius, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   const cprox_status status = check_height_and_radius(height, radius, workspace, body);
   if (status) return status;
   const double half = 0.5 * height;
@@ -128,6 +132,7 @@ cprox_status cprox_body_create_capsule(double height, double radius, cprox_works
 }
 
 cprox_status cprox_body_create_cylinder(double height, double radius, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   const cprox_status status = check_height_and_radius(height, radius, workspace, body);
   if (status) return status;
   const double half = 0.5 * height;
@@ -136,6 +141,7 @@ cprox_status cprox_body_create_cylinder(double height, double radius, cprox_work
 }
 
 cprox_status cprox_body_create_cone(double height, double radius, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   const cprox_status status = check_height_and_radius(height, radius, workspace, body);
   if (status) return status;
   const double half = 0.5 * height;
@@ -144,6 +150,7 @@ cprox_status cprox_body_create_cone(double height, double radius, cprox_workspac
 }
 
 cprox_status cprox_body_create_ellipsoid(cprox_vec3 semi_axes, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if ((status = check_out(body, workspace)) || (status = check_length("semi_axes.x", semi_axes.x, workspace)) ||
       (status = check_length("semi_axes.y", semi_axes.y, workspace)) ||
@@ -159,6 +166,7 @@ cprox_status cprox_body_create_ellipsoid(cprox_vec3 semi_axes, cprox_workspace *
 
 cprox_status cprox_body_create_halfspace(cprox_vec3 normal, double offset, cprox_workspace *workspace,
                                          cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if ((status = check_out(body, workspace)) || (status = check_point("normal", normal, workspace))) return status;
   if (!isfinite(offset)) return workspace_fail(workspace, CPROX_INVALID, "offset is %g, must be finite", offset);
@@ -212,6 +220,7 @@ static cprox_status body_store_vertices(cprox_body *made, const vec3 *vertices, 
 
 cprox_status cprox_body_create_polytope(const cprox_vec3 *vertices, size_t n, cprox_workspace *workspace,
                                         cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if ((status = check_out(body, workspace)) || (status = check_vertices(n, workspace))) return status;
   if (n == 0) return workspace_fail(workspace, CPROX_INVALID, "a polytope needs at least 1 vertex, got none");
@@ -277,6 +286,7 @@ static cprox_status polygon_check_turns(const vec3 *v, size_t n, cprox_workspace
 
 cprox_status cprox_body_create_polygon(const double (*vertices)[2], size_t n, cprox_workspace *workspace,
                                        cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if ((status = check_out(body, workspace)) || (status = check_vertices(n, workspace))) return status;
   if (n < 3) return workspace_fail(workspace, CPROX_INVALID, "a polygon needs at least 3 vertices, got %zu", n);
@@ -314,6 +324,7 @@ cprox_status cprox_body_create_polygon(const double (*vertices)[2], size_t n, cp
 
 cprox_status cprox_body_create_support(cprox_support_fn support, const void *shape, cprox_vec3 centre, double radius,
                                        double slack, double margin, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if ((status = check_out(body, workspace))) return status;
   if (!support) return workspace_fail(workspace, CPROX_INVALID, "support is NULL");

@@ -5,6 +5,7 @@
 
 cprox_status cprox_body_create_boxes(const cprox_vec3 *low, const cprox_vec3 *high, size_t n, size_t memory_limit,
                                      cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (n > 0 && !(low && high)) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", low ? "high" : "low");
   cprox_status status = elements_check_count("boxes", TREE_BOXES, n, 0, TREE_BY_MORTON, memory_limit, workspace);

@@ -38,6 +38,7 @@ static void compound_bound(cprox_body *body) {
 
 cprox_status cprox_body_create_compound(const cprox_body *const *parts, const cprox_pose *poses, size_t n,
                                         cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (n == 0) return workspace_fail(workspace, CPROX_INVALID, "a compound needs at least 1 part, got none");
   if (!parts || !poses) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", parts ? "poses" : "parts");

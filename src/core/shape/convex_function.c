@@ -269,6 +269,7 @@ static cprox_status measure_gap(convex_function *f, cprox_workspace *workspace) 
 
 cprox_status cprox_body_create_convex_function(const cprox_convex_function *function, double margin,
                                                cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!function || !function->evaluate) return workspace_fail(workspace, CPROX_INVALID, "the convex function is NULL");
   if (!(function->error >= 0.0 && isfinite(function->error)))
     return workspace_fail(workspace, CPROX_INVALID, "error is %g, must be >= 0 and finite", function->error);
@@ -279,8 +280,9 @@ cprox_status cprox_body_create_convex_function(const cprox_convex_function *func
   if (!kept) return body_out_of_memory(workspace);
   *kept = (convex_function){.given = *function, .gap = MOST_GAP};
   cprox_body *made = NULL; /* checks lengths before anything is evaluated */
-  cprox_status status = cprox_body_create_support(function_support, kept, function->interior, function->radius, 0.0,
-                                                  margin, workspace, body ? &made : NULL);
+  cprox_status status =
+      WORKSPACE_LEND(workspace, cprox_body_create_support(function_support, kept, function->interior, function->radius,
+                                                          0.0, margin, workspace, body ? &made : NULL));
   if (!status) status = check_samples(kept, workspace);
   if (!status) status = measure_gap(kept, workspace);
   if (status) {

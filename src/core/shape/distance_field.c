@@ -195,6 +195,7 @@ static cprox_status create_body(cprox_body_kind kind, distance_field *field, cpr
 
 cprox_status cprox_body_create_distance(cprox_distance_fn distance, const void *shape, cprox_vec3 centre, double radius,
                                         double lipschitz, double error, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   cprox_status status;
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (!distance) return workspace_fail(workspace, CPROX_INVALID, "distance is NULL");
@@ -326,6 +327,7 @@ static cprox_status check_grid(const cprox_distance_grid *grid, cprox_workspace 
 
 cprox_status cprox_body_create_distance_grid(const cprox_distance_grid *grid, cprox_workspace *workspace,
                                              cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (!grid) return workspace_fail(workspace, CPROX_INVALID, "grid is NULL");
   const cprox_status status = check_grid(grid, workspace);

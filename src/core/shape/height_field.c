@@ -110,6 +110,7 @@ static void add_walls(triangle_list *list, const size_t n[2], size_t rim) {
 
 cprox_status cprox_body_create_height_field(const cprox_height_field *field, size_t memory_limit,
                                             cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!check_field(field, workspace)) return CPROX_INVALID;
   const size_t *n = field->n, count = n[0] * n[1];
   const size_t rim = isnan(field->floor) ? 0 : 2 * (n[0] - 1 + n[1] - 1);
@@ -129,8 +130,8 @@ cprox_status cprox_body_create_height_field(const cprox_height_field *field, siz
     add_surface(&list, n);
     add_walls(&list, n, rim);
     const cprox_mesh_fill fill = rim > 0 ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE;
-    status = cprox_body_create_mesh(vertices, count + rim, (const uint32_t(*)[3])list.of, list.n, fill, memory_limit,
-                                    workspace, body);
+    status = WORKSPACE_LEND(workspace, cprox_body_create_mesh(vertices, count + rim, (const uint32_t(*)[3])list.of,
+                                                              list.n, fill, memory_limit, workspace, body));
   } else {
     status = body_out_of_memory(workspace);
   }

@@ -169,6 +169,7 @@ static cprox_status create(implicit *given, const implicit_map *map, bool superq
 
 cprox_status cprox_body_create_superquadric(cprox_vec3 semi_axes, cprox_vec3 exponents, cprox_workspace *workspace,
                                             cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   const double a[3] = {semi_axes.x, semi_axes.y, semi_axes.z}, n[3] = {exponents.x, exponents.y, exponents.z};
   double least = INFINITY, most = 0.0;
@@ -265,6 +266,7 @@ static cprox_status deform(const cprox_implicit_description *d, const cprox_affi
 
 cprox_status cprox_body_create_implicit(const cprox_implicit_description *description, const cprox_affine *map,
                                         cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   const cprox_implicit_description *d = description;
   if (!d) return workspace_fail(workspace, CPROX_INVALID, "description is NULL");

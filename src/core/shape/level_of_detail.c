@@ -27,6 +27,7 @@ static cprox_status check_cover(const cprox_body *hull, double excess, const cpr
 
 cprox_status cprox_body_create_lod(const cprox_body *hull, double excess, const cprox_body *mesh,
                                    cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (!hull || !mesh) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", hull ? "mesh" : "hull");
   if (!hull->shape.ops || !isfinite(hull->ball_radius))

@@ -102,6 +102,7 @@ static bool find_closedness(const vec3 *vertices, size_t n, const uint32_t (*tri
 cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3], size_t m,
                                     cprox_mesh_fill fill, size_t memory_limit, cprox_workspace *workspace,
                                     cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (n > UINT32_MAX)
     return workspace_fail(workspace, CPROX_INVALID, "%zu vertices, at most %u are possible", n, UINT32_MAX);
@@ -132,6 +133,7 @@ cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const 
 }
 
 cprox_status cprox_body_create_surface(const cprox_body *mesh, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (!mesh || mesh->kind != CPROX_BODY_MESH)
     return workspace_fail(workspace, CPROX_INVALID, "the body is %s, must be a mesh",

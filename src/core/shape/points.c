@@ -9,6 +9,7 @@
 
 cprox_status cprox_body_create_points(const cprox_vec3 *points, size_t n, double radius, size_t memory_limit,
                                       cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (n > 0 && !points) return workspace_fail(workspace, CPROX_INVALID, "points is NULL");
   if (!(radius >= 0.0 && radius <= 1e60))
@@ -50,6 +51,7 @@ static cprox_status check_update(const cprox_body *previous, const uint32_t *cha
 
 cprox_status cprox_body_update_points(const cprox_body *previous, const uint32_t *changed, const cprox_vec3 *points,
                                       size_t n, cprox_body *retired, cprox_workspace *workspace, cprox_body **body) {
+  WORKSPACE_USE(workspace);
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   const cprox_status checked = check_update(previous, changed, points, n, retired, workspace);
   if (checked != CPROX_OK) return checked;

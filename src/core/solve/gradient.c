@@ -195,7 +195,7 @@ typedef struct curve_jet {
 } curve_jet;
 
 static void jet_of(const cprox_curve *curve, const frame *f, double t, cprox_workspace *workspace, curve_jet *j) {
-  cprox_curve_evaluate(curve, t, workspace, &j->x, &j->d1, &j->d2);
+  (void)WORKSPACE_LEND(workspace, cprox_curve_evaluate(curve, t, workspace, &j->x, &j->d1, &j->d2));
   if (!f) return;
   j->x = frame_to_world(f, j->x);
   j->d1 = frame_turn_to_world(f, j->d1), j->d2 = frame_turn_to_world(f, j->d2);
@@ -357,7 +357,8 @@ static placed_bodies bodies_at(const query *q, const placed_pair *c, double t) {
   p.a = (cprox_obstacle){.body = q->mover.body ? q->mover.body : &carried_point,
                          .pose = {.orientation = {1, 0, 0, 0}},
                          .margin = q->mover.radius};
-  cprox_curve_evaluate(q->mover.curve, t, q->workspace, &p.a.pose.position, NULL, NULL);
+  (void)WORKSPACE_LEND(q->workspace,
+                       cprox_curve_evaluate(q->mover.curve, t, q->workspace, &p.a.pose.position, NULL, NULL));
   if (!p.b.synchronized) return p;
   p.b.pose.position = relative_position(p.b.curve, &p.b.pose, t, false, q->workspace);
   if (!p.b.body) p.b.body = &carried_point;
@@ -483,6 +484,7 @@ static cprox_status gradient_of_curve(const query *q, const placed_pair *c, cons
 
 cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                      const cprox_result *result, cprox_workspace *workspace, cprox_gradient *gradient) {
+  WORKSPACE_USE(workspace);
   query q = query_create(mover, &target, 1, -1.0, false, options, workspace);
   workspace_clear(workspace);
   if (mover.motion) return workspace_fail(workspace, CPROX_INVALID, "no gradient is known along a robot's motion");
