@@ -800,10 +800,10 @@ class Obstacles {
   std::vector<cprox_result> nearest(const cprox_mover &mover, std::size_t k, const cprox_options &options,
                                     Workspace &workspace) const {
     std::vector<cprox_result> results(std::min(k, size()));
-    std::size_t count = 0;
-    require(cprox_obstacles_nearest(handle_.get(), mover, k, &options, workspace.get(), results.data(), &count),
+    cprox_listed listed{};
+    require(cprox_obstacles_nearest(handle_.get(), mover, k, &options, workspace.get(), results.data(), &listed),
             workspace);
-    results.resize(count);
+    results.resize(listed.count);
     return results;
   }
 

@@ -63,8 +63,11 @@ struct Answer {
   bool by_hull = false;
   double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */
   std::string status;      /**< cprox_status_name(result.status) */
-  std::string message;     /**< the error message, or a remark; often empty */
-  std::string unproven;    /**< why a requested certificate is empty; else empty */
+  /** No pair, but the last row of a list of nearest pairs that was cut by a budget or a stop: what the list does not
+   *  name is at least result.lower away, and may be nearer than what it names, or than the limit of the list. */
+  bool is_unlisted = false;
+  std::string message;  /**< the error message, or a remark; often empty */
+  std::string unproven; /**< why a requested certificate is empty; else empty */
 
   /** What Query::second_opinion says of it; its message is a part of `message`, too. */
   SecondOpinion second_opinion;
@@ -164,8 +167,9 @@ struct PairLimits {
 };
 
 /** The shapes of objects and links that come closest to a curve, nearest first. Each answer is that to DISTANCE for its
- *  shape alone. Takes no other query than DISTANCE, no per_object and no certificate; throws Error for those, and where
- *  the core refuses. */
+ *  shape alone. Where a budget or a stop left the list incomplete, its last answer says so: Answer::is_unlisted. Takes
+ * no other query than DISTANCE, no per_object and no certificate; throws Error for those, and where the core refuses.
+ */
 std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &curve, const PairLimits &limits,
                                  const Query &query, Workspace &workspace);
 

@@ -56,7 +56,7 @@ ResultRow toRow(const Answer &answer, QueryType query_type) {
   row.a = answer.a;
   row.b = answer.b;
   row.microseconds = answer.microseconds;
-  row.has_verdict = query_type != QueryType::DISTANCE;
+  row.has_verdict = query_type != QueryType::DISTANCE || answer.is_unlisted;
   row.has_contact = query_type == QueryType::COLLISION; /* printed where the time of contact is asked for */
   row.has_t = row.has_points = answer.result.obstacle_index >= 0 && std::isfinite(answer.result.upper);
   row.has_t_b = row.has_t && answer.kind == "curve" && std::isfinite(answer.result.t_obstacle);

@@ -18,7 +18,7 @@ void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
   message.id = answer.id;
   message.kind = answer.kind;
   message.status = answer.status;
-  if (query_type != QueryType::DISTANCE) message.verdict = cprox_verdict_name(result.verdict);
+  if (query_type != QueryType::DISTANCE || answer.is_unlisted) message.verdict = cprox_verdict_name(result.verdict);
   message.lower = result.lower;
   message.upper = result.upper;
   message.t = result.t;

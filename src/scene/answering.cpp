@@ -225,6 +225,33 @@ void finishAnswer(const Workspace &workspace, Answer &answer) {
   answer.status = cprox_status_name(result.status);
 }
 
+void Unlisted::add(cprox_status of_list, const cprox_listed &listed, double rounding) {
+  if (of_list > CPROX_OK) status = of_list;
+  lower = std::min(lower, std::max(0.0, listed.others - rounding));
+}
+
+void Unlisted::addRow(const PairLimits &limits, const cprox_options &options, const std::string &id,
+                      const std::string &kind, std::vector<Answer> &answers) const {
+  double limit = limits.within;
+  if (answers.size() >= limits.count) { // what is as far as the last one may as well be left out
+    const double last = answers.back().result.upper;
+    if (std::isfinite(last))
+      limit = std::min(limit, last - 2.0 * std::max(options.epsilon, options.relative_epsilon * last));
+  }
+  if (status == CPROX_OK || !(lower < limit)) return;
+  Answer row = refusal(id, kind,
+                       "the list is not complete: pairs that it does not name are only known to be at least " +
+                           std::to_string(lower) + " m away");
+  row.is_unlisted = true;
+  row.result.status = status;
+  row.result.lower = lower;
+  row.result.upper = std::numeric_limits<double>::infinity();
+  row.result.t = row.result.t_obstacle = std::numeric_limits<double>::quiet_NaN();
+  row.result.mover_part = -1;
+  row.status = cprox_status_name(status);
+  answers.push_back(std::move(row));
+}
+
 void answerNothing(const Query &query, cprox_result &result) {
   result.lower = result.upper = std::numeric_limits<double>::infinity();
   result.obstacle_index = -1;

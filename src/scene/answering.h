@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_SCENE_ANSWERING_H
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,20 @@ void nameItem(const Item &item, cprox_lod max_lod, Answer &answer);
 
 /* The status by name; why there is no answer, where there is none. */
 void finishAnswer(const Workspace &workspace, Answer &answer);
+
+/* What a list of nearest pairs tells beside its pairs. */
+struct Unlisted {
+  cprox_status status = CPROX_OK;                         /* of the list; CPROX_OK: it is complete */
+  double lower = std::numeric_limits<double>::infinity(); /* [m] of all pairs that are not listed */
+
+  /* What the core says of a list of `results`, the rounding taken off. */
+  void add(cprox_status of_list, const cprox_listed &listed, double rounding);
+
+  /* The row of it behind the answers, where there must be one: where a pair that is not listed may be nearer than the
+   * last of the list or than `within`. */
+  void addRow(const PairLimits &limits, const cprox_options &options, const std::string &id, const std::string &kind,
+              std::vector<Answer> &answers) const;
+};
 
 /* There is nothing to measure against. */
 void answerNothing(const Query &query, cprox_result &result);

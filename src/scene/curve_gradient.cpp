@@ -34,6 +34,7 @@ std::string tieOf(const Targets &targets, const CompiledCurve &curve, const Answ
   if (targets.data().items.size() < 2) return "";
   const PairLimits two{2, answer.result.upper};
   const std::vector<Answer> nearest = nearestPairs(targets, curve, two, query, workspace);
+  if (!nearest.empty() && nearest.back().is_unlisted) return "the search ended before all that is as near was found";
   return nearest.size() < 2 ? "" : "'" + nearest[0].b + "' and '" + nearest[1].b + "' are equally near";
 }
 

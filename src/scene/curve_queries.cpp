@@ -50,14 +50,14 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
   const double rounding = roundingOf(curve, items);
   const cprox_options options = withoutRounding(query.options, rounding);
   std::vector<cprox_result> results(std::min(limits.count, items.size()));
-  std::size_t count = 0;
+  cprox_listed listed{};
   const cprox_status status = cprox_obstacles_nearest(obstacles.get(), moverOf(curve), limits.count, &options,
-                                                      workspace.get(), results.data(), &count);
+                                                      workspace.get(), results.data(), &listed);
   if (status < 0) throw Error(workspace.reason(), status);
 
   /* nearest first; what is proven to be beyond the limit is left out */
   std::vector<Answer> answers;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < listed.count; ++i) {
     Answer answer = answerOf(curve, results[i], start);
     widen(query, rounding, INFINITE, answer.result);
     if (answer.result.lower > limits.within) continue;
@@ -66,6 +66,9 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
     addSecondOpinion(targets.data(), curve, query, answer);
     answers.push_back(std::move(answer));
   }
+  Unlisted unlisted;
+  unlisted.add(status, listed, rounding);
+  unlisted.addRow(limits, query.options, curve.id, "curve", answers);
   return answers;
 }
 

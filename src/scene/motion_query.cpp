@@ -175,13 +175,17 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
   if (asked.pairs.empty()) return {};
   const cprox_options options = withoutRounding(query.options, asked.rounding);
   std::vector<cprox_result> results(std::min(limits.count, asked.pairs.size()));
-  std::size_t count = 0;
+  cprox_listed listed{};
   const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
   const cprox_status status = cprox_obstacles_nearest_pairs(obstacles.get(), asked.mover(), limits.count, limits.within,
-                                                            &options, workspace.get(), results.data(), &count);
+                                                            &options, workspace.get(), results.data(), &listed);
   if (status < 0) throw Error(workspace.reason(), status);
   std::vector<Answer> answers;
-  for (std::size_t i = 0; i < count; ++i) answers.push_back(toAnswer(asked, results[i], query, workspace, start));
+  for (std::size_t i = 0; i < listed.count; ++i)
+    answers.push_back(toAnswer(asked, results[i], query, workspace, start));
+  Unlisted unlisted;
+  unlisted.add(status, listed, asked.rounding);
+  unlisted.addRow(limits, query.options, asked.data.id, self ? "self" : "environment", answers);
   return answers;
 }
 

@@ -258,18 +258,20 @@ std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairL
   const Pairs pairs = pairsOf(data, against, query);
   const cprox_options options = withoutRounding(query.options, data.rounding);
   std::vector<Answer> out;
+  Unlisted unlisted;
   const auto add = [&](const Pairs &some) {
     const std::size_t n = some.environment.size() + some.among.size();
     if (n == 0) return;
     const Clock::time_point start = Clock::now();
     const Obstacles obstacles(targetsOf(data, some), CPROX_INDEX_NONE);
     std::vector<cprox_result> results(std::min(limits.count, n));
-    std::size_t count = 0;
-    const cprox_status status =
-        cprox_obstacles_nearest_pairs(obstacles.get(), joinedMover(data, some), limits.count,
-                                      limits.within + data.rounding, &options, workspace.get(), results.data(), &count);
+    cprox_listed listed{};
+    const cprox_status status = cprox_obstacles_nearest_pairs(obstacles.get(), joinedMover(data, some), limits.count,
+                                                              limits.within + data.rounding, &options, workspace.get(),
+                                                              results.data(), &listed);
     if (status < 0) throw Error(workspace.reason(), status);
-    for (std::size_t i = 0; i < count; ++i) {
+    unlisted.add(status, listed, data.rounding);
+    for (std::size_t i = 0; i < listed.count; ++i) {
       Answer answer;
       answer.id = "movers", answer.kind = "environment";
       answer.result = results[i];
@@ -285,7 +287,10 @@ std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairL
   add({Against::MOVERS, {}, pairs.among});
   std::stable_sort(out.begin(), out.end(),
                    [](const Answer &x, const Answer &y) { return x.result.upper < y.result.upper; });
+  for (std::size_t i = limits.count; i < out.size(); ++i)
+    unlisted.lower = std::min(unlisted.lower, std::max(0.0, out[i].result.lower));
   if (out.size() > limits.count) out.resize(limits.count);
+  unlisted.addRow(limits, query.options, "movers", against == Against::MOVERS ? "movers" : "environment", out);
   return out;
 }
 

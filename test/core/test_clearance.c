@@ -310,12 +310,13 @@ CASE(nothing_is_allocated_once_the_workspace_has_grown) {
   world w = world_make(&r);
   cprox_result result[MOST_TARGETS], first;
   cprox_profile_interval interval[4];
-  size_t count, before = 0;
+  size_t before = 0;
+  cprox_listed listed;
   cprox_obstacles *all = NULL;
   assert_int_equal(cprox_obstacles_create(w.target, w.n, CPROX_INDEX_NONE, ws, &all), CPROX_OK);
   for (int round = 0; round < 3; round++) {
-    assert_int_equal(cprox_obstacles_nearest(all, w.mover, 3, NULL, ws, result, &count), CPROX_OK);
-    assert_int_equal(cprox_obstacles_within(all, w.mover, 1.0, NULL, ws, result, &count), CPROX_OK);
+    assert_int_equal(cprox_obstacles_nearest(all, w.mover, 3, NULL, ws, result, &listed), CPROX_OK);
+    assert_int_equal(cprox_obstacles_within(all, w.mover, 1.0, NULL, ws, result, &listed), CPROX_OK);
     assert_int_equal(cprox_obstacles_profile(all, w.mover, (double[]){0, 0.2, 0.7, 1}, 3, 0.5, NULL, ws, interval),
                      CPROX_OK);
     assert_int_equal(cprox_obstacles_time_of_contact(all, w.mover, NULL, ws, &first), CPROX_OK);

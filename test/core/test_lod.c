@@ -231,7 +231,7 @@ CASE(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best) {
   for (size_t i = 0; i < 20; i++) {
     cprox_curve *curve = random_curve(&r, 1.0);
     cprox_result near[3], near_mesh[3];
-    size_t n, m;
+    size_t n = 0, m;
     assert_int_equal(nearest_of_list(cprox_point_along(curve), lods, N, 3, NULL, ws, near, &n), CPROX_OK);
     assert_int_equal(nearest_of_list(cprox_point_along(curve), meshes, N, 3, NULL, ws, near_mesh, &m), CPROX_OK);
     assert_int_equal(n, 3);

@@ -226,6 +226,13 @@ static cprox_status certify(const world *w, cprox_mover m, cprox_obstacle t, con
   return status;
 }
 
+static cprox_status nearest_of_set(const cprox_obstacles *set, cprox_mover m, const cprox_options *o, reply *r) {
+  cprox_listed listed = {0, 0.0};
+  const cprox_status status = cprox_obstacles_nearest(set, m, 1, o, ws, r->result, &listed);
+  if (status >= 0) r->count = listed.count;
+  return status;
+}
+
 static cprox_status of_set(const cprox_obstacle *t, cprox_mover m, const cprox_options *o, int which, reply *r) {
   cprox_obstacles *set = NULL;
   assert_int_equal(cprox_obstacles_create(t, 1, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
@@ -233,7 +240,7 @@ static cprox_status of_set(const cprox_obstacle *t, cprox_mover m, const cprox_o
                               : which == 1 ? cprox_obstacles_tolerance(set, m, 0.1, o, ws, r->result, NULL)
                               : which == 2 ? cprox_obstacles_collision(set, m, o, ws, r->result, NULL)
                               : which == 3 ? cprox_obstacles_time_of_contact(set, m, o, ws, r->result)
-                                           : cprox_obstacles_nearest(set, m, 1, o, ws, r->result, &r->count);
+                                           : nearest_of_set(set, m, o, r);
   cprox_obstacles_free(set);
   return status;
 }
@@ -629,13 +636,14 @@ CASE(the_deepest_is_the_nearest_where_distances_are_signed) {
   cprox_obstacles *set = NULL;
   assert_int_equal(cprox_obstacles_create(targets, 3, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
   cprox_result one[3], near[3], found[3];
-  size_t n, count;
+  size_t n = 0;
+  cprox_listed listed;
   for (size_t i = 0; i < 3; i++) assert_int_equal(cprox_distance(m, targets[i], &options, ws, &one[i]), CPROX_OK);
   assert_true(one[1].upper < one[0].upper && one[0].upper < -0.1);
   for (size_t k = 1; k <= 3; k++) {
     assert_int_equal(nearest_of_list(m, targets, 3, k, &options, ws, near, &n), CPROX_OK);
-    assert_int_equal(cprox_obstacles_nearest(set, m, k, &options, ws, found, &count), CPROX_OK);
-    assert_true(n == k && count == k);
+    assert_int_equal(cprox_obstacles_nearest(set, m, k, &options, ws, found, &listed), CPROX_OK);
+    assert_true(n == k && listed.count == k);
     const int32_t order[3] = {1, 0, 2};
     for (size_t i = 0; i < k; i++) {
       assert_int_equal(near[i].obstacle_index, order[i]);

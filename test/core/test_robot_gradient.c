@@ -121,8 +121,9 @@ CASE(rows_say_what_each_pair_does_on_each_interval) {
 
     /* every pair on every interval */
     cprox_result pairs[MOST_PAIRS * GRADIENT_TARGETS];
-    size_t n_pairs = 0;
-    assert_true(cprox_obstacles_nearest_pairs(all, mover, MOST_PAIRS, INFINITY, NULL, ws, pairs, &n_pairs) >= 0);
+    cprox_listed listed;
+    assert_true(cprox_obstacles_nearest_pairs(all, mover, MOST_PAIRS, INFINITY, NULL, ws, pairs, &listed) >= 0);
+    const size_t n_pairs = listed.count;
     for (size_t k = 0; k < n_pairs; k++) {
       const cprox_robot_pair pair = {pairs[k].mover_part, pairs[k].obstacle_index};
       cprox_profile_interval profile[8];

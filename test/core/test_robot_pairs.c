@@ -26,7 +26,7 @@ CASE(the_nearest_pairs_are_those_of_single_queries) {
       const cprox_mover mover =
           self ? cprox_robot_self(c.motion, c.self_pairs, c.n_self_pairs) : cprox_robot_along(c.motion, NULL, 0);
       const size_t targets = self ? 0 : c.n_targets;
-      size_t count, fewer;
+      size_t count = 0, fewer = 0;
       assert_int_equal(nearest_pairs_of_list(mover, c.targets, targets, MOST_PAIRS, INFINITY, NULL, ws, all, &count),
                        CPROX_OK);
       assert_true(count > 10 && count < MOST_PAIRS);
@@ -67,8 +67,17 @@ static bool is_among(const cprox_result *one, const cprox_result *results, size_
   return false;
 }
 
-/* Whatever the budget, k and delta: no pair twice, each interval true; and unless the budget ended it, every other pair
- * as far as is said. */
+static size_t looks_left;
+
+static bool stop_at_a_look(void *user) {
+  (void)user;
+  if (looks_left == 0) return true;
+  looks_left--;
+  return false;
+}
+
+/* Whatever the budget, the look at which it is stopped, k and delta: no pair twice, each interval true, and every other
+ * pair at least as far as is said of the others; unless something ended it as far as the list says. */
 CASE(few_nodes_leave_true_intervals_of_the_nearest_pairs) {
   FILE *f = fopen(TEST_DATA_DIR "/motion/cases.txt", "r");
   assert_non_null(f);
@@ -78,7 +87,7 @@ CASE(few_nodes_leave_true_intervals_of_the_nearest_pairs) {
   assert_true(robot_case_read(f, TEST_DATA_DIR "/motion", &c));
   fclose(f);
   static cprox_result all[MOST_PAIRS], few[MOST_PAIRS];
-  size_t count, fewer, short_of = 0;
+  size_t count = 0, fewer = 0, short_of = 0, stopped = 0;
   const cprox_mover movers[] = {cprox_robot_self(c.motion, c.self_pairs, c.n_self_pairs),
                                 cprox_robot_self(c.motion, NULL, 0), cprox_robot_along(c.motion, NULL, 0),
                                 cprox_robot_along(c.mesh_motion, NULL, 0)};
@@ -87,16 +96,23 @@ CASE(few_nodes_leave_true_intervals_of_the_nearest_pairs) {
     assert_int_equal(nearest_pairs_of_list(movers[m], c.targets, targets, MOST_PAIRS, INFINITY, NULL, ws, all, &count),
                      CPROX_OK);
     for (uint32_t nodes = 1; nodes <= 4096; nodes *= 4) {
-      for (int i = 0; i < 6; i++) {
+      for (int i = 0; i < 12; i++) {
         const size_t k = (const size_t[]){1, 3, 10}[i % 3];
-        const double delta = i < 3 ? INFINITY : 1.001 * all[4].upper + 1e-5;
+        const double delta = i % 6 < 3 ? INFINITY : 1.001 * all[4].upper + 1e-5;
         cprox_options options = CPROX_OPTIONS_DEFAULT;
-        options.max_nodes = nodes;
+        if (i < 6) options.max_nodes = nodes;
+        if (i >= 6) options.stop = stop_at_a_look, looks_left = nodes / 4;
+        cprox_listed listed;
         const cprox_status status =
-            nearest_pairs_of_list(movers[m], c.targets, targets, k, delta, &options, ws, few, &fewer);
-        assert_true(status == CPROX_OK || status == CPROX_BUDGET);
-        short_of += status == CPROX_BUDGET;
-        assert_true(fewer <= k && (isfinite(delta) || fewer == k));
+            nearest_pairs_of_list_and_others(movers[m], c.targets, targets, k, delta, &options, ws, few, &listed);
+        fewer = listed.count;
+        assert_true(status == CPROX_OK || status == (i < 6 ? CPROX_BUDGET : CPROX_STOPPED));
+        short_of += status == CPROX_BUDGET, stopped += status == CPROX_STOPPED;
+        assert_true(fewer <= k && (isfinite(delta) || status == CPROX_STOPPED || fewer == k));
+        for (size_t a = 0; a < count; a++)
+          if (!is_among(&all[a], few, fewer)) assert_true(listed.others <= all[a].upper);
+        if (status == CPROX_OK)
+          assert_true(listed.others >= fmin(delta, fewer == k ? few[k - 1].upper - 1e-6 : INFINITY));
         for (size_t j = 0; j < fewer; j++) {
           assert_false(is_among(&few[j], few, j));
           assert_true(j == 0 || few[j - 1].upper <= few[j].upper);
@@ -136,7 +152,7 @@ CASE(few_pairs_are_searched_for_the_nearest_ones) {
   assert_true(robot_case_read(f, TEST_DATA_DIR "/motion", &c));
   fclose(f);
   static cprox_result nearest[MOST_PAIRS];
-  size_t count, polls[2];
+  size_t count = 0, polls[2];
   for (int i = 0; i < 2; i++) {
     poll_counter counter = {0};
     cprox_options options = CPROX_OPTIONS_DEFAULT;

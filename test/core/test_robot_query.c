@@ -192,9 +192,9 @@ CASE(the_whole_robot_is_as_near_as_the_nearer_of_both) {
     cprox_result each[CASE_MAX_OBJECTS];
     cprox_certificate *proof = cprox_certificate_create();
     cprox_options options = CPROX_OPTIONS_DEFAULT;
-    size_t count;
+    cprox_listed listed;
     options.certificate = proof;
-    assert_int_equal(cprox_obstacles_nearest_pairs(all, whole, 1, 1.0, NULL, ws, each, &count), CPROX_INVALID);
+    assert_int_equal(cprox_obstacles_nearest_pairs(all, whole, 1, 1.0, NULL, ws, each, &listed), CPROX_INVALID);
     if (i % 2 == 0) assert_int_equal(cprox_obstacles_distance(all, whole, NULL, ws, &r, each), CPROX_INVALID);
     assert_int_equal(cprox_obstacles_distance(all, whole, &options, ws, &r, NULL), CPROX_INVALID);
     cprox_certificate_free(proof);
@@ -344,7 +344,7 @@ CASE(a_profile_is_true_on_every_interval) {
     for (int k = 0; k <= INTERVALS; k++) breaks[k] = k == INTERVALS ? t1 : t0 + (t1 - t0) * k / INTERVALS;
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
     cprox_result whole, nearest[2];
-    size_t count;
+    size_t count = 0;
     assert_int_equal(profile_of_list(mover, targets, TARGETS, breaks, INTERVALS, NULL, ws, intervals), CPROX_OK);
     assert_int_equal(distance_of_list(mover, targets, TARGETS, NULL, ws, &whole, NULL), CPROX_OK);
     assert_int_equal(nearest_of_list(mover, targets, TARGETS, 2, NULL, ws, nearest, &count), CPROX_OK);

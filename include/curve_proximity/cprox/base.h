@@ -97,7 +97,11 @@ typedef struct cprox_pose {
 /** All memory that queries need, and the reason of the last failure.
  *
  *  It grows to what the largest query so far has needed; from then on no query allocates. One workspace a thread: a
- *  workspace may be used by different threads, but never by two at once. */
+ *  workspace may be used by different threads, but never by two at once.
+ *
+ *  Functions that a query or a constructor calls (stop, support, distance, the functions of curves and solids) need a
+ *  workspace of their own to ask anything: while a function with a workspace has not returned, every other one with the
+ *  same workspace returns CPROX_INVALID, and cprox_workspace_error() says so. */
 typedef struct cprox_workspace cprox_workspace;
 
 /** A new, empty workspace, or NULL where memory is out. Owned by the caller: cprox_workspace_free(). */

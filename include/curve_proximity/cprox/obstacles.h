@@ -79,6 +79,15 @@ CPROX_API cprox_status cprox_obstacles_time_of_contact(const cprox_obstacles *ob
                                                        const cprox_options *options, cprox_workspace *workspace,
                                                        cprox_result *result);
 
+/** What a query that lists results tells of its list. */
+typedef struct cprox_listed {
+  /** so many results were written */
+  size_t count;
+  /** [m] everything that is not among them is at least so far away; infinity: nothing was left out. Where a search was
+   *  stopped or ran out of its budget this is less than the limit of the list, and the list may not be complete */
+  double others;
+} cprox_listed;
+
 /** The k obstacles that come closest.
  *
  *  k         >= 1.
@@ -87,26 +96,27 @@ CPROX_API cprox_status cprox_obstacles_time_of_contact(const cprox_obstacles *ob
  *            it, signed where options say so.
  *            Every obstacle that is not among them is at least nearest[last].upper - w away, w = max(epsilon,
  *            relative_epsilon * nearest[last].upper).
- *  count     receives their number.
+ *            Of one that was not measured, since the search was stopped, upper is infinity.
+ *  listed    receives their number, and a bound of all others.
  *
- *  Returns as cprox_distance(). The first status above CPROX_OK that an obstacle gave is returned; then the statement
- *  about the rest holds with the lower bound of that obstacle in place of it. On a negative status nothing is written.
- *  Cost: a bounding-sphere test an obstacle, and a search for those that the k-th best so far does not rule out. */
+ *  Returns as cprox_distance(). The first status above CPROX_OK that an obstacle gave is returned; then of the rest
+ * only listed->others is proven. On a negative status nothing is written. Cost: a bounding-sphere test an obstacle, and
+ * a search for those that the k-th best so far does not rule out. */
 CPROX_API cprox_status cprox_obstacles_nearest(const cprox_obstacles *obstacles, cprox_mover mover, size_t k,
                                                const cprox_options *options, cprox_workspace *workspace,
-                                               cprox_result *nearest, size_t *count);
+                                               cprox_result *nearest, cprox_listed *listed);
 
 /** All obstacles that come within delta >= 0 [m].
  *
  *  near      room for n results; receives those with lower <= delta, in the order of the list. Verdict violated:
  *            upper <= delta, and then upper - lower <= epsilon. undecided: neither was proven.
- *            Every obstacle that is not among them is farther than delta everywhere.
- *  count     receives their number.
+ *            Every obstacle that is not among them is farther than delta everywhere, unless CPROX_STOPPED is returned.
+ *  listed    receives their number, and a bound of all others.
  *
  *  Returns as cprox_obstacles_nearest(). */
 CPROX_API cprox_status cprox_obstacles_within(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
                                               const cprox_options *options, cprox_workspace *workspace,
-                                              cprox_result *near, size_t *count);
+                                              cprox_result *near, cprox_listed *listed);
 
 /** The pairs of a robot that come closest: of a geometry and an obstacle (cprox_robot_along()), or of two geometries
  *  (cprox_robot_self(), obstacles NULL). The mover selects the pairs.
@@ -117,13 +127,14 @@ CPROX_API cprox_status cprox_obstacles_within(const cprox_obstacles *obstacles, 
  *            cprox_distance() gives it for that pair alone.
  *            Every pair that is not among them is farther than delta everywhere, or at least nearest[last].upper - w
  *            away, w = max(epsilon, relative_epsilon * nearest[last].upper).
- *  count     receives their number.
+ *  listed    receives their number, and a bound of all others.
  *
  *  Returns as cprox_obstacles_nearest(). Cost: a look at the boxes of all pairs; a search for each of those that are
  *  likely to be among them, which ends as soon as the pair cannot be; one search for all others together. */
 CPROX_API cprox_status cprox_obstacles_nearest_pairs(const cprox_obstacles *obstacles, cprox_mover mover, size_t k,
                                                      double delta, const cprox_options *options,
-                                                     cprox_workspace *workspace, cprox_result *nearest, size_t *count);
+                                                     cprox_workspace *workspace, cprox_result *nearest,
+                                                     cprox_listed *listed);
 
 /** The clearance of the mover on one interval of its parameter. */
 typedef struct cprox_profile_interval {

@@ -232,7 +232,8 @@ typedef struct cprox_result {
   /** [m] certified: not below the true value. */
   double upper;
   /** where on the mover's curve, or when [s] in a robot's motion, upper was attained; no meaning where upper is
-   *  infinite */
+   *  infinite. It is a double: the distance at t itself may be above upper by what moves within a rounding of t (at
+   *  times of 1.7e9 s 2.4e-7 s), so measure times from the beginning of a fast motion */
   double t;
   /** where on a target that is a curve; NaN for bodies */
   double t_obstacle;
@@ -243,8 +244,9 @@ typedef struct cprox_result {
   cprox_vec3 witness_obstacle;
   /** unit, world frame, from target to mover; (0,0,0) where there is none */
   cprox_vec3 normal;
-  /** which target; which other geometry, where a robot is asked about itself; of CPROX_MOVER_ROBOT_WHOLE the number of
-   *  targets and that of the other geometry added up; -1 for none */
+  /** which target (of a list also one that was not measured, upper is infinite then); which other geometry, where a
+   * robot is asked about itself; of CPROX_MOVER_ROBOT_WHOLE the number of targets and that of the other geometry added
+   * up; -1 for none */
   int32_t obstacle_index;
   /** which part of a compound; 0 otherwise */
   int32_t obstacle_part;

@@ -117,7 +117,7 @@ cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, con
 }
 
 cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, const cprox_options *options,
-                         cprox_workspace *workspace, cprox_result *nearest, size_t *count) {
+                         cprox_workspace *workspace, cprox_result *nearest, cprox_listed *listed) {
   query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   const arguments_query asked = {"the nearest targets of a set", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
@@ -125,29 +125,30 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
   if (q.mover.motion || !boxes_hold(&q))
-    return list_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, count);
+    return list_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, listed);
   set_walk walk;
   cprox_result *kept = query_reserve_results(&q, set->n);
   if (!kept) return CPROX_MEMORY;
   if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
   size_t found = 0;
+  double others = INFINITY, rest = INFINITY;
   cprox_status failure = CPROX_OK;
-  while (failure != CPROX_STOPPED) {
-    const double cutoff = found == k ? kept[k - 1].upper : INFINITY;
+  for (;;) {
+    const double cutoff = failure == CPROX_STOPPED ? -INFINITY : found == k ? kept[k - 1].upper : INFINITY;
     uint32_t target;
-    double lower;
-    if (!set_walk_next(&walk, cutoff, &target, &lower)) return out_of_memory(&q);
-    if (target == UINT32_MAX) break;
+    if (!set_walk_next(&walk, cutoff, &target, &rest)) return out_of_memory(&q);
+    if (target == UINT32_MAX || failure == CPROX_STOPPED) break;
     cprox_result r;
     workspace_forget_work(workspace);
     const cprox_status status = query_answer(&q, target, (size_t)target + 1, cutoff, &r);
     if (status < 0) return status;
     if (failure == CPROX_OK) failure = status;
     if (r.obstacle_index < 0) r.obstacle_index = (int32_t)target; /* stopped before anything was measured */
-    query_rank(kept, &found, k, &r);
+    query_rank(kept, &found, k, &r, &others);
   }
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
-  *count = found;
+  others = fmin(others, rest);
+  *listed = (cprox_listed){found, q.is_signed ? others : fmax(others, 0.0)};
   if (failure != CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
   return failure;
 }

@@ -4,6 +4,7 @@
 #define CPROX_API_BVH_H
 
 #include "broadphase/obstacle_set.h"
+#include "curve_proximity/cprox/obstacles.h"
 #include "problem/problem.h"
 
 /* query_begin() for the obstacles of a set. */
@@ -18,6 +19,6 @@ cprox_status bvh_collision(const obstacle_bvh *set, cprox_mover mover, const cpr
 cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
                                  cprox_workspace *workspace, cprox_result *result);
 cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, const cprox_options *options,
-                         cprox_workspace *workspace, cprox_result *nearest, size_t *count);
+                         cprox_workspace *workspace, cprox_result *nearest, cprox_listed *listed);
 
 #endif

@@ -19,7 +19,7 @@ static candidate *rank_targets(const query *q) {
   for (size_t i = 0; i < q->n; i++) {
     size_t n;
     if (q->mover.motion) { /* its search ranks by itself */
-      rank[i] = (candidate){.target = (int32_t)i};
+      rank[i] = (candidate){.lower = q->is_signed ? -INFINITY : 0.0, .target = (int32_t)i};
       continue;
     }
     const candidate *parts = candidates_list(q, i, i + 1, true, &n);
@@ -32,7 +32,7 @@ static candidate *rank_targets(const query *q) {
 
 cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k,
                           const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                          size_t *count) {
+                          cprox_listed *listed) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   const cprox_status begun =
@@ -44,9 +44,10 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
   cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
 
-  size_t found = 0;
+  size_t found = 0, i = 0;
+  double others = INFINITY;
   cprox_status failure = CPROX_OK;
-  for (size_t i = 0; i < n && failure != CPROX_STOPPED; i++) {
+  for (; i < n && failure != CPROX_STOPPED; i++) {
     const double cutoff = found == k ? kept[k - 1].upper : INFINITY;
     if (rank[i].lower > cutoff) break;
     cprox_result r;
@@ -56,16 +57,18 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
     if (status < 0) return status;
     failure = worse(failure, status);
     if (r.obstacle_index < 0) r.obstacle_index = rank[i].target; /* stopped before anything was measured */
-    query_rank(kept, &found, k, &r);
+    query_rank(kept, &found, k, &r, &others);
   }
+  if (i < n) others = fmin(rank[i].lower, others); /* sorted */
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
-  *count = found;
+  *listed = (cprox_listed){found, q.is_signed ? others : fmax(others, 0.0)};
   if (failure != CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
   return failure;
 }
 
 cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
-                         const cprox_options *options, cprox_workspace *workspace, cprox_result *near, size_t *count) {
+                         const cprox_options *options, cprox_workspace *workspace, cprox_result *near,
+                         cprox_listed *listed) {
   const cprox_status usable = arguments_check_delta(delta, workspace);
   if (usable != CPROX_OK) return usable;
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
@@ -77,21 +80,26 @@ cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_
   if (!kept) return CPROX_MEMORY;
 
   const double cutoff = query_cutoff_beyond(&q, delta);
-  size_t found = 0;
+  size_t found = 0, i = 0;
+  double others = INFINITY;
   cprox_status failure = CPROX_OK;
-  for (size_t i = 0; i < n && failure != CPROX_STOPPED; i++) {
+  for (; i < n && failure != CPROX_STOPPED; i++) {
     cprox_result r;
     workspace_forget_work(workspace);
     const cprox_status status = query_answer(&q, i, i + 1, cutoff, &r);
     if (status < 0) return status;
-    if (r.lower > delta) continue;
+    if (r.lower > delta) {
+      others = fmin(r.lower, others);
+      continue;
+    }
     failure = worse(failure, status);
     if (r.obstacle_index < 0) r.obstacle_index = (int32_t)i;
     r.verdict = r.upper <= delta ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_UNDECIDED;
     kept[found++] = r;
   }
+  if (i < n) others = q.is_signed ? -INFINITY : 0.0;
   if (found > 0) memcpy(near, kept, found * sizeof *kept);
-  *count = found;
+  *listed = (cprox_listed){found, others};
   if (failure != CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
   return failure;
 }

@@ -42,13 +42,6 @@ static bool is_behind(const cprox_result *a, const cprox_result *b) {
   return a->mover_part != b->mover_part ? a->mover_part > b->mover_part : a->obstacle_index > b->obstacle_index;
 }
 
-/* Puts a result where it belongs among the best so far, of which the last is dropped when there are k already. */
-static void insert(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r) {
-  size_t i = *count < k ? (*count)++ : k - 1;
-  for (; i > 0 && is_behind(&nearest[i - 1], r); i--) nearest[i] = nearest[i - 1];
-  nearest[i] = *r;
-}
-
 /* The best so far, and what else could be among them. */
 typedef struct ranked_pairs {
   const query *q; /* of all pairs */
@@ -57,7 +50,21 @@ typedef struct ranked_pairs {
   double delta, within; /* a search that ends at `within` has a lower bound above delta */
   cprox_result *nearest;
   size_t count;
+  double others; /* a bound of those that were left out */
 } ranked_pairs;
+
+static void leave_out(ranked_pairs *p, double lower) {
+  p->others = fmin(lower, p->others);
+}
+
+/* Puts a result where it belongs among the best so far, of which the last is dropped when there are k already. */
+static void insert(ranked_pairs *p, const cprox_result *r) {
+  cprox_result *nearest = p->nearest;
+  if (p->count == p->k) leave_out(p, nearest[p->k - 1].lower);
+  size_t i = p->count < p->k ? p->count++ : p->k - 1;
+  for (; i > 0 && is_behind(&nearest[i - 1], r); i--) nearest[i] = nearest[i - 1];
+  nearest[i] = *r;
+}
 
 /* What is farther than this is not among them. */
 static double cutoff_of(const ranked_pairs *p) {
@@ -94,15 +101,22 @@ static cprox_status ask_one_by_one(ranked_pairs *p, size_t *i, bool every) {
   cprox_status failure = CPROX_OK;
   for (; *i < p->q->mover.n_pairs && failure != CPROX_STOPPED; ++*i) {
     if (!every && p->rank[*i].near >= cutoff_of(p)) break;
-    if (is_out(p, p->rank[*i].lower) || (every && is_found(p, pair_at(p, *i)))) continue;
+    if (every && is_found(p, pair_at(p, *i))) continue;
+    if (is_out(p, p->rank[*i].lower)) {
+      leave_out(p, p->rank[*i].lower);
+      continue;
+    }
     cprox_result r;
     const cprox_status status = ask(p, pair_at(p, *i), 1, &r);
     if (status < 0) return status;
-    if (is_out(p, r.lower)) continue;
-    if (status != CPROX_OK) failure = status; /* even where its upper bound is out, it may be nearer */
-    if (p->count == p->k && r.upper >= p->nearest[p->k - 1].upper) continue;
+    const bool out = is_out(p, r.lower);
+    if (!out && status != CPROX_OK) failure = status; /* even where its upper bound is out, it may be nearer */
+    if (out || (p->count == p->k && r.upper >= p->nearest[p->k - 1].upper)) {
+      leave_out(p, r.lower);
+      continue;
+    }
     r.mover_part = pair_at(p, *i)->geometry, r.obstacle_index = pair_at(p, *i)->other;
-    insert(p->nearest, &p->count, p->k, &r);
+    insert(p, &r);
   }
   return failure;
 }
@@ -120,14 +134,21 @@ static cprox_status ask_at_once(ranked_pairs *p, size_t i) {
   cprox_robot_pair *rest = workspace_reserve(p->q->workspace, WORKSPACE_ROBOT_REST, room * sizeof *rest);
   if (!rest) return workspace_fail(p->q->workspace, CPROX_MEMORY, "no memory for a list of pairs");
   size_t n = 0;
-  for (; i < p->q->mover.n_pairs; i++)
-    if (!is_out(p, p->rank[i].lower)) rest[n++] = *pair_at(p, i);
+  for (; i < p->q->mover.n_pairs; i++) {
+    if (is_out(p, p->rank[i].lower))
+      leave_out(p, p->rank[i].lower);
+    else
+      rest[n++] = *pair_at(p, i);
+  }
   while (n > 0) {
     cprox_result r;
     const cprox_status status = ask(p, rest, n, &r);
     if (status != CPROX_OK) return status;
-    if (is_out(p, r.lower) || is_out(p, r.upper)) break;
-    insert(p->nearest, &p->count, p->k, &r);
+    if (is_out(p, r.lower) || is_out(p, r.upper)) {
+      leave_out(p, r.lower);
+      break;
+    }
+    insert(p, &r);
     take_out(rest, &n, &r);
   }
   return CPROX_OK;
@@ -135,7 +156,7 @@ static cprox_status ask_at_once(ranked_pairs *p, size_t i) {
 
 cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k, double delta,
                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                                size_t *count) {
+                                cprox_listed *listed) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   const cprox_status begun =
       query_begin(&q, (arguments_query){"the nearest pairs", ARGUMENTS_SEARCH | ARGUMENTS_INTERVAL});
@@ -148,16 +169,16 @@ cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets
 
   if (!mover.pairs) {
     const size_t n_pairs = robot_pairs_list(&q, NULL);
-    cprox_robot_pair *listed = workspace_reserve(workspace, WORKSPACE_RANKING, (n_pairs + 1) * sizeof *listed);
-    if (!listed) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of pairs");
-    robot_pairs_list(&q, listed);
-    q.mover.pairs = listed, q.mover.n_pairs = n_pairs;
+    cprox_robot_pair *pairs = workspace_reserve(workspace, WORKSPACE_RANKING, (n_pairs + 1) * sizeof *pairs);
+    if (!pairs) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of pairs");
+    robot_pairs_list(&q, pairs);
+    q.mover.pairs = pairs, q.mover.n_pairs = n_pairs;
   }
   const pair_rank *rank = robot_rank_pairs(&q);
   if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   cprox_result *kept = query_reserve_results(&q, q.mover.n_pairs);
   if (!kept) return CPROX_MEMORY;
-  ranked_pairs p = {.q = &q, .rank = rank, .k = k, .delta = delta, .nearest = kept};
+  ranked_pairs p = {.q = &q, .rank = rank, .k = k, .delta = delta, .nearest = kept, .others = INFINITY};
   p.within = query_cutoff_beyond(&q, delta);
   size_t i = 0;
   const cprox_status likely = ask_one_by_one(&p, &i, false);
@@ -166,8 +187,11 @@ cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets
   if (rest > CPROX_OK && rest != CPROX_STOPPED) rest = ask_one_by_one(&p, &i, true);
   if (rest < 0) return rest;
   const cprox_status failure = likely != CPROX_OK ? likely : rest;
+  /* of those that nobody came to, the ranking alone tells anything */
+  for (i = 0; failure == CPROX_STOPPED && i < q.mover.n_pairs; i++)
+    if (!is_found(&p, pair_at(&p, i))) leave_out(&p, rank[i].lower);
   if (p.count > 0) memcpy(nearest, kept, p.count * sizeof *kept);
-  *count = p.count;
+  *listed = (cprox_listed){p.count, fmax(p.others, 0.0)};
   if (failure > CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
   return failure;
 }

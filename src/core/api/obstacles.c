@@ -101,28 +101,28 @@ cprox_status cprox_obstacles_time_of_contact(const cprox_obstacles *obstacles, c
 
 cprox_status cprox_obstacles_nearest(const cprox_obstacles *obstacles, cprox_mover mover, size_t k,
                                      const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                                     size_t *count) {
+                                     cprox_listed *listed) {
   WORKSPACE_USE(workspace);
   const obstacle_bvh *bvh = bvh_of(obstacles);
-  if (bvh) return bvh_nearest(bvh, mover, k, options, workspace, nearest, count);
+  if (bvh) return bvh_nearest(bvh, mover, k, options, workspace, nearest, listed);
   return list_nearest(mover, obstacles_list(obstacles), obstacles_count(obstacles), k, options, workspace, nearest,
-                      count);
+                      listed);
 }
 
 cprox_status cprox_obstacles_within(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
                                     const cprox_options *options, cprox_workspace *workspace, cprox_result *near,
-                                    size_t *count) {
+                                    cprox_listed *listed) {
   WORKSPACE_USE(workspace);
   return list_within(mover, obstacles_list(obstacles), obstacles_count(obstacles), delta, options, workspace, near,
-                     count);
+                     listed);
 }
 
 cprox_status cprox_obstacles_nearest_pairs(const cprox_obstacles *obstacles, cprox_mover mover, size_t k, double delta,
                                            const cprox_options *options, cprox_workspace *workspace,
-                                           cprox_result *nearest, size_t *count) {
+                                           cprox_result *nearest, cprox_listed *listed) {
   WORKSPACE_USE(workspace);
   return list_nearest_pairs(mover, obstacles_list(obstacles), obstacles_count(obstacles), k, delta, options, workspace,
-                            nearest, count);
+                            nearest, listed);
 }
 
 cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles, cprox_mover mover, const double *breaks,

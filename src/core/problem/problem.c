@@ -103,10 +103,12 @@ cprox_result *query_reserve_results(const query *q, size_t n) {
   return results;
 }
 
-void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r) {
+void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r, double *others) {
   size_t i = *count;
   if (i == k) {
-    if (!(r->upper < nearest[k - 1].upper)) return;
+    const bool is_nearer = r->upper < nearest[k - 1].upper;
+    *others = fmin(*others, is_nearer ? nearest[k - 1].lower : r->lower);
+    if (!is_nearer) return;
     i = k - 1;
   } else {
     (*count)++;

@@ -82,8 +82,9 @@ void query_join(cprox_result *all, const cprox_result *one);
  * has succeeded. NULL where memory is out. */
 cprox_result *query_reserve_results(const query *q, size_t n);
 
-/* Puts a result where it belongs among the k nearest so far, ascending by upper. */
-void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r);
+/* Puts a result where it belongs among the k nearest so far, ascending by upper; *others falls to the lower bound of
+ * one that is dropped. */
+void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r, double *others);
 
 /* The union is complete: its status (`trouble` is the last that a search had), verdict and reason. */
 cprox_status query_conclude(const query *q, double cutoff, cprox_status failure, cprox_result *all);

@@ -17,12 +17,13 @@ cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targe
                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *result);
 cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k,
                           const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                          size_t *count);
+                          cprox_listed *listed);
 cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
-                         const cprox_options *options, cprox_workspace *workspace, cprox_result *near, size_t *count);
+                         const cprox_options *options, cprox_workspace *workspace, cprox_result *near,
+                         cprox_listed *listed);
 cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k, double delta,
                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                                size_t *count);
+                                cprox_listed *listed);
 cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size_t n, const double *breaks,
                           size_t n_intervals, double horizon, const cprox_options *options, cprox_workspace *workspace,
                           cprox_profile_interval *intervals);

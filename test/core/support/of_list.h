@@ -42,23 +42,54 @@ static inline cprox_status time_of_contact_of_list(cprox_mover moving, const cpr
   OF_LIST(targets, n, workspace, cprox_obstacles_time_of_contact(obstacles, moving, options, workspace, result));
 }
 
+static inline cprox_status nearest_of_list_and_others(cprox_mover moving, const cprox_obstacle *targets, size_t n,
+                                                      size_t k, const cprox_options *options,
+                                                      cprox_workspace *workspace, cprox_result *nearest,
+                                                      cprox_listed *listed) {
+  OF_LIST(targets, n, workspace, cprox_obstacles_nearest(obstacles, moving, k, options, workspace, nearest, listed));
+}
+
 static inline cprox_status nearest_of_list(cprox_mover moving, const cprox_obstacle *targets, size_t n, size_t k,
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *nearest, size_t *count) {
-  OF_LIST(targets, n, workspace, cprox_obstacles_nearest(obstacles, moving, k, options, workspace, nearest, count));
+  cprox_listed listed = {0, 0.0};
+  const cprox_status status = nearest_of_list_and_others(moving, targets, n, k, options, workspace, nearest, &listed);
+  if (status >= 0) *count = listed.count;
+  return status;
+}
+
+static inline cprox_status within_of_list_and_others(cprox_mover moving, const cprox_obstacle *targets, size_t n,
+                                                     double delta, const cprox_options *options,
+                                                     cprox_workspace *workspace, cprox_result *near,
+                                                     cprox_listed *listed) {
+  OF_LIST(targets, n, workspace, cprox_obstacles_within(obstacles, moving, delta, options, workspace, near, listed));
 }
 
 static inline cprox_status within_of_list(cprox_mover moving, const cprox_obstacle *targets, size_t n, double delta,
                                           const cprox_options *options, cprox_workspace *workspace, cprox_result *near,
                                           size_t *count) {
-  OF_LIST(targets, n, workspace, cprox_obstacles_within(obstacles, moving, delta, options, workspace, near, count));
+  cprox_listed listed = {0, 0.0};
+  const cprox_status status = within_of_list_and_others(moving, targets, n, delta, options, workspace, near, &listed);
+  if (status >= 0) *count = listed.count;
+  return status;
+}
+
+static inline cprox_status nearest_pairs_of_list_and_others(cprox_mover moving, const cprox_obstacle *targets, size_t n,
+                                                            size_t k, double delta, const cprox_options *options,
+                                                            cprox_workspace *workspace, cprox_result *nearest,
+                                                            cprox_listed *listed) {
+  OF_LIST(targets, n, workspace,
+          cprox_obstacles_nearest_pairs(obstacles, moving, k, delta, options, workspace, nearest, listed));
 }
 
 static inline cprox_status nearest_pairs_of_list(cprox_mover moving, const cprox_obstacle *targets, size_t n, size_t k,
                                                  double delta, const cprox_options *options, cprox_workspace *workspace,
                                                  cprox_result *nearest, size_t *count) {
-  OF_LIST(targets, n, workspace,
-          cprox_obstacles_nearest_pairs(obstacles, moving, k, delta, options, workspace, nearest, count));
+  cprox_listed listed = {0, 0.0};
+  const cprox_status status =
+      nearest_pairs_of_list_and_others(moving, targets, n, k, delta, options, workspace, nearest, &listed);
+  if (status >= 0) *count = listed.count;
+  return status;
 }
 
 static inline cprox_status profile_of_list(cprox_mover moving, const cprox_obstacle *targets, size_t n,
