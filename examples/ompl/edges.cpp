@@ -12,9 +12,6 @@ using curve_proximity::TrajectoryDescription;
 
 namespace {
 
-/* What does not move is not asked about: a state is an edge of so many radians to either side. */
-constexpr double BLINK = 1e-9;
-
 std::vector<double> valuesOf(const Task &task, const ompl::base::State *state) {
   const double *values = state->as<ompl::base::RealVectorStateSpace::StateType>()->values;
   return {values, values + task.joints.size()};
@@ -57,8 +54,6 @@ bool CertifiedMotionValidator::checkMotion(const ompl::base::State *from, const 
 
 bool StateChecker::isValid(const ompl::base::State *state) const {
   if (!si_->satisfiesBounds(state)) return false;
-  std::vector<double> before = valuesOf(task_, state), after = before;
-  for (double &value : before) value -= BLINK;
-  for (double &value : after) value += BLINK;
-  return clearBetween(task_, before, after, workspace_);
+  const std::vector<double> values = valuesOf(task_, state);
+  return clearBetween(task_, values, values, workspace_);
 }

@@ -63,8 +63,7 @@ class RobotMotion {
    *  links       only these links, and what they carry, are measured against objects, and against all of the robot.
    *              Empty: all.
    *
-   *  A trajectory of one point at time 0 is a robot that stands there: all of its links count, and its domain is
-   *  [0, 1].
+   *  A trajectory of one point at time 0 is a robot that stands there: its domain is [0, 1].
    *
    *  Throws Error: no robot, what checkTrajectory() finds, joints that the robot does not have, a trajectory of one
    *  point at a later time, a base joint whose child is not the root link. A mimic joint follows its leader; what a
@@ -92,7 +91,8 @@ class RobotMotion {
   /** Forward kinematics: the poses of all links at the time t [s]. */
   LinkPoses linkPoses(double t) const;
 
-  /** Geometry that is not checked, with the cause, one message each. */
+  /** Geometry that is not checked, with the cause, and links whose meshes are not closed: of these the surface alone
+   *  counts. One message each. */
   const std::vector<std::string> &skipped() const;
 
   /** Joints that exceed their limits, one message each. Limits are not enforced; every answer's message repeats this.
@@ -121,15 +121,15 @@ class RobotMotion {
  *  itself: either of the pair). Here a link does not stand for what it carries: an attached object has a name of its
  *  own. A name that is none of movingNames() is an error.
  *
- *  How close the moving links and what they carry come to the objects (query.objects: only these; per_object: an
+ *  How close all links and what they carry come to the objects (query.objects: only these; per_object: an
  *  answer for each object, in the order of their names). kind "environment", a the link or the carried object, b the
  *  object, result.t the time [s], result.mover_part the number of the collision element of a. As ask() of query.hpp in
  *  everything else. */
 std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query, Workspace &workspace);
 
-/** How close the robot comes to itself: pairs of links between which at least two joints can move and this trajectory
- *  moves one, and pairs of what a link carries and any other link, or what that carries, that this trajectory moves
- *  against each other; less those that are disabled, touch_links or allowed to touch. kind "self", a and b links or
+/** How close the robot comes to itself: pairs of links between which at least two joints can move, and pairs of what a
+ *  link carries and any other link, or what that carries, between which one can; whether or not this trajectory moves
+ *  them, as in a state; less those that are disabled, touch_links or allowed to touch. kind "self", a and b links or
  *  carried objects; result.obstacle_index is the number of the collision element of b. */
 Answer askSelf(const RobotMotion &motion, const Query &query, Workspace &workspace);
 
@@ -140,8 +140,9 @@ Answer timeOfContact(const RobotMotion &motion, bool self, const Query &query, W
 /** The names of the links with geometry, and of the attached objects: what query.links may name. Sorted. */
 std::vector<std::string> movingNames(const RobotMotion &motion);
 
-/** Those of them that are asked about: against the objects, or with `self` against the robot. Sorted. */
-std::vector<std::string> askedNames(const RobotMotion &motion, bool self);
+/** Those of them that are asked about: against the objects, or with `self` against the robot; `moving_only` as in
+ *  Query. Sorted. */
+std::vector<std::string> askedNames(const RobotMotion &motion, bool self, bool moving_only = false);
 
 /** The query as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its
  *  motion, the pairs that askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A

@@ -36,6 +36,11 @@ struct Query {
   std::vector<std::string> objects;
   std::vector<std::string> links; /**< the links to test; of a robot in motion: see motion.hpp */
 
+  /** Of a robot in motion: only what the trajectory moves is measured, against objects links that it moves, of the
+   * robot itself pairs that it moves against each other; the message of each answer says so. Of a state nothing is left
+   * out. Else every link with geometry counts. Refused for curves. */
+  bool moving_only = false;
+
   /** Who measures the pair of each answer again; null: nobody. Profiles and violations name no pair: they have none. */
   std::shared_ptr<const SecondOpinions> second_opinion;
 };

@@ -33,7 +33,8 @@ struct RobotOptions {
   unsigned threads = 0;
 
   /** Links whose collision elements are in memory: these replace the elements of the URDF, whose files are not read.
-   *  A mesh is solid only if its description says so. Names that the robot does not have are an error. */
+   *  A mesh is solid only if its description says so; closed meshes of the URDF are. Names that the robot does not have
+   *  are an error. */
   std::map<std::string, std::vector<ShapeDescription>> link_shapes = {};
 };
 

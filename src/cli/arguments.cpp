@@ -60,6 +60,7 @@ const std::map<std::string, Option> &options() {
       {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::CHECK}}},
       {"--per-object", {false, {Action::CURVES}}},
       {"--links", {true, {Action::CURVES, Action::REPORT}}},
+      {"--moving-links-only", {false, {Action::CURVES, Action::REPORT}}},
       {"--objects", {true, {Action::CURVES, Action::REPORT}}},
       {"--second-opinion", {true, {Action::CURVES, Action::PAIRS}}},
       {"--max-lod", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
@@ -224,6 +225,9 @@ std::vector<std::string> readNames(const Words &words, const std::string &option
 void readQuery(const Words &words, const Command &command, Query &query) {
   query.objects = readNames(words, "--objects");
   query.links = readNames(words, "--links");
+  query.moving_only = words.has("--moving-links-only");
+  if (query.moving_only && !words.has("--trajectory") && !words.has("--movers"))
+    throw BadUsage("--moving-links-only is for --trajectory and --movers");
   for (const char *name : {"--objects", "--links"})
     if (words.has(name) && words.has("--certificate"))
       throw BadUsage("--certificate takes no " + std::string(name) + ": it proves an answer about all of them");
@@ -602,6 +606,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --objects LIST    these objects alone, "shelf, table"; with --curves and --links also those links
   --links LIST      with --curves: these links of --robot alone. With --trajectory: what these links do, or objects that they
                     carry; with --self pairs of which they are one
+  --moving-links-only  with --trajectory, --movers: links that the motion does not move are left out, with --self pairs that it
+                    does not move against each other; else all count. The rows' messages say so
   --intervals N     'profile', 'report': N intervals of equal length (default 100)
   --breaks LIST     'profile', 'report': where intervals begin and end instead, "0, 0.5, 2"
   --horizon H       'profile': clearance beyond H metres is only bounded: lower > H, which is less work

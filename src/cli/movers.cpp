@@ -161,7 +161,7 @@ int answer(const Arguments &arguments, const World &world, std::shared_ptr<const
   for (const std::string &link : linksOf(names, arguments))
     for (const std::string &object : objectsOf(world, arguments)) add(subjectAmong(moving, arguments), link, object);
   if (robot && arguments.self) {
-    for (const std::string &link : linksOf(askedNames(*robot, true), arguments)) {
+    for (const std::string &link : linksOf(askedNames(*robot, true, arguments.query.moving_only), arguments)) {
       auto itself = std::make_shared<MotionSubject>(*robot, true);
       itself->id = stemOf(arguments.trajectory);
       add(itself, link, "");

@@ -238,7 +238,8 @@ Asked askedOf(const RobotMotion &motion, bool self, const Arguments &arguments) 
   out.subject = std::make_unique<MotionSubject>(motion, self);
   out.subject->id = std::filesystem::path(arguments.trajectory).stem().string();
   out.subject->place = arguments.trajectory + ": " + out.subject->kind;
-  out.links = arguments.query.links.empty() ? askedNames(motion, self) : arguments.query.links;
+  out.links =
+      arguments.query.links.empty() ? askedNames(motion, self, arguments.query.moving_only) : arguments.query.links;
   return out;
 }
 

@@ -66,7 +66,9 @@ Outcome askOne(const RobotMotion &motion, bool self, const std::string &link, co
 /* The links that have rows of their own; "": all are one. */
 std::vector<std::string> linksOf(const RobotMotion &motion, bool self, const Arguments &arguments) {
   std::vector<std::string> links;
-  if (arguments.per_link) links = arguments.query.links.empty() ? askedNames(motion, self) : arguments.query.links;
+  if (arguments.per_link)
+    links =
+        arguments.query.links.empty() ? askedNames(motion, self, arguments.query.moving_only) : arguments.query.links;
   if (links.empty()) links.emplace_back();
   return links;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <ros/node_handle.h>
+
 #include <moveit/robot_model/planar_joint_model.h>
 #include <moveit/robot_model/revolute_joint_model.h>
 
@@ -21,8 +23,14 @@ using moveit::core::RevoluteJointModel;
 using moveit::core::RobotModel;
 using moveit::core::RobotState;
 
+/* MoveIt's FCL takes the plane ax + by + cz = d, where shape_msgs has ax + by + cz + d = 0. */
+bool planesLikeFcl() {
+  return ros::NodeHandle("~").param("curve_proximity/planes_like_fcl", false);
+}
+
 ShapeDescription shapeAt(const shapes::Shape &shape, const Eigen::Isometry3d &pose) {
   ShapeDescription out = fromShape(shape);
+  if (shape.type == shapes::PLANE && planesLikeFcl()) out.dimensions[3] = -out.dimensions[3];
   out.pose = pose;
   return out;
 }
@@ -71,8 +79,10 @@ std::shared_ptr<const Robot> toRobot(const RobotModel &model) {
   RobotOptions options;
   for (const LinkModel *link : model.getLinkModels()) {
     std::vector<ShapeDescription> &shapes = options.link_shapes[link->getName()];
-    for (std::size_t i = 0; i < link->getShapes().size(); ++i)
+    for (std::size_t i = 0; i < link->getShapes().size(); ++i) {
       shapes.push_back(shapeAt(*link->getShapes()[i], link->getCollisionOriginTransforms()[i]));
+      shapes.back().solid = shapes.back().type == ShapeType::MESH; // as of a URDF
+    }
   }
   return fromModel(*model.getURDF(), options);
 }

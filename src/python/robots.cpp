@@ -80,9 +80,9 @@ void PythonScene::add(const std::string &id, const std::string &type, const std:
 }
 
 Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links,
-              const Names &objects) {
+              const Names &objects, bool moving_only) {
   Query out;
-  out.links = links, out.objects = objects;
+  out.links = links, out.objects = objects, out.moving_only = moving_only;
   if (type == "tolerance")
     out.query_type = QueryType::TOLERANCE;
   else if (type == "collision")
@@ -467,34 +467,36 @@ void addRobots(py::module &module) {
       .def(
           "distance",
           [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, bool is_signed,
-             const Names &links, const Names &objects) {
-            Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
+             const Names &links, const Names &objects, bool moving_only) {
+            Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, moving_only);
             query.options.signed_distance = is_signed;
             return ask(m, self, query);
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("signed") = false, py::arg("links") = Names{}, py::arg("objects") = Names{},
+          py::arg("moving_only") = false,
           "The least distance to the objects, or of the robot to itself: a dict of result, kind, a (link), b (object "
           "or\n"
-          "link), by_hull, message. With signed overlaps are negative: minus the deepest one. Where meshes overlap, lower is\n"
-          "that of their hulls, and the status is overlap.")
+           "link), by_hull, message. With moving_only what the motion does not move is left out. With signed overlaps\n"
+           "are negative: minus the deepest one. Where meshes overlap, lower is that of their hulls, and the status is\n"
+           "overlap.")
       .def(
           "tolerance",
           [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-             const Names &objects) {
-            return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes, links, objects));
+             const Names &objects, bool moving_only) {
+            return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes, links, objects, moving_only));
           },
           py::arg("delta"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
           py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
-          "Is the robot farther than delta [m] everywhere? As distance().")
+          py::arg("moving_only") = false, "Is the robot farther than delta [m] everywhere? As distance().")
       .def(
           "collision",
           [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-             const Names &objects) {
-            return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects));
+             const Names &objects, bool moving_only) {
+            return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects, moving_only));
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
-          py::arg("links") = Names{}, py::arg("objects") = Names{},
+          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("moving_only") = false,
           "Does the robot touch or overlap an object, or itself? As distance().")
       .def("time_of_contact", &contactOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
@@ -533,9 +535,10 @@ void addRobots(py::module &module) {
            "after leave_upper, within it from enter_upper to leave_lower. resolution [s]: how finely the ends are "
            "searched,\n"
            "a thousandth of the motion if None. RuntimeError where the budget ends.")
-      .def("links", &askedNames, py::arg("self_collision") = false,
-           "The links that move and have geometry, and what they carry; of those alone that are measured against the "
-           "robot.")
+      .def(
+          "links", &askedNames, py::arg("self_collision") = false, py::arg("moving_only") = false,
+          "The links that have geometry, and what they carry; of those alone that are measured against the robot. With "
+          "moving_only those that the motion moves.")
       .def(
           "profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
           py::arg("links") = Names{}, py::arg("horizon") = std::numeric_limits<double>::infinity(),

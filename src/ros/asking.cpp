@@ -81,7 +81,8 @@ void askMotion(const RobotMotion &motion, const Query &query, bool self, const A
   }
   if (asking.kind == Asking::PROFILE) {
     const std::vector<double> breaks = breaksOf(asking, motion.domain()[0], motion.domain()[1]);
-    std::vector<std::string> links = asking.per_link ? askedNames(motion, self) : std::vector<std::string>();
+    std::vector<std::string> links =
+        asking.per_link ? askedNames(motion, self, query.moving_only) : std::vector<std::string>();
     if (links.empty()) links.emplace_back();
     for (const std::string &link : links) {
       Query of_link = query;

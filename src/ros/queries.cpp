@@ -98,6 +98,7 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   query.per_object = more.per_object != 0;
   query.objects = more.objects;
   query.links = more.links;
+  query.moving_only = more.moving_only;
   if (more.group.empty()) return query;
   if (!snapshot.robot()) throw Error("group '" + more.group + "': this server has no robot, only objects");
 

@@ -17,6 +17,9 @@ namespace curve_proximity {
 /* A box that contains the curve. */
 Eigen::AlignedBox3d boxOf(const cprox_curve *curve);
 
+/* What a reader must know of an answer with Query::moving_only. */
+inline const char *const MOVING_ONLY = "moving_only: what the trajectory does not move is left out";
+
 /* What the query asks for and its answer would not heed, as a sentence; "" where there is nothing. Of a robot in
  * motion, of which `in_all` has one answer for all objects or pairs. */
 std::string faultOf(const Query &query);

@@ -46,17 +46,21 @@ class Named {
 };
 
 /* Of an answer that there is: what is special about it. */
-void addWarnings(const RobotMotion::Data &data, Answer &answer) {
+void addWarnings(const RobotMotion::Data &data, const Query &query, Answer &answer) {
   if (answer.result.status < 0) return;
-  for (const std::string &sentence : data.warnings) answer.message += (answer.message.empty() ? "" : "; ") + sentence;
+  const auto add = [&](const std::string &sentence) {
+    answer.message += (answer.message.empty() ? "" : "; ") + sentence;
+  };
+  if (query.moving_only) add(MOVING_ONLY);
+  for (const std::string &sentence : data.warnings) add(sentence);
 }
 
-void finish(const RobotMotion::Data &data, Answer &answer, Clock::time_point start) {
+void finish(const RobotMotion::Data &data, const Query &query, Answer &answer, Clock::time_point start) {
   answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   if (answer.result.status != CPROX_OK && answer.message.empty())
     answer.message = cprox_status_text(answer.result.status);
   answer.status = cprox_status_name(answer.result.status);
-  addWarnings(data, answer);
+  addWarnings(data, query, answer);
 }
 
 } // namespace
@@ -93,16 +97,19 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
   }
   for (const cprox_robot_pair &pair : data.environment) {
     const std::int32_t k = number[static_cast<std::size_t>(pair.other)];
+    if (query.moving_only && !data.moves[static_cast<std::size_t>(pair.geometry)]) continue;
     if (k >= 0 && named(pair.geometry)) asked.pairs.push_back({pair.geometry, k});
   }
   asked.rounding += rounding;
   return asked;
 }
 
-Asked askedSelf(const RobotMotion::Data &data, const std::vector<std::string> &links) {
+Asked askedSelf(const RobotMotion::Data &data, const Query &query) {
   Asked asked{data, RobotPairs::SELF, {}, {}, {}, {}, 2.0 * mostExcess(data.kinematics->geometries)};
-  const Named named(data, links);
-  for (const cprox_robot_pair &pair : data.self) {
+  const Named named(data, query.links);
+  for (std::size_t i = 0; i < data.self.size(); ++i) {
+    const cprox_robot_pair &pair = data.self[i];
+    if (query.moving_only && !data.self_moves[i]) continue;
     if (named(pair.geometry) || named(pair.other)) asked.pairs.push_back(pair);
   }
   return asked;
@@ -166,7 +173,7 @@ Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &que
     if (!asked.pairs.empty()) widen(query, asked.rounding, INFINITE, answer.result);
     nameSides(asked, query, answer);
   }
-  finish(asked.data, answer, start);
+  finish(asked.data, query, answer, start);
   addSecondOpinion(asked.data, query, answer);
   return answer;
 }
@@ -185,10 +192,10 @@ void checkDistances(RobotPairs against, const Query &query) {
 
 Asked askedOf(const RobotMotion &motion, RobotPairs against, const Query &query) {
   const RobotMotion::Data &data = motion.data();
-  if (against == RobotPairs::SELF) return askedSelf(data, query.links);
+  if (against == RobotPairs::SELF) return askedSelf(data, query);
   Asked asked = askedItems(data, namedItems(data, query.objects), query);
   if (against == RobotPairs::ENVIRONMENT) return asked;
-  Asked self = askedSelf(data, query.links);
+  Asked self = askedSelf(data, query);
   if (self.pairs.empty()) return asked;
   if (asked.pairs.empty()) return self;
   asked.against = RobotPairs::WHOLE;

@@ -37,7 +37,7 @@ std::vector<std::size_t> namedItems(const RobotMotion::Data &data, const std::ve
 
 /* Whom a query is about; of both at once the other one where one has no pairs. Throws Error for a name that is none. */
 Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted, const Query &query);
-Asked askedSelf(const RobotMotion::Data &data, const std::vector<std::string> &links);
+Asked askedSelf(const RobotMotion::Data &data, const Query &query);
 Asked askedOf(const RobotMotion &motion, RobotPairs against, const Query &query);
 
 /* What is asked for and not heeded, of a query with one answer in all. */

@@ -132,10 +132,10 @@ class Builder {
     const int link = static_cast<int>(out_.links.at(name));
     for (std::size_t i = 0; i < geometries.size(); ++i) {
       const Geometry &geometry = geometries[i].geometry;
-      /* of what is attached a description says whether it is solid; links are surfaces */
-      const cprox_body *body = attached ? geometry.body.get() : geometry.surface.get();
+      const cprox_body *body = geometry.body.get();
       geometries_.push_back({body, toPose(geometries[i].pose), link, padding + geometry.margin});
-      out_.geometries.push_back({&name, attached, static_cast<int>(i), geometry.excess, geometry.is_mesh, body});
+      out_.geometries.push_back(
+          {&name, attached, static_cast<int>(i), geometry.excess, geometry.is_mesh, geometry.is_open, body});
     }
   }
 

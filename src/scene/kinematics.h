@@ -21,6 +21,7 @@ struct MovingGeometry {
   int part = 0;                             /* its number among the link's or the object's */
   double excess = 0.0;                      /* [m] how far points of the shape may be outside its body */
   bool is_mesh = false;
+  bool is_open = false; /* a mesh that is to be solid and is not closed */
   const cprox_body *body = nullptr;
 
   const std::string &owner() const {

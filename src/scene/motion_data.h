@@ -56,7 +56,9 @@ struct RobotMotion::Data {
   TrajectoryShape shape;
   bool stands = false;                       /* a state: the robot does not move */
   std::vector<bool> wanted;                  /* of each geometry: does the query name its link */
+  std::vector<bool> moves;                   /* of each geometry: does the motion move it; of a state all */
   std::vector<cprox_robot_pair> self;        /* geometry against geometry */
+  std::vector<bool> self_moves;              /* of each of these: does the motion move the one against the other */
   std::vector<cprox_robot_pair> environment; /* geometry against item of the snapshot's world */
   std::vector<std::string> warnings;
   mutable std::once_flag skipped_once; /* the messages are made when somebody asks for them */
@@ -69,7 +71,7 @@ Eigen::MatrixXd toMatrix(const TrajectoryShape &shape, const double *values);
 /* The poses of all links at the time t [s]. */
 LinkPoses linkPosesOf(const RobotMotion::Data &data, double t);
 
-/* Fills wanted, self and environment; `links` are the links wanted (empty: all). */
+/* Fills wanted, moves, self, self_moves and environment; `links` are the links wanted (empty: all). */
 void choosePairs(const std::vector<std::string> &links, RobotMotion::Data &data);
 
 /* What choosePairs() left out, with the cause, one message each. */

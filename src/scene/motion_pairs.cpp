@@ -43,23 +43,22 @@ std::string exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const 
   return snapshot.mayTouch(a.owner(), b.owner()) ? "they are allowed to touch" : "";
 }
 
-/* Does the motion move the geometry against the world? Of a robot that stands all of them count. */
+/* Does the motion move the geometry against the world? */
 bool moves(const RobotMotion::Data &data, std::size_t geometry) {
   return data.stands || cprox_motion_get_link_info(data.core.get(), data.prepared->link[geometry], -1).n_moved > 0;
 }
 
-/* Why the motion leaves a pair out; "" where it does not. Neighbours in the chain overlap by their making; what is
- * carried does not, and is measured as soon as a joint moves it against the other. */
-const char *leftOut(const RobotMotion::Data &data, const SelfPair &pair) {
+cprox_link_info between(const RobotMotion::Data &data, const SelfPair &pair) {
   const std::vector<std::int32_t> &link = data.prepared->link;
-  const cprox_link_info between =
-      cprox_motion_get_link_info(data.core.get(), link[static_cast<std::size_t>(pair.pair.geometry)],
-                                 link[static_cast<std::size_t>(pair.pair.other)]);
-  const std::size_t moved = data.stands ? between.n_joints : between.n_moved; // of a robot that stands all joints count
-  if (pair.carried) return moved == 0 ? "this trajectory does not move them against each other" : "";
-  return between.n_joints < 2 || moved == 0
-             ? "this trajectory does not move them against each other, or a single joint does"
-             : "";
+  return cprox_motion_get_link_info(data.core.get(), link[static_cast<std::size_t>(pair.pair.geometry)],
+                                    link[static_cast<std::size_t>(pair.pair.other)]);
+}
+
+/* Why a pair is left out; "" where it is not. Neighbours in the chain overlap by design; what is carried does not, and
+ * is measured where a joint can move it against the other. */
+const char *leftOut(const SelfPair &pair, std::size_t joints) {
+  if (pair.carried) return joints < 1 ? "no joint can move them against each other" : "";
+  return joints < 2 ? "at most one joint can move them against each other" : "";
 }
 
 bool isWanted(const RobotMotion::Data &data, const SelfPair &pair) {
@@ -111,12 +110,17 @@ void choosePairs(const std::vector<std::string> &links, RobotMotion::Data &data)
     data.wanted.push_back(links.empty() || std::find(links.begin(), links.end(), *geometry.link) != links.end());
 
   for (std::size_t i = 0; i < prepared.environment.size(); ++i) {
-    if (!data.wanted[i] || prepared.environment[i].empty() || !moves(data, i)) continue;
+    data.moves.push_back(moves(data, i));
+    if (!data.wanted[i]) continue;
     const std::vector<cprox_robot_pair> &pairs = prepared.environment[i];
     data.environment.insert(data.environment.end(), pairs.begin(), pairs.end());
   }
   for (const SelfPair &pair : prepared.self) {
-    if (pair.exemption.empty() && isWanted(data, pair) && *leftOut(data, pair) == '\0') data.self.push_back(pair.pair);
+    if (!pair.exemption.empty() || !isWanted(data, pair)) continue;
+    const cprox_link_info info = between(data, pair);
+    if (*leftOut(pair, info.n_joints) != '\0') continue;
+    data.self.push_back(pair.pair);
+    data.self_moves.push_back(data.stands || info.n_moved > 0);
   }
 }
 
@@ -130,16 +134,15 @@ std::vector<std::string> skippedPairs(const RobotMotion::Data &data) {
   };
   for (std::size_t i = 0, next = 0; i < geometries.size(); ++i) {
     const std::string name = nameOf(geometries[i]);
-    const bool moved = moves(data, i);
     if (!data.wanted[i]) tell(name + ": the query does not name it");
-    if (!moved) tell(name + ": the trajectory does not move it");
+    if (geometries[i].is_open) tell(name + ": a mesh of it is not closed: its surface alone counts");
     for (const std::string &object : prepared.allowed[i]) {
-      if (data.wanted[i] && moved) tell(name + " and object '" + object + "': they are allowed to touch");
+      if (data.wanted[i]) tell(name + " and object '" + object + "': they are allowed to touch");
     }
     for (; next < prepared.self.size(); ++next) {
       const SelfPair &pair = prepared.self[next];
       if (static_cast<std::size_t>(pair.pair.geometry) != i) break;
-      const char *left_out = leftOut(data, pair);
+      const char *left_out = leftOut(pair, between(data, pair).n_joints);
       const std::string why = *left_out != '\0' ? left_out : pair.exemption;
       if (isWanted(data, pair) && !why.empty())
         tell(nameOf(geometries[i], geometries[static_cast<std::size_t>(pair.pair.other)]) + ": " + why);

@@ -96,7 +96,7 @@ Answer askSelf(const RobotMotion &motion, const Query &query, Workspace &workspa
   cprox_certificate_clear(query.options.certificate);
   const std::string fault = faultInAll(RobotPairs::SELF, query);
   if (!fault.empty()) return refusal(motion.data().id, "self", fault);
-  return answerOf(askedSelf(motion.data(), query.links), query, workspace);
+  return answerOf(askedSelf(motion.data(), query), query, workspace);
 }
 
 Answer timeOfContact(const RobotMotion &motion, bool self, const Query &query, Workspace &workspace) {
@@ -122,13 +122,16 @@ std::vector<std::string> movingNames(const RobotMotion &motion) {
   return {names.begin(), names.end()};
 }
 
-std::vector<std::string> askedNames(const RobotMotion &motion, bool self) {
+std::vector<std::string> askedNames(const RobotMotion &motion, bool self, bool moving_only) {
   const RobotMotion::Data &data = motion.data();
   const std::vector<MovingGeometry> &geometries = data.kinematics->geometries;
   std::set<std::string> names;
-  for (const cprox_robot_pair &pair : self ? data.self : data.environment) {
-    names.insert(geometries[static_cast<std::size_t>(pair.geometry)].owner());
-    if (self) names.insert(geometries[static_cast<std::size_t>(pair.other)].owner());
+  const std::vector<cprox_robot_pair> &pairs = self ? data.self : data.environment;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto geometry = static_cast<std::size_t>(pairs[i].geometry);
+    if (moving_only && !(self ? data.self_moves[i] : data.moves[geometry])) continue;
+    names.insert(geometries[geometry].owner());
+    if (self) names.insert(geometries[static_cast<std::size_t>(pairs[i].other)].owner());
   }
   return {names.begin(), names.end()};
 }

@@ -79,13 +79,18 @@ Pairs pairsOf(const Movers::Data &data, Against against, const Query &query) {
   const AskedObjects objects(data, query);
   const auto at = [](std::int32_t geometry) { return static_cast<std::size_t>(geometry); };
   if (against != Against::MOVERS) {
-    for (const cprox_robot_pair &pair : data.environment)
-      if ((data.geometries[at(pair.geometry)].moves || !query.links.empty()) && named[at(pair.geometry)] &&
-          objects.has(*data.snapshot->world().items()[at(pair.other)].owner))
+    for (const cprox_robot_pair &pair : data.environment) {
+      const MoverGeometry &geometry = data.geometries[at(pair.geometry)];
+      /* an object that stands is one of many that do, unless it is asked about */
+      const bool counts = geometry.moves || (!query.moving_only && (!geometry.is_object || !query.links.empty()));
+      if (counts && named[at(pair.geometry)] && objects.has(*data.snapshot->world().items()[at(pair.other)].owner))
         out.environment.push_back(pair);
+    }
   }
   if (against != Against::OBJECTS) {
-    for (const cprox_robot_pair &pair : data.among) {
+    for (std::size_t i = 0; i < data.among.size(); ++i) {
+      const cprox_robot_pair &pair = data.among[i];
+      if (query.moving_only && !data.among_moves[i]) continue;
       if (!objects.has(data.geometries[at(pair.geometry)].name) && !objects.has(data.geometries[at(pair.other)].name))
         continue;
       const bool self = data.geometries[at(pair.geometry)].mover == data.geometries[at(pair.other)].mover;
@@ -176,6 +181,8 @@ Answer answerOf(const Movers &movers, Against asked, const Query &query, const s
     if (answer.result.status < 0) answer.message = workspace.reason();
     nameSides(data, pairs.against, query.links, answer);
   }
+  if (query.moving_only && answer.result.status >= 0)
+    answer.message += (answer.message.empty() ? "" : "; ") + std::string(MOVING_ONLY);
   answer.microseconds = microsecondsSince(start);
   if (answer.result.status != CPROX_OK && answer.message.empty())
     answer.message = cprox_status_text(answer.result.status);

@@ -121,12 +121,12 @@ class Joiner {
     const RobotMotion::Data &data = robot.motion->data();
     const auto first = static_cast<std::int32_t>(out_.geometries.size());
     for (const MovingGeometry &geometry : data.kinematics->geometries) {
-      const auto link = static_cast<std::int32_t>(data.kinematics->links.at(*geometry.link));
-      const bool moves = data.stands || cprox_motion_get_link_info(data.core.get(), link, -1).n_moved > 0;
+      const bool moves = data.moves[out_.geometries.size() - static_cast<std::size_t>(first)];
       out_.geometries.push_back(
-          {cores_.size(), robot.name + "/" + geometry.owner(), geometry.part, geometry.excess, moves});
+          {cores_.size(), robot.name + "/" + geometry.owner(), geometry.part, geometry.excess, moves, false});
     }
     for (const cprox_robot_pair &pair : data.self) out_.among.push_back({pair.geometry + first, pair.other + first});
+    out_.among_moves.insert(out_.among_moves.end(), data.self_moves.begin(), data.self_moves.end());
     cores_.push_back(data.kinematics->core.get());
     motions_.push_back({data.core.get(), robot.start, robot.tolerance});
     names_.push_back(robot.name);
@@ -136,8 +136,8 @@ class Joiner {
 
   void addObject(const MovingObject &object, const MovingBody &made) {
     for (std::size_t i = 0; i < made.geometries.size(); ++i)
-      out_.geometries.push_back(
-          {cores_.size(), object.object.id, static_cast<int>(i), made.geometries[i].excess, object.poses.size() > 1});
+      out_.geometries.push_back({cores_.size(), object.object.id, static_cast<int>(i), made.geometries[i].excess,
+                                 object.poses.size() > 1, true});
     cores_.push_back(made.robot.get());
     motions_.push_back({made.motion.get(), object.start, object.tolerance});
     names_.push_back(object.object.id);
@@ -209,8 +209,7 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
     most = std::max(most, geometries[i].excess);
     const std::size_t mover = geometries[i].mover;
     const std::string &name = geometries[i].name;
-    const bool is_object = mover >= data.robots.size();
-    for (std::size_t k = 0; k < items.size() && (geometries[i].moves || is_object); ++k) {
+    for (std::size_t k = 0; k < items.size(); ++k) {
       const std::string &object = *items[k].owner;
       if (!mayTouchInOwn(data, geometries[i], object) && !data.snapshot->mayTouch(name, object) &&
           !allowed.has(name, object))
@@ -223,6 +222,7 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
            ownMayTouch(data, i, k) || ownMayTouch(data, k, i)))
         continue;
       data.among.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
+      data.among_moves.push_back(geometries[i].moves || geometries[k].moves);
     }
   }
   data.rounding = most + std::max(most, rounding);

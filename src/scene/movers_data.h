@@ -20,7 +20,8 @@ struct MoverGeometry {
   std::string name; /* in answers */
   int part = 0;
   double excess = 0.0;
-  bool moves = true;
+  bool moves = true; /* along its own motion; of a state true */
+  bool is_object = false;
 };
 
 /* Whose link or object that is: "robot/link" is of "robot". */
@@ -40,6 +41,7 @@ struct Movers::Data {
   std::vector<MoverGeometry> geometries;
   std::vector<cprox_obstacle> targets;              /* by item of the snapshot */
   std::vector<cprox_robot_pair> environment, among; /* geometry against target, against geometry */
+  std::vector<bool> among_moves;                    /* of each of these: is one moved against the other */
   double rounding = 0.0;                            /* [m] that the core does not know of */
 };
 

@@ -39,7 +39,7 @@ struct Element {
 Element makeElement(const std::string *owner, const AttachedObject *attached, std::size_t link, int part,
                     const LinkGeometry &geometry, double margin) {
   Element out{owner, attached, link, part, &geometry, margin + geometry.geometry.margin, 0.0, {}, {}, 0.0, {}};
-  const cprox_body *body = geometry.geometry.surface.get();
+  const cprox_body *body = geometry.geometry.body.get();
   const cprox_body_info info = cprox_body_get_info(body);
   out.ball = toEigen(info.centre);
   out.radius = info.radius;
@@ -60,7 +60,7 @@ struct Body {
   const AttachedObject *attached;
   std::size_t link;      /* its number in the robot; of an object none */
   bool wanted;           /* the query is about its link */
-  cprox_obstacle placed; /* a mesh by its surface */
+  cprox_obstacle placed; /* padding included */
   cprox_obstacle hull;   /* a mesh by its hull */
   double rounding;       /* [m] how far rounding can have moved a point of it, and for its hull further … */
   double hull_excess;
@@ -74,7 +74,7 @@ Body placeElement(const Element &element, const Eigen::Isometry3d &link, bool wa
            element.attached,
            element.link,
            wanted,
-           at(geometry.surface, pose, element.margin),
+           at(geometry.body, pose, element.margin),
            at(geometry.hull, pose, element.margin),
            geometry.excess + placingError(link, element.geometry->pose, element.reach),
            geometry.hull_excess,
@@ -96,7 +96,7 @@ Body bodyOf(const Item &item) {
           nullptr,
           0,
           false,
-          shape.surface,
+          shape.target,
           shape.hull,
           shape.rounding,
           shape.hull_excess,

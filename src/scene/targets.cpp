@@ -88,6 +88,8 @@ Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &quer
   const Names named_links(query.links.begin(), query.links.end());
   const std::string fault = objects.empty() && !named_links.empty() ? "" : faultOfMoving(*snapshot, query.objects);
   if (!fault.empty()) throw Error(fault);
+  if (query.moving_only)
+    throw Error("moving_only does not apply to curves: it is about the links of a robot in motion");
   checkObjects(objects, *snapshot);
   checkLinks(named_links, links, snapshot->robot().get());
 

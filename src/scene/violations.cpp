@@ -38,6 +38,7 @@ Violations searchViolations(const Obstacles &obstacles, const cprox_mover &mover
   }
   if (out.status < 0) throw Error(workspace.reason(), out.status);
   if (out.status != CPROX_OK) out.message = cprox_status_text(out.status);
+  if (query.moving_only) out.message += (out.message.empty() ? "" : "; ") + std::string(MOVING_ONLY);
   for (std::size_t i = 0; i < found.count; ++i) {
     const cprox_violation &v = room[i];
     Violation one{v.enter_lower, v.enter_upper, v.leave_lower, v.leave_upper, v.verdict, v.upper, v.t, "", ""};

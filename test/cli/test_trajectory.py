@@ -68,6 +68,51 @@ class Trajectory(Case):
         self.assertAlmostEqual(float(row['t']), 4.0, places=5)
         self.assertAlmostEqual(float(row['b_x']), 3.0, places=5)
 
+    def links_that_the_motion_does_not_move_count(self):
+        """A ball of 0.1 in the middle of the arm, while the wrist alone moves, or nothing at all."""
+        ball = ('world: {collision_objects: [{id: ball, primitives: [{type: sphere, dimensions: [0.1]}], '
+                'primitive_poses: [{position: [0, 0, 0.7]}]}]}')
+        wrist = SLIDE.replace('[slide]', '[wrist]')
+        for trajectory in (wrist, wrist.replace('[2]', '[0]')):
+            answer = self.robot('collision', trajectory, scene=ball)
+            self.assertEqual((answer.code, answer.row('go')['verdict'], answer.row('go')['a']), (1, 'violated', 'arm'))
+            row = self.robot('time-of-contact', trajectory, scene=ball).row('go')
+            self.assertEqual((row['verdict'], float(row['t'])), ('violated', 0.0))
+            row = self.robot('nearest', trajectory, '--pairs', '1', scene=ball).rows[0]
+            self.assertEqual((row['a'], float(row['upper'])), ('arm', 0.0))
+            for row in self.robot('profile', trajectory, '--intervals', '3', scene=ball).rows:
+                self.assertEqual(float(row['upper']), 0.0)
+
+    def links_that_stand_are_left_out_where_that_is_asked_for_and_the_row_says_so(self):
+        ball = ('world: {collision_objects: [{id: ball, primitives: [{type: sphere, dimensions: [0.1]}], '
+                'primitive_poses: [{position: [0, 0, 0.7]}]}]}')
+        wrist = SLIDE.replace('[slide]', '[wrist]')
+        answer = self.robot('distance', wrist, '--moving-links-only', scene=ball)
+        self.assertEqual(answer.row('go')['a'], 'hand')
+        self.assertAnswer(answer.row('go'), 1.4 - 0.1 - 0.7 - 0.1)
+        self.assertIn('moving_only', answer.row('go')['message'])
+        self.assertRefused(cprox('distance', '--scene', self.file('scene.yaml', ball), '--moving-links-only', '--curves',
+                                 self.file('c.csv', 'id,basis,radius,points\n')), '--moving-links-only')
+
+    def what_is_inside_of_a_closed_mesh_of_a_link_is_in_contact(self):
+        """A cube of 0.4 as a mesh, round a ball of 0.05; without one of its triangles it is a surface, 0.15 away."""
+        corners = [(x, y, z) for x in (-.2, .2) for y in (-.2, .2) for z in (-.2, .2)]
+        faces = [(0, 1, 3), (0, 3, 2), (4, 7, 5), (4, 6, 7), (0, 5, 1), (0, 4, 5), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
+                 (1, 7, 3), (1, 5, 7)]
+        ball = ('world: {collision_objects: [{id: ball, primitives: [{type: sphere, dimensions: [0.05]}], '
+                'primitive_poses: [{position: [0, 0, 0]}]}]}')
+        urdf = SLIDER.replace('<box size="0.2 0.2 0.2"/>', '<mesh filename="cube.obj"/>')
+        creep = SLIDE.replace('[2]', '[0.01]')
+        for n, expected in ((12, 0.0), (11, 0.14)):
+            self.file('cube.obj', ''.join('v %g %g %g\n' % c for c in corners) +
+                      ''.join('f %d %d %d\n' % tuple(i + 1 for i in f) for f in faces[:n]))
+            for links in ((), ('--links', 'cart')):
+                answer = self.robot('distance', creep, *links, urdf=urdf, scene=ball)
+                self.assertAnswer(answer.row('go'), expected)
+            words = 'a mesh of it is not closed: its surface alone counts'
+            told = self.robot('distance', creep, '--skipped', urdf=urdf, scene=ball)
+            self.assertEqual(words in told.err + told.out, n == 11)
+
     def verdicts_are_given(self):
         self.assertEqual(self.robot('tolerance', SLIDE, '--delta', '0.89').row('go')['verdict'], 'clear')
         self.assertEqual(self.robot('tolerance', SLIDE, '--delta', '0.91').row('go')['verdict'], 'violated')

@@ -63,7 +63,7 @@ static void mesh_robot_free(mesh_robot *m) {
   robot_free(&m->robot);
 }
 
-/* Of the points from all moving meshes at a time. Poses of geometries are exact in neither: 1e-15 of a metre. */
+/* Of the points from all meshes at a time. Poses of geometries are exact in neither: 1e-15 of a metre. */
 static long double distance_at(const mesh_robot *m, long double time, const vec3 *points) {
   const test_robot *t = &m->robot;
   long double values[TEST_MAX_VARIABLES + 1], least = HUGE_VALL;
@@ -71,7 +71,6 @@ static long double distance_at(const mesh_robot *m, long double time, const vec3
   robot_ref_values(t, time, values);
   robot_ref_links(t, values, links);
   for (size_t g = 0; g < t->n_links; g++) {
-    if (cprox_motion_get_link_info(t->motion, (int32_t)g, -1).n_moved == 0) continue;
     for (int i = 0; i < POINTS; i++) {
       const vec3l on_link = ref_pose_undo(&links[g], ref_vec(points[i]));
       const long double d = mesh_distance(&m->mesh[g], ref_to_local(&t->geometries[g].pose, on_link));

@@ -211,7 +211,7 @@ CASE(the_whole_robot_is_as_near_as_the_nearer_of_both) {
 
 enum { SAMPLES = 60, TARGETS = 3 };
 
-/* The distance of a point from everything on the robot that moves, at a time, in long double (hulls of the vertices
+/* The distance of a point from everything on the robot, at a time, in long double (hulls of the vertices
  * rounded to double: 1e-15). */
 static long double distance_at(const test_robot *t, long double time, const vec3 *points, size_t n) {
   long double values[TEST_MAX_VARIABLES + 1], least = HUGE_VALL;
@@ -219,7 +219,6 @@ static long double distance_at(const test_robot *t, long double time, const vec3
   robot_ref_values(t, time, values);
   robot_ref_links(t, values, links);
   for (size_t g = 0; g < t->n_links; g++) {
-    if (cprox_motion_get_link_info(t->motion, (int32_t)g, -1).n_moved == 0) continue;
     vec3l exact[TEST_VERTICES];
     vec3 v[TEST_VERTICES];
     robot_ref_vertices(t, links, g, exact);

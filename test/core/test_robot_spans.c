@@ -314,14 +314,13 @@ CASE(no_point_is_nearer_than_spans_say) {
 
 /* ---- queries ---- */
 
-/* The distance of a point from what moves, in long double. */
+/* The distance of a point from the robot, in long double. */
 static long double distance_at(const path *p, size_t segment, long double u, vec3 point) {
   long double values[TEST_MAX_VARIABLES + 1], least = HUGE_VALL;
   ref_pose links[TEST_MAX_LINKS];
   path_values(p, segment, u, values);
   robot_ref_links(&p->t, values, links);
   for (size_t g = 0; g < p->t.n_links; g++) {
-    if (!motion_moves_link(p->motion, (int32_t)g)) continue;
     vec3l exact[TEST_VERTICES];
     vec3 v[TEST_VERTICES];
     robot_ref_vertices(&p->t, links, g, exact);

@@ -17,7 +17,7 @@ extern "C" {
 typedef struct cprox_edge_query {
   /** what stands; NULL: nothing. Kept by reference */
   const cprox_obstacles *obstacles;
-  /** pairs of geometries and obstacles; NULL: all geometries on links that a joint can move, with all obstacles */
+  /** pairs of geometries and obstacles; NULL: all geometries with all obstacles */
   const cprox_robot_pair *pairs;
   /** their number */
   size_t n_pairs;

@@ -276,7 +276,8 @@ typedef struct cprox_robot_pair {
 /** The robot along a motion. Targets are bodies. Of solid meshes, on links and as targets, the inside counts: what is
  *  wholly inside is in contact. Of level-of-detail bodies, on links and as targets, the mesh is asked where the hull
  * cannot decide; result.lod says whether. pairs: those that are asked about, kept by reference, `other` being targets;
- * NULL: all geometries of links that the motion moves (of a state: that a joint can move), against all targets.
+ *  NULL: all geometries against all targets, whether or not the motion moves them. Pairs whose sides it does not move
+ *  against each other are measured once.
  *
  *  Against obstacles and itself at once: set the kind CPROX_MOVER_ROBOT_WHOLE, and self_pairs where not all pairs with
  *  itself are asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of
@@ -286,8 +287,8 @@ CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_
 
 /** The robot along a motion against itself: its queries have no obstacles (cprox_obstacles_distance(NULL, mover, …)).
  *  pairs: those that are asked about, kept by reference, `other` being geometries; NULL: all on
- *  links with at least two joints between them that can move, of which this motion moves one
- *  (cprox_motion_get_link_info()); of a state, all with two such joints. */
+ *  links with at least two joints between them that can move (cprox_motion_get_link_info()), whether or not this motion
+ *  moves them. */
 CPROX_API cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 struct cprox_obstacles;

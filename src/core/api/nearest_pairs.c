@@ -22,7 +22,6 @@ size_t robot_pairs_list(const query *q, cprox_robot_pair *pairs) {
   for (size_t i = 0; i < robot->n_parts; i++) {
     const robot_part *a = &robot->parts[i];
     if (i > 0 && robot->parts[i - 1].geometry == a->geometry) continue;
-    if (!mover_is_self(&q->mover) && !motion_moves_link(motion, a->link)) continue;
     for (size_t k = 0; !mover_is_self(&q->mover) && k < q->n; k++, n++)
       if (pairs) pairs[n] = (cprox_robot_pair){.geometry = a->geometry, .other = (int32_t)k};
     for (size_t k = 0; mover_is_self(&q->mover) && k < i; k++) {

@@ -3,6 +3,8 @@
 #include <math.h>
 
 #include "base/check.h"
+#include "base/workspace.h"
+#include "kinematics/motion.h"
 #include "problem/section.h"
 #include "problem/validate.h"
 #include "solve/list.h"
@@ -57,12 +59,48 @@ static cprox_status measure(query *q, double t0, double t1, double cutoff, size_
   return failure == CPROX_OK && !query_is_satisfied(q, cutoff, &all) ? CPROX_PRECISION : failure;
 }
 
-/* The same of a robot, whose search knows of segments itself. */
-static cprox_status measure_motion(query *q, double t0, double t1, double cutoff, cprox_profile_interval *interval) {
+/* Of two links that stand still against each other, and move together: where their witness points are at a time. */
+static void carry_witnesses(const query *q, double t, cprox_result *r) {
+  const bool whole = mover_is_whole(&q->mover) && r->obstacle_index >= (int32_t)q->n;
+  if (!mover_is_self(&q->mover) && !whole) return;
+  const cprox_motion *m = q->mover.motion;
+  const size_t link = (size_t)m->robot->given_geometries[r->mover_part].link;
+  double *values = workspace_reserve(q->workspace, WORKSPACE_RANKING, (m->robot->n_variables + 1) * sizeof *values);
+  if (!values) return;
+  vec3 at[2];
+  double turned[2][9];
+  for (int k = 0; k < 2; k++) {
+    cprox_motion_evaluate(m, k ? t : r->t, values);
+    cprox_robot_link_frame(m->robot, values, link, &at[k], turned[k]);
+  }
+  vec3 *const points[2] = {&r->witness_mover, &r->witness_obstacle};
+  for (int k = 0; k < 2; k++) {
+    const vec3 d = vec_sub(*points[k], at[0]);
+    const double *from = turned[0], *to = turned[1];
+    const double own[3] = {from[0] * d.x + from[3] * d.y + from[6] * d.z, from[1] * d.x + from[4] * d.y + from[7] * d.z,
+                           from[2] * d.x + from[5] * d.y + from[8] * d.z};
+    *points[k] = vec_add(
+        at[1], vec(to[0] * own[0] + to[1] * own[1] + to[2] * own[2], to[3] * own[0] + to[4] * own[1] + to[5] * own[2],
+                   to[6] * own[0] + to[7] * own[1] + to[8] * own[2]));
+  }
+  r->t = t;
+}
+
+/* The same of a robot, whose search knows of segments itself. standing: the answer of the pairs that stand still
+ * against each other, the same at all times. */
+static cprox_status measure_motion(query *q, double t0, double t1, double cutoff, const cprox_result *standing,
+                                   cprox_profile_interval *interval) {
   q->t0 = t0, q->t1 = t1;
   cprox_result r;
-  const cprox_status status = query_answer(q, 0, q->n, cutoff, &r);
+  const cprox_status status = query_answer(q, 0, q->n, lesser(standing->upper, cutoff), &r);
   if (status < 0) return status;
+  if (standing->upper < r.upper) {
+    cprox_result there = *standing;
+    carry_witnesses(q, t0, &there);
+    there.t = t0;
+    query_join(&r, &there);
+  }
+  r.lower = lesser(r.lower, standing->lower);
   *interval = (cprox_profile_interval){.t0 = t0,
                                        .t1 = t1,
                                        .lower = r.lower,
@@ -91,9 +129,16 @@ cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size
   const double cutoff = query_cutoff_beyond(&q, horizon);
   size_t piece = 0;
   cprox_status failure = CPROX_OK;
+  cprox_result standing = query_nothing();
+  if (mover.motion && !mover.motion->is_state) {
+    q.choice = PAIRS_STANDING;
+    failure = query_answer(&q, 0, q.n, cutoff, &standing);
+    if (failure < 0) return failure;
+    q.choice = PAIRS_MOVING;
+  }
   for (size_t i = 0; i < n_intervals; i++) {
     workspace_forget_work(workspace);
-    status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], cutoff, &intervals[i])
+    status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], cutoff, &standing, &intervals[i])
                           : measure(&q, breaks[i], breaks[i + 1], cutoff, &piece, &intervals[i]);
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;

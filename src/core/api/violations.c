@@ -137,6 +137,37 @@ static cprox_status look_at(violation_search *s, const piece *p, piece_kind *kin
   return *kind == PIECE_OPEN && (verdict == CPROX_STOPPED || status == CPROX_STOPPED) ? CPROX_STOPPED : CPROX_OK;
 }
 
+/* ---- what stands ---- */
+
+/* Pairs that stand still against each other are within delta all the time, or never; then *left is true, and the others
+ * are left to ask about. */
+static cprox_status look_at_standing(violation_search *s, const piece *all, bool *left) {
+  query *q = &s->q;
+  *left = true;
+  if (q->mover.motion->is_state) return CPROX_OK;
+  double travel;
+  cprox_result r;
+  q->choice = PAIRS_STANDING;
+  const cprox_status status = ask(s, all, s->delta, &r, &travel);
+  q->choice = PAIRS_ALL;
+  if (status < 0) return status;
+  if (r.lower > s->delta) {
+    q->choice = PAIRS_MOVING;
+    return CPROX_OK;
+  }
+  *left = false;
+  const bool violated = r.upper <= s->delta;
+  const cprox_status nearest = ask(s, all, -1.0, &r, &travel);
+  if (nearest < 0) return nearest;
+  if (status == CPROX_STOPPED || nearest == CPROX_STOPPED) s->failure = CPROX_STOPPED;
+  r.t = fmin(fmax(r.t, all->from), all->to);
+  if (violated)
+    add_violated(s, all, &r);
+  else
+    add_open(s, all, &r);
+  return CPROX_OK;
+}
+
 /* ---- the whole ---- */
 
 /* Where to divide a piece; false where it is short enough. Of many segments it is divided at knots, however short: one
@@ -215,7 +246,9 @@ cprox_status list_violations(cprox_mover mover, const cprox_obstacle *targets, s
   violations->count = 0;
   const double t0 = s.q.t0, t1 = s.q.t1;
   const cprox_curve *curve = mover.motion ? NULL : mover.curve;
-  for (size_t i = 0; i < (curve ? curve->n_pieces : 1) && status == CPROX_OK; i++) {
+  bool left = true;
+  if (!curve) status = look_at_standing(&s, &(piece){t0, t1, 0}, &left);
+  for (size_t i = 0; left && i < (curve ? curve->n_pieces : 1) && status == CPROX_OK; i++) {
     const piece whole = {curve ? curve->breaks[i] : t0, curve ? curve->breaks[i + 1] : t1, i};
     if (whole.from < whole.to) status = look_over(&s, &whole);
   }

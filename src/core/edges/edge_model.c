@@ -416,8 +416,7 @@ static size_t list_pairs(const cprox_robot *robot, const cprox_edge_query *q, cp
   }
   size_t n = 0;
   for (size_t g = 0; g < robot->n_geometries; g++)
-    for (size_t k = 0;
-         k < obstacles_count(q->obstacles) && joints_between(robot, robot->given_geometries[g].link, -1) > 0; k++, n++)
+    for (size_t k = 0; k < obstacles_count(q->obstacles); k++, n++)
       if (to) to[n] = (cprox_robot_pair){(int32_t)g, (int32_t)k};
   return n;
 }

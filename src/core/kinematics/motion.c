@@ -374,12 +374,11 @@ cprox_link_info cprox_motion_get_link_info(const cprox_motion *motion, int32_t l
   return info;
 }
 
-bool motion_moves_link(const cprox_motion *motion, int32_t link) {
-  const cprox_link_info to_world = cprox_motion_get_link_info(motion, link, -1);
-  return (motion->is_state ? to_world.n_joints : to_world.n_moved) > 0;
+bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b) {
+  return cprox_motion_get_link_info(motion, link_a, link_b).n_joints >= 2;
 }
 
-bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b) {
-  const cprox_link_info between = cprox_motion_get_link_info(motion, link_a, link_b);
-  return between.n_joints >= 2 && (motion->is_state || between.n_moved >= 1);
+int32_t motion_moving_axis(const cprox_motion *motion, int32_t axis) {
+  while (axis >= 0 && !motion->axis_moves[axis]) axis = motion->robot->axes[axis].parent;
+  return axis;
 }

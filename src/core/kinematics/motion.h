@@ -150,11 +150,12 @@ void motion_place_axis(const cprox_motion *motion, size_t own, double u, size_t 
  * Allocates nothing; untouched on failure. */
 cprox_status motion_set_state(cprox_motion *motion, const double *values, cprox_workspace *workspace);
 
-/* Does the motion move the link? Of a state: could a joint move it? */
-bool motion_moves_link(const cprox_motion *motion, int32_t link);
-/* Can two links come closer in a way that is worth asking for: are there at least two joints that can move between
- * them, and at least one that this motion moves, if it is no state? */
+/* True if at least two joints between the links can move: neighbours in the chain overlap by design. */
 bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b);
+
+/* The last axis above, or the axis itself, that the motion moves; -1: none does. What has the same one stands still
+ * against each other. */
+int32_t motion_moving_axis(const cprox_motion *motion, int32_t axis);
 
 /* The segment that holds a time: the last one that begins at it or before it. */
 size_t motion_segment_at(const cprox_motion *motion, double t);

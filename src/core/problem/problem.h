@@ -9,6 +9,10 @@
 #include "curve_proximity/cprox/query.h"
 #include "problem/validate.h"
 
+/* Which pairs of a robot are asked about: all; those whose sides the motion does not move against each other, whose
+ * distance is the same at all times; or the others. Of a state: all. */
+typedef enum pair_choice { PAIRS_ALL, PAIRS_STANDING, PAIRS_MOVING } pair_choice;
+
 /* What every query asks. */
 typedef struct query {
   cprox_mover mover;
@@ -24,6 +28,7 @@ typedef struct query {
   double t0, t1;       /* that part by the curve's parameter */
   const struct obstacle_bvh
       *set; /* a robot's query: the set that the targets are, by whose boxes they are found; or NULL */
+  pair_choice choice;
 } query;
 
 /* Asks about the whole curve; the arguments must have been checked. */

@@ -423,8 +423,7 @@ static bool other_moves_farther(robot_search *o) {
 }
 
 /* Balls and boxes of all pairs of a node; those that still matter are kept. */
-static cprox_status bound_roughly(robot_search *o, const search_node *node) {
-  const int32_t list = robot_known(node)->list;
+static cprox_status bound_roughly(robot_search *o, const search_node *node, int32_t list) {
   const size_t n = lists_count(&o->lists, list);
   const bool sweeps = o->scene.motion->sweeps != NULL;
   cluster_view view = {.part = -1};
@@ -447,6 +446,65 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   return status;
 }
 
+/* ---- what stands ---- */
+
+/* Raises the bound of a pair to what its distance is, as far as that can be less than the best. */
+static cprox_status measure_standing(robot_search *o, list_entry *entry) {
+  const robot_accuracy accuracy = {.epsilon = ROBOT_GAP_FRACTION * o->goal.epsilon,
+                                   .floor = robot_pruning_bound(o),
+                                   .fraction = EXCESS_FRACTION,
+                                   .depth = o->goal.is_signed};
+  robot_gap gap;
+  const cprox_status status = robot_measure(o, entry->pair, accuracy, &gap);
+  if (status < 0) return status;
+  entry->lower = fmax(entry->lower, gap.lower);
+  const robot_pair *pair = &o->scene.pairs[entry->pair];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (robot_is_convex(moving, standing) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
+  return bound_posture(o, entry, &gap);
+}
+
+static cprox_status settle_entries(robot_search *o) {
+  cprox_status status = CPROX_OK;
+  /* the nearest first: the others need only be known to be farther */
+  for (size_t i = 1; i < o->n_next; i++)
+    if (o->next[i].lower < o->next[0].lower) {
+      const list_entry nearer = o->next[i];
+      o->next[i] = o->next[0], o->next[0] = nearer;
+    }
+  for (size_t i = 0; i < o->n_next && status >= 0; i++) {
+    list_entry entry = o->next[i];
+    const bool open = !robot_is_answered(o) && !robot_is_pruned(o, entry.lower);
+    if (open && !robot_must_end(o)) status = measure_standing(o, &entry);
+    o->dropped = lesser(entry.lower, o->dropped);
+    /* from left to right: it may touch from the beginning on */
+    if (o->goal.limit >= 0.0 && entry.lower <= o->goal.limit) o->unsure = true;
+  }
+  return status;
+}
+
+cprox_status robot_settle_standing(robot_search *o, const search_node *root) {
+  const int32_t list = o->standing;
+  if (list < 0) return CPROX_OK;
+  o->standing = -1;
+  if (o->scene.groups) robot_groups_choose(&o->scene, PAIRS_STANDING);
+  const motion_interval over = robot_interval(root);
+  robot_scene_enter(&o->scene, over.first, over.a, over.a);
+  const robot_sample best = o->best;
+  const search_best bound = o->best_bound;
+  cprox_status status = o->best.pair < 0 ? robot_seed_here(o, list) : CPROX_OK;
+  o->n_next = 0;
+  if (status >= 0) status = bound_roughly(o, root, list);
+  if (status >= 0) status = settle_entries(o);
+  lists_release(&o->lists, list);
+  if (o->scene.groups) robot_groups_choose(&o->scene, PAIRS_MOVING);
+  /* from left to right: what stands as near as epsilon, and does not touch, hides no contact that comes later */
+  const bool in_time = o->goal.order == SEARCH_LEFT_TO_RIGHT;
+  if (in_time && !o->unsure && !isfinite(o->touch_at) && lists_count(&o->lists, robot_known(root)->list) > 0)
+    o->best = best, o->best_bound = bound;
+  return status;
+}
+
 cprox_status robot_bound_node(robot_search *o, search_node *node) {
   robot_node *payload = robot_own(node);
   const int32_t old = payload->list;
@@ -454,7 +512,7 @@ cprox_status robot_bound_node(robot_search *o, search_node *node) {
   const motion_interval over = robot_interval(node), other = robot_other_interval(node);
   robot_scene_enter_both(&o->scene, &over, &other);
   o->n_next = 0;
-  const cprox_status rough = bound_roughly(o, node);
+  const cprox_status rough = bound_roughly(o, node, old);
   if (rough < 0) return rough;
   if (robot_scene_has_two_times(&o->scene)) o->cut_other = other_moves_farther(o);
 

@@ -9,4 +9,8 @@
 /* Bounds all pairs of a node; those that still matter become its own list. */
 cprox_status robot_bound_node(robot_search *o, search_node *node);
 
+/* Measures the pairs whose sides stand still against each other, at the beginning of the root: that is their distance
+ * at all times. No node has them on its list. */
+cprox_status robot_settle_standing(robot_search *o, const search_node *root);
+
 #endif

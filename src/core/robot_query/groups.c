@@ -24,8 +24,10 @@ struct robot_groups {
   group_state *state;
   uint64_t *asked; /* of each group a row of bits: the places of parts that some part of it is asked about with */
   uint64_t
-      *given;   /* of each place the places of the parts that stand in given pairs in which it moves; NULL: all may */
-  size_t words; /* in a row */
+      *given; /* of each place the places of the parts that stand in given pairs in which it moves; NULL: all may */
+  uint64_t *single; /* of each place: its row while all are asked about, */
+  uint64_t *still;  /* and the places of parts that stand still to it; NULL, of a state: all do */
+  size_t words;     /* in a row */
   double *seen; /* of each group and each depth of an axis above it: how far that axis sees it move, as far up as was
                    asked; NULL: there are too many */
   size_t depths;
@@ -92,12 +94,6 @@ static void ask_given(const robot_scene *s, uint64_t *rows) {
   }
 }
 
-/* The last axis above, or the axis itself, that the motion moves; -1: none does. */
-static int32_t moving_axis(const cprox_motion *m, int32_t axis) {
-  while (axis >= 0 && !m->axis_moves[axis]) axis = m->robot->axes[axis].parent;
-  return axis;
-}
-
 /* What carries the joint that ends in the axis. */
 static int32_t axis_before_joint(const cprox_robot *robot, int32_t axis) {
   while (!robot->axes[axis].first_of_joint) axis = robot->axes[axis].parent;
@@ -132,13 +128,14 @@ static void clear_neighbours(const robot_scene *s, uint64_t *rows, int32_t first
   for (int32_t i = from; i < to; i++) clear_bits(rows + (size_t)i * g->words, first, last);
 }
 
-/* Parts that stand still to each other. Their rows begin as one, that of the first of them. */
-static void set_still(const robot_scene *s, uint64_t *rows) {
+/* Parts that stand still to each other. Their rows are one, that of the first of them. */
+static void set_still(const robot_scene *s) {
   const struct robot_groups *g = s->groups;
+  uint64_t *rows = g->still;
   const int32_t n = (int32_t)s->motion->robot->n_parts;
   for (int pass = 0; pass < 2; pass++)
     for (int32_t i = 0; i < n; i++) {
-      int32_t *first = &g->first[moving_axis(s->motion, axis_at(s, i)) + 1];
+      int32_t *first = &g->first[motion_moving_axis(s->motion, axis_at(s, i)) + 1];
       if (*first < 0) *first = i;
       if (pass == 0)
         set_bit(rows + (size_t)*first * g->words, i);
@@ -152,12 +149,8 @@ static void set_still(const robot_scene *s, uint64_t *rows) {
 static void ask_all(const robot_scene *s, uint64_t *rows) {
   const struct robot_groups *g = s->groups;
   const int32_t n = (int32_t)s->motion->robot->n_parts;
-  if (!s->motion->is_state) set_still(s, rows);
   for (int32_t i = 0; i < n; i++)
-    for (size_t w = 0; w < g->words; w++) {
-      uint64_t *word = &rows[(size_t)i * g->words + w];
-      *word = ~*word & bits_between(w, 0, n);
-    }
+    for (size_t w = 0; w < g->words; w++) rows[(size_t)i * g->words + w] = bits_between(w, 0, n);
   for (int32_t i = 0, end = 0; i < n; i = end) {
     end = end_of_axis(s, i);
     g->first[axis_at(s, i) + 1] = i;
@@ -178,13 +171,18 @@ static void clear_other_classes(const robot_scene *s, uint64_t *rows) {
 /* ---- beginning ---- */
 
 /* The rows of single parts become those of their groups, those of halves are united. */
-static void fill_rows(const struct robot_groups *g, const uint64_t *rows) {
+void robot_groups_choose(robot_scene *s, pair_choice choice) {
+  const struct robot_groups *g = s->groups;
   for (size_t i = g->of->n; i-- > 0;) {
     const part_group *group = &g->of->at[i];
     uint64_t *row = row_of(g, i);
-    const uint64_t *a = group->half < 0 ? rows + (size_t)group->first * g->words : row_of(g, (size_t)group->half);
+    const size_t place = (size_t)group->first * g->words;
+    const uint64_t *a = group->half < 0 ? g->single + place : row_of(g, (size_t)group->half);
     const uint64_t *b = group->half < 0 ? a : a + g->words;
     for (size_t w = 0; w < g->words; w++) row[w] = a[w] | b[w];
+    if (group->half >= 0 || !g->still || choice == PAIRS_ALL) continue;
+    const uint64_t flip = choice == PAIRS_STANDING ? 0 : ~(uint64_t)0;
+    for (size_t w = 0; w < g->words; w++) row[w] &= g->still[place + w] ^ flip;
   }
 }
 
@@ -198,7 +196,8 @@ bool robot_groups_begin(robot_scene *s) {
   for (size_t i = 0; i < robot->n_axes; i++)
     depths = robot->axes[i].depth >= depths ? robot->axes[i].depth + 1 : depths;
   const size_t seen = of->n * depths <= MOST_SEEN ? of->n * depths : 0;
-  const size_t bits = (of->n + n + (given ? n : 0)) * words;
+  const bool moves = !s->motion->is_state;
+  const size_t bits = (of->n + n + (given ? n : 0) + (moves ? n : 0)) * words;
   const size_t cleared = sizeof *s->groups + of->n * sizeof *s->groups->state + bits * sizeof *s->groups->asked;
   const size_t bytes = cleared + seen * sizeof *s->groups->seen + (robot->n_axes + 1) * sizeof *s->groups->first;
   struct robot_groups *g = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_GROUPS, bytes);
@@ -209,8 +208,9 @@ bool robot_groups_begin(robot_scene *s) {
   g->words = words;
   g->state = (group_state *)(void *)(g + 1);
   g->asked = (uint64_t *)(void *)(g->state + of->n);
-  uint64_t *rows = g->asked + of->n * words;
+  uint64_t *rows = g->single = g->asked + of->n * words;
   g->given = given ? rows + n * words : NULL;
+  g->still = moves ? rows + (given ? 2 : 1) * n * words : NULL;
   g->seen = seen ? (double *)(void *)(g->asked + bits) : NULL;
   g->depths = depths;
   g->first = (int32_t *)(void *)((char *)g + cleared + seen * sizeof *g->seen);
@@ -220,7 +220,9 @@ bool robot_groups_begin(robot_scene *s) {
   else
     ask_all(s, rows);
   if (s->starts && start_class_is_one_of_many(s->motion)) clear_other_classes(s, rows);
-  fill_rows(g, rows);
+  for (size_t i = 0; i <= robot->n_axes; i++) g->first[i] = -1;
+  if (moves) set_still(s);
+  robot_groups_choose(s, PAIRS_ALL);
   if (!robot_groups_ask(s, (group_pair){{0, 0}})) s->groups = NULL;
   return true;
 }

@@ -22,6 +22,9 @@ enum { GROUP_PAIRS_INSIDE = 3, GROUP_STACK = 2 * GROUP_PAIRS_INSIDE * PART_GROUP
  * out. */
 bool robot_groups_begin(robot_scene *scene);
 
+/* From here on only these pairs are asked about. */
+void robot_groups_choose(robot_scene *scene, pair_choice choice);
+
 /* Whether any part of the one is asked about with any of the other. */
 bool robot_groups_ask(const robot_scene *scene, group_pair pair);
 

@@ -81,7 +81,8 @@ static cprox_status look_at_pair(robot_search *o, int32_t index) {
 cprox_status robot_look_inside(robot_search *o, const search_node *node) {
   if (o->looked_inside || !o->scene.has_solids) return CPROX_OK;
   o->looked_inside = true;
-  const cprox_status status = robot_visit_near(o, node, look_at_pair);
+  cprox_status status = robot_visit_near(o, node, look_at_pair);
+  if (status >= 0 && !isfinite(o->touch_at)) status = robot_visit_near_standing(o, node, look_at_pair);
   if (o->unsure) o->dropped = fmin(o->dropped, 0.0);
   return status;
 }

@@ -241,8 +241,7 @@ static cprox_status try_groups(robot_search *o, const list_entry *entry, nearest
   return CPROX_OK;
 }
 
-/* Measures the pair whose balls and boxes come closest where the scene is. */
-static cprox_status seed_here(robot_search *o, int32_t list) {
+cprox_status robot_seed_here(robot_search *o, int32_t list) {
   double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
   if (o->best.pair >= 0) most = lesser(most, o->goal.cutoff); /* one distance is always measured */
   const size_t n = lists_count(&o->lists, list);
@@ -309,7 +308,7 @@ static bool wants_halves(robot_search *o, int32_t list, const motion_interval *o
 
 /* In the middle of a span, or of its halves, `places` at most. */
 static cprox_status seed_span(robot_search *o, int32_t list, const motion_interval *over, size_t places) {
-  if (!wants_halves(o, list, over, places)) return seed_here(o, list);
+  if (!wants_halves(o, list, over, places)) return robot_seed_here(o, list);
   const cprox_motion *m = o->scene.motion;
   const double t0 = motion_time(m, over->first, over->a), t1 = motion_time(m, over->last - 1, over->b);
   const size_t knot =
@@ -372,14 +371,12 @@ cprox_status robot_visit_near_groups(robot_search *o, group_pair groups, robot_p
   return status;
 }
 
-cprox_status robot_visit_near(robot_search *o, const search_node *node, robot_pair_visit *visit) {
-  const robot_node *payload = robot_known(node);
+static cprox_status visit_near_list(robot_search *o, int32_t list, robot_pair_visit *visit) {
   const double known = o->touch_at;
-  const size_t n = lists_count(&o->lists, payload->list);
-  robot_scene_enter(&o->scene, payload->first, payload->a, payload->a);
+  const size_t n = lists_count(&o->lists, list);
   cprox_status status = CPROX_OK;
   for (size_t k = 0; k < n && status >= 0 && o->touch_at == known; k++) {
-    const list_entry entry = lists_at(&o->lists, payload->list)[k];
+    const list_entry entry = lists_at(&o->lists, list)[k];
     if (entry.pair >= 0)
       status = visit(o, entry.pair);
     else if (entry.pair == LIST_CLUSTER)
@@ -390,9 +387,26 @@ cprox_status robot_visit_near(robot_search *o, const search_node *node, robot_pa
   return status;
 }
 
+cprox_status robot_visit_near(robot_search *o, const search_node *node, robot_pair_visit *visit) {
+  const robot_node *payload = robot_known(node);
+  robot_scene_enter(&o->scene, payload->first, payload->a, payload->a);
+  return visit_near_list(o, payload->list, visit);
+}
+
+cprox_status robot_visit_near_standing(robot_search *o, const search_node *root, robot_pair_visit *visit) {
+  if (o->standing < 0) return CPROX_OK;
+  const robot_node *payload = robot_known(root);
+  robot_scene_enter(&o->scene, payload->first, payload->a, payload->a);
+  if (o->scene.groups) robot_groups_choose(&o->scene, PAIRS_STANDING);
+  const cprox_status status = visit_near_list(o, o->standing, visit);
+  if (o->scene.groups) robot_groups_choose(&o->scene, PAIRS_MOVING);
+  return status;
+}
+
 cprox_status robot_seed(robot_search *o, const search_node *node) {
   const motion_interval over = robot_interval(node);
   const int32_t list = robot_known(node)->list;
+  if (lists_count(&o->lists, list) == 0) return CPROX_OK;
   if (o->scene.motion->is_state) return seed_span(o, list, &over, 1); /* it is the same everywhere */
   const size_t n =
       lists_count(&o->lists, list) + (o->scene.groups ? GROUP_SEED_TESTS * o->scene.motion->robot->n_parts : 0);
@@ -406,7 +420,7 @@ cprox_status robot_seed(robot_search *o, const search_node *node) {
       robot_scene_enter(&o->scene, segment, u, u);
     else
       robot_scene_enter_place(&o->scene, segment, u);
-    status = seed_here(o, list);
+    status = robot_seed_here(o, list);
   }
   return status;
 }

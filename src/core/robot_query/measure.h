@@ -59,8 +59,9 @@ typedef cprox_status robot_pair_visit(robot_search *o, int32_t index);
 /* Visits pairs of two groups that may touch where the scene is, until contact is proven. */
 cprox_status robot_visit_near_groups(robot_search *o, group_pair groups, robot_pair_visit *visit);
 
-/* The same of the pairs of a node, where that begins. */
+/* The same of the pairs of a node, where that begins; and of those that stand still against each other. */
 cprox_status robot_visit_near(robot_search *o, const search_node *node, robot_pair_visit *visit);
+cprox_status robot_visit_near_standing(robot_search *o, const search_node *root, robot_pair_visit *visit);
 
 /* The distance of a pair is 0: the point, of the world, is in both where the scene is. */
 void robot_keep_common(robot_search *o, int32_t index, vec3 point);
@@ -70,6 +71,9 @@ size_t robot_knot_near(const cprox_motion *m, size_t first, size_t last, size_t 
 
 /* Blocks of the motion's tree are aligned: spans that begin and end at multiples of this are made of few of them. */
 size_t robot_knot_step(size_t segments);
+
+/* Measures the pair of a list whose balls and boxes come closest where the scene is. */
+cprox_status robot_seed_here(robot_search *o, int32_t list);
 
 /* A few places, so that the search begins with a distance. */
 cprox_status robot_seed(robot_search *o, const search_node *node);

@@ -5,6 +5,7 @@
 
 #include "broadphase/obstacle_set.h"
 #include "robot_query/bound_node.h"
+#include "robot_query/groups.h"
 #include "robot_query/inside.h"
 #include "robot_query/measure.h"
 #include "robot_query/settle_flight.h"
@@ -27,22 +28,49 @@ static search_node node_of(const robot_search *o, const search_node *parent, con
   return node;
 }
 
+/* To one of two lists, which have so many by now. */
+static void add_entry(const robot_search *o, int32_t standing, int32_t moving, size_t n[2], bool stands,
+                      list_entry entry) {
+  lists_at(&o->lists, stands ? standing : moving)[n[stands]++] = entry;
+}
+
 bool robot_search_root(robot_search *o, const motion_interval *over, const motion_interval *other, search_node *root) {
   *root = (search_node){.lower = -INFINITY};
-  const obstacle_bvh *set = o->scene.q->set;
-  const size_t n_pairs = o->scene.n_pairs, n_parts = set && set->boxes ? o->scene.motion->robot->n_parts : 0;
-  const int32_t slot = lists_take(&o->lists, n_pairs + n_parts + 1);
-  if (slot < 0) return false;
-  robot_own(root)->list = slot;
-  list_entry *entry = lists_at(&o->lists, slot);
-  for (size_t i = 0; i < n_pairs; i++)
-    entry[i] = (list_entry){.lower = robot_scene_apart(&o->scene, &o->scene.pairs[i]), .pair = (int32_t)i};
-  size_t n = n_pairs;
+  robot_scene *s = &o->scene;
+  const obstacle_bvh *set = s->q->set;
+  const size_t n_pairs = s->n_pairs, n_parts = set && set->boxes ? s->motion->robot->n_parts : 0;
+  const size_t room = n_pairs + n_parts + 1;
+
+  /* what stands is settled once; but where others as near as the nearest are looked for, with the nodes of these */
+  const bool together = s->motion->is_state || o->goal.beyond > 0.0;
+  const int32_t moving = lists_take(&o->lists, room), standing = together ? moving : lists_take(&o->lists, room);
+  if (moving < 0 || standing < 0) return false;
+  const pair_choice choice = together ? PAIRS_ALL : s->q->choice;
+  size_t n[2] = {0, 0};
+  o->n_standing = 0;
+  for (size_t i = 0; i < n_pairs; i++) {
+    o->n_standing += !together && robot_scene_stands(s, &s->pairs[i]);
+    add_entry(o, standing, moving, n, robot_scene_stands(s, &s->pairs[i]) && !together,
+              (list_entry){.lower = robot_scene_apart(s, &s->pairs[i]), .pair = (int32_t)i});
+  }
   for (size_t i = 0; i < n_parts; i++)
-    if (robot_scene_asks(&o->scene, i))
-      entry[n++] = (list_entry){.lower = -INFINITY, .pair = LIST_CLUSTER, .part = (int32_t)i};
-  if (o->scene.groups) entry[n++] = (list_entry){.lower = -INFINITY, .pair = LIST_GROUPS}; /* all parts with all */
-  lists_set_count(&o->lists, slot, n);
+    if (robot_scene_asks(s, i))
+      add_entry(o, standing, moving, n, s->parts[i].carrier < 0 && !together,
+                (list_entry){.lower = -INFINITY, .pair = LIST_CLUSTER, .part = (int32_t)i});
+  for (int still = 0; s->groups && still <= !together; still++) { /* all parts with all */
+    robot_groups_choose(s, together ? PAIRS_ALL : still ? PAIRS_STANDING : PAIRS_MOVING);
+    if (robot_groups_ask(s, (group_pair){{0, 0}}))
+      add_entry(o, standing, moving, n, still, (list_entry){.lower = -INFINITY, .pair = LIST_GROUPS});
+  }
+  if (s->groups && !together) robot_groups_choose(s, PAIRS_MOVING);
+  lists_set_count(&o->lists, moving, choice == PAIRS_STANDING ? 0 : n[0]);
+  robot_own(root)->list = moving;
+  if (!together && (n[1] == 0 || choice == PAIRS_MOVING)) {
+    lists_release(&o->lists, standing);
+  } else if (!together) {
+    lists_set_count(&o->lists, standing, n[1]);
+    o->standing = standing;
+  }
   *root = node_of(o, root, over, other);
   return true;
 }
@@ -65,11 +93,20 @@ static void begin_node(robot_search *o) {
   o->cut_other = o->cut = false;
 }
 
+/* What stands, unless more need not be known. */
+static cprox_status settle(robot_search *o, const search_node *node) {
+  const bool known = robot_is_answered(o) || o->touch_at <= node->start;
+  return known ? CPROX_OK : robot_settle_standing(o, node);
+}
+
 static cprox_status look_at(robot_search *o, search_node *node) {
   bool served = false;
   o->nodes++;
   begin_node(o);
   cprox_status status = robot_look_inside(o, node);
+  /* from left to right and before a flight at once, else as soon as something is known of what moves */
+  const bool at_once = o->goal.order == SEARCH_LEFT_TO_RIGHT || o->scene.n_pairs - o->n_standing == 1;
+  if (status >= 0 && at_once) status = settle(o, node);
   const bool known = robot_is_answered(o) || o->touch_at <= node->start;
   if (status >= 0 && !known) status = robot_bound_flight(o, node, &served);
   if (status < 0 || known || served) return status;
@@ -78,6 +115,7 @@ static cprox_status look_at(robot_search *o, search_node *node) {
     /* contact at the beginning answers at once; halves of halves would only close in on it */
     if (o->goal.order == SEARCH_LEFT_TO_RIGHT) status = robot_visit_near(o, node, robot_measure_if_near);
     if (status >= 0 && !isfinite(o->touch_at) && !others_seeded(o)) status = robot_seed(o, node);
+    if (status >= 0) status = settle(o, node);
   }
   const bool begins_in_contact = o->touch_at <= node->start;
   return status == CPROX_OK && !robot_is_answered(o) && !begins_in_contact ? robot_bound_node(o, node) : status;
@@ -165,6 +203,8 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->best = o->touch = (robot_sample){.pair = -1};
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->dropped = o->scene.beyond, o->touch_at = INFINITY;
+  o->standing = -1;
+  o->n_standing = 0;
   o->seeded = o->refined = o->looked_inside = o->unsure = false;
   o->gaps = o->planes = o->balls = o->nodes = o->flights = o->work = 0;
   o->next = NULL, o->n_next = 0;

@@ -59,6 +59,8 @@ typedef struct robot_search {
   double dropped;     /* the least lower bound of pairs that were dropped from a list */
   robot_sample touch; /* left to right: the earliest place where contact is proven */
   double touch_at;
+  int32_t standing;  /* the list of pairs whose sides stand still against each other; -1: none, or they are settled */
+  size_t n_standing; /* so many of the scene's pairs were on it */
   bool seeded;
   bool looked_inside;    /* of solid meshes, where the motion begins; */
   bool unsure;           /* something touches one there, and may be inside */

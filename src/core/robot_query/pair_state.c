@@ -194,7 +194,7 @@ static void list_geometry(const robot_scene *s, int32_t geometry, int32_t other,
 }
 
 bool robot_scene_asks(const robot_scene *s, size_t part) {
-  return is_of_class(s, part, -1) && motion_moves_link(s->motion, s->motion->robot->parts[part].link);
+  return is_of_class(s, part, -1);
 }
 
 /* All pairs that are worth asking for. */
@@ -356,7 +356,7 @@ bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *
     if (robot_scene_add_obstacles(s, q->set ? q->set->unbounded[i] : first + i) < 0) return false;
   s->has_solids = s->has_solids || (q->set && q->set->has_solids);
   for (size_t i = 0; i < robot->n_parts; i++) {
-    s->parts[i] = (part_state){.body = part_body(q, i)};
+    s->parts[i] = (part_state){.body = part_body(q, i), .carrier = motion_moving_axis(s->motion, robot->parts[i].axis)};
     s->has_solids = s->has_solids || s->parts[i].body.winding;
   }
 

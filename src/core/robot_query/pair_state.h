@@ -32,6 +32,7 @@ typedef struct robot_pair {
 typedef struct part_state {
   uint32_t placed, displaced, moved; /* the node for which `body.side.at`, `displacement` and `motion` were found */
   robot_body body;
+  int32_t carrier;     /* the last axis above it that the motion moves; -1: it stands in the world */
   double displacement; /* that of the motion */
   uint32_t swept;      /* the node for which `sweep` was found */
   sweep_box sweep;
@@ -124,6 +125,12 @@ double robot_scene_apart(const robot_scene *scene, const robot_pair *pair);
 
 /* A pair of two parts of the robot, of which nothing is known. */
 robot_pair robot_scene_self_pair(const robot_scene *scene, int32_t moving, int32_t standing);
+
+/* Whether the motion does not move the sides of a pair against each other. */
+static inline bool robot_scene_stands(const robot_scene *scene, const robot_pair *pair) {
+  const int32_t other = pair->self ? scene->parts[pair->standing].carrier : -1;
+  return scene->parts[pair->moving].carrier == other;
+}
 
 /* Whether the robot's part is asked about, against obstacles. */
 bool robot_scene_asks(const robot_scene *scene, size_t part);

@@ -15,6 +15,7 @@ typedef struct ranking {
   robot_scene scene;
   pair_rank *rank; /* in the order of the pairs */
   size_t n;
+  bool looked; /* at one piece: what stands is as far on all others */
   bool stopped;
 } ranking;
 
@@ -42,8 +43,10 @@ static void look_over(ranking *r, const motion_interval *over) {
   size_t at = 0;
   for (size_t i = 0; i < r->n; i++) {
     const size_t parts = parts_of_pair(r, &r->q->mover.pairs[i]);
-    for (size_t k = 0; k < parts; k++) look_at_parts(s, &s->pairs[at++], &r->rank[i]);
+    for (size_t k = 0; k < parts; k++, at++)
+      if (!r->looked || !robot_scene_stands(s, &s->pairs[at])) look_at_parts(s, &s->pairs[at], &r->rank[i]);
   }
+  r->looked = true;
   r->stopped = r->stopped || (r->q->options.stop && r->q->options.stop(r->q->options.stop_user));
 }
 

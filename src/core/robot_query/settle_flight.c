@@ -355,7 +355,9 @@ static bool is_one_flight(const robot_search *o, const search_node *node, int32_
   const int32_t list = robot_known(node)->list;
   const motion_interval over = robot_interval(node);
   /* among several pairs a node of one segment would be ahead of spans, which have no control poses */
-  if (o->scene.n_pairs != 1 || o->scene.groups || o->scene.q->set || robot_scene_has_two_times(&o->scene)) return false;
+  if (o->scene.n_pairs - o->n_standing != 1 || o->scene.groups || o->scene.q->set ||
+      robot_scene_has_two_times(&o->scene))
+    return false;
   if (lists_count(&o->lists, list) != 1 || motion_is_span(&over) || o->scene.motion->is_state) return false;
   *pair = lists_at(&o->lists, list)->pair;
   if (*pair < 0) return false;

@@ -74,6 +74,29 @@ static bool is_moved(const gradient_search *g) {
          cprox_motion_get_link_info(g->o.scene.motion, robot->parts[pair->moving].link, other).n_moved > 0;
 }
 
+static bool is_in(const motion_given *given, int32_t variable) {
+  for (size_t k = 0; k < given->n; k++)
+    if (given->variables[k] == variable) return true;
+  return false;
+}
+
+/* Could other values of what the motion is made of move the two against each other? */
+static bool is_given(const gradient_search *g) {
+  const cprox_motion *m = g->o.scene.motion;
+  const cprox_robot *robot = m->robot;
+  const robot_pair *pair = &g->pair.pair;
+  const int32_t ends[2] = {robot->parts[pair->moving].axis, pair->self ? robot->parts[pair->standing].axis : -1};
+  const int32_t common = robot_common_axis(robot, ends[0], ends[1]);
+  for (int k = 0; k < 2; k++)
+    for (int32_t axis = ends[k]; axis != common; axis = robot->axes[axis].parent) {
+      const int32_t variable = robot->axes[axis].variable;
+      if (is_in(&m->given, variable)) return true;
+      for (size_t i = 0; i < m->n_joined; i++)
+        if (is_in(&m->joined[i], variable)) return true;
+    }
+  return false;
+}
+
 /* The spot at a time of the motion. */
 static cprox_status measure_at(gradient_search *g, double t, bool from_left, motion_spot *spot) {
   const cprox_motion *m = g->o.scene.motion;
@@ -167,6 +190,8 @@ static cprox_status settle(gradient_search *g) {
   }
   if (status < 0) return status;
   if (!good) end(g, gap->upper < 0.0 ? "there is more than one way out" : "the nearest points are not the only ones");
+  if (good && !is_moved(g) && !g->o.scene.motion->is_state && is_given(g))
+    end(g, "the distance is as small on an interval of the motion");
   g->from = -INFINITY, g->to = INFINITY, g->widest = 0, g->nodes = 0;
   return is_moved(g) && !g->ended ? find_neighbourhood(g, 0) : CPROX_OK;
 }
