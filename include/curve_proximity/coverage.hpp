@@ -25,6 +25,9 @@ enum class Gap {
 /** Its status: "rounded", "partial", "empty", "unknown", "stale". */
 const char *gapName(Gap gap);
 
+/** A sentence about it for rows that have no message of their own. */
+const char *gapText(Gap gap);
+
 /** The gap of a status; none for a status that is none of the above. */
 std::optional<Gap> gapFromName(const std::string &status);
 

@@ -216,7 +216,7 @@ struct ClearanceRow {
 
 /** The least distance of the robot along its motion and its derivatives, by one search
  *  (cprox_robot_distance_gradient()). The guarantees of askEnvironment() and askSelf(). Without anything to measure
- *  lower and upper are infinity and valid is false. With signed_distance overlaps have a gradient, too: it leads out.
+ *  valid is false, as with any gap. With signed_distance overlaps have a gradient, too: it leads out.
  *  Takes no other query than DISTANCE, no per_object and no certificate; throws Error for those, and where the core
  *  refuses. Cost: about 1.5 distances. */
 ClearanceRow clearanceGradient(const RobotMotion &motion, RobotPairs pairs, const Query &query, Workspace &workspace);
@@ -233,7 +233,8 @@ struct RowLimits {
 struct ClearanceRows {
   std::vector<ClearanceRow> rows; /**< of one pair after those of another; of a pair the nearest first */
   cprox_status status = CPROX_OK; /**< CPROX_BUDGET: rows are left out, or a search ended early */
-  std::string message;            /**< why the status is not CPROX_OK */
+  std::string message;            /**< why the status is not CPROX_OK, or there is a gap */
+  std::optional<Gap> gap;         /**< the rows do not cover all that was given: others may be missing */
 };
 
 /** For each pair of collision elements that comes within the horizon: its least distances along the motion, with their

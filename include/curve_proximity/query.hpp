@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <curve_proximity/core.hpp>
+#include <curve_proximity/coverage.hpp>
 #include <curve_proximity/description.hpp>
 #include <curve_proximity/robot.hpp>
 #include <curve_proximity/scene.hpp>
@@ -41,6 +42,12 @@ struct Query {
    * out. Else every link with geometry counts. Refused for curves. */
   bool moving_only = false;
 
+  /** Nothing to measure is an answer: infinity, and clear. Otherwise it is Gap::EMPTY. */
+  bool allow_empty = false;
+
+  /** What the caller knows that is missing or old, beside what scene, robot and motion know themselves. */
+  Coverage coverage;
+
   /** Who measures the pair of each answer again; null: nobody. Profiles and violations name no pair: they have none. */
   std::shared_ptr<const SecondOpinions> second_opinion;
 };
@@ -55,10 +62,15 @@ struct Answer {
 
   /** As the core gives it; obstacle_index is the number of the shape in object b (or of the collision element in link
    *  b), -1 for none. lower and upper hold for the whole set that was asked about, the rounding of poses and hulls
-   *  included (where the bodies as placed touch or overlap, upper is 0). Nothing to measure: status CPROX_OK,
-   *  lower = upper = infinity; verdict clear for TOLERANCE and COLLISION. Not answered: status < 0, and the rest
-   *  means nothing. */
+   *  included (where the bodies as placed touch or overlap, upper is 0). Not answered: status < 0, and the rest
+   *  means nothing. Nothing to measure: with Query::allow_empty status CPROX_OK, lower = upper = infinity, verdict
+   *  clear for TOLERANCE and COLLISION; otherwise a gap.
+   *
+   *  With a gap lower is 0 (of a signed distance -infinity), t_contact_lower NaN, and clear is undecided; upper is that
+   *  of what was measured. violated stays if geometry can only be missing. */
   cprox_result result{};
+
+  std::optional<Gap> gap; /**< the answer does not cover all that was given; message says what */
 
   std::string a;          /**< the moving object: the curve's id */
   std::string b;          /**< the nearest object or link; empty where there is none */
@@ -67,7 +79,7 @@ struct Answer {
    *  so, or because a robot overlaps it and a signed distance was asked for. */
   bool by_hull = false;
   double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */
-  std::string status;      /**< cprox_status_name(result.status) */
+  std::string status;      /**< gapName(gap) if there is a gap, else cprox_status_name(result.status) */
   /** No pair, but the last row of a list of nearest pairs that was cut by a budget or a stop: what the list does not
    *  name is at least result.lower away, and may be nearer than what it names, or than the limit of the list. */
   bool is_unlisted = false;
@@ -172,9 +184,9 @@ struct PairLimits {
 };
 
 /** The shapes of objects and links that come closest to a curve, nearest first. Each answer is that to DISTANCE for its
- *  shape alone. Where a budget or a stop left the list incomplete, its last answer says so: Answer::is_unlisted. Takes
- * no other query than DISTANCE, no per_object and no certificate; throws Error for those, and where the core refuses.
- */
+ *  shape alone. Where a budget or a stop left the list incomplete, its last answer says so: Answer::is_unlisted. With a
+ *  gap and no pair there is one answer with b empty. Takes no other query than DISTANCE, no per_object and no
+ *  certificate; throws Error for those, and where the core refuses. */
 std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &curve, const PairLimits &limits,
                                  const Query &query, Workspace &workspace);
 
@@ -194,6 +206,8 @@ struct ClearanceInterval {
 
   /** CPROX_OK: as narrow as options ask for, or beyond the horizon; else what the core says of the whole profile. */
   cprox_status status = CPROX_OK;
+
+  std::optional<Gap> gap; /**< the profile does not cover all that was given: lower is 0 */
 };
 
 /** The clearance profile: the least distance on each interval between two breaks, which ascend within the domain of the
@@ -255,6 +269,9 @@ struct Violations {
   cprox_status status = CPROX_OK; /**< CPROX_BUDGET, CPROX_STOPPED: the last one goes on to the end, all else is true */
   std::string message;            /**< why the status is not CPROX_OK */
   bool measured = true;           /**< false: there was nothing to measure against */
+  /** The list does not cover all that was given: each time outside of what is violated is undecided, and message says
+   *  why. */
+  std::optional<Gap> gap;
 };
 
 /** All intervals in which the curve is within query.delta of something: where does it enter, where does it leave?

@@ -59,6 +59,7 @@ const std::map<std::string, Option> &options() {
       {"--max-nodes", {true, {Action::CURVES, Action::REPORT, Action::PAIRS, Action::CERTIFY}}},
       {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS, Action::CERTIFY, Action::CHECK}}},
       {"--per-object", {false, {Action::CURVES}}},
+      {"--allow-empty", {false, {Action::CURVES, Action::REPORT, Action::CERTIFY}}},
       {"--links", {true, {Action::CURVES, Action::REPORT}}},
       {"--moving-links-only", {false, {Action::CURVES, Action::REPORT}}},
       {"--objects", {true, {Action::CURVES, Action::REPORT}}},
@@ -233,6 +234,7 @@ void readQuery(const Words &words, const Command &command, Query &query) {
       throw BadUsage("--certificate takes no " + std::string(name) + ": it proves an answer about all of them");
   query.query_type = command.query_type;
   query.per_object = words.has("--per-object");
+  query.allow_empty = words.has("--allow-empty");
   query.options.signed_distance = words.has("--signed");
   const bool has_depth = command.query_type == QueryType::DISTANCE && command.asking != Asking::PROFILE;
   if (words.has("--signed") && !has_depth) throw BadUsage("--signed is for 'distance' and 'nearest'");
@@ -305,8 +307,9 @@ void readAsking(const Words &words, const Command &command, Arguments &out) {
 
 /* Curves against curves: there is no scene, and a row has one answer. */
 void readAgainst(const Words &words, Arguments &out) {
-  for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings",
-                           "--mesh-tolerance", "--max-lod", "--per-link", "--links", "--objects", "--second-opinion"}) {
+  for (const char *name :
+       {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings", "--allow-empty",
+        "--mesh-tolerance", "--max-lod", "--per-link", "--links", "--objects", "--second-opinion"}) {
     if (words.has(name))
       throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
   }
@@ -603,6 +606,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
   --per-object      rows for each curve and object or link, not for the nearest alone
   --per-link        with --trajectory: rows for each link and each object that a link carries
+  --allow-empty     nothing to measure is an answer: clear, at an infinite distance. Without it such a row has the status
+                    'empty', and its verdict is undecided
   --objects LIST    these objects alone, "shelf, table"; with --curves and --links also those links
   --links LIST      with --curves: these links of --robot alone. With --trajectory: what these links do, or objects that they
                     carry; with --self pairs of which they are one
@@ -651,7 +656,8 @@ difference), violated (one does not, by more than four times what a smaller step
 and its column message says why.
 Exit code of every command: 0 everything is answered, and nothing of it is violated, undecided or unproven; 1 a verdict is
 violated, or 'check' finds a certificate that does not prove its answer; 2 a row has no answer, there is no row, or the
-command line or a file cannot be used; 3 a verdict is undecided, or a second opinion disagrees; 130 interrupted. Of several, 2 comes before 1, and 1 before
+command line or a file cannot be used; 3 a verdict is undecided, an answer does
+not cover all that was given, or a second opinion disagrees; 130 interrupted. Of several, 2 comes before 1, and 1 before
 3. Only 0 says that all is well, so that a shell can gate on it. Of 'certify' 0 says that its shards are whole, whatever their
 rows say: 'merge' tells.
 )";

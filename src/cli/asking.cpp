@@ -32,7 +32,8 @@ void addProfile(const Subject &subject, std::vector<ClearanceInterval> intervals
     }
     if (interval.b.empty()) interval.b = subject.object;
     out.stopped = out.stopped || interval.status == CPROX_STOPPED;
-    out.against_nothing = out.against_nothing || std::isinf(interval.lower);
+    out.against_nothing = out.against_nothing || interval.gap == Gap::EMPTY || std::isinf(interval.lower);
+    out.undecided = out.undecided || interval.gap;
     out.text += profileLine(subject.id, subject.kind, interval);
   }
 }
@@ -45,7 +46,7 @@ void addViolations(const Subject &subject, const Violations &found, Outcome &out
     if (!subject.link.empty() && one.b == subject.link) std::swap(one.a, one.b);
     out.violated = out.violated || one.verdict == CPROX_VERDICT_VIOLATED;
     out.undecided = out.undecided || one.verdict == CPROX_VERDICT_UNDECIDED;
-    out.text += violationLine(subject.id, subject.kind, found.status, one, found.message);
+    out.text += violationLine(subject.id, subject.kind, found, one);
   }
 }
 

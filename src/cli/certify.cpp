@@ -53,7 +53,8 @@ void addAnswer(std::size_t row, const std::string &id, const Answer &answer, Que
     out.complaints.push_back("row " + std::to_string(row) + " (id '" + id + "'): " + answer.message);
     return;
   }
-  line += std::string(cprox_status_name(result.status)) + ',';
+  line += answer.status + ',';
+  out.undecided = out.undecided || answer.gap;
   if (query_type != QueryType::DISTANCE) {
     line += cprox_verdict_name(result.verdict);
     out.violated = out.violated || result.verdict == CPROX_VERDICT_VIOLATED;
@@ -64,7 +65,7 @@ void addAnswer(std::size_t row, const std::string &id, const Answer &answer, Que
   line += ',' + field(answer.a) + ',' + field(answer.b) + ',' + cprox_lod_name(result.lod) + ',' +
           std::to_string(result.nodes) + ',' + std::to_string(result.distance_queries) + ',' + field(answer.message);
   out.text += line + '\n';
-  out.against_nothing = out.against_nothing || std::isinf(result.lower);
+  out.against_nothing = out.against_nothing || answer.gap == Gap::EMPTY || std::isinf(result.lower);
 }
 
 /* A trajectory file: JSON where it begins with a brace, else YAML. */
@@ -112,8 +113,10 @@ Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Arg
     query.query_type = row.query_type;
     query.delta = row.delta;
     Outcome out;
+    Query around = query; // a row about the robot itself that names no scene means that there is none
+    around.allow_empty = query.allow_empty || (row.self && row.files.scene.empty());
     const std::vector<std::string> ways = longWays(*world.snapshot->robot(), trajectory);
-    addAnswer(manifest.number, id, withWays(askEnvironment(motion, query, workspace).front(), ways), row.query_type,
+    addAnswer(manifest.number, id, withWays(askEnvironment(motion, around, workspace).front(), ways), row.query_type,
               out);
     if (row.self)
       addAnswer(manifest.number, id, withWays(askSelf(motion, query, workspace), ways), row.query_type, out);
@@ -133,7 +136,8 @@ std::string fingerprintOf(const Dataset &dataset, const Arguments &arguments) {
   const cprox_options &options = arguments.query.options;
   char text[120];
   std::snprintf(text, sizeof text, "%a %u %d %d", options.epsilon, static_cast<unsigned>(options.max_nodes),
-                static_cast<int>(options.max_lod), arguments.shortest_way ? 1 : 0);
+                static_cast<int>(options.max_lod),
+                (arguments.shortest_way ? 1 : 0) + (arguments.query.allow_empty ? 2 : 0));
   Hasher hasher;
   hasher.add(std::string(CPROX_VERSION)).add(std::string(kColumns)).add(std::string(text)).add(dataset.digest());
   return toHex(hasher.finish());

@@ -115,6 +115,7 @@ int answerCurves(const Arguments &arguments, Console &console) {
   const World world = readStandingWorld(arguments, "a query of curves", warnings);
   Query query = arguments.query;
   query.options.stop = interrupted;
+  query.coverage = warnings.coverage();
   query.second_opinion = secondOpinions(arguments, world.resources);
   const std::vector<Side> sides = sidesOf(world, arguments, query);
 

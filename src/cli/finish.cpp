@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "finish.h"
 
-#include <cmath>
+#include <limits>
 
 #include "failure.h"
 
@@ -17,7 +17,9 @@ void tellTimings(const std::vector<std::string> &sentences, Console &console) {
 }
 
 void noteVerdict(const ResultRow &row, Outcome &outcome) {
-  outcome.against_nothing = outcome.against_nothing || (row.result.status >= 0 && std::isinf(row.result.lower));
+  const bool nothing = row.gap == Gap::EMPTY || row.result.lower == std::numeric_limits<double>::infinity();
+  outcome.against_nothing = outcome.against_nothing || (row.result.status >= 0 && nothing);
+  outcome.undecided = outcome.undecided || row.gap;
   outcome.disputed = outcome.disputed || row.second_opinion.verdict == SecondOpinion::DISAGREES;
   if (!row.has_verdict || row.result.status < 0) return;
   outcome.violated = outcome.violated || row.result.verdict == CPROX_VERDICT_VIOLATED;
@@ -33,7 +35,7 @@ int finish(const Tally &tally, Console &console) {
   }
   if (tally.against_nothing)
     console.say("warning: " + std::to_string(tally.against_nothing) + " of " + std::to_string(tally.rows) +
-                " rows were measured against nothing");
+                " rows were measured against nothing (--allow-empty says that this is meant)");
   if (tally.disputed)
     console.say("warning: the second opinion disagrees in " + std::to_string(tally.disputed) + " of " +
                 std::to_string(tally.rows) + " rows (column second_opinion)");

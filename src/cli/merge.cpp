@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <map>
 
+#include <curve_proximity/coverage.hpp>
+
 #include "commands.h"
 #include "csv.h"
 #include "failure.h"
@@ -21,6 +23,7 @@ struct Shard {
 
 struct Counts {
   std::size_t rows = 0;
+  std::size_t uncovered = 0; /* rows that do not cover what was given */
   std::map<std::string, std::size_t> verdicts, statuses;
 };
 
@@ -32,6 +35,7 @@ void count(const std::string &row, Counts &counts) {
   ++counts.rows;
   ++counts.statuses[fields[kStatus]];
   if (!fields[kVerdict].empty()) ++counts.verdicts[fields[kVerdict]];
+  if (gapFromName(fields[kStatus])) ++counts.uncovered;
 }
 
 Shard readOne(const std::string &path, Counts &counts) {
@@ -85,6 +89,7 @@ std::map<std::size_t, Shard> readAll(const std::string &folder, Counts &counts) 
       throw BadUsage(path + ": has other rows than " + it->second.path + ", which is the same shard");
     if (!is_new) continue;
     counts.rows += own.rows;
+    counts.uncovered += own.uncovered;
     for (const auto &[name, n] : own.verdicts) counts.verdicts[name] += n;
     for (const auto &[name, n] : own.statuses) counts.statuses[name] += n;
   }
@@ -156,10 +161,11 @@ int mergeShards(const Arguments &arguments, Console &console) {
   const std::size_t violated = of(counts.verdicts, "violated"), undecided = of(counts.verdicts, "undecided");
   console.say(std::to_string(counts.rows) + " rows: " + std::to_string(of(counts.verdicts, "clear")) + " clear, " +
               std::to_string(violated) + " violated, " + std::to_string(undecided) + " undecided, " +
-              std::to_string(failed) + " failed, " + std::to_string(missing) + " missing");
+              std::to_string(failed) + " failed, " + std::to_string(missing) + " missing" +
+              (counts.uncovered ? ", " + std::to_string(counts.uncovered) + " not covered" : ""));
   if (failed + missing > 0 || counts.rows == 0) return kUnanswered;
   if (violated > 0) return kSomeViolated;
-  return undecided > 0 ? kSomeUndecided : kAllAnswered;
+  return undecided + counts.uncovered > 0 ? kSomeUndecided : kAllAnswered;
 }
 
 } // namespace curve_proximity::cli

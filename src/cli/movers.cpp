@@ -135,6 +135,7 @@ int answer(const Arguments &arguments, const World &world, std::shared_ptr<const
       warnings.add(arguments.scene + ": moving robot '" + other.name + "': " + sentence);
   Query query = arguments.query;
   query.options.stop = interrupted;
+  query.coverage = warnings.coverage();
   query.second_opinion = secondOpinions(arguments, world.resources);
   const std::string place = robot ? arguments.trajectory : arguments.path.empty() ? arguments.scene : arguments.path;
   ResultsFile results(arguments.out, {arguments.trajectory, arguments.path, arguments.body, arguments.scene,

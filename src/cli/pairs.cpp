@@ -21,6 +21,7 @@ struct PairRow {
   std::size_t number = 0; /* in the file, from 1 */
   std::string id;
   std::variant<PairDescription, std::string> pair;
+  Coverage coverage; /* of the entry */
 };
 
 /* The answer; throws Error where there is none. */
@@ -31,6 +32,7 @@ ResultRow measure(const PairDescription &pair, const Query &query, const Resourc
   row.kind = answer.kind;
   row.id = answer.id, row.a = answer.a, row.b = answer.b;
   row.result = answer.result;
+  row.gap = answer.gap;
   row.microseconds = answer.microseconds;
   row.second_opinion = answer.second_opinion;
   row.message = answer.message;
@@ -59,7 +61,9 @@ Outcome answerPair(const PairRow &pair, const std::string &file, const Query &qu
   try {
     if (const auto *why = std::get_if<std::string>(&pair.pair))
       return failedPair(pair, place, *why, CPROX_INVALID, columns);
-    const ResultRow row = measure(std::get<PairDescription>(pair.pair), query, resources, workspace);
+    Query own = query;
+    own.coverage = pair.coverage;
+    const ResultRow row = measure(std::get<PairDescription>(pair.pair), own, resources, workspace);
     Outcome out;
     out.stopped = row.result.status == CPROX_STOPPED;
     out.text = resultsLine(row, columns);
@@ -80,7 +84,10 @@ PairRow toPlain(const YamlValue &entry, std::size_t number, Warnings &warnings) 
   row.number = number;
   try {
     row.id = pairId(entry);
-    row.pair = parsePair(entry, warnings);
+    Warnings own;
+    row.pair = parsePair(entry, own);
+    row.coverage = own.coverage();
+    warnings.add(own);
   } catch (const std::exception &e) {
     row.pair = std::string(e.what());
   }

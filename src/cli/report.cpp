@@ -32,7 +32,8 @@ struct Asked {
 /* The page's data as they are gathered, and the exit code that they deserve. */
 class Report {
  public:
-  Report(const Arguments &arguments, Console &console) : arguments_(arguments), console_(console) {
+  Report(const Arguments &arguments, const Warnings &warnings, Console &console)
+      : arguments_(arguments), warnings_(warnings), console_(console) {
     for (const char *list : {"verdicts", "profiles", "pairs", "curves", "notes"}) data_[list] = Value::array();
   }
 
@@ -45,7 +46,7 @@ class Report {
     asked.subject->link.clear();
     attempt(asked, "closest pairs", [&] {
       for (const Answer &answer : asked.subject->nearest(arguments_.limits, plainQuery(), workspace))
-        addPair(asked, answer);
+        if (!answer.b.empty()) addPair(asked, answer);
     });
   }
 
@@ -94,6 +95,7 @@ class Report {
     Query query = arguments_.query;
     query.delta = 0.0;
     query.options.stop = interrupted;
+    query.coverage = warnings_.coverage();
     return query;
   }
 
@@ -132,9 +134,9 @@ class Report {
         if (!answer.unproven.empty()) failedProof(asked, answer.unproven);
       }
       violated_ = violated_ || row["verdict"] == "violated";
-      undecided_ = undecided_ || row["verdict"] == "undecided";
+      undecided_ = undecided_ || row["verdict"] == "undecided" || answer.gap;
       if (answer.result.status < 0) failed(asked.subject->place + ": " + answer.message);
-      if (std::isinf(answer.result.lower)) note(asked.subject->place + ": there was nothing to measure against");
+      if (answer.gap) note(asked.subject->place + ": " + answer.message);
       data_["verdicts"].push_back(std::move(row));
     }
   }
@@ -175,7 +177,7 @@ class Report {
     const auto point = [](const cprox_vec3 &p) { return Value{p.x, p.y, p.z}; };
     const bool answered = row.result.status >= 0;
     Value out{{"id", asked.subject->id}, {"kind", asked.subject->kind}, {"a", row.a}, {"b", row.b}};
-    out["status"] = cprox_status_name(row.result.status);
+    out["status"] = statusOf(row.result.status, row.gap);
     out["verdict"] = row.has_verdict && answered ? Value(cprox_verdict_name(row.result.verdict)) : Value(nullptr);
     out["lower"] = answered ? numberOrNull(row.result.lower) : Value(nullptr);
     out["upper"] = answered ? numberOrNull(row.result.upper) : Value(nullptr);
@@ -191,6 +193,7 @@ class Report {
   }
 
   const Arguments &arguments_;
+  const Warnings &warnings_;
   Console &console_;
   Value data_ = Value::object();
   std::string certificates_;
@@ -269,7 +272,7 @@ void askTrajectory(const Arguments &arguments, const World &world, Report &repor
   Workspace workspace;
   if (moving)
     report.ask(askedOf(*moving, arguments), workspace);
-  else if (!world.snapshot->objects().empty())
+  else if (!arguments.scene.empty() || !arguments.self)
     report.ask(askedOf(*motion, false, arguments), workspace);
   if (arguments.self) report.ask(askedOf(*motion, true, arguments), workspace);
   const std::vector<double> moments = report.moments(motion->domain());
@@ -323,7 +326,7 @@ int writeReport(const Arguments &arguments, Console &console) {
   if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputs, "--certificate");
 
   catchInterrupts();
-  Report report(arguments, console);
+  Report report(arguments, warnings, console);
   addBasis(arguments, world, report);
   if (arguments.trajectory.empty()) {
     askCurves(arguments, world, report);

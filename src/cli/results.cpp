@@ -48,11 +48,16 @@ void writeWhole(std::FILE *file) {
 
 } // namespace
 
+const char *statusOf(cprox_status status, const std::optional<Gap> &gap) {
+  return gap && status >= 0 ? gapName(*gap) : cprox_status_name(status);
+}
+
 ResultRow toRow(const Answer &answer, QueryType query_type) {
   ResultRow row;
   row.id = answer.id;
   row.kind = answer.kind;
   row.result = answer.result;
+  row.gap = answer.gap;
   row.a = answer.a;
   row.b = answer.b;
   row.microseconds = answer.microseconds;
@@ -76,7 +81,7 @@ std::string resultsHeader(const Columns &columns) {
 std::string resultsLine(const ResultRow &row, const Columns &columns) {
   const cprox_result &result = row.result;
   const bool answered = result.status >= 0;
-  std::string line = quotedField(row.id) + ',' + row.kind + ',' + cprox_status_name(result.status) + ',';
+  std::string line = quotedField(row.id) + ',' + row.kind + ',' + statusOf(result.status, row.gap) + ',';
   if (answered && row.has_verdict) line += cprox_verdict_name(result.verdict);
 
   if (answered) {
@@ -121,7 +126,7 @@ std::string profileHeader() {
 }
 
 std::string profileLine(const std::string &id, const std::string &kind, const ClearanceInterval &interval) {
-  std::string line = quotedField(id) + ',' + kind + ',' + cprox_status_name(interval.status);
+  std::string line = quotedField(id) + ',' + kind + ',' + statusOf(interval.status, interval.gap);
   for (const double value : {interval.t0, interval.t1, interval.lower, interval.upper}) append(line, value);
   if (std::isfinite(interval.upper)) {
     append(line, interval.t);
@@ -130,7 +135,8 @@ std::string profileLine(const std::string &id, const std::string &kind, const Cl
   } else {
     line += ",,,,,,,";
   }
-  const std::string message = interval.status == CPROX_OK ? "" : cprox_status_text(interval.status);
+  std::string message = interval.status == CPROX_OK ? "" : cprox_status_text(interval.status);
+  if (interval.gap) message = gapText(*interval.gap);
   return line + ',' + quotedField(interval.a) + ',' + quotedField(interval.b) + ',' + quotedField(message) + '\n';
 }
 
@@ -144,14 +150,14 @@ std::string violationsHeader() {
   return "id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message\n";
 }
 
-std::string violationLine(const std::string &id, const std::string &kind, cprox_status status, const Violation &found,
-                          const std::string &message) {
+std::string violationLine(const std::string &id, const std::string &kind, const Violations &of,
+                          const Violation &found) {
   std::string line =
-      quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ',' + cprox_verdict_name(found.verdict);
+      quotedField(id) + ',' + kind + ',' + statusOf(of.status, of.gap) + ',' + cprox_verdict_name(found.verdict);
   for (const double value :
        {found.enter_lower, found.enter_upper, found.leave_lower, found.leave_upper, found.upper, found.t})
     append(line, value);
-  return line + ',' + quotedField(found.a) + ',' + quotedField(found.b) + ',' + quotedField(message) + '\n';
+  return line + ',' + quotedField(found.a) + ',' + quotedField(found.b) + ',' + quotedField(of.message) + '\n';
 }
 
 std::string clearLine(const std::string &id, const std::string &kind, cprox_status status, const std::string &message) {

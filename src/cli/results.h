@@ -22,6 +22,7 @@ struct ResultRow {
   bool has_t = false;           /**< the witness has a parameter: there is a curve, and something to measure against */
   bool has_t_b = false;         /**< so has that of a second curve */
   bool has_points = false;      /**< there is something to measure against */
+  std::optional<Gap> gap;       /**< what the row does not cover: it names the status */
   std::string proof;            /**< where certificates are asked for: what is proven (proofOf()) */
   SecondOpinion second_opinion; /**< where one is asked for */
   std::string message;          /**< why there is no answer, or a remark */
@@ -33,6 +34,9 @@ struct Columns {
   bool contact = false; /**< t_contact_lower */
   bool opinion = false; /**< second_opinion, second_distance */
 };
+
+/** The column status: the gap, or what the core says. */
+const char *statusOf(cprox_status status, const std::optional<Gap> &gap);
 
 /** What the scene says, as a row. */
 ResultRow toRow(const Answer &answer, QueryType query_type);
@@ -53,8 +57,7 @@ std::string failedProfileLine(const std::string &id, const std::string &kind, cp
 
 /** The same of violations: a line each. Without any: the line that all is clear. */
 std::string violationsHeader();
-std::string violationLine(const std::string &id, const std::string &kind, cprox_status status, const Violation &found,
-                          const std::string &message);
+std::string violationLine(const std::string &id, const std::string &kind, const Violations &of, const Violation &found);
 std::string clearLine(const std::string &id, const std::string &kind, cprox_status status, const std::string &message);
 
 /** Where results go: standard output, or a file that is written anew. */

@@ -128,7 +128,10 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
   Query query = arguments.query;
   query.options.stop = interrupted;
+  query.coverage = warnings.coverage();
   query.second_opinion = secondOpinions(arguments, world.resources);
+  Query around = query; // who asks about the robot itself and gives no scene means that there is none
+  around.allow_empty = query.allow_empty || (arguments.self && arguments.scene.empty());
 
   const std::vector<std::string> inputs{arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf};
   ResultsFile results(arguments.out, inputs);
@@ -154,7 +157,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
     for (const std::string &link : linksOf(motion, self, arguments)) {
       for (const std::string &object : objectsOf(world, self, arguments))
         tasks.push_back([&, self, link, object](Workspace &workspace) {
-          return askOne(motion, self, link, object, query, arguments, workspace);
+          return askOne(motion, self, link, object, self ? query : around, arguments, workspace);
         });
     }
   }

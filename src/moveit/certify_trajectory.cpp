@@ -126,6 +126,7 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
     Query query;
     query.query_type = clearance_ > 0.0 ? QueryType::TOLERANCE : QueryType::COLLISION;
     query.delta = clearance_;
+    query.allow_empty = true; // MoveIt's scene is whole
     query.options.epsilon = epsilon_;
     query.options.stop = isOver;
     query.options.stop_user = &end;

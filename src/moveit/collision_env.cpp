@@ -434,6 +434,7 @@ void CollisionEnvCurveProximity::checkMotion(const Request &req, Result &res, co
     const std::set<std::string> links = linksOf(req.group_name);
     const RobotMotion motion(*prepared(now, acm), path, jointPositions(from), {links.begin(), links.end()});
     Query query;
+    query.allow_empty = true; // MoveIt's scene is whole
     if (req.distance) {
       const Answer answer = askEnvironment(motion, query, workspace()).front();
       if (answer.result.status < 0) throw Error(answer.message);

@@ -131,7 +131,7 @@ class RobotDistanceConstraint : public MotionConstraint {
 
   void evaluateLeast(ClearanceRow &&found, MotionValue &out) const {
     out.status = found.answer.result.status;
-    if (out.status != CPROX_OK) out.message = found.answer.message;
+    if (out.status != CPROX_OK || found.answer.gap) out.message = found.answer.message;
     out.rows.push_back(toRow(std::move(found)));
     out.value = out.rows.front().value;
     out.lower = out.rows.front().lower;
@@ -158,8 +158,9 @@ class RobotDistanceConstraint : public MotionConstraint {
       }
     }
     const double least = parameters_.query.options.signed_distance ? -INFINITE : -parameters_.margin;
-    if (out.status != CPROX_OK && out.status != CPROX_OVERLAP) out.lower = least;
-    if (parameters_.smoothing > 0.0) soften(out);
+    const bool whole = (out.status == CPROX_OK || out.status == CPROX_OVERLAP) && !found.gap;
+    if (!whole) out.lower = least;
+    if (parameters_.smoothing > 0.0) soften(whole, out);
   }
 
   SoftMinimum softMinimum(const std::vector<MotionRow> &rows, double MotionRow::*number) const {
@@ -172,15 +173,14 @@ class RobotDistanceConstraint : public MotionConstraint {
   }
 
   /* One row in the place of all: the nearest one's witness, and the sum of the weighted gradients. The object's is that
-   * by a step of the nearest one. */
-  void soften(MotionValue &out) const {
+   * by a step of the nearest one. whole: no row is missing. */
+  void soften(bool whole, MotionValue &out) const {
     const SoftMinimum soft = softMinimum(out.rows, &MotionRow::value);
     out.value = soft.value();
     /* the sum of a million rows is known to 1e-10 of itself */
     const double rounding = 1e-9 * (parameters_.smoothing + parameters_.limits.horizon);
     out.lower = -std::numeric_limits<double>::infinity();
-    if (out.status == CPROX_OK || out.status == CPROX_OVERLAP)
-      out.lower = softMinimum(out.rows, &MotionRow::lower).value() - rounding;
+    if (whole) out.lower = softMinimum(out.rows, &MotionRow::lower).value() - rounding;
     out.upper = softMinimum(out.rows, &MotionRow::upper).value() + rounding;
     if (out.rows.empty()) return;
     MotionRow sum = out.rows.front();

@@ -24,14 +24,14 @@ Roadmap roadmapOf(const std::vector<std::string> &joints, const Array &vertices,
 Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string> &joints, const Array &vertices,
                         const Edges &edges, double delta, bool self, const std::optional<Verdicts> &known,
                         const JointPositions &rest, const std::optional<Array> &base, double epsilon,
-                        std::uint32_t max_nodes, unsigned threads) {
+                        std::uint32_t max_nodes, unsigned threads, bool allow_empty) {
   if (!scene.robot()) throw Error("the scene has no robot");
   const Roadmap roadmap = roadmapOf(joints, vertices, edges, scene.rest(rest));
   std::vector<cprox_verdict> before;
   for (py::ssize_t i = 0; known && i < known->size(); ++i)
     before.push_back(static_cast<cprox_verdict>(known->data()[i]));
   const Eigen::Isometry3d at = toTransform(base);
-  Query query = queryOf("tolerance", delta, epsilon, max_nodes);
+  Query query = queryOf("tolerance", delta, epsilon, max_nodes, {}, {}, allow_empty);
   query.options.stop = nullptr; // one thread alone would be interrupted
   std::vector<cprox_verdict> found;
   {
@@ -52,7 +52,7 @@ void addRoadmaps(py::module &module) {
       "edge_verdicts", &edgeVerdictsOf, py::arg("scene"), py::arg("joints"), py::arg("vertices"), py::arg("edges"),
       py::arg("delta"), py::arg("self_collision") = false, py::arg("known") = py::none(),
       py::arg("rest") = JointPositions{}, py::arg("base") = py::none(), py::arg("epsilon") = 1e-6,
-      py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("threads") = 0,
+      py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("threads") = 0, py::arg("allow_empty") = false,
       "Straight motions between postures, the edges of a roadmap: is the robot farther than delta [m] "
       "everywhere?\n"
       "vertices (n, joints), edges (m, 2) of their rows. known (m,): verdicts of an earlier call; those that are "

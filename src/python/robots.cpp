@@ -80,9 +80,9 @@ void PythonScene::add(const std::string &id, const std::string &type, const std:
 }
 
 Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links,
-              const Names &objects, bool moving_only) {
+              const Names &objects, bool allow_empty, bool moving_only) {
   Query out;
-  out.links = links, out.objects = objects, out.moving_only = moving_only;
+  out.links = links, out.objects = objects, out.allow_empty = allow_empty, out.moving_only = moving_only;
   if (type == "tolerance")
     out.query_type = QueryType::TOLERANCE;
   else if (type == "collision")
@@ -98,7 +98,7 @@ py::dict answerOf(const Answer &answer) {
   if (answer.result.status < 0) throw Error(answer.message, answer.result.status);
   py::dict out;
   out["result"] = answer.result, out["kind"] = answer.kind, out["a"] = answer.a, out["b"] = answer.b;
-  out["by_hull"] = answer.by_hull, out["message"] = answer.message;
+  out["by_hull"] = answer.by_hull, out["message"] = answer.message, out["status"] = answer.status;
   return out;
 }
 
@@ -134,6 +134,8 @@ py::dict toDict(const std::vector<ClearanceInterval> &intervals) {
   py::dict out;
   out["lower"] = lower, out["upper"] = upper, out["t"] = t, out["a"] = a, out["b"] = b;
   out["witness_a"] = witness_a, out["witness_b"] = witness_b;
+  const std::optional<Gap> gap = intervals.empty() ? std::nullopt : intervals.front().gap;
+  out["gap"] = gap ? gapName(*gap) : "";
   return out;
 }
 
@@ -259,9 +261,9 @@ py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
 }
 
 py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-                   const Names &objects) {
+                   const Names &objects, bool allow_empty) {
   const Answer answer = unlocked([&] {
-    return timeOfContact(motion, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects),
+    return timeOfContact(motion, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty),
                          threadWorkspace());
   });
   return answerOf(answer);
@@ -269,11 +271,12 @@ py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, std::ui
 
 /* An answer with its proof, and the query that it is about as cprox_check reads it. */
 py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, bool self, double epsilon,
-                       std::uint32_t max_nodes, const Names &links, const Names &objects) {
+                       std::uint32_t max_nodes, const Names &links, const Names &objects, bool allow_empty) {
   using Handle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
   const Handle certificate(cprox_certificate_create(), cprox_certificate_free);
   if (!certificate) throw std::bad_alloc();
-  Query query = queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes, links, objects);
+  Query query =
+      queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes, links, objects, allow_empty);
   query.options.certificate = certificate.get();
   std::string text;
   const Answer answer = unlocked([&] {
@@ -291,8 +294,8 @@ py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, b
 }
 
 py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-                    const Names &objects, bool is_signed) {
-  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
+                    const Names &objects, bool allow_empty, bool is_signed) {
+  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty);
   query.options.signed_distance = is_signed;
   const ClearanceRow row = unlocked([&] {
     return clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, query, threadWorkspace());
@@ -322,8 +325,8 @@ Array stacked(const std::vector<ClearanceRow> &rows, Eigen::Vector3d ClearanceGr
 
 py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair, const std::vector<double> &breaks,
                 bool self, double epsilon, std::uint32_t max_nodes, const Names &links, const Names &objects,
-                bool is_signed, std::size_t most) {
-  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects);
+                bool allow_empty, bool is_signed, std::size_t most) {
+  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty);
   query.options.signed_distance = is_signed;
   RowLimits limits;
   limits.horizon = horizon, limits.per_pair = per_pair, limits.most = most, limits.breaks = breaks;
@@ -361,28 +364,30 @@ py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair,
 }
 
 py::list violationsOf(const RobotMotion &motion, double delta, std::optional<double> resolution, bool self,
-                      double epsilon, const Names &links, const Names &objects) {
+                      double epsilon, const Names &links, const Names &objects, bool allow_empty) {
   constexpr double PART = 1e-3;
   const std::array<double, 2> domain = motion.domain();
   const Violations found = unlocked([&] {
     return violations(motion, self, resolution.value_or(PART * (domain[1] - domain[0])),
-                      queryOf("tolerance", delta, epsilon, DEFAULT_BUDGET, links, objects), threadWorkspace());
+                      queryOf("tolerance", delta, epsilon, DEFAULT_BUDGET, links, objects, allow_empty),
+                      threadWorkspace());
   });
   return toList(found);
 }
 
 py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon,
-                   const Names &links, double horizon, const Names &objects) {
-  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects);
+                   const Names &links, double horizon, const Names &objects, bool allow_empty) {
+  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty);
   const std::vector<ClearanceInterval> intervals =
       unlocked([&] { return clearanceProfile(motion, self, breaks, query, threadWorkspace(), horizon); });
   return toDict(intervals);
 }
 
 py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool self, double epsilon, const Names &links,
-                 const Names &objects) {
+                 const Names &objects, bool allow_empty) {
   const std::vector<Answer> answers = unlocked([&] {
-    return nearestPairs(motion, self, {k, within}, queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects),
+    return nearestPairs(motion, self, {k, within},
+                        queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty),
                         threadWorkspace());
   });
   return toList(answers);
@@ -467,50 +472,54 @@ void addRobots(py::module &module) {
       .def(
           "distance",
           [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, bool is_signed,
-             const Names &links, const Names &objects, bool moving_only) {
-            Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, moving_only);
+             const Names &links, const Names &objects, bool allow_empty,
+             bool moving_only) {
+            Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only);
             query.options.signed_distance = is_signed;
             return ask(m, self, query);
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("signed") = false, py::arg("links") = Names{}, py::arg("objects") = Names{},
-          py::arg("moving_only") = false,
+          py::arg("allow_empty") = false, py::arg("moving_only") = false,
           "The least distance to the objects, or of the robot to itself: a dict of result, kind, a (link), b (object "
           "or\n"
-           "link), by_hull, message. With moving_only what the motion does not move is left out. With signed overlaps\n"
-           "are negative: minus the deepest one. Where meshes overlap, lower is that of their hulls, and the status is\n"
-           "overlap.")
+          "link), by_hull, message. With moving_only what the motion does not move is left out. With signed overlaps are\n"
+          "negative: minus the deepest one. Where meshes overlap, lower is that of their hulls, and the status is\n"
+          "overlap.")
       .def(
           "tolerance",
           [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-             const Names &objects, bool moving_only) {
-            return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes, links, objects, moving_only));
+             const Names &objects, bool allow_empty,
+             bool moving_only) {
+            return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes, links, objects, allow_empty, moving_only));
           },
           py::arg("delta"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
           py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
-          py::arg("moving_only") = false, "Is the robot farther than delta [m] everywhere? As distance().")
+          py::arg("allow_empty") = false, py::arg("moving_only") = false, "Is the robot farther than delta [m] everywhere? As distance().")
       .def(
           "collision",
           [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-             const Names &objects, bool moving_only) {
-            return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects, moving_only));
+             const Names &objects, bool allow_empty,
+             bool moving_only) {
+            return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only));
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
-          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("moving_only") = false,
+          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("moving_only") = false,
           "Does the robot touch or overlap an object, or itself? As distance().")
       .def("time_of_contact", &contactOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
+           py::arg("allow_empty") = false,
            "When the robot first touches an object, or itself: in [t_contact_lower, t] of the result [s]. Never late.\n"
            "As distance().")
       .def("certificate", &certificateOf, py::arg("delta") = py::none(), py::arg("self_collision") = false,
            py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{},
-           py::arg("objects") = Names{},
+           py::arg("objects") = Names{}, py::arg("allow_empty") = false,
            "A proof of tolerance(delta), or without delta of distance(): their dict with claim ('apart' or 'near'), "
            "record\n"
            "(bytes) and query (str), which check() verifies. ValueError where there is no proof, with the cause.")
       .def("gradient", &gradientOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
-           py::arg("signed") = false,
+           py::arg("allow_empty") = false, py::arg("signed") = false,
            "The least distance and its derivatives: the dict of distance() with valid, reason, t, positions (points, "
            "joints),\n"
            "velocities and accelerations likewise or None, duration, base_linear, base_angular, object_linear,\n"
@@ -518,7 +527,8 @@ void addRobots(py::module &module) {
       .def(
           "rows", &rowsOf, py::arg("horizon"), py::arg("per_pair") = 1, py::arg("breaks") = std::vector<double>{},
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
-          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("signed") = false, py::arg("most") = 1000,
+          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
+          py::arg("signed") = false, py::arg("most") = 1000,
           "Constraints for an optimiser: of each pair that comes within the horizon [m] its least distances between "
           "each two\nof breaks [s] (empty: the trajectory's times), the per_pair nearest, with their derivatives. "
           "A dict of arrays with an\nentry a row: lower, upper, t, t0, t1, valid, duration (n,), positions (n, points, "
@@ -527,7 +537,7 @@ void addRobots(py::module &module) {
           "horizon. RuntimeError where there are more than most rows.")
       .def("violations", &violationsOf, py::arg("delta"), py::arg("resolution") = py::none(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
-           py::arg("objects") = Names{},
+           py::arg("objects") = Names{}, py::arg("allow_empty") = false,
            "All intervals of time within delta [m] of an object, or of the robot itself: a list of dicts of "
            "enter_lower,\n"
            "enter_upper, leave_lower, leave_upper [s], verdict, upper, t, a, b. Farther than delta before enter_lower "
@@ -542,13 +552,14 @@ void addRobots(py::module &module) {
       .def(
           "profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
           py::arg("links") = Names{}, py::arg("horizon") = std::numeric_limits<double>::infinity(),
-          py::arg("objects") = Names{},
+          py::arg("objects") = Names{}, py::arg("allow_empty") = false,
           "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,), witness_a, witness_b "
           "(n, 3)\nand lists a, b. Beyond the horizon [m] it is only bounded: "
           "lower > horizon.")
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
-           py::arg("objects") = Names{}, "The k pairs that come closest, nearest first; each as distance() gives it.");
+           py::arg("objects") = Names{}, py::arg("allow_empty") = false,
+           "The k pairs that come closest, nearest first; each as distance() gives it.");
 }
 
 } // namespace curve_proximity::python

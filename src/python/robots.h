@@ -95,7 +95,7 @@ inline constexpr std::uint32_t DEFAULT_BUDGET = 500000;
 
 /** type: "distance", "tolerance" or "collision". Throws Error for another. */
 Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links = {},
-              const Names &objects = {}, bool moving_only = false);
+              const Names &objects = {}, bool allow_empty = false, bool moving_only = false);
 
 /** Throws Error for an answer that is a refusal. */
 py::dict answerOf(const Answer &answer);

@@ -37,7 +37,7 @@ CompiledCurve make(const CurveDescription &curve, CurveBoxes boxes, const cprox_
 struct Queries::CurvePlace {
   const Eigen::Isometry3d *frame = nullptr;
   const StampedTargets::Stamped *stamped = nullptr;
-  double age = NAN;    /* [s] of the transforms */
+  Coverage coverage;   /* of what is known of them and of its obstacles */
   std::string why_not; /* empty where all is known */
 };
 
@@ -123,7 +123,8 @@ Queries::CurvePlace Queries::place(const Curve &curve, CurveSearch &search, Work
     place.frame = &work.lookup.toFixed(curve.header.frame_id, curve.header.stamp);
     const double age = work.lookup.age();
     place.stamped = &search.targets.at(curve.header.stamp);
-    place.age = std::fmax(age, place.stamped->age);
+    work.doubts.ages(std::fmax(age, place.stamped->age), search.targets.withRobot() ? work.joints.age : NAN);
+    place.coverage = work.doubts.coverage();
   } catch (const Error &error) {
     place.why_not = error.what();
   }
@@ -131,13 +132,16 @@ Queries::CurvePlace Queries::place(const Curve &curve, CurveSearch &search, Work
 }
 
 /** What is wrong with a curve fails its row only. Any number of threads, each with its own query and workspace. */
-void Queries::search(const Curve &message, const CurvePlace &place, const Query &query, const Asking &asking,
+void Queries::search(const Curve &message, const CurvePlace &place, const Query &of_all, const Asking &asking,
                      bool drawn, Workspace &workspace, CurveScratch &scratch, CurveRows &out) {
   std::vector<Answer> &answers = scratch.answers;
   answers.clear();
   std::size_t count = 1;
   try {
     if (!place.why_not.empty()) throw Error(place.why_not);
+    Query of_place;
+    if (!place.coverage.complete()) of_place = of_all, of_place.coverage = place.coverage;
+    const Query &query = place.coverage.complete() ? of_all : of_place;
     const Targets &targets = place.stamped->targets;
     toDescription(message, *place.frame, scratch.curve);
     CompiledCurve curve = make(scratch.curve, targets.boxes(), query.options, workspace);
@@ -165,9 +169,7 @@ void Queries::gather(const CurvePlace *places, CurveRows &&found, CurveSearch &s
   Proximity *row = found.in_place ? found.in_place : found.rows.data();
   for (const std::size_t count : found.counts) {
     const CurvePlace &place = *places++;
-    work.doubts.ages(place.age, search.targets.withRobot() ? work.joints.age : NAN);
     for (std::size_t i = 0; i < count; ++i, ++row) {
-      work.doubts.apply(*row);
       if (std::isnan(row->lower)) search.failures.count(*row, search.curves);
       if (!found.in_place) work.response.results.push_back(std::move(*row));
     }

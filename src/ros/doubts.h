@@ -4,7 +4,6 @@
 #define CURVE_PROXIMITY_ROS_DOUBTS_H
 
 #include <curve_proximity/ConstraintResult.h>
-#include <curve_proximity/Proximity.h>
 #include <curve_proximity/SensorState.h>
 
 #include <curve_proximity/query.hpp>
@@ -14,7 +13,7 @@
 
 namespace curve_proximity {
 
-/** Turns 'clear' into 'undecided' where it does not hold of the world as it is now. For one request. */
+/** What answers do not cover of the world as it is now. For one request. */
 class Doubts {
  public:
   /** max_age [s]: ~max_age, 0 for none. lost: the scene of the server before this one is gone, so that nothing is known
@@ -28,9 +27,8 @@ class Doubts {
   /** [s] The ages of transforms and of joint values of the rows to come; NaN: none were used. */
   void ages(double transforms, double joints);
 
-  /** lower becomes 0, and the verdict undecided, with the reason; a violation stays one where only a sensor sees
-   *  nothing. Rows without an answer are left as they are. */
-  void apply(Proximity &row);
+  /** For Query::coverage of the rows to come. */
+  Coverage coverage();
 
   /** Nothing is proven, with the reason. */
   void apply(ConstraintResult &row);
@@ -39,16 +37,10 @@ class Doubts {
   void tell(std::vector<std::string> &warnings) const;
 
  private:
-  struct Reason {
-    std::string text; /* empty: there is none */
-    bool stale;       /* else: unknown */
-  };
-  Reason reason();
-
   const double max_age_;
   const std::vector<SensorState> sensors_;
   const bool lost_;
-  std::string stale_objects_, unknown_objects_, stale_ages_;
+  Coverage objects_, ages_;
   std::set<std::string> told_;
 };
 

@@ -50,6 +50,15 @@ Stop stopOf(const Query &query) {
 
 } // namespace
 
+/** The query with what its answers do not cover, after all look-ups. joints: [s] their age. with_objects: it is about
+ *  objects, too. */
+Query Queries::covered(Query query, double joints, bool with_objects, Work &work) {
+  work.doubts.objects(query, with_objects);
+  work.doubts.ages(work.lookup.age(), joints);
+  query.coverage = work.doubts.coverage();
+  return query;
+}
+
 void Queries::answerTrajectories(Work &work) {
   const auto &trajectories = work.request.trajectories;
   if (trajectories.size() == 0) return;
@@ -120,7 +129,7 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
                               work.lookup, mostBytes(), stopOf(work.query));
     const WorkspacePool::Lease workspace(workspaces_);
     MotionRows rows;
-    around.ask(work.query, false, request.asking, *workspace, rows);
+    around.ask(covered(work.query, NAN, true, work), false, request.asking, *workspace, rows);
     std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(work.response.profiles));
     std::move(rows.violations.begin(), rows.violations.end(), std::back_inserter(work.response.violations));
     for (Answer &answer : rows.answers) {
@@ -128,9 +137,6 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
       answer.id = id;
       work.response.results.emplace_back();
       fillRow(answer, work.query, request.asking, work.response.results.back());
-      work.doubts.objects(work.query);
-      work.doubts.ages(work.lookup.age(), NAN);
-      work.doubts.apply(work.response.results.back());
       if (answer.result.status >= 0) addRemark(remark, work.response.results.back());
     }
     if (!work.drawing.motion) {
@@ -230,16 +236,14 @@ void Queries::answerMovers(Work &work) {
                               stopOf(work.query));
     const WorkspacePool::Lease workspace(workspaces_);
     MotionRows rows;
-    around.ask(work.query, request.more.self_collision != 0, request.asking, *workspace, rows);
+    around.ask(covered(work.query, NAN, true, work), request.more.self_collision != 0, request.asking, *workspace,
+               rows);
     std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(work.response.profiles));
     std::move(rows.violations.begin(), rows.violations.end(), std::back_inserter(work.response.violations));
     for (Answer &answer : rows.answers) {
       answer.kind = Proximity::KIND_MOVERS;
       work.response.results.emplace_back();
       fillRow(answer, work.query, request.asking, work.response.results.back());
-      work.doubts.objects(work.query);
-      work.doubts.ages(work.lookup.age(), NAN);
-      work.doubts.apply(work.response.results.back());
     }
     if (!work.drawing.motion) {
       work.drawing.movers = around.movers();
@@ -285,6 +289,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
                                 work.lookup, mostBytes(), stopOf(work.query));
       Query among = environment;
       among.links = ownNames(*work.snapshot, work.query.links);
+      among.coverage = covered(environment, work.joints.age, true, work).coverage;
       around.ask(among, false, request.asking, *workspace, rows);
       for (Answer &answer : rows.answers) answer.id = id;
       work.drawing.movers = around.movers();
@@ -292,14 +297,14 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     } else {
       work.drawing.movers = nullptr;
       work.drawing.robots.clear();
-      askMotion(*motion, environment, false, request.asking, *workspace, rows);
+      askMotion(*motion, covered(environment, work.joints.age, true, work), false, request.asking, *workspace, rows);
     }
     if (request.more.self_collision) {
       Query self = environment; // of no objects
       self.per_object = false;
       self.objects.clear();
       if (request.turn) request.turn->yield();
-      askMotion(*motion, self, true, request.asking, *workspace, rows);
+      askMotion(*motion, covered(self, work.joints.age, false, work), true, request.asking, *workspace, rows);
     }
     std::vector<Answer> &answers = rows.answers;
     std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(response.profiles));
@@ -311,9 +316,6 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
       Proximity &row = response.results.back();
       fillRow(answer, environment, request.asking, row);
       if (answer.result.status >= 0) addRemark(told, row);
-      work.doubts.objects(environment, answer.kind == Proximity::KIND_ENVIRONMENT);
-      work.doubts.ages(work.lookup.age(), work.joints.age);
-      work.doubts.apply(row);
     }
     work.drawing.rider.reset();
     work.drawing.motion = std::move(motion);

@@ -67,6 +67,7 @@ struct Parameters {
   bool unknown_is_occupied = false;
   bool empty_cloud_clears = false;
   double max_age = 0.0;
+  bool allow_empty = false;
   std::vector<ProviderSpec> constraint_providers = {
       {"curve_proximity/CurveDistance", "curve_proximity/CurveDistance", {}},
       {"curve_proximity/SuperquadricDistance", "curve_proximity/SuperquadricDistance", {}},
@@ -130,6 +131,7 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("unknown_is_occupied", parameters.unknown_is_occupied);
   visit("empty_cloud_clears", parameters.empty_cloud_clears);
   visit("max_age", parameters.max_age, Range{0.0, false, 1e9});
+  visit("allow_empty", parameters.allow_empty);
   visit("constraint_providers", parameters.constraint_providers);
 }
 

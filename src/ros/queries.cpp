@@ -192,6 +192,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
   Query query = toQuery(request, *snapshot);
   const double budget_ms = request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load();
   TimeBudget budget(budget_ms, request, stop_, request.turn);
+  query.allow_empty = parameters_.allow_empty;
   query.options.stop = TimeBudget::isOver;
   query.options.stop_user = &budget;
   const memory::Share share(checkLimits(request, *snapshot), mostBytes());
@@ -241,7 +242,9 @@ void Queries::describe(Work &work) const {
   if (query.objects.empty() && !query.links.empty() && with_curves) response.scene.objects = 0;
   if (!query.objects.empty() && query.links.empty() && with_curves) response.scene.links = 0;
 
-  const auto nothing = [](const Proximity &row) { return std::isinf(row.lower) && row.b.empty(); };
+  const auto nothing = [](const Proximity &row) {
+    return (row.status == Proximity::STATUS_EMPTY || std::isinf(row.lower)) && row.b.empty();
+  };
   const auto first = std::find_if(response.results.begin(), response.results.end(), nothing);
   if (first != response.results.end())
     response.warnings.push_back("row '" + first->id + "' (" + first->kind + ") was measured against nothing" +

@@ -238,6 +238,7 @@ class Queries {
   void answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not = "");
   void answerState(Work &work);
   void answerMovers(Work &work);
+  static Query covered(Query query, double joints, bool with_objects, Work &work);
   static void tellProgress(Work &work);
   static std::string numbered(const std::string &name, std::size_t i, std::size_t all); /* the name of one of several */
   void answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,

@@ -258,4 +258,63 @@ void answerNothing(const Query &query, cprox_result &result) {
   result.verdict = query.query_type == QueryType::DISTANCE ? CPROX_VERDICT_UNDECIDED : CPROX_VERDICT_CLEAR;
 }
 
+Coverage coverageOf(const Query &query, const Coverage &given, const std::string &nothing) {
+  Coverage out = given;
+  out.add(query.coverage);
+  if (!nothing.empty() && !query.allow_empty)
+    out.add(Gap::EMPTY, "nothing was measured: " + nothing, Missing::GEOMETRY);
+  return out;
+}
+
+void applyCoverage(const Coverage &coverage, const Query &query, Answer &answer) {
+  cprox_result &result = answer.result;
+  if (result.status < 0 || coverage.complete()) return;
+  constexpr double INFINITE = std::numeric_limits<double>::infinity();
+  answer.gap = coverage.gap();
+  answer.status = coverage.status();
+  answer.message += (answer.message.empty() ? "" : "; ") + coverage.message();
+  result.lower = query.options.signed_distance ? -INFINITE : 0.0;
+  result.t_contact_lower = std::numeric_limits<double>::quiet_NaN();
+  if (result.verdict == CPROX_VERDICT_CLEAR || !coverage.provesContact()) result.verdict = CPROX_VERDICT_UNDECIDED;
+}
+
+void applyCoverage(const Coverage &coverage, const Query &query, const Answer &nothing, std::vector<Answer> &answers) {
+  if (coverage.complete()) return;
+  if (answers.empty()) {
+    answers.push_back(nothing);
+    answers.back().result = cprox_result();
+    answerNothing(query, answers.back().result);
+  }
+  for (Answer &answer : answers) applyCoverage(coverage, query, answer);
+}
+
+void applyCoverage(const Coverage &coverage, std::vector<ClearanceInterval> &profile) {
+  if (coverage.complete()) return;
+  for (ClearanceInterval &interval : profile) interval.lower = 0.0, interval.gap = coverage.gap();
+}
+
+std::array<double, 2> domainOf(const Query &query, const std::array<double, 2> &all) {
+  const double *interval = query.options.interval;
+  return interval ? std::array<double, 2>{interval[0], interval[1]} : all;
+}
+
+void applyCoverage(const Coverage &coverage, const std::array<double, 2> &domain, Violations &violations) {
+  if (coverage.complete()) return;
+  violations.gap = coverage.gap();
+  violations.message += (violations.message.empty() ? "" : "; ") + coverage.message();
+  std::vector<Violation> &list = violations.list;
+  if (list.empty()) {
+    list.emplace_back();
+    list.front().enter_upper = list.front().leave_lower = list.front().t = domain[0];
+    list.front().upper = std::numeric_limits<double>::infinity();
+  }
+  double before = domain[0];
+  for (Violation &one : list) {
+    one.enter_lower = before;
+    before = one.leave_upper = std::max(one.leave_lower, one.enter_upper);
+    if (!coverage.provesContact()) one.verdict = CPROX_VERDICT_UNDECIDED;
+  }
+  list.back().leave_upper = domain[1];
+}
+
 } // namespace curve_proximity

@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_ANSWERING_H
 #define CURVE_PROXIMITY_SCENE_ANSWERING_H
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <string>
@@ -105,8 +106,40 @@ struct Unlisted {
               std::vector<Answer> &answers) const;
 };
 
+/* Why a curve has nothing to be measured against. */
+constexpr const char *NO_OBJECT = "there is no object";
+
 /* There is nothing to measure against. */
 void answerNothing(const Query &query, cprox_result &result);
+
+/* ---- coverage: the one place where answers learn of it ---- */
+
+/* What answers do not cover: gaps of the query and of `given`, and Gap::EMPTY where nothing is measured and the query
+ * does not allow that. nothing: why nothing is; "" where something is. */
+Coverage coverageOf(const Query &query, const Coverage &given, const std::string &nothing);
+
+/* Of an answer that there is: writes gap, status and message; takes from the result what it does not prove. */
+void applyCoverage(const Coverage &coverage, const Query &query, Answer &answer);
+
+/* Of a list of pairs: with a gap and no pair one answer takes the place of the list. `nothing` has its names. */
+void applyCoverage(const Coverage &coverage, const Query &query, const Answer &nothing, std::vector<Answer> &answers);
+
+/* Of all intervals of a profile. */
+void applyCoverage(const Coverage &coverage, std::vector<ClearanceInterval> &profile);
+
+/* Of all violations over the domain: nothing is proven to be farther. */
+void applyCoverage(const Coverage &coverage, const std::array<double, 2> &domain, Violations &violations);
+
+/* The part of a domain that the query is about. */
+std::array<double, 2> domainOf(const Query &query, const std::array<double, 2> &all);
+
+/* Of a gradient: it is not valid. */
+template <class Gradient>
+void applyGap(const Answer &answer, Gradient &gradient) {
+  if (!answer.gap) return;
+  gradient.valid = false;
+  gradient.reason = answer.message;
+}
 
 } // namespace curve_proximity
 #endif

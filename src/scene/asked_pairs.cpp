@@ -174,8 +174,18 @@ Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &que
     nameSides(asked, query, answer);
   }
   finish(asked.data, query, answer, start);
+  applyCoverage(coverageOf(query, asked), query, answer);
   addSecondOpinion(asked.data, query, answer);
   return answer;
+}
+
+Coverage coverageOf(const Query &query, const Asked &asked) {
+  const char *nothing = "";
+  if (asked.pairs.empty()) {
+    const bool no_object = asked.against != RobotPairs::SELF && asked.targets.empty();
+    nothing = no_object ? NO_OBJECT : "there is no pair to measure (--skipped, RobotMotion::skipped() say why)";
+  }
+  return coverageOf(query, asked.data.coverage, nothing);
 }
 
 std::string faultInAll(RobotPairs against, const Query &query) {

@@ -43,6 +43,9 @@ Asked askedOf(const RobotMotion &motion, RobotPairs against, const Query &query)
 /* What is asked for and not heeded, of a query with one answer in all. */
 std::string faultInAll(RobotPairs against, const Query &query);
 
+/* What answers about them do not cover. */
+Coverage coverageOf(const Query &query, const Asked &asked);
+
 /* Throws Error where what is asked about is no distance. */
 void checkDistances(RobotPairs against, const Query &query);
 

@@ -22,6 +22,17 @@ const char *gapName(Gap gap) {
   return "stale";
 }
 
+const char *gapText(Gap gap) {
+  switch (gap) {
+    case Gap::ROUNDED: return "coordinates were rounded on reading";
+    case Gap::PARTIAL: return "something that was given is not used";
+    case Gap::EMPTY: return "nothing was measured";
+    case Gap::UNKNOWN: return "something that was expected is not known";
+    case Gap::STALE: break;
+  }
+  return "something that was used is too old";
+}
+
 std::optional<Gap> gapFromName(const std::string &status) {
   for (const Gap gap : GAPS)
     if (status == gapName(gap)) return gap;

@@ -74,6 +74,7 @@ CurveClearance clearanceGradient(const Targets &targets, const CompiledCurve &cu
     const std::string tie = tieOf(targets, curve, out.answer, query, workspace);
     if (!tie.empty()) gradient.valid = false, gradient.reason = tie;
   }
+  applyGap(out.answer, gradient);
   return out;
 }
 

@@ -32,6 +32,10 @@ void requireDistances(const Query &query) {
   if (query.delta != 0.0) throw Error(faultOf(query));
 }
 
+Coverage coverageOf(const Query &query, const Targets &targets, const std::vector<Item> &items) {
+  return coverageOf(query, targets.data().coverage, items.empty() ? NO_OBJECT : "");
+}
+
 } // namespace
 
 double roundingOf(const CompiledCurve &curve, const std::vector<Item> &items) {
@@ -45,7 +49,14 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
   const Clock::time_point start = Clock::now();
   requireDistances(query);
   const std::vector<Item> &items = targets.data().items;
-  if (items.empty()) return {};
+  const Coverage coverage = coverageOf(query, targets, items);
+  Answer nothing;
+  nothing.id = nothing.a = curve.id;
+  std::vector<Answer> answers;
+  if (items.empty()) {
+    applyCoverage(coverage, query, nothing, answers);
+    return answers;
+  }
   const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
   const double rounding = roundingOf(curve, items);
   const cprox_options options = withoutRounding(query.options, rounding);
@@ -56,7 +67,6 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
   if (status < 0) throw Error(workspace.reason(), status);
 
   /* nearest first; what is proven to be beyond the limit is left out */
-  std::vector<Answer> answers;
   for (std::size_t i = 0; i < listed.count; ++i) {
     Answer answer = answerOf(curve, results[i], start);
     widen(query, rounding, INFINITE, answer.result);
@@ -69,6 +79,7 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
   Unlisted unlisted;
   unlisted.add(status, listed, rounding);
   unlisted.addRow(limits, query.options, curve.id, "curve", answers);
+  applyCoverage(coverage, query, nothing, answers);
   return answers;
 }
 
@@ -84,7 +95,10 @@ std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const Co
     out.a = curve.id;
     if (found.obstacle_index >= 0) out.b = *items[static_cast<std::size_t>(found.obstacle_index)].owner;
   };
-  return searchProfile(obstacles, moverOf(curve), roundingOf(curve, items), breaks, horizon, query, workspace, name);
+  std::vector<ClearanceInterval> profile =
+      searchProfile(obstacles, moverOf(curve), roundingOf(curve, items), breaks, horizon, query, workspace, name);
+  applyCoverage(coverageOf(query, targets, items), profile);
+  return profile;
 }
 
 Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
@@ -117,6 +131,7 @@ Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Q
       nameItem(items[static_cast<std::size_t>(result.obstacle_index)], query.options.max_lod, answer);
   }
   finishAnswer(workspace, answer);
+  applyCoverage(coverageOf(query, targets, items), query, answer);
   addSecondOpinion(targets.data(), curve, query, answer);
   return answer;
 }

@@ -174,6 +174,8 @@ std::unique_ptr<RobotMotion::Data> startOf(const PreparedRobot &robot, const std
   data->snapshot = data->prepared->snapshot;
   data->kinematics = data->prepared->kinematics;
   data->id = id;
+  data->coverage = data->snapshot->coverage();
+  data->coverage.add(data->kinematics->robot->coverage());
   return data;
 }
 
@@ -216,6 +218,7 @@ RobotMotion::RobotMotion(const PreparedRobot &robot, const TrajectoryDescription
   checkTrajectory(trajectory);
   checkFor(*robot.snapshot(), trajectory);
   auto data = startOf(robot, trajectory.id);
+  data->coverage.add(trajectory.coverage);
   const Robot &model = *data->kinematics->robot;
   if (trajectory.shortest_way) {
     TrajectoryDescription shortened = trajectory;

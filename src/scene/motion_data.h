@@ -61,6 +61,7 @@ struct RobotMotion::Data {
   std::vector<bool> self_moves;              /* of each of these: does the motion move the one against the other */
   std::vector<cprox_robot_pair> environment; /* geometry against item of the snapshot's world */
   std::vector<std::string> warnings;
+  Coverage coverage;                   /* of the trajectory, the scene and the robot */
   mutable std::once_flag skipped_once; /* the messages are made when somebody asks for them */
   mutable std::vector<std::string> skipped;
 };

@@ -81,6 +81,7 @@ ClearanceRow toRow(const Asked &asked, const cprox_result &result, const cprox_m
   ClearanceRow row;
   row.gradient = toGradient(asked, result, gradient, reason);
   row.answer = toAnswer(asked, result, query, workspace, start);
+  applyGap(row.answer, row.gradient);
   return row;
 }
 
@@ -113,6 +114,8 @@ void addRows(const RobotMotion &motion, RobotPairs against, const RowLimits &lim
              Workspace &workspace, ClearanceRows &out) {
   const Clock::time_point start = Clock::now();
   const Asked asked = askedOf(motion, against, query);
+  const Coverage coverage = coverageOf(query, asked);
+  if (!coverage.complete()) out.gap = coverage.gap(), out.message = coverage.message();
   if (asked.pairs.empty()) return;
   const std::vector<double> &times = limits.breaks.empty() ? asked.data.shape.times : limits.breaks;
   const std::size_t n_intervals = times.size() - 1, left = limits.most - std::min(limits.most, out.rows.size());

@@ -175,7 +175,14 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
   const Clock::time_point start = Clock::now();
   checkDistances(againstOf(self), query);
   const Asked asked = askedOf(motion, againstOf(self), query);
-  if (asked.pairs.empty()) return {};
+  const Coverage coverage = coverageOf(query, asked);
+  Answer nothing;
+  nothing.id = asked.data.id, nothing.kind = self ? "self" : "environment";
+  std::vector<Answer> answers;
+  if (asked.pairs.empty()) {
+    applyCoverage(coverage, query, nothing, answers);
+    return answers;
+  }
   const cprox_options options = withoutRounding(query.options, asked.rounding);
   std::vector<cprox_result> results(std::min(limits.count, asked.pairs.size()));
   cprox_listed listed{};
@@ -183,12 +190,12 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
   const cprox_status status = cprox_obstacles_nearest_pairs(obstacles.get(), asked.mover(), limits.count, limits.within,
                                                             &options, workspace.get(), results.data(), &listed);
   if (status < 0) throw Error(workspace.reason(), status);
-  std::vector<Answer> answers;
   for (std::size_t i = 0; i < listed.count; ++i)
     answers.push_back(toAnswer(asked, results[i], query, workspace, start));
   Unlisted unlisted;
   unlisted.add(status, listed, asked.rounding);
   unlisted.addRow(limits, query.options, asked.data.id, self ? "self" : "environment", answers);
+  if (answers.empty()) applyCoverage(coverage, query, nothing, answers);
   return answers;
 }
 
@@ -198,8 +205,7 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
   const std::string fault = faultOfProfile(query, breaks, horizon);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, againstOf(self), query);
-  if (asked.pairs.empty()) return profileOfNothing(breaks);
-  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  std::vector<ClearanceInterval> profile;
   const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
     Answer names;
     names.result.obstacle_index = found.obstacle_index;
@@ -207,7 +213,14 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
     nameSides(asked, query, names);
     out.a = names.a, out.b = names.b;
   };
-  return searchProfile(obstacles, asked.mover(), asked.rounding, breaks, horizon, query, workspace, name);
+  if (asked.pairs.empty()) {
+    profile = profileOfNothing(breaks);
+  } else {
+    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+    profile = searchProfile(obstacles, asked.mover(), asked.rounding, breaks, horizon, query, workspace, name);
+  }
+  applyCoverage(coverageOf(query, asked), profile);
+  return profile;
 }
 
 } // namespace curve_proximity

@@ -124,6 +124,11 @@ std::vector<cprox_obstacle> targetsOf(const Movers::Data &data, const Pairs &pai
   return pairs.against == Against::MOVERS ? std::vector<cprox_obstacle>() : data.targets;
 }
 
+Coverage coverageOf(const Movers::Data &data, const Pairs &pairs, const Query &query) {
+  const bool nothing = pairs.environment.empty() && pairs.among.empty();
+  return coverageOf(query, data.coverage, nothing ? "there is no pair to measure" : "");
+}
+
 double microsecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
@@ -187,6 +192,7 @@ Answer answerOf(const Movers &movers, Against asked, const Query &query, const s
   if (answer.result.status != CPROX_OK && answer.message.empty())
     answer.message = cprox_status_text(answer.result.status);
   answer.status = cprox_status_name(answer.result.status);
+  applyCoverage(coverageOf(data, pairs, query), query, answer);
   refuseSecondOpinion(query, "the peers are not asked about what moves beside the robot", answer);
   return answer;
 }
@@ -240,8 +246,6 @@ std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, 
   if (query.options.interval) throw Error("an interval does not apply: breaks say where a profile begins and ends");
   const Movers::Data &data = movers.data();
   const Pairs pairs = pairsOf(data, against, query);
-  if (pairs.environment.empty() && pairs.among.empty()) return profileOfNothing(breaks);
-  const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
   const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
     Answer sides;
     sides.result.obstacle_index = found.obstacle_index;
@@ -253,7 +257,14 @@ std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, 
     out.a = sides.a, out.witness_a = sides.result.witness_mover;
     out.b = sides.b, out.witness_b = sides.result.witness_obstacle;
   };
-  return searchProfile(obstacles, joinedMover(data, pairs), data.rounding, breaks, horizon, query, workspace, name);
+  std::vector<ClearanceInterval> profile = profileOfNothing(breaks);
+  if (!pairs.environment.empty() || !pairs.among.empty()) {
+    const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
+    profile =
+        searchProfile(obstacles, joinedMover(data, pairs), data.rounding, breaks, horizon, query, workspace, name);
+  }
+  applyCoverage(coverageOf(data, pairs, query), profile);
+  return profile;
 }
 
 std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
@@ -298,6 +309,9 @@ std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairL
     unlisted.lower = std::min(unlisted.lower, std::max(0.0, out[i].result.lower));
   if (out.size() > limits.count) out.resize(limits.count);
   unlisted.addRow(limits, query.options, "movers", against == Against::MOVERS ? "movers" : "environment", out);
+  Answer nothing;
+  nothing.id = "movers", nothing.kind = "environment";
+  applyCoverage(coverageOf(data, pairs, query), query, nothing, out);
   return out;
 }
 
@@ -307,8 +321,6 @@ Violations violationsOf(const Movers &movers, Against against, double resolution
   refuse(faultOfMovers(query));
   const Movers::Data &data = movers.data();
   const Pairs pairs = pairsOf(data, against, query);
-  if (pairs.environment.empty() && pairs.among.empty()) return violationsOfNothing();
-  const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
   const auto name = [&](const cprox_violation &found, Violation &out) {
     Answer sides;
     sides.result.obstacle_index = found.obstacle_index;
@@ -317,7 +329,13 @@ Violations violationsOf(const Movers &movers, Against against, double resolution
     sides = view(std::move(sides));
     out.a = sides.a, out.b = sides.b;
   };
-  return searchViolations(obstacles, joinedMover(data, pairs), data.rounding, resolution, query, workspace, name);
+  Violations found = violationsOfNothing();
+  if (!pairs.environment.empty() || !pairs.among.empty()) {
+    const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
+    found = searchViolations(obstacles, joinedMover(data, pairs), data.rounding, resolution, query, workspace, name);
+  }
+  applyCoverage(coverageOf(data, pairs, query), domainOf(query, movers.domain()), found);
+  return found;
 }
 
 /* Where the numbers of one of the robots are in those of the joined one. Robots come first; one that stands has no
@@ -428,6 +446,7 @@ ClearanceGradient gradientBy(const Movers &movers, const Differentiated &in, std
   ClearanceGradient out;
   out.valid = in.gradient.valid;
   if (!out.valid) out.reason = in.reason;
+  applyGap(in.answer, out);
   out.t = in.gradient.t, out.margin = in.gradient.margin;
   out.duration = in.arrays.durations[mover], out.start = in.arrays.starts[mover];
   const bool is_robot = mover < joined.robots.size();

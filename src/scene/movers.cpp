@@ -119,6 +119,7 @@ class Joiner {
   void addRobot(const MovingRobot &robot) {
     if (!robot.motion) throw Error("robot '" + robot.name + "' has no motion");
     const RobotMotion::Data &data = robot.motion->data();
+    out_.coverage.add(data.coverage);
     const auto first = static_cast<std::int32_t>(out_.geometries.size());
     for (const MovingGeometry &geometry : data.kinematics->geometries) {
       const bool moves = data.moves[out_.geometries.size() - static_cast<std::size_t>(first)];
@@ -235,6 +236,7 @@ Movers::Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, con
   checkNames(*snapshot, robots, objects);
   auto data = std::make_unique<Data>();
   data->snapshot = std::move(snapshot);
+  data->coverage = data->snapshot->coverage();
   for (const MovingObject &object : objects) {
     data->objects.push_back(bodyOf(object, resources));
     data->object_names.push_back(object.object.id);

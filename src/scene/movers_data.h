@@ -43,6 +43,7 @@ struct Movers::Data {
   std::vector<cprox_robot_pair> environment, among; /* geometry against target, against geometry */
   std::vector<bool> among_moves;                    /* of each of these: is one moved against the other */
   double rounding = 0.0;                            /* [m] that the core does not know of */
+  Coverage coverage;                                /* of the scene, and of all robots with their motions */
 };
 
 } // namespace curve_proximity

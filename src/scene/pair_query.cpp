@@ -5,6 +5,8 @@
 #include <chrono>
 #include <utility>
 
+#include "answering.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -92,6 +94,9 @@ Answer askPair(const PairDescription &pair, const Query &query, const ResourceOp
   answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
   answer.status = cprox_status_name(answer.result.status);
   if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
+  Query depth = query; // pairs always have one
+  depth.options.signed_distance = pair.asked == PairDescription::DISTANCE;
+  applyCoverage(coverageOf(query, {}, ""), depth, answer);
   addOpinion(pair, query, answer);
   return answer;
 }

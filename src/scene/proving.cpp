@@ -24,6 +24,10 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
   cprox_certificate *certificate = query.options.certificate;
   cprox_certificate_clear(certificate);
   if (result.status < 0) return; // the answer says why
+  if (answer.gap) {
+    answer.unproven = answer.message;
+    return;
+  }
   const double delta = claimOf(query, result);
   if (!std::isfinite(delta)) {
     answer.unproven = "there is nothing to measure";

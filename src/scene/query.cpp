@@ -158,7 +158,7 @@ void nameTarget(const Search &search, Answer &answer) {
   nameItem(search.items[search.chosen[static_cast<std::size_t>(found)]], search.query.options.max_lod, answer);
 }
 
-void answerOf(const Search &search, Answer &answer) {
+void answerOf(const Search &search, const Coverage &given, Answer &answer) {
   answer.id = answer.a = search.curve.id;
 
   const double rounding = roundingOf(search);
@@ -174,6 +174,7 @@ void answerOf(const Search &search, Answer &answer) {
     nameTarget(search, answer);
   }
   finishAnswer(search.workspace, answer);
+  applyCoverage(coverageOf(search.query, given, search.chosen.empty() ? NO_OBJECT : ""), search.query, answer);
 }
 
 double microsecondsSince(Clock::time_point start) {
@@ -221,7 +222,7 @@ void ask(const Targets &targets, const CompiledCurve &curve, const Query &query,
     Search search{curve, query, items, data.few.get(), workspace, {}, INFINITE};
     choose(data, search);
     answers.emplace_back();
-    answerOf(search, answers.back());
+    answerOf(search, data.coverage, answers.back());
     answers.back().microseconds = microsecondsSince(start);
     addSecondOpinion(data, curve, query, answers.back());
     return;
@@ -235,7 +236,7 @@ void ask(const Targets &targets, const CompiledCurve &curve, const Query &query,
     Search search{curve, query, items, nullptr, workspace, {}, INFINITE};
     chooseAll(search, first, last);
     answers.emplace_back();
-    answerOf(search, answers.back());
+    answerOf(search, data.coverage, answers.back());
     if (answers.back().b.empty()) { // refused: say of which
       answers.back().b = *items[first].owner;
       answers.back().b_is_link = items[first].is_link;

@@ -95,6 +95,11 @@ class Lanes {
     checker_.reset(made);
   }
 
+  /* Is there no pair to measure? */
+  bool isEmpty() const {
+    return asked_.pairs.empty();
+  }
+
   /* The verdict of an edge, if that is the verdict of its motion as well: what is clear of all pairs is; else its
    * motion must have all pairs, as it has where all joints move, and all of them must be the core's own. */
   std::optional<cprox_verdict> ask(const std::array<std::uint32_t, 2> &edge, Workspace &workspace) const {
@@ -132,8 +137,8 @@ class Lanes {
 bool speaksForAll(const PreparedRobot &robot, const Query &query) {
   const SnapshotPtr &snapshot = robot.snapshot();
   const cprox_lod finest = query.options.max_lod;
-  return snapshot->coverage().complete() && snapshot->robot()->coverage().complete() && !query.per_object &&
-         !query.options.signed_distance && (finest == CPROX_LOD_MESH || finest == CPROX_LOD_NONE);
+  return query.coverage.complete() && snapshot->coverage().complete() && snapshot->robot()->coverage().complete() &&
+         !query.per_object && !query.options.signed_distance && (finest == CPROX_LOD_MESH || finest == CPROX_LOD_NONE);
 }
 
 } // namespace
@@ -146,6 +151,7 @@ std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadma
   if (verdicts.empty()) verdicts.assign(n, CPROX_VERDICT_CLEAR);
   std::optional<Lanes> lanes;
   if (n > 0 && speaksForAll(robot, query)) lanes.emplace(robot, roadmap, self, query);
+  if (lanes && lanes->isEmpty()) lanes.reset(); // no edge is clear of nothing, but where the query allows it
   pool.run(n, A_PART, [&](std::size_t first, std::size_t last, Workspace &workspace) {
     for (std::size_t i = first; i < last; ++i) {
       if (verdicts[i] != CPROX_VERDICT_CLEAR) continue;

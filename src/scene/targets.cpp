@@ -99,6 +99,8 @@ Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &quer
   addObjects(everything, objects, *data);
   if (!links.empty() || !named_links.empty()) addLinks(everything, named_links, links, *data);
   if (!links.empty() || !everything) addAttached(everything, objects, links, *data);
+  data->coverage = data->snapshot->coverage();
+  if (!links.empty() || !named_links.empty()) data->coverage.add(data->snapshot->robot()->coverage());
   if (data->items.size() <= FEW_SHAPES) {
     std::vector<cprox_obstacle> all;
     for (const Item &item : data->items) all.push_back(item.shape->target);

@@ -26,6 +26,8 @@ struct Targets::Data {
 
   std::deque<PlacedShape> links; /* where the items of links and of what they carry point to */
 
+  Coverage coverage; /* of the scene, and of the robot where it takes part */
+
   ObstaclesHandle few; /* all items, where they are so few that each curve is held against all of them; else null */
 };
 

@@ -54,13 +54,19 @@ Violations violations(const Targets &targets, const CompiledCurve &curve, double
   const std::string fault = faultOf(query);
   if (!fault.empty()) throw Error(fault);
   const std::vector<Item> &items = targets.data().items;
-  if (items.empty()) return violationsOfNothing();
-  const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
   const auto name = [&](const cprox_violation &found, Violation &out) {
     out.a = curve.id;
     if (found.obstacle_index >= 0) out.b = *items[static_cast<std::size_t>(found.obstacle_index)].owner;
   };
-  return searchViolations(obstacles, moverOf(curve), roundingOf(curve, items), resolution, query, workspace, name);
+  Violations found = violationsOfNothing();
+  if (!items.empty()) {
+    const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
+    found = searchViolations(obstacles, moverOf(curve), roundingOf(curve, items), resolution, query, workspace, name);
+  }
+  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  applyCoverage(coverageOf(query, targets.data().coverage, items.empty() ? NO_OBJECT : ""),
+                domainOf(query, {info.t0, info.t1}), found);
+  return found;
 }
 
 Violations violations(const RobotMotion &motion, bool self, double resolution, const Query &query,
@@ -70,8 +76,6 @@ Violations violations(const RobotMotion &motion, bool self, double resolution, c
   const std::string fault = faultInAll(against, query);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, against, query);
-  if (asked.pairs.empty()) return violationsOfNothing();
-  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
   const auto name = [&](const cprox_violation &found, Violation &out) {
     Answer names;
     names.result.obstacle_index = found.obstacle_index;
@@ -80,7 +84,13 @@ Violations violations(const RobotMotion &motion, bool self, double resolution, c
     out.a = names.a;
     out.b = names.b;
   };
-  return searchViolations(obstacles, asked.mover(), asked.rounding, resolution, query, workspace, name);
+  Violations found = violationsOfNothing();
+  if (!asked.pairs.empty()) {
+    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+    found = searchViolations(obstacles, asked.mover(), asked.rounding, resolution, query, workspace, name);
+  }
+  applyCoverage(coverageOf(query, asked), domainOf(query, motion.domain()), found);
+  return found;
 }
 
 } // namespace curve_proximity

@@ -104,17 +104,30 @@ class Answers(Case):
         self.assertAnswer(answer.row('passing', 'far, away'), 6.0)
         self.assertAnswer(answer.row('near', 'box'), 6.0)
 
-    def an_empty_world_is_infinitely_far(self):
-        for scene in ('{}', 'world: {collision_objects: []}', 'name: nothing'):
-            answer = self.ask('distance', [PASSING], scene)
-            row = answer.row('passing')
-            self.assertEqual((row['status'], row['lower'], row['upper'], row['b']), ('ok', 'inf', 'inf', ''))
-            self.assertEqual([row[name] for name in ('t', 'a_x', 'b_z')], ['', '', ''])
-            self.assertEqual(answer.code, 0)
-        self.assertEqual(self.ask('tolerance', [PASSING], '{}', '--delta', '5').row('passing')['verdict'], 'clear')
-        answer = self.ask('collision', [PASSING], '{}')
-        self.assertEqual(answer.row('passing')['verdict'], 'clear')
+    def an_empty_world_proves_nothing(self):
+        commands = [('distance',), ('collision',), ('tolerance', '--delta', '5'), ('time-of-contact',), ('profile', '--intervals', '1'),
+                    ('nearest',), ('nearest', '--within', '1'), ('violations', '--delta', '5')]
+        for scene in ('world: {collision_objects: []}', 'name: nothing'):
+            for command, *options in commands:
+                with self.subTest(scene=scene, command=command):
+                    answer = self.ask(command, [PASSING], scene, *options)
+                    row = answer.row('passing')
+                    self.assertEqual((row['status'], row['upper'], row['b']), ('empty', 'inf', ''))
+                    self.assertIn(row.get('lower'), ('0', None))
+                    self.assertIn(row.get('verdict'), ('undecided', '', None))
+                    self.assertEqual(answer.code, 3)
+        answer = self.ask('collision', [PASSING], 'name: nothing')
+        self.assertEqual([answer.row('passing')[name] for name in ('t', 'a_x', 'b_z')], ['', '', ''])
+        self.assertIn('there is no object', answer.row('passing')['message'])
         self.assertIn('warning: 1 of 1 rows were measured against nothing', answer.err)
+
+    def an_empty_world_is_clear_where_the_caller_says_so(self):
+        answer = self.ask('distance', [PASSING], 'name: nothing', '--allow-empty')
+        row = answer.row('passing')
+        self.assertEqual((answer.code, row['status'], row['lower'], row['upper']), (0, 'ok', 'inf', 'inf'))
+        for command, *options in (('collision',), ('tolerance', '--delta', '5'), ('violations', '--delta', '5')):
+            answer = self.ask(command, [PASSING], 'name: nothing', '--allow-empty', *options)
+            self.assertEqual((answer.code, answer.row('passing')['verdict']), (0, 'clear'))
         self.assertNotIn('nothing', self.ask('collision', [PASSING], BOX_SCENE).err)
 
     def without_any_curve_nothing_is_proven_clear(self):

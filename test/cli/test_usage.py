@@ -10,7 +10,7 @@ class Usage(Case):
         for word in ('distance', 'tolerance', 'collision', 'pairs', 'send', '--curves', '--scene', '--robot', '--srdf', '--state',
                      '--in', '--against', '--trajectory', '--self', '--signed', 'check', '--certificate', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-lod', '--skipped',
                      '--out', '--node', '--version', 'constraints', '--provider', '--parameters', 'profile', 'nearest', 'time-of-contact',
-                     '--per-link', '--intervals', '--breaks', '--horizon', '--pairs', '--within', '--movers', '--second-opinion'):
+                     '--per-link', '--intervals', '--breaks', '--horizon', '--pairs', '--within', '--movers', '--second-opinion', '--allow-empty'):
             self.assertIn(word, answer.out)
 
     def help_wins_over_everything_else(self):
@@ -61,7 +61,7 @@ class Usage(Case):
                   '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-lod': 'hull', '--out': 'o', '--self': None,
                   '--replace': None, '--add': None, '--signed': None, '--per-object': None, '--skipped': None, '--per-link': None,
                   '--intervals': '9', '--breaks': '0, 1', '--horizon': '1', '--pairs': '2', '--within': '1', '--check-gradient': None, '--movers': None, '--synchronized': None,
-                  '--second-opinion': 'fcl', '--links': 'l', '--objects': 'o', '--moving-links-only': None}
+                  '--second-opinion': 'fcl', '--links': 'l', '--objects': 'o', '--allow-empty': None, '--moving-links-only': None}
         run = {'--epsilon', '--max-nodes', '--threads', '--out'}
         rows = [('pairs', ['--in', 'i'], run | {'--max-lod', '--skipped', '--second-opinion'}),
                 ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--robot', '--threads', '--out', '--check-gradient'}),
@@ -71,17 +71,18 @@ class Usage(Case):
         for command, own in (('distance', {'--signed'}), ('tolerance', {'--delta'}), ('collision', set())):
             start = ['--delta', '1'] if command == 'tolerance' else []
             rows += [(command, start + ['--curves', 'c', '--robot', 'r'],
-                      run | own | {'--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-lod', '--skipped', '--against', '--second-opinion', '--links', '--objects'}),
+                      run | own | {'--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-lod', '--skipped', '--against', '--second-opinion', '--links', '--objects',
+                       '--allow-empty'}),
                      (command, start + ['--curves', 'c', '--against', 'd'], run | own | {'--certificate', '--scene', '--robot', '--synchronized'}),
                      (command, start + ['--trajectory', 't', '--robot', 'r'], run | own | {
                          '--scene', '--srdf', '--state', '--certificate', '--per-object', '--per-link', '--max-lod', '--skipped', '--self', '--second-opinion',
-                         '--links', '--objects', '--moving-links-only'})]
+                         '--links', '--objects', '--allow-empty', '--moving-links-only'})]
         for command, own in (('profile', {'--intervals', '--breaks', '--horizon'}), ('nearest', {'--pairs', '--within', '--signed'}), ('time-of-contact', set())):
             both = run | (set() if command == 'profile' else {'--second-opinion'}) | own | {
-                '--scene', '--srdf', '--state', '--per-object', '--max-lod', '--skipped', '--links', '--objects'}
+                '--scene', '--srdf', '--state', '--per-object', '--max-lod', '--skipped', '--links', '--objects', '--allow-empty'}
             rows += [(command, ['--curves', 'c', '--robot', 'r'], both),
                      (command, ['--trajectory', 't', '--robot', 'r'], both - {'--signed'} | {'--self', '--per-link', '--moving-links-only'})]
-        rows += [('distance', ['--scene', 's', '--movers'], run | {'--max-lod', '--skipped', '--self', '--moving-links-only'})]
+        rows += [('distance', ['--scene', 's', '--movers'], run | {'--max-lod', '--skipped', '--self', '--allow-empty', '--moving-links-only'})]
         for command, inputs, has in rows:
             for name, value in values.items():
                 if name in inputs or name in ('--against', '--scene', '--robot') and '--curves' in inputs:

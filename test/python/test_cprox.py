@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python package cprox: answers against dense samples in NumPy, arrays in and out, errors, threads, a robot."""
+import math
 import os
 import signal
 import subprocess
@@ -793,7 +794,14 @@ class Robots(unittest.TestCase):
     def test_self_collision_and_changes_of_the_scene(self):
         scene = cprox.Scene(self.robot)
         motion = self.motion(scene)
-        self.assertTrue(numpy.isinf(motion.distance()['result'].lower))  # no object
+        nothing = motion.collision()
+        self.assertEqual((nothing['status'], nothing['result'].lower, nothing['result'].verdict), ('empty', 0, 'undecided'))
+        self.assertIn('no object', nothing['message'])
+        meant = motion.collision(allow_empty=True)
+        self.assertEqual((meant['status'], meant['result'].lower, meant['result'].verdict), ('ok', math.inf, 'clear'))
+        self.assertEqual(motion.profile([0, 1])['gap'], 'empty')
+        self.assertEqual([one['verdict'] for one in motion.violations(0.1)], ['undecided'])
+        self.assertEqual([one['status'] for one in motion.nearest_pairs(within=0.1)], ['empty'])
         answer = motion.distance(self_collision=True)
         self.assertEqual(answer['kind'], 'self')
         self.assertGreater(answer['result'].lower, 0)

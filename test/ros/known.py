@@ -45,7 +45,7 @@ class Known(unittest.TestCase):
     def test_every_answer_says_which_scene_it_is_about_and_a_request_may_demand_one(self):
         _, server = self.begin('versions')
         nothing = server.tolerance(LINE, 0.1)
-        self.assertEqual((nothing.results[0].verdict, nothing.scene.objects), ('clear', 0))
+        self.assertEqual((nothing.results[0].verdict, nothing.results[0].status, nothing.scene.objects), ('undecided', 'empty', 0))
         self.assertIn('nothing', nothing.warnings[0])
         applied = server.apply(sphere('ball', 0.25))
         answer = server.distance(LINE, scene_epoch=applied.scene.epoch, scene_version=applied.scene.version)
@@ -105,7 +105,12 @@ class Known(unittest.TestCase):
         self.assertTrue(until(lambda: server.scene().objects, 5))
         clouds.publish(cloud())
         self.assertTrue(until(lambda: not server.scene().objects, 5))
-        self.assertEqual(server.tolerance(LINE, 0.1).results[0].verdict, 'clear')
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'empty')
+
+    def test_with_allow_empty_nothing_is_an_answer(self):
+        _, server = self.begin('allowing', allow_empty=True)
+        row, = server.tolerance(LINE, 0.1).results
+        self.assertEqual((row.status, row.verdict, row.lower), ('ok', 'clear', math.inf))
 
     def test_joint_states_and_their_age(self):
         with open(ARM) as text:

@@ -246,11 +246,11 @@ class Stretches(unittest.TestCase):
     def test_nothing_to_measure_against_is_said(self):
         self.server.replace()
         row, = self.good(self.contact(query(trajectory=QUARTER)))
-        self.assertEqual((row.verdict, row.upper, row.b), ('clear', math.inf, ''))
+        self.assertEqual((row.verdict, row.status, row.upper, row.b), ('undecided', 'empty', math.inf, ''))
         response = self.pairs(query(trajectory=QUARTER))
         self.assertTrue(any('against nothing' in warning for warning in response.warnings), response.warnings)
         profile, = self.good(self.profile(query(trajectory=QUARTER), intervals=2))
-        self.assertEqual((list(profile.lower), list(profile.b)), ([math.inf] * 2, [''] * 2))
+        self.assertEqual((list(profile.lower), list(profile.b)), ([0] * 2, [''] * 2))
 
 
 if __name__ == '__main__':

@@ -142,7 +142,9 @@ TEST_F(Slider, the_time_of_contact_is_never_late) {
   answer = timeOfContact(slide(0, 2), false, query, workspace);
   EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_CLEAR);
   EXPECT_EQ(answer.result.t_contact_lower, 1.0);
-  answer = timeOfContact(slide(0, 2), true, query, workspace); // there is no pair
+  EXPECT_EQ(timeOfContact(slide(0, 2), true, query, workspace).gap, Gap::EMPTY); // there is no pair
+  query.allow_empty = true;
+  answer = timeOfContact(slide(0, 2), true, query, workspace);
   EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_CLEAR);
   EXPECT_EQ(answer.result.t_contact_lower, 1.0);
   query.query_type = QueryType::DISTANCE;

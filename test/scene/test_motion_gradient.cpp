@@ -381,8 +381,11 @@ TEST(MotionGradient, without_objects_there_is_the_robot_itself) {
   EXPECT_EQ(whole.answer.kind, "self");
   EXPECT_NEAR(whole.answer.result.upper, distanceOf(motion, RobotPairs::SELF, workspace), 1e-9);
   const ClearanceRow nothing = clearanceGradient(motion, RobotPairs::ENVIRONMENT, fineQuery(), workspace);
-  EXPECT_EQ(nothing.answer.result.lower, INFINITY);
+  EXPECT_EQ(nothing.answer.status, "empty");
+  EXPECT_EQ(nothing.answer.result.upper, INFINITY);
   EXPECT_FALSE(nothing.gradient.valid);
   EXPECT_EQ(nothing.gradient.positions.rows(), 4);
-  EXPECT_TRUE(clearanceRows(motion, RobotPairs::ENVIRONMENT, RowLimits(), Query(), workspace).rows.empty());
+  const ClearanceRows rows = clearanceRows(motion, RobotPairs::ENVIRONMENT, RowLimits(), Query(), workspace);
+  EXPECT_TRUE(rows.rows.empty());
+  EXPECT_EQ(rows.gap, Gap::EMPTY);
 }

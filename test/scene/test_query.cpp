@@ -188,12 +188,20 @@ TEST(Ask, the_inside_of_a_mesh_counts_where_it_is_asked_for_and_closed) {
   expectContains(ask(true, 11).message, "not closed");
 }
 
-TEST(Ask, with_nothing_to_measure_everything_is_far) {
+TEST(Ask, with_nothing_to_measure_everything_is_far_if_the_caller_says_so) {
   const Scene scene;
   for (const bool per_object : {false, true}) {
     for (const QueryType query_type : {QueryType::DISTANCE, QueryType::TOLERANCE, QueryType::COLLISION}) {
       Query query = queryOf(query_type, query_type == QueryType::TOLERANCE ? 1.0 : 0.0);
       query.per_object = per_object;
+      const Answer unsure = askOne(scene, {}, UPRIGHT, query);
+      EXPECT_EQ(unsure.status, "empty");
+      EXPECT_EQ(unsure.gap, Gap::EMPTY);
+      EXPECT_EQ(unsure.result.lower, 0.0);
+      EXPECT_EQ(unsure.result.upper, INFINITY);
+      EXPECT_EQ(unsure.result.verdict, CPROX_VERDICT_UNDECIDED);
+      expectContains(unsure.message, "there is no object");
+      query.allow_empty = true;
       const Answer answer = askOne(scene, {}, UPRIGHT, query);
       EXPECT_EQ(answer.status, "ok");
       EXPECT_EQ(answer.b, "");
@@ -320,7 +328,9 @@ TEST(Nearest, shapes_come_in_order_and_within_the_limit) {
   each.per_object = true;
   expectContains(errorOf([&] { nearestPairs(targets, curve, {}, each, workspace); }), "per_object");
   const Scene empty;
-  EXPECT_TRUE(nearestPairs(Targets(empty.snapshot(), {}, Query()), curve, {}, Query(), workspace).empty());
+  const std::vector<Answer> none = nearestPairs(Targets(empty.snapshot(), {}, Query()), curve, {}, Query(), workspace);
+  ASSERT_EQ(none.size(), 1u);
+  EXPECT_EQ(none.front().gap, Gap::EMPTY);
 }
 
 TEST(Profile, each_interval_contains_the_least_distance) {
