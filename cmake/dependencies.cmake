@@ -45,7 +45,12 @@ set(CPROX_CCD_INCLUDE_DIRS ${PC_CCD_INCLUDEDIR} ${PC_CCD_INCLUDE_DIRS})
 pkg_check_modules(PC_OCTOMAP REQUIRED octomap)
 pkg_check_modules(PC_URDFDOM REQUIRED urdfdom)
 pkg_check_modules(PC_TINYXML2 REQUIRED tinyxml2)
-pkg_check_modules(PC_ASSIMP REQUIRED assimp)
+# RapidJSON is headers alone; not every version brings a pkg-config file.
+find_path(CPROX_RAPIDJSON_INCLUDE_DIR rapidjson/document.h)
+mark_as_advanced(CPROX_RAPIDJSON_INCLUDE_DIR)
+if(NOT CPROX_RAPIDJSON_INCLUDE_DIR)
+  message(FATAL_ERROR "RapidJSON was not found: install rapidjson-dev")
+endif()
 # qhull brings pkg-config files since 2020 only; the reentrant library is there since 2015.
 find_path(CPROX_QHULL_INCLUDE_DIR libqhull_r/qhull_ra.h)
 find_library(CPROX_QHULL_LIBRARY qhull_r)

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <set>
 
+#include <curve_proximity/mesh_remarks.hpp>
+
 #include "../scene/yaml/frames.h"
 #include "../scene/yaml/path_yaml.h"
 #include "../scene/yaml/scene_change.h"
@@ -56,13 +58,15 @@ void apply(Scene &scene, const SceneChange &change) {
   throw BadUsage(faults.front() + more);
 }
 
-/* Meshes that were to be solid and are not closed. */
-void warnOfOpenMeshes(const Snapshot &snapshot, Warnings &warnings) {
+/* Meshes that were to be solid and are not closed, and what was done to read a mesh file. */
+void warnOfMeshes(const Snapshot &snapshot, const ResourceOptions &resources, Warnings &warnings) {
   for (const auto &[id, object] : snapshot.objects()) {
     for (const ObjectShape &shape : object->shapes) {
       if (shape.geometry.is_open)
         warnings.add("object '" + id + "': a mesh that is to be solid is not closed: its surface alone counts");
     }
+    for (const std::string &remark : meshRemarks(object->description, resources))
+      warnings.add("object '" + id + "': " + remark);
   }
 }
 
@@ -171,7 +175,7 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
   } catch (const BadUsage &e) {
     throw BadUsage(arguments.scene + ": " + e.what());
   }
-  warnOfOpenMeshes(*scene.snapshot(), warnings);
+  warnOfMeshes(*scene.snapshot(), resources, warnings);
   std::optional<Ride> ride;
   if (!arguments.path.empty()) ride = readRide(arguments, frames, robot, warnings);
   if (ride && !warnings.coverage().complete()) { /* what was said of --path and --body, too */

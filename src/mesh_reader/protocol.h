@@ -12,8 +12,8 @@
 
 namespace curve_proximity::mesh_reader {
 
-/* A text: what looked wrong in the file before it was read, in case that reading it fails. */
-constexpr char NOTE = 'n';
+/* A text about the mesh that follows: what its reader may not expect, such as a unit that is not 1 m. */
+constexpr char REMARK = 'r';
 /* A text: why there is no mesh. */
 constexpr char ERROR = 'e';
 /* Two uint64_t, V and T; 3 V doubles [m]; 3 T int32_t; the byte END. */
@@ -22,7 +22,7 @@ constexpr char END = '.';
 
 constexpr std::size_t LONGEST_TEXT = 2000; /* [bytes] */
 
-/* What reading a file may cost. Of a binary STL of 20 MB libassimp needs 30 bytes a byte and 0.1 s/MiB. */
+/* What reading a file may cost. */
 struct Limits {
   std::uint64_t memory;    /* [bytes] of address space */
   unsigned processor_time; /* [s] */

@@ -9,23 +9,12 @@
 #include <cerrno>
 #include <cstring>
 #include <new>
-#include <vector>
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-#include <assimp/Importer.hpp>
-
-#include "check.h"
+#include "formats.h"
 #include "protocol.h"
 
 namespace curve_proximity::mesh_reader {
 namespace {
-
-struct Mesh {
-  std::vector<double> vertices;
-  std::vector<std::int32_t> triangles;
-};
 
 /* ---- messages ---- */
 
@@ -111,7 +100,7 @@ void takeLimits(std::uint64_t file_size, int out) {
 
 /* ---- the file ---- */
 
-std::string readBytes(int in, std::uint64_t size) {
+std::string contentOf(int in, std::uint64_t size) {
   std::string bytes(size, '\0');
   std::size_t got = 0;
   while (got < size) {
@@ -124,59 +113,6 @@ std::string readBytes(int in, std::uint64_t size) {
   return bytes;
 }
 
-void collect(const aiScene &scene, const aiNode &node, const aiMatrix4x4 &parent, Mesh &mesh) {
-  const aiMatrix4x4 pose = parent * node.mTransformation;
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    const aiMesh &part = *scene.mMeshes[node.mMeshes[i]];
-    const auto first = static_cast<std::int32_t>(mesh.vertices.size() / 3);
-    for (unsigned k = 0; k < part.mNumVertices; ++k) {
-      const aiVector3D v = pose * part.mVertices[k];
-      for (const ai_real x : {v.x, v.y, v.z}) mesh.vertices.push_back(static_cast<double>(x));
-    }
-    for (unsigned k = 0; k < part.mNumFaces; ++k) {
-      const aiFace &face = part.mFaces[k];
-      if (face.mNumIndices != 3) continue;
-      for (unsigned c = 0; c < 3; ++c) mesh.triangles.push_back(first + static_cast<std::int32_t>(face.mIndices[c]));
-    }
-  }
-  for (unsigned i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], pose, mesh);
-}
-
-/* As geometric_shapes, and so MoveIt, reads it: what libassimp does at the root to turn the axes is undone. */
-Mesh readByAssimp(const std::string &bytes, const std::string &extension) {
-  Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                                          aiComponent_COLORS | aiComponent_TEXCOORDS |
-                                                          aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                                          aiComponent_TEXTURES | aiComponent_LIGHTS |
-                                                          aiComponent_CAMERAS | aiComponent_MATERIALS);
-  const aiScene *scene = importer.ReadFileFromMemory(
-      bytes.data(), bytes.size(),
-      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_RemoveComponent,
-      extension.c_str());
-  if (!scene || !scene->mRootNode) throw Fault("libassimp cannot read it: " + std::string(importer.GetErrorString()));
-  scene->mRootNode->mTransformation = aiMatrix4x4();
-  scene = importer.ApplyPostProcessing(aiProcess_OptimizeMeshes | aiProcess_OptimizeGraph);
-  if (!scene) throw Fault("libassimp cannot read it: " + std::string(importer.GetErrorString()));
-  Mesh mesh;
-  collect(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
-  return mesh;
-}
-
-Mesh readMesh(const std::string &file, int in, int out, std::uint64_t size) {
-  const std::string bytes = readBytes(in, size), extension = extensionOf(file);
-  const Triangles expected = checkFile(extension, bytes);
-  if (expected && *expected == 0) throw Fault("there is no triangle in it");
-  const std::string note = noteOn(extension, bytes);
-  if (!note.empty()) writeText(out, NOTE, note.c_str());
-  Mesh mesh = readByAssimp(bytes, extension);
-  const std::uint64_t triangles = mesh.triangles.size() / 3;
-  if (triangles == 0) throw Fault("there is no triangle in it");
-  if (expected && *expected != triangles)
-    throw Fault("libassimp reads " + std::to_string(triangles) + " of its " + std::to_string(*expected) + " triangles");
-  return mesh;
-}
-
 } // namespace
 
 void answer(const std::string &file, int in, int out) {
@@ -187,7 +123,9 @@ void answer(const std::string &file, int in, int out) {
   const auto size = static_cast<std::uint64_t>(status.st_size);
   takeLimits(size, out);
   try {
-    writeMesh(out, readMesh(file, in, out, size));
+    const Mesh mesh = readBytes(extensionOf(file), contentOf(in, size));
+    if (!mesh.remark.empty()) writeText(out, REMARK, mesh.remark.c_str());
+    writeMesh(out, mesh);
   } catch (const std::exception &error) {
     writeText(out, ERROR, error.what());
   }

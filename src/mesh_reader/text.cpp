@@ -37,6 +37,13 @@ bool Words::skipLine() {
   return true;
 }
 
+bool isWord(std::string_view word, std::string_view lower_case) {
+  if (word.size() != lower_case.size()) return false;
+  for (std::size_t i = 0; i < word.size(); ++i)
+    if (lower(word[i]) != lower_case[i]) return false;
+  return true;
+}
+
 std::optional<double> parseNumber(std::string_view word) {
   std::array<char, 400> text{}; /* longer than any double that is written out */
   if (word.empty() || word.size() >= text.size()) return std::nullopt;

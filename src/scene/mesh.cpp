@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <curve_proximity/mesh_remarks.hpp>
+
 #include "hull.h"
 #include "mesh_cache.h"
 #include "mesh_process.h"
@@ -138,6 +140,7 @@ void simplifyAsAsked(PreparedMesh &mesh, const Eigen::Vector3d &scale, double to
   if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) throw Error("mesh_tolerance must be finite and not below 0");
   if (!(tolerance > 0.0)) return;
   SimplifiedMesh simple = simplify(mesh.mesh, scale, tolerance);
+  simple.mesh.remark = std::move(mesh.mesh.remark);
   mesh.mesh = std::move(simple.mesh);
   mesh.moved = simple.moved;
 }
@@ -184,7 +187,8 @@ bool MeshRequest::operator<(const MeshRequest &other) const {
   return key(*this) < key(other);
 }
 
-Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &options, MeshTiming *timing) {
+Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &options, MeshTiming *timing,
+                          std::string *remark) {
   MeshTiming ignored;
   MeshTiming &times = timing ? *timing : ignored;
   times.file = request.file;
@@ -200,9 +204,23 @@ Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &opt
     times.hull = lap();
     Geometry out = geometryOf(mesh->mesh, *mesh, request.scale, request.solid, options);
     times.triangles = static_cast<std::size_t>(mesh->mesh.triangles.cols());
+    if (remark) *remark = mesh->mesh.remark;
     times.tree = lap();
     return out;
   });
+}
+
+std::vector<std::string> meshRemarks(const ObjectDescription &object, const ResourceOptions &options) {
+  std::vector<std::string> out;
+  for (const ShapeDescription &shape : object.shapes) {
+    if (shape.type != ShapeType::MESH || shape.resource.empty()) continue;
+    MeshTiming ignored;
+    const MeshRequest request{shape.resource, resolveResource(shape.resource, options), meshScale(shape), shape.solid};
+    const Found found = ofMesh(request.file, [&] { return find(request, options, ignored); });
+    const std::string &remark = (found.kept ? *found.kept : *found.read).mesh.remark;
+    if (!remark.empty()) out.push_back("mesh '" + shape.resource + "': " + remark);
+  }
+  return out;
 }
 
 } // namespace curve_proximity

@@ -14,10 +14,12 @@ namespace curve_proximity {
 struct MeshData {
   Eigen::Matrix3Xd vertices; /* [m] */
   Triangles triangles;
+  std::string remark = ""; /* what was done to read the file that its user may not expect; "" for nothing */
 };
 
-/* Reads any format that assimp knows, in a process of its own: a malformed file costs seconds at most. Throws Error,
- * naming the file and what is wrong with it, where it is cut short or otherwise malformed, or holds no triangle. */
+/* Reads STL, PLY, OBJ, Collada and glTF files in double precision, in a process of its own: a malformed file costs
+ * seconds at most. Throws Error, naming the file and what is wrong with it, where it is cut short or otherwise
+ * malformed, or holds no triangle. */
 MeshData readMesh(const std::string &file);
 
 /* The mesh, scaled along the axes, as a level-of-detail body of the convex hull of the vertices that triangles use, and
@@ -37,8 +39,9 @@ struct MeshRequest {
 };
 
 /* Reads the file and makes the geometry as makeMeshGeometry() does; what is kept of the file's content and scale, in
- * memory or in the cache directory, is not made again. Throws Error, naming the file. */
-Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &options, MeshTiming *timing = nullptr);
+ * memory or in the cache directory, is not made again. `remark`: that of MeshData. Throws Error, naming the file. */
+Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &options, MeshTiming *timing = nullptr,
+                          std::string *remark = nullptr);
 
 /* How makeGeometry() gets the geometry of a mesh file. */
 using MeshLoader = std::function<Geometry(const MeshRequest &request)>;

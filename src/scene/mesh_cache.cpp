@@ -20,8 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/* Counts changes of what a file holds and of how hulls are made, between versions of the library. */
-constexpr std::uint64_t FORMAT = 2;
+/* Counts changes of what a file holds, of how meshes are read and of how hulls are made, between versions of the
+ * library. */
+constexpr std::uint64_t FORMAT = 3;
 
 constexpr std::size_t MEMORY_LIMIT = std::size_t{64} << 20;
 constexpr std::uintmax_t FOLDER_LIMIT = std::uintmax_t{1} << 30, FOLDER_AFTER = FOLDER_LIMIT / 4 * 3;
@@ -31,7 +32,7 @@ constexpr std::uintmax_t FOLDER_LIMIT = std::uintmax_t{1} << 30, FOLDER_AFTER = 
 std::size_t sizeOf(const PreparedMesh &mesh) {
   return sizeof mesh + static_cast<std::size_t>(mesh.mesh.vertices.size()) * sizeof(double) +
          static_cast<std::size_t>(mesh.mesh.triangles.size()) * sizeof(int) +
-         mesh.hull.kept.size() * sizeof(Eigen::Vector3d);
+         mesh.hull.kept.size() * sizeof(Eigen::Vector3d) + mesh.mesh.remark.size();
 }
 
 class Memory {
@@ -83,7 +84,7 @@ struct Head {
   char magic[16];
   std::uint64_t format;
   Digest key;
-  std::uint64_t vertices, triangles, kept;
+  std::uint64_t vertices, triangles, kept, remark;
   double excess, moved;
 };
 constexpr char MAGIC[16] = "cprox mesh\n\x1a\r\n";
@@ -195,9 +196,9 @@ PreparedMeshPtr loadMesh(const std::string &folder, const Digest &key) {
   std::memcpy(&head, bytes.data(), sizeof head);
   if (std::memcmp(head.magic, MAGIC, sizeof MAGIC) != 0 || head.format != FORMAT || head.key != key) return nullptr;
   const std::size_t most = bytes.size() / sizeof(std::int32_t);
-  if (head.vertices > most || head.triangles > most || head.kept > most) return nullptr;
+  if (head.vertices > most || head.triangles > most || head.kept > most || head.remark > bytes.size()) return nullptr;
   const std::size_t size = sizeof head + 3 * (head.vertices + head.kept) * sizeof(double) +
-                           3 * head.triangles * sizeof(std::int32_t) + sizeof(Digest);
+                           3 * head.triangles * sizeof(std::int32_t) + head.remark + sizeof(Digest);
   if (size != bytes.size()) return nullptr;
   Digest digest{};
   std::memcpy(digest.data(), bytes.data() + size - sizeof digest, sizeof digest);
@@ -212,7 +213,8 @@ PreparedMeshPtr loadMesh(const std::string &folder, const Digest &key) {
   const char *at = bytes.data() + sizeof head;
   at = take(at, out->mesh.vertices.data(), 3 * head.vertices);
   for (Eigen::Vector3d &p : out->hull.kept) at = take(at, p.data(), 3);
-  take(at, out->mesh.triangles.data(), 3 * head.triangles);
+  at = take(at, out->mesh.triangles.data(), 3 * head.triangles);
+  out->mesh.remark.assign(at, head.remark);
   return out;
 }
 
@@ -225,6 +227,7 @@ void saveMesh(const std::string &folder, const Digest &key, const PreparedMesh &
   head.vertices = static_cast<std::uint64_t>(mesh.mesh.vertices.cols());
   head.triangles = static_cast<std::uint64_t>(mesh.mesh.triangles.cols());
   head.kept = mesh.hull.kept.size();
+  head.remark = mesh.mesh.remark.size();
   head.excess = mesh.hull.excess;
   head.moved = mesh.moved;
   std::vector<char> bytes;
@@ -232,6 +235,7 @@ void saveMesh(const std::string &folder, const Digest &key, const PreparedMesh &
   append(bytes, mesh.mesh.vertices.data(), 3 * head.vertices);
   for (const Eigen::Vector3d &p : mesh.hull.kept) append(bytes, p.data(), 3);
   append(bytes, mesh.mesh.triangles.data(), 3 * head.triangles);
+  append(bytes, mesh.mesh.remark.data(), head.remark);
   const Digest digest = digestOf(bytes.data(), bytes.size());
   append(bytes, digest.data(), digest.size());
 

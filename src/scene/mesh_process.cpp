@@ -191,7 +191,7 @@ class Inbox {
 struct Received {
   bool is_mesh = false, is_error = false;
   MeshData mesh;
-  std::string error, note;
+  std::string error;
 };
 
 bool receiveText(Inbox &inbox, std::uint64_t size, std::string &text) {
@@ -219,7 +219,7 @@ Received receive(Inbox inbox, std::uint64_t most) {
   char kind = '\0';
   std::uint64_t size = 0;
   while (inbox.read(&kind, 1) && inbox.read(&size, sizeof size)) {
-    if (kind == mesh_reader::NOTE && out.note.empty() && receiveText(inbox, size, out.note)) continue;
+    if (kind == mesh_reader::REMARK && out.mesh.remark.empty() && receiveText(inbox, size, out.mesh.remark)) continue;
     if (kind == mesh_reader::ERROR) out.is_error = receiveText(inbox, size, out.error);
     if (kind == mesh_reader::MESH) out.is_mesh = receiveMesh(inbox, size, most, out.mesh);
     break;
@@ -236,7 +236,7 @@ std::string endOf(int status, const mesh_reader::Limits &limits) {
     if (signal == SIGALRM || signal == SIGKILL)
       return "reading it was ended: it takes more than " + std::to_string(limits.time) +
              " s, or more memory than there is";
-    return std::string("libassimp crashes on it (") + strsignal(signal) + ")";
+    return std::string("the program that reads meshes crashes on it (") + strsignal(signal) + ")";
   }
   return "the program that reads meshes ended without an answer";
 }
@@ -308,9 +308,8 @@ MeshData hearMesh(int from, pid_t id, const mesh_reader::Limits &limits) {
   const auto deadline = Clock::now() + std::chrono::seconds(limits.time) + LATER;
   Received received = receive(Inbox(from, deadline), limits.memory);
   if (received.is_mesh) return std::move(received.mesh);
-  const std::string note = received.note.empty() ? "" : "; " + received.note;
-  if (received.is_error) throw Error(received.error + note);
-  throw Error(endOf(process.status(std::min(deadline, Clock::now() + LATER)), limits) + note);
+  if (received.is_error) throw Error(received.error);
+  throw Error(endOf(process.status(std::min(deadline, Clock::now() + LATER)), limits));
 }
 
 MeshFile::MeshFile(const std::string &file) : file_(file) {

@@ -72,7 +72,7 @@ class Lanes {
   Lanes(const PreparedRobot &robot, const Roadmap &roadmap, bool self, const Query &query)
       : roadmap_(roadmap),
         motion_(robot, everyJoint(roadmap), roadmap.rest, query.links),
-        asked_(self ? askedSelf(motion_.data(), query.links)
+        asked_(self ? askedSelf(motion_.data(), query)
                     : askedItems(motion_.data(), namedItems(motion_.data(), query.objects), query)),
         rest_(cprox_motion_get_info(motion_.data().core.get()).n_variables) {
     cprox_motion_evaluate(motion_.data().core.get(), 0.0, rest_.data());

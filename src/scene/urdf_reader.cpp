@@ -267,7 +267,7 @@ class RobotReader {
       const auto &[request, loaded] = *files[i];
       LoadedMesh &out = files[i]->second;
       try {
-        out.geometry = loadMeshGeometry(request, options_.resources, &out.timing);
+        out.geometry = loadMeshGeometry(request, options_.resources, &out.timing, &out.remark);
       } catch (...) {
         out.error = std::current_exception();
       }
@@ -286,10 +286,11 @@ class RobotReader {
     }
   }
 
-  Geometry loadedMesh(const MeshRequest &request) const {
+  Geometry loadedMesh(const MeshRequest &request, std::string &remark) const {
     const auto it = meshes_.find(request);
-    if (it == meshes_.end()) return loadMeshGeometry(request, options_.resources);
+    if (it == meshes_.end()) return loadMeshGeometry(request, options_.resources, nullptr, &remark);
     if (it->second.error) std::rethrow_exception(it->second.error);
+    remark = it->second.remark;
     return it->second.geometry;
   }
 
@@ -309,8 +310,10 @@ class RobotReader {
       out.description = element.shape;
       out.pose = out.description.pose;
       checkPose(out.pose, "its pose");
+      std::string remark;
       out.geometry = makeGeometry(out.description, options_.resources,
-                                  [this](const MeshRequest &request) { return loadedMesh(request); });
+                                  [&](const MeshRequest &request) { return loadedMesh(request, remark); });
+      if (!remark.empty()) robot_->warnings_.push_back(who + "mesh '" + out.description.resource + "': " + remark);
       to.push_back(std::move(out));
     } catch (const Error &error) {
       fault(who + error.what());
@@ -323,6 +326,7 @@ class RobotReader {
   }
 
   struct LoadedMesh {
+    std::string remark;
     Geometry geometry;
     MeshTiming timing;
     std::exception_ptr error;

@@ -62,12 +62,13 @@ PreparedMesh someMesh(std::uint64_t seed) {
   for (int i = 0; i < 18; ++i) out.mesh.triangles.col(i) << i, i + 1, i + 2;
   for (int i = 0; i < 7; ++i) out.hull.kept.push_back(random.vector(1.0));
   out.hull.excess = 1e-13;
+  out.mesh.remark = "its unit is '0.01' m";
   return out;
 }
 
 bool same(const PreparedMesh &a, const PreparedMesh &b) {
   return a.mesh.vertices == b.mesh.vertices && a.mesh.triangles == b.mesh.triangles && a.hull.kept == b.hull.kept &&
-         a.hull.excess == b.hull.excess;
+         a.hull.excess == b.hull.excess && a.mesh.remark == b.mesh.remark;
 }
 
 Digest keyNumber(int i) {
