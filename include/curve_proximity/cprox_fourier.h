@@ -290,7 +290,8 @@ typedef struct cprox_gap cprox_gap;
  *  Certified: n is the least odd number whose proven over-reach is at most delta; kernel and offset are those that make
  *  the over-reach of bodies of ordinary proportions least. Returns CPROX_INVALID where delta cannot be had below the
  *  memory limit, with the n and the bytes it would need; where delta exceeds the size of the pair (nothing would be
- *  left to decide); for solids of different dimensions. Cost: the spectrum of one solid at n^d/2 frequencies. */
+ *  left to decide); for solids of different dimensions; where the function of cprox_workspace_set_stop() wants an
+ *  end, which it is asked every few milliseconds. Cost: the spectrum of one solid at n^d/2 frequencies. */
 CPROX_API cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                                         cprox_workspace *workspace, cprox_gap **gap);
 

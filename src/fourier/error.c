@@ -14,6 +14,10 @@ cprox_status fourier_fail(cprox_workspace *workspace, cprox_status status, const
   return status;
 }
 
+cprox_status fourier_stopped(cprox_workspace *workspace) {
+  return fourier_fail(workspace, CPROX_INVALID, "the stop function ended the making of the gap");
+}
+
 void fourier_clear(cprox_workspace *workspace) {
   cprox_workspace_set_error(workspace, NULL);
 }

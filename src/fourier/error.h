@@ -10,6 +10,9 @@ cprox_status fourier_fail(cprox_workspace *workspace, cprox_status status, const
     __attribute__((format(printf, 3, 4)));
 
 /* Forgets the error message of the last call. */
+/* A constructor that the stop function of the workspace ended: CPROX_INVALID. */
+cprox_status fourier_stopped(cprox_workspace *workspace);
+
 void fourier_clear(cprox_workspace *workspace);
 
 #endif

@@ -178,27 +178,33 @@ static bool allocate(cprox_gap *gap) {
   return gap->blocks && gap->c && gap->tail;
 }
 
-/* All coefficients; false where memory is out. */
+/* All coefficients; false where memory is out, or the stop function wanted an end. */
 static bool fill_blocks(const cprox_gap *gap, const kernel *w, const cprox_solid *fixed, const cprox_solid *ball,
-                        draft *drafts) {
+                        cprox_workspace *workspace, draft *drafts) {
   sources from = {.w = w, .fixed = fixed, .ball = ball};
   if (fixed->n == 1 && grid_is_aligned(&fixed->pieces[0]) &&
       !grid_transform(&fixed->pieces[0], gap->info.dimension, gap->N, TAU / gap->info.period, &from.grid))
     return false;
   list_blocks(w, gap->info.dimension, drafts);
-  for (size_t i = 0; i < gap->n_blocks; i++) fill_block(gap, &from, &drafts[i]);
+  enum { BLOCKS_BETWEEN_LOOKS = 8 };
+  bool stopped = false;
+  for (size_t i = 0; i < gap->n_blocks && !stopped; i++) {
+    stopped = i % BLOCKS_BETWEEN_LOOKS == 0 && cprox_workspace_wants_stop(workspace);
+    if (!stopped) fill_block(gap, &from, &drafts[i]);
+  }
   free(from.grid.value);
-  return true;
+  return !stopped;
 }
 
 /* Everything that depends on the spectra. */
-static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cprox_solid *turned) {
+static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cprox_solid *turned,
+                 cprox_workspace *workspace) {
   const int dimension = gap->info.dimension;
   gap->n_blocks = list_blocks(w, dimension, NULL);
   /* three samples are the fewest, so that there is a block */
   draft *drafts = gap->n_blocks > 0 ? calloc(gap->n_blocks, sizeof *drafts) : NULL;
   const bool folded = is_centred_ball(turned);
-  bool failed = !drafts || !allocate(gap) || !fill_blocks(gap, w, fixed, folded ? turned : NULL, drafts);
+  bool failed = !drafts || !allocate(gap) || !fill_blocks(gap, w, fixed, folded ? turned : NULL, workspace, drafts);
   if (!failed) {
     order(gap, drafts);
     const double measure = cprox_solid_get_info(turned).measure, L = gap->info.period;
@@ -256,10 +262,11 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
                              : gap_threshold(&w, plan, a, b);
   made->inverse = 1.0 / (made->info.threshold * volume);
   cprox_solid *turned = made->info.turned_first ? a : b, *fixed = made->info.turned_first ? b : a;
-  const bool ok = fill(made, &w, fixed, turned);
+  const bool ok = fill(made, &w, fixed, turned, workspace);
   cprox_solid_free(fixed);
   if (!ok) {
     cprox_gap_free(made);
+    if (cprox_workspace_wants_stop(workspace)) return fourier_stopped(workspace);
     return fourier_fail(workspace, CPROX_MEMORY, "no memory for a gap of n = %d", 2 * plan->N + 1);
   }
   made->simd = simd_of_machine();

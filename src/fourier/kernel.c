@@ -70,9 +70,13 @@ double kernel_threshold(const kernel *k, int dimension, double rho, double *bend
   return sum;
 }
 
+/* Of many samples a mass takes microseconds, and a disc milliseconds. */
+enum { STEPS_BETWEEN_LOOKS = 64, DISCS_BETWEEN_LOOKS = 8 };
+
 /* The integral of the one-dimensional kernel over [-x, x] at x = i/(2 M), i = 0 … M, rounded down by 1e-14. */
-static void list_masses(const kernel *k, int M, double *mass) {
+static bool list_masses(const kernel *k, int M, cprox_workspace *workspace, double *mass) {
   for (int i = 0; i <= M; i++) {
+    if (i % STEPS_BETWEEN_LOOKS == 0 && cprox_workspace_wants_stop(workspace)) return false;
     /* sum of w_j sin(j a)/(pi j), by Clenshaw */
     const double a = TAU * i / (2.0 * M), twice = 2.0 * cos(a);
     double b1 = 0.0, b2 = 0.0;
@@ -82,6 +86,7 @@ static void list_masses(const kernel *k, int M, double *mass) {
     }
     mass[i] = fmax(0.0, (double)i / M + b1 * sin(a) - 1e-14);
   }
+  return true;
 }
 
 /* A lower bound of the product kernel's integral over the ball of radius R/(2M): strips of the one axis, each over the
@@ -96,23 +101,32 @@ static double disc_mass(const double *mass, const double *inner, int R) {
   return sum;
 }
 
+/* The masses of discs of i * by / (2 M), i = 0 … n. */
+static bool list_discs(const double *mass, const double *inner, int n, int by, cprox_workspace *workspace,
+                       double *disc) {
+  for (int i = 0; i <= n; i++) {
+    if (i % DISCS_BETWEEN_LOOKS == 0 && cprox_workspace_wants_stop(workspace)) return false;
+    disc[i] = disc_mass(mass, inner, by * i);
+  }
+  return true;
+}
+
 int kernel_steps(int N) {
   return 16 * (N + 1);
 }
 
-bool kernel_list_outside(const kernel *k, int dimension, int steps, double *outside) {
+cprox_status kernel_list_outside(const kernel *k, int dimension, int steps, cprox_workspace *workspace,
+                                 double *outside) {
   const int fine = dimension == 2 ? 8 : 4, M = fine * steps;
   double *mass = calloc(2 * ((size_t)M + 1), sizeof *mass);
-  if (!mass) return false;
-  double *disc = mass + M + 1, *inner = mass;
-  list_masses(k, M, mass);
-  if (dimension == 3) {
-    for (int i = 0; i <= M; i++) disc[i] = disc_mass(mass, mass, i);
-    inner = disc;
-  }
-  for (int i = 0; i <= steps; i++) outside[i] = fmax(0.0, 1.0 - disc_mass(mass, inner, fine * i)) + 1e-13;
+  if (!mass) return CPROX_MEMORY;
+  double *disc = mass + M + 1, *inner = dimension == 3 ? disc : mass;
+  const bool made = list_masses(k, M, workspace, mass) &&
+                    (dimension == 2 || list_discs(mass, mass, M, 1, workspace, disc)) &&
+                    list_discs(mass, inner, steps, fine, workspace, outside);
+  for (int i = 0; made && i <= steps; i++) outside[i] = fmax(0.0, 1.0 - outside[i]) + 1e-13;
   free(mass);
-  return true;
+  return made ? CPROX_OK : CPROX_STOPPED;
 }
 
 /* V <= integral over |u| > x of K(u) min(most, slope (|u| - x)) = slope times the integral of outside(s) over s from x

@@ -38,7 +38,8 @@ double kernel_threshold(const kernel *k, int dimension, double rho, double *bend
 /* Upper bounds of the part of a nonnegative kernel's integral outside the balls of radius i/(2 steps), i = 0 … steps.
  * kernel_steps() says how fine the table should be; false where memory is out. */
 int kernel_steps(int N);
-bool kernel_list_outside(const kernel *k, int dimension, int steps, double *outside);
+cprox_status kernel_list_outside(const kernel *k, int dimension, int steps, cprox_workspace *workspace,
+                                 double *outside);
 
 /* The least x of the table's radii such that V < t wherever the obstacle is farther away than x, where the overlap of
  * two bodies is at most `most` and grows by at most `slope` for each unit of depth; 0.5 where there is none below. */

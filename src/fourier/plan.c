@@ -101,6 +101,7 @@ static cprox_status choose_period(const cprox_solid *a, const cprox_solid *b, co
   const int n = 2 * plan->N + 1;
   plan->period = asked > 0.0 ? asked : 1.05 * size;
   for (int step = 0; step < MOST_STEPS && (asked > 0.0 || plan->period <= LONGEST_PERIOD * size); step++) {
+    if (cprox_workspace_wants_stop(workspace)) return CPROX_STOPPED;
     plan->offset = kernel_offset(plan->dimension, n, plan->mode) * plan->period / n;
     const enlarged e = enlarge(a, b, plan->offset);
     if (!e.ok) return no_memory(workspace);
@@ -128,9 +129,10 @@ static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_wor
   const int steps = kernel_steps(plan->N);
   double *outside = malloc((size_t)(steps + 1) * sizeof *outside);
   cprox_status status = outside ? CPROX_OK : no_memory(workspace);
-  if (status == CPROX_OK && plan->mode == CPROX_GAP_MODE_CERTIFIED &&
-      !kernel_list_outside(&k, plan->dimension, steps, outside))
-    status = no_memory(workspace);
+  if (status == CPROX_OK && plan->mode == CPROX_GAP_MODE_CERTIFIED) {
+    status = kernel_list_outside(&k, plan->dimension, steps, workspace, outside);
+    if (status == CPROX_MEMORY) status = no_memory(workspace);
+  }
   if (status == CPROX_OK) status = choose_period(a, b, outside, &k, workspace, plan);
   free(outside);
   return status;
@@ -300,8 +302,8 @@ static cprox_status search_valley(const cprox_solid *a, const cprox_solid *b, co
                       options->delta, s->best);
 }
 
-cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
-                             cprox_workspace *workspace, gap_plan *plan) {
+static cprox_status choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
+                           cprox_workspace *workspace, gap_plan *plan) {
   cprox_status status = check_options(a, b, options, workspace);
   if (status != CPROX_OK) return status;
   if (options->samples != 0) return plan_for(a, b, options, (int)options->samples / 2, workspace, plan);
@@ -323,4 +325,10 @@ cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const c
       s.low = mid;
   }
   return plan_for(a, b, options, s.high, workspace, plan);
+}
+
+cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
+                             cprox_workspace *workspace, gap_plan *plan) {
+  const cprox_status status = choose(a, b, options, workspace, plan);
+  return status == CPROX_STOPPED ? fourier_stopped(workspace) : status;
 }

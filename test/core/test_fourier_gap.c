@@ -421,6 +421,35 @@ CASE(a_small_body_beside_a_large_one_is_seen_coarsely) {
   cprox_solid_free(corner);
 }
 
+static bool stops_at_last(void *user) {
+  return --*(int *)user <= 0;
+}
+
+/* A gap of n = 257 in the plane: the function is asked while n is chosen and while the spectrum is made. */
+CASE(the_stop_function_ends_the_making_of_a_gap) {
+  const cprox_solid_description box = {.kind = CPROX_SOLID_BOX, .dimension = 2, .size = {1.0, 0.6, 0.0}};
+  cprox_solid *s = NULL;
+  assert_int_equal(cprox_solid_create(&box, ws, &s), CPROX_OK);
+  cprox_gap_options options = CPROX_GAP_OPTIONS_DEFAULT;
+  options.samples = 257;
+  int never = 1 << 30;
+  cprox_gap *gap = NULL;
+  cprox_workspace_set_stop(ws, stops_at_last, &never);
+  assert_int_equal(cprox_gap_create(s, s, &options, ws, &gap), CPROX_OK);
+  cprox_gap_free(gap);
+  const int asked = (1 << 30) - never;
+  assert_true(asked > 100);
+  for (int last = 1; last <= asked; last += 1 + asked / 20) {
+    int polls = last;
+    cprox_workspace_set_stop(ws, stops_at_last, &polls);
+    cprox_gap *none = NULL;
+    assert_int_equal(cprox_gap_create(s, s, &options, ws, &none), CPROX_INVALID);
+    assert_true(none == NULL && strstr(cprox_workspace_error(ws), "stop function"));
+  }
+  cprox_workspace_set_stop(ws, NULL, NULL);
+  cprox_solid_free(s);
+}
+
 int main(void) {
   return cases_run(workspace_setup, workspace_teardown);
 }

@@ -101,6 +101,10 @@ bool workspace_stops(cprox_workspace *workspace) {
   return workspace->stopped;
 }
 
+bool cprox_workspace_wants_stop(cprox_workspace *workspace) {
+  return workspace_stops(workspace);
+}
+
 bool workspace_has_stopped(const cprox_workspace *workspace) {
   return workspace && workspace->stopped;
 }
