@@ -675,7 +675,7 @@ class Robots(unittest.TestCase):
         deep = cprox.Scene(self.robot)
         deep.add('block', 'box', [3, 3, 3])
         inside = cprox.Motion(deep, self.joints, self.times[:4], positions, velocities)
-        self.assertLess(inside.rows(0.01, signed=True)['upper'].min(), -.1)
+        self.assertLess(inside.rows(0.01, signed=True)['lower'].min(), -.1)
         self.assertEqual(inside.gradient(signed=True)['result'].upper, inside.distance(signed=True)['result'].upper)
 
     def test_scene_and_trajectory_files_are_what_they_say(self):
