@@ -121,9 +121,9 @@ CPROX_API const char *cprox_workspace_error(const cprox_workspace *workspace);
 CPROX_API void cprox_workspace_set_error(cprox_workspace *workspace, const char *message);
 
 /** A function that ends the making of bodies and curves with this workspace: while the BVH of a mesh, of points or of
- *  boxes is built, or a curve of many pieces, or a gap of libcprox_fourier, it is called every few milliseconds. Once it
- *  returns true the constructor fails with CPROX_INVALID and gives all memory back. Queries have a function of their own,
- *  cprox_options.stop.
+ *  boxes is built, or a curve of many pieces, or a gap of libcprox_fourier, it is called every few milliseconds. Once
+ *  it returns true the constructor fails with CPROX_INVALID and gives all memory back. Queries have a function of
+ *  their own, cprox_options.stop.
  *
  *  stop  NULL: nothing ends it, as in a new workspace. It may be called by the thread that uses the workspace only.
  *  user  handed to it. */
