@@ -9,7 +9,7 @@ FAR = 0.3  # [m] from here on the last colour
 
 
 def clearance_colour(clearance):
-    """(r, g, b) of a clearance [m], as clearanceColour() in src/ros/canvas.cpp gives it."""
+    """(r, g, b) of a clearance [m], as clearanceColour() in src/ros/markers/canvas.cpp gives it."""
     s = (len(STOPS) - 1) * math.sqrt(min(1.0, max(0.0, clearance / FAR)))
     i = min(len(STOPS) - 2, int(s))
     return tuple(a + (s - i) * (b - a) for a, b in zip(STOPS[i], STOPS[i + 1]))

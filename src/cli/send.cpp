@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include "../ros/scene_message.h"
+#include "../ros/messages/scene_message.h"
 #include "../scene/yaml/scene_change.h"
 #include "commands.h"
 #include "failure.h"

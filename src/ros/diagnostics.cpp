@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "guard.h"
-#include "memory_account.h"
+#include "transport/guard.h"
+#include "transport/memory_account.h"
 
 namespace curve_proximity {
 namespace {

@@ -10,12 +10,12 @@
 #include <cstdint>
 #include <string>
 
-#include "frames.h"
-#include "master_watch.h"
-#include "pipeline.h"
-#include "planning_scene_topic.h"
-#include "sensors.h"
-#include "statistics.h"
+#include "moveit/planning_scene_topic.h"
+#include "pipeline/pipeline.h"
+#include "transport/master_watch.h"
+#include "transport/statistics.h"
+#include "world/frames.h"
+#include "world/sensors.h"
 
 namespace curve_proximity {
 

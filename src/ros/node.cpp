@@ -10,11 +10,11 @@
 #include <exception>
 #include <thread>
 
-#include "master_watch.h"
-#include "memory_limit.h"
-#include "parameters.h"
+#include "parameters/parameters.h"
 #include "server.h"
-#include "time_slice.h"
+#include "transport/master_watch.h"
+#include "transport/memory_limit.h"
+#include "transport/time_slice.h"
 
 namespace {
 

@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "parameters.h"
+#include "gate/trajectory_gate.h"
+#include "parameters/parameters.h"
 #include "server.h"
-#include "trajectory_gate.h"
 
 namespace curve_proximity {
 

@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "../scene/yaml/scene_change.h"
-#include "checked_stream.h"
-#include "guard.h"
-#include "memory_account.h"
-#include "name_limits.h"
-#include "robot_description.h"
-#include "scene_message.h"
+#include "messages/scene_message.h"
+#include "transport/checked_stream.h"
+#include "transport/guard.h"
+#include "transport/memory_account.h"
+#include "transport/name_limits.h"
+#include "world/robot_description.h"
 
 namespace curve_proximity {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "checked_stream.h"
-#include "moveit_messages.h"
+#include "moveit/moveit_messages.h"
+#include "transport/checked_stream.h"
 
 namespace curve_proximity {
 namespace test {

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include "crew.h"
+#include "transport/crew.h"
 
 namespace curve_proximity {
 namespace {

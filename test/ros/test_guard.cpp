@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "guard.h"
+#include "transport/guard.h"
 
 namespace curve_proximity {
 namespace {

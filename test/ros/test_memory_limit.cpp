@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The account of the process: this program has the node's malloc. */
-#include "memory_limit.h"
+#include "transport/memory_limit.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "memory_account.h"
+#include "transport/memory_account.h"
 
 namespace curve_proximity {
 namespace {

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "guard.h"
-#include "parameters.h"
+#include "parameters/parameters.h"
+#include "transport/guard.h"
 
 namespace curve_proximity {
 namespace {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* moveit_msgs/PlanningScene as changes of a scene, by the rules of MoveIt's PlanningScene. Messages are the recorded
  * ones of test/data/moveit, about the robot of data/arm.urdf, or made here. */
-#include "planning_scene.h"
+#include "moveit/planning_scene.h"
 
 #include <cmath>
 #include <cstring>

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <thread>
 
-#include "request_threads.h"
+#include "transport/request_threads.h"
 
 namespace curve_proximity {
 namespace {

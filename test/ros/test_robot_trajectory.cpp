@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* moveit_msgs/RobotTrajectory and DisplayTrajectory as what the queries take. */
-#include "robot_trajectory.h"
+#include "moveit/robot_trajectory.h"
 
 #include <cmath>
 #include <limits>

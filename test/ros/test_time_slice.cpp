@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "request_threads.h"
-#include "time_slice.h"
+#include "transport/request_threads.h"
+#include "transport/time_slice.h"
 
 namespace curve_proximity {
 namespace {

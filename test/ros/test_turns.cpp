@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "turns.h"
+#include "transport/turns.h"
 
 namespace curve_proximity {
 namespace {

@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "constraints/constraints.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "messages/curve_message.h"
+#include "messages/geometry_message.h"
+#include "messages/gradient_message.h"
+#include "messages/scene_message.h"
+#include "messages/trajectory_message.h"
+#include "transport/name_limits.h"
+#include "transport/turns.h"
+#include "world/doubts.h"
+#include "world/robot_description.h"
+
+namespace curve_proximity {
+namespace {
+
+/** The provider whose values are a field over places, and not a distance. */
+constexpr const char *GAP = "curve_proximity/FourierGap";
+
+constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
+
+/* ---- from messages ---- */
+
+bool hasShapes(const CollisionObject &side) {
+  return !side.primitives.empty() || !side.meshes.empty() || !side.planes.empty() || !side.bodies.empty();
+}
+
+bool hasPose(const CollisionObject &side) {
+  const geometry_msgs::Point &p = side.pose.position;
+  const geometry_msgs::Quaternion &q = side.pose.orientation;
+  return p.x != 0 || p.y != 0 || p.z != 0 || q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0;
+}
+
+/** A side as described, or the scene's object of that id; its pose in the fixed frame, unless it rides a curve. */
+ObjectDescription toSide(const CollisionObject &message, const Snapshot &snapshot, FrameLookup &lookup, bool rides,
+                         const LinkPlaces &places, std::optional<ResourceOptions> &resources) {
+  ObjectDescription side;
+  if (!message.trajectory.waypoints.empty()) throw Error("a side of a constraint takes no trajectory of its own");
+  if (snapshot.moving().count(message.id) > 0 && !hasShapes(message))
+    throw Error("object '" + message.id + "' moves along a trajectory, and constraints take objects that stand");
+  if (hasShapes(message)) {
+    CollisionObject object = message;
+    object.operation = CollisionObject::ADD;
+    side = toOperation(object).object;
+  } else if (!message.id.empty()) {
+    ConstraintSide found = sideOf(snapshot, message.id, places);
+    side = std::move(found.object);
+    resources = std::move(found.resources);
+    if (found.is_on_robot && hasPose(message))
+      throw Error("'" + message.id + "' is on the robot: its joint values say where it is, leave its pose unset");
+    if (rides) side.pose = Eigen::Isometry3d::Identity();
+    if (!hasPose(message)) return side;
+    side.pose = toIsometry(message.pose);
+  } else if (hasPose(message)) {
+    side.pose = toIsometry(message.pose);
+  }
+  if (!rides) side.pose = lookup.toFixed(message.header.frame_id, message.header.stamp) * side.pose;
+  return side;
+}
+
+bool hasTrajectory(const ConstraintQuery &message) {
+  return !message.trajectory.joint_names.empty() || !message.trajectory.points.empty();
+}
+
+/** A piecewise curve has no points of its own. */
+bool isSet(const Curve &curve) {
+  return !curve.points.empty() || !curve.pieces.empty();
+}
+
+bool isNamed(const CollisionObject &side) {
+  return hasShapes(side) || !side.id.empty();
+}
+
+/* ---- to messages ---- */
+
+geometry_msgs::Twist toTwistMessage(const ConstraintGradient &gradient) {
+  return curve_proximity::toTwistMessage(gradient.linear, gradient.angular);
+}
+
+/** What all rows of a result share: the points and the normal. */
+template <class Message>
+void fillWitness(const ConstraintValue &value, bool answered, Message &message) {
+  const Eigen::Vector3d nothing = Eigen::Vector3d::Constant(NONE);
+  const bool points = answered && value.has_points;
+  message.witness_a = toPointMessage(toVec3(points ? value.witness_a : nothing));
+  message.witness_b = toPointMessage(toVec3(points ? value.witness_b : nothing));
+  message.normal = toVectorMessage(points ? value.normal : nothing);
+}
+
+TrajectoryConstraint toMessage(const MotionRow &row) {
+  TrajectoryConstraint message;
+  message.kind = row.kind;
+  message.a = row.side_a;
+  message.b = row.side_b;
+  message.value = row.value;
+  message.lower = row.bounded ? row.lower : NONE;
+  message.upper = row.bounded ? row.upper : NONE;
+  message.t0 = row.t0;
+  message.t1 = row.t1;
+  message.t = row.t;
+  message.valid = row.valid;
+  message.message = row.reason;
+  message.gradient_positions = toList(row.positions);
+  message.gradient_velocities = toList(row.velocities);
+  message.gradient_accelerations = toList(row.accelerations);
+  message.gradient_duration = row.duration;
+  message.gradient_start = row.start;
+  message.gradient_a = toTwistMessage(row.a);
+  message.gradient_b = toTwistMessage(row.b);
+  fillWitness(row, true, message);
+  return message;
+}
+
+ConstraintResult toMessage(const ConstraintRow &row, const ConstraintCase &asked) {
+  ConstraintResult message;
+  message.id = row.id;
+  message.provider = row.provider;
+  message.status = cprox_status_name(row.status);
+  message.message = row.message;
+
+  // What has no value has no numbers.
+  const Eigen::Vector3d nothing = Eigen::Vector3d::Constant(NONE);
+  const bool answered = row.status >= 0;
+  const ConstraintValue &value = row.value;
+  const ConstraintGradient none{nothing, nothing};
+  message.value = answered ? value.value : NONE;
+  message.lower = answered && value.bounded ? value.lower : NONE;
+  message.upper = answered && value.bounded ? value.upper : NONE;
+  message.valid = answered && value.valid;
+  message.gradient_a = toTwistMessage(answered ? value.a : none);
+  message.gradient_b = toTwistMessage(answered ? value.b : none);
+  for (Eigen::Index i = 0; answered && i < value.points.cols(); ++i)
+    message.gradient_points.push_back(toVectorMessage(value.points.col(i)));
+  message.gradient_radius = answered ? value.radius : NONE;
+  message.t = answered ? value.t : NONE;
+  fillWitness(value, answered, message);
+  if (answered && row.motion) {
+    const TrajectoryDescription &trajectory = asked.motion->trajectory;
+    message.joints = trajectory.joints;
+    for (const TrajectoryPoint &point : trajectory.points) message.times.push_back(point.time);
+    for (const MotionRow &one : row.motion->rows) message.rows.push_back(toMessage(one));
+  }
+  message.microseconds = answered ? row.microseconds : NONE;
+  return message;
+}
+
+/** By the points of a trajectory, in all rows. */
+std::size_t countDerivatives(const ConstraintRow &row) {
+  Eigen::Index count = 0;
+  if (row.motion)
+    for (const MotionRow &one : row.motion->rows)
+      count += one.positions.size() + one.velocities.size() + one.accelerations.size();
+  return static_cast<std::size_t>(count);
+}
+
+void limit(const char *parameter, int most, std::size_t count, const char *what) {
+  if (count <= static_cast<std::size_t>(most)) return;
+  throw Error(std::to_string(count) + " " + what + " are more than ~" + parameter + " = " + std::to_string(most));
+}
+
+} // namespace
+
+Constraints::Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames,
+                         const FurtherRobots &robots, const std::atomic<bool> &stop)
+    : parameters_(parameters), live_(live), frames_(frames), robots_(robots), stop_(stop) {
+  try {
+    providers_ = std::make_unique<ProviderSet>(parameters.constraint_providers);
+  } catch (const ProviderError &error) {
+    throw ParameterError("parameter ~constraint_providers[" + std::to_string(error.place()) + "] ('" +
+                         parameters.constraint_providers[error.place()].name + "'): " + error.what());
+  }
+  for (const std::string &failure : failures()) ROS_ERROR("%s", failure.c_str());
+}
+
+std::vector<std::string> Constraints::failures() const {
+  std::vector<std::string> sentences;
+  for (const LoadedProvider &loaded : providers_->all())
+    if (!loaded.provider)
+      sentences.push_back("constraint provider '" + loaded.spec.name + "' (" + loaded.spec.type +
+                          ") failed to load: " + loaded.failure);
+  return sentences;
+}
+
+/** Throws Error for what is beyond a limit; how many bytes the largest case takes, about. */
+std::size_t Constraints::checkLimits(const EvaluateConstraints::Request &request) const {
+  limit("max_curves", parameters_.max_curves, request.cases.size(), "cases");
+  NameLimits(parameters_.max_name_length).check(request);
+  std::size_t points = 0, values = 0, results = 0, bytes = 0;
+  for (const ConstraintQuery &asked : request.cases) {
+    const std::size_t points_before = points, values_before = values;
+    points += asked.curve.points.size();
+    values += asked.trajectory.points.size() * asked.trajectory.joint_names.size();
+    for (const RobotTrajectory &robot : asked.moving_robots)
+      values += robot.trajectory.points.size() * robot.trajectory.joint_names.size();
+    bytes = std::max(bytes, (points - points_before) * memory::OF_POINT + (values - values_before) * memory::OF_VALUE);
+    results += asked.providers.empty() ? providers_->all().size() : asked.providers.size();
+  }
+  limit("max_control_points", parameters_.max_control_points, points, "control points");
+  limit("max_control_points", parameters_.max_control_points, values, "joint values");
+  limit("max_results", parameters_.max_results, results, "results");
+  return bytes;
+}
+
+/* A request on its way. */
+struct Constraints::Work {
+  /* In the shape of cprox_options.stop. */
+  static bool isOver(void *user) {
+    const Work &work = *static_cast<const Work *>(user);
+    if (work.turn) work.turn->yield();
+    return work.stop || Clock::now() >= work.deadline;
+  }
+
+  using Clock = std::chrono::steady_clock;
+  const SnapshotPtr snapshot;
+  const Clock::time_point deadline;
+  const std::atomic<bool> &stop;
+  Turn *const turn;
+  FrameLookup lookup;
+  std::size_t derivatives = 0; /* of all rows so far */
+  double joints_age = NONE;    /* [s] of the case at hand */
+
+  /* The robot made ready last, for trajectories that begin at the same base. */
+  std::shared_ptr<const PreparedRobot> robot;
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+
+  /* What the movers of the case at hand take. */
+  std::optional<memory::Share> share = std::nullopt;
+};
+
+MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work) const {
+  if (!work.snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
+  if (isNamed(message.a) || isNamed(message.b) || isSet(message.curve))
+    throw Error("a case is about a trajectory or about two sides: give one of them");
+  MotionCase out;
+  const CurrentJoints joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
+  work.joints_age = joints.age;
+  std::string remark;
+  out.trajectory = toDescription(message.trajectory, joints.positions, remark);
+  out.trajectory.id = message.id;
+  out.rest = joints.positions;
+  out.stop = Work::isOver;
+  out.stop_user = &work;
+  checkTrajectory(out.trajectory);
+
+  // Where the robot stands, or the frame that its virtual joint moves in.
+  adoptBase(live_.srdf.virtual_joints, *work.snapshot->robot(), out.trajectory);
+  const bool on_joint = !out.trajectory.base.empty();
+  const ros::Time &stamp = message.trajectory.header.stamp;
+  const Eigen::Isometry3d base = on_joint ? work.lookup.toFixed(out.trajectory.base.front().parent_frame, stamp)
+                                          : rootPose(*work.snapshot->robot(), live_.srdf, stamp, work.lookup);
+  if (on_joint || !work.robot || work.base.matrix() != base.matrix()) {
+    out.robot = std::make_shared<const PreparedRobot>(work.snapshot, live_.disabled(), out.trajectory.base,
+                                                      out.trajectory.base_joints, base);
+    work.base = base;
+    work.robot = on_joint ? nullptr : out.robot;
+  } else {
+    out.robot = work.robot;
+  }
+  gatherOthers(message, out, work);
+  return out;
+}
+
+/* What moves beside the robot. */
+void Constraints::gatherOthers(const ConstraintQuery &message, MotionCase &out, Work &work) const {
+  const ros::Time &stamp = message.trajectory.header.stamp;
+  out.origin = static_cast<std::int64_t>((stamp.isZero() ? ros::Time::now() : stamp).toNSec());
+  GatheredRobots others = gatherRobots(message.moving_robots, robots_, out.origin, work.lookup);
+  out.other_robots = std::move(others.robots);
+  if (!out.isAmongMovers()) return;
+  const std::size_t own = work.snapshot->robot()->links().size() * (out.trajectory.points.size() + 2);
+  work.share.emplace(bytesOfMovers(movingObjects(*work.snapshot, out.origin), own + others.values),
+                     static_cast<std::size_t>(parameters_.max_request_mb) << 20);
+}
+
+Eigen::Isometry3d Constraints::linkPose(const ConstraintQuery &message, const std::string &link, LinkPoses &poses,
+                                        Work &work) const {
+  if (message.joint_state.name.empty() && !message.current_joints) return work.lookup.toFixed(link, ros::Time());
+  if (poses.empty()) {
+    const Robot &robot = *work.snapshot->robot();
+    const CurrentJoints joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
+    work.joints_age = joints.age;
+    poses = robot.linkPoses(joints.positions, rootPose(robot, live_.srdf, ros::Time(), work.lookup));
+  }
+  return poses.at(link);
+}
+
+ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) const {
+  ConstraintCase out;
+  out.id = message.id;
+  out.providers = message.providers;
+  if (hasTrajectory(message)) {
+    out.motion = toMotionCase(message, work);
+    return out;
+  }
+  if (!message.moving_robots.empty()) throw Error("moving_robots move beside a trajectory, and there is none");
+  const bool rides = isSet(message.curve);
+  LinkPoses poses; /* by joint values; without any tf2 knows */
+  const LinkPlaces places = [&](const std::string &link) { return linkPose(message, link, poses, work); };
+  out.a = toSide(message.a, *work.snapshot, work.lookup, rides, places, out.resources_a);
+  out.b = toSide(message.b, *work.snapshot, work.lookup, false, places, out.resources_b);
+  if (poses.empty() && (!message.joint_state.name.empty() || message.current_joints))
+    throw Error("joint_state and current_joints are about a trajectory or a link, and there is neither");
+  if (rides) {
+    const std_msgs::Header &header = message.curve.header;
+    out.curve = toDescription(message.curve, work.lookup.toFixed(header.frame_id, header.stamp));
+  }
+  return out;
+}
+
+void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
+                         std::shared_ptr<const LevelDrawing> &drawing, Turn *turn) {
+  if (providers_->all().empty()) throw Error("~constraint_providers names none");
+  const memory::Share share(checkLimits(request), static_cast<std::size_t>(parameters_.max_request_mb) << 20);
+  const auto deadline =
+      std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                             std::chrono::duration<double, std::milli>(parameters_.budget_ms));
+  const SnapshotPtr snapshot = live_.scene.snapshot();
+  response.scene = live_.state(*snapshot);
+  live_.demand(*snapshot, request.scene_epoch, request.scene_version);
+  const ResourceOptions resources = resourceOptions("", parameters_);
+  const WorkspacePool::Lease workspace(workspaces_);
+  Work work{
+      snapshot,    deadline, stop_, turn, FrameLookup(frames_, turn), 0, NONE, nullptr, Eigen::Isometry3d::Identity(),
+      std::nullopt};
+  Doubts doubts(parameters_.max_age, response.scene.sensors, live_.lost);
+  std::size_t failed = 0;
+  for (std::size_t i = 0; i < request.cases.size(); ++i) {
+    const ConstraintQuery &asked = request.cases[i];
+    if (turn) turn->yield();
+    work.lookup.begin();
+    work.joints_age = NONE;
+    work.share.reset();
+    std::vector<ConstraintRow> rows;
+    ConstraintCase described;
+    cprox_status fault = CPROX_OK;
+    const std::string why = sentenceOf(
+        [&] {
+          if (stop_) throw Error("the server is shutting down");
+          if (std::chrono::steady_clock::now() >= deadline) throw Error("~budget_ms are over");
+          described = toCase(asked, work);
+          rows = answerCase(*providers_, described, resources, *workspace);
+          for (const ConstraintRow &row : rows) work.derivatives += countDerivatives(row);
+          limit("max_control_points", parameters_.max_control_points, work.derivatives, "derivatives");
+        },
+        &fault);
+    if (fault < 0) rows = {failedRow(asked.id, why, fault)};
+
+    // A trajectory is measured against all objects.
+    Query about;
+    if (!described.motion) about.objects = {asked.a.id, asked.b.id};
+    doubts.objects(about);
+    doubts.ages(work.lookup.age(), work.joints_age);
+    response.scene.joint_state_age = std::fmax(response.scene.joint_state_age, work.joints_age);
+
+    // The first row that failed is told.
+    std::shared_ptr<const Constraint> gap;
+    for (const ConstraintRow &row : rows) {
+      if (row.status < 0 && failed++ == 0)
+        response.message = "case " + std::to_string(i) + " ('" + row.id + "')" +
+                           (row.provider.empty() ? "" : ", provider '" + row.provider + "'") + ": " + row.message;
+      response.results.push_back(toMessage(row, described));
+      doubts.apply(response.results.back());
+      if (row.constraint && row.status >= 0 && providers_->find(row.provider)->spec.type == GAP) gap = row.constraint;
+    }
+    if (gap) drawing = std::make_shared<const LevelDrawing>(LevelDrawing{std::move(gap), std::move(described)});
+  }
+  response.scene.transform_age = work.lookup.oldest();
+  doubts.tell(response.warnings);
+  const std::vector<std::string> &said = response.warnings;
+  for (std::string &remark : live_.remarks.get()) response.warnings.push_back(std::move(remark));
+  if (live_.lost && std::find(said.begin(), said.end(), SCENE_LOST) == said.end())
+    response.warnings.push_back(SCENE_LOST);
+  response.success = failed == 0;
+  if (failed)
+    response.message =
+        std::to_string(failed) + " of " + std::to_string(response.results.size()) + " rows failed; " + response.message;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** ~evaluate_constraints between its request and its response, and ~constraint_providers. */
+#ifndef CURVE_PROXIMITY_ROS_CONSTRAINTS_H
+#define CURVE_PROXIMITY_ROS_CONSTRAINTS_H
+
+#include <curve_proximity/EvaluateConstraints.h>
+#include <ros/node_handle.h>
+
+#include <atomic>
+#include <curve_proximity/scene.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../../providers/constraint_case.h"
+#include "../../providers/provider_set.h"
+#include "markers/level_markers.h"
+#include "parameters/parameters.h"
+#include "queries/movers.h"
+#include "transport/workspaces.h"
+#include "world/frames.h"
+#include "world/live_scene.h"
+
+namespace curve_proximity {
+
+/** The providers of a node. */
+class Constraints {
+ public:
+  /** Loads those of parameters.constraint_providers. Throws ParameterError, naming the parameter, for a type that no
+   * package declares and for parameters that a provider refuses. A plugin that does not load, or throws, is told by
+   * name on the log and in every answer; the others go on. All is kept by reference. */
+  Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames, const FurtherRobots &robots,
+              const std::atomic<bool> &stop);
+
+  /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row.
+   * drawing: the last case that a Fourier gap has answered, if any. */
+  void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
+              std::shared_ptr<const LevelDrawing> &drawing, Turn *turn);
+
+  /** A sentence for each provider that failed to load. */
+  std::vector<std::string> failures() const;
+
+ private:
+  struct Work;
+  std::size_t checkLimits(const EvaluateConstraints::Request &request) const; /* bytes */
+  ConstraintCase toCase(const ConstraintQuery &message, Work &work) const;
+  Eigen::Isometry3d linkPose(const ConstraintQuery &message, const std::string &link, LinkPoses &poses,
+                             Work &work) const;
+  MotionCase toMotionCase(const ConstraintQuery &message, Work &work) const;
+  void gatherOthers(const ConstraintQuery &message, MotionCase &out, Work &work) const;
+
+  const Parameters &parameters_;
+  const LiveScene &live_;
+  const Frames &frames_;
+  const FurtherRobots &robots_;
+  const std::atomic<bool> &stop_;
+  std::unique_ptr<ProviderSet> providers_;
+  WorkspacePool workspaces_;
+};
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gate/server_calls.h"
+
+#include <algorithm>
+#include <curve_proximity/core.hpp>
+#include <sstream>
+
+namespace curve_proximity {
+namespace {
+
+constexpr double PATIENCE = 2.0; /* [s] */
+
+} // namespace
+
+bool isClear(const Proximity &row, double delta, bool decided) {
+  return (decided && row.verdict == Proximity::VERDICT_CLEAR) ||
+         row.lower > delta; // without an answer: NaN, no verdict
+}
+
+Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneState &scene) {
+  Refusal out;
+  out.header.stamp = ros::Time::now();
+  out.delta = delta;
+  out.scene = scene;
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Proximity &r) { return !isClear(r, delta, true); });
+  if (row == rows.end()) {
+    out.message = "it is not certified to be clear";
+    return out;
+  }
+  out.row = *row;
+  std::ostringstream text;
+  text.precision(4);
+  text << "'" << row->a << "' and '" << row->b << "' come to between " << row->lower << " and " << row->upper
+       << " m at " << row->t << " (" << row->kind << ", " << row->status << "): more than " << delta
+       << " m is not certified";
+  if (!row->message.empty()) text << "; " << row->message;
+  out.message = text.str();
+  return out;
+}
+
+SceneState ServerCalls::scene() {
+  Tolerance call;
+  if (!tolerance_.call(call, PATIENCE)) throw Error("the server does not answer");
+  return call.response.scene;
+}
+
+bool ServerCalls::isClear(const ProximityQuery &query, Refusal &refusal) {
+  Tolerance call;
+  call.request.query = query;
+  call.request.delta = delta_;
+  refusal = Refusal();
+  refusal.header.stamp = ros::Time::now();
+  refusal.delta = delta_;
+  if (!tolerance_.call(call, PATIENCE)) {
+    refusal.message = "the server does not answer";
+    return false;
+  }
+  const std::vector<Proximity> &rows = call.response.results;
+  const bool clear = call.response.success && !rows.empty() &&
+                     std::all_of(rows.begin(), rows.end(),
+                                 [&](const Proximity &r) { return curve_proximity::isClear(r, delta_, true); });
+  refusal = refusalOf(rows, delta_, call.response.scene);
+  if (!call.response.success) refusal.message = call.response.message;
+  refusal.header.frame_id = call.response.frame_id;
+  return clear;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gate/trajectory_gate.h"
+
+#include <curve_proximity/Curve.h>
+#include <nav_msgs/Path.h>
+#include <ros/console.h>
+#include <trajectory_msgs/JointTrajectory.h>
+#include <trajectory_msgs/MultiDOFJointTrajectory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <curve_proximity/core.hpp>
+#include <curve_proximity/fingerprint.hpp>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "transport/guard.h"
+
+namespace curve_proximity {
+namespace {
+
+constexpr std::uint32_t QUEUE = 100; /* of roscpp: emptied at once */
+
+void complain(const std::string &why) {
+  ROS_ERROR("gate: %s", why.c_str());
+}
+
+void addTo(ProximityQuery &query, const Curve &curve) {
+  query.curves.push_back(curve);
+}
+void addTo(ProximityQuery &query, const nav_msgs::Path &path) {
+  query.paths.push_back(path);
+}
+void addTo(ProximityQuery &query, const trajectory_msgs::JointTrajectory &trajectory) {
+  query.trajectories.push_back(trajectory);
+}
+void addTo(ProximityQuery &query, const trajectory_msgs::MultiDOFJointTrajectory &trajectory) {
+  query.multi_dof_trajectories.push_back(trajectory);
+}
+
+template <class Entry>
+void keep(std::deque<Entry> &entries, Entry entry, std::size_t most) {
+  if (entries.size() == most) entries.pop_front();
+  entries.push_back(std::move(entry));
+}
+
+/** Takes the entry of that fingerprint out. */
+template <class Entry>
+std::optional<Entry> take(std::deque<Entry> &entries, std::uint64_t fingerprint) {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry &entry) { return entry.fingerprint == fingerprint; });
+  if (found == entries.end()) return std::nullopt;
+  std::optional<Entry> out(std::move(*found));
+  entries.erase(found);
+  return out;
+}
+
+} // namespace
+
+bool isClear(const ProximityResults &results, double delta) {
+  if (!results.success || results.results.empty()) return false;
+  const bool tolerant = results.query_type == "tolerance" && results.delta >= delta;
+  const bool apart = results.query_type == "collision" && delta == 0.0;
+  return std::all_of(results.results.begin(), results.results.end(),
+                     [&](const Proximity &row) { return isClear(row, delta, tolerant || apart); });
+}
+
+TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters)
+    : parameters_(parameters), handle_(handle), spinner_(1, &queue_) {
+  handle_.setCallbackQueue(&queue_);
+  refused_ = handle_.advertise<Refusal>("refused", QUEUE);
+  if (!parameters_.server.empty())
+    calls_ = std::make_unique<ServerCalls>(handle_, parameters_.server, parameters_.delta);
+  if (!parameters_.controller.empty()) actions_ = std::make_unique<ActionGate>(handle, parameters_, refused_);
+  connect<Curve>("curve");
+  connect<trajectory_msgs::JointTrajectory>("trajectory");
+  connect<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
+  connect<nav_msgs::Path>("path");
+  subscribers_.push_back(handle_.subscribe<ProximityResults>(
+      "proximity", QUEUE,
+      [this](const ProximityResultsConstPtr &results) { guarded([&] { answer(results); }, complain); }));
+  if (parameters_.watch)
+    timer_ = handle_.createWallTimer(ros::WallDuration(MotionWatch::PERIOD),
+                                     [this](const ros::WallTimerEvent &) { guarded([this] { lookOn(); }, complain); });
+  spinner_.start();
+}
+
+TrajectoryGate::~TrajectoryGate() {
+  for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
+  timer_.stop();
+  spinner_.stop();
+  actions_.reset();
+  queue_.clear();
+}
+
+template <class Message>
+void TrajectoryGate::connect(const std::string &topic) {
+  using Pointer = boost::shared_ptr<const Message>;
+  const ros::Publisher out = handle_.advertise<Message>("clear_" + topic, QUEUE);
+  if (std::is_same_v<Message, trajectory_msgs::JointTrajectory>) clear_trajectory_ = out;
+  subscribers_.push_back(handle_.subscribe<Message>(topic, QUEUE, [this, out](const Pointer &message) {
+    guarded(
+        [&] {
+          receive({fingerprint(*message), [out, message] { out.publish(message); },
+                   [message](ProximityQuery &query) { addTo(query, *message); }});
+        },
+        complain);
+  }));
+}
+
+void TrajectoryGate::receive(Waiting message) {
+  const std::optional<Answered> known = take(answered_, message.fingerprint);
+  if (known) return decide(message, *known->results);
+  keep(waiting_, std::move(message), static_cast<std::size_t>(parameters_.queue_size));
+}
+
+void TrajectoryGate::answer(const ProximityResultsConstPtr &results) {
+  const std::optional<Waiting> message = take(waiting_, results->fingerprint);
+  if (message) return decide(*message, *results);
+  keep(answered_, {results->fingerprint, results}, static_cast<std::size_t>(parameters_.queue_size));
+}
+
+void TrajectoryGate::decide(const Waiting &message, const ProximityResults &results) {
+  Refusal refusal;
+  if (!isClear(results, parameters_.delta)) {
+    refusal = refusalOf(results.results, parameters_.delta, results.scene);
+    if (!results.success) refusal.message = results.message;
+    return refuse(std::move(refusal), results);
+  }
+  if (!calls_) return message.pass();
+  ProximityQuery query;
+  message.ask(query);
+  query.current_joints = !std::isnan(results.scene.joint_state_age);
+  query.self_collision = std::any_of(results.results.begin(), results.results.end(),
+                                     [](const Proximity &row) { return row.kind == Proximity::KIND_SELF; });
+  SceneState scene = results.scene;
+  if (!isStillClear(query, scene, refusal)) return refuse(std::move(refusal), results);
+  message.pass();
+  if (parameters_.watch && !query.trajectories.empty()) watch(std::move(query), results, std::move(scene));
+}
+
+/** The scene may have changed since the answer. `scene` becomes that which it is clear of. */
+bool TrajectoryGate::isStillClear(const ProximityQuery &query, SceneState &scene, Refusal &refusal) {
+  bool clear = false;
+  guarded(
+      [&] {
+        const SceneState now = calls_->scene();
+        clear = now.epoch == scene.epoch && now.version == scene.version;
+        if (clear) return;
+        clear = calls_->isClear(query, refusal);
+        scene = refusal.scene;
+      },
+      [&](const std::string &why) {
+        refusal.header.stamp = ros::Time::now();
+        refusal.scene = scene;
+        refusal.message = why;
+      });
+  return clear;
+}
+
+/** A trajectory of the same joints takes the place of the one before it. */
+void TrajectoryGate::watch(ProximityQuery query, const ProximityResults &results, SceneState scene) {
+  const ros::Time stamp = query.trajectories.front().header.stamp;
+  Running next{MotionWatch(std::move(query), stamp, std::move(scene)), {}};
+  next.of.header = results.header;
+  next.of.source = results.source;
+  next.of.id = results.id;
+  next.of.fingerprint = results.fingerprint;
+  const auto &joints = next.watch.trajectory().joint_names;
+  running_.remove_if([&](const Running &one) {
+    const auto &others = one.watch.trajectory().joint_names;
+    return std::find_first_of(others.begin(), others.end(), joints.begin(), joints.end()) != others.end();
+  });
+  running_.push_back(std::move(next));
+}
+
+void TrajectoryGate::lookOn() {
+  running_.remove_if([this](Running &one) {
+    if (one.watch.isOver()) return true;
+    Refusal refusal;
+    if (one.watch.isStillClear(*calls_, refusal)) return false;
+    trajectory_msgs::JointTrajectory stop;
+    stop.joint_names = one.watch.trajectory().joint_names;
+    clear_trajectory_.publish(stop);
+    refusal.cancelled = true;
+    refuse(std::move(refusal), one.of);
+    return true;
+  });
+}
+
+void TrajectoryGate::refuse(Refusal refusal, const ProximityResults &results) {
+  refusal.header.frame_id = results.header.frame_id;
+  refusal.source = results.source;
+  refusal.id = results.id;
+  refusal.fingerprint = results.fingerprint;
+  refusal.delta = parameters_.delta;
+  ROS_WARN("gate: %s '%s' %s: %s", results.source.c_str(), results.id.c_str(),
+           refusal.cancelled ? "is stopped" : "does not pass", refusal.message.c_str());
+  refused_.publish(refusal);
+}
+
+} // namespace curve_proximity

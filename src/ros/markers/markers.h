@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What RViz shows: the scene, the last curves and the last trajectory that were asked about, coloured by clearance,
+ * and their closest pairs. */
+#ifndef CURVE_PROXIMITY_ROS_MARKERS_H
+#define CURVE_PROXIMITY_ROS_MARKERS_H
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/wall_timer.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "markers/level_markers.h"
+#include "queries/queries.h"
+
+namespace curve_proximity {
+
+/** Where the mesh files of the objects and of the robot are. */
+struct MarkerResources {
+  ResourceOptions objects, robot;
+};
+
+/** All markers in the fixed frame, after one that deletes what was shown before. By namespace:
+ *    scene    the objects
+ *    curves   the curves, coloured by clearance: tubes of their radius
+ *    open     hulls of the intervals of a curve that its budget, or epsilon, left undecided
+ *    robot    the robot: along a trajectory at its closest moment, each link coloured by its clearance from the objects
+ *    swept    the robot on its way
+ *    sweep    the way of the point of the robot that comes closest
+ *    sides    the two bodies that a Fourier gap was last asked about, and
+ *    levels   the level sets of the gap over the places of the first
+ *    pairs    the closest pairs, each a line with its ends; labels: how long they are
+ *  Drawings may be null. Pairs are shown only as long as the scene is the one they were measured in.
+ *
+ *  Colours come from plain distances at sampled parameters: they are for the eye. The certified answers are the pairs
+ * with their labels, and the open hulls. */
+visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion,
+                                          const LevelDrawing *levels, const std::string &frame,
+                                          const MarkerResources &resources);
+
+/** Publishes ~markers, latched, a few times a second at most and only where somebody listens. */
+class MarkerPublisher {
+ public:
+  /** handle: its callback queue runs the timer. scene: kept by reference. */
+  MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, const std::string &frame, MarkerResources resources);
+
+  /** What is to be shown next: its curves in the place of the last ones, its motion in that of the last one. Never
+   * waits for what is being published. */
+  void show(std::shared_ptr<const Drawing> drawing);
+  void show(std::shared_ptr<const LevelDrawing> levels);
+
+  /** The robot as it stands: shown as long as there is no motion. */
+  void showState(std::shared_ptr<const Drawing> drawing);
+
+  /** Does anybody listen? */
+  bool isWatched() const {
+    return publisher_.getNumSubscribers() > 0;
+  }
+
+  /** Whether the curves of a request should be kept for show(). Somebody who comes later sees what was kept: so much is
+   * enough that it is no older than the last request by more than the time between two publications. */
+  bool wantsCurves();
+
+ private:
+  void publishIfNew();
+
+  const Scene &scene_;
+  const std::string frame_;
+  const MarkerResources resources_;
+  std::mutex mutex_;
+  std::shared_ptr<const Drawing> curves_, motion_, state_;
+  std::shared_ptr<const LevelDrawing> levels_;
+  std::chrono::steady_clock::time_point kept_{}; /* when wantsCurves() last said so */
+  bool changed_ = true;
+  std::uint64_t shown_scene_ = 0;
+  ros::Publisher publisher_;
+  ros::WallTimer timer_;
+};
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "markers/mover_markers.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "markers/curve_markers.h"
+
+namespace curve_proximity {
+namespace {
+
+constexpr int WAY_SAMPLES = 60;
+constexpr int GHOSTS = 5;            /* poses of an object on its way */
+constexpr double WAY_RADIUS = 0.005; /* [m] as it is drawn */
+
+const std_msgs::ColorRGBA OBJECT = colour(0.9, 0.6, 0.2, 1.0), GHOST = colour(0.9, 0.6, 0.2, 0.12);
+const std_msgs::ColorRGBA ROBOT = colour(0.72, 0.68, 0.86, 1.0);
+
+/** An object that moves, as it is drawn. */
+struct DrawnObject {
+  const ObjectDescription &description;
+  std::vector<BodyHandle> hulls; /**< of its shapes */
+
+  explicit DrawnObject(const MovingSceneObject &object) : description(object.description) {
+    for (const Geometry &geometry : object.geometries) hulls.push_back(geometry.hull);
+  }
+  DrawnObject(const ObjectDescription &object, const ResourceOptions &resources) : description(object) {
+    for (const ShapeDescription &shape : object.shapes) hulls.push_back(makeGeometry(shape, resources).hull);
+  }
+};
+
+void addObject(Canvas &canvas, const std::string &space, const DrawnObject &object, const Eigen::Isometry3d &pose,
+               const ResourceOptions &resources, const std_msgs::ColorRGBA &tint) {
+  for (std::size_t i = 0; i < object.hulls.size(); ++i) {
+    const ShapeDescription &shape = object.description.shapes[i];
+    canvas.addShape(space, shape, object.hulls[i], resources, pose * shape.pose, tint);
+  }
+}
+
+/** The way of the origin, and the object on it. */
+void addWay(Canvas &canvas, const DrawnObject &object, const Movers &movers, const ResourceOptions &resources) {
+  const std::array<double, 2> domain = movers.domain();
+  const auto poseAt = [&](int i, int n) {
+    const double part = static_cast<double>(i) / n;
+    return movers.objectPose(object.description.id, domain[0] * (1.0 - part) + domain[1] * part);
+  };
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i <= WAY_SAMPLES; ++i) points.push_back(poseAt(i, WAY_SAMPLES).translation());
+  addTube(canvas, "movers_way", points, std::vector<std_msgs::ColorRGBA>(points.size(), OBJECT), WAY_RADIUS);
+  for (int i = 0; i <= GHOSTS; ++i) addObject(canvas, "movers_way", object, poseAt(i, GHOSTS), resources, GHOST);
+}
+
+void addRobotAt(Canvas &canvas, const MovingRobot &robot, double t, const ResourceOptions &resources) {
+  const std::array<double, 2> domain = robot.motion->domain();
+  const LinkPoses poses = robot.motion->linkPoses(std::clamp(t - robot.start, domain[0], domain[1]));
+  const Snapshot &own = *robot.motion->snapshot();
+  for (const auto &[link, pose] : poses) {
+    if (own.robot()->links().count(link) == 0) continue;
+    for (const LinkGeometry &element : own.linkGeometry(link))
+      canvas.addShape("movers", element.description, element.geometry.hull, resources, pose * element.pose, ROBOT);
+  }
+}
+
+/** When the nearest of the answers is. */
+double closestTime(const Drawing &drawing) {
+  const Answer *nearest = nullptr;
+  for (const Answer &answer : drawing.motion_answers) {
+    const bool measured = answer.result.status >= 0 && !answer.b.empty() && answer.kind != "self";
+    if (measured && (!nearest || answer.result.upper < nearest->result.upper)) nearest = &answer;
+  }
+  return nearest ? nearest->result.t : drawing.movers->domain()[0];
+}
+
+} // namespace
+
+void addMovers(Canvas &canvas, const Snapshot &scene, const Drawing *drawing, const ResourceOptions &objects,
+               const ResourceOptions &robots) {
+  const bool asked = drawing && drawing->movers && drawing->snapshot->version() == scene.version();
+  const auto addMoving = [&](const DrawnObject &object) {
+    const Eigen::Isometry3d pose = drawing->movers->objectPose(object.description.id, closestTime(*drawing));
+    addObject(canvas, "movers", object, pose, objects, OBJECT);
+    addWay(canvas, object, *drawing->movers, objects);
+  };
+  for (const auto &entry : scene.moving()) {
+    const DrawnObject object(*entry.second);
+    if (asked)
+      addMoving(object);
+    else
+      addObject(canvas, "movers", object, entry.second->trajectory.poses.front().pose, objects, OBJECT);
+  }
+  if (!asked) return;
+  if (drawing->rider) addMoving(DrawnObject(*drawing->rider, objects));
+  for (const MovingRobot &robot : drawing->robots) addRobotAt(canvas, robot, closestTime(*drawing), robots);
+  if (drawing->motion || drawing->motion_answers.empty()) return; // the robot's own picture has the pair
+  addPair(canvas, drawing->motion_answers.front());
+}
+
+} // namespace curve_proximity

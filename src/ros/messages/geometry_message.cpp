@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "messages/geometry_message.h"
+
+#include <cmath>
+
+namespace curve_proximity {
+namespace {
+
+geometry_msgs::Point toPointMessage(const Eigen::Vector3d &point) {
+  geometry_msgs::Point message;
+  message.x = point.x();
+  message.y = point.y();
+  message.z = point.z();
+  return message;
+}
+
+} // namespace
+
+Eigen::Isometry3d toIsometry(const geometry_msgs::Pose &pose) {
+  const geometry_msgs::Point &p = pose.position;
+  const geometry_msgs::Quaternion &q = pose.orientation;
+  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) throw Error("the position is not finite");
+  return toIsometry(cprox_pose{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
+}
+
+geometry_msgs::Pose toMessage(const Eigen::Isometry3d &pose) {
+  const cprox_pose p = toPose(pose);
+  geometry_msgs::Pose message;
+  message.position = toPointMessage(p.position);
+  message.orientation.w = p.orientation.w;
+  message.orientation.x = p.orientation.x;
+  message.orientation.y = p.orientation.y;
+  message.orientation.z = p.orientation.z;
+  return message;
+}
+
+bool isUnset(const geometry_msgs::Pose &pose) {
+  const geometry_msgs::Point &p = pose.position;
+  const geometry_msgs::Quaternion &q = pose.orientation;
+  return p.x == 0 && p.y == 0 && p.z == 0 && q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0;
+}
+
+geometry_msgs::Point toPointMessage(const cprox_vec3 &point) {
+  return toPointMessage(toEigen(point));
+}
+
+void fillPoints(const std::vector<geometry_msgs::Point> &points, Eigen::Matrix3Xd &out) {
+  out.resize(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    out.col(static_cast<Eigen::Index>(i)) << points[i].x, points[i].y, points[i].z;
+}
+
+Eigen::Matrix3Xd toPoints(const std::vector<geometry_msgs::Point> &points) {
+  Eigen::Matrix3Xd out;
+  fillPoints(points, out);
+  return out;
+}
+
+std::vector<geometry_msgs::Point> toPointMessages(const Eigen::Matrix3Xd &points) {
+  std::vector<geometry_msgs::Point> out;
+  out.reserve(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) out.push_back(toPointMessage(Eigen::Vector3d(points.col(i))));
+  return out;
+}
+
+} // namespace curve_proximity

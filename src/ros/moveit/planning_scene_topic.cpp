@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "moveit/planning_scene_topic.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <curve_proximity/fingerprint.hpp>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "transport/checked_stream.h"
+#include "transport/guard.h"
+#include "transport/name_limits.h"
+
+namespace curve_proximity {
+namespace {
+
+/** Diffs that may wait while one is applied; each says what the others do not. */
+constexpr std::uint32_t SCENES_KEPT = 100;
+
+/** What a message takes in memory, for a byte on the wire, as for ~apply_scene. */
+constexpr std::size_t TIMES_WIRE = 5;
+
+/** Sentences in one line of the log. */
+constexpr std::size_t MOST_SENTENCES = 10;
+
+/** [s] Between requests until there is a scene, and until nothing of it differs. */
+constexpr double ASK_AGAIN = 1.0;
+
+/** How soon a new publisher is noticed: roscpp does not tell. */
+constexpr std::chrono::milliseconds LOOK_AGAIN{100};
+
+const char *const NO_FULL_SCENE =
+    "~planning_scene has sent diffs and no full scene: what else is in that scene is not known";
+
+ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
+  ros::NodeHandle own(handle);
+  own.setCallbackQueue(&queue);
+  return own;
+}
+
+std::string joined(const std::vector<std::string> &sentences) {
+  std::string out;
+  for (std::size_t i = 0; i < sentences.size() && i < MOST_SENTENCES; ++i) out += (i ? "; " : "") + sentences[i];
+  if (sentences.size() > MOST_SENTENCES) out += "; and " + std::to_string(sentences.size() - MOST_SENTENCES) + " more";
+  return out;
+}
+
+/** Those of the first that are among the others, or are not. */
+std::vector<std::string> chosen(const std::vector<std::string> &sentences, const std::vector<std::string> &others,
+                                bool among) {
+  std::vector<std::string> out;
+  std::copy_if(sentences.begin(), sentences.end(), std::back_inserter(out), [&](const std::string &sentence) {
+    return (std::find(others.begin(), others.end(), sentence) != others.end()) == among;
+  });
+  return out;
+}
+
+/** Throws Error for a name that is too long. */
+void checkNames(const moveit::PlanningScene &scene, const NameLimits &limits) {
+  const auto object = [&](const moveit::CollisionObject &given) {
+    limits.check("an object's id", given.id);
+    limits.check("an object's frame", given.header.frame_id);
+    limits.check("the name of a subframe", given.subframe_names);
+  };
+  for (const moveit::CollisionObject &given : scene.world.collision_objects) object(given);
+  for (const moveit::AttachedCollisionObject &given : scene.robot_state.attached_collision_objects) {
+    object(given.object);
+    limits.check("the name of a link", given.link_name);
+    limits.check("the name of a link", given.touch_links);
+  }
+  limits.check("the name of a joint", scene.robot_state.joint_state.name);
+  limits.check("the name of an allowed pair", scene.allowed_collision_matrix.entry_names);
+  limits.check("the name of an allowed pair", scene.allowed_collision_matrix.default_entry_names);
+  for (const moveit::LinkPadding &given : scene.link_padding) limits.check("the name of a link", given.link_name);
+  for (const moveit::LinkScale &given : scene.link_scale) limits.check("the name of a link", given.link_name);
+  for (const geometry_msgs::TransformStamped &given : scene.fixed_frame_transforms) {
+    limits.check("the name of a frame", given.child_frame_id);
+    limits.check("the name of a frame", given.header.frame_id);
+  }
+}
+
+} // namespace
+
+PlanningSceneTopic::PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live,
+                                       const Frames &frames, Apply apply, LinkPose link_pose)
+    : parameters_(parameters),
+      live_(live),
+      frames_(frames),
+      apply_(std::move(apply)),
+      link_pose_(std::move(link_pose)),
+      handle_(onQueue(handle, queue_)),
+      spinner_(1, &queue_) {
+  ros::SubscribeOptions topic = checkedSubscription<moveit::PlanningScene>(
+      "planning_scene", SCENES_KEPT,
+      [this](const moveit::PlanningSceneConstPtr &message) { take(*message, "~planning_scene"); });
+  subscriber_ = handle_.subscribe(topic);
+  spinner_.start();
+  if (parameters_.ask_planning_scene) asker_ = std::thread([this] { ask(); });
+}
+
+PlanningSceneTopic::~PlanningSceneTopic() {
+  {
+    const std::lock_guard<std::mutex> lock(asking_);
+    ending_ = true;
+    client_.shutdown(); // a call that nobody answers ends, too
+  }
+  wake_.notify_all();
+  if (asker_.joinable()) asker_.join();
+  subscriber_.shutdown();
+  spinner_.stop();
+  queue_.clear();
+}
+
+PlanningSceneReport PlanningSceneTopic::report() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return report_;
+}
+
+/** Objects of sensors are not move_group's: a full scene leaves them. */
+PlanningSceneContext PlanningSceneTopic::context(const Snapshot &snapshot, FrameLookup &lookup) const {
+  PlanningSceneContext out{snapshot, state_, {}, parameters_.unknown_is_occupied, {}, {}};
+  for (const SensorState &sensor : live_.sensors.states()) out.kept.push_back(sensor.id);
+  out.to_fixed = [&lookup](const std::string &frame) { return lookup.toFixed(frame, ros::Time()); };
+  out.link_to_fixed = [this, &snapshot, &lookup](const std::string &link, const JointPositions &joints) {
+    return link_pose_(link, joints, snapshot, lookup);
+  };
+  return out;
+}
+
+void PlanningSceneTopic::take(const moveit::PlanningScene &message, const char *source) {
+  const std::lock_guard<std::mutex> lock(taking_);
+  tryToUse(message, source);
+  publishRemarks();
+}
+
+void PlanningSceneTopic::tryToUse(const moveit::PlanningScene &message, const char *source) {
+  guarded([&] { use(message); },
+          [&](const std::string &why) {
+            keepUnused({why}, false);
+            complain(std::string(source) + ": a scene is not used: " + why);
+          });
+}
+
+void PlanningSceneTopic::use(const moveit::PlanningScene &message) {
+  const std::size_t bytes = ros::serialization::serializationLength(message);
+  const memory::Share share(TIMES_WIRE * bytes, static_cast<std::size_t>(parameters_.max_request_mb) << 20);
+  checkNames(message, NameLimits(parameters_.max_name_length));
+  FrameLookup lookup(frames_);
+  const SnapshotPtr before = live_.scene.snapshot();
+  PlanningSceneChange change = toSceneChange(message, context(*before, lookup));
+  if (change.has_matrix) live_.matrix_has_srdf = true; // before the change: in between more pairs are asked about
+  std::vector<std::string> wrong = std::move(change.wrong);
+  for (std::string &fault : apply_(change.change, *before)) wrong.push_back(std::move(fault));
+  state_ = std::move(change.state);
+  if (message.is_diff == 0 && wrong.empty()) live_.lost = false;
+  live_.joints.suggest(message.robot_state.joint_state, before->robot().get());
+
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const bool full = message.is_diff == 0;
+    ++(full ? report_.full : report_.diffs);
+    report_.diffs_since_full = full ? 0 : report_.diffs_since_full + 1;
+    (full ? report_.fingerprint : report_.diff_fingerprint) = fingerprint(message);
+  }
+  keepUnused(wrong, message.is_diff == 0);
+  if (!wrong.empty()) complain("~planning_scene: " + joined(wrong) + "; the rest is used");
+}
+
+std::vector<std::string> PlanningSceneTopic::differencesTo(const moveit::PlanningScene &message) const {
+  constexpr std::size_t MOST = 100;
+  const std::size_t bytes = ros::serialization::serializationLength(message);
+  const memory::Share share(TIMES_WIRE * bytes, static_cast<std::size_t>(parameters_.max_request_mb) << 20);
+  checkNames(message, NameLimits(parameters_.max_name_length));
+  FrameLookup lookup(frames_);
+  const SnapshotPtr before = live_.scene.snapshot();
+  return differences(message, context(*before, lookup), MOST);
+}
+
+/** A difference that one answer shows and the next does not was a diff on its way. One that both show is a diff that
+ *  never came: then the scene becomes the answer. What still differs after that is reported, and is no reason to take
+ *  the next answer as well. */
+bool PlanningSceneTopic::compare(const moveit::PlanningScene &message) {
+  const std::lock_guard<std::mutex> lock(taking_);
+  bool same = false;
+  guarded(
+      [&] {
+        std::vector<std::string> now = differencesTo(message);
+        std::vector<std::string> both = chosen(now, suspected_, true);
+        beyond_repair_ = chosen(beyond_repair_, now, true); // what has come right may be lost again
+        const std::vector<std::string> lost = chosen(both, beyond_repair_, false);
+        if (!lost.empty()) {
+          complain("~planning_scene lacked what ~get_planning_scene has, and that scene replaces the one here: " +
+                   joined(lost));
+          tryToUse(message, "~get_planning_scene");
+          both = now = beyond_repair_ = differencesTo(message);
+        }
+        same = lost.empty() && chosen(now, beyond_repair_, false).empty();
+        suspected_ = std::move(now);
+        const std::lock_guard<std::mutex> report(mutex_);
+        ++report_.checks;
+        report_.replaced += lost.empty() ? 0 : 1;
+        report_.differences = std::move(both);
+        if (suspected_.empty()) report_.unused.clear();
+      },
+      [&](const std::string &why) { complain("~get_planning_scene: the scene cannot be compared: " + why); });
+  const std::vector<std::string> found = report().differences;
+  if (!found.empty()) complain("the scene differs from that of ~get_planning_scene: " + joined(found));
+  publishRemarks();
+  return same;
+}
+
+/** What is missing stays missing until a full scene comes, or a comparison finds nothing. */
+void PlanningSceneTopic::keepUnused(const std::vector<std::string> &wrong, bool full) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> &unused = report_.unused;
+  if (full) unused.clear();
+  for (const std::string &what : wrong) {
+    const bool known = std::find(unused.begin(), unused.end(), what) != unused.end();
+    if (!known && unused.size() < MOST_SENTENCES) unused.push_back(what);
+  }
+}
+
+/** What answers say of the scene. */
+void PlanningSceneTopic::publishRemarks() {
+  const PlanningSceneReport now = report();
+  std::vector<std::string> remarks;
+  if (now.full == 0 && now.diffs > 0) remarks.emplace_back(NO_FULL_SCENE);
+  if (!now.unused.empty()) remarks.push_back("not used of ~planning_scene: " + joined(now.unused));
+  if (!now.differences.empty())
+    remarks.push_back("the scene differs from that of ~get_planning_scene: " + joined(now.differences));
+  if (now.full == 0 && now.diffs == 1) complain(NO_FULL_SCENE);
+  live_.remarks.set(std::move(remarks));
+}
+
+void PlanningSceneTopic::complain(const std::string &why) {
+  if (complaints_.isDue(why)) ROS_WARN_STREAM(why);
+}
+
+/* ---- the service ---- */
+
+/** A diff that is published before the topic is connected is lost. So the scene is asked for when the topic has a
+ *  publisher, anew whenever it gets another one, and once where it has none. Then comparisons follow: until one finds
+ *  nothing, and after that as often as ~check_planning_scene says. */
+void PlanningSceneTopic::ask() {
+  const double never = std::numeric_limits<double>::infinity();
+  const double check = parameters_.check_planning_scene == 0.0 ? never : parameters_.check_planning_scene;
+  std::uint32_t publishers = 0;
+  double period = ASK_AGAIN;
+  bool begun = false;
+  while (wait(period, publishers, begun)) {
+    moveit::PlanningScene scene;
+    bool same = false;
+    if (askOnce(scene)) {
+      scene.is_diff = scene.robot_state.is_diff = 0;
+      if (begun)
+        same = compare(scene);
+      else
+        take(scene, "~get_planning_scene");
+      begun = true;
+    }
+    const bool settled = begun && (same || publishers == 0);
+    period = settled ? check : ASK_AGAIN;
+  }
+}
+
+/** False: the topic ends. A publisher more ends the waiting, and what had begun. */
+bool PlanningSceneTopic::wait(double period, std::uint32_t &publishers, bool &begun) {
+  const auto start = std::chrono::steady_clock::now();
+  std::unique_lock<std::mutex> lock(asking_);
+  while (!ending_) {
+    const std::uint32_t before = std::exchange(publishers, subscriber_.getNumPublishers());
+    if (publishers > before) {
+      begun = false;
+      return true;
+    }
+    const std::chrono::duration<double> left =
+        std::chrono::duration<double>(period) - (std::chrono::steady_clock::now() - start);
+    if (left.count() <= 0.0) return true;
+    wake_.wait_for(lock, std::min<std::chrono::duration<double>>(left, LOOK_AGAIN));
+  }
+  return false;
+}
+
+bool PlanningSceneTopic::askOnce(moveit::PlanningScene &scene) {
+  ros::ServiceClient client;
+  {
+    const std::lock_guard<std::mutex> lock(asking_);
+    if (ending_) return false;
+    if (!client_.isValid()) {
+      ros::ServiceClientOptions options(handle_.resolveName("get_planning_scene"), moveit::GET_PLANNING_SCENE_MD5, true,
+                                        ros::M_string());
+      client_ = handle_.serviceClient(options);
+    }
+    client = client_;
+  }
+  if (!client.isValid()) return false;
+  bool good = false;
+  guarded(
+      [&] {
+        const ros::SerializedMessage request = ros::serialization::serializeMessage(moveit::GetPlanningSceneRequest());
+        ros::SerializedMessage answer;
+        if (!client.call(request, answer, moveit::GET_PLANNING_SCENE_MD5)) return;
+        const auto read = static_cast<std::size_t>(answer.message_start - answer.buf.get());
+        CheckedStream stream(answer.message_start, answer.num_bytes - read);
+        moveit::GetPlanningSceneResponse response;
+        stream.next(response);
+        scene = std::move(response.scene);
+        good = true;
+      },
+      [&](const std::string &why) { complain("~get_planning_scene: " + why); });
+  if (!good) client.shutdown();
+  return good;
+}
+
+} // namespace curve_proximity

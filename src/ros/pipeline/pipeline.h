@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Trajectories in by topic, results out by topic: the server as a stage between a planner and a controller. */
+#ifndef CURVE_PROXIMITY_ROS_PIPELINE_H
+#define CURVE_PROXIMITY_ROS_PIPELINE_H
+
+#include <curve_proximity/Curve.h>
+#include <curve_proximity/ProximityResults.h>
+#include <nav_msgs/Path.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+#include <ros/wall_timer.h>
+#include <sensor_msgs/JointState.h>
+#include <trajectory_msgs/JointTrajectory.h>
+#include <trajectory_msgs/MultiDOFJointTrajectory.h>
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "markers/markers.h"
+#include "messages/clearance_topics.h"
+#include "moveit/moveit_messages.h"
+#include "parameters/parameters.h"
+#include "queries/queries.h"
+#include "transport/bounded_queue.h"
+#include "transport/complaints.h"
+
+namespace curve_proximity {
+
+/** Answers what comes on ~curve, ~trajectory, ~multi_dof_trajectory, ~path, ~robot_trajectory and ~display_trajectory,
+ * one message after the other, on ~proximity, and tells contacts on ~contacts. Messages are taken and results handed on
+ * by pointer: within one nodelet manager nothing is copied. While one message is being answered ~queue_size others
+ * wait; what is older than these is dropped and counted. With ~profile_intervals the clearance profile follows on
+ * ~clearance. With ~state_rate it also tells on ~state_proximity how close
+ * the robot is as it stands. */
+class Pipeline {
+ public:
+  /** handle: the server's private one. All are kept by reference. stop: as that of Queries. */
+  Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, LiveScene &live,
+           Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop);
+
+  /** Joins the threads; a query that runs must have been told to stop. */
+  ~Pipeline();
+
+  std::uint64_t dropped() const {
+    return jobs_.dropped();
+  }
+
+ private:
+  using Job = std::variant<CurveConstPtr, trajectory_msgs::JointTrajectoryConstPtr,
+                           trajectory_msgs::MultiDOFJointTrajectoryConstPtr, nav_msgs::PathConstPtr,
+                           moveit::RobotTrajectoryConstPtr, moveit::DisplayTrajectoryConstPtr>;
+
+  template <class Message>
+  void listen(const char *topic);
+  void takeIn();
+  void work();
+  void handle(const Job &job);
+  void describe(ProximityResults &results) const;
+  void answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing);
+  using Ask = std::function<void(const QueryRequest &)>;
+  void requestOf(const Job &job, ProximityResults &results, const Ask &ask);
+  template <class Message>
+  void requestOfMotions(const Message &message, ProximityQuery &more, ProximityResults &results, const Ask &ask);
+  void tellContacts(const ProximityResults &results);
+  void tellClearance(const QueryRequest &request, const ProximityResults &results);
+  void tellState();
+
+  bool movesRobot(const Job &job) const;
+
+  const Parameters &parameters_;
+  const Tuning &tuning_;
+  LiveScene &live_;
+  Queries &queries_;
+  MarkerPublisher &markers_;
+  const std::atomic<bool> &stop_;
+  const QueryType query_type_;
+  BoundedQueue<Job> jobs_;
+  std::mutex intake_;
+  bool works_ = false; /* whether who takes in has to work, guarded by intake_ */
+  std::atomic<bool> ending_{false};
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_;
+  ros::Publisher results_, states_, contacts_;
+  std::unique_ptr<ClearanceTopics> clearance_; /* null: without ~profile_intervals */
+  Complaints complaints_{std::chrono::seconds(60)};
+  ros::CallbackQueue state_queue_; /* with a thread of its own: it waits for no message */
+  ros::NodeHandle state_handle_;
+  ros::WallTimer state_timer_;
+  std::uint32_t state_seq_ = 0;
+  std::vector<ros::Subscriber> subscribers_;
+  std::vector<std::thread> threads_;
+  ros::AsyncSpinner state_spinner_;
+};
+
+} // namespace curve_proximity
+#endif

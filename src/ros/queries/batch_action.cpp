@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "queries/batch_action.h"
+
+#include <ros/console.h>
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "transport/guard.h"
+
+namespace curve_proximity {
+namespace {
+
+constexpr std::size_t MOST_BATCHES = 10;                  /* that wait, the one at work included */
+constexpr std::chrono::milliseconds FEEDBACK_PERIOD{100}; /* at least, between two feedbacks */
+
+/** Counts rows as they come, and says so now and then. */
+class Feedback {
+ public:
+  explicit Feedback(std::size_t total) {
+    message_.total = static_cast<std::uint32_t>(total);
+    message_.lower = message_.upper = std::numeric_limits<double>::infinity();
+  }
+
+  /** Takes in the rows that are new; true where it is time to tell. */
+  bool update(const QueryResponse &response, std::size_t done) {
+    for (; rows_ < response.results.size(); ++rows_) {
+      const Proximity &row = response.results[rows_];
+      message_.undecided += row.verdict == cprox_verdict_name(CPROX_VERDICT_UNDECIDED);
+      message_.failed += row.lower != row.lower;
+      if (!(row.upper < message_.upper)) continue;
+      message_.lower = row.lower;
+      message_.upper = row.upper;
+      message_.id = row.id;
+    }
+    message_.done = static_cast<std::uint32_t>(done);
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return false;
+    next_ = now + FEEDBACK_PERIOD;
+    return true;
+  }
+
+  const QueryFeedback &message() const {
+    return message_;
+  }
+
+ private:
+  QueryFeedback message_;
+  std::size_t rows_ = 0;
+  std::chrono::steady_clock::time_point next_;
+};
+
+void complain(const std::string &why) {
+  ROS_ERROR("~query: %s", why.c_str());
+}
+
+} // namespace
+
+BatchAction::BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
+                         const std::atomic<bool> &stop)
+    : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle) {
+  server_ = std::make_unique<Server>(
+      handle_, "query", [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, complain); },
+      [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, complain); }, false);
+  server_->start();
+  thread_ = std::thread([this] { work(); });
+}
+
+BatchAction::~BatchAction() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+  batches_.clear();
+  server_.reset();
+}
+
+void BatchAction::begin(Server::GoalHandle handle) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (batches_.size() < MOST_BATCHES) {
+      handle.setAccepted();
+      batches_.push_back(std::make_shared<Batch>());
+      batches_.back()->handle = std::move(handle);
+      changed_.notify_all();
+      return;
+    }
+  }
+  QueryResult result;
+  result.message = std::to_string(MOST_BATCHES) + " batches are waiting already";
+  handle.setRejected(result, result.message);
+}
+
+void BatchAction::cancel(Server::GoalHandle handle) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const std::shared_ptr<Batch> &batch : batches_)
+    if (batch->handle == handle) batch->cancelled = true;
+}
+
+void BatchAction::work() {
+  while (true) {
+    std::shared_ptr<Batch> batch;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      changed_.wait(lock, [this] { return ending_ || !batches_.empty(); });
+      if (ending_) return;
+      batch = batches_.front();
+    }
+    guarded([&] { answer(*batch); }, complain);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    batches_.pop_front();
+  }
+}
+
+void BatchAction::answer(Batch &batch) {
+  const auto goal = batch.handle.getGoal();
+  QueryResult result;
+  result.frame_id = fixed_frame_;
+  guarded(
+      [&] {
+        QueryRequest request(queryTypeFromName(goal->query_type), goal->delta, goal->query);
+        Feedback feedback(request.size());
+        const double budget_ms = goal->query.budget_ms;
+        request.budget_ms = budget_ms != 0.0 ? budget_ms : std::numeric_limits<double>::infinity();
+        Turn turn(turns_, "~query", Turns::Clock::time_point::max());
+        request.turn = &turn;
+        request.cancelled = &batch.cancelled;
+        const Progress progress = [&](const QueryResponse &response, std::size_t done) {
+          if (feedback.update(response, done)) batch.handle.publishFeedback(feedback.message());
+        };
+        request.progress = &progress;
+        QueryResponse response;
+        Drawing drawing;
+        queries_.answer(request, response, drawing);
+        result.success = response.success;
+        result.message = std::move(response.message);
+        result.warnings = std::move(response.warnings);
+        result.scene = std::move(response.scene);
+        result.results = std::move(response.results);
+      },
+      [&](const std::string &why) {
+        result.success = false;
+        result.message = why;
+      });
+
+  // How it ended, as actionlib has it: a batch with rows that failed is a result, one without any answer is none.
+  if (batch.cancelled || stop_) {
+    result.success = false;
+    result.message = stop_ ? "the server is shutting down" : "cancelled";
+    batch.handle.setCanceled(result, result.message);
+  } else if (result.results.empty() && !result.success) {
+    batch.handle.setAborted(result, result.message);
+  } else {
+    batch.handle.setSucceeded(result, result.message);
+  }
+}
+
+} // namespace curve_proximity

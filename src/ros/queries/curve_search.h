@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What all curves of a request share. */
+#ifndef CURVE_PROXIMITY_ROS_CURVE_SEARCH_H
+#define CURVE_PROXIMITY_ROS_CURVE_SEARCH_H
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "queries/queries.h"
+
+namespace curve_proximity {
+
+/** Everything that a query is measured against, for one stamp after the other. For one thread. */
+class StampedTargets {
+ public:
+  StampedTargets(SnapshotPtr snapshot, const Query &query, const Srdf &srdf, const JointPositions *joints,
+                 FrameLookup &lookup)
+      : snapshot_(std::move(snapshot)), query_(query), srdf_(srdf), joints_(joints), lookup_(lookup) {
+    const bool everything = query.objects.empty() && query.links.empty();
+    if (!query.links.empty() && !snapshot_->robot())
+      throw Error("link '" + query.links.front() + "': this server has no robot, only objects");
+    const auto carried = [&](const std::string &id) { return snapshot_->attached().count(id) > 0; };
+    carried_ =
+        everything ? !snapshot_->attached().empty() : std::any_of(query.objects.begin(), query.objects.end(), carried);
+    with_robot_ = snapshot_->robot() && (everything || carried_ || !query.links.empty());
+  }
+
+  bool withRobot() const {
+    return with_robot_;
+  }
+
+  struct Stamped {
+    LinkPoses links;
+    Targets targets;
+    double age; /* [s] of the transforms */
+  };
+
+  const Stamped &at(const ros::Time &stamp) {
+    // Without a robot nothing depends on the stamp.
+    const ros::Time key = with_robot_ ? stamp : ros::Time();
+    auto found = stamped_.find(key);
+    if (found == stamped_.end()) {
+      lookup_.begin();
+      LinkPoses links = with_robot_ ? linkPoses(stamp) : LinkPoses();
+      Targets targets(snapshot_, links, query_);
+      found = stamped_.emplace(key, Stamped{std::move(links), std::move(targets), lookup_.age()}).first;
+    }
+    return found->second;
+  }
+
+ private:
+  /** From the joints of the request, if it has any; else every link by tf2. */
+  LinkPoses linkPoses(const ros::Time &stamp) {
+    const Robot &robot = *snapshot_->robot();
+    if (joints_) return robot.linkPoses(*joints_, rootPose(robot, srdf_, stamp, lookup_));
+    LinkPoses poses;
+    if (query_.links.empty()) {
+      for (const auto &link : robot.links()) {
+        if (!link.second.empty()) poses[link.first] = lookup_.toFixed(link.first, stamp);
+      }
+    }
+    for (const std::string &link : query_.links) {
+      if (robot.links().count(link)) poses[link] = lookup_.toFixed(link, stamp);
+    }
+    for (const auto &object : snapshot_->attached()) {
+      if (carried_) poses[object.second->link] = lookup_.toFixed(object.second->link, stamp);
+    }
+    return poses;
+  }
+
+  const SnapshotPtr snapshot_;
+  const Query &query_;
+  const Srdf &srdf_;
+  const JointPositions *const joints_; /* null: tf2 tells */
+  FrameLookup &lookup_;
+  bool with_robot_ = false, carried_ = false;
+  std::map<ros::Time, Stamped> stamped_;
+};
+
+/** Counts the rows that have no answer and keeps the first one's reason. */
+class Failures {
+ public:
+  /** number: of the curve, in the order of the request. */
+  void count(const Proximity &row, std::size_t number) {
+    if (failed_++ == 0) first_ = "curve " + std::to_string(number) + " ('" + row.id + "'): " + row.message;
+  }
+
+  void tell(QueryResponse &response) const {
+    if (failed_ == 0) return;
+    response.success = false;
+    response.message =
+        std::to_string(failed_) + " of " + std::to_string(response.results.size()) + " rows failed; " + first_;
+  }
+
+ private:
+  std::size_t failed_ = 0;
+  std::string first_;
+};
+
+/* What a thread keeps from curve to curve. */
+struct Queries::CurveScratch {
+  CurveDescription curve; /* the one at hand */
+  std::vector<Answer> answers;
+};
+
+/* What all curves of a request share. */
+struct Queries::CurveSearch {
+  StampedTargets targets;
+  WorkspacePool::Lease workspace;
+  CurveScratch scratch;
+  std::size_t curves; /* so far */
+  Failures failures;
+  const LinkPoses *drawn; /* the robot of the last curve that is drawn; null: none is */
+};
+
+} // namespace curve_proximity
+#endif

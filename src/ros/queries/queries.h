@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What a service call does between its request and its response: queries.cpp for all, curve_queries.cpp for curves,
+ * motion_queries.cpp for motions. */
+#ifndef CURVE_PROXIMITY_ROS_QUERIES_H
+#define CURVE_PROXIMITY_ROS_QUERIES_H
+
+#include <curve_proximity/Curve.h>
+#include <curve_proximity/Gradient.h>
+#include <curve_proximity/Profile.h>
+#include <curve_proximity/Proximity.h>
+#include <curve_proximity/ProximityQuery.h>
+#include <curve_proximity/SceneState.h>
+#include <curve_proximity/ViolationIntervals.h>
+#include <nav_msgs/Path.h>
+#include <sensor_msgs/JointState.h>
+#include <trajectory_msgs/JointTrajectory.h>
+#include <trajectory_msgs/MultiDOFJointTrajectory.h>
+
+#include <algorithm>
+#include <atomic>
+#include <curve_proximity/motion.hpp>
+#include <curve_proximity/query.hpp>
+#include <curve_proximity/scene.hpp>
+#include <curve_proximity/srdf.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "parameters/parameters.h"
+#include "parameters/tuning.h"
+#include "queries/asking.h"
+#include "queries/movers.h"
+#include "transport/crew.h"
+#include "transport/statistics.h"
+#include "transport/turns.h"
+#include "transport/workspaces.h"
+#include "world/doubts.h"
+#include "world/frames.h"
+#include "world/live_scene.h"
+
+namespace curve_proximity {
+
+/** Messages that somebody else holds. */
+template <class Message>
+class List {
+ public:
+  List() = default;
+  List(const Message *first, std::size_t size) : first_(first), size_(size) {}
+  explicit List(const std::vector<Message> &messages) : List(messages.data(), messages.size()) {}
+
+  const Message *begin() const {
+    return first_;
+  }
+  const Message *end() const {
+    return first_ + size_;
+  }
+  std::size_t size() const {
+    return size_;
+  }
+  bool empty() const {
+    return size_ == 0;
+  }
+
+ private:
+  const Message *first_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+struct QueryResponse;
+
+/** Told of the rows so far, and how many curves, paths and trajectories are done. */
+using Progress = std::function<void(const QueryResponse &response, std::size_t done)>;
+
+/** What services, topics and the action ask, by reference. */
+struct QueryRequest {
+  QueryType query_type;
+  double delta; /**< [m] of TOLERANCE */
+  List<Curve> curves;
+  List<nav_msgs::Path> paths;
+  List<trajectory_msgs::JointTrajectory> trajectories;
+  List<trajectory_msgs::MultiDOFJointTrajectory> multi_dof_trajectories;
+  Asking asking;
+  const ProximityQuery &more; /**< all else; what stands in the four lists above is not looked at */
+  double budget_ms = 0.0;     /**< 0: the server's */
+  std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
+  const std::atomic<bool> *cancelled = nullptr; /**< set, it ends this query; null: nobody can */
+  const Progress *progress = nullptr;           /**< called after each curve and trajectory; null: nobody is told */
+  Turn *turn = nullptr;                         /**< given back to others now and then; may be null */
+
+  QueryRequest(QueryType type, double limit, const ProximityQuery &query)
+      : query_type(type),
+        delta(limit),
+        curves(query.curves),
+        paths(query.paths),
+        trajectories(query.trajectories),
+        multi_dof_trajectories(query.multi_dof_trajectories),
+        more(query) {}
+
+  /** Curves, paths and trajectories. */
+  std::size_t size() const {
+    return curves.size() + paths.size() + trajectories.size() + multi_dof_trajectories.size();
+  }
+};
+
+/** "distance", "tolerance", "collision". Throws Error for any other word. */
+QueryType queryTypeFromName(const std::string &name);
+
+/** The response that they share. */
+struct QueryResponse {
+  bool success = true;
+  std::string message;
+  std::vector<std::string> warnings;
+  SceneState scene;
+  std::vector<Proximity> results;
+  std::vector<Profile> profiles; /**< of Asking::PROFILE: one for each of the results, their summaries not filled in */
+  std::vector<Gradient> gradients;            /**< of Asking::GRADIENT: one for each of the results */
+  std::vector<ViolationIntervals> violations; /**< of Asking::VIOLATIONS likewise, their summaries not filled in */
+
+  /** Rows without an answer have no profile and no gradient: fills up what is asked for. */
+  void fillUp(const Asking &asking) {
+    if (asking.kind == Asking::PROFILE) profiles.resize(results.size());
+    if (asking.kind == Asking::GRADIENT) gradients.resize(results.size());
+    if (asking.kind == Asking::VIOLATIONS) violations.resize(results.size());
+  }
+};
+
+/** The profiles of an answer with their summaries. What rests on nothing or on data too old has lower bounds of 0. */
+std::vector<Profile> takeProfiles(QueryResponse &answer);
+
+/** The same of violations. Where the answer rests on data too old, there may be more of them than there are intervals.
+ */
+std::vector<ViolationIntervals> takeViolations(QueryResponse &answer);
+
+/** What the markers show of a query. */
+struct Drawing {
+  struct Line {
+    CompiledCurve curve;
+    std::vector<Answer> answers;
+  };
+  QueryType query_type = QueryType::DISTANCE;
+  std::size_t most_lines = 100; /**< no more than a person can tell apart; 0: nobody will look at them */
+  std::vector<Line> lines;      /**< of the first curves of the request */
+  SnapshotPtr snapshot;
+  LinkPoses links; /**< of the last of these curves; without curves those of the motion at its closest moment */
+
+  /** The robot along the last trajectory of the request, and what was said of it; null: none. */
+  std::shared_ptr<const RobotMotion> motion;
+  std::vector<Answer> motion_answers;
+
+  /** What moved beside the robot of the last trajectory, or of the last request of movers or of a body along a path;
+   *  null: nothing. */
+  std::shared_ptr<const Movers> movers;
+  std::vector<MovingRobot> robots;        /**< of it, without the robot of `motion` */
+  std::optional<ObjectDescription> rider; /**< of it: the body along a path, which is none of the scene */
+
+  bool hasRoom() const {
+    return lines.size() < most_lines;
+  }
+};
+
+/** From here on a further thread is worth its while: a curve takes a few microseconds, to wake a thread ten or more. */
+constexpr std::size_t MANY_CURVES = 64;
+
+/** Answers requests, from any number of threads at once. */
+class Queries {
+ public:
+  /** All but robots and second_opinions are kept by reference. stop: set, it ends running queries with the intervals
+   * that they have. */
+  Queries(const Parameters &parameters, const Tuning &tuning, const LiveScene &live, const Frames &frames,
+          Statistics &statistics, const std::atomic<bool> &stop, FurtherRobots robots = {},
+          std::shared_ptr<const SecondOpinions> second_opinions = {})
+      : parameters_(parameters),
+        tuning_(tuning),
+        live_(live),
+        frames_(frames),
+        statistics_(statistics),
+        stop_(stop),
+        robots_(std::move(robots)),
+        second_opinions_(std::move(second_opinions)) {}
+
+  const FurtherRobots &robots() const {
+    return robots_;
+  }
+
+  /** A request of so many bytes is about to be read. */
+  void expect(std::size_t bytes);
+
+  /** Fills the response and the drawing. Throws Error where nothing can be answered at all; what is
+   *  wrong with one curve becomes its row. */
+  void answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
+
+ private:
+  struct CurveScratch;
+  struct CurveSearch;
+  struct CurvePlace;
+  struct CurveRows;
+  struct SharedRows;
+
+  /* A request on its way: what was asked, of which scene, and what the answer rests on. */
+  struct Work {
+    const QueryRequest &request;
+    const SnapshotPtr snapshot;
+    Query query;
+    FrameLookup lookup;
+    CurrentJoints joints;
+    Doubts doubts;
+    QueryResponse &response;
+    Drawing &drawing;
+    double budget_ms;
+    std::size_t done;                    /* of the request's curves, paths and trajectories */
+    std::size_t trajectories;            /* of the robot, so far */
+    std::unique_ptr<CurveSearch> search; /* null as long as there is no curve */
+  };
+
+  std::size_t mostBytes() const; /* that a request may take */
+  Query toQuery(const QueryRequest &request, const Snapshot &snapshot) const;
+  std::size_t checkLimits(const QueryRequest &request, const Snapshot &snapshot) const; /* bytes */
+  void answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
+  void answerCurves(Work &work);
+  CurveSearch &curveSearch(Work &work);
+  static CurvePlace place(const Curve &curve, CurveSearch &search, Work &work);
+  static void search(const Curve &message, const CurvePlace &place, const Query &query, const Asking &asking,
+                     bool drawn, Workspace &workspace, CurveScratch &scratch, CurveRows &out);
+  static void gather(const CurvePlace *places, CurveRows &&found, CurveSearch &search, Work &work);
+  static void answerCurve(const Curve &message, CurveSearch &search, Work &work);
+  static void refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work);
+  void answerManyCurves(CurveSearch &search, Work &work);
+  void answerTrajectories(Work &work);
+  void answerMultiDofTrajectories(Work &work);
+  void answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work);
+  bool carriesBody(const QueryRequest &request) const;
+  MovingObject toRider(const ProximityQuery &query, const Snapshot &snapshot, std::vector<TimedPose> poses) const;
+  void answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp, std::vector<TimedPose> poses,
+                  const std::string &remark, Work &work);
+  void answerPath(const nav_msgs::Path &path, const std::string &id, Work &work);
+  void answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not = "");
+  void answerState(Work &work);
+  void answerMovers(Work &work);
+  static Query covered(Query query, double joints, bool with_objects, Work &work);
+  static void tellProgress(Work &work);
+  static std::string numbered(const std::string &name, std::size_t i, std::size_t all); /* the name of one of several */
+  void answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
+                    const std::string &why_not, Work &work);
+  void describe(Work &work) const;
+
+  const Parameters &parameters_;
+  const Tuning &tuning_;
+  const LiveScene &live_;
+  const Frames &frames_;
+  Statistics &statistics_;
+  const std::atomic<bool> &stop_;
+  const FurtherRobots robots_;
+  const std::shared_ptr<const SecondOpinions> second_opinions_; /* null: none are asked for */
+  WorkspacePool workspaces_;
+  Crew crew_{std::max(1u, std::thread::hardware_concurrency()) - 1};
+};
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "queries/row_message.h"
+
+#include <limits>
+
+#include "messages/geometry_message.h"
+#include "queries/asking.h"
+
+namespace curve_proximity {
+
+void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
+  if (answer.result.status < 0) {
+    message = toFailedRow(answer.id, answer.kind, answer.message);
+    message.status = answer.status;
+    return;
+  }
+  const cprox_result &result = answer.result;
+  message.id = answer.id;
+  message.kind = answer.kind;
+  message.status = answer.status;
+  if (query_type != QueryType::DISTANCE || answer.is_unlisted) message.verdict = cprox_verdict_name(result.verdict);
+  message.lower = result.lower;
+  message.upper = result.upper;
+  message.t = result.t;
+  const bool on_curve = answer.kind == Proximity::KIND_CURVE && result.obstacle_index >= 0;
+  message.t_b = on_curve ? result.t_obstacle : std::numeric_limits<double>::quiet_NaN();
+  message.t_contact_lower = std::numeric_limits<double>::quiet_NaN();
+  message.second_opinion = secondOpinionName(answer.second_opinion.verdict);
+  message.second_distance = answer.second_opinion.distance;
+  message.witness_a = toPointMessage(result.witness_mover);
+  message.witness_b = toPointMessage(result.witness_obstacle);
+  message.normal.x = result.normal.x;
+  message.normal.y = result.normal.y;
+  message.normal.z = result.normal.z;
+  message.a = answer.a;
+  message.b = answer.b;
+  message.nodes = result.nodes;
+  message.distance_queries = result.distance_queries;
+  message.microseconds = answer.microseconds;
+  message.lod = cprox_lod_name(result.lod);
+  message.message = answer.message;
+}
+
+Proximity toFailedRow(const std::string &id, const std::string &kind, const std::string &why) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Proximity message;
+  message.id = id;
+  message.kind = kind;
+  message.status = cprox_status_name(CPROX_INVALID);
+  message.lower = message.upper = message.t = message.t_b = message.t_contact_lower = message.second_distance = none;
+  message.witness_a.x = message.witness_a.y = message.witness_a.z = none;
+  message.witness_b = message.witness_a;
+  message.normal.x = message.normal.y = message.normal.z = none;
+  message.microseconds = none;
+  message.a = id;
+  message.lod = cprox_lod_name(CPROX_LOD_NONE);
+  message.message = why;
+  return message;
+}
+
+ViolationIntervals toMessage(const Violations &violations) {
+  if (violations.list.size() > MOST_VIOLATIONS)
+    throw Error("there are more than " + std::to_string(MOST_VIOLATIONS) +
+                " violations: a larger resolution has fewer");
+  ViolationIntervals message;
+  for (const Violation &one : violations.list) {
+    message.enter_lower.push_back(one.enter_lower);
+    message.enter_upper.push_back(one.enter_upper);
+    message.leave_lower.push_back(one.leave_lower);
+    message.leave_upper.push_back(one.leave_upper);
+    message.verdict.emplace_back(cprox_verdict_name(one.verdict));
+    message.upper.push_back(one.upper);
+    message.t.push_back(one.t);
+    message.a.push_back(one.a);
+    message.b.push_back(one.b);
+  }
+  return message;
+}
+
+Profile toMessage(const std::vector<ClearanceInterval> &intervals) {
+  Profile message;
+  for (const ClearanceInterval &interval : intervals) {
+    message.t0.push_back(interval.t0);
+    message.t1.push_back(interval.t1);
+    message.lower.push_back(interval.lower);
+    message.upper.push_back(interval.upper);
+    message.t.push_back(interval.t);
+    message.a.push_back(interval.a);
+    message.b.push_back(interval.b);
+    message.witness_a.push_back(toPointMessage(interval.witness_a));
+    message.witness_b.push_back(toPointMessage(interval.witness_b));
+    message.converged.push_back(interval.status == CPROX_OK);
+  }
+  return message;
+}
+
+} // namespace curve_proximity

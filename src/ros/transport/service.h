@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** A service of roscpp that sees a request before it is made: its bytes, its connection, when it came. */
+#ifndef CURVE_PROXIMITY_ROS_SERVICE_H
+#define CURVE_PROXIMITY_ROS_SERVICE_H
+
+#include <ros/advertise_service_options.h>
+#include <ros/node_handle.h>
+#include <ros/service_callback_helper.h>
+#include <ros/service_server.h>
+#include <ros/service_traits.h>
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "transport/checked_stream.h"
+
+namespace curve_proximity {
+
+/** What is known of a call beside its request. */
+struct Call {
+  std::string client; /**< who shares one place in the order: the connection, or its node where each call has its own */
+  std::size_t bytes = 0; /**< of the request on the wire */
+  std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now();
+};
+
+/** handler(call, read, response): `read(request)` makes the request of its bytes. What handler throws fails the call;
+ *  roscpp tells the client what(). */
+template <class Service>
+class ServiceHelper : public ros::ServiceCallbackHelper {
+ public:
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  using Read = std::function<void(Request &)>;
+  using Handler = std::function<void(const Call &call, const Read &read, Response &response)>;
+
+  explicit ServiceHelper(Handler handler) : handler_(std::move(handler)) {}
+
+  bool call(ros::ServiceCallbackHelperCallParams &params) override {
+    Call call;
+    call.bytes = params.request.num_bytes;
+    call.client = clientOf(params.connection_header.get());
+    Response response;
+    handler_(
+        call,
+        [&](Request &request) {
+          CheckedStream stream(params.request.buf.get(), params.request.num_bytes);
+          stream.next(request);
+        },
+        response);
+    params.response = ros::serialization::serializeServiceResponse(true, response);
+    return true;
+  }
+
+ private:
+  static std::string clientOf(const ros::M_string *header) {
+    if (!header) return "";
+    const auto persistent = header->find("persistent");
+    if (persistent != header->end() && persistent->second != "0")
+      return std::to_string(reinterpret_cast<std::uintptr_t>(header));
+    const auto caller = header->find("callerid");
+    return caller == header->end() ? "" : caller->second;
+  }
+
+  const Handler handler_;
+};
+
+/** handle: its callback queue runs the calls. */
+template <class Service>
+ros::ServiceServer advertise(ros::NodeHandle &handle, const std::string &name,
+                             typename ServiceHelper<Service>::Handler handler) {
+  ros::AdvertiseServiceOptions options;
+  options.service = name;
+  options.md5sum = ros::service_traits::md5sum<Service>();
+  options.datatype = ros::service_traits::datatype<Service>();
+  options.req_datatype = ros::message_traits::datatype<typename Service::Request>();
+  options.res_datatype = ros::message_traits::datatype<typename Service::Response>();
+  options.helper = boost::make_shared<ServiceHelper<Service>>(std::move(handler));
+  return handle.advertiseService(options);
+}
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "world/doubts.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include "world/live_scene.h"
+
+namespace curve_proximity {
+namespace {
+
+std::string tooOld(const std::string &what, double age, double max_age) {
+  std::ostringstream text;
+  text.precision(3);
+  text << what << " is " << age << " s old, above ~max_age = " << max_age;
+  return text.str();
+}
+
+} // namespace
+
+void Doubts::objects(const Query &query, bool any) {
+  objects_ = Coverage();
+  const bool everything = query.objects.empty() && query.links.empty();
+  if (lost_ && everything) objects_.add(Gap::UNKNOWN, SCENE_LOST, Missing::GEOMETRY);
+  for (const SensorState &sensor : sensors_) {
+    const bool named = std::find(query.objects.begin(), query.objects.end(), sensor.id) != query.objects.end();
+    if (!any || !(everything || named)) continue;
+    if (sensor.unknown) {
+      objects_.add(Gap::UNKNOWN, "what is at object '" + sensor.id + "' is unknown: its sensor sees nothing",
+                   Missing::GEOMETRY);
+    } else if (max_age_ > 0.0 && sensor.age > max_age_) {
+      objects_.add(Gap::STALE, tooOld("object '" + sensor.id + "'", sensor.age, max_age_));
+    }
+  }
+}
+
+void Doubts::ages(double transforms, double joints) {
+  ages_ = Coverage();
+  if (!(max_age_ > 0.0)) return;
+  if (transforms > max_age_) ages_.add(Gap::STALE, tooOld("a transform", transforms, max_age_));
+  if (joints > max_age_) ages_.add(Gap::STALE, tooOld("a joint value", joints, max_age_));
+}
+
+Coverage Doubts::coverage() {
+  Coverage out = ages_;
+  out.add(objects_);
+  if (!out.complete()) told_.insert(out.message());
+  return out;
+}
+
+void Doubts::apply(ConstraintResult &row) {
+  if (row.value != row.value) return;
+  const Coverage why = coverage();
+  if (why.complete()) return;
+  row.status = why.status();
+  row.lower = row.upper = std::numeric_limits<double>::quiet_NaN();
+  for (TrajectoryConstraint &one : row.rows) one.lower = one.upper = row.lower;
+  row.message += (row.message.empty() ? "" : "; ") + why.message();
+}
+
+void Doubts::tell(std::vector<std::string> &warnings) const {
+  constexpr std::size_t MOST = 10;
+  for (const std::string &why : told_)
+    if (warnings.size() < MOST) warnings.push_back(why);
+}
+
+} // namespace curve_proximity

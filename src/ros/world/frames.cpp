@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "world/frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <curve_proximity/core.hpp>
+#include <curve_proximity/nearest_name.hpp>
+#include <sstream>
+#include <vector>
+
+#include "transport/turns.h"
+
+namespace curve_proximity {
+namespace {
+
+/** By then what is published regularly, and what is latched, has come. */
+constexpr std::chrono::seconds SETTLED{3};
+
+/** A wait looks again this often, even where no transform has come: the stop flag is nobody's signal. */
+constexpr std::chrono::milliseconds LOOK_AGAIN{20};
+
+/** tf2 knows no leading slash; users of tf still write it. */
+std::string withoutSlash(const std::string &frame) {
+  return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
+}
+
+Eigen::Isometry3d toIsometry(const geometry_msgs::Transform &transform) {
+  const geometry_msgs::Vector3 &p = transform.translation;
+  const geometry_msgs::Quaternion &q = transform.rotation;
+  return curve_proximity::toIsometry(cprox_pose{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
+}
+
+} // namespace
+
+Frames::Frames(const std::string &fixed_frame, double timeout, const std::atomic<bool> &stop)
+    : fixed_frame_(withoutSlash(fixed_frame)), timeout_(timeout), stop_(stop), listener_(buffer_, true) {
+  buffer_.setUsingDedicatedThread(true);
+  listening_ = buffer_._addTransformsChangedListener([this] { changed_.notify_all(); });
+}
+
+Frames::~Frames() {
+  buffer_._removeTransformsChangedListener(listening_);
+}
+
+Frames::Clock::time_point Frames::deadline() const {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout_);
+}
+
+bool Frames::settled() const {
+  return Clock::now() - began_ > SETTLED;
+}
+
+std::optional<Frames::Place> Frames::now(const std::string &frame, const ros::Time &stamp, std::string &reason) const {
+  try {
+    if (!buffer_.canTransform(fixed_frame_, frame, stamp, &reason)) return std::nullopt;
+    const geometry_msgs::TransformStamped found = buffer_.lookupTransform(fixed_frame_, frame, stamp);
+    Place place;
+    place.pose = toIsometry(found.transform);
+    if (stamp.isZero() && !found.header.stamp.isZero())
+      place.age = std::max(0.0, (ros::Time::now() - found.header.stamp).toSec());
+    return place;
+  } catch (const tf2::TransformException &error) {
+    reason = error.what(); // what was there a moment ago has left the buffer
+    return std::nullopt;
+  }
+}
+
+/** Why it makes no sense to wait for the frame; "" where it may come. */
+std::string Frames::unheard(const std::string &frame) const {
+  if (!settled() || buffer_._frameExists(frame)) return "";
+  std::vector<std::string> names;
+  buffer_._getFrameStrings(names);
+  return "nobody has published that frame" + didYouMean(frame, names);
+}
+
+void Frames::refuse(const std::string &frame, const ros::Time &stamp, const std::string &reason) const {
+  std::ostringstream what;
+  what << "no transform from frame '" << frame << "' to frame '" << fixed_frame_ << "' ";
+  if (stamp.isZero()) {
+    what << "at any time";
+  } else {
+    what << "at time " << stamp;
+  }
+  what << ": " << reason;
+  throw Error(what.str());
+}
+
+Frames::Place Frames::place(const std::string &given, const ros::Time &stamp, Clock::time_point deadline,
+                            Turn *turn) const {
+  const std::string frame = withoutSlash(given);
+  if (frame.empty() || frame == fixed_frame_) return {};
+  std::string reason;
+  if (const std::optional<Place> found = now(frame, stamp, reason)) return *found;
+  const std::string hopeless = unheard(frame);
+  if (!hopeless.empty()) refuse(frame, stamp, hopeless);
+
+  // tf2's own timeout counts in ROS time, which stands still without a clock: so ask without one, again and again.
+  const Turn::Pause pause(turn);
+  while (!stop_ && Clock::now() < deadline) {
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      changed_.wait_until(lock, std::min(deadline, Clock::now() + LOOK_AGAIN));
+    }
+    if (const std::optional<Place> found = now(frame, stamp, reason)) return *found;
+  }
+  std::ostringstream waited;
+  waited << "none within " << timeout_.count() << " s: " << reason;
+  refuse(frame, stamp, waited.str());
+}
+
+bool Frames::has(const std::string &given, const ros::Time &stamp) const {
+  const std::string frame = withoutSlash(given);
+  std::string reason;
+  return frame.empty() || frame == fixed_frame_ || now(frame, stamp, reason);
+}
+
+std::optional<double> Frames::age(const std::string &given) const {
+  const std::string frame = withoutSlash(given);
+  if (frame == fixed_frame_) return 0.0;
+  std::string reason;
+  const std::optional<Place> found = now(frame, ros::Time(), reason);
+  if (!found) return std::nullopt;
+  return std::isnan(found->age) ? 0.0 : found->age;
+}
+
+const Eigen::Isometry3d &FrameLookup::toFixed(const std::string &frame, const ros::Time &stamp) {
+  const std::pair<std::string, ros::Time> key(frame, stamp);
+  const auto known = found_.find(key);
+  Found &found = known != found_.end() ? known->second : found_[key];
+  if (known == found_.end()) {
+    try {
+      found.place = frames_.place(frame, stamp, deadline_, turn_);
+    } catch (const std::exception &error) {
+      found.error = error.what();
+    }
+  }
+  if (!found.error.empty()) throw Error(found.error);
+  oldest_ = std::fmax(oldest_, found.place.age);
+  age_ = std::fmax(age_, found.place.age);
+  return found.place.pose;
+}
+
+} // namespace curve_proximity

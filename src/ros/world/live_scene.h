@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The scene with all that is known about it while a server runs: its epoch, its sensors, the joints of its robot. */
+#ifndef CURVE_PROXIMITY_ROS_LIVE_SCENE_H
+#define CURVE_PROXIMITY_ROS_LIVE_SCENE_H
+
+#include <curve_proximity/SceneState.h>
+#include <ros/time.h>
+
+#include <array>
+#include <atomic>
+#include <curve_proximity/scene.hpp>
+#include <curve_proximity/srdf.hpp>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "world/frames.h"
+#include "world/joint_board.h"
+#include "world/sensor_board.h"
+
+namespace curve_proximity {
+
+/** Sentences about the scene that every answer repeats. Any number of threads. */
+class Remarks {
+ public:
+  void set(std::vector<std::string> sentences) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    sentences_ = std::move(sentences);
+  }
+
+  std::vector<std::string> get() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return sentences_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> sentences_;
+};
+
+/** What the services, the topics and the sensors share. */
+struct LiveScene {
+  LiveScene(std::shared_ptr<const Robot> robot, const Srdf &given, const ResourceOptions &resources)
+      : srdf(given), scene(std::move(robot), resources, allowedPairs(given)) {
+    const ros::WallTime now = ros::WallTime::now();
+    epoch = ros::Time(now.sec, now.nsec);
+  }
+
+  const Srdf srdf;
+  Scene scene;
+  SensorBoard sensors;
+  JointBoard joints;
+  ros::Time epoch; /**< when the server started */
+  /** The allowed collision matrix is one of MoveIt's: the SRDF's pairs are among its entries, so they do not count
+   * apart. */
+  std::atomic<bool> matrix_has_srdf{false};
+
+  Remarks remarks;
+  std::atomic<bool> lost{false}; /**< the scene of the server before this one is gone, and none has been sent since */
+
+  /** The pairs of links that are not checked against each other, beside the allowed pairs of the scene. */
+  const std::vector<std::array<std::string, 2>> &disabled() const;
+
+  /** The scene of a snapshot; what was measured and the ages of joints and transforms are left open. */
+  SceneState state(const Snapshot &snapshot) const;
+
+  /** Throws Error where the snapshot is not the one that is meant. 0: any. */
+  void demand(const Snapshot &snapshot, const ros::Time &epoch_wanted, std::uint64_t version_wanted) const;
+};
+
+/** What answers say while LiveScene::lost is set. */
+constexpr const char *SCENE_LOST =
+    "the scene of the server before this one is lost, and none has been sent since: send it again";
+
+/** Where the root link stands in the fixed frame: by tf2, or where tf2 knows nothing by a fixed virtual joint. Throws
+ *  Error where neither does. */
+Eigen::Isometry3d rootPose(const Robot &robot, const Srdf &srdf, const ros::Time &stamp, FrameLookup &lookup);
+
+/** Positions of joints, and how old the oldest of those is that ~joint_states told. */
+struct CurrentJoints {
+  JointPositions positions;
+  double age = std::numeric_limits<double>::quiet_NaN(); /**< [s]; NaN: none of them was told */
+};
+
+/** `given`, and where `current` is set the latest values of the others. Throws Error where there are none, and for what
+ *  toJointPositions() refuses. */
+CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, const JointBoard &board);
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Which objects sensors keep, how old each is, and whether anything is known of it. */
+#ifndef CURVE_PROXIMITY_ROS_SENSOR_BOARD_H
+#define CURVE_PROXIMITY_ROS_SENSOR_BOARD_H
+
+#include <curve_proximity/SensorState.h>
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "world/age.h"
+
+namespace curve_proximity {
+
+/** Any number of threads. */
+class SensorBoard {
+ public:
+  /** The object is as a message of this stamp shows it. */
+  void saw(const std::string &id, const ros::Time &stamp) {
+    set(id, {Age(stamp), false});
+  }
+
+  /** A message of this stamp had no valid point. */
+  void sawNothing(const std::string &id, const ros::Time &stamp) {
+    set(id, {Age(stamp), true});
+  }
+
+  /** The object was there before the server started; no message has come since. */
+  void awaits(const std::string &id) {
+    set(id, {std::nullopt, true});
+  }
+
+  /** The object is no sensor's any more: somebody has set or removed it. */
+  void forget(const std::string &id) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    sensors_.erase(id);
+  }
+
+  /** Told of each object that was not there; set before the first message. */
+  std::function<void()> appeared;
+
+  std::vector<SensorState> states() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<SensorState> out;
+    for (const auto &[id, sensor] : sensors_) {
+      SensorState state;
+      state.id = id;
+      state.age = sensor.age ? sensor.age->seconds() : std::numeric_limits<double>::infinity();
+      state.unknown = sensor.unknown;
+      out.push_back(state);
+    }
+    return out;
+  }
+
+ private:
+  struct Sensor {
+    std::optional<Age> age;
+    bool unknown = false;
+  };
+
+  void set(const std::string &id, const Sensor &sensor) {
+    bool is_new = false;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      is_new = sensors_.count(id) == 0;
+      sensors_[id] = sensor;
+    }
+    if (is_new && appeared) appeared();
+  }
+
+  mutable std::mutex mutex_;
+  std::map<std::string, Sensor> sensors_;
+};
+
+} // namespace curve_proximity
+#endif

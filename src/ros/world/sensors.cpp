@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "world/sensors.h"
+
+#include <ros/console.h>
+
+#include <utility>
+
+#include "messages/cloud.h"
+#include "transport/checked_stream.h"
+#include "transport/guard.h"
+
+namespace curve_proximity {
+namespace {
+
+ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
+  ros::NodeHandle own(handle);
+  own.setCallbackQueue(&queue);
+  return own;
+}
+
+} // namespace
+
+Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames)
+    : parameters_(parameters), live_(live), frames_(frames), handle_(onQueue(handle, queue_)), spinner_(1, &queue_) {
+  ros::SubscribeOptions topics[] = {
+      checkedSubscription<sensor_msgs::PointCloud2>(
+          "cloud", 1, [this](const sensor_msgs::PointCloud2ConstPtr &message) { takeCloud(message); }),
+      checkedSubscription<OctomapMessage>("octomap", 1,
+                                          [this](const OctomapMessage::ConstPtr &message) { takeOctomap(message); })};
+  for (ros::SubscribeOptions &topic : topics) subscribers_.push_back(handle_.subscribe(topic));
+  spinner_.start();
+}
+
+Sensors::~Sensors() {
+  for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
+  spinner_.stop();
+  queue_.clear();
+}
+
+SensorCounts Sensors::cloud() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return cloud_;
+}
+
+SensorCounts Sensors::octomap() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return octomap_;
+}
+
+/** Does the work of a message, and counts it. */
+template <class Work>
+void Sensors::take(const char *topic, const std_msgs::Header &header, SensorCounts &counts, std::uint32_t &seq,
+                   Work &&work) {
+  bool used = true;
+  guarded(work, [&](const std::string &why) {
+    used = false;
+    complain(topic, why);
+  });
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (counts.taken + counts.refused > 0 && header.seq > seq) counts.dropped += header.seq - seq - 1;
+  seq = header.seq;
+  ++(used ? counts.taken : counts.refused);
+  if (used) counts.last = std::chrono::steady_clock::now();
+}
+
+void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
+  take("~cloud", message->header, cloud_, cloud_seq_, [&] {
+    Cloud cloud = toCloud(*message);
+    if (cloud.points.cols() == 0) {
+      if (!parameters_.empty_cloud_clears) return live_.sensors.sawNothing(parameters_.cloud_id, message->header.stamp);
+      remove(parameters_.cloud_id);
+      return live_.sensors.saw(parameters_.cloud_id, message->header.stamp);
+    }
+    ShapeDescription shape;
+    shape.type = ShapeType::POINTS;
+    shape.dimensions = {parameters_.cloud_radius};
+    shape.vertices = std::move(cloud.points);
+    replace(parameters_.cloud_id, message->header, std::move(shape));
+  });
+}
+
+void Sensors::takeOctomap(const OctomapMessage::ConstPtr &message) {
+  take("~octomap", message->header, octomap_, octomap_seq_, [&] {
+    ShapeDescription shape;
+    shape.type = ShapeType::OCTREE;
+    shape.unknown_is_occupied = parameters_.unknown_is_occupied;
+    shape.octree = {message->id, message->resolution, message->binary != 0,
+                    std::string(message->data.begin(), message->data.end())};
+    replace(parameters_.octomap_id, message->header, std::move(shape));
+  });
+}
+
+void Sensors::replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape) {
+  Operation operation;
+  operation.object.id = id;
+  operation.object.pose = frames_.place(header.frame_id, header.stamp, frames_.deadline(), nullptr).pose;
+  operation.object.shapes.push_back(std::move(shape));
+  SceneChange change;
+  change.operations.push_back(std::move(operation));
+  for (const std::string &fault : live_.scene.apply(change)) throw Error(fault);
+  live_.sensors.saw(id, header.stamp);
+}
+
+void Sensors::remove(const std::string &id) {
+  if (live_.scene.snapshot()->objects().count(id) == 0) return;
+  SceneChange change;
+  change.operations.resize(1);
+  change.operations.front().kind = Operation::Kind::REMOVE;
+  change.operations.front().object.id = id;
+  live_.scene.apply(change);
+}
+
+void Sensors::complain(const std::string &topic, const std::string &why) {
+  if (complaints_.isDue(topic + why)) ROS_WARN_STREAM(topic + ": " + why + "; the object stays as it was");
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What sensors see, as topics: each message takes the place of the object that the one before it made. */
+#ifndef CURVE_PROXIMITY_ROS_SENSORS_H
+#define CURVE_PROXIMITY_ROS_SENSORS_H
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+#include <ros/subscriber.h>
+#include <sensor_msgs/PointCloud2.h>
+
+#include <chrono>
+#include <cstdint>
+#include <curve_proximity/scene.hpp>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "messages/octomap_message.h"
+#include "parameters/parameters.h"
+#include "transport/complaints.h"
+#include "world/frames.h"
+#include "world/live_scene.h"
+
+namespace curve_proximity {
+
+/** What became of the messages of one topic. */
+struct SensorCounts {
+  std::uint64_t taken = 0, refused = 0; /**< used; of no use */
+  std::uint64_t dropped = 0; /**< came too fast: told by the gaps in their headers' seq, so of one publisher only */
+  std::chrono::steady_clock::time_point last; /**< when the last one was used, where any was */
+};
+
+/** ~cloud and ~octomap. They have a thread of their own, so that what is built at the rate of a sensor takes no thread
+ * from the queries, which work on the snapshot before it. Of messages that come too fast the oldest are dropped.
+ *
+ *  A cloud without a point makes the object unknown, or with ~empty_cloud_clears takes it away; an octree without an
+ *  occupied cell is an empty object. A message that cannot be used leaves the object as it was, and a warning says why.
+ */
+class Sensors {
+ public:
+  /** All are kept by reference. handle: private. */
+  Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames);
+
+  /** No callback runs, nor will one begin, when it has ended. */
+  ~Sensors();
+
+  SensorCounts cloud() const;
+  SensorCounts octomap() const;
+
+  Sensors(const Sensors &) = delete;
+  Sensors &operator=(const Sensors &) = delete;
+
+ private:
+  void takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message);
+  void takeOctomap(const OctomapMessage::ConstPtr &message);
+  void replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape);
+  void remove(const std::string &id);
+  template <class Work>
+  void take(const char *topic, const std_msgs::Header &header, SensorCounts &counts, std::uint32_t &seq, Work &&work);
+  void complain(const std::string &topic, const std::string &why);
+
+  const Parameters &parameters_;
+  LiveScene &live_;
+  const Frames &frames_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_; /* its callbacks go to queue_ */
+  std::vector<ros::Subscriber> subscribers_;
+  mutable std::mutex mutex_; /* of the counts */
+  SensorCounts cloud_, octomap_;
+  std::uint32_t cloud_seq_ = 0, octomap_seq_ = 0; /* of the last message */
+  Complaints complaints_{std::chrono::seconds(5)};
+  ros::AsyncSpinner spinner_;
+};
+
+} // namespace curve_proximity
+#endif

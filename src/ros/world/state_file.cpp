@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "world/state_file.h"
+
+#include <fcntl.h>
+#include <ros/console.h>
+#include <ros/serialization.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "messages/scene_message.h"
+#include "transport/guard.h"
+
+namespace curve_proximity {
+namespace {
+
+constexpr const char *MAGIC = "curve_proximity scene 1";
+constexpr std::chrono::seconds PERIOD{1}; /* between two writings at least */
+constexpr std::size_t MOST_BYTES = std::size_t{64} << 20;
+
+std::uint64_t hashOf(const std::string &bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+template <class Message>
+std::string serialised(const Message &message) {
+  std::string out(ros::serialization::serializationLength(message), '\0');
+  ros::serialization::OStream stream(reinterpret_cast<std::uint8_t *>(out.data()),
+                                     static_cast<std::uint32_t>(out.size()));
+  ros::serialization::serialize(stream, message);
+  return out;
+}
+
+std::string automaticPath(const std::string &name) {
+  const char *ros_home = std::getenv("ROS_HOME");
+  const char *home = std::getenv("HOME");
+  if (!ros_home && !home) return "";
+  const std::filesystem::path folder =
+      (ros_home ? std::filesystem::path(ros_home) : std::filesystem::path(home) / ".ros") / "curve_proximity";
+  std::string file = name.substr(name.find_first_not_of('/'));
+  std::replace(file.begin(), file.end(), '/', '.');
+  return (folder / (file + ".scene")).string();
+}
+
+/** All of a file, or nothing: written beside it, flushed, then renamed. */
+void writeAtomically(const std::string &path, const std::string &text) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder);
+  const std::string beside = path + "." + std::to_string(getpid()) + ".new";
+  const int file = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  bool good = file >= 0;
+  for (std::size_t done = 0; good && done < text.size();) {
+    const ssize_t n = ::write(file, text.data() + done, text.size() - done);
+    good = n > 0;
+    done += good ? static_cast<std::size_t>(n) : 0;
+  }
+  good = good && fsync(file) == 0;
+  if (file >= 0) good = close(file) == 0 && good;
+  good = good && std::rename(beside.c_str(), path.c_str()) == 0;
+  if (good) return;
+  unlink(beside.c_str());
+  throw Error("'" + path + "' cannot be written");
+}
+
+/** What is to be there again; objects that sensors keep come by themselves. */
+KeptScene keptOf(const LiveScene &live, const std::string &fixed_frame) {
+  KeptScene out;
+  for (const SensorState &sensor : live.sensors.states()) out.sensors.push_back(sensor.id);
+  GetSceneResponse scene;
+  toMessage(*live.scene.snapshot(), {}, scene);
+  std::size_t bytes = 0;
+  out.request.clear = true;
+  for (CollisionObject &object : scene.objects) {
+    if (std::find(out.sensors.begin(), out.sensors.end(), object.id) != out.sensors.end()) continue;
+    object.header.frame_id = fixed_frame;
+    const std::size_t size = ros::serialization::serializationLength(object);
+    if (bytes + size > MOST_BYTES) {
+      out.sensors.push_back(object.id);
+      continue;
+    }
+    bytes += size;
+    out.request.objects.push_back(std::move(object));
+  }
+  out.request.attached_collision_objects = std::move(scene.attached_collision_objects);
+  out.request.link_padding = std::move(scene.link_padding);
+  out.request.link_scale = std::move(scene.link_scale);
+  out.request.allowed_contacts = std::move(scene.allowed_contacts);
+  return out;
+}
+
+} // namespace
+
+StateFile::StateFile(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live)
+    : live_(live),
+      handle_(handle),
+      path_(parameters.state_file == "auto" ? automaticPath(handle.getNamespace()) : parameters.state_file) {
+  handle_.getParam("/run_id", run_);
+  if (run_.empty()) path_.clear(); // nothing would tell this run from the next one
+}
+
+StateFile::~StateFile() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+std::optional<KeptScene> StateFile::read() {
+  std::string before; // the run in which a server of this name had a scene
+  handle_.getParam(KEPT_BY_SERVER, before);
+  const bool expected = !run_.empty() && before == run_;
+  std::optional<KeptScene> out;
+  const auto complain = [&](const std::string &why) {
+    ROS_WARN("the state file '%s' is not used: %s", path_.c_str(), why.c_str());
+  };
+  guarded(
+      [&] {
+        if (path_.empty()) return;
+        std::ifstream file(path_, std::ios::binary);
+        if (!file) return;
+        std::string magic, run, md5, size, hash;
+        for (std::string *line : {&magic, &run, &md5, &size, &hash}) std::getline(file, *line);
+        if (magic != MAGIC) throw Error("it is none");
+        if (run != run_) return; // another run's
+        if (md5 != ros::message_traits::md5sum<ApplySceneRequest>()) throw Error("it is of another version");
+        std::ostringstream rest;
+        rest << file.rdbuf();
+        const std::string bytes = rest.str();
+        if (std::to_string(bytes.size()) != size || std::to_string(hashOf(bytes)) != hash) throw Error("it is damaged");
+        KeptScene kept;
+        ros::serialization::IStream stream(reinterpret_cast<std::uint8_t *>(const_cast<char *>(bytes.data())),
+                                           static_cast<std::uint32_t>(bytes.size()));
+        ros::serialization::deserialize(stream, kept.sensors);
+        ros::serialization::deserialize(stream, kept.request);
+        out = std::move(kept);
+      },
+      complain);
+  if (expected && !out) {
+    live_.lost = true;
+    ROS_WARN("the scene of the server before this one is lost: answers say so until a scene is sent");
+  }
+  return out;
+}
+
+void StateFile::watch(const std::string &fixed_frame) {
+  fixed_frame_ = fixed_frame;
+  thread_ = std::thread([this] { run(); });
+}
+
+void StateFile::changed() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  changed_ = true;
+  wake_.notify_all();
+}
+
+void StateFile::run() {
+  bool told = false;
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    wake_.wait(lock, [this] { return changed_ || ending_; });
+    if (changed_) {
+      changed_ = false;
+      lock.unlock();
+      guarded(
+          [&] {
+            if (!told && !ending_) handle_.setParam(KEPT_BY_SERVER, run_);
+            told = true;
+            write();
+          },
+          [&](const std::string &why) {
+            if (!failed_) ROS_WARN("the scene is not kept: %s", why.c_str());
+            failed_ = true;
+          });
+      lock.lock();
+    }
+    if (ending_) return;
+    wake_.wait_for(lock, PERIOD, [this] { return ending_; });
+  }
+}
+
+void StateFile::write() {
+  if (path_.empty()) return;
+  const KeptScene kept = keptOf(live_, fixed_frame_);
+  const std::string bytes = serialised(kept.sensors) + serialised(kept.request);
+  std::ostringstream text;
+  text << MAGIC << '\n'
+       << run_ << '\n'
+       << ros::message_traits::md5sum<ApplySceneRequest>() << '\n'
+       << bytes.size() << '\n'
+       << hashOf(bytes) << '\n'
+       << bytes;
+  writeAtomically(path_, text.str());
+  failed_ = false;
+}
+
+} // namespace curve_proximity

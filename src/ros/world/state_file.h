@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Keeps the scene on disk, so that a server that comes after a crash has it again, or says that it has not. */
+#ifndef CURVE_PROXIMITY_ROS_STATE_FILE_H
+#define CURVE_PROXIMITY_ROS_STATE_FILE_H
+
+#include <curve_proximity/ApplyScene.h>
+#include <ros/node_handle.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "parameters/parameters.h"
+#include "world/live_scene.h"
+
+namespace curve_proximity {
+
+/** What was read back. */
+struct KeptScene {
+  ApplySceneRequest request;        /**< replaces the scene */
+  std::vector<std::string> sensors; /**< objects that sensors kept, and objects too large to be written */
+};
+
+/** The file: a line of text ("curve_proximity scene 1"), the run (/run_id), the type's MD5, a count of bytes and their
+ *  FNV-1a hash, a line each; then the names of sensors' objects and the request of ~apply_scene, serialised. */
+class StateFile {
+ public:
+  /** handle: private. live: kept by reference. Writes nothing before watch(). */
+  StateFile(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live);
+
+  /** Writes what has changed since the last time. */
+  ~StateFile();
+
+  /** The scene of the server before this one; nothing where there is none. Sets live.lost where there was one that
+   *  cannot be read. */
+  std::optional<KeptScene> read();
+
+  /** From now on changes are written, once a second at most. fixed_frame: that of the objects' poses. */
+  void watch(const std::string &fixed_frame);
+
+  /** Somebody has changed the scene, and not by a sensor. */
+  void changed();
+
+ private:
+  void run();
+  void write();
+
+  LiveScene &live_;
+  ros::NodeHandle handle_;
+  std::string path_, run_, fixed_frame_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool changed_ = false, ending_ = false, failed_ = false;
+  std::thread thread_;
+};
+
+} // namespace curve_proximity
+#endif
