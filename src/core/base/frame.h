@@ -20,7 +20,7 @@ typedef struct frame {
   double misturned; /* and for each metre that a point is away from `position` as this times u: of a composed pose */
 } frame;
 
-/* pose must have been checked by frame_pose_usable(). */
+/* pose must have been checked by frame_pose_error(). */
 frame frame_create(const cprox_pose *pose, vec3 centre);
 
 /* The frame of `inner` within `outer`. Their positions are not added, so that sizes and not positions enter the

@@ -91,7 +91,7 @@ cprox_result *query_reserve_results(const query *q, size_t n);
  * one that is dropped. */
 void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r, double *others);
 
-/* The union is complete: its status (`trouble` is the last that a search had), verdict and reason. */
+/* The union is complete: its status (`failure` is the last that a search had), verdict and reason. */
 cprox_status query_conclude(const query *q, double cutoff, cprox_status failure, cprox_result *all);
 
 #endif
