@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The server as a process: memory limit, signals, and a watch on the master; all else is ProximityServer. */
+/** The server as a process: signals, and a watch on the master; all else is ProximityServer. */
 #include <ros/console.h>
 #include <ros/init.h>
-#include <ros/poll_manager.h>
 #include <ros/this_node.h>
 #include <signal.h>
 
@@ -13,8 +12,6 @@
 #include "parameters/parameters.h"
 #include "server.h"
 #include "transport/master_watch.h"
-#include "transport/memory_limit.h"
-#include "transport/time_slice.h"
 
 namespace {
 
@@ -35,34 +32,13 @@ void catchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-/** All that comes in goes through roscpp's poll thread. While a thread writes an answer, it asks again and again
- * whether the socket is ready, and leaves the writing to that thread. On the same processor it would keep it from
- * writing for a whole time slice. */
-void tunePollThread() {
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::microseconds SHORT_ROUND{5}; // one that reads or accepts takes longer
-  static constexpr int MANY = 4;
-  ros::PollManager::instance()->addPollThreadListener([before = Clock::time_point(), rounds = 0]() mutable {
-    const Clock::time_point now = Clock::now();
-    if (before == Clock::time_point()) curve_proximity::setTimeSlice(curve_proximity::SHORT_SLICE);
-    rounds = now - before < SHORT_ROUND ? rounds + 1 : 0;
-    if (rounds >= MANY) std::this_thread::yield();
-    before = now;
-  });
-}
-
 /** Until a signal, a shutdown by the graph, or the end of our registration. */
 int serve() {
-  unsigned long closed = 0;
   curve_proximity::MasterWatch master(ros::this_node::getName() + "/distance");
   while (ros::ok() && !interrupted) {
     if (master.look() == curve_proximity::MasterWatch::State::FORGOTTEN) {
       ROS_FATAL("the master does not know this node any more (was it restarted?): ending, so that a respawn registers");
       return EXIT_UNREGISTERED;
-    }
-    if (const unsigned long now = curve_proximity::connectionsClosed(); now != closed) {
-      ROS_WARN_THROTTLE(5.0, "%lu connections were closed: they announced more than ~memory_limit_mb leaves", now);
-      closed = now;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -78,8 +54,6 @@ int main(int argc, char **argv) {
   int code = EXIT_WRONG;
   try {
     const curve_proximity::Parameters parameters = curve_proximity::readParameters(handle);
-    curve_proximity::limitMemory(parameters.memory_limit_mb);
-    tunePollThread();
     const curve_proximity::ProximityServer server(handle, parameters);
     code = serve();
   } catch (const std::exception &error) {

@@ -322,7 +322,6 @@ Turns::Clock::time_point ProximityServer::waitUntil(const Call &call, const Requ
 
 template <class Service>
 typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType query_type) {
-  using Helper = ServiceHelper<Service>;
   const auto work = [this, query_type](const Call &call, const RequestThreads::AtWork &at_work,
                                        typename Service::Request &asked, typename Service::Response &response) {
     response.frame_id = frames_.fixedFrame();
@@ -343,11 +342,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType
     deliver(answer, response);
     markers_->show(std::move(drawing));
   };
-  return [this, handle = handler<Service>(QUERY_TIMES_WIRE, work)](const Call &call, const typename Helper::Read &read,
-                                                                   typename Helper::Response &response) {
-    queries_.expect(call.bytes);
-    handle(call, read, response);
-  };
+  return handler<Service>(QUERY_TIMES_WIRE, work);
 }
 
 /** Objects come in any frame; what is wrong with one is told, and the others are applied. */

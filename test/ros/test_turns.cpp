@@ -70,17 +70,28 @@ TEST(Turns, of_equal_ones_the_first_is_next) {
   EXPECT_EQ(order(turns, {"c", "a", "b"}), (std::vector<std::string>{"c", "a", "b"}));
 }
 
-/* One that holds a turn and does not run: the system runs others, or it waits for a page. */
-TEST(Turns, only_time_on_a_processor_counts) {
-  Turns turns(2);
-  {
-    const Turn beside(turns, "beside", NEVER); // else there is nobody to be fair to
-    const Turn turn(turns, "sleeps", NEVER);
-    std::this_thread::sleep_for(milliseconds(60));
+/* Three requests of one client that each compute for long, then a short one of the same client. */
+TEST(Turns, a_short_request_does_not_wait_for_long_ones_of_its_own_client) {
+  Turns turns(1);
+  std::atomic<int> begun{0};
+  std::atomic<bool> ending{false};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 3; ++i) {
+    threads.emplace_back([&] {
+      Turn turn(turns, "client", NEVER);
+      ++begun;
+      while (!ending) {
+        compute(microseconds(50));
+        turn.yield();
+      }
+    });
   }
-  turns.setSlots(1);
-  use(turns, "computes", milliseconds(20));
-  EXPECT_EQ(order(turns, {"computes", "sleeps"}), (std::vector<std::string>{"sleeps", "computes"}));
+  const Clock::time_point end = Clock::now() + std::chrono::seconds(10);
+  while (begun < 3 && Clock::now() < end) std::this_thread::sleep_for(milliseconds(1));
+  EXPECT_EQ(begun, 3); // the second and the third have had a turn while the first goes on
+  EXPECT_NO_THROW(Turn(turns, "client", Clock::now() + std::chrono::seconds(10)));
+  ending = true;
+  for (std::thread &thread : threads) thread.join();
 }
 
 TEST(Turns, a_holder_makes_way_and_goes_on_afterwards) {

@@ -100,18 +100,12 @@ class Failures {
   std::string first_;
 };
 
-/* What a thread keeps from curve to curve. */
-struct Queries::CurveScratch {
-  CurveDescription curve; /* the one at hand */
-  std::vector<Answer> answers;
-};
-
 /* What all curves of a request share. */
 struct Queries::CurveSearch {
   StampedTargets targets;
   WorkspacePool::Lease workspace;
-  CurveScratch scratch;
-  std::size_t curves; /* so far */
+  CurveDescription description; /* of the curve at hand: its memory serves the next one */
+  std::size_t curves;           /* so far */
   Failures failures;
   const LinkPoses *drawn; /* the robot of the last curve that is drawn; null: none is */
 };

@@ -32,7 +32,6 @@
 #include "parameters/tuning.h"
 #include "queries/asking.h"
 #include "queries/movers.h"
-#include "transport/crew.h"
 #include "transport/statistics.h"
 #include "transport/turns.h"
 #include "transport/workspaces.h"
@@ -160,7 +159,7 @@ struct Drawing {
   }
 };
 
-/** From here on a further thread is worth its while: a curve takes a few microseconds, to wake a thread ten or more. */
+/** Of requests with so many curves only some are drawn where nobody listens. */
 constexpr std::size_t MANY_CURVES = 64;
 
 /** Answers requests, from any number of threads at once. */
@@ -184,19 +183,13 @@ class Queries {
     return robots_;
   }
 
-  /** A request of so many bytes is about to be read. */
-  void expect(std::size_t bytes);
-
   /** Fills the response and the drawing. Throws Error where nothing can be answered at all; what is
    *  wrong with one curve becomes its row. */
   void answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
 
  private:
-  struct CurveScratch;
   struct CurveSearch;
   struct CurvePlace;
-  struct CurveRows;
-  struct SharedRows;
 
   /* A request on its way: what was asked, of which scene, and what the answer rests on. */
   struct Work {
@@ -221,12 +214,8 @@ class Queries {
   void answerCurves(Work &work);
   CurveSearch &curveSearch(Work &work);
   static CurvePlace place(const Curve &curve, CurveSearch &search, Work &work);
-  static void search(const Curve &message, const CurvePlace &place, const Query &query, const Asking &asking,
-                     bool drawn, Workspace &workspace, CurveScratch &scratch, CurveRows &out);
-  static void gather(const CurvePlace *places, CurveRows &&found, CurveSearch &search, Work &work);
   static void answerCurve(const Curve &message, CurveSearch &search, Work &work);
   static void refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work);
-  void answerManyCurves(CurveSearch &search, Work &work);
   void answerTrajectories(Work &work);
   void answerMultiDofTrajectories(Work &work);
   void answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work);
@@ -254,7 +243,6 @@ class Queries {
   const FurtherRobots robots_;
   const std::shared_ptr<const SecondOpinions> second_opinions_; /* null: none are asked for */
   WorkspacePool workspaces_;
-  Crew crew_{std::max(1u, std::thread::hardware_concurrency()) - 1};
 };
 
 } // namespace curve_proximity

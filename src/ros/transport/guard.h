@@ -7,7 +7,6 @@
 #include <new>
 #include <string>
 
-#include "transport/memory_account.h"
 #include "transport/turns.h"
 
 namespace curve_proximity {
@@ -16,17 +15,7 @@ namespace curve_proximity {
  *  topic or timer callback, and for a thrown int in a service. */
 template <class Work, class Failed>
 void guarded(Work &&work, Failed &&failed) {
-  struct AtRequest {
-    AtRequest() : before(memory::at_request) {
-      memory::at_request = true;
-    }
-    ~AtRequest() {
-      memory::at_request = before;
-    }
-    const bool before;
-  };
   try {
-    const AtRequest marked;
     work();
   } catch (const std::bad_alloc &) {
     failed("out of memory");

@@ -29,7 +29,6 @@ constexpr std::size_t SMALL_PART = 4;
 constexpr std::size_t LARGE = 4 * MEGABYTE;
 
 std::atomic<std::size_t> most{0};
-std::atomic<std::size_t (*)()> counter{nullptr};
 std::mutex mutex;
 std::size_t reserved = 0;
 std::atomic<bool> untidy{false};
@@ -40,13 +39,10 @@ std::string megabytes(std::size_t bytes) {
 
 /** Of all, and what is promised. The lock is held. */
 std::size_t taken() {
-  const auto count = counter.load();
-  return std::max(resident(), count ? count() : 0) + reserved;
+  return resident() + reserved;
 }
 
 } // namespace
-
-thread_local bool at_request = false;
 
 void setLimit(std::size_t bytes) {
   most = bytes;
@@ -54,10 +50,6 @@ void setLimit(std::size_t bytes) {
 
 std::size_t limit() {
   return most;
-}
-
-void setTaken(std::size_t (*taken)()) {
-  counter = taken;
 }
 
 std::size_t resident() {

@@ -18,10 +18,6 @@ std::size_t limit();
 /** [bytes] What the process has resident now. */
 std::size_t resident();
 
-/** [bytes] What the process takes, also what it has not touched yet, by a program that counts its allocations. Else
- *  what is resident is taken for it. */
-void setTaken(std::size_t (*taken)());
-
 /** Bytes of the account, for as long as this lives. Below a megabyte nothing is entered. */
 class Share {
  public:
@@ -39,9 +35,6 @@ class Share {
 
 /** Gives memory back to the system, if a large share has ended since the last call and there is none now. */
 void tidy();
-
-/** This thread is at a request: an allocation that the limit forbids may throw std::bad_alloc. */
-extern thread_local bool at_request;
 
 } // namespace curve_proximity::memory
 #endif

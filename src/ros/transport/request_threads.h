@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Threads that take requests from a callback queue: always one more than are at work, up to a limit. */
+/** Threads that take requests from a callback queue: always one more than are at work, up to a limit. Threads that a
+ *  burst has left over end after half a second. */
 #ifndef CURVE_PROXIMITY_ROS_REQUEST_THREADS_H
 #define CURVE_PROXIMITY_ROS_REQUEST_THREADS_H
 
@@ -7,11 +8,10 @@
 
 #include <atomic>
 #include <cstddef>
+#include <list>
 #include <mutex>
 #include <thread>
-#include <vector>
-
-#include "transport/time_slice.h"
+#include <utility>
 
 namespace curve_proximity {
 
@@ -38,8 +38,11 @@ class RequestThreads {
       const std::lock_guard<std::mutex> lock(mutex_);
       ending_ = true;
     }
-    for (std::thread &thread : threads_) thread.join();
-    threads_.clear();
+    for (std::list<std::thread> *threads : {&threads_, &left_over_}) {
+      for (std::thread &thread : *threads) thread.join();
+      threads->clear();
+    }
+    n_threads_ = 0;
   }
 
   /** A callback of the queue is at work, for as long as this lives. */
@@ -62,6 +65,12 @@ class RequestThreads {
     const bool last_;
   };
 
+  /** Threads that take requests. */
+  std::size_t count() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return n_threads_;
+  }
+
   /** Requests at work. */
   std::size_t atWork() const {
     return at_work_;
@@ -71,28 +80,45 @@ class RequestThreads {
   bool begin() {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++at_work_;
-    if (at_work_ == threads_.size() && threads_.size() <= most_) add();
-    return at_work_ == threads_.size();
+    if (at_work_ == n_threads_ && n_threads_ <= most_) add();
+    return at_work_ == n_threads_;
   }
 
   void end() {
     --at_work_;
   }
 
+  /* The lock is held. */
   void add() {
     if (ending_) return;
-    threads_.emplace_back([this] {
-      setTimeSlice(SHORT_SLICE);
-      while (!ending_) queue_.callOne(ros::WallDuration(0.1));
-    });
+    for (std::list<std::thread> done = std::move(left_over_); !done.empty(); done.pop_front()) done.front().join();
+    left_over_.clear();
+    ++n_threads_;
+    const auto own = threads_.emplace(threads_.end());
+    *own = std::thread([this, own] { run(own); });
   }
+
+  void run(std::list<std::thread>::iterator own) {
+    while (!ending_) {
+      if (queue_.callOne(ros::WallDuration(PATIENCE)) == ros::CallbackQueue::Called) continue;
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (ending_ || n_threads_ <= at_work_ + 1) continue;
+      --n_threads_;
+      left_over_.splice(left_over_.end(), threads_, own); // it ends as soon as the lock is given back
+      return;
+    }
+  }
+
+  static constexpr double PATIENCE = 0.5; /* [s] that a thread waits for a request */
 
   ros::CallbackQueue &queue_;
   const std::size_t most_;
   std::atomic<bool> ending_{false};
   std::atomic<std::size_t> at_work_{0};
   std::mutex mutex_;
-  std::vector<std::thread> threads_;
+  std::size_t n_threads_ = 0;
+  std::list<std::thread> threads_;   /* that take requests */
+  std::list<std::thread> left_over_; /* that do no more: to be joined */
 };
 
 } // namespace curve_proximity

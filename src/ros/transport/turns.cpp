@@ -2,14 +2,13 @@
 #include "transport/turns.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <ctime>
+#include <utility>
 
 namespace curve_proximity {
 namespace {
 
-/** A turn is kept for so long before anybody else is thought of. */
-constexpr std::chrono::microseconds QUANTUM{125};
+/** A turn is kept for so long before anybody else is thought of. To hand it over costs some 15 us. */
+constexpr std::chrono::microseconds QUANTUM{250};
 
 /** Clients are forgotten beyond so many. */
 constexpr std::size_t MOST_CLIENTS = 4096;
@@ -18,39 +17,18 @@ double seconds(Turns::Clock::duration time) {
   return std::chrono::duration<double>(time).count();
 }
 
-/** [s] What this thread has computed. */
-double processorTime() {
-  timespec time = {};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/** False: the deadline came first. */
-bool waitUntil(sem_t &semaphore, Turns::Clock::time_point deadline) {
-  const auto since_zero = std::chrono::duration_cast<std::chrono::nanoseconds>(deadline.time_since_epoch()).count();
-  const timespec at = {static_cast<std::time_t>(since_zero / 1000000000), static_cast<long>(since_zero % 1000000000)};
-  while (sem_clockwait(&semaphore, CLOCK_MONOTONIC, &at) != 0) {
-    if (errno != EINTR) return false;
-  }
-  return true;
-}
-
 } // namespace
 
 void Turns::setSlots(int slots) {
-  Lock lock(mutex_);
+  const Lock lock(mutex_);
   slots_ = slots;
   crowded_ = running_ > slots_;
-  wake(lock, grant(nullptr));
+  grant();
 }
 
 double Turns::takeLongestWait() {
-  return longest_wait_.exchange(0.0);
-}
-
-void Turns::noteWait(double seconds) {
-  double longest = longest_wait_;
-  while (seconds > longest && !longest_wait_.compare_exchange_weak(longest, seconds)) continue;
+  const Lock lock(mutex_);
+  return std::exchange(longest_wait_, 0.0);
 }
 
 Turns::Client &Turns::enter(const std::string &name) {
@@ -62,140 +40,95 @@ Turns::Client &Turns::enter(const std::string &name) {
   return client;
 }
 
-/** The one that has used least; of those the first. */
+/** The one whose client has used least; of those the first. */
 std::vector<Turns::Ticket *>::iterator Turns::next() {
   return std::min_element(waiting_.begin(), waiting_.end(),
                           [](const Ticket *a, const Ticket *b) { return a->client->used < b->client->used; });
 }
 
-/** Gives turns to those that wait; who has got one, and after them those of `granted`. */
-Turns::Ticket *Turns::grant(Ticket *granted) {
+/** Gives the turns that are free to those that wait. */
+void Turns::grant() {
   while (running_ < slots_ && !waiting_.empty()) {
     const auto best = next();
     Ticket &ticket = **best;
     waiting_.erase(best);
     --waiting_count_;
-    ticket.alone = running_++ == 0 && waiting_.empty();
+    ++running_;
     floor_ = std::max(floor_, ticket.client->used);
     ticket.waits = false;
-    ticket.after = granted;
-    granted = &ticket;
-  }
-  return granted;
-}
-
-/** Gives the lock back first: the system may run a thread that wakes at once, in place of this one. */
-void Turns::wake(Lock &lock, Ticket *granted) {
-  lock.unlock();
-  while (granted) {
-    Ticket &ticket = *granted;
-    granted = ticket.after;
-    sem_post(&ticket.granted); // it may be gone from here on
+    ticket.granted.notify_one();
   }
 }
 
-/** Gives the lock back, and wakes those of `granted` too. False: the deadline came first; the ticket waits no more, and
- * the lock is held. */
-bool Turns::wait(Ticket &ticket, Lock &lock, Ticket *granted, Clock::time_point deadline) {
+/** False: the deadline came first, and the ticket waits no more. */
+bool Turns::wait(Ticket &ticket, Lock &lock, Clock::time_point deadline) {
   ticket.waits = true;
   waiting_.push_back(&ticket);
   ++waiting_count_;
-  wake(lock, grant(granted));
+  grant();
+  const auto granted = [&ticket] { return !ticket.waits; };
   if (deadline == Clock::time_point::max()) {
-    while (sem_wait(&ticket.granted) != 0) continue;
-  } else if (!waitUntil(ticket.granted, deadline)) {
-    lock.lock();
-    if (ticket.waits) {
-      waiting_.erase(std::find(waiting_.begin(), waiting_.end(), &ticket));
-      --waiting_count_;
-      return false;
-    }
-    lock.unlock();
-    while (sem_wait(&ticket.granted) != 0) continue; // it was granted in time, and is being woken
+    ticket.granted.wait(lock, granted);
+  } else if (!ticket.granted.wait_until(lock, deadline, granted)) {
+    waiting_.erase(std::find(waiting_.begin(), waiting_.end(), &ticket));
+    --waiting_count_;
+    return false;
   }
-  begin(ticket);
+  ticket.began = Clock::now();
   return true;
 }
 
-void Turns::begin(Ticket &ticket) {
-  ticket.began = Clock::now();
-  ticket.began_at = ticket.alone ? 0.0 : processorTime();
-}
-
-/** [s] What the thread of this turn has computed since it began. Not under the lock: the system likes to change threads
- * where it is asked for this. */
-double Turns::used(const Ticket &ticket) {
-  return ticket.alone ? seconds(Clock::now() - ticket.began) : processorTime() - ticket.began_at;
-}
-
-/** Those that have a turn now. */
-Turns::Ticket *Turns::release() {
+/** Charges the client of the ticket, whose turn is free now. */
+void Turns::release(Ticket &ticket) {
+  ticket.client->used += seconds(Clock::now() - ticket.began);
   --running_;
   crowded_ = running_ > slots_;
-  return grant(nullptr);
+  grant();
 }
 
-Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point deadline)
-    : turns_(turns), client_(client) {
+Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point deadline) : turns_(turns) {
   Turns::Lock lock(turns_.mutex_);
   ticket_.client = &turns_.enter(client);
   const Turns::Clock::time_point since = Turns::Clock::now();
-  const bool in_time = turns_.wait(ticket_, lock, nullptr, deadline);
+  const bool in_time = turns_.wait(ticket_, lock, deadline);
   const double waited = seconds(Turns::Clock::now() - since);
-  turns_.noteWait(waited);
+  turns_.longest_wait_ = std::max(turns_.longest_wait_, waited);
   if (in_time) return;
   --ticket_.client->active;
   throw Busy("busy: " + std::to_string(turns_.waiting_.size()) + " other requests wait, and this one has waited for " +
              std::to_string(static_cast<int>(1000.0 * waited)) + " ms");
 }
 
-/** The lock is held. */
-Turn::Turn(Turns &turns, const std::string &client, Granted) : turns_(turns), client_(client) {
-  ticket_.client = &turns_.enter(client);
-  Turns::begin(ticket_);
-  ++turns_.running_;
-}
-
-std::function<std::unique_ptr<Turn>()> Turn::others() const {
-  return [&turns = turns_, client = client_]() -> std::unique_ptr<Turn> {
-    const Turns::Lock lock(turns.mutex_);
-    if (!turns.waiting_.empty() || turns.running_ >= turns.slots_) return nullptr;
-    return std::unique_ptr<Turn>(new Turn(turns, client, Granted()));
-  };
-}
-
 Turn::~Turn() {
-  const double used = Turns::used(ticket_);
-  Turns::Lock lock(turns_.mutex_);
-  ticket_.client->used += used;
+  const Turns::Lock lock(turns_.mutex_);
+  turns_.release(ticket_);
   --ticket_.client->active;
-  Turns::wake(lock, turns_.release());
 }
 
 void Turn::yield() {
   const bool wanted = turns_.waiting() > 0 || turns_.crowded_.load(std::memory_order_relaxed);
-  if (!wanted || Turns::Clock::now() - ticket_.began < QUANTUM) return;
-  const double used = Turns::used(ticket_);
-  ticket_.alone = false;
-  Turns::begin(ticket_);
+  const Turns::Clock::time_point now = Turns::Clock::now();
+  if (!wanted || now - ticket_.began < QUANTUM) return;
   Turns::Lock lock(turns_.mutex_);
-  ticket_.client->used += used;
+  Turns::Client &own = *ticket_.client;
+  own.used += seconds(now - ticket_.began);
+  ticket_.began = now;
   const auto best = turns_.next();
-  const bool other = best != turns_.waiting_.end() && (*best)->client->used < ticket_.client->used;
-  if (other || turns_.running_ > turns_.slots_)
-    turns_.wait(ticket_, lock, turns_.release(), Turns::Clock::time_point::max());
+  const bool other = best != turns_.waiting_.end() && ((*best)->client == &own || (*best)->client->used < own.used);
+  if (!other && turns_.running_ <= turns_.slots_) return;
+  --turns_.running_;
+  turns_.crowded_ = turns_.running_ > turns_.slots_;
+  turns_.wait(ticket_, lock, Turns::Clock::time_point::max());
 }
 
 void Turn::giveBack() {
-  const double used = Turns::used(ticket_);
-  Turns::Lock lock(turns_.mutex_);
-  ticket_.client->used += used;
-  Turns::wake(lock, turns_.release());
+  const Turns::Lock lock(turns_.mutex_);
+  turns_.release(ticket_);
 }
 
 void Turn::takeAgain() {
   Turns::Lock lock(turns_.mutex_);
-  turns_.wait(ticket_, lock, nullptr, Turns::Clock::time_point::max());
+  turns_.wait(ticket_, lock, Turns::Clock::time_point::max());
 }
 
 } // namespace curve_proximity

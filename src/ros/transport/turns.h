@@ -3,15 +3,12 @@
 #ifndef CURVE_PROXIMITY_ROS_TURNS_H
 #define CURVE_PROXIMITY_ROS_TURNS_H
 
-#include <semaphore.h>
-
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -28,9 +25,10 @@ class Busy : public std::runtime_error {
 /** A number of turns, each held by one thread. Where several wait, the client that has computed least goes first; a
  * client that was idle starts level with the others. A holder that calls Turn::yield() now and then makes way for a
  * client that has computed less, so that a small request waits for a few milliseconds behind any number of large ones.
+ * The requests of one client take turns in the order in which they came.
  *
- *  Start-time fair queuing (P. Goyal, H. M. Vin, H. Cheng, SIGCOMM 1996). The tag is the processor time used: a holder
- *  that the system keeps from running while others compute is not charged for that. */
+ *  Start-time fair queuing (P. Goyal, H. M. Vin, H. Cheng, SIGCOMM 1996). The tag is the time for which a client has
+ *  held turns. */
 class Turns {
  public:
   using Clock = std::chrono::steady_clock;
@@ -56,40 +54,24 @@ class Turns {
     std::size_t active = 0; /* turns that are held or waited for */
   };
   struct Ticket {
-    Ticket() {
-      sem_init(&granted, 0, 0);
-    }
-    ~Ticket() {
-      sem_destroy(&granted);
-    }
-    Ticket(const Ticket &) = delete;
-    Ticket &operator=(const Ticket &) = delete;
-
     Client *client = nullptr;
     Clock::time_point began;
-    double began_at = 0.0; /* [s] processor time of its thread, unless alone */
-    bool alone = false;    /* when it began: then the clock tells the time used, too, and costs less */
     bool waits = false;
-    Ticket *after = nullptr; /* among those that are granted at the same time */
-    sem_t granted;
+    std::condition_variable granted;
   };
 
   using Lock = std::unique_lock<std::mutex>;
   Client &enter(const std::string &name);
-  bool wait(Ticket &ticket, Lock &lock, Ticket *granted, Clock::time_point deadline);
-  void noteWait(double seconds);
-  static void begin(Ticket &ticket);
-  static double used(const Ticket &ticket);
-  Ticket *release();
-  Ticket *grant(Ticket *granted);
-  static void wake(Lock &lock, Ticket *granted);
+  bool wait(Ticket &ticket, Lock &lock, Clock::time_point deadline);
+  void release(Ticket &ticket);
+  void grant();
   std::vector<Ticket *>::iterator next();
 
   std::mutex mutex_;
   int slots_;
   int running_ = 0;
   double floor_ = 0.0; /* [s] what the client in turn had used: nobody starts below it */
-  std::atomic<double> longest_wait_{0.0};
+  double longest_wait_ = 0.0;
   std::vector<Ticket *> waiting_; /* in the order of their coming */
   std::map<std::string, Client> clients_;
   std::atomic<std::size_t> waiting_count_{0};
@@ -105,10 +87,6 @@ class Turn {
 
   Turn(const Turn &) = delete;
   Turn &operator=(const Turn &) = delete;
-
-  /** Makes another turn for the same client, on any thread, if one is free then and nobody waits; else null. It may
-   *  outlive this turn, not the Turns. */
-  std::function<std::unique_ptr<Turn>()> others() const;
 
   /** Lets others compute if it is their turn; returns when it is ours again. Costs a load where nobody waits. */
   void yield();
@@ -130,13 +108,10 @@ class Turn {
   };
 
  private:
-  struct Granted {};
-  Turn(Turns &turns, const std::string &client, Granted granted);
   void giveBack();
   void takeAgain();
 
   Turns &turns_;
-  const std::string client_;
   Turns::Ticket ticket_;
 };
 
