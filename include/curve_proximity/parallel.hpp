@@ -323,11 +323,11 @@ class SharedQuery {
     return join(results, asked, delta);
   }
 
-  /** One node of a search of the whole motion: an upper bound for all intervals to begin with. Without it each of them
-   *  looks for the least distance of its own. */
+  /** The beginning of a search of the whole motion: an upper bound for all intervals to begin with. Without it each of
+   *  them looks for the least distance of its own. */
   cprox_result look(Known &known, Workspace &workspace) const {
     cprox_options options = options_;
-    options.max_nodes = 1;
+    options.max_nodes = 500; // a thousandth of the default
     const cprox_result found = obstacles_.distance(robot_, options, workspace);
     Known::share(&known, found.upper);
     return found;

@@ -64,7 +64,7 @@ static void free_arm(arm *a) {
 static void is_in_contact_all_the_time(const arm *a) {
   const cprox_mover mover = cprox_robot_along(a->motion, NULL, 0);
   cprox_result r;
-  size_t count;
+  size_t count = 0;
   assert_int_equal(distance_of_list(mover, &a->target, 1, NULL, ws, &r, NULL), CPROX_OK);
   assert_true(r.upper == 0.0 && r.mover_part == 0 && r.obstacle_index == 0);
   assert_int_equal(collision_of_list(mover, &a->target, 1, NULL, ws, &r, NULL), CPROX_OK);

@@ -342,8 +342,10 @@ CASE(violations_are_all_times_at_which_some_start_allows_one) {
     const double delta = rng_uniform(&r, 0.0, 0.4);
     cprox_violation room[ROOM];
     cprox_violations found = {room, ROOM, 0};
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.max_nodes = 10 * options.max_nodes; /* one budget for the whole list */
     const cprox_status status =
-        violations_of_list(all_pairs(&s, pairs), NULL, 0, delta, 1e-3 * (s.t1 - s.t0), NULL, ws, &found);
+        violations_of_list(all_pairs(&s, pairs), NULL, 0, delta, 1e-3 * (s.t1 - s.t0), &options, ws, &found);
     if (status != CPROX_OK) fail_msg("case %zu: %s", i, cprox_workspace_error(ws));
     for (int k = 0; k <= SAMPLES; k++) {
       const long double t = fminl(s.t0 + ((long double)s.t1 - s.t0) * k / SAMPLES, s.t1), d = least_at(&s, t);

@@ -556,7 +556,7 @@ class Robots(unittest.TestCase):
         self.assertEqual({frozenset((p['a'], p['b'])) for p in pairs},
                          {frozenset(p) for p in (('left/ball', 'left/hook'), ('right/ball', 'right/hook'), ('left/ball', 'right/ball'),
                                                  ('left/ball', 'right/hook'), ('left/hook', 'right/ball'), ('left/hook', 'right/hook'), ('left/ball', 'block'),
-                                                 ('right/ball', 'block'))})
+                                                 ('right/ball', 'block'), ('left/hook', 'block'), ('right/hook', 'block'))})
         for pair in pairs:
             self.assertAlmostEqual(pair['result'].upper, apart((pair['a'], pair['b']), t).min(), delta=1e-5)
         self.assertEqual([p['result'].upper for p in pairs], sorted(p['result'].upper for p in pairs))
