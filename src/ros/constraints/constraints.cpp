@@ -14,6 +14,7 @@
 #include "messages/gradient_message.h"
 #include "messages/scene_message.h"
 #include "messages/trajectory_message.h"
+#include "transport/memory_account.h"
 #include "transport/name_limits.h"
 #include "transport/turns.h"
 #include "world/doubts.h"

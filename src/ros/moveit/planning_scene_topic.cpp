@@ -11,6 +11,7 @@
 
 #include "transport/checked_stream.h"
 #include "transport/guard.h"
+#include "transport/memory_account.h"
 #include "transport/name_limits.h"
 
 namespace curve_proximity {
