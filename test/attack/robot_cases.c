@@ -26,11 +26,11 @@ enum { REFINEMENTS = 16, PAIRS = 5 };
 
 /* Is the pair asked about, as cprox_robot_along() and cprox_robot_self() say? */
 static bool is_asked(const world *w, pair p) {
-  if (!p.self) return w->obstacles && cprox_motion_get_link_info(w->motion, link_of(w, p.geometry), -1).n_moved > 0;
+  if (!p.self) return w->obstacles;
   if (!w->self || p.geometry == p.other) return false;
   if (w->across) return member_of(w, p.geometry) != member_of(w, p.other);
   const cprox_link_info between = cprox_motion_get_link_info(w->motion, link_of(w, p.geometry), link_of(w, p.other));
-  return between.n_joints >= 2 && between.n_moved > 0;
+  return between.n_joints >= 2;
 }
 
 static void list_pairs(world *w) {
