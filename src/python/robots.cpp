@@ -472,8 +472,7 @@ void addRobots(py::module &module) {
       .def(
           "distance",
           [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, bool is_signed,
-             const Names &links, const Names &objects, bool allow_empty,
-             bool moving_only) {
+             const Names &links, const Names &objects, bool allow_empty, bool moving_only) {
             Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only);
             query.options.signed_distance = is_signed;
             return ask(m, self, query);
@@ -483,29 +482,31 @@ void addRobots(py::module &module) {
           py::arg("allow_empty") = false, py::arg("moving_only") = false,
           "The least distance to the objects, or of the robot to itself: a dict of result, kind, a (link), b (object "
           "or\n"
-          "link), by_hull, message. With moving_only what the motion does not move is left out. With signed overlaps are\n"
+          "link), by_hull, message. With moving_only what the motion does not move is left out. With signed overlaps "
+          "are\n"
           "negative: minus the deepest one. Where meshes overlap, lower is that of their hulls, and the status is\n"
           "overlap.")
       .def(
           "tolerance",
           [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-             const Names &objects, bool allow_empty,
-             bool moving_only) {
-            return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes, links, objects, allow_empty, moving_only));
+             const Names &objects, bool allow_empty, bool moving_only) {
+            return ask(m, self,
+                       queryOf("tolerance", delta, epsilon, max_nodes, links, objects, allow_empty, moving_only));
           },
           py::arg("delta"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
           py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
-          py::arg("allow_empty") = false, py::arg("moving_only") = false, "Is the robot farther than delta [m] everywhere? As distance().")
+          py::arg("allow_empty") = false, py::arg("moving_only") = false,
+          "Is the robot farther than delta [m] everywhere? As distance().")
       .def(
           "collision",
           [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-             const Names &objects, bool allow_empty,
-             bool moving_only) {
-            return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only));
+             const Names &objects, bool allow_empty, bool moving_only) {
+            return ask(m, self,
+                       queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only));
           },
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
-          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("moving_only") = false,
-          "Does the robot touch or overlap an object, or itself? As distance().")
+          py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
+          py::arg("moving_only") = false, "Does the robot touch or overlap an object, or itself? As distance().")
       .def("time_of_contact", &contactOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
            py::arg("allow_empty") = false,
