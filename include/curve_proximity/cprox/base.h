@@ -120,6 +120,22 @@ CPROX_API const char *cprox_workspace_error(const cprox_workspace *workspace);
  *  workspace (libcprox_fourier is one). A message longer than 255 bytes is cut. */
 CPROX_API void cprox_workspace_set_error(cprox_workspace *workspace, const char *message);
 
+/** For libraries on top of this one: what each of their functions with a workspace begins with. False: another function
+ *  has the workspace; then the caller returns CPROX_INVALID, and cprox_workspace_error() says why. True:
+ *  cprox_workspace_leave() follows. NULL is allowed. */
+CPROX_API bool cprox_workspace_enter(cprox_workspace *workspace);
+
+/** Ends what cprox_workspace_enter() began. workspace: where the handle stands, for a cleanup attribute; *workspace may
+ *  be NULL. */
+CPROX_API void cprox_workspace_leave(cprox_workspace *const *workspace);
+
+/** For libraries on top of this one: lends a workspace that they have entered to the next call of a function of this
+ *  library; cprox_workspace_take_back() follows. NULL is allowed. */
+CPROX_API void cprox_workspace_lend(cprox_workspace *workspace);
+
+/** Ends what cprox_workspace_lend() began. status: of the call in between, which it returns. */
+CPROX_API cprox_status cprox_workspace_take_back(cprox_workspace *workspace, cprox_status status);
+
 /** A function that ends the making of bodies and curves with this workspace: while the BVH of a mesh, of points or of
  *  boxes is built, or a curve of many pieces, or a gap of libcprox_fourier, it is called every few milliseconds. Once
  *  it returns true the constructor fails with CPROX_INVALID and gives all memory back. Queries have a function of

@@ -36,24 +36,24 @@ const char *cprox_workspace_error(const cprox_workspace *workspace) {
 
 /* ---- one user at a time ---- */
 
-bool workspace_enter(cprox_workspace *workspace) {
+bool cprox_workspace_enter(cprox_workspace *workspace) {
   if (!workspace) return true;
   workspace->was_refused = workspace->users > workspace->lent;
   if (!workspace->was_refused) workspace->users++;
   return !workspace->was_refused;
 }
 
-void workspace_leave(cprox_workspace *const *workspace) {
+void cprox_workspace_leave(cprox_workspace *const *workspace) {
   if (!*workspace) return;
   (*workspace)->users--;
   (*workspace)->was_refused = false;
 }
 
-void workspace_lend(cprox_workspace *workspace) {
+void cprox_workspace_lend(cprox_workspace *workspace) {
   if (workspace) workspace->lent++;
 }
 
-cprox_status workspace_take_back(cprox_workspace *workspace, cprox_status status) {
+cprox_status cprox_workspace_take_back(cprox_workspace *workspace, cprox_status status) {
   if (workspace) workspace->lent--;
   return status;
 }

@@ -70,17 +70,12 @@ void workspace_clear(cprox_workspace *workspace);
 /* What each public function with a workspace begins with: it has the workspace alone until it returns. While another
  * one has it, which asked a function of the caller, the function returns CPROX_INVALID (or `refused`), and
  * cprox_workspace_error() says so until the other one returns. A workspace of NULL is allowed. */
-#define WORKSPACE_USE_OR(workspace, refused)         \
-  if (!workspace_enter(workspace)) return (refused); \
-  cprox_workspace *const workspace_of_this_call __attribute__((cleanup(workspace_leave))) = (workspace)
+#define WORKSPACE_USE_OR(workspace, refused)               \
+  if (!cprox_workspace_enter(workspace)) return (refused); \
+  cprox_workspace *const workspace_of_this_call __attribute__((cleanup(cprox_workspace_leave))) = (workspace)
 #define WORKSPACE_USE(workspace) WORKSPACE_USE_OR(workspace, CPROX_INVALID)
 
 /* A public function that calls another one lends it the workspace: the value of `call`, a cprox_status. */
-#define WORKSPACE_LEND(workspace, call) (workspace_lend(workspace), workspace_take_back(workspace, (call)))
-
-bool workspace_enter(cprox_workspace *workspace);
-void workspace_leave(cprox_workspace *const *workspace);
-void workspace_lend(cprox_workspace *workspace);
-cprox_status workspace_take_back(cprox_workspace *workspace, cprox_status status);
+#define WORKSPACE_LEND(workspace, call) (cprox_workspace_lend(workspace), cprox_workspace_take_back(workspace, (call)))
 
 #endif
