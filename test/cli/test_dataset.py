@@ -140,7 +140,7 @@ class Dataset(Case):
         self.assertEqual(merged.code, 2)
         lines = merged.out.splitlines()
         self.assertEqual(len(lines), 1 + len(poison) + 2)
-        self.assertEqual([line.split(',')[3] for line in lines[1:]], ['ok'] + ['failed'] * (len(poison) - 1) + ['ok', 'ok'])
+        self.assertEqual([line.split(',')[3] for line in lines[1:]], ['ok'] + ['failed'] * (len(poison) - 1) + ['empty', 'ok'])  # the last poison names no scene
         for name, word in (('a', 'distanse'), ('b', 'below 0'), ('c', 'tolerance'), ('d', 'colour'), ('e', 'ghost'), ('f', 'no points')):
             self.assertIn(word, [line for line in lines if line.split(',')[1] == name][0])
 
