@@ -67,7 +67,7 @@ void clearances(Problem &problem, unsigned n, const double *x, double *result, d
   const RobotMotion motion(*problem.robot, trajectory, problem.rest);
   problem.constraint->evaluate({trajectory, motion}, problem.workspace, problem.value);
   ++problem.evaluations;
-  if (problem.value.status != CPROX_OK) throw Error(problem.value.message);
+  if (problem.value.status != CPROX_OK && problem.value.status != CPROX_OVERLAP) throw Error(problem.value.message);
   constexpr std::size_t m = kSpans * kPairs;
   std::fill(result, result + m, kHorizon - kClear - kMargin);
   if (gradient) std::fill(gradient, gradient + m * n, 0.0);

@@ -70,7 +70,7 @@ class Formats(Case):
     def the_arm_moves_as_the_file_says(self):
         answer = run('profile', *ARM, *WORLD, '--per-link', '--intervals', '12')
         self.assertEqual((answer.code, answer.err), (0, ''))
-        self.assertEqual({row['a'] for row in answer.rows}, {'upper', 'lower'})
+        self.assertEqual({row['a'] for row in answer.rows}, {'base', 'upper', 'lower'})
         self.assertEqual([float(answer.rows[0]['t0']), float(answer.rows[-1]['t1'])], [0.0, 3.0])
         ball = run('nearest', *ARM, *WORLD, '--pairs', '1').rows[0]
         least = min(float(row['upper']) for row in answer.rows)

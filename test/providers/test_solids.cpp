@@ -314,10 +314,10 @@ TEST(Files, of_meshes_are_read) {
   Workspace workspace;
   ShapeDescription cube;
   cube.type = ShapeType::MESH;
-  cube.resource = ::testing::TempDir() + "cube.off";
-  std::ofstream(cube.resource) << "OFF\n8 12 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n"
-                                  "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n"
-                                  "3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 5\n";
+  cube.resource = ::testing::TempDir() + "cube.obj";
+  std::ofstream(cube.resource) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+                                  "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\n"
+                                  "f 1 5 3\nf 3 5 7\nf 2 4 6\nf 4 8 6\n";
   EXPECT_NEAR(measureOf(cube, 0.0), 1.0, 1e-6);
   const ConstraintRow row = answered(providers, cube, 0.0, shape(ShapeType::SPHERE, {0.1}), {0.5, 0.5, 0.5}, workspace);
   ASSERT_EQ(row.status, CPROX_OK) << row.message;

@@ -174,7 +174,8 @@ class States(unittest.TestCase):
 
     def test_the_srdfs_unknown_links_are_told_once_in_the_log_and_in_no_answer(self):
         self.assertEqual(self.node.output().count('ghost'), 1)
-        self.assertEqual(self.rows(self.server.distance([], trajectory=trajectory((0, 0), (0.1, 0), times=[0, 1])))['environment'].message, '')
+        self.assertEqual(self.rows(self.server.distance([], trajectory=trajectory((0, 0), (0.1, 0), times=[0, 1])))['environment'].message,
+                         'nothing was measured: there is no object')
 
 
 if __name__ == '__main__':
