@@ -130,7 +130,8 @@ cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size
   size_t piece = 0;
   cprox_status failure = CPROX_OK;
   cprox_result standing = query_nothing();
-  if (mover.motion && !mover.motion->is_state) {
+  /* of one clock; of several, each interval asks about all pairs */
+  if (mover.motion && !mover.motion->is_state && mover.motion->n_tracks == 1) {
     q.choice = PAIRS_STANDING;
     failure = query_answer(&q, 0, q.n, cutoff, &standing);
     if (failure < 0) return failure;

@@ -144,7 +144,7 @@ static cprox_status look_at(violation_search *s, const piece *p, piece_kind *kin
 static cprox_status look_at_standing(violation_search *s, const piece *all, bool *left) {
   query *q = &s->q;
   *left = true;
-  if (q->mover.motion->is_state) return CPROX_OK;
+  if (q->mover.motion->is_state || q->mover.motion->n_tracks > 1) return CPROX_OK;
   double travel;
   cprox_result r;
   q->choice = PAIRS_STANDING;
