@@ -27,6 +27,7 @@ typedef struct lane_interval {
 
 /* Eight intervals that are looked at together. */
 typedef struct lane_batch {
+  lane middle, half, half2; /* first: they are aligned most */
   const cprox_edge_checker *c;
   const edge_motion *motion;
   edge_open *open;
@@ -34,7 +35,6 @@ typedef struct lane_batch {
   lane_frame *frames;
   lane_part *parts;
   lane_interval interval[EDGE_LANES];
-  lane middle, half, half2;
   uint32_t all;   /* the lanes that are in use */
   uint32_t split; /* those that are to be halved: nothing more is asked about them */
   bool related;   /* the motion's relations are known: edges that hit an obstacle do without */
