@@ -47,13 +47,27 @@ static void check_lower(query *q, size_t i, const cprox_result *x, double t0, do
                cut, where, (long double)x->lower - cut, i, q->s.obstacles[i].body.name);
 }
 
-/* The least over t and what its rounding may stand for; jumps belong to both sides. */
+/* The least over t and what its rounding may stand for; jumps belong to both sides. Where a curve goes through a flat
+ * body no double need be a parameter at which they meet: the least is searched for between doubles, too. */
 static long double distance_about(query *q, size_t i, double t, double at) {
   const scene *s = &q->s;
-  const double step = scene_step(&s->path);
-  long double least = HUGE_VALL;
-  for (int k = -2; k <= 2; k++)
-    least = fminl(least, scene_distance(s, i, fmax(s->path.t0, fmin(s->path.t1, t + 0.5 * k * step)), at));
+  const long double t0 = s->path.t0, t1 = s->path.t1;
+  long double least = HUGE_VALL, best = t, width = 0.5L * scene_step(&s->path);
+  for (int k = -2; k <= 2; k++) {
+    const long double there = fmaxl(t0, fminl(t1, t + k * width));
+    const long double d = scene_distance(s, i, there, at);
+    if (d < least) least = d, best = there;
+  }
+  enum { HALVINGS = 10 };
+  for (int step = 0; step < HALVINGS; step++) {
+    width *= 0.5L;
+    const long double middle = best;
+    for (int side = -1; side <= 1; side += 2) {
+      const long double there = fmaxl(t0, fminl(t1, middle + side * width));
+      const long double d = scene_distance(s, i, there, at);
+      if (d < least) least = d, best = there;
+    }
+  }
   return least;
 }
 

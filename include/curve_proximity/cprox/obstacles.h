@@ -146,7 +146,7 @@ typedef struct cprox_profile_interval {
   double lower;
   /** [m] and at most this. */
   double upper;
-  /** where in [t0, t1] upper was attained */
+  /** where in [t0, t1] upper was attained, rounded as t of cprox_result is */
   double t;
   /** which obstacle that was; -1 for none */
   int32_t obstacle_index;
@@ -190,7 +190,7 @@ typedef struct cprox_violation {
   cprox_verdict verdict;
   /** [m] the least distance that was measured in it, */
   double upper;
-  /** there, */
+  /** there, rounded as t of cprox_result is, */
   double t;
   /** from this obstacle, as in cprox_result; */
   int32_t obstacle_index;

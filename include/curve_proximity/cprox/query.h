@@ -303,7 +303,9 @@ CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target,
  *
  *  t_contact_lower  no contact at any t < t_contact_lower, certified and rounded down. The distance there is at most
  *                   epsilon, or it is the end of the range.
- *  verdict          violated: a common point at t is proven, the time of contact lies in [t_contact_lower, t].
+ *  verdict          violated: a common point is proven, the time of contact lies in [t_contact_lower, t]. Where a point
+ *                   goes through a flat body or a triangle, the witness points are where they meet, and t is when they
+ *                   certainly have met: later by what rounding hides.
  *                   clear: they do not touch at all, lower > 0.
  *                   undecided: closer than epsilon at t, the earliest such place that was measured; contact is not
  *                   proven anywhere.

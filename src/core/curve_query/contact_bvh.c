@@ -217,12 +217,13 @@ void contact_tree_prove(contact_tree *c) {
   if (c->proven_bound.at < found_at || o->offset > 0.0) return;
 
   /* without a radius: through the surface */
+  size_t piece;
   double until;
   sample = o->best;
-  if (!curve_tree_meets(o, &sample, &until)) return;
-  bound = (search_best){.upper = 0.0, .at = curve_side_parameter_below(&o->side, sample.piece, until)};
+  if (!curve_tree_meets(o, &sample, &piece, &until)) return;
+  bound = (search_best){.upper = 0.0, .at = curve_side_parameter_below(&o->side, piece, until)};
   const double before = c->proven_bound.at;
   consider(c, &sample, &bound);
   c->proven_within = c->proven_bound.at < before;
-  c->proven_t = curve_side_parameter(&o->side, sample.piece, until);
+  c->proven_t = curve_side_parameter(&o->side, piece, until);
 }

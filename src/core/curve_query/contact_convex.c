@@ -111,6 +111,7 @@ void contact_convex_begin(contact_convex *c, double epsilon) {
   c->epsilon = epsilon;
   c->base.best_bound.at = INFINITY;
   c->proven_bound = (search_best){.upper = INFINITY, .at = INFINITY};
+  c->proven_within = false;
 }
 
 search_node contact_convex_root(const contact_convex *c) {
@@ -160,10 +161,13 @@ cprox_status contact_convex_prove(contact_convex *c) {
     if (status < 0) return status;
     sample = o->last;
   }
-  if (c->proven_bound.at < found_at || !crossing_prove_convex(o, &sample)) return CPROX_OK;
+  crossing_place place;
+  if (c->proven_bound.at < found_at || !crossing_prove_convex(o, &sample, &place)) return CPROX_OK;
 
   /* through a flat body, which nothing lies below the surface of */
-  bound = (search_best){.upper = 0.0, .at = curve_side_parameter(&o->side, sample.piece, sample.s)};
-  if (bound.at < found_at) c->proven = sample, c->proven_bound = bound;
+  c->proven_t = curve_side_parameter(&o->side, place.until_piece, place.until);
+  bound = (search_best){.upper = 0.0, .at = c->proven_t};
+  c->proven_within = bound.at < found_at;
+  if (c->proven_within) c->proven = sample, c->proven_bound = bound;
   return CPROX_OK;
 }

@@ -12,6 +12,8 @@ typedef struct contact_convex {
   double epsilon;      /* distances up to this are contact */
   curve_sample proven; /* the leftmost sample at which they certainly touch */
   search_best proven_bound;
+  bool proven_within; /* contact is proven between the sample and */
+  double proven_t;    /* this parameter */
 } contact_convex;
 
 /* Makes an oracle out of one that has begun. */

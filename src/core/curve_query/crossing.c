@@ -105,8 +105,8 @@ static bool passes_through(const crossing *o, const segment part[2], int n, flat
   return (first > room && last < -room) || (first < -room && last > room);
 }
 
-/* The point of the segments at which the curve changes sides, by bisection. */
-static vec3 meeting_point(const crossing *o, const segment part[2], int n) {
+/* Where in the segments the curve changes sides, by bisection. */
+static void find_meeting(const crossing *o, const segment part[2], int n, crossing_place *place) {
   enum { BISECTIONS = 60 };
   curve_side_load(o->side, part[0].piece);
   const bool below = height_of(o, curve_side_point(o->side, part[0].from)) < 0.0;
@@ -119,7 +119,8 @@ static vec3 meeting_point(const crossing *o, const segment part[2], int n) {
     const double middle = 0.5 * (in.from + in.to);
     *((height_of(o, curve_side_point(o->side, middle)) < 0.0) == below ? &in.from : &in.to) = middle;
   }
-  return curve_side_point(o->side, in.to);
+  place->piece = in.piece, place->s = in.to;
+  place->meeting = curve_side_point(o->side, in.to);
 }
 
 /* At a place in the plane of a piece: from the shortest segment on that has its ends on both sides. */
@@ -129,9 +130,8 @@ static bool proves_at(const crossing *o, double at, flat_region *region, crossin
     segment part[2];
     const int n = intervals_about(o, place->piece, at, step, part);
     if (!passes_through(o, part, n, region)) continue;
-    place->meeting = meeting_point(o, part, n);
-    place->piece = part[n - 1].piece, place->s = part[n - 1].to;
-    curve_side_load(o->side, place->piece);
+    find_meeting(o, part, n, place);
+    place->until_piece = part[n - 1].piece, place->until = part[n - 1].to;
     return true;
   }
   return false;
@@ -158,13 +158,13 @@ bool crossing_prove(const crossing *o, crossing_place *place) {
   return false;
 }
 
-bool crossing_prove_convex(curve_convex *o, curve_sample *sample) {
+bool crossing_prove_convex(curve_convex *o, curve_sample *sample, crossing_place *place) {
   if (!curve_convex_is_flat(o)) return false;
   const crossing of = {&o->side, o->shape, &o->flat, {CURVE_CONVEX_SCRATCH, CURVE_CONVEX_LEFT}};
-  crossing_place place = {.piece = sample->piece, .s = sample->s};
-  if (!crossing_prove(&of, &place)) return false;
-  sample->piece = place.piece, sample->s = place.s;
-  sample->y = sample->near.point = place.meeting;
+  *place = (crossing_place){.piece = sample->piece, .s = sample->s};
+  if (!crossing_prove(&of, place)) return false;
+  sample->piece = place->piece, sample->s = place->s;
+  sample->y = sample->near.point = place->meeting;
   sample->near.distance = 0.0;
   return true;
 }

@@ -14,12 +14,14 @@ typedef struct crossing {
   size_t slot[2];
 } crossing;
 
-/* Near s of a piece; when a crossing is proven, s of a piece by which the two have met, and the point where they do but
- * for rounding. */
+/* Near s of a piece. When a crossing is proven: where they meet but for rounding, and by where they certainly have met.
+ */
 typedef struct crossing_place {
   size_t piece;
   double s;
   vec3 meeting;
+  size_t until_piece;
+  double until;
 } crossing_place;
 
 /* Whether the curve certainly passes through the shape near a place, which then moves; the piece is the loaded one.
@@ -27,6 +29,6 @@ typedef struct crossing_place {
 bool crossing_prove(const crossing *of, crossing_place *place);
 
 /* The same near a sample, which becomes that of the place. False also of shapes that have an inside. */
-bool crossing_prove_convex(curve_convex *o, curve_sample *sample);
+bool crossing_prove_convex(curve_convex *o, curve_sample *sample, crossing_place *place);
 
 #endif

@@ -102,7 +102,7 @@ static void refine_witness(curve_tree *o) {
 /* ---- proof of contact ---- */
 
 /* Through the triangle of a sample, which moves to where that is, or to where the curve meets its plane. */
-static bool goes_through_triangle(curve_tree *o, tree_sample *sample) {
+static bool goes_through_triangle(curve_tree *o, tree_sample *sample, crossing_place *place) {
   vec3 v[3];
   double x[8], y[8], z[8], scale = 0.0;
   tree_corners(o->tree, sample->place, v);
@@ -116,22 +116,22 @@ static bool goes_through_triangle(curve_tree *o, tree_sample *sample) {
   flat_shape flat;
   flat_describe(&triangle, &flat);
   const crossing of = {&o->side, &triangle, &flat, {SLOT_SCRATCH, SLOT_SCRATCH_LEFT}};
-  crossing_place place = {.piece = sample->piece, .s = sample->s};
-  const bool proven = crossing_prove(&of, &place);
-  sample->piece = place.piece, sample->s = place.s;
+  *place = (crossing_place){.piece = sample->piece, .s = sample->s};
+  const bool proven = crossing_prove(&of, place);
+  sample->piece = place->piece, sample->s = place->s;
   if (!proven) return false;
-  sample->y = sample->near.point = place.meeting;
+  sample->y = sample->near.point = place->meeting;
   sample->near.distance = 0.0;
   return true;
 }
 
 /* Through the triangle of a sample, or through the one that is nearest where the curve meets the plane of that. */
-static bool goes_through(curve_tree *o, tree_sample *sample) {
+static bool goes_through(curve_tree *o, tree_sample *sample, crossing_place *place) {
   enum { MOST_TRIANGLES = 4 };
   const tree_sample before = *sample;
   for (int i = 0; i < MOST_TRIANGLES; i++) {
     curve_side_load(&o->side, sample->piece);
-    if (goes_through_triangle(o, sample)) return true;
+    if (goes_through_triangle(o, sample, place)) return true;
     curve_side_load(&o->side, sample->piece);
     const tree_hit hit = tree_nearest(o->tree, curve_side_point(&o->side, sample->s), INFINITY);
     if (!hit.found || (hit.at.pack == sample->place.pack && hit.at.lane == sample->place.lane)) break;
@@ -152,11 +152,12 @@ static bool is_inside(const curve_tree *o, vec3 y, double error) {
   return hit.lower > measure_slack(o, error, hit.upper, y);
 }
 
-bool curve_tree_meets(curve_tree *o, tree_sample *sample, double *until) {
+bool curve_tree_meets(curve_tree *o, tree_sample *sample, size_t *until_piece, double *until) {
   if (o->tree->kind != TREE_TRIANGLES || o->side.curve->arcs) return false;
   curve_side_load(&o->side, sample->piece);
-  if (goes_through(o, sample)) {
-    *until = sample->s;
+  crossing_place place;
+  if (goes_through(o, sample, &place)) {
+    *until_piece = place.until_piece, *until = place.until;
     return true;
   }
   if (!o->body->winding) return false;
@@ -173,7 +174,7 @@ bool curve_tree_meets(curve_tree *o, tree_sample *sample, double *until) {
       if (!is_inside(o, y, error)) continue;
       curve_tree_measure(o, sample->place, sample->piece, s, y, error, sample);
       sample->inside = true;
-      *until = s;
+      *until_piece = sample->piece, *until = s;
       return true;
     }
   }
@@ -196,8 +197,9 @@ bool curve_tree_begins_inside(curve_tree *o, tree_sample *sample) {
 static void prove_contact(curve_tree *o) {
   if (o->asked.limit != 0.0 || !(o->best_bound.upper > 0.0)) return;
   tree_sample sample = o->best;
+  size_t until_piece;
   double until;
-  if (!curve_tree_meets(o, &sample, &until)) return;
+  if (!curve_tree_meets(o, &sample, &until_piece, &until)) return;
   const search_best met = {.upper = 0.0, .slack = o->best_bound.slack};
   adopt_better(o, &sample, &met);
 }

@@ -88,9 +88,9 @@ search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, do
 /* Whether a point is inside of the body, which is a solid mesh. */
 bool curve_tree_holds(const curve_tree *o, vec3 y);
 
-/* Whether the curve certainly meets the body near a sample: it goes through the triangle before *until, or is inside of
- * a solid there, to where the sample moves. */
-bool curve_tree_meets(curve_tree *o, tree_sample *sample, double *until);
+/* Whether the curve certainly meets the body near a sample, which moves there: it goes through a triangle before
+ * *until of a piece, or is inside of a solid there. */
+bool curve_tree_meets(curve_tree *o, tree_sample *sample, size_t *until_piece, double *until);
 
 /* Whether it begins inside of a solid, for a search that has not begun; the sample is filled then. */
 bool curve_tree_begins_inside(curve_tree *o, tree_sample *sample);

@@ -101,7 +101,8 @@ static bool prove_crossing_convex(curve_search *s) {
   const double upper = o->best_bound.upper;
   if (s->q->limit != 0.0 || !(upper > 0.0 && upper <= s->q->options.epsilon)) return false;
   curve_sample sample = o->best;
-  if (!crossing_prove_convex(o, &sample)) return false;
+  crossing_place place;
+  if (!crossing_prove_convex(o, &sample, &place)) return false;
   curve_convex_adopt(o, &sample, (search_best){.upper = 0.0, .slack = o->best_bound.slack});
   return true;
 }
@@ -124,6 +125,7 @@ static cprox_status prove_contact_convex(curve_search *s, curve_finding *proven)
   curve_convex_finding(&c->base, proven);
   proven->bound = c->proven_bound;
   proven->is_contact = true;
+  if (c->proven_within) proven->t_contact = c->proven_t;
   return CPROX_OK;
 }
 

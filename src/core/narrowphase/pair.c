@@ -135,7 +135,10 @@ static void pair_take(const implicit_answer *found, const pair_side *a, const pa
   const double sizes = a->shape->scale + b->shape->scale + vec_norm(place->t) + margins;
   answer->upper = vec_norm(vec_sub(x, on_b)) - margins + rounding + ROUND_UP * 16.0 * ROUND_U * sizes;
   answer->normal = found->normal;
-  answer->common = found->x;
+  /* where the margins overlap: as far from x towards y as a's own margin reaches */
+  const vec3 between = vec_sub(on_b, x);
+  const double apart = vec_norm(between);
+  answer->common = a->margin < apart ? vec_axpy(x, a->margin / apart, between) : on_b;
   answer->on_a = vec_axpy(x, -a->margin, answer->normal);
   answer->on_b = vec_axpy(on_b, b->margin, answer->normal);
 }
