@@ -194,6 +194,37 @@ CASE(clearance_beyond_a_horizon_is_only_bounded) {
 }
 
 /* A spline of 60 pieces whose clearance over a floor is known, in intervals that cut pieces anywhere. */
+/* seed 68: curves that touch a face of a cube, epsilon 0: ok is what is exact, or beyond the horizon. */
+CASE(a_profile_of_width_0_is_ok_where_it_is_exact_or_beyond_the_horizon) {
+  enum { INTERVALS = 6 };
+  rng r = rng_seed(68);
+  cprox_body *cube = NULL;
+  assert_int_equal(cprox_body_create_box(vec(1, 1, 1), ws, &cube), CPROX_OK);
+  for (int i = 0; i < 200; i++) {
+    const double scale = rng_log_uniform(&r, 1e-3, 1.0), away = i % 2 ? 0.0 : rng_log_uniform(&r, 1e-18, 1e-2);
+    const vec3 points[3] = {vec(-scale, 0.1, 0.5 + scale), vec(0.0, 0.1, 0.5 - scale + away),
+                            vec(scale, 0.1, 0.5 + scale)};
+    cprox_curve *curve = bezier(points, 3);
+    const cprox_obstacle target = cprox_obstacle_at(cube, CPROX_POSE_IDENTITY);
+    cprox_obstacles *all = NULL;
+    assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_NONE, ws, &all), CPROX_OK);
+    const cprox_options options = accurate(0.0);
+    const double horizon = i % 3 ? 0.0 : rng_log_uniform(&r, 1e-18, 1e-2);
+    for (int k = 0; k < INTERVALS; k++) {
+      const double breaks[2] = {(double)k / INTERVALS, k + 1 == INTERVALS ? 1.0 : (double)(k + 1) / INTERVALS};
+      cprox_profile_interval x;
+      const cprox_status status =
+          cprox_obstacles_profile(all, cprox_point_along(curve), breaks, 1, horizon, &options, ws, &x);
+      assert_true(status >= CPROX_OK);
+      if (status == CPROX_OK && x.lower <= horizon && x.lower != x.upper)
+        fail_msg("ok with [%g, %g], horizon %g", x.lower, x.upper, horizon);
+    }
+    cprox_obstacles_free(all);
+    cprox_curve_free(curve);
+  }
+  cprox_body_free(cube);
+}
+
 CASE(intervals_may_begin_and_end_inside_pieces) {
   enum { N = 63, INTERVALS = 17 };
   vec3 p[N];

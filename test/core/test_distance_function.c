@@ -371,6 +371,38 @@ CASE(grids_of_distances_hold_the_distance) {
   free(values);
 }
 
+/* seed 49: a curve whose points are all the same, before a grid, whose Lipschitz constant is not known. */
+CASE(a_point_at_rest_before_a_grid_has_its_distance) {
+  rng r = rng_seed(49);
+  double *values = malloc(sizeof *values * GRID * (GRID - 4) * (GRID + 3));
+  for (size_t i = 0; i < 40; i++) {
+    const balls set = balls_random(&r);
+    const cprox_distance_grid grid = grid_of(&set, &r, 0.0, INFINITY, values);
+    cprox_body *body = NULL;
+    assert_int_equal(cprox_body_create_distance_grid(&grid, ws, &body), CPROX_OK);
+    const vec3 place = rng_in_cube(&r, 1.0), points[3] = {place, place, place};
+    cprox_curve *curve = bezier(points, 2 + i % 2);
+    const long double distance = fmaxl(balls_exact(&set, ref_vec(place)), 0.0L);
+    const cprox_options options = accurate(0.5);
+    for (int query = 0; query < 3; query++) {
+      const cprox_mover mover = cprox_point_along(curve);
+      const cprox_obstacle at = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
+      cprox_result got = {.lower = NAN};
+      const cprox_status status = query == 0   ? cprox_distance(mover, at, &options, ws, &got)
+                                  : query == 1 ? cprox_tolerance(mover, at, 0.1, &options, ws, &got)
+                                               : cprox_time_of_contact(mover, at, &options, ws, &got);
+      if (query == 0) assert_int_equal(status, CPROX_OK);
+      assert_true(status >= CPROX_OK && got.lower <= distance && distance <= got.upper + 0.5);
+      if (query == 0) assert_true(got.lower >= distance - 0.5L);
+      if (query == 1 && distance > 0.6L) assert_int_equal(got.verdict, CPROX_VERDICT_CLEAR);
+      assert_true(got.nodes <= 8);
+    }
+    cprox_curve_free(curve);
+    cprox_body_free(body);
+  }
+  free(values);
+}
+
 CASE(grids_that_hold_no_distances_are_refused) {
   double values[8] = {1, 1, 1, 1, 1, 1, 1, 1};
   cprox_distance_grid grid = {.n = {2, 2, 2}, .cell = 0.1, .values = values, .truncated_at = INFINITY};

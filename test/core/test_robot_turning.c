@@ -408,6 +408,44 @@ CASE(poses_that_do_not_say_how_they_turn_get_a_sentence) {
   mover_free(&m);
 }
 
+CASE(a_joint_that_shares_a_number_of_a_quaternion_is_refused) {
+  const cprox_link floating = {.parent = -1, .type = CPROX_JOINT_FLOATING, .origin = CPROX_POSE_IDENTITY};
+  const cprox_joint_type types[] = {CPROX_JOINT_REVOLUTE, CPROX_JOINT_PRISMATIC, CPROX_JOINT_PLANAR,
+                                    CPROX_JOINT_FLOATING, CPROX_JOINT_ROTATION_VECTOR};
+  const int32_t counts[] = {1, 1, 3, 7, 6};
+  for (int type = 0; type < 5; type++)
+    for (int32_t variable = 0; variable < 10; variable++) {
+      const cprox_link links[2] = {floating,
+                                   {.parent = 0,
+                                    .type = types[type],
+                                    .origin = CPROX_POSE_IDENTITY,
+                                    .axis = {0, 0, 1},
+                                    .variable = variable,
+                                    .multiplier = 1.0}};
+      const bool same = types[type] == CPROX_JOINT_FLOATING && variable == 0;
+      /* two quaternions: either may begin within the other */
+      const bool shares = variable < 7 && variable + counts[type] > 3;
+      cprox_robot *robot = NULL;
+      const cprox_status status = cprox_robot_create(links, 2, NULL, 0, 17, ws, &robot);
+      assert_int_equal(status, shares && !same ? CPROX_INVALID : CPROX_OK);
+      if (status != CPROX_OK && !strstr(cprox_workspace_error(ws), "shares a variable with the quaternion of link"))
+        fail_msg("%s", cprox_workspace_error(ws));
+      if (status == CPROX_OK && types[type] == CPROX_JOINT_REVOLUTE && variable < 3) {
+        /* with the position: not on a screw */
+        const double from[7] = {0, 0, 0, 0, 0, 0, 1}, to[7] = {1, 0, 0, 1, 0, 0, 1};
+        const cprox_waypoint ends[2] = {{.time = 0, .positions = from}, {.time = 1, .positions = to}};
+        cprox_motion_description d = {
+            .variables = SEVEN, .n_variables = 7, .waypoints = ends, .n_waypoints = 2, .turning = CPROX_TURNING_SLERP};
+        cprox_motion *motion = NULL;
+        assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
+        cprox_motion_free(motion);
+        d.turning = CPROX_TURNING_SCREW;
+        refused(robot, &d, "link 1: its joint shares a variable with a floating joint that moves by screws");
+      }
+      cprox_robot_free(robot);
+    }
+}
+
 int main(void) {
   return cases_run(workspace_setup, workspace_teardown);
 }

@@ -46,7 +46,8 @@ typedef struct cprox_link {
   cprox_pose origin;
   /** revolute and prismatic: in the joint's frame, not 0, of any length */
   cprox_vec3 axis;
-  /** the first of the joint's variables; links may share one (mimic joints) */
+  /** the first of the joint's variables; links may share one (mimic joints), but not one of a quaternion, and on a
+   *  screw not one of its position: floating joints may share all seven only */
   int32_t variable;
   /** revolute and prismatic: the joint is at multiplier * variable + offset; at most 1e60 in size */
   double multiplier;

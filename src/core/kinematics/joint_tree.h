@@ -115,6 +115,10 @@ static inline bool robot_axis_carries(const cprox_robot *robot, int32_t axis, in
   return behind >= 0 && behind < robot->axes[axis].branch;
 }
 
+/* The first link whose joint has one of `count` variables from `first` on; floating joints that begin at the variable
+ * `floating` are not asked. n_links: there is none. */
+size_t robot_sharing_link(const cprox_link *links, size_t n_links, int32_t floating, int32_t first, int32_t count);
+
 /* The nearest axis that is above both, or -1. */
 static inline int32_t robot_common_axis(const cprox_robot *robot, int32_t a, int32_t b) {
   /* parents come first: the larger number is never above the smaller one */

@@ -46,7 +46,16 @@ static cprox_status check_columns(const motion_source *s, int32_t first, const i
   int given = 0;
   for (int k = begin; k < 7; k++) given += columns[k] >= 0;
   *turns = given > 0;
-  if (given == 0 || given == 7 - begin) return CPROX_OK;
+  if (given == 0) return CPROX_OK;
+  /* on a screw the position does not go as its variables would */
+  const cprox_robot *robot = s->robot;
+  const size_t other = robot_sharing_link(robot->given_links, robot->n_links, first, first, begin == 0 ? 3 : 0);
+  if (other < robot->n_links)
+    return workspace_fail(s->workspace, CPROX_INVALID,
+                          "link %zu: its joint shares a variable with a floating joint that moves by screws, of "
+                          "variables %d to %d",
+                          other, (int)first, (int)first + 6);
+  if (given == 7 - begin) return CPROX_OK;
   return workspace_fail(s->workspace, CPROX_INVALID,
                         "the motion gives %d of the variables %d to %d: %s needs all of them", given,
                         (int)first + begin, (int)first + 6, begin ? "slerp" : "a screw");

@@ -53,6 +53,32 @@ static cprox_status check_link(const cprox_link *link, size_t i, size_t n_variab
   return CPROX_OK;
 }
 
+size_t robot_sharing_link(const cprox_link *links, size_t n_links, int32_t floating, int32_t first, int32_t count) {
+  for (size_t i = 0; i < n_links; i++) {
+    const cprox_link *link = &links[i];
+    const int32_t begin = link->variable, end = begin + (int32_t)variables_of(link->type);
+    const bool is_same = link->type == CPROX_JOINT_FLOATING && begin == floating;
+    if (!is_same && begin < end && begin < first + count && end > first) return i;
+  }
+  return n_links;
+}
+
+/* The numbers of a quaternion are one orientation, whatever their norm: as an angle or a length they would be another
+ * thing. */
+static cprox_status check_quaternions(const cprox_link *links, size_t n_links, cprox_workspace *workspace) {
+  for (size_t i = 0; i < n_links; i++) {
+    if (links[i].type != CPROX_JOINT_FLOATING) continue;
+    const int32_t first = links[i].variable + 3;
+    const size_t other = robot_sharing_link(links, n_links, links[i].variable, first, 4);
+    if (other < n_links)
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "link %zu: its joint shares a variable with the quaternion of link %zu, which is variables "
+                            "%d to %d; only floating joints with the same seven variables may",
+                            other, i, (int)first, (int)first + 3);
+  }
+  return CPROX_OK;
+}
+
 static cprox_status check_geometry(const cprox_link_geometry *g, size_t i, size_t n_links, cprox_workspace *workspace) {
   if (!g->body) return workspace_fail(workspace, CPROX_INVALID, "geometry %zu has no body", i);
   if (g->body->field)
@@ -88,6 +114,8 @@ static cprox_status check_robot(const cprox_link *links, size_t n_links, const c
     const cprox_status status = check_link(&links[i], i, n_variables, workspace);
     if (status != CPROX_OK) return status;
   }
+  const cprox_status shared = check_quaternions(links, n_links, workspace);
+  if (shared != CPROX_OK) return shared;
   for (size_t i = 0; i < n_geometries; i++) {
     const cprox_status status = check_geometry(&geometries[i], i, n_links, workspace);
     if (status != CPROX_OK) return status;

@@ -58,7 +58,8 @@ search_goal query_goal(const query *q, search_order order, double cutoff) {
 double query_cutoff_beyond(const query *q, double distance) {
   if (isinf(distance)) return distance;
   const double width = width_allowed(q->options.epsilon, q->options.relative_epsilon, distance);
-  return (distance + 2.0 * width) * (1.0 + 4.0 * (q->options.relative_epsilon + 1e-15));
+  const double beyond = (distance + 2.0 * width) * (1.0 + 4.0 * (q->options.relative_epsilon + 1e-15));
+  return nextafter(beyond, INFINITY); /* where both are 0: a bound of 0 is not beyond */
 }
 
 cprox_verdict query_verdict(const query *q, const cprox_result *r) {

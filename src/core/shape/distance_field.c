@@ -69,7 +69,8 @@ double distance_field_over_segment(const distance_field *field, const distance_v
   const double s = length2 > 0.0 ? lesser(greater(-0.5 * slope / length2, 0.0), 1.0) : 0.0;
   const double square = first + s * (slope + s * length2) - 16.0 * ROUND_U * (first + last + length2);
   const double by_square = square > 0.0 ? sqrt(square) : 0.0;
-  const double by_lipschitz = 0.5 * (a->value - a->error + b->value - b->error - field->lipschitz * length);
+  const double rise = length > 0.0 ? field->lipschitz * length : 0.0; /* the constant may be infinity */
+  const double by_lipschitz = 0.5 * (a->value - a->error + b->value - b->error - rise);
   return greater(by_square, by_lipschitz) * (1.0 - 8.0 * ROUND_U);
 }
 
