@@ -308,6 +308,36 @@ static void assert_none(cprox_mover mover, cprox_obstacle target, bool is_signed
     fail_msg("valid %d: %s", g.valid, cprox_workspace_error(ws));
 }
 
+/* Seed 46: curves that begin or end with velocity 0, beside a ball that lies ahead of that end. */
+CASE(curves_that_end_at_rest_have_gradients_there) {
+  rng r = rng_seed(46);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.2, ws, &ball), CPROX_OK);
+  for (int i = 0; i < 100; i++) {
+    const bool backwards = i % 2;
+    const vec3 end = rng_in_cube(&r, 1.0), way = vec(1.0, rng_uniform(&r, -0.3, 0.3), rng_uniform(&r, -0.3, 0.3));
+    const vec3 points[4] = {vec_axpy(end, -2.0, way), vec_add(vec_axpy(end, -1.0, way), rng_in_cube(&r, 0.3)), end,
+                            end};
+    vec3 turned[4];
+    for (int k = 0; k < 4; k++) turned[k] = points[backwards ? 3 - k : k];
+    cprox_curve *curve = bezier(turned, 4);
+    const vec3 ahead = vec_axpy(end, 0.5, way);
+    const cprox_obstacle at = cprox_obstacle_at(ball, (cprox_pose){ahead, {1, 0, 0, 0}});
+    const cprox_options options = accurate(1e-9);
+    cprox_result result;
+    cprox_gradient g;
+    const cprox_mover mover = cprox_point_along(curve);
+    assert_int_equal(cprox_distance(mover, at, &options, ws, &result), CPROX_OK);
+    assert_int_equal(cprox_distance_gradient(mover, at, &options, &result, ws, &g), CPROX_OK);
+    if (!g.valid) fail_msg("%d: %s", i, cprox_workspace_error(ws));
+    assert_true(g.t == (backwards ? 0.0 : 1.0));
+    const vec3 from = vec_sub(end, ahead);
+    assert_true(vec_norm(vec_axpy(from, -vec_norm(from), g.mover)) < 1e-9);
+    cprox_curve_free(curve);
+  }
+  cprox_body_free(ball);
+}
+
 CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   const char *elsewhere = "no gradient: the distance is as small elsewhere along the curve";
   cprox_body *box = NULL, *ball = NULL, *two = NULL;

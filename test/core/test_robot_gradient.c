@@ -252,6 +252,92 @@ CASE(the_reason_says_why_there_is_no_gradient) {
   cprox_body_free(sphere);
 }
 
+/* ---- motions that end at rest ---- */
+
+/* A planar arm of two bars from rest to rest; `orders`: velocities, or accelerations as well, are 0 at its ends. */
+typedef struct arm {
+  cprox_body *bar, *ball;
+  cprox_robot *robot;
+  cprox_motion *motion;
+} arm;
+
+static void arm_move(arm *a, const double from[2], const double to[2], int orders) {
+  static const double still[2] = {0.0, 0.0};
+  const double *rate = orders > 0 ? still : NULL, *bend = orders > 1 ? still : NULL;
+  const cprox_waypoint points[2] = {{0.0, from, rate, bend}, {2.0, to, rate, bend}};
+  cprox_motion_free(a->motion);
+  assert_int_equal(cprox_motion_create(a->robot,
+                                       &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                                   .variables = (const int32_t[]){0, 1},
+                                                                   .n_variables = 2,
+                                                                   .waypoints = points,
+                                                                   .n_waypoints = 2},
+                                       ws, &a->motion),
+                   CPROX_OK);
+}
+
+static arm arm_make(void) {
+  arm a = {.motion = NULL};
+  const cprox_pose along = {.position = {0.25, 0, 0}, .orientation = {1, 0, 0, 0}};
+  cprox_link links[2];
+  cprox_link_geometry geometries[2];
+  assert_int_equal(cprox_body_create_box(vec(0.5, 0.08, 0.06), ws, &a.bar), CPROX_OK);
+  assert_int_equal(cprox_body_create_sphere(0.1, ws, &a.ball), CPROX_OK);
+  for (int32_t i = 0; i < 2; i++) {
+    links[i] = (cprox_link){.parent = i - 1,
+                            .type = CPROX_JOINT_REVOLUTE,
+                            .origin = {.position = {i ? 0.5 : 0.0, 0, 0}, .orientation = {1, 0, 0, 0}},
+                            .axis = {0, 0, 1},
+                            .variable = i,
+                            .multiplier = 1.0};
+    geometries[i] = (cprox_link_geometry){.body = a.bar, .pose = along, .link = i};
+  }
+  assert_int_equal(cprox_robot_create(links, 2, geometries, 2, 2, ws, &a.robot), CPROX_OK);
+  return a;
+}
+
+/* Seed 4705, 300 motions towards or away from a ball: where the least distance is at an end of the motion, alone, the
+ * gradient is that of the posture there, whether or not the motion rests there. */
+CASE(a_least_distance_at_an_end_at_rest_has_a_gradient) {
+  rng r = rng_seed(4705);
+  arm a = arm_make();
+  size_t at_end = 0;
+  for (size_t i = 0; i < test_cases(300); i++) {
+    const double near[2] = {rng_uniform(&r, -3, 3), rng_uniform(&r, -2, 2)};
+    const double far[2] = {near[0] + rng_uniform(&r, -1, 1), near[1] + rng_uniform(&r, -1, 1)};
+    const cprox_obstacle ball = cprox_obstacle_at(
+        a.ball, (cprox_pose){{rng_uniform(&r, -1.3, 1.3), rng_uniform(&r, -1.3, 1.3), 0.02}, {1, 0, 0, 0}});
+    cprox_obstacles *all = NULL;
+    assert_int_equal(cprox_obstacles_create(&ball, 1, CPROX_INDEX_NONE, ws, &all), CPROX_OK);
+    const bool backwards = i % 2;
+    bool valid[3];
+    double rows[3][4];
+    const char *why = "";
+    for (int orders = 0; orders < 3; orders++) {
+      arm_move(&a, backwards ? near : far, backwards ? far : near, orders);
+      cprox_result result;
+      cprox_motion_gradient g = {.positions = rows[orders]};
+      const cprox_mover mover = cprox_robot_along(a.motion, NULL, 0);
+      assert_int_equal(cprox_robot_distance_gradient(all, mover, NULL, ws, &result, &g), CPROX_OK);
+      valid[orders] = g.valid && g.t == (backwards ? 0.0 : 2.0);
+      if (orders > 0 && valid[0] && !valid[orders]) why = cprox_workspace_error(ws);
+    }
+    /* a motion at constant rates says whether the posture at the end is nearest, alone */
+    for (int orders = 1; orders < 3 && valid[0]; orders++) {
+      if (!valid[orders]) fail_msg("case %zu, %d orders: %s", i, orders, why);
+      for (int k = 0; k < 4; k++) assert_true(fabs(rows[orders][k] - rows[0][k]) < 1e-9);
+    }
+    at_end += valid[0];
+    cprox_obstacles_free(all);
+  }
+  print_message("%zu are nearest at an end\n", at_end);
+  assert_true(at_end > 60);
+  cprox_motion_free(a.motion);
+  cprox_robot_free(a.robot);
+  cprox_body_free(a.bar);
+  cprox_body_free(a.ball);
+}
+
 /* Of one state the gradient is by its variables: what they are at rest. */
 CASE(states_have_gradients_by_their_variables) {
   rng r = rng_seed(4702);

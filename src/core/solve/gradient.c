@@ -175,11 +175,12 @@ static cprox_status refine(beside *o, double t0, double t1, double *t, int *end)
     cprox_status status = look_at(o, left, true, &a);
     if (status == CPROX_OK) status = look_at(o, right, false, &b);
     if (status < 0) return status;
-    if (left == t0 && a.slope > 0.0) {
+    /* an end at rest has no slope: then that of the other side tells */
+    if (left == t0 && (a.slope > 0.0 || (a.slope == 0.0 && b.slope > 0.0))) {
       *t = t0, *end = -1;
       return CPROX_OK;
     }
-    if (right == t1 && b.slope < 0.0) {
+    if (right == t1 && (b.slope < 0.0 || (b.slope == 0.0 && a.slope < 0.0))) {
       *t = t1, *end = 1;
       return CPROX_OK;
     }

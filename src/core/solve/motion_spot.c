@@ -219,8 +219,9 @@ static cprox_status refine_on_segment(spot_pair *p, double low, double high, mot
   motion_spot near = *spot;
   double step = 1e-3;
   for (int i = 0; i < MOST_STEPS; i++, step *= 8.0) {
-    /* downhill; where it is flat, to both sides in turns */
-    const double next = near.slope > 0.0 ? fmax(near.u - step, low) : fmin(near.u + step, high);
+    /* downhill; from where it is flat forwards, but from the end, where a motion may rest, backwards */
+    const bool backwards = near.slope > 0.0 || (near.slope == 0.0 && near.u >= high);
+    const double next = backwards ? fmax(near.u - step, low) : fmin(near.u + step, high);
     motion_spot far;
     const cprox_status status = spot_measure(p, near.segment, next, &far);
     if (status < 0) return status;
@@ -238,6 +239,20 @@ static cprox_status refine_on_segment(spot_pair *p, double low, double high, mot
   return CPROX_OK;
 }
 
+/* A motion that rests at an end of what is asked about has its minimum there where the slopes beside it are rounding.
+ */
+static cprox_status snap_to_end(spot_pair *p, const motion_interval *within, motion_spot *spot) {
+  const double first = first_u(within, spot->segment), last = last_u(within, spot->segment);
+  const bool begins = spot->segment == within->first && spot->u != first && spot->u - first <= STILL,
+             ends = spot->segment + 1 == within->last && spot->u != last && last - spot->u <= STILL;
+  if (!begins && !ends) return CPROX_OK;
+  motion_spot end;
+  const cprox_status status = spot_measure(p, spot->segment, begins ? first : last, &end);
+  if (status < 0) return status;
+  if (end.gap.lower <= spot->gap.upper) *spot = end;
+  return CPROX_OK;
+}
+
 cprox_status spot_refine(spot_pair *p, const motion_interval *within, motion_spot *spot, bool *found) {
   enum { MOST_SEGMENTS = 4 };
   *found = false;
@@ -245,7 +260,8 @@ cprox_status spot_refine(spot_pair *p, const motion_interval *within, motion_spo
     const size_t segment = spot->segment;
     int beyond;
     cprox_status status = refine_on_segment(p, first_u(within, segment), last_u(within, segment), spot, &beyond, found);
-    if (status < 0 || *found || beyond == 0) return status;
+    if (status >= 0 && *found) return snap_to_end(p, within, spot);
+    if (status < 0 || beyond == 0) return status;
     /* an end, or a knot with the next segment behind it */
     *found = beyond < 0 ? segment == within->first : segment + 1 == within->last;
     if (*found) return CPROX_OK;
