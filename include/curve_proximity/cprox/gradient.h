@@ -176,7 +176,7 @@ typedef struct cprox_motion_row {
  *  Pairs whose sides the motion does not move against each other have no rows.
  *  So each row is a local minimum along the motion, as far as minimisers at breaks are known exactly. Minima within an
  *  interval besides its least one have no row: choose shorter intervals. Where `room` is too small CPROX_BUDGET is
- *  returned: then some rows are left out.
+ *  returned: then some rows are left out. So they may be where CPROX_STOPPED is returned.
  *
  *  Returns as cprox_obstacles_distance(). *count is untouched on a negative status. Cost: a search for each pair, which
  *  ends as soon as the pair is farther than the horizon; one more for each interval of those that are not; a gradient
