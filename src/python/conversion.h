@@ -52,26 +52,90 @@ void setRow(Array &rows, py::ssize_t i, const cprox_vec3 &v);
 /** A transform as an array (4, 4). */
 Array fromTransform(const Eigen::Isometry3d &transform);
 
-/** The workspace of the calling thread. */
+/** The workspace of the calling thread; within a callback another one, since the first is in use. */
 Workspace &threadWorkspace();
 
-/** For options.stop: Ctrl-C ends a query. The core asks now and then. */
+/** While Python code runs inside a query: what it asks gets a workspace of its own. */
+class Callback {
+ public:
+  Callback();
+  ~Callback();
+  Callback(const Callback &) = delete;
+  Callback &operator=(const Callback &) = delete;
+};
+
+/** What Python functions raise while a query calls them, for the caller of the query. One a query, on the stack of the
+ *  thread that asks; the threads of pools have one together. Everything but takeFromPools() under the GIL. */
+class CallbackErrors {
+ public:
+  CallbackErrors();
+  ~CallbackErrors();
+  CallbackErrors(const CallbackErrors &) = delete;
+  CallbackErrors &operator=(const CallbackErrors &) = delete;
+
+  /** Keeps the first one that a function ("a distance function") raised. */
+  static void keep(const char *function, const py::error_already_set &raised);
+
+  /** What a function has raised on the thread of a pool is the caller's. */
+  static void takeFromPools();
+
+  /** Has a function raised? */
+  bool any() const;
+
+  /** Throws a ValueError with the cause; what is no Exception (KeyboardInterrupt, SystemExit) as it is. */
+  [[noreturn]] void raise();
+
+ private:
+  struct Raised {
+    std::string function;
+    std::optional<py::error_already_set> error;
+  };
+
+  static Raised &ofPools();
+
+  Raised raised_;
+  Raised *outer_;
+};
+
+/** For options.stop: Ctrl-C ends a query, and so does what a callback raised. The core asks now and then. */
 bool interrupted(void *);
+
+/** Runs what calls Python functions, and throws what these raise. */
+template <typename Ask>
+auto withCallbacks(const Ask &ask) {
+  CallbackErrors errors;
+  try {
+    auto answer = ask();
+    if (!PyErr_Occurred() && !errors.any()) return answer;
+  } catch (const std::exception &) {
+    if (!PyErr_Occurred() && !errors.any()) throw;
+  }
+  if (errors.any()) errors.raise();
+  throw py::error_already_set();
+}
 
 /** Runs a query that asks interrupted(), without the GIL. Ctrl-C ends it with KeyboardInterrupt. */
 template <typename Ask>
 auto unlocked(const Ask &ask) {
-  try {
-    auto answer = [&] {
-      const py::gil_scoped_release release;
-      return ask();
-    }();
-    if (!PyErr_Occurred()) return answer;
-  } catch (const std::exception &) {
-    if (!PyErr_Occurred()) throw;
-  }
-  throw py::error_already_set();
+  return withCallbacks([&] {
+    const py::gil_scoped_release release;
+    return ask();
+  });
 }
+
+/** A whole number from 0 to 2^32 - 1; any other number is a ValueError. */
+struct Count {
+  std::uint32_t value;
+  operator std::uint32_t() const {
+    return value;
+  }
+};
+
+/** The number of an argument. Throws Error that names it for a number that is none, TypeError for what is no number. */
+std::uint32_t toCount(py::handle given, const std::string &name);
+
+/** What was given, for a message: its type, and in few words its value. */
+std::string whatIs(py::handle given);
 
 /* Each adds the classes and functions of its file to the module. */
 void addShapes(py::module &module);
@@ -82,4 +146,23 @@ void addMovers(py::module &module);
 void addRoadmaps(py::module &module);
 
 } // namespace curve_proximity::python
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<curve_proximity::python::Count> {
+  PYBIND11_TYPE_CASTER(curve_proximity::python::Count, _("int"));
+
+  bool load(handle given, bool) {
+    if (PyNumber_Check(given.ptr()) == 0) return false;
+    value = {curve_proximity::python::toCount(given, "max_nodes")};
+    return true;
+  }
+
+  static handle cast(const curve_proximity::python::Count &count, return_value_policy, handle) {
+    return PyLong_FromUnsignedLong(count.value);
+  }
+};
+
+} // namespace pybind11::detail
 #endif

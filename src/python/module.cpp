@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The module cprox._cprox: conversions, errors, and what the other files add. */
+#include <deque>
+#include <limits>
 #include <new>
 
 #include "conversion.h"
@@ -54,14 +56,115 @@ Array fromTransform(const Eigen::Isometry3d &transform) {
   return out;
 }
 
+namespace {
+
+/* So many callbacks are running on this thread, each inside a query of the one before. */
+thread_local std::size_t callbacks = 0;
+
+} // namespace
+
 Workspace &threadWorkspace() {
-  thread_local Workspace workspace;
-  return workspace;
+  thread_local std::deque<Workspace> workspaces; // they stay where they are
+  while (workspaces.size() <= callbacks) workspaces.emplace_back();
+  return workspaces[callbacks];
+}
+
+Callback::Callback() {
+  ++callbacks;
+}
+
+Callback::~Callback() {
+  --callbacks;
+}
+
+/* ---- what callbacks raise ---- */
+
+namespace {
+
+thread_local void *errors_of_thread = nullptr;
+
+} // namespace
+
+CallbackErrors::Raised &CallbackErrors::ofPools() {
+  static auto *raised = new Raised; // never freed: it may outlive the interpreter
+  return *raised;
+}
+
+CallbackErrors::CallbackErrors() : outer_(static_cast<Raised *>(errors_of_thread)) {
+  errors_of_thread = &raised_;
+}
+
+CallbackErrors::~CallbackErrors() {
+  errors_of_thread = outer_;
+}
+
+void CallbackErrors::keep(const char *function, const py::error_already_set &raised) {
+  Raised &to = errors_of_thread ? *static_cast<Raised *>(errors_of_thread) : ofPools();
+  if (to.error) return;
+  to.function = function;
+  to.error.emplace(raised);
+}
+
+void CallbackErrors::takeFromPools() {
+  const py::gil_scoped_acquire lock;
+  Raised &from = ofPools();
+  if (from.error && errors_of_thread) keep(from.function.c_str(), *from.error);
+  from.error.reset();
+}
+
+bool CallbackErrors::any() const {
+  return raised_.error.has_value();
+}
+
+void CallbackErrors::raise() {
+  PyErr_Clear();
+  raised_.error->restore();
+  PyObject *type = nullptr, *cause = nullptr, *trace = nullptr;
+  PyErr_Fetch(&type, &cause, &trace);
+  PyErr_NormalizeException(&type, &cause, &trace);
+  if (trace) PyException_SetTraceback(cause, trace);
+  if (PyErr_GivenExceptionMatches(type, PyExc_Exception) == 0) {
+    PyErr_Restore(type, cause, trace);
+    throw py::error_already_set();
+  }
+  const py::object name = py::handle(type).attr("__name__"), value = py::str(py::handle(cause));
+  PyErr_SetString(
+      PyExc_ValueError,
+      (raised_.function + " raised " + std::string(py::str(name)) + ": " + std::string(py::str(value))).c_str());
+  Py_XDECREF(type);
+  Py_XDECREF(trace);
+  PyObject *error = nullptr;
+  PyErr_Fetch(&type, &error, &trace);
+  PyErr_NormalizeException(&type, &error, &trace);
+  PyException_SetCause(error, cause); // takes it over
+  PyErr_Restore(type, error, trace);
+  throw py::error_already_set();
 }
 
 bool interrupted(void *) {
+  const Callback callback; // signal handlers may ask anything
   const py::gil_scoped_acquire gil;
   return PyErr_Occurred() || PyErr_CheckSignals() != 0;
+}
+
+/* ---- numbers ---- */
+
+std::string whatIs(py::handle given) {
+  std::string value = py::str(py::repr(given));
+  constexpr std::size_t MOST = 40;
+  if (value.size() > MOST) value = value.substr(0, MOST) + "…";
+  return value + " (" + std::string(py::str(py::type::handle_of(given).attr("__name__"))) + ")";
+}
+
+std::uint32_t toCount(py::handle given, const std::string &name) {
+  if (PyNumber_Check(given.ptr()) == 0) throw py::type_error(name + " must be a whole number, got " + whatIs(given));
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
+  long long value = -1;
+  if (number) value = PyLong_AsLongLong(number.ptr());
+  PyErr_Clear();
+  if (value < 0 || value > std::numeric_limits<std::uint32_t>::max())
+    throw Error(name + " must be a whole number from 0 to 4294967295, got " + whatIs(given));
+  return static_cast<std::uint32_t>(value);
 }
 
 } // namespace curve_proximity::python

@@ -87,8 +87,8 @@ py::dict answer(const PythonMovers &m, const std::string &robot, const std::stri
   return answerOf(m.ask(robot, against, [&](const auto &of) { return ask(m.get(), of, query, threadWorkspace()); }));
 }
 
-py::dict contactOf(const PythonMovers &m, const std::string &robot, double epsilon, std::uint32_t max_nodes,
-                   const Names &links, const Names &objects, bool allow_empty, const std::string &against) {
+py::dict contactOf(const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes, const Names &links,
+                   const Names &objects, bool allow_empty, const std::string &against) {
   const Query query = queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty);
   return answerOf(
       m.ask(robot, against, [&](const auto &of) { return timeOfContact(m.get(), of, query, threadWorkspace()); }));
@@ -120,7 +120,7 @@ py::list pairsOf(const PythonMovers &m, std::size_t k, const std::string &robot,
   }));
 }
 
-py::dict gradientOf(const PythonMovers &m, const std::string &robot, double epsilon, std::uint32_t max_nodes,
+py::dict gradientOf(const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes,
                     const Names &links, const Names &objects, bool allow_empty) {
   const MovingRobot &one = m.find(robot);
   const ClearanceRow row = unlocked([&] {
@@ -132,8 +132,8 @@ py::dict gradientOf(const PythonMovers &m, const std::string &robot, double epsi
   return out;
 }
 
-py::dict gradientsOf(const PythonMovers &m, double epsilon, std::uint32_t max_nodes, const Names &links,
-                     const Names &objects, bool allow_empty, const std::string &against) {
+py::dict gradientsOf(const PythonMovers &m, double epsilon, Count max_nodes, const Names &links, const Names &objects,
+                     bool allow_empty, const std::string &against) {
   const Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty);
   const Against pairs = againstOf(against);
   const MoversClearance found = unlocked([&] { return clearanceGradients(m.get(), pairs, query, threadWorkspace()); });
@@ -179,8 +179,8 @@ void addMovers(py::module &module) {
           py::arg("name"), py::arg("t"), "The pose (4, 4) of an object that moves at the time t [s] of the clock.")
       .def(
           "distance",
-          [](const PythonMovers &m, const std::string &robot, double epsilon, std::uint32_t max_nodes,
-             const Names &links, const Names &objects, bool allow_empty, const std::string &against) {
+          [](const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes, const Names &links,
+             const Names &objects, bool allow_empty, const std::string &against) {
             return answer(m, robot, against, queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty));
           },
           py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
@@ -188,7 +188,7 @@ void addMovers(py::module &module) {
           py::arg("against") = "others", "The least distance: the dict of Motion.distance().")
       .def(
           "tolerance",
-          [](const PythonMovers &m, double delta, const std::string &robot, double epsilon, std::uint32_t max_nodes,
+          [](const PythonMovers &m, double delta, const std::string &robot, double epsilon, Count max_nodes,
              const Names &links, const Names &objects, bool allow_empty, const std::string &against) {
             return answer(m, robot, against,
                           queryOf("tolerance", delta, epsilon, max_nodes, links, objects, allow_empty));
@@ -198,8 +198,8 @@ void addMovers(py::module &module) {
           py::arg("against") = "others", "Are they farther apart than delta [m] at all times?")
       .def(
           "collision",
-          [](const PythonMovers &m, const std::string &robot, double epsilon, std::uint32_t max_nodes,
-             const Names &links, const Names &objects, bool allow_empty, const std::string &against) {
+          [](const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes, const Names &links,
+             const Names &objects, bool allow_empty, const std::string &against) {
             return answer(m, robot, against,
                           queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty));
           },

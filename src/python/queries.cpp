@@ -65,16 +65,26 @@ cprox_options optionsOf(const py::kwargs &given) {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   for (const auto &[key, value] : given) {
     const auto name = key.cast<std::string>();
+    const auto take = [&name, given_value = value](auto wanted) {
+      try {
+        return given_value.template cast<decltype(wanted)>();
+      } catch (const py::cast_error &) {
+        const char *kind = std::is_same_v<decltype(wanted), double> ? "a number"
+                           : std::is_same_v<decltype(wanted), bool> ? "True or False"
+                                                                    : "a word";
+        throw py::type_error(name + " must be " + kind + ", got " + whatIs(given_value));
+      }
+    };
     if (name == "epsilon")
-      options.epsilon = value.cast<double>();
+      options.epsilon = take(0.0);
     else if (name == "relative_epsilon")
-      options.relative_epsilon = value.cast<double>();
+      options.relative_epsilon = take(0.0);
     else if (name == "max_nodes")
-      options.max_nodes = value.cast<std::uint32_t>();
+      options.max_nodes = toCount(value, name);
     else if (name == "signed")
-      options.signed_distance = value.cast<bool>();
+      options.signed_distance = take(false);
     else if (name == "max_lod") {
-      const auto word = value.cast<std::string>();
+      const auto word = take(std::string());
       const std::map<std::string, cprox_lod> words = {
           {"sphere", CPROX_LOD_SPHERE}, {"hull", CPROX_LOD_HULL}, {"mesh", CPROX_LOD_MESH}};
       if (words.count(word) == 0) throw Error("max_lod must be 'sphere', 'hull' or 'mesh', got '" + word + "'");
@@ -96,7 +106,7 @@ auto unlocked(cprox_options &options, const Ask &ask) {
 /* A curve alone is a point along it. */
 std::shared_ptr<Mover> moverOf(const py::object &given) {
   if (py::isinstance<Mover>(given)) return given.cast<std::shared_ptr<Mover>>();
-  if (!py::isinstance<Curve>(given)) throw py::type_error("the mover must be a Curve or a Mover");
+  if (!py::isinstance<Curve>(given)) throw py::type_error("the mover must be a Curve or a Mover, got " + whatIs(given));
   auto out = std::make_shared<Mover>();
   out->curve = given.cast<Curve>().curve;
   out->mover = cprox_point_along(out->curve.get());
@@ -105,7 +115,11 @@ std::shared_ptr<Mover> moverOf(const py::object &given) {
 
 std::shared_ptr<ObstacleSet> setOf(const py::object &given) {
   if (py::isinstance<ObstacleSet>(given)) return given.cast<std::shared_ptr<ObstacleSet>>();
-  return std::make_shared<ObstacleSet>(given.cast<std::vector<std::shared_ptr<Obstacle>>>(), "none");
+  try {
+    return std::make_shared<ObstacleSet>(given.cast<std::vector<std::shared_ptr<Obstacle>>>(), "none");
+  } catch (const py::cast_error &) {
+    throw py::type_error("obstacles must be an Obstacle, a list of them or an ObstacleSet, got " + whatIs(given));
+  }
 }
 
 /* ---- answers ---- */
@@ -169,9 +183,7 @@ py::dict askBatch(const Array &points, double radius, unsigned threads, const As
   if (points.ndim() != 3 || points.shape(2) != 3) throw Error("points must be an array of shape (N, n, 3)");
   const auto count = static_cast<std::size_t>(points.shape(0)), n = static_cast<std::size_t>(points.shape(1));
   const auto *data = reinterpret_cast<const cprox_vec3 *>(points.data());
-  Batch::Answers answers;
-  {
-    const py::gil_scoped_release release;
+  const Batch::Answers answers = python::unlocked([&] {
     std::vector<CurveHandle> curves(count);
     std::vector<cprox_mover> movers(count);
     Pool pool(threads);
@@ -187,8 +199,10 @@ py::dict askBatch(const Array &points, double radius, unsigned threads, const As
         movers[i] = cprox_tube_along(curves[i].get(), radius);
       }
     });
-    answers = ask(movers, pool);
-  }
+    Batch::Answers found = ask(movers, pool);
+    CallbackErrors::takeFromPools();
+    return found;
+  });
   if (answers.status < 0) throw Error(answers.reason, answers.status);
   return columnsOf(answers.results);
 }

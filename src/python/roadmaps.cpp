@@ -23,8 +23,8 @@ Roadmap roadmapOf(const std::vector<std::string> &joints, const Array &vertices,
 
 Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string> &joints, const Array &vertices,
                         const Edges &edges, double delta, bool self, const std::optional<Verdicts> &known,
-                        const JointPositions &rest, const std::optional<Array> &base, double epsilon,
-                        std::uint32_t max_nodes, unsigned threads, bool allow_empty) {
+                        const JointPositions &rest, const std::optional<Array> &base, double epsilon, Count max_nodes,
+                        unsigned threads, bool allow_empty) {
   if (!scene.robot()) throw Error("the scene has no robot");
   const Roadmap roadmap = roadmapOf(joints, vertices, edges, scene.rest(rest));
   std::vector<cprox_verdict> before;

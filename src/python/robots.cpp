@@ -260,7 +260,7 @@ py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
   return answerOf(answer);
 }
 
-py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
+py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, Count max_nodes, const Names &links,
                    const Names &objects, bool allow_empty) {
   const Answer answer = unlocked([&] {
     return timeOfContact(motion, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty),
@@ -271,7 +271,7 @@ py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, std::ui
 
 /* An answer with its proof, and the query that it is about as cprox_check reads it. */
 py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, bool self, double epsilon,
-                       std::uint32_t max_nodes, const Names &links, const Names &objects, bool allow_empty) {
+                       Count max_nodes, const Names &links, const Names &objects, bool allow_empty) {
   using Handle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
   const Handle certificate(cprox_certificate_create(), cprox_certificate_free);
   if (!certificate) throw std::bad_alloc();
@@ -293,7 +293,7 @@ py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, b
   return out;
 }
 
-py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
+py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, Count max_nodes, const Names &links,
                     const Names &objects, bool allow_empty, bool is_signed) {
   Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty);
   query.options.signed_distance = is_signed;
@@ -324,8 +324,8 @@ Array stacked(const std::vector<ClearanceRow> &rows, Eigen::Vector3d ClearanceGr
 }
 
 py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair, const std::vector<double> &breaks,
-                bool self, double epsilon, std::uint32_t max_nodes, const Names &links, const Names &objects,
-                bool allow_empty, bool is_signed, std::size_t most) {
+                bool self, double epsilon, Count max_nodes, const Names &links, const Names &objects, bool allow_empty,
+                bool is_signed, std::size_t most) {
   Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty);
   query.options.signed_distance = is_signed;
   RowLimits limits;
@@ -471,8 +471,8 @@ void addRobots(py::module &module) {
           py::arg("t"), "The pose (4, 4) of each link at the time t [s].")
       .def(
           "distance",
-          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, bool is_signed,
-             const Names &links, const Names &objects, bool allow_empty, bool moving_only) {
+          [](const RobotMotion &m, bool self, double epsilon, Count max_nodes, bool is_signed, const Names &links,
+             const Names &objects, bool allow_empty, bool moving_only) {
             Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only);
             query.options.signed_distance = is_signed;
             return ask(m, self, query);
@@ -488,7 +488,7 @@ void addRobots(py::module &module) {
           "overlap.")
       .def(
           "tolerance",
-          [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
+          [](const RobotMotion &m, double delta, bool self, double epsilon, Count max_nodes, const Names &links,
              const Names &objects, bool allow_empty, bool moving_only) {
             return ask(m, self,
                        queryOf("tolerance", delta, epsilon, max_nodes, links, objects, allow_empty, moving_only));
@@ -499,8 +499,8 @@ void addRobots(py::module &module) {
           "Is the robot farther than delta [m] everywhere? As distance().")
       .def(
           "collision",
-          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes, const Names &links,
-             const Names &objects, bool allow_empty, bool moving_only) {
+          [](const RobotMotion &m, bool self, double epsilon, Count max_nodes, const Names &links, const Names &objects,
+             bool allow_empty, bool moving_only) {
             return ask(m, self,
                        queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only));
           },

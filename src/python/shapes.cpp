@@ -5,9 +5,12 @@
 namespace curve_proximity::python {
 namespace {
 
-BodyHandle makeMeshOf(const Array &vertices,
-                      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles, bool solid) {
+BodyHandle makeMeshOf(const Array &vertices, const py::array &given, bool solid) {
   const Points points(vertices, "vertices");
+  const std::string kinds = "iub"; // of whole numbers; a cast would cut others
+  if (kinds.find(given.dtype().kind()) == std::string::npos)
+    throw Error("triangles must be whole numbers, got an array of " + std::string(py::str(given.dtype())));
+  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(given);
   if (triangles.ndim() != 2 || triangles.shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
   std::vector<std::array<std::uint32_t, 3>> indices(static_cast<std::size_t>(triangles.shape(0)));
   for (std::size_t i = 0; i < indices.size(); ++i)
@@ -69,53 +72,67 @@ BodyHandle distanceGridOf(const Array &values, double cell, double error, double
                           truncated_at);
 }
 
-/* What the function raised is printed; a value that is no number is refused by the core. Queries let other threads run,
- * so that the lock is taken for each value; the function itself goes under the lock, too. */
-BodyHandle distanceOf(py::function function, const Array &centre, double radius, double lipschitz, double error) {
-  const std::shared_ptr<py::function> kept(new py::function(std::move(function)), [](py::function *f) {
-    const py::gil_scoped_acquire lock;
-    delete f;
-  });
-  const auto call = [kept](const Eigen::Vector3d &x) {
-    const py::gil_scoped_acquire lock;
+constexpr double NO_NUMBER = std::numeric_limits<double>::quiet_NaN();
+
+/* Keeps a Python function, which may be dropped by any thread. */
+std::shared_ptr<py::function> keep(py::function function) {
+  return {new py::function(std::move(function)), [](py::function *f) {
+            const py::gil_scoped_acquire lock;
+            delete f;
+          }};
+}
+
+/* Calls a Python function at a point inside a query, and hands on what it returned. What it raises, also by an answer
+ * of another kind than `wanted`, reaches the caller of the query: the core refuses a value that is no number. Queries
+ * let other threads run, so that the lock is taken for each value. */
+template <typename Take>
+double callAt(const py::function &function, const char *name, const char *wanted, const Eigen::Vector3d &x,
+              const Take &take) {
+  const Callback callback;
+  const py::gil_scoped_acquire lock;
+  try {
+    const py::object answer = function(py::make_tuple(x.x(), x.y(), x.z()));
     try {
-      return (*kept)(py::make_tuple(x.x(), x.y(), x.z())).cast<double>();
-    } catch (py::error_already_set &raised) {
-      raised.discard_as_unraisable("a distance function");
+      return take(answer);
     } catch (const py::cast_error &) {
+      PyErr_SetString(PyExc_TypeError, (std::string("it must return ") + wanted + ", got " + whatIs(answer)).c_str());
+      throw py::error_already_set();
     }
-    return std::numeric_limits<double>::quiet_NaN();
+  } catch (py::error_already_set &raised) {
+    CallbackErrors::keep(name, raised);
+  }
+  return NO_NUMBER;
+}
+
+BodyHandle distanceOf(py::function function, const Array &centre, double radius, double lipschitz, double error) {
+  const auto call = [kept = keep(std::move(function))](const Eigen::Vector3d &x) {
+    return callAt(*kept, "a distance function", "a number", x,
+                  [](const py::object &answer) { return answer.cast<double>(); });
   };
-  return makeDistance(call, toEigen(toVector(centre, "centre")), radius, lipschitz, error);
+  return withCallbacks(
+      [&] { return makeDistance(call, toEigen(toVector(centre, "centre")), radius, lipschitz, error); });
 }
 
 /* function(point) is (value, gradient, Hessian). */
 BodyHandle convexOf(py::function function, const Array &interior, double radius, double error, bool planar,
                     double margin) {
-  const std::shared_ptr<py::function> kept(new py::function(std::move(function)), [](py::function *f) {
-    const py::gil_scoped_acquire lock;
-    delete f;
-  });
-  const auto call = [kept](const Eigen::Vector3d &x, Eigen::Vector3d &gradient, Eigen::Matrix3d &hessian) {
-    const py::gil_scoped_acquire lock;
-    try {
-      const auto [value, slope, curvature] =
-          (*kept)(py::make_tuple(x.x(), x.y(), x.z())).cast<std::tuple<double, Array, Array>>();
-      if (slope.ndim() == 1 && slope.shape(0) == 3 && curvature.ndim() == 2 && curvature.shape(0) == 3 &&
-          curvature.shape(1) == 3) {
-        for (py::ssize_t i = 0; i < 3; ++i) {
-          gradient[i] = slope.at(i);
-          for (py::ssize_t k = 0; k < 3; ++k) hessian(i, k) = curvature.at(i, k);
-        }
-        return value;
-      }
-    } catch (py::error_already_set &raised) {
-      raised.discard_as_unraisable("a convex function");
-    } catch (const py::cast_error &) {
-    }
-    return std::numeric_limits<double>::quiet_NaN();
+  const auto call = [kept = keep(std::move(function))](const Eigen::Vector3d &x, Eigen::Vector3d &gradient,
+                                                       Eigen::Matrix3d &hessian) {
+    return callAt(*kept, "a convex function", "a value, a gradient (3,) and a Hessian (3, 3)", x,
+                  [&](const py::object &answer) {
+                    const auto [value, slope, curvature] = answer.cast<std::tuple<double, Array, Array>>();
+                    if (slope.ndim() != 1 || slope.shape(0) != 3 || curvature.ndim() != 2 || curvature.shape(0) != 3 ||
+                        curvature.shape(1) != 3)
+                      throw py::cast_error();
+                    for (py::ssize_t i = 0; i < 3; ++i) {
+                      gradient[i] = slope.at(i);
+                      for (py::ssize_t k = 0; k < 3; ++k) hessian(i, k) = curvature.at(i, k);
+                    }
+                    return value;
+                  });
   };
-  return makeConvexFunction(call, toEigen(toVector(interior, "interior")), radius, error, planar, margin);
+  return withCallbacks(
+      [&] { return makeConvexFunction(call, toEigen(toVector(interior, "interior")), radius, error, planar, margin); });
 }
 
 BodyHandle polygonOf(const Array &vertices) {
@@ -201,8 +218,9 @@ void addShapes(py::module &module) {
       "A convex polygon in the plane z = 0; vertices (n, 2) [m] in order.");
   module.def(
       "mesh",
-      [](const Array &vertices, const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> &triangles,
-         bool solid) { return Shape{makeMeshOf(vertices, triangles, solid)}; },
+      [](const Array &vertices, const py::array &triangles, bool solid) {
+        return Shape{makeMeshOf(vertices, triangles, solid)};
+      },
       py::arg("vertices"), py::arg("triangles"), py::arg("solid") = false,
       "A triangle mesh: vertices (n, 3) [m], triangles (m, 3) of indices from 0. A hollow surface; with solid, a "
       "closed\n"

@@ -133,7 +133,7 @@ class Curves(unittest.TestCase):
             raise RuntimeError('mine')
 
         for function, words in ((lambda p: 2 * p[0], 'Lipschitz|lies within'), (lambda p: float('nan'), 'answered nan'),
-                                (raises, 'answered nan'), (lambda p: 'word', 'answered nan')):
+                                (raises, 'raised RuntimeError: mine'), (lambda p: 'word', "must return a number, got 'word'")):
             with self.assertRaisesRegex(ValueError, words):
                 cprox.distance_function(function, [0, 0, 0], 1)
         with self.assertRaisesRegex(ValueError, 'n_z, n_y, n_x'):
@@ -142,6 +142,93 @@ class Curves(unittest.TestCase):
             cprox.distance_grid([[[0, 0], [0, 0]], [[0, 0], [0, 3]]], 1)
         with self.assertRaisesRegex(ValueError, 'height at'):
             cprox.height_field([[0, 0], [0, float('nan')]], [1, 1])
+
+    def test_a_distance_function_may_ask_for_distances(self):
+        """The union of a ball and a box by cprox's own distances at a point, and with a large query inside: the same answers
+        as of the union by its formula."""
+        ball, box = cprox.Obstacle(cprox.sphere(.5)), cprox.Obstacle(cprox.box([.6, .6, .6]))
+        wild = cprox.bezier(numpy.random.default_rng(1).uniform(-2, 2, (40, 3)))
+        cloud = cprox.Obstacle(cprox.point_cloud(numpy.random.default_rng(2).uniform(-2, 2, (2000, 3))))
+
+        def plain(p):
+            return float(min(max(numpy.linalg.norm(p) - .5, 0), box_distance(numpy.array([p]), [.6, .6, .6])[0]))
+
+        def composed(p):
+            at = cprox.bezier([p, p])
+            return min(cprox.distance(at, one, epsilon=1e-9).upper for one in (ball, box))
+
+        def heavy(p):
+            cprox.distance(wild, cloud, epsilon=1e-9)
+            return plain(p)
+
+        for function in (composed, heavy):
+            for seed in range(3):
+                curve = cprox.bezier(numpy.random.default_rng(seed).uniform(-1.5, 1.5, (6, 3)) + [0, 0, 1.2])
+                wanted, got = (cprox.distance(curve, cprox.Obstacle(cprox.distance_function(f, [0, 0, 0], 1., error=1e-8)),
+                                              epsilon=1e-3) for f in (plain, function))
+                self.assertEqual(got.status, wanted.status)
+                self.assertLessEqual(got.lower, wanted.upper + 1e-7)
+                self.assertGreaterEqual(got.upper, wanted.lower - 1e-7)
+
+    def test_a_signal_handler_may_ask_for_distances(self):
+        cloud = cprox.Obstacle(cprox.point_cloud(numpy.random.default_rng(2).uniform(-2, 2, (20000, 3))))
+        curve = cprox.bezier(numpy.random.default_rng(3).uniform(-2, 2, (30, 3)))
+        wanted, handled = cprox.distance(curve, cloud, epsilon=1e-9), []
+
+        def handler(*_):
+            handled.append(cprox.distance(cprox.bezier([[0, 0, 0], [1, 1, 1]]), cloud).upper)
+
+        before = signal.signal(signal.SIGALRM, handler)
+        signal.setitimer(signal.ITIMER_REAL, .001, .001)
+        try:
+            until = time.monotonic() + 20
+            while len(handled) < 20 and time.monotonic() < until:
+                got = cprox.distance(curve, cloud, epsilon=1e-9)
+                self.assertEqual((got.lower, got.upper), (wanted.lower, wanted.upper))
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
+        self.assertEqual(len(set(handled)), 1)
+
+    def test_what_a_callback_raises_reaches_the_caller(self):
+        calls = [0]
+
+        def raising(error):
+            def function(p):
+                calls[0] += 1
+                if calls[0] > 270:  # not while the shape is made
+                    raise error
+                return float(numpy.linalg.norm(p) - .5)
+            return function
+
+        line = cprox.bezier([[-1, 1, 0], [1, 1, 0]])
+        for error in (KeyError('mine'), KeyboardInterrupt(), SystemExit(3)):
+            for ask in (lambda o: cprox.distance(line, o), lambda o: cprox.distance(line, [o]),
+                        lambda o: cprox.Obstacles([o]).distance_batch([[[-1, 1, 0], [1, 1, 0]]] * 3, threads=2)):
+                calls[0] = 0
+                obstacle = cprox.Obstacle(cprox.distance_function(raising(error), [0, 0, 0], .6))
+                if isinstance(error, Exception):
+                    with self.assertRaisesRegex(ValueError, "a distance function raised KeyError: 'mine'") as caught:
+                        ask(obstacle)
+                    self.assertIs(caught.exception.__cause__, error)
+                else:
+                    with self.assertRaises(type(error)):
+                        ask(obstacle)
+                self.assertEqual(cprox.distance(line, cprox.Obstacle(cprox.sphere(.5))).status, 'ok')
+
+    def test_numbers_out_of_range_are_named(self):
+        line, ball = cprox.bezier([[-1, 1, 0], [1, 1, 0]]), cprox.Obstacle(cprox.sphere(.5))
+        for number in (-1, 2.5, 2 ** 32, 2 ** 70, float('nan')):
+            with self.assertRaisesRegex(ValueError, '^max_nodes must be a whole number from 0 to 4294967295, got [^\n]*$'):
+                cprox.distance(line, ball, max_nodes=number)
+        with self.assertRaisesRegex(ValueError, 'triangles must be whole numbers, got an array of float64'):
+            cprox.mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2.]])
+        for ask, words in ((lambda: cprox.distance('line', ball), r"a Curve or a Mover, got 'line' \(str\)"),
+                           (lambda: cprox.distance(line, 7), r'got 7 \(int\)'),
+                           (lambda: cprox.distance(line, ball, epsilon='small'), r"epsilon must be a number, got 'small'"),
+                           (lambda: cprox.distance(line, ball, max_nodes='many'), r"max_nodes .* got 'many' \(str\)")):
+            with self.assertRaisesRegex(TypeError, words):
+                ask()
 
     def test_convex_functions_are_the_bodies_that_they_describe(self):
         """An ellipsoid beside its own kind, a smooth box that ends where its function is 0, a disc in the plane."""
@@ -193,8 +280,9 @@ class Curves(unittest.TestCase):
             v = numpy.dot(p, p) - .75
             return v * v - .7, 4 * v * numpy.array(p), 4 * v * numpy.eye(3) + 8 * numpy.outer(p, p)
 
-        for function, words in ((raises, 'not finite'), (lambda p: 1., 'not finite'), (saddle, 'within the radius'),
-                                (lambda p: (0., [0, 0], numpy.eye(3)), 'not finite'), (ring, 'not convex.* at least')):
+        for function, words in ((raises, 'raised RuntimeError: mine'), (lambda p: 1., 'must return a value, a gradient'),
+                                (saddle, 'within the radius'), (ring, 'not convex.* at least'),
+                                (lambda p: (0., [0, 0], numpy.eye(3)), 'must return a value, a gradient')):
             with self.assertRaisesRegex(ValueError, words):
                 cprox.convex_function(function, [0, 0, 0], 1.5)
 
