@@ -47,7 +47,7 @@ struct ResourceOptions {
 struct MeshTiming {
   /** Where the mesh came from. */
   enum Source {
-    FILE,      /**< the file, read by libassimp */
+    FILE,      /**< the mesh file */
     CACHE_DIR, /**< ResourceOptions::cache_dir */
     MEMORY     /**< this process had read the same content before */
   };

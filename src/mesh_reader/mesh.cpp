@@ -146,7 +146,7 @@ std::uint32_t MeshBuilder::add(const Point &position) {
 }
 
 void MeshBuilder::addPolygon(const std::vector<std::uint32_t> &corners) {
-  if (corners.size() < 3) return;
+  if (corners.size() < 3) throw Fault("a face has three vertices or more, got " + std::to_string(corners.size()));
   corners_.insert(corners_.end(), corners.begin(), corners.end());
   sizes_.push_back(static_cast<std::uint32_t>(corners.size()));
 }

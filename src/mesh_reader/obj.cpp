@@ -88,7 +88,7 @@ class Obj {
       if (*index > largest_) largest_ = *index, largest_line_ = words_.line();
       corners_.push_back(static_cast<std::uint32_t>(*index < 0 ? vertices() + *index : *index - 1));
     }
-    if (corners_.empty()) words_.fail("a face without vertices");
+    if (corners_.size() < 3) words_.fail("a face has three vertices or more, got " + std::to_string(corners_.size()));
     faces_ = true;
     mesh_.addPolygon(corners_);
   }

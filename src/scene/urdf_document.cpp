@@ -118,13 +118,22 @@ class Document {
     return out;
   }
 
+  /* The same, of one that has these attributes and nothing inside. */
+  const XMLElement *onlyLeaf(const std::string &who, const XMLElement &parent, const char *name,
+                             const Words &attributes) {
+    const XMLElement *out = onlyChild(parent, name);
+    if (!out) return nullptr;
+    noteAttributes(who, *out, attributes);
+    note(who, *out, {}, {});
+    return out;
+  }
+
   /* Its position, and its rotation by rpy or, of URDF 1.1, by quat_xyzw. */
   urdf::Pose originOf(const std::string &who, const XMLElement &parent) {
     urdf::Pose pose;
     pose.clear();
-    const XMLElement *origin = onlyChild(parent, "origin");
+    const XMLElement *origin = onlyLeaf(who, parent, "origin", {"xyz", "rpy", "quat_xyzw"});
     if (!origin) return pose;
-    noteAttributes(who, *origin, {"xyz", "rpy", "quat_xyzw"});
     const std::vector<double> p = numbersOr(origin, "xyz", {0, 0, 0}), r = numbersOr(origin, "rpy", {0, 0, 0});
     pose.position = urdf::Vector3(p[0], p[1], p[2]);
     pose.rotation.setFromRPY(r[0], r[1], r[2]);
@@ -265,14 +274,15 @@ class Document {
     out->clear();
     out->name = name;
     out->type = typeOf(attribute(element, "type"));
-    out->parent_link_name = endOf(element, "parent");
-    out->child_link_name = endOf(element, "child");
+    out->parent_link_name = endOf(who, element, "parent");
+    out->child_link_name = endOf(who, element, "child");
     out->parent_to_joint_origin_transform = originOf(who, element);
-    const std::vector<double> axis = numbersOr(onlyChild(element, "axis"), "xyz", {1, 0, 0});
+    const std::vector<double> axis = numbersOr(onlyLeaf(who, element, "axis", {"xyz"}), "xyz", {1, 0, 0});
     out->axis = urdf::Vector3(axis[0], axis[1], axis[2]);
 
     /* effort and velocity say nothing of where the joint goes */
-    const XMLElement *limit = onlyChild(element, "limit");
+    const XMLElement *limit = onlyLeaf(
+        who, element, "limit", {"lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"});
     if (!limit && out->type == urdf::Joint::REVOLUTE) throw Error("a revolute joint needs limits");
     if (!limit && out->type == urdf::Joint::PRISMATIC) throw Error("a prismatic joint needs limits");
     if (limit) {
@@ -281,7 +291,7 @@ class Document {
       out->limits->lower = numbersOr(limit, "lower", {0}).front();
       out->limits->upper = numbersOr(limit, "upper", {0}).front();
     }
-    if (const XMLElement *mimic = onlyChild(element, "mimic")) {
+    if (const XMLElement *mimic = onlyLeaf(who, element, "mimic", {"joint", "multiplier", "offset"})) {
       out->mimic = std::make_shared<urdf::JointMimic>();
       out->mimic->clear();
       out->mimic->joint_name = attribute(*mimic, "joint");
@@ -303,8 +313,8 @@ class Document {
                 didYouMean(name, {"revolute", "continuous", "prismatic", "fixed", "planar", "floating"}));
   }
 
-  static std::string endOf(const XMLElement &joint, const char *end) {
-    const XMLElement *element = onlyChild(joint, end);
+  std::string endOf(const std::string &who, const XMLElement &joint, const char *end) {
+    const XMLElement *element = onlyLeaf(who, joint, end, {"link"});
     const std::string link = element ? attribute(*element, "link") : "";
     if (link.empty()) throw Error("it has no " + std::string(end) + " link");
     return link;

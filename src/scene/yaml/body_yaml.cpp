@@ -13,6 +13,7 @@ namespace {
 
 /* A triangle as shape_msgs/MeshTriangle prints it, or as a list. */
 Eigen::Vector3i readTriangle(const YamlValue &value) {
+  if (value.isMap()) value.refuseOthers({"vertex_indices"});
   const std::vector<YamlValue> corners = (value.isMap() ? value.at("vertex_indices") : value).items();
   if (corners.size() != 3) value.fail("a triangle has three vertex indices");
   Eigen::Vector3i out;
@@ -103,6 +104,7 @@ void readMesh(const YamlValue &value, ShapeDescription &shape, Warnings &warning
   }
   value.warnOfOthers({"type", "vertices", "triangles", "resource", "dimensions", "scale", "solid", "pose"}, warnings);
   if (const auto resource = value.find("resource")) shape.resource = resource->text();
+  if (value.find("dimensions") && value.find("scale")) value.fail("has both dimensions and a scale");
   for (const char *key : {"dimensions", "scale"}) {
     if (const auto scale = value.find(key)) shape.dimensions = scale->numbers();
   }

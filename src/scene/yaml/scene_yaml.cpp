@@ -132,11 +132,12 @@ Operation readObject(const YamlValue &plain, Warnings &warnings) {
 
 /* octomap_msgs/OctomapWithPose; without data there is none. Its name is the one by which MoveIt knows it. */
 void readOctomap(const YamlValue &value, SceneFile &out, Warnings &warnings) {
-  const std::optional<YamlValue> map = value.find("octomap");
-  const std::vector<YamlValue> bytes = map ? map->itemsOf("data") : std::vector<YamlValue>();
-  if (bytes.empty()) return;
   value.warnOfOthers({"header", "origin", "octomap"}, warnings);
+  const std::optional<YamlValue> map = value.find("octomap");
+  if (!map) return;
   map->warnOfOthers({"header", "binary", "id", "resolution", "data"}, warnings);
+  const std::vector<YamlValue> bytes = map->itemsOf("data");
+  if (bytes.empty()) return;
 
   Operation operation;
   ObjectDescription &object = operation.object;
@@ -349,6 +350,7 @@ SceneFile readScene(const std::string &path, Warnings &told) {
     requireScene(root);
     root.warnOfOthers(kSceneKeys, warnings);
     if (const auto world = root.find("world")) readWorld(*world, out, warnings);
+    if (const auto name = root.find("name")) name->text(); // not what belongs elsewhere
     if (const auto robot = root.find("robot_model_name")) out.robot = robot->text();
     if (const auto diff = root.find("is_diff")) out.is_diff = diff->truth();
     readTransforms(root, out, warnings);

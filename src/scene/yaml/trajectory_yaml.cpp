@@ -69,6 +69,7 @@ void readBase(const YamlValue &value, TrajectoryDescription &out, Warnings &warn
 /* joint_spline: a B-spline of the joint values, by its control points. */
 void readSpline(const YamlValue &spline, TrajectoryDescription &out, Warnings &warnings) {
   spline.warnOfOthers({"header", "joint_names", "degree", "knots", "control_points"}, warnings);
+  readFrame(spline, warnings);
   for (const YamlValue &name : spline.at("joint_names").items()) out.joints.push_back(name.text());
   out.degree = spline.at("degree").count();
   if (out.degree < 1) spline.at("degree").fail("the degree of a spline is at least 1");
@@ -91,6 +92,7 @@ void readNames(const YamlValue &trajectory, std::vector<std::string> &out) {
 
 /* trajectory_msgs/JointTrajectory. */
 void readJointTrajectory(const YamlValue &trajectory, TrajectoryDescription &out, Warnings &warnings) {
+  readFrame(trajectory, warnings); // joint values are of no frame
   readNames(trajectory, out.joints);
   for (const YamlValue &point : trajectory.at("points").items()) out.points.push_back(readPoint(point, warnings));
 }
