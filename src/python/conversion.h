@@ -40,6 +40,11 @@ struct Points {
 /** Three numbers. */
 cprox_vec3 toVector(const Array &array, const char *what);
 
+/** An array of whole numbers from `least` to `most`, in C order. Throws Error that names `what` for others, which a
+ * cast would cut or wrap. An empty array may be of any kind. */
+using Whole = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+Whole toWhole(const py::object &given, const char *what, std::int64_t least, std::int64_t most);
+
 /** A homogeneous matrix (4, 4) whose linear part is a rotation; None: the identity. */
 Eigen::Isometry3d toTransform(const std::optional<Array> &matrix);
 

@@ -167,6 +167,21 @@ std::uint32_t toCount(py::handle given, const std::string &name) {
   return static_cast<std::uint32_t>(value);
 }
 
+Whole toWhole(const py::object &given, const char *what, std::int64_t least, std::int64_t most) {
+  const py::array any = py::array::ensure(given);
+  if (!any) throw py::type_error(std::string(what) + " must be an array, got " + whatIs(given));
+  const std::string kinds = "iub"; // of whole numbers
+  if (any.size() > 0 && kinds.find(any.dtype().kind()) == std::string::npos)
+    throw Error(std::string(what) + " must be whole numbers, got an array of " + std::string(py::str(any.dtype())));
+  Whole out(any);
+  for (py::ssize_t i = 0; i < out.size(); ++i) {
+    if (out.data()[i] < least || out.data()[i] > most)
+      throw Error(std::string(what) + " must be whole numbers from " + std::to_string(least) + " to " +
+                  std::to_string(most) + ", got " + std::to_string(out.data()[i]));
+  }
+  return out;
+}
+
 } // namespace curve_proximity::python
 
 PYBIND11_MODULE(_cprox, module) {

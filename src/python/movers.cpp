@@ -88,16 +88,16 @@ py::dict answer(const PythonMovers &m, const std::string &robot, const std::stri
 }
 
 py::dict contactOf(const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes, const Names &links,
-                   const Names &objects, bool allow_empty, const std::string &against) {
-  const Query query = queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty);
+                   const Names &objects, bool allow_empty, const std::string &against, bool moving_only) {
+  const Query query = queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only);
   return answerOf(
       m.ask(robot, against, [&](const auto &of) { return timeOfContact(m.get(), of, query, threadWorkspace()); }));
 }
 
 py::dict profileOf(const PythonMovers &m, const std::vector<double> &breaks, const std::string &robot, double epsilon,
                    const Names &links, double horizon, const Names &objects, bool allow_empty,
-                   const std::string &against) {
-  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty);
+                   const std::string &against, bool moving_only) {
+  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty, moving_only);
   return toDict(m.ask(robot, against, [&](const auto &of) {
     return clearanceProfile(m.get(), of, breaks, query, threadWorkspace(), horizon);
   }));
@@ -105,26 +105,28 @@ py::dict profileOf(const PythonMovers &m, const std::vector<double> &breaks, con
 
 py::list violationsOf(const PythonMovers &m, double delta, const std::string &robot, std::optional<double> resolution,
                       double epsilon, const Names &links, const Names &objects, bool allow_empty,
-                      const std::string &against) {
-  const Query query = queryOf("tolerance", delta, epsilon, DEFAULT_BUDGET, links, objects, allow_empty);
+                      const std::string &against, bool moving_only) {
+  const Query query = queryOf("tolerance", delta, epsilon, DEFAULT_BUDGET, links, objects, allow_empty, moving_only);
   const double fine = resolution.value_or(m.resolution(robot));
   return toList(
       m.ask(robot, against, [&](const auto &of) { return violations(m.get(), of, fine, query, threadWorkspace()); }));
 }
 
 py::list pairsOf(const PythonMovers &m, std::size_t k, const std::string &robot, double within, double epsilon,
-                 const Names &links, const Names &objects, bool allow_empty, const std::string &against) {
-  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty);
+                 const Names &links, const Names &objects, bool allow_empty, const std::string &against,
+                 bool moving_only) {
+  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty, moving_only);
   return toList(m.ask(robot, against, [&](const auto &of) {
     return nearestPairs(m.get(), of, {k, within}, query, threadWorkspace());
   }));
 }
 
 py::dict gradientOf(const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes,
-                    const Names &links, const Names &objects, bool allow_empty) {
+                    const Names &links, const Names &objects, bool allow_empty, bool moving_only) {
   const MovingRobot &one = m.find(robot);
   const ClearanceRow row = unlocked([&] {
-    return clearanceGradient(m.get(), one, queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty),
+    return clearanceGradient(m.get(), one,
+                             queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only),
                              threadWorkspace());
   });
   py::dict out = toDict(row);
@@ -133,8 +135,8 @@ py::dict gradientOf(const PythonMovers &m, const std::string &robot, double epsi
 }
 
 py::dict gradientsOf(const PythonMovers &m, double epsilon, Count max_nodes, const Names &links, const Names &objects,
-                     bool allow_empty, const std::string &against) {
-  const Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty);
+                     bool allow_empty, const std::string &against, bool moving_only) {
+  const Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only);
   const Against pairs = againstOf(against);
   const MoversClearance found = unlocked([&] { return clearanceGradients(m.get(), pairs, query, threadWorkspace()); });
   py::dict out = answerOf(found.answer), gradients;
@@ -180,43 +182,47 @@ void addMovers(py::module &module) {
       .def(
           "distance",
           [](const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes, const Names &links,
-             const Names &objects, bool allow_empty, const std::string &against) {
-            return answer(m, robot, against, queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty));
+             const Names &objects, bool allow_empty, const std::string &against, bool moving_only) {
+            return answer(m, robot, against,
+                          queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only));
           },
           py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
-          py::arg("against") = "others", "The least distance: the dict of Motion.distance().")
+          py::arg("against") = "others", py::arg("moving_only") = false,
+          "The least distance: the dict of Motion.distance().")
       .def(
           "tolerance",
           [](const PythonMovers &m, double delta, const std::string &robot, double epsilon, Count max_nodes,
-             const Names &links, const Names &objects, bool allow_empty, const std::string &against) {
+             const Names &links, const Names &objects, bool allow_empty, const std::string &against, bool moving_only) {
             return answer(m, robot, against,
-                          queryOf("tolerance", delta, epsilon, max_nodes, links, objects, allow_empty));
+                          queryOf("tolerance", delta, epsilon, max_nodes, links, objects, allow_empty, moving_only));
           },
           py::arg("delta"), py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
-          py::arg("against") = "others", "Are they farther apart than delta [m] at all times?")
+          py::arg("against") = "others", py::arg("moving_only") = false,
+          "Are they farther apart than delta [m] at all times?")
       .def(
           "collision",
           [](const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes, const Names &links,
-             const Names &objects, bool allow_empty, const std::string &against) {
+             const Names &objects, bool allow_empty, const std::string &against, bool moving_only) {
             return answer(m, robot, against,
-                          queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty));
+                          queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only));
           },
           py::arg("robot") = "", py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
-          py::arg("against") = "others", "Do they touch or overlap at any time?")
+          py::arg("against") = "others", py::arg("moving_only") = false, "Do they touch or overlap at any time?")
       .def("time_of_contact", &contactOf, py::arg("robot") = "", py::arg("epsilon") = 1e-6,
            py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
-           py::arg("allow_empty") = false, py::arg("against") = "others",
+           py::arg("allow_empty") = false, py::arg("against") = "others", py::arg("moving_only") = false,
            "When they first touch: in [t_contact_lower, t] of the result [s]. Never late.")
       .def("gradient", &gradientOf, py::arg("robot"), py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
            py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
+           py::arg("moving_only") = false,
            "The least distance of one of the motions and its derivatives by that motion: the dict of\n"
            "Motion.gradient() with start, by when it begins. What else moves goes on as it does.")
       .def("gradients", &gradientsOf, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
            py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
-           py::arg("against") = "others",
+           py::arg("against") = "others", py::arg("moving_only") = false,
            "The least distance of all that moves and its derivatives by every motion, by one search: the dict of\n"
            "distance() with valid, reason, t, and gradients: of each motion, then of each object that moves, by its "
            "name a\n"
@@ -226,17 +232,19 @@ void addMovers(py::module &module) {
            "None for objects. Costs what gradient() costs.")
       .def("violations", &violationsOf, py::arg("delta"), py::arg("robot") = "", py::arg("resolution") = py::none(),
            py::arg("epsilon") = 1e-6, py::arg("links") = Names{}, py::arg("objects") = Names{},
-           py::arg("allow_empty") = false, py::arg("against") = "others",
+           py::arg("allow_empty") = false, py::arg("against") = "others", py::arg("moving_only") = false,
            "All intervals of time within delta [m]: the list of Motion.violations(). resolution [s]: a thousandth of\n"
            "the motion, or of all, if None.")
       .def("profile", &profileOf, py::arg("breaks"), py::arg("robot") = "", py::arg("epsilon") = 1e-6,
            py::arg("links") = Names{}, py::arg("horizon") = std::numeric_limits<double>::infinity(),
            py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("against") = "others",
+           py::arg("moving_only") = false,
            "The clearance between each two of breaks (n + 1,) [s], within domain: the dict of Motion.profile().")
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("robot") = "",
            py::arg("within") = std::numeric_limits<double>::infinity(), py::arg("epsilon") = 1e-6,
            py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
-           py::arg("against") = "others", "The k pairs that come closest, nearest first; each as distance() gives it.");
+           py::arg("against") = "others", py::arg("moving_only") = false,
+           "The k pairs that come closest, nearest first; each as distance() gives it.");
 }
 
 } // namespace curve_proximity::python

@@ -7,30 +7,32 @@
 namespace curve_proximity::python {
 namespace {
 
-using Edges = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
-using Verdicts = py::array_t<std::int8_t, py::array::c_style | py::array::forcecast>;
-
-Roadmap roadmapOf(const std::vector<std::string> &joints, const Array &vertices, const Edges &edges,
+Roadmap roadmapOf(const std::vector<std::string> &joints, const Array &vertices, const py::object &given,
                   const JointPositions &rest) {
+  const Whole edges = toWhole(given, "edges", 0, std::numeric_limits<std::uint32_t>::max());
   if (vertices.ndim() != 2) throw Error("vertices must be an array of shape (n, joints): one row a posture");
   if (edges.ndim() != 2 || edges.shape(1) != 2) throw Error("edges must be an array of shape (m, 2): rows of vertices");
   Roadmap out;
   out.joints = joints, out.rest = rest;
   out.vertices = Eigen::Map<const Eigen::MatrixXd>(vertices.data(), vertices.shape(1), vertices.shape(0));
-  for (py::ssize_t i = 0; i < edges.shape(0); ++i) out.edges.push_back({edges.at(i, 0), edges.at(i, 1)});
+  for (py::ssize_t i = 0; i < edges.shape(0); ++i)
+    out.edges.push_back({static_cast<std::uint32_t>(edges.at(i, 0)), static_cast<std::uint32_t>(edges.at(i, 1))});
   return out;
 }
 
-Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string> &joints, const Array &vertices,
-                        const Edges &edges, double delta, bool self, const std::optional<Verdicts> &known,
-                        const JointPositions &rest, const std::optional<Array> &base, double epsilon, Count max_nodes,
-                        unsigned threads, bool allow_empty) {
+py::array_t<std::int8_t> edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string> &joints,
+                                        const Array &vertices, const py::object &edges, double delta, bool self,
+                                        const py::object &known, const JointPositions &rest,
+                                        const std::optional<Array> &base, double epsilon, Count max_nodes,
+                                        unsigned threads, bool allow_empty) {
   if (!scene.robot()) throw Error("the scene has no robot");
   const Roadmap roadmap = roadmapOf(joints, vertices, edges, scene.rest(rest));
   std::vector<cprox_verdict> before;
-  for (py::ssize_t i = 0; known && i < known->size(); ++i)
-    before.push_back(static_cast<cprox_verdict>(known->data()[i]));
-  const Eigen::Isometry3d at = toTransform(base);
+  if (!known.is_none()) {
+    const Whole verdicts = toWhole(known, "known", CPROX_VERDICT_CLEAR, CPROX_VERDICT_UNDECIDED);
+    for (py::ssize_t i = 0; i < verdicts.size(); ++i) before.push_back(static_cast<cprox_verdict>(verdicts.data()[i]));
+  }
+  const Eigen::Isometry3d at = base ? toTransform(base) : scene.base();
   Query query = queryOf("tolerance", delta, epsilon, max_nodes, {}, {}, allow_empty);
   query.options.stop = nullptr; // one thread alone would be interrupted
   std::vector<cprox_verdict> found;
@@ -40,7 +42,7 @@ Verdicts edgeVerdictsOf(const PythonScene &scene, const std::vector<std::string>
     const PreparedRobot robot(scene.snapshot(), scene.robot()->srdf.disabled, {}, {}, at);
     found = edgeVerdicts(robot, roadmap, self, query, before, pool);
   }
-  Verdicts out(static_cast<py::ssize_t>(found.size()));
+  py::array_t<std::int8_t> out(static_cast<py::ssize_t>(found.size()));
   for (std::size_t i = 0; i < found.size(); ++i) out.mutable_data()[i] = static_cast<std::int8_t>(found[i]);
   return out;
 }

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include <curve_proximity/files.hpp>
+#include <curve_proximity/mesh_remarks.hpp>
 
 #include "robots.h"
 
@@ -51,14 +52,15 @@ void PythonScene::load(const std::string &path) {
                 "': further robots are made as Motions, and joined by Movers");
   warn(path, contents.warnings);
   change(contents.change);
+  for (const Operation &operation : contents.change.operations) tellMeshes(path, operation.object);
+  for (const Attachment &attachment : contents.change.attachments) tellMeshes(path, attachment.object);
   for (const auto &[joint, value] : contents.joints) joints_[joint] = value;
   if (contents.change.clear || !contents.base.matrix().isIdentity(0.0)) base_ = contents.base;
 }
 
 void PythonScene::add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
                       const std::optional<Array> &pose, double padding, const std::optional<Array> &vertices,
-                      const std::optional<py::array_t<int, py::array::c_style | py::array::forcecast>> &triangles,
-                      const std::string &resource, bool solid) {
+                      const py::object &triangles, const std::string &resource, bool solid) {
   const std::optional<ShapeType> known = shapeTypeFromName(type);
   if (!known) throw Error("object '" + id + "': there is no shape '" + type + "'");
   ShapeDescription shape;
@@ -67,9 +69,12 @@ void PythonScene::add(const std::string &id, const std::string &type, const std:
     const Points points(*vertices, "vertices");
     shape.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices->data(), 3, static_cast<Eigen::Index>(points.size));
   }
-  if (triangles) {
-    if (triangles->ndim() != 2 || triangles->shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
-    shape.triangles = Eigen::Map<const Triangles>(triangles->data(), 3, triangles->shape(0));
+  if (!triangles.is_none()) {
+    const Whole indices = toWhole(triangles, "triangles", 0, std::numeric_limits<int>::max());
+    if (indices.ndim() != 2 || indices.shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
+    shape.triangles =
+        Eigen::Map<const Eigen::Matrix<std::int64_t, 3, Eigen::Dynamic>>(indices.data(), 3, indices.shape(0))
+            .cast<int>();
   }
   Operation add;
   add.object.id = id, add.object.pose = toTransform(pose), add.object.padding = padding;
@@ -77,6 +82,16 @@ void PythonScene::add(const std::string &id, const std::string &type, const std:
   SceneChange change;
   change.operations.push_back(std::move(add));
   this->change(change);
+  tellMeshes("object '" + id + "'", change.operations.front().object);
+}
+
+void PythonScene::tellMeshes(const std::string &where, const ObjectDescription &object) const {
+  std::vector<std::string> remarks;
+  {
+    const py::gil_scoped_release release;
+    remarks = meshRemarks(object, resources_);
+  }
+  warn(where, remarks);
 }
 
 Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links,
@@ -261,9 +276,10 @@ py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
 }
 
 py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, Count max_nodes, const Names &links,
-                   const Names &objects, bool allow_empty) {
+                   const Names &objects, bool allow_empty, bool moving_only) {
   const Answer answer = unlocked([&] {
-    return timeOfContact(motion, self, queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty),
+    return timeOfContact(motion, self,
+                         queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only),
                          threadWorkspace());
   });
   return answerOf(answer);
@@ -271,12 +287,12 @@ py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, Count m
 
 /* An answer with its proof, and the query that it is about as cprox_check reads it. */
 py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, bool self, double epsilon,
-                       Count max_nodes, const Names &links, const Names &objects, bool allow_empty) {
+                       Count max_nodes, const Names &links, const Names &objects, bool allow_empty, bool moving_only) {
   using Handle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
   const Handle certificate(cprox_certificate_create(), cprox_certificate_free);
   if (!certificate) throw std::bad_alloc();
-  Query query =
-      queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes, links, objects, allow_empty);
+  Query query = queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes, links, objects,
+                        allow_empty, moving_only);
   query.options.certificate = certificate.get();
   std::string text;
   const Answer answer = unlocked([&] {
@@ -294,8 +310,8 @@ py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, b
 }
 
 py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, Count max_nodes, const Names &links,
-                    const Names &objects, bool allow_empty, bool is_signed) {
-  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty);
+                    const Names &objects, bool allow_empty, bool is_signed, bool moving_only) {
+  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only);
   query.options.signed_distance = is_signed;
   const ClearanceRow row = unlocked([&] {
     return clearanceGradient(motion, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, query, threadWorkspace());
@@ -325,8 +341,8 @@ Array stacked(const std::vector<ClearanceRow> &rows, Eigen::Vector3d ClearanceGr
 
 py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair, const std::vector<double> &breaks,
                 bool self, double epsilon, Count max_nodes, const Names &links, const Names &objects, bool allow_empty,
-                bool is_signed, std::size_t most) {
-  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty);
+                bool is_signed, std::size_t most, bool moving_only) {
+  Query query = queryOf("distance", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only);
   query.options.signed_distance = is_signed;
   RowLimits limits;
   limits.horizon = horizon, limits.per_pair = per_pair, limits.most = most, limits.breaks = breaks;
@@ -360,34 +376,35 @@ py::dict rowsOf(const RobotMotion &motion, double horizon, std::size_t per_pair,
   out["base_angular"] = stacked(rows, &ClearanceGradient::base_angular);
   out["object_linear"] = stacked(rows, &ClearanceGradient::object_linear);
   out["object_angular"] = stacked(rows, &ClearanceGradient::object_angular);
+  out["gap"] = found.gap ? gapName(*found.gap) : "";
   return out;
 }
 
 py::list violationsOf(const RobotMotion &motion, double delta, std::optional<double> resolution, bool self,
-                      double epsilon, const Names &links, const Names &objects, bool allow_empty) {
+                      double epsilon, const Names &links, const Names &objects, bool allow_empty, bool moving_only) {
   constexpr double PART = 1e-3;
   const std::array<double, 2> domain = motion.domain();
   const Violations found = unlocked([&] {
     return violations(motion, self, resolution.value_or(PART * (domain[1] - domain[0])),
-                      queryOf("tolerance", delta, epsilon, DEFAULT_BUDGET, links, objects, allow_empty),
+                      queryOf("tolerance", delta, epsilon, DEFAULT_BUDGET, links, objects, allow_empty, moving_only),
                       threadWorkspace());
   });
   return toList(found);
 }
 
 py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon,
-                   const Names &links, double horizon, const Names &objects, bool allow_empty) {
-  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty);
+                   const Names &links, double horizon, const Names &objects, bool allow_empty, bool moving_only) {
+  const Query query = queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty, moving_only);
   const std::vector<ClearanceInterval> intervals =
       unlocked([&] { return clearanceProfile(motion, self, breaks, query, threadWorkspace(), horizon); });
   return toDict(intervals);
 }
 
 py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool self, double epsilon, const Names &links,
-                 const Names &objects, bool allow_empty) {
+                 const Names &objects, bool allow_empty, bool moving_only) {
   const std::vector<Answer> answers = unlocked([&] {
     return nearestPairs(motion, self, {k, within},
-                        queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty),
+                        queryOf("distance", 0.0, epsilon, DEFAULT_BUDGET, links, objects, allow_empty, moving_only),
                         threadWorkspace());
   });
   return toList(answers);
@@ -509,18 +526,18 @@ void addRobots(py::module &module) {
           py::arg("moving_only") = false, "Does the robot touch or overlap an object, or itself? As distance().")
       .def("time_of_contact", &contactOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
-           py::arg("allow_empty") = false,
+           py::arg("allow_empty") = false, py::arg("moving_only") = false,
            "When the robot first touches an object, or itself: in [t_contact_lower, t] of the result [s]. Never late.\n"
            "As distance().")
       .def("certificate", &certificateOf, py::arg("delta") = py::none(), py::arg("self_collision") = false,
            py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{},
-           py::arg("objects") = Names{}, py::arg("allow_empty") = false,
+           py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("moving_only") = false,
            "A proof of tolerance(delta), or without delta of distance(): their dict with claim ('apart' or 'near'), "
            "record\n"
            "(bytes) and query (str), which check() verifies. ValueError where there is no proof, with the cause.")
       .def("gradient", &gradientOf, py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
            py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{}, py::arg("objects") = Names{},
-           py::arg("allow_empty") = false, py::arg("signed") = false,
+           py::arg("allow_empty") = false, py::arg("signed") = false, py::arg("moving_only") = false,
            "The least distance and its derivatives: the dict of distance() with valid, reason, t, positions (points, "
            "joints),\n"
            "velocities and accelerations likewise or None, duration, base_linear, base_angular, object_linear,\n"
@@ -529,16 +546,18 @@ void addRobots(py::module &module) {
           "rows", &rowsOf, py::arg("horizon"), py::arg("per_pair") = 1, py::arg("breaks") = std::vector<double>{},
           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
           py::arg("links") = Names{}, py::arg("objects") = Names{}, py::arg("allow_empty") = false,
-          py::arg("signed") = false, py::arg("most") = 1000,
+          py::arg("signed") = false, py::arg("most") = 1000, py::arg("moving_only") = false,
           "Constraints for an optimiser: of each pair that comes within the horizon [m] its least distances between "
           "each two\nof breaks [s] (empty: the trajectory's times), the per_pair nearest, with their derivatives. "
           "A dict of arrays with an\nentry a row: lower, upper, t, t0, t1, valid, duration (n,), positions (n, points, "
           "joints), velocities and accelerations\nlikewise or None, witness_a, witness_b, base_linear, base_angular, "
-          "object_linear, object_angular (n, 3), and lists a, b,\nreason. A pair without a row is farther than the "
-          "horizon. RuntimeError where there are more than most rows.")
+          "object_linear, object_angular (n, 3), and lists a, b,\nreason; and gap, as profile(). A pair without a row "
+          "is "
+          "farther than the horizon, or the motion does not move it.\nRuntimeError where there are more than most "
+          "rows.")
       .def("violations", &violationsOf, py::arg("delta"), py::arg("resolution") = py::none(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
-           py::arg("objects") = Names{}, py::arg("allow_empty") = false,
+           py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("moving_only") = false,
            "All intervals of time within delta [m] of an object, or of the robot itself: a list of dicts of "
            "enter_lower,\n"
            "enter_upper, leave_lower, leave_upper [s], verdict, upper, t, a, b. Farther than delta before enter_lower "
@@ -553,13 +572,13 @@ void addRobots(py::module &module) {
       .def(
           "profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
           py::arg("links") = Names{}, py::arg("horizon") = std::numeric_limits<double>::infinity(),
-          py::arg("objects") = Names{}, py::arg("allow_empty") = false,
+          py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("moving_only") = false,
           "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,), witness_a, witness_b "
           "(n, 3)\nand lists a, b. Beyond the horizon [m] it is only bounded: "
           "lower > horizon.")
       .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
-           py::arg("objects") = Names{}, py::arg("allow_empty") = false,
+           py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("moving_only") = false,
            "The k pairs that come closest, nearest first; each as distance() gives it.");
 }
 

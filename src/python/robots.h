@@ -31,7 +31,8 @@ class PythonScene {
  public:
   PythonScene(std::shared_ptr<LoadedRobot> robot, const Packages &packages)
       : robot_(std::move(robot)),
-        scene_(robot_ ? robot_->robot : nullptr, resourcesOf("", packages),
+        resources_(resourcesOf("", packages)),
+        scene_(robot_ ? robot_->robot : nullptr, resources_,
                robot_ ? allowedPairs(robot_->srdf) : std::vector<AllowedPair>{}) {}
 
   void change(const SceneChange &change) {
@@ -47,8 +48,7 @@ class PythonScene {
 
   void add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
            const std::optional<Array> &pose, double padding, const std::optional<Array> &vertices,
-           const std::optional<py::array_t<int, py::array::c_style | py::array::forcecast>> &triangles,
-           const std::string &resource, bool solid);
+           const py::object &triangles, const std::string &resource, bool solid);
 
   void operate(Operation::Kind kind, const std::string &id, const Eigen::Isometry3d &pose) {
     Operation operation;
@@ -82,7 +82,11 @@ class PythonScene {
   }
 
  private:
+  /* Warns of what was done to read the object's mesh files that their user may not expect. */
+  void tellMeshes(const std::string &where, const ObjectDescription &object) const;
+
   std::shared_ptr<LoadedRobot> robot_;
+  ResourceOptions resources_;
   Scene scene_;
   JointPositions joints_;
   Eigen::Isometry3d base_ = Eigen::Isometry3d::Identity();

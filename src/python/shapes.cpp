@@ -5,18 +5,15 @@
 namespace curve_proximity::python {
 namespace {
 
-BodyHandle makeMeshOf(const Array &vertices, const py::array &given, bool solid) {
+BodyHandle makeMeshOf(const Array &vertices, const py::object &given, bool solid) {
   const Points points(vertices, "vertices");
-  const std::string kinds = "iub"; // of whole numbers; a cast would cut others
-  if (kinds.find(given.dtype().kind()) == std::string::npos)
-    throw Error("triangles must be whole numbers, got an array of " + std::string(py::str(given.dtype())));
-  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(given);
+  const Whole triangles = toWhole(given, "triangles", 0, std::numeric_limits<std::uint32_t>::max());
   if (triangles.ndim() != 2 || triangles.shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
   std::vector<std::array<std::uint32_t, 3>> indices(static_cast<std::size_t>(triangles.shape(0)));
   for (std::size_t i = 0; i < indices.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t index = triangles.at(static_cast<py::ssize_t>(i), static_cast<py::ssize_t>(k));
-      if (index < 0 || static_cast<std::size_t>(index) >= points.size)
+      if (static_cast<std::size_t>(index) >= points.size)
         throw Error("triangle " + std::to_string(i) + ": there is no vertex " + std::to_string(index));
       indices[i][k] = static_cast<std::uint32_t>(index);
     }
@@ -218,7 +215,7 @@ void addShapes(py::module &module) {
       "A convex polygon in the plane z = 0; vertices (n, 2) [m] in order.");
   module.def(
       "mesh",
-      [](const Array &vertices, const py::array &triangles, bool solid) {
+      [](const Array &vertices, const py::object &triangles, bool solid) {
         return Shape{makeMeshOf(vertices, triangles, solid)};
       },
       py::arg("vertices"), py::arg("triangles"), py::arg("solid") = false,

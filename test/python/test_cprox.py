@@ -906,6 +906,89 @@ class Robots(unittest.TestCase):
         self.assertIn('elbow', str(caught.exception))
 
 
+class Edges(unittest.TestCase):
+    """Straight motions between postures of the arm of examples/formats, among balls."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = os.path.join(DATA, '..', '..', 'examples', 'formats')
+        cls.robot = cprox.Robot.from_urdf(os.path.join(folder, 'arm.urdf'), srdf=os.path.join(folder, 'arm.srdf'))
+        cls.scene = cprox.Scene(cls.robot)
+        r = numpy.random.default_rng(1)
+        for i in range(6):
+            cls.scene.add(f'ball{i}', 'sphere', [.08], cprox.transform(r.uniform([-.9, -.9, .2], [.9, .9, .5])))
+        cls.joints = ['shoulder', 'elbow']
+
+    def verdicts(self, start, end, self_collision, delta):
+        """Of each edge, by the queries of its motion: 0 clear, 1 violated, 2 undecided."""
+        out = []
+        for a, b in zip(start, end):
+            motion = cprox.Motion(self.scene, self.joints, [0, 1], [a, b])
+            found = [motion.tolerance(delta, self_collision=own)['result'].verdict for own in ([False, True] if self_collision else [False])]
+            out.append(1 if 'violated' in found else 2 if 'undecided' in found else 0)
+        return out
+
+    def test_verdicts_are_those_of_each_edge_alone(self):
+        r = numpy.random.default_rng(2)
+        start, end = r.uniform(-2.5, 2.5, (2, 60, 2))
+        for self_collision in (False, True):
+            for delta in (0.0, 0.05):
+                found = cprox.edges(self.scene, self.joints, start, end, delta, self_collision=self_collision)
+                self.assertEqual(found.dtype, numpy.uint8)
+                self.assertEqual(found.tolist(), self.verdicts(start, end, self_collision, delta))
+                self.assertEqual(len(set(found.tolist())), 2)
+        one = cprox.edges(self.scene, self.joints, start[0], end, 0.05)
+        self.assertEqual(one.tolist(), self.verdicts([start[0]] * 60, end, True, 0.05))
+        self.assertEqual(cprox.edges(self.scene, self.joints, numpy.empty((0, 2)), numpy.empty((0, 2))).shape, (0,))
+
+    def test_what_is_no_edge_is_refused(self):
+        for start, end, words in (([[0, float('nan')]], [[1, 1]], 'nan|finite'), ([[0, 0]], [[1, float('inf')]], 'inf|finite'),
+                                  ([[0, 0, 0]], [[1, 1, 1]], 'joints'), ([[[0, 0]]], [[[1, 1]]], 'shape'),
+                                  ([[0, 0]] * 2, [[1, 1]] * 3, 'broadcast')):
+            with self.assertRaisesRegex(ValueError, words):
+                cprox.edges(self.scene, self.joints, start, end)
+        with self.assertRaisesRegex(ValueError, 'knee'):
+            cprox.edges(self.scene, ['shoulder', 'knee'], [[0, 0]], [[1, 1]])
+        for edges, words in (([[0, 1.5]], 'edges must be whole numbers, got an array of float64'), ([[0, -1]], 'from 0 to'),
+                             ([[0, 2]], 'vert')):
+            with self.assertRaisesRegex(ValueError, words):
+                cprox.edge_verdicts(self.scene, self.joints, [[0, 0], [1, 1]], edges, 0)
+        with self.assertRaisesRegex(ValueError, 'known'):
+            cprox.edge_verdicts(self.scene, self.joints, [[0, 0], [1, 1]], [[0, 1]], 0, known=[7])
+
+    def test_nothing_to_measure_is_not_clear(self):
+        empty = cprox.Scene(self.robot)
+        self.assertEqual(cprox.edges(empty, self.joints, [[0, 0]], [[1, 1]], self_collision=False).tolist(), [2])
+        self.assertEqual(cprox.edges(empty, self.joints, [[0, 0]], [[1, 1]], self_collision=False, allow_empty=True).tolist(), [0])
+
+    def test_moving_only_leaves_out_what_stands_in_every_query(self):
+        """The elbow turns; the upper arm stands 2 cm beside a ball."""
+        scene = cprox.Scene(self.robot)
+        scene.add('ball', 'sphere', [.1], cprox.transform([.3, -.15, .3]))
+        motion = cprox.Motion(scene, self.joints, [0, 1], [[0, .5], [0, 1]])
+        movers = cprox.Movers(scene, {'arm': motion})
+        for one, prefix in ((motion, ''), (movers, 'arm/')):
+            queries = [('distance', {}), ('time_of_contact', {}), ('tolerance', {'delta': .01}), ('collision', {}), ('gradient', {})]
+            for name, words in queries:
+                if one is movers and name == 'gradient':
+                    words = {'robot': 'arm'}
+                all_links, moving = (getattr(one, name)(moving_only=only, **words) for only in (False, True))
+                self.assertNotIn('moving_only', all_links['message'], name)
+                self.assertIn('moving_only', moving['message'], name)
+                if name in ('distance', 'gradient'):
+                    self.assertEqual([found['a'].split('/')[-1] for found in (all_links, moving)], ['upper', 'lower'], name)
+                    self.assertGreater(moving['result'].lower, all_links['result'].upper + .1, name)
+            for only, link in ((False, 'upper'), (True, 'lower')):
+                self.assertEqual(one.profile([0, 1], moving_only=only)['a'], [prefix + link])
+                self.assertEqual([pair['a'] for pair in one.nearest_pairs(k=1, moving_only=only)], [prefix + link])
+                self.assertEqual(len(one.violations(.05, moving_only=only)), 0 if only else 1)
+        self.assertEqual(movers.gradients(moving_only=True)['a'], 'arm/lower')
+        self.assertEqual(set(motion.rows(9, moving_only=True)['a']), {'lower'})
+        proof = motion.certificate(.05, moving_only=True)
+        self.assertIn('farther than', cprox.check(proof))
+        self.assertEqual((proof['claim'], motion.certificate(.05)['claim']), ('apart', 'near'))
+
+
 class Files(unittest.TestCase):
     """Parts of files that would go missing: they are used, refused or warned of."""
     ARM = ('<robot name="m" version="1.1"><link name="base"><collision><geometry><box size="0.4 0.4 0.4"/></geometry></collision></link>'
@@ -951,6 +1034,8 @@ class Files(unittest.TestCase):
         self.assertEqual(motion.collision()['result'].verdict, 'violated')
         elsewhere = cprox.Motion(scene, ['j'], [0, 1], [[0], [1]], base=cprox.transform([0, 0, 0]))
         self.assertAlmostEqual(elsewhere.link_poses(0)['base'][0, 3], 0)
+        for base, verdict in ((None, 1), (cprox.transform([0, 0, 0]), 0)):
+            self.assertEqual(cprox.edges(scene, ['j'], [0], [1], self_collision=False, base=base).tolist(), [verdict])
 
     def test_the_cause_of_a_refusal_is_told(self):
         for more, words in (('<xacro:hand/>', 'this is xacro: expand it first'), ('<link name="other"/>', 'Two root links found')):
@@ -966,6 +1051,42 @@ class Files(unittest.TestCase):
     def test_unknown_elements_of_a_urdf_are_warned_of(self):
         with self.assertWarnsRegex(UserWarning, '<loop_joint> .* is not known'):
             self.robot('revolute', '4', '<loop_joint/>')
+
+    def test_misspelt_attributes_and_children_of_a_joint_are_not_clear(self):
+        scene_file = self.file('s.yaml', 'world: {collision_objects: [{id: b, pose: {position: [3, 0, 0]}, primitives: [{type: 2, '
+                               'dimensions: [0.1]}]}]}')
+        for old, new, words in (('<axis xyz=', '<axis xzy=', "attribute 'xzy' of <axis>"),
+                                ('<parent link="base"/>', '<parent link="base"><x/></parent>', '<x> .*is not known'),
+                                ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 1"><y/></axis>', '<y> .*is not known'),
+                                ('upper=', 'uper=', "attribute 'uper' of <limit>")):
+            text = (self.ARM % ('revolute', '4', '')).replace(old, new)
+            self.assertIn(new, text)
+            with self.assertWarnsRegex(UserWarning, words):
+                robot = cprox.Robot.from_urdf(self.file('m.urdf', text))
+            scene = cprox.Scene(robot)
+            scene.load(scene_file)
+            answer = cprox.Motion(scene, ['j'], [0, 1], [[0], [1]]).collision()
+            self.assertEqual((answer['status'], answer['result'].verdict), ('partial', 'undecided'), new)
+
+    def test_the_unit_of_a_mesh_file_is_told(self):
+        corners = ' '.join(f'{x} {y} {z}' for x in (-50, 50) for y in (-50, 50) for z in (-50, 50))
+        faces = '0 1 3 0 3 2 4 6 7 4 7 5 0 4 5 0 5 1 2 3 7 2 7 6 0 2 6 0 6 4 1 5 7 1 7 3'
+        path = self.file('c.dae', (
+            '<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit meter="0.01"/>'
+            '</asset><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="24">%s</float_array>'
+            '<technique_common><accessor source="#a" count="8" stride="3"/></technique_common></source><vertices id="v"><input '
+            'semantic="POSITION" source="#p"/></vertices><triangles count="12"><input semantic="VERTEX" source="#v" offset="0"/><p>%s</p>'
+            '</triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node><instance_geometry '
+            'url="#g"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>')
+            % (corners, faces))
+        scene = self.scene()
+        with self.assertWarnsRegex(UserWarning, "c.dae': its unit is '0.01' m"):
+            scene.add('cube', 'mesh', resource=path, pose=cprox.transform([3, 0, 0]))
+        loaded = self.scene()
+        with self.assertWarnsRegex(UserWarning, "c.dae': its unit is '0.01' m"):
+            loaded.load(self.file('s.yaml', 'world: {collision_objects: [{id: cube, meshes: [{resource: c.dae}], pose: {position: [3, 0, 0]}}]}'))
+        for one in (scene, loaded):
+            self.assertAlmostEqual(cprox.Motion(one, ['j'], [0, 1], [[0], [1]]).distance()['result'].upper, 2.3)
 
     def test_a_continuous_joint_goes_the_long_way_with_a_warning(self):
         scene, path = self.scene('continuous'), self.file('t.yaml', self.MOVE % (3.1, -3.1))
