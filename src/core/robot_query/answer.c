@@ -60,7 +60,8 @@ static cprox_status answer_class(const query *q, const start_class *starts, size
   robot_search o;
   if (!robot_scene_begin_class(&o.scene, q, starts, first, last, ROBOT_MOST_LISTED, cutoff))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
-  search_goal goal = query_goal(q, query_order(q), cutoff);
+  /* verdicts, too: depth first stays with one deep pair, while the distance that they follow from leaves it */
+  search_goal goal = query_goal(q, SEARCH_BEST_FIRST, cutoff);
   if (!query_wants_verdict(q)) goal.share = q->options.share, goal.share_user = q->options.share_user;
   search_outcome found;
   const cprox_status status = run(q, &goal, &o, &found);

@@ -151,6 +151,17 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
   return CPROX_OK;
 }
 
+/* The nearest elements in the middle, if they are nearer than the best, or of a verdict violate its limit: less what
+ * the part moves they bound all. */
+static cprox_status bound_by_nearest(robot_search *o, list_entry *entry, const robot_gap *hulls, double displacement) {
+  const double limit = o->goal.limit, best = o->best_bound.upper;
+  const double reach = limit >= 0.0 ? lesser(best, nextafter(limit, INFINITY)) : best;
+  robot_refinement nearest = robot_refinement_from(o, entry->pair, hulls, reach, 0.0);
+  const cprox_status status = robot_refine_elements(o, &nearest);
+  if (status >= 0 && nearest.complete) entry->lower = fmax(entry->lower, nearest.rest - displacement - hulls->slack);
+  return status;
+}
+
 /* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
 static cprox_status refine_pair_elements(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
                                          double displacement) {
@@ -159,7 +170,8 @@ static cprox_status refine_pair_elements(robot_search *o, search_node *node, lis
       robot_refinement_from(o, entry->pair, hulls, robot_pruning_bound(o) + displacement + spare, displacement + spare);
   c.listing = true;
   const cprox_status status = robot_refine_elements(o, &c);
-  if (status < 0 || !c.complete) return status;
+  if (status < 0) return status;
+  if (!c.complete) return o->goal.limit >= 0.0 ? bound_by_nearest(o, entry, hulls, displacement) : CPROX_OK;
   entry->lower = fmax(entry->lower, c.rest - displacement - hulls->slack);
   const robot_pair whole = o->scene.pairs[entry->pair];
   for (size_t i = 0; i < c.n_found; i++) {
@@ -212,14 +224,6 @@ static cprox_status open_pair(robot_search *o, const search_node *node, list_ent
     status = keep_open(o, &inner);
   }
   entry->lower = INFINITY;
-  return status;
-}
-
-/* The nearest elements in the middle, if they are nearer than the best: less what the part moves they bound all. */
-static cprox_status bound_by_nearest(robot_search *o, list_entry *entry, const robot_gap *hulls, double displacement) {
-  robot_refinement nearest = robot_refinement_from(o, entry->pair, hulls, o->best_bound.upper, 0.0);
-  const cprox_status status = robot_refine_elements(o, &nearest);
-  if (status >= 0 && nearest.complete) entry->lower = fmax(entry->lower, nearest.rest - displacement - hulls->slack);
   return status;
 }
 

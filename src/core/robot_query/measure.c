@@ -106,7 +106,7 @@ robot_refinement robot_refinement_from(robot_search *o, int32_t index, const rob
                             .room = room,
                             .goal = &o->goal,
                             .work = o->nodes + robot_work(o),
-                            .measured = o->best.pair >= 0,
+                            .measured = robot_has_measured(o),
                             .accuracy = ROBOT_GAP_FRACTION * o->goal.epsilon,
                             .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
 }

@@ -95,9 +95,15 @@ static inline uint64_t robot_work(const robot_search *o) {
   return (uint64_t)o->gaps + o->planes + o->flights + o->balls / BALLS_A_UNIT;
 }
 
-/* Whether the search must end within the node at hand. One distance is always measured. */
+/* Whether one distance was measured, as always is before a search ends. Of meshes that are farther apart than the limit
+ * of a verdict there is none to be had: then that of their hulls is enough. */
+static inline bool robot_has_measured(const robot_search *o) {
+  return o->best.pair >= 0 || (o->goal.limit >= 0.0 && o->gaps > 0);
+}
+
+/* Whether the search must end within the node at hand. */
 static inline bool robot_must_end(robot_search *o) {
-  return o->best.pair >= 0 && search_must_end(&o->goal, o->nodes + robot_work(o));
+  return robot_has_measured(o) && search_must_end(&o->goal, o->nodes + robot_work(o));
 }
 
 /* The scene must have begun. */
