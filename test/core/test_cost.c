@@ -12,6 +12,7 @@
 #include "support/meshes.h"
 #include "support/of_list.h"
 #include "support/random.h"
+#include "support/reference.h"
 
 /* 4 k² triangles, of which 4 k at the poles have no area. */
 static cprox_body *ball_mesh(double radius, size_t k, cprox_mesh_fill fill) {
@@ -342,6 +343,44 @@ CASE(a_verdict_of_a_curve_costs_no_more_than_the_distance) {
   }
   assert_true(asked > cases / 2 && dearer <= asked / 100 + 1);
   assert_true(4 * tolerances < 3 * distances && 2 * collisions < distances);
+}
+
+/* ---- constant distance ---- */
+
+/* Circles round the axis of a ball, a cylinder and a capsule, at two heights and for two accuracies: no plane parts a
+ * long arc from the body, but its distance from the axis is known at once. */
+CASE(a_circle_round_an_axis_takes_few_nodes) {
+  rng r = rng_seed(403);
+  cprox_body *round[3];
+  assert_int_equal(cprox_body_create_sphere(0.3, ws, &round[0]), CPROX_OK);
+  assert_int_equal(cprox_body_create_cylinder(1.0, 0.3, ws, &round[1]), CPROX_OK);
+  assert_int_equal(cprox_body_create_capsule(1.0, 0.3, ws, &round[2]), CPROX_OK);
+  for (int i = 0; i < 40; i++) {
+    const cprox_pose pose = rng_pose(&r, 2.0);
+    const double height = i % 2 ? rng_uniform(&r, -0.4, 0.4) : 0.0, radius = rng_uniform(&r, 0.5, 2.0);
+    vec3 points[3];
+    for (int k = 0; k < 3; k++) {
+      const cprox_pose turned = {.position = k == 0 ? pose.position : vec(0, 0, 0), .orientation = pose.orientation};
+      const vec3l x = ref_to_world(
+          &turned, ref_vec(k == 0 ? vec(0, 0, height) : vec(k == 1 ? radius : 0.0, k == 2 ? radius : 0.0, 0)));
+      points[k] = vec((double)x.x, (double)x.y, (double)x.z);
+    }
+    cprox_curve *circle = NULL;
+    const cprox_curve_description d = {
+        .kind = CPROX_CURVE_TRIGONOMETRIC, .points = points, .n = 3, .t0 = 0.0, .t1 = 6.283185307179586};
+    assert_int_equal(cprox_curve_create(&d, ws, &circle), CPROX_OK);
+    for (int k = i % 2; k < 3; k++) {
+      const cprox_options options = accurate(i % 4 < 2 ? 1e-6 : 1e-10);
+      const double distance = hypot(radius, k == 0 ? height : 0.0) - 0.3;
+      cprox_result found;
+      assert_int_equal(
+          cprox_distance(cprox_point_along(circle), cprox_obstacle_at(round[k], pose), &options, ws, &found), CPROX_OK);
+      if (found.nodes > 300) fail_msg("body %d: %u nodes", k, found.nodes);
+      assert_true(found.lower <= distance + 1e-14 && distance <= found.upper + 1e-14);
+    }
+    cprox_curve_free(circle);
+  }
+  for (int k = 0; k < 3; k++) cprox_body_free(round[k]);
 }
 
 /* ---- robots with meshes ---- */

@@ -58,9 +58,12 @@ static bool know_cover(curve_convex *o) {
   return o->cover_usable;
 }
 
-/* A point or a ball is its own cover, from wherever it is seen. */
+/* A point or a ball is its own cover, from wherever it is seen, and the side of a cylinder or a capsule from all round
+ * the axis: so curves round it at one distance are bounded at once. */
 static bool cover_is_the_body(const curve_convex *o) {
-  return !o->cover.cylinder && o->cover.radius == o->shape->margin;
+  const cprox_body_kind kind = o->shape->ops->kind;
+  if (o->cover.cylinder) return kind == CPROX_BODY_CYLINDER || kind == CPROX_BODY_CAPSULE;
+  return o->cover.radius == o->shape->margin;
 }
 
 /* Where the curve bends round a vertex or an edge, a plane is too weak; the distance from the cover's centre is not. */
