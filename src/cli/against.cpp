@@ -2,13 +2,12 @@
 /* Curves against curves: row i of one file against row i of the other. */
 #include <chrono>
 
-#include "asking.h"
+#include "answers.h"
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"
 #include "failure.h"
 #include "finish.h"
-#include "results.h"
 #include "run.h"
 
 namespace curve_proximity::cli {
@@ -98,25 +97,18 @@ int answerAgainst(const Arguments &arguments, Console &console) {
   Query query = arguments.query;
   query.options.stop = interrupted;
   CsvFile first(arguments.curves), second(arguments.against);
-  const std::vector<std::string> inputs{arguments.curves, arguments.against};
-  ResultsFile results(arguments.out, inputs);
-  std::optional<ResultsFile> certificates;
-  if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputs, "--certificate");
+  Output output(arguments);
   Warnings warnings;
   console.warn(warnings);
 
-  catchInterrupts();
-  results.write(headerOf(arguments));
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {
     RowPair pair{first.next(), second.next()};
     if (!pair.first && !pair.second) return std::nullopt;
     return [&, pair = std::move(pair)](Workspace &workspace) { return answerPair(pair, arguments, query, workspace); };
   };
-  rows.write = [&](const std::string &text) { results.write(text); };
-  if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [&] { return first.portion(); };
-  return finish(runRows(arguments.threads, rows, console), console);
+  return output.answer(headerOf(arguments), rows, console);
 }
 
 } // namespace curve_proximity::cli

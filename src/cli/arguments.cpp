@@ -85,16 +85,16 @@ struct Command {
   const char *word;
   Action action;
   QueryType query_type;
-  Asking asking = Asking::SEARCH;
+  Question question = {};
 };
 const Command kCommands[] = {
     {"distance", Action::CURVES, QueryType::DISTANCE},
     {"tolerance", Action::CURVES, QueryType::TOLERANCE},
     {"collision", Action::CURVES, QueryType::COLLISION},
-    {"profile", Action::CURVES, QueryType::DISTANCE, Asking::PROFILE},
-    {"nearest", Action::CURVES, QueryType::DISTANCE, Asking::NEAREST},
-    {"time-of-contact", Action::CURVES, QueryType::COLLISION, Asking::CONTACT},
-    {"violations", Action::CURVES, QueryType::TOLERANCE, Asking::VIOLATIONS},
+    {"profile", Action::CURVES, QueryType::DISTANCE, question::Profile{}},
+    {"nearest", Action::CURVES, QueryType::DISTANCE, question::Nearest{}},
+    {"time-of-contact", Action::CURVES, QueryType::COLLISION, question::Contact{}},
+    {"violations", Action::CURVES, QueryType::TOLERANCE, question::Violations{}},
     {"pairs", Action::PAIRS, QueryType::DISTANCE},
     {"constraints", Action::CONSTRAINTS, QueryType::DISTANCE},
     {"report", Action::REPORT, QueryType::DISTANCE},
@@ -236,7 +236,7 @@ void readQuery(const Words &words, const Command &command, Query &query) {
   query.per_object = words.has("--per-object");
   query.allow_empty = words.has("--allow-empty");
   query.options.signed_distance = words.has("--signed");
-  const bool has_depth = command.query_type == QueryType::DISTANCE && command.asking != Asking::PROFILE;
+  const bool has_depth = command.query_type == QueryType::DISTANCE && !asksFor<question::Profile>(command.question);
   if (words.has("--signed") && !has_depth) throw BadUsage("--signed is for 'distance' and 'nearest'");
 
   /* accuracy and budget */
@@ -271,35 +271,38 @@ void readSecondOpinion(const Words &words, const Command &command, Arguments &ou
   out.second_opinion = peerFromName(words.text("--second-opinion"));
   if (!out.second_opinion)
     throw BadUsage("--second-opinion is '" + words.text("--second-opinion") + "'; it must be fcl or libccd");
-  if (command.asking == Asking::PROFILE || command.asking == Asking::VIOLATIONS)
+  if (asksFor<question::Profile, question::Violations>(command.question))
     throw BadUsage("'" + std::string(command.word) + "' takes no --second-opinion: its rows name no pair");
 }
 
 /* Options that are for one command alone. */
-void readAsking(const Words &words, const Command &command, Arguments &out) {
-  const auto only = [&](const char *name, const char *command_name, Asking asking) {
-    if (words.has(name) && command.asking != asking && command.action != Action::REPORT)
-      throw BadUsage(std::string(name) + " is for '" + command_name + "'");
+void readQuestion(const Words &words, const Command &command, Arguments &out) {
+  const auto only = [&](const char *name, const std::string &word) {
+    if (words.has(name) && command.word != word && command.action != Action::REPORT)
+      throw BadUsage(std::string(name) + " is for '" + word + "'");
     return words.has(name);
   };
-  out.asking = command.asking;
   out.has_delta = words.has("--delta");
-  if (only("--intervals", "profile", Asking::PROFILE)) {
+  if (only("--intervals", "profile")) {
     constexpr std::uint64_t kMostIntervals = 1000000, kMostDrawn = 2000; /* a chart has no more pixels */
     if (words.has("--breaks")) throw BadUsage("--intervals and --breaks exclude each other");
-    out.intervals = static_cast<std::size_t>(
+    out.profile.intervals = static_cast<std::size_t>(
         readCount(words, "--intervals", command.action == Action::REPORT ? kMostDrawn : kMostIntervals));
   }
-  if (only("--breaks", "profile", Asking::PROFILE)) out.breaks = readBreaks(words.text("--breaks"));
-  if (only("--horizon", "profile", Asking::PROFILE))
-    out.horizon = readNumber(words, "--horizon", 0.0, true, "of at least 0 (metres)");
-  if (only("--pairs", "nearest", Asking::NEAREST))
-    out.limits.count = static_cast<std::size_t>(readCount(words, "--pairs", std::numeric_limits<std::uint32_t>::max()));
-  if (only("--within", "nearest", Asking::NEAREST))
-    out.limits.within = readNumber(words, "--within", 0.0, true, "of at least 0 (metres)");
-  if (only("--resolution", "violations", Asking::VIOLATIONS))
-    out.resolution = readNumber(words, "--resolution", 0.0, false, "above 0, in units of the parameter");
-  if (command.asking == Asking::SEARCH) return;
+  if (only("--breaks", "profile")) out.profile.breaks = readBreaks(words.text("--breaks"));
+  if (only("--horizon", "profile"))
+    out.profile.horizon = readNumber(words, "--horizon", 0.0, true, "of at least 0 (metres)");
+  PairLimits &limits = out.nearest.limits;
+  if (only("--pairs", "nearest"))
+    limits.count = static_cast<std::size_t>(readCount(words, "--pairs", std::numeric_limits<std::uint32_t>::max()));
+  if (only("--within", "nearest")) limits.within = readNumber(words, "--within", 0.0, true, "of at least 0 (metres)");
+  out.question = command.question;
+  if (asksFor<question::Profile>(out.question)) out.question = out.profile;
+  if (asksFor<question::Nearest>(out.question)) out.question = out.nearest;
+  if (only("--resolution", "violations"))
+    out.question =
+        question::Violations{readNumber(words, "--resolution", 0.0, false, "above 0, in units of the parameter")};
+  if (asksFor<question::Search>(out.question)) return;
   for (const char *name : {"--against", "--certificate"}) {
     if (words.has(name)) throw BadUsage("'" + std::string(command.word) + "' takes no " + name);
   }
@@ -323,7 +326,7 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   for (const char *name : {"--curves", "--against"}) {
     if (words.has(name)) throw BadUsage("--trajectory takes no " + std::string(name));
   }
-  if (words.has("--signed") && out.asking != Asking::SEARCH)
+  if (words.has("--signed") && !asksFor<question::Search>(out.question))
     throw BadUsage("'nearest' takes no --signed with --trajectory: ask for the 'distance'");
   if (!words.has("--robot")) throw BadUsage("--trajectory needs --robot URDF");
   if (out.action == Action::CURVES) out.action = Action::TRAJECTORY;
@@ -521,7 +524,7 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   out.action = command.action;
   readQuery(split, command, out.query);
   readSecondOpinion(split, command, out);
-  readAsking(split, command, out);
+  readQuestion(split, command, out);
   readFiles(split, command, out);
   readStandardInput(out);
 
@@ -538,6 +541,11 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   out.threads = std::max(1u, std::thread::hardware_concurrency());
   if (split.has("--threads")) out.threads = static_cast<std::size_t>(readCount(split, "--threads", kMostThreads));
   return out;
+}
+
+std::vector<std::string> inputsOf(const Arguments &arguments) {
+  return {arguments.curves, arguments.against, arguments.trajectory, arguments.path,  arguments.body,
+          arguments.scene,  arguments.robot,   arguments.srdf,       arguments.pairs, arguments.cases};
 }
 
 std::string helpText() {

@@ -10,6 +10,8 @@
 
 #include <curve_proximity/query.hpp>
 
+#include "../scene/question.h"
+
 namespace curve_proximity::cli {
 
 enum class Action {
@@ -28,19 +30,13 @@ enum class Action {
   MERGE
 };
 
-/** What is asked about curves and trajectories. */
-enum class Asking {
-  SEARCH,    /**< one interval: distance, tolerance, collision */
-  PROFILE,   /**< an interval for each interval of the parameter */
-  NEAREST,   /**< the pairs that come closest */
-  CONTACT,   /**< the time of contact */
-  VIOLATIONS /**< the intervals within delta */
-};
-
 struct Arguments {
   Action action = Action::HELP;
-  Asking asking = Asking::SEARCH; /**< of CURVES and TRAJECTORY */
-  Query query;                    /**< CURVES, AGAINST, PAIRS and REPORT: the command, and how it is to be answered */
+  Query query;       /**< CURVES, AGAINST, PAIRS and REPORT: the command, and how it is to be answered */
+  Question question; /**< of CURVES, TRAJECTORY and MOVERS */
+
+  question::Profile profile; /**< REPORT: of each curve or link */
+  question::Nearest nearest; /**< REPORT */
 
   std::optional<Peer> second_opinion; /**< CURVES, TRAJECTORY and PAIRS: who measures pairs again */
 
@@ -55,23 +51,18 @@ struct Arguments {
   bool shortest_way = false;   /**< with a trajectory: continuous joints turn the shorter way between two waypoints */
   bool self = false;           /**< with a trajectory, or of MOVERS: ask about the robot itself, too */
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
-  std::size_t intervals = 100; /**< PROFILE: so many of equal length, unless there are breaks */
-  std::vector<double> breaks;  /**< PROFILE: where intervals begin and end; empty: see intervals */
-  double horizon = std::numeric_limits<double>::infinity(); /**< PROFILE: [m] clearance beyond it is only bounded */
-  PairLimits limits;                                        /**< NEAREST */
-  double resolution = 0.0;           /**< VIOLATIONS: in units of the parameter; 0: a thousandth of the domain */
-  std::string certificate;           /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
-  std::string robot, srdf;           /**< files of the robot; empty: none */
-  std::string state;                 /**< "joint: value, …" */
-  std::string pairs;                 /**< file of PAIRS */
-  std::string cases;                 /**< file of CONSTRAINTS */
-  std::string provider;              /**< CONSTRAINTS: the plugin */
-  std::string parameters;            /**< CONSTRAINTS: "name: value, …" */
-  bool check_gradient = false;       /**< CONSTRAINTS: hold gradients against differences */
-  std::string node;                  /**< SEND: the node's name */
-  std::optional<bool> replace;       /**< SEND: as the file's is_diff says, unless set */
-  std::string dataset;               /**< CERTIFY: the manifest */
-  std::size_t shards = 1;            /**< CERTIFY: into how many parts it is cut */
+  std::string certificate;     /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
+  std::string robot, srdf;     /**< files of the robot; empty: none */
+  std::string state;           /**< "joint: value, …" */
+  std::string pairs;           /**< file of PAIRS */
+  std::string cases;           /**< file of CONSTRAINTS */
+  std::string provider;        /**< CONSTRAINTS: the plugin */
+  std::string parameters;      /**< CONSTRAINTS: "name: value, …" */
+  bool check_gradient = false; /**< CONSTRAINTS: hold gradients against differences */
+  std::string node;            /**< SEND: the node's name */
+  std::optional<bool> replace; /**< SEND: as the file's is_diff says, unless set */
+  std::string dataset;         /**< CERTIFY: the manifest */
+  std::size_t shards = 1;      /**< CERTIFY: into how many parts it is cut */
   std::optional<std::size_t> shard;  /**< CERTIFY: the one that is wanted; else all */
   std::string progress;              /**< CERTIFY: "line" or "json" */
   std::optional<std::string> failed; /**< CERTIFY: why all rows of the shard are failed */
@@ -86,6 +77,9 @@ struct Arguments {
 /** Reads the words after the program's name. Throws BadUsage with one line for words, options and values that are not
  *  known, are missing, are given twice or cannot be meant. */
 Arguments parseArguments(const std::vector<std::string> &words);
+
+/** The files that are read. */
+std::vector<std::string> inputsOf(const Arguments &arguments);
 
 /** What --help prints. */
 std::string helpText();

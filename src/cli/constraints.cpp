@@ -11,7 +11,7 @@
 #include "constraints_yaml.h"
 #include "failure.h"
 #include "finish.h"
-#include "movers.h"
+#include "moving_world.h"
 #include "packages.h"
 #include "results.h"
 #include "run.h"
@@ -99,11 +99,9 @@ int answerCases(const Arguments &arguments, Console &console) {
   const World world = readSides(arguments, resources, warnings);
   const std::unique_ptr<ProviderSet> providers = loadProvider(arguments);
   const Session session{*providers, arguments, resources};
-  ResultsFile results(arguments.out, {arguments.cases, arguments.scene});
+  Output output(arguments);
 
   /* case by case; a warning is told when it first comes up */
-  catchInterrupts();
-  results.write(arguments.check_gradient ? gradientsHeader() : constraintsHeader());
   std::size_t given = 0, warned = 0;
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {
@@ -118,11 +116,10 @@ int answerCases(const Arguments &arguments, Console &console) {
       return answerOne(session, described, fault, place, workspace);
     };
   };
-  rows.write = [&](const std::string &text) { results.write(text); };
   rows.portion = [&]() -> std::optional<double> {
     return entries.empty() ? 1.0 : static_cast<double>(given) / static_cast<double>(entries.size());
   };
-  return finish(runRows(arguments.threads, rows, console), console);
+  return output.answer(arguments.check_gradient ? gradientsHeader() : constraintsHeader(), rows, console);
 }
 
 /* The robot of the command line along --trajectory, ready to be asked about. */
@@ -155,20 +152,12 @@ int answerMotion(const Arguments &arguments, Console &console) {
   const std::unique_ptr<ProviderSet> providers = loadProvider(arguments);
   const ResourceOptions resources;
   const Session session{*providers, arguments, resources};
-  ResultsFile results(arguments.out, {arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf});
+  Output output(arguments);
   console.warn(warnings);
-  catchInterrupts();
-  results.write(arguments.check_gradient ? gradientsHeader() : constraintsHeader(described.motion->trajectory));
-  bool given = false;
-  Rows rows;
-  rows.next = [&]() -> std::optional<Task> {
-    if (given) return std::nullopt;
-    given = true;
-    return [&](Workspace &workspace) { return answerOne(session, described, "", arguments.trajectory, workspace); };
-  };
-  rows.write = [&](const std::string &text) { results.write(text); };
-  rows.portion = [] { return std::optional<double>(); };
-  return finish(runRows(1, rows, console), console);
+  const std::vector<Task> one{
+      [&](Workspace &workspace) { return answerOne(session, described, "", arguments.trajectory, workspace); }};
+  return output.answer(arguments.check_gradient ? gradientsHeader() : constraintsHeader(described.motion->trajectory),
+                       one, console);
 }
 
 } // namespace

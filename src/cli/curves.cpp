@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <algorithm>
 
-#include "asking.h"
+#include "answers.h"
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"
 #include "failure.h"
 #include "finish.h"
-#include "results.h"
 #include "run.h"
 #include "world.h"
 
@@ -34,7 +33,7 @@ std::vector<Side> sidesOf(const World &world, const Arguments &arguments, const 
     (named.*names).push_back(name);
     sides.push_back({name, Targets(world.snapshot, world.links, named)});
   };
-  if (query.per_object && arguments.asking != Asking::SEARCH) {
+  if (query.per_object && !asksFor<question::Search>(arguments.question)) {
     for (const auto &object : world.snapshot->objects()) add(object.first, &Query::objects);
     for (const auto &link : world.links) {
       if (!world.snapshot->linkGeometry(link.first).empty()) add(link.first, &Query::links);
@@ -45,41 +44,15 @@ std::vector<Side> sidesOf(const World &world, const Arguments &arguments, const 
   return sides;
 }
 
-/* The intervals of one curve, with its certificate where one is wanted. */
-void search(const CompiledCurve &curve, const std::string &place, const Targets &targets, const Arguments &arguments,
-            const Query &query, Workspace &workspace, Outcome &out) {
-  const bool with_proof = !arguments.certificate.empty();
-  const CertificateHandle proof = makeCertificate();
-  Query asked = query;
-  if (with_proof) asked.options.certificate = proof.get();
-  for (const Answer &answer : ask(targets, curve, asked, workspace)) {
-    const cprox_status status = answer.result.status;
-    out.stopped = out.stopped || status == CPROX_STOPPED;
-    ResultRow row = toRow(answer, query.query_type);
-    if (with_proof) row.proof = proofOf(proof);
-    if (with_proof) out.certificate = recordOf(proof);
-    if (!answer.unproven.empty()) out.unproven.push_back(place + ": no certificate: " + answer.unproven);
-    out.text += resultsLine(row, columnsOf(arguments));
-    noteVerdict(row, out);
-    if (status < 0) {
-      const std::string against = answer.b.empty() ? "" : ": against '" + answer.b + "'";
-      out.complaints.push_back(place + against + ": " + answer.message);
-    }
-  }
-}
-
 /* All rows of one curve. */
 Outcome answerCurve(const CsvRow &csv, const std::vector<Side> &sides, const Arguments &arguments, const Query &query,
                     Workspace &workspace) {
   const std::string place = placeOf(csv, arguments.curves);
   CompiledCurve curve;
-  CurveSubject failed(sides.front().targets, curve); // a curve that could not be asked about
-  failed.id = rowId(csv.text);
-  failed.place = place;
   const auto fail = [&](cprox_status status, const std::string &why) {
     Outcome out;
-    addFailure(failed, arguments, status, why, out);
-    out.certificate = emptyRecord();
+    addFailure({CurveSubject{sides.front().targets, curve}, rowId(csv.text), "curve", place, {}}, arguments, status,
+               why, out);
     return out;
   };
   try {
@@ -87,16 +60,9 @@ Outcome answerCurve(const CsvRow &csv, const std::vector<Side> &sides, const Arg
     if (!arguments.certificate.empty()) requireCheckable(description);
     curve = compile(description);
     Outcome out;
-    for (const Side &side : sides) {
-      if (arguments.asking == Asking::SEARCH) {
-        search(curve, place, side.targets, arguments, query, workspace, out);
-        continue;
-      }
-      CurveSubject subject(side.targets, curve);
-      subject.place = place;
-      subject.object = side.name;
-      answer(subject, arguments, query, workspace, out);
-    }
+    for (const Side &side : sides)
+      answer({CurveSubject{side.targets, curve}, curve.id, "curve", place, {"", side.name}}, arguments, query,
+             workspace, out);
     return out;
   } catch (const Error &e) {
     return fail(e.status(), e.what());
@@ -113,27 +79,16 @@ int answerCurves(const Arguments &arguments, Console &console) {
   /* what curves are measured against */
   Warnings warnings;
   const World world = readStandingWorld(arguments, "a query of curves", warnings);
-  Query query = arguments.query;
-  query.options.stop = interrupted;
-  query.coverage = warnings.coverage();
-  query.second_opinion = secondOpinions(arguments, world.resources);
+  const Query query = queryOf(arguments, world, warnings);
   const std::vector<Side> sides = sidesOf(world, arguments, query);
 
   CsvFile file(arguments.curves);
-  const std::vector<std::string> inputs{arguments.curves, arguments.scene, arguments.robot, arguments.srdf};
-  ResultsFile results(arguments.out, inputs);
-  std::optional<ResultsFile> certificates;
-  if (!arguments.certificate.empty()) {
-    certificates.emplace(arguments.certificate, inputs, "--certificate");
-    warnOfUnprovable(unprovable(sides.front().targets), warnings);
-  }
+  Output output(arguments);
+  if (!arguments.certificate.empty()) warnOfUnprovable(unprovable(sides.front().targets), warnings);
   console.warn(warnings);
   if (arguments.timings) tellTimings(world.timings, console);
   if (arguments.skipped) tellSkipped(world.skipped, console);
 
-  /* row by row */
-  catchInterrupts();
-  results.write(headerOf(arguments));
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {
     std::optional<CsvRow> row = file.next();
@@ -142,10 +97,8 @@ int answerCurves(const Arguments &arguments, Console &console) {
       return answerCurve(csv, sides, arguments, query, workspace);
     };
   };
-  rows.write = [&](const std::string &text) { results.write(text); };
-  if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [&] { return file.portion(); };
-  return finish(runRows(arguments.threads, rows, console), console);
+  return output.answer(headerOf(arguments), rows, console);
 }
 
 } // namespace curve_proximity::cli

@@ -6,6 +6,28 @@
 #include "failure.h"
 
 namespace curve_proximity::cli {
+namespace {
+
+int finish(const Tally &tally, Console &console) {
+  if (tally.failed) console.say(std::to_string(tally.failed) + " of " + std::to_string(tally.rows) + " rows failed");
+  if (tally.unproven) console.say(std::to_string(tally.unproven) + " answers have no certificate (column proof: none)");
+  if (tally.interrupted) {
+    console.say("interrupted: the output holds the first " + std::to_string(tally.rows) + " rows of the input");
+    return kInterrupted;
+  }
+  if (tally.against_nothing)
+    console.say("warning: " + std::to_string(tally.against_nothing) + " of " + std::to_string(tally.rows) +
+                " rows were measured against nothing (--allow-empty says that this is meant)");
+  if (tally.disputed)
+    console.say("warning: the second opinion disagrees in " + std::to_string(tally.disputed) + " of " +
+                std::to_string(tally.rows) + " rows (column second_opinion)");
+  if (!tally.rows) console.say("warning: the input has no rows");
+  if (tally.failed || !tally.rows) return kUnanswered;
+  if (tally.violated) return kSomeViolated;
+  return tally.undecided || tally.disputed ? kSomeUndecided : kAllAnswered;
+}
+
+} // namespace
 
 void tellSkipped(const std::vector<std::string> &sentences, Console &console) {
   for (const std::string &sentence : sentences) console.say("skipped: " + sentence);
@@ -26,23 +48,25 @@ void noteVerdict(const ResultRow &row, Outcome &outcome) {
   outcome.undecided = outcome.undecided || row.result.verdict == CPROX_VERDICT_UNDECIDED;
 }
 
-int finish(const Tally &tally, Console &console) {
-  if (tally.failed) console.say(std::to_string(tally.failed) + " of " + std::to_string(tally.rows) + " rows failed");
-  if (tally.unproven) console.say(std::to_string(tally.unproven) + " answers have no certificate (column proof: none)");
-  if (tally.interrupted) {
-    console.say("interrupted: the output holds the first " + std::to_string(tally.rows) + " rows of the input");
-    return kInterrupted;
-  }
-  if (tally.against_nothing)
-    console.say("warning: " + std::to_string(tally.against_nothing) + " of " + std::to_string(tally.rows) +
-                " rows were measured against nothing (--allow-empty says that this is meant)");
-  if (tally.disputed)
-    console.say("warning: the second opinion disagrees in " + std::to_string(tally.disputed) + " of " +
-                std::to_string(tally.rows) + " rows (column second_opinion)");
-  if (!tally.rows) console.say("warning: the input has no rows");
-  if (tally.failed || !tally.rows) return kUnanswered;
-  if (tally.violated) return kSomeViolated;
-  return tally.undecided || tally.disputed ? kSomeUndecided : kAllAnswered;
+Output::Output(const Arguments &arguments) : threads_(arguments.threads), results_(arguments.out, inputsOf(arguments)) {
+  if (!arguments.certificate.empty())
+    certificates_.emplace(arguments.certificate, inputsOf(arguments), "--certificate");
+}
+
+int Output::answer(const std::string &header, Rows rows, Console &console) {
+  catchInterrupts();
+  results_.write(header);
+  rows.write = [&](const std::string &text) { results_.write(text); };
+  if (certificates_) rows.certify = [&](const std::string &records) { certificates_->write(records); };
+  return finish(runRows(threads_, rows, console), console);
+}
+
+int Output::answer(const std::string &header, const std::vector<Task> &tasks, Console &console) {
+  Rows rows;
+  rows.next = [&, next = std::size_t{0}]() mutable -> std::optional<Task> {
+    return next < tasks.size() ? std::optional<Task>(tasks[next++]) : std::nullopt;
+  };
+  return answer(header, std::move(rows), console);
 }
 
 } // namespace curve_proximity::cli

@@ -111,12 +111,10 @@ int answerPairs(const Arguments &arguments, Console &console) {
   query.second_opinion = secondOpinions(arguments, resources);
   columns.opinion = query.second_opinion != nullptr;
 
-  ResultsFile results(arguments.out, {arguments.pairs});
+  Output output(arguments);
   if (arguments.skipped) tellSkipped({}, console);
 
   /* pair by pair; a warning is told when it first comes up */
-  catchInterrupts();
-  results.write(resultsHeader(columns));
   Warnings warnings;
   std::size_t given = 0, warned = 0;
   Rows rows;
@@ -129,11 +127,10 @@ int answerPairs(const Arguments &arguments, Console &console) {
       return answerPair(pair, arguments.pairs, query, resources, columns, workspace);
     };
   };
-  rows.write = [&](const std::string &text) { results.write(text); };
   rows.portion = [&]() -> std::optional<double> {
     return entries.empty() ? 1.0 : static_cast<double>(given) / static_cast<double>(entries.size());
   };
-  return finish(runRows(arguments.threads, rows, console), console);
+  return output.answer(resultsHeader(columns), rows, console);
 }
 
 } // namespace curve_proximity::cli

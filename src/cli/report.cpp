@@ -4,13 +4,13 @@
 #include <set>
 
 #include "../scene/digest.h"
-#include "asking.h"
+#include "answers.h"
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"
 #include "failure.h"
 #include "library.h"
-#include "movers.h"
+#include "moving_world.h"
 #include "report_drawing.h"
 #include "report_page.h"
 #include "results.h"
@@ -23,12 +23,6 @@ namespace {
 constexpr std::size_t kMostCurves = 50; /* more lines than a chart shows */
 constexpr int kMoments = 100;           /* at which the robot is drawn, beside those of the closest pairs */
 
-/* What is asked about as one: a curve against the scene, the robot against the scene, the robot against itself. */
-struct Asked {
-  std::unique_ptr<Subject> subject;
-  std::vector<std::string> links; /* that have a line of their own in the chart; one empty name: all in one line */
-};
-
 /* The page's data as they are gathered, and the exit code that they deserve. */
 class Report {
  public:
@@ -40,13 +34,12 @@ class Report {
   /** Searches, profiles and pairs of one thing. A part that fails is a note on the page and a complaint. */
   void ask(const Asked &asked, Workspace &workspace) {
     attempt(asked, "", [&] { addVerdicts(asked, workspace); });
-    for (const std::string &link : asked.links) {
-      attempt(asked, link, [&] { addProfile(*asked.subject, link, workspace); });
-    }
-    asked.subject->link.clear();
+    const bool is_curve = std::holds_alternative<CurveSubject>(asked.subject);
+    for (const Part &part : partsOf(asked.subject, arguments_.profile, arguments_.query, true))
+      if (is_curve || !part.link.empty()) attempt(asked, part.link, [&] { addProfile(asked, part, workspace); });
     attempt(asked, "closest pairs", [&] {
-      for (const Answer &answer : asked.subject->nearest(arguments_.limits, plainQuery(), workspace))
-        if (!answer.b.empty()) addPair(asked, answer);
+      for (const Row &row : answer(asked, {}, arguments_.nearest, plainQuery(), workspace))
+        if (!row.answer.b.empty()) addPair(asked, row.answer);
     });
   }
 
@@ -99,14 +92,19 @@ class Report {
     return query;
   }
 
-  template <class Part>
-  void attempt(const Asked &asked, const std::string &what, Part part) {
+  static std::vector<Row> answer(const Asked &asked, const Part &part, const Question &question, const Query &query,
+                                 Workspace &workspace) {
+    return curve_proximity::answer(asked.subject, part, question, query, Beside::NOTHING, workspace);
+  }
+
+  template <class Step>
+  void attempt(const Asked &asked, const std::string &what, const Step &step) {
     try {
-      part();
+      step();
     } catch (const std::bad_alloc &) {
       throw;
     } catch (const std::exception &e) {
-      failed(asked.subject->place + ": " + (what.empty() ? "" : what + ": ") + e.what());
+      failed(asked.place + ": " + (what.empty() ? "" : what + ": ") + e.what());
     }
   }
 
@@ -123,46 +121,46 @@ class Report {
       const CertificateHandle proof = makeCertificate();
       const bool proves = with_proof && type == types.front();
       if (proves) query.options.certificate = proof.get();
-      const Answer answer = asked.subject->search(query, workspace).at(0);
-      Value row = toValue(toRow(answer, type), asked);
+      const Answer found = answer(asked, {}, question::Search{}, query, workspace).at(0).answer;
+      Value row = toValue(toRow(found, type), asked);
       row["query"] = type == QueryType::TOLERANCE ? "tolerance" : "distance";
       if (proves) {
         const std::string record = recordOf(proof);
         certificates_ += record;
         row["proof"] = proofOf(proof);
         row["certificate"] = toHex(digestOf(record.data(), record.size()));
-        if (!answer.unproven.empty()) failedProof(asked, answer.unproven);
+        if (!found.unproven.empty()) failedProof(asked, found.unproven);
       }
       violated_ = violated_ || row["verdict"] == "violated";
-      undecided_ = undecided_ || row["verdict"] == "undecided" || answer.gap;
-      if (answer.result.status < 0) failed(asked.subject->place + ": " + answer.message);
-      if (answer.gap) note(asked.subject->place + ": " + answer.message);
+      undecided_ = undecided_ || row["verdict"] == "undecided" || found.gap;
+      if (found.result.status < 0) failed(asked.place + ": " + found.message);
+      if (found.gap) note(asked.place + ": " + found.message);
       data_["verdicts"].push_back(std::move(row));
     }
   }
 
   void failedProof(const Asked &asked, const std::string &why) {
-    failed(asked.subject->place + ": no certificate: " + why);
+    failed(asked.place + ": no certificate: " + why);
   }
 
-  void addProfile(Subject &subject, const std::string &link, Workspace &workspace) {
-    subject.link = link;
+  void addProfile(const Asked &asked, const Part &part, Workspace &workspace) {
+    question::Profile profile = arguments_.profile;
+    profile.breaks = breaksOf(profile, domainOf(asked.subject));
+    const Row row = answer(asked, part, profile, plainQuery(), workspace).at(0);
     Value t = Value::array(), lower = Value::array(), upper = Value::array(), against = Value::array();
     std::string ended;
-    const std::vector<double> breaks = breaksOf(arguments_, subject.domain());
-    for (const ClearanceInterval &interval :
-         subject.profile(breaks, std::numeric_limits<double>::infinity(), plainQuery(), workspace)) {
+    for (const ClearanceInterval &interval : std::get<std::vector<ClearanceInterval>>(row.detail)) {
       t.push_back(interval.t0);
       lower.push_back(numberOrNull(interval.lower));
       upper.push_back(numberOrNull(interval.upper));
-      against.push_back(interval.b == link && !link.empty() ? interval.a : interval.b);
+      against.push_back(interval.b == part.link && !part.link.empty() ? interval.a : interval.b);
       if (interval.status != CPROX_OK) ended = cprox_status_text(interval.status);
     }
-    t.push_back(breaks.back());
-    const std::string name = link.empty() ? subject.id : link;
-    if (!ended.empty()) note(subject.place + ": " + name + ": the profile is wider than epsilon: " + ended);
+    t.push_back(profile.breaks.back());
+    const std::string name = part.link.empty() ? asked.id : part.link;
+    if (!ended.empty()) note(asked.place + ": " + name + ": the profile is wider than epsilon: " + ended);
     data_["profiles"].push_back(Value{{"name", name},
-                                      {"kind", subject.kind},
+                                      {"kind", asked.kind},
                                       {"t", std::move(t)},
                                       {"lower", std::move(lower)},
                                       {"upper", std::move(upper)},
@@ -176,7 +174,7 @@ class Report {
   Value toValue(const ResultRow &row, const Asked &asked) {
     const auto point = [](const cprox_vec3 &p) { return Value{p.x, p.y, p.z}; };
     const bool answered = row.result.status >= 0;
-    Value out{{"id", asked.subject->id}, {"kind", asked.subject->kind}, {"a", row.a}, {"b", row.b}};
+    Value out{{"id", asked.id}, {"kind", asked.kind}, {"a", row.a}, {"b", row.b}};
     out["status"] = statusOf(row.result.status, row.gap);
     out["verdict"] = row.has_verdict && answered ? Value(cprox_verdict_name(row.result.verdict)) : Value(nullptr);
     out["lower"] = answered ? numberOrNull(row.result.lower) : Value(nullptr);
@@ -236,33 +234,6 @@ void addBasis(const Arguments &arguments, const World &world, Report &report) {
   for (const std::string &sentence : world.skipped) report.note(sentence);
 }
 
-Asked askedOf(const RobotMotion &motion, bool self, const Arguments &arguments) {
-  Asked out;
-  out.subject = std::make_unique<MotionSubject>(motion, self);
-  out.subject->id = std::filesystem::path(arguments.trajectory).stem().string();
-  out.subject->place = arguments.trajectory + ": " + out.subject->kind;
-  out.links =
-      arguments.query.links.empty() ? askedNames(motion, self, arguments.query.moving_only) : arguments.query.links;
-  return out;
-}
-
-Asked askedOf(const Targets &targets, const CompiledCurve &curve, const std::string &place) {
-  Asked out;
-  out.subject = std::make_unique<CurveSubject>(targets, curve);
-  out.subject->place = place;
-  out.links.emplace_back();
-  return out;
-}
-
-/* The robot among what moves. */
-Asked askedOf(const MovingWorld &moving, const Arguments &arguments) {
-  Asked out;
-  out.subject = subjectAmong(moving, arguments);
-  out.subject->place = arguments.trajectory + ": " + out.subject->kind;
-  out.links = arguments.query.links.empty() ? movingNames(*moving.subject->motion) : arguments.query.links;
-  return out;
-}
-
 void askTrajectory(const Arguments &arguments, const World &world, Report &report, Warnings &warnings) {
   const auto motion = std::make_shared<const RobotMotion>(readMotion(arguments, world, warnings));
   for (const std::string &sentence : motion->warnings()) report.note(sentence);
@@ -271,10 +242,10 @@ void askTrajectory(const Arguments &arguments, const World &world, Report &repor
   if (world.moves()) moving = gatherMovers(arguments, world, motion);
   Workspace workspace;
   if (moving)
-    report.ask(askedOf(*moving, arguments), workspace);
+    report.ask(askedAmong(*moving, arguments), workspace);
   else if (!arguments.scene.empty() || !arguments.self)
-    report.ask(askedOf(*motion, false, arguments), workspace);
-  if (arguments.self) report.ask(askedOf(*motion, true, arguments), workspace);
+    report.ask(askedAlong(*motion, false, arguments), workspace);
+  if (arguments.self) report.ask(askedAlong(*motion, true, arguments), workspace);
   const std::vector<double> moments = report.moments(motion->domain());
   report.data()["domain"] = motion->domain();
   drawWorld(world, motion.get(), moments, report.data());
@@ -295,10 +266,11 @@ void askCurves(const Arguments &arguments, const World &world, Report &report) {
       const CurveDescription description = parseCurve(row->text);
       if (!arguments.certificate.empty()) requireCheckable(description);
       const CompiledCurve curve = compile(description);
-      const Asked asked = askedOf(targets, curve, place);
+      const Asked asked{CurveSubject{targets, curve}, curve.id, "curve", place, {}};
       report.ask(asked, workspace);
       report.addCurve(curve, workspace);
-      all = {std::min(all[0], asked.subject->domain()[0]), std::max(all[1], asked.subject->domain()[1])};
+      const std::array<double, 2> domain = domainOf(asked.subject);
+      all = {std::min(all[0], domain[0]), std::max(all[1], domain[1])};
     } catch (const Error &e) {
       report.failed(place + ": " + e.what());
     } catch (const BadInput &e) {
@@ -319,11 +291,9 @@ int writeReport(const Arguments &arguments, Console &console) {
   const char *what = arguments.trajectory.empty() ? "a report of curves" : "--certificate";
   const World world = standing ? readStandingWorld(arguments, what, warnings) : readWorld(arguments, warnings);
   reportPage("", ""); /* before any search: is all there that the page needs? */
-  const std::vector<std::string> inputs{arguments.curves, arguments.trajectory, arguments.scene, arguments.robot,
-                                        arguments.srdf};
-  ResultsFile page(arguments.out, inputs);
+  ResultsFile page(arguments.out, inputsOf(arguments));
   std::optional<ResultsFile> certificates;
-  if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputs, "--certificate");
+  if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputsOf(arguments), "--certificate");
 
   catchInterrupts();
   Report report(arguments, warnings, console);

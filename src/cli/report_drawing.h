@@ -8,7 +8,7 @@
 #include <curve_proximity/motion.hpp>
 #include <vector>
 
-#include "movers.h"
+#include "moving_world.h"
 #include "world.h"
 
 namespace curve_proximity::cli {

@@ -5,6 +5,7 @@
 
 #include <curve_proximity/motion.hpp>
 
+#include "answers.h"
 #include "world.h"
 
 namespace curve_proximity::cli {
@@ -21,6 +22,12 @@ struct Rest {
   Eigen::Isometry3d place; /**< of the robot's root link, or of the frame that its base moves in */
 };
 Rest restOf(const TrajectoryDescription &trajectory, const World &world);
+
+/** The file's name without folder and extension. */
+std::string stemOf(const std::string &path);
+
+/** The robot along --trajectory, against the objects or `self`; kept by reference. */
+Asked askedAlong(const RobotMotion &motion, bool self, const Arguments &arguments);
 
 } // namespace curve_proximity::cli
 #endif

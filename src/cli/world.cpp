@@ -15,6 +15,7 @@
 #include "failure.h"
 #include "packages.h"
 #include "robot_file.h"
+#include "run.h"
 
 namespace curve_proximity::cli {
 namespace {
@@ -191,6 +192,14 @@ World readWorld(const Arguments &arguments, Warnings &warnings, const RobotSourc
 std::shared_ptr<const SecondOpinions> secondOpinions(const Arguments &arguments, const ResourceOptions &resources) {
   if (!arguments.second_opinion) return nullptr;
   return std::make_shared<const SecondOpinions>(*arguments.second_opinion, resources);
+}
+
+Query queryOf(const Arguments &arguments, const World &world, const Warnings &warnings) {
+  Query query = arguments.query;
+  query.options.stop = interrupted;
+  query.coverage = warnings.coverage();
+  query.second_opinion = secondOpinions(arguments, world.resources);
+  return query;
 }
 
 World readStandingWorld(const Arguments &arguments, const std::string &what, Warnings &warnings,

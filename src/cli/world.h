@@ -61,5 +61,9 @@ World readStandingWorld(const Arguments &arguments, const std::string &what, War
 /** Who measures the pairs again; null: nobody. resources: where files of objects are. */
 std::shared_ptr<const SecondOpinions> secondOpinions(const Arguments &arguments, const ResourceOptions &resources);
 
+/** The query of the command line in a world, which Ctrl-C ends. warnings: all of its input; what they leave out is not
+ *  covered. */
+Query queryOf(const Arguments &arguments, const World &world, const Warnings &warnings);
+
 } // namespace curve_proximity::cli
 #endif

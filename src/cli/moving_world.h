@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What moves in the scene, with the robot of the command line or without. */
-#ifndef CURVE_PROXIMITY_CLI_MOVERS_H
-#define CURVE_PROXIMITY_CLI_MOVERS_H
+#ifndef CURVE_PROXIMITY_CLI_MOVING_WORLD_H
+#define CURVE_PROXIMITY_CLI_MOVING_WORLD_H
 
 #include <array>
 #include <curve_proximity/movers.hpp>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "asking.h"
+#include "answers.h"
 #include "console.h"
 #include "world.h"
 
@@ -32,9 +32,9 @@ std::vector<MovingRobot> furtherRobots(const Arguments &arguments, const World &
 /** subject: along --trajectory; null: nobody. Throws BadUsage with one line. */
 MovingWorld gatherMovers(const Arguments &arguments, const World &world, std::shared_ptr<const RobotMotion> subject);
 
-/** The subject, or the body of --path, against all that stands and moves; without either all that moves. Kept by
- *  reference. */
-std::unique_ptr<Subject> subjectAmong(const MovingWorld &moving, const Arguments &arguments);
+/** The robot along --trajectory, or the body of --path, against all that stands and moves; without either all that
+ *  moves. Kept by reference. */
+Asked askedAmong(const MovingWorld &moving, const Arguments &arguments);
 
 /** The robot along --trajectory, against all that stands and moves in the scene. Throws BadUsage with one line. */
 int answerAmongMovers(const Arguments &arguments, const World &world, Warnings &warnings, Console &console);

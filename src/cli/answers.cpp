@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "answers.h"
+
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "certificates.h"
+#include "finish.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+/* In a row about one link that link is side a. */
+template <class Sides>
+void putLinkFirst(const std::string &link, Sides &sides, cprox_vec3 &point_a, cprox_vec3 &point_b) {
+  if (link.empty() || sides.a == link) return;
+  if (sides.b == link) {
+    sides.b = sides.a;
+    std::swap(point_a, point_b);
+  }
+  sides.a = link;
+}
+
+/* Adds the lines of a row: which they are says its detail. */
+class Lines {
+ public:
+  Lines(const Asked &asked, const Arguments &arguments, const std::string &proof, Outcome &out)
+      : asked_(asked), arguments_(arguments), proof_(proof), out_(out) {}
+
+  void add(Row row) {
+    if (std::holds_alternative<std::monostate>(row.detail)) return add(std::move(row.answer));
+    std::visit([&](auto &detail) { add(detail); }, row.detail);
+  }
+
+ private:
+  void add(Answer answer) {
+    answer.id = asked_.id;
+    putLinkFirst(asked_.part.link, answer, answer.result.witness_mover, answer.result.witness_obstacle);
+    const bool one_of_several = asked_.kind == "curve" && !answer.b.empty();
+    const std::string against = one_of_several ? ": against '" + answer.b + "'" : "";
+    if (answer.b.empty()) answer.b = asked_.part.object;
+    out_.stopped = out_.stopped || answer.result.status == CPROX_STOPPED;
+    ResultRow row = toRow(answer, arguments_.query.query_type);
+    row.proof = proof_;
+    out_.text += resultsLine(row, columnsOf(arguments_));
+    noteVerdict(row, out_);
+    if (!answer.unproven.empty()) out_.unproven.push_back(asked_.place + ": no certificate: " + answer.unproven);
+    if (answer.result.status < 0) out_.complaints.push_back(asked_.place + against + ": " + answer.message);
+  }
+
+  void add(std::vector<ClearanceInterval> &profile) {
+    for (ClearanceInterval &interval : profile) {
+      putLinkFirst(asked_.part.link, interval, interval.witness_a, interval.witness_b);
+      if (interval.b.empty()) interval.b = asked_.part.object;
+      out_.stopped = out_.stopped || interval.status == CPROX_STOPPED;
+      out_.against_nothing = out_.against_nothing || interval.gap == Gap::EMPTY || std::isinf(interval.lower);
+      out_.undecided = out_.undecided || interval.gap;
+      out_.text += profileLine(asked_.id, asked_.kind, interval);
+    }
+  }
+
+  void add(const Violations &found) {
+    out_.stopped = out_.stopped || found.status == CPROX_STOPPED;
+    out_.against_nothing = out_.against_nothing || !found.measured;
+    if (found.list.empty()) out_.text += clearLine(asked_.id, asked_.kind, found.status, found.message);
+    for (Violation one : found.list) {
+      if (!asked_.part.link.empty() && one.b == asked_.part.link) std::swap(one.a, one.b);
+      out_.violated = out_.violated || one.verdict == CPROX_VERDICT_VIOLATED;
+      out_.undecided = out_.undecided || one.verdict == CPROX_VERDICT_UNDECIDED;
+      out_.text += violationLine(asked_.id, asked_.kind, found, one);
+    }
+  }
+
+  /* No command asks for derivatives. */
+  template <class Detail>
+  void add(const Detail &) {}
+
+  const Asked &asked_;
+  const Arguments &arguments_;
+  const std::string &proof_;
+  Outcome &out_;
+};
+
+void addRows(const Asked &asked, const Arguments &arguments, const Query &query, Workspace &workspace, Outcome &out) {
+  const bool with_proof = !arguments.certificate.empty();
+  const CertificateHandle proof = makeCertificate();
+  Query proven;
+  if (with_proof) proven = query, proven.options.certificate = proof.get();
+  std::vector<Row> rows = curve_proximity::answer(asked.subject, asked.part, arguments.question,
+                                                  with_proof ? proven : query, Beside::NOTHING, workspace);
+  const std::string claim = with_proof ? proofOf(proof) : "";
+  if (with_proof) out.certificate = recordOf(proof);
+  const auto *nearest = std::get_if<question::Nearest>(&arguments.question);
+  if (nearest && rows.empty() && std::isinf(nearest->limits.within)) out.against_nothing = true;
+  Lines lines(asked, arguments, claim, out);
+  for (Row &row : rows) lines.add(std::move(row));
+}
+
+} // namespace
+
+Columns columnsOf(const Arguments &arguments) {
+  Columns columns;
+  columns.proof = !arguments.certificate.empty();
+  columns.contact = asksFor<question::Contact>(arguments.question);
+  columns.opinion = arguments.second_opinion.has_value();
+  return columns;
+}
+
+std::string headerOf(const Arguments &arguments) {
+  if (asksFor<question::Profile>(arguments.question)) return profileHeader();
+  if (asksFor<question::Violations>(arguments.question)) return violationsHeader();
+  return resultsHeader(columnsOf(arguments));
+}
+
+void addFailure(const Asked &asked, const Arguments &arguments, cprox_status status, const std::string &why,
+                Outcome &out) {
+  out.complaints.push_back(asked.place + ": " + why);
+  if (!arguments.certificate.empty()) out.certificate = emptyRecord();
+  if (asksFor<question::Profile>(arguments.question)) {
+    out.text += failedProfileLine(asked.id, asked.kind, status, why);
+  } else if (asksFor<question::Violations>(arguments.question)) {
+    out.text += clearLine(asked.id, asked.kind, status, why);
+  } else {
+    ResultRow row;
+    row.id = asked.id;
+    row.kind = asked.kind;
+    row.a = asked.kind == "curve" ? asked.id : asked.part.link;
+    row.b = asked.part.object;
+    row.result.status = status;
+    row.message = why;
+    row.proof = "none";
+    out.text += resultsLine(row, columnsOf(arguments));
+  }
+}
+
+void answer(const Asked &asked, const Arguments &arguments, const Query &query, Workspace &workspace, Outcome &out) {
+  if (asked.ends_run) return addRows(asked, arguments, query, workspace, out);
+  try {
+    addRows(asked, arguments, query, workspace, out);
+  } catch (const Error &e) {
+    addFailure(asked, arguments, e.status(), e.what(), out);
+  } catch (const std::bad_alloc &) {
+    addFailure(asked, arguments, CPROX_MEMORY, cprox_status_text(CPROX_MEMORY), out);
+  } catch (const std::exception &e) {
+    addFailure(asked, arguments, CPROX_INVALID, e.what(), out);
+  }
+}
+
+void addTasks(const Asked &asked, const Arguments &arguments, const Query &query, std::vector<Task> &tasks) {
+  for (const Part &part : partsOf(asked.subject, arguments.question, query, arguments.per_link)) {
+    Asked one = asked;
+    one.part = part;
+    tasks.push_back([one, &arguments, &query](Workspace &workspace) {
+      Outcome out;
+      answer(one, arguments, query, workspace, out);
+      return out;
+    });
+  }
+}
+
+} // namespace curve_proximity::cli

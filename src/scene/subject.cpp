@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "subject.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "movers_data.h"
+
+namespace curve_proximity {
+namespace {
+
+/* Calls with what a function about the subject takes first. */
+template <class Call>
+auto about(const CurveSubject &subject, const Call &call) {
+  return call(subject.targets, subject.curve);
+}
+template <class Call>
+auto about(const MotionSubject &subject, const Call &call) {
+  return call(subject.motion, subject.self);
+}
+template <class Call>
+auto about(const MoversSubject &subject, const Call &call) {
+  return subject.robot ? call(subject.movers, *subject.robot) : call(subject.movers, subject.against);
+}
+
+template <class Call>
+auto about(const Subject &subject, const Call &call) {
+  return std::visit([&](const auto &one) { return about(one, call); }, subject);
+}
+
+std::vector<Answer> searched(const CurveSubject &subject, const Query &query, Workspace &workspace) {
+  return ask(subject.targets, subject.curve, query, workspace);
+}
+std::vector<Answer> searched(const MotionSubject &subject, const Query &query, Workspace &workspace) {
+  if (subject.self) return {askSelf(subject.motion, query, workspace)};
+  return askEnvironment(subject.motion, query, workspace);
+}
+std::vector<Answer> searched(const MoversSubject &subject, const Query &query, Workspace &workspace) {
+  return {about(subject, [&](const auto &movers, const auto &whom) { return ask(movers, whom, query, workspace); })};
+}
+
+Row differentiated(const CurveSubject &subject, const Query &query, Workspace &workspace) {
+  CurveClearance out = clearanceGradient(subject.targets, subject.curve, *subject.description, query, workspace);
+  return {{}, std::move(out.answer), std::move(out.gradient)};
+}
+Row differentiated(const MotionSubject &subject, const Query &query, Workspace &workspace) {
+  const RobotPairs pairs = subject.self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
+  ClearanceRow out = clearanceGradient(subject.motion, pairs, query, workspace);
+  return {{}, std::move(out.answer), std::move(out.gradient)};
+}
+Row differentiated(const MoversSubject &subject, const Query &query, Workspace &workspace) {
+  if (!subject.robot) throw Error("gradients among what moves are by a trajectory of the robot: ask about one");
+  ClearanceRow out = clearanceGradient(subject.movers, *subject.robot, query, workspace);
+  return {{}, std::move(out.answer), std::move(out.gradient)};
+}
+
+/* The query of one part. */
+void narrow(const CurveSubject &, const Part &, const Question &question, Query &query) {
+  if (!asksFor<question::Search>(question)) query.per_object = false;
+}
+void narrow(const MotionSubject &subject, const Part &part, const Question &question, Query &query) {
+  if (subject.self) query.objects.clear(); // the robot itself is none of them, and is one row
+  if (subject.self || !asksFor<question::Search>(question)) query.per_object = false;
+  if (!part.link.empty()) query.links = {part.link};
+  if (!part.object.empty()) query.objects = {part.object};
+}
+void narrow(const MoversSubject &subject, const Part &part, const Question &question, Query &query) {
+  query.per_object = false;
+  if (!part.link.empty()) query.links = {part.link};
+  if (!part.object.empty()) query.objects = {part.object};
+  if (subject.body.empty()) return;
+  query.links = {subject.body};
+  const bool has_breaks = asksFor<question::Profile>(question); // they say which times
+  if (subject.times[0] < subject.times[1] && !has_breaks) query.options.interval = subject.times.data();
+}
+
+/* What a part can be measured against by name. */
+std::vector<std::string> objectsOf(const CurveSubject &, const Query &) {
+  return {""};
+}
+std::vector<std::string> objectsOf(const MotionSubject &subject, const Query &query) {
+  std::vector<std::string> out = query.objects;
+  if (out.empty())
+    for (const auto &object : subject.motion.snapshot()->objects()) out.push_back(object.first);
+  if (out.empty()) out.emplace_back();
+  return out;
+}
+std::vector<std::string> objectsOf(const MoversSubject &subject, const Query &query) {
+  if (!query.objects.empty()) return query.objects;
+  std::vector<std::string> out;
+  const Movers::Data &data = subject.movers.data();
+  for (const auto &object : data.snapshot->objects()) out.push_back(object.first);
+  for (const auto &object : data.snapshot->moving()) out.push_back(object.first);
+  for (const std::string &robot : data.robot_names)
+    if (!subject.robot || robot != subject.robot->name) out.push_back(robot);
+  return out;
+}
+
+std::vector<std::string> linksOf(const CurveSubject &, const Query &) {
+  return {""};
+}
+std::vector<std::string> linksOf(const MotionSubject &subject, const Query &query) {
+  std::vector<std::string> out =
+      query.links.empty() ? askedNames(subject.motion, subject.self, query.moving_only) : query.links;
+  if (out.empty()) out.emplace_back();
+  return out;
+}
+std::vector<std::string> linksOf(const MoversSubject &subject, const Query &query) {
+  if (!subject.robot) return {""};
+  return query.links.empty() ? movingNames(*subject.robot->motion) : query.links;
+}
+
+/* Does a search have a row for each object by itself? */
+bool partsObjects(const Subject &subject, const Question &question) {
+  const auto *motion = std::get_if<MotionSubject>(&subject);
+  if (motion && motion->self) return true;
+  return asksFor<question::Search>(question) && !std::holds_alternative<MoversSubject>(subject);
+}
+
+std::array<double, 2> domain(const CurveSubject &subject) {
+  const cprox_curve_info info = cprox_curve_get_info(subject.curve.curve.get());
+  return {info.t0, info.t1};
+}
+std::array<double, 2> domain(const MotionSubject &subject) {
+  return subject.motion.domain();
+}
+std::array<double, 2> domain(const MoversSubject &subject) {
+  if (subject.times[0] < subject.times[1]) return subject.times;
+  if (!subject.robot || subject.robot->motion->stands()) return subject.movers.domain();
+  const std::array<double, 2> own = subject.robot->motion->domain();
+  return {own[0] + subject.robot->start, own[1] + subject.robot->start};
+}
+
+/* The rows of one question about one part of a subject. */
+class Answering {
+ public:
+  Answering(const Subject &subject, const Part &part, const Query &query, Beside beside, Workspace &workspace)
+      : subject_(subject), part_(part), query_(query), beside_(beside), workspace_(workspace) {}
+
+  void operator()(const question::Search &) {
+    add(search());
+  }
+  void operator()(const question::Gradient &) {
+    rows_.push_back(
+        std::visit([&](const auto &subject) { return differentiated(subject, query_, workspace_); }, subject_));
+    rows_.back().part = part_;
+  }
+  void operator()(const question::Nearest &nearest) {
+    std::vector<Answer> pairs = about(subject_, [&](const auto &what, const auto &whom) {
+      return nearestPairs(what, whom, nearest.limits, query_, workspace_);
+    });
+    const bool by_search = pairs.empty() && beside_ == Beside::SEARCH && !std::isfinite(nearest.limits.within);
+    add(by_search ? search() : std::move(pairs));
+  }
+  void operator()(const question::Contact &) {
+    add({about(subject_,
+               [&](const auto &what, const auto &whom) { return timeOfContact(what, whom, query_, workspace_); })});
+  }
+  void operator()(const question::Profile &profile) {
+    const std::vector<double> breaks = breaksOf(profile, domainOf(subject_));
+    addDetail([&](const auto &what, const auto &whom) {
+      return clearanceProfile(what, whom, breaks, query_, workspace_, profile.horizon);
+    });
+  }
+  void operator()(const question::Violations &violations) {
+    constexpr double PART = 1e-3;
+    const std::array<double, 2> all = domainOf(subject_);
+    const double resolution = violations.resolution > 0.0 ? violations.resolution : PART * (all[1] - all[0]);
+    addDetail([&](const auto &what, const auto &whom) {
+      return curve_proximity::violations(what, whom, resolution, query_, workspace_);
+    });
+  }
+
+  std::vector<Row> rows() {
+    return std::move(rows_);
+  }
+
+ private:
+  std::vector<Answer> search() const {
+    return std::visit([&](const auto &subject) { return searched(subject, query_, workspace_); }, subject_);
+  }
+  void add(std::vector<Answer> answers) {
+    for (Answer &answer : answers) rows_.push_back({part_, std::move(answer), {}});
+  }
+  template <class Call>
+  void addDetail(const Call &call) {
+    Answer summary;
+    if (beside_ == Beside::SEARCH) summary = std::move(search().front());
+    rows_.push_back({part_, std::move(summary), about(subject_, call)});
+  }
+
+  const Subject &subject_;
+  const Part &part_;
+  const Query &query_;
+  const Beside beside_;
+  Workspace &workspace_;
+  std::vector<Row> rows_;
+};
+
+} // namespace
+
+std::vector<double> breaksOf(const question::Profile &profile, const std::array<double, 2> &domain) {
+  if (!profile.breaks.empty()) return profile.breaks;
+  std::vector<double> out;
+  for (std::size_t i = 0; i < profile.intervals; ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(profile.intervals);
+    const double next = domain[0] * (1.0 - part) + domain[1] * part;
+    if (out.empty() || next > out.back()) out.push_back(next); // a domain may have fewer numbers than intervals
+  }
+  out.front() = domain[0];
+  while (out.size() > 1 && out.back() >= domain[1]) out.pop_back();
+  out.push_back(domain[1]);
+  return out;
+}
+
+std::array<double, 2> domainOf(const Subject &subject) {
+  return std::visit([](const auto &one) { return domain(one); }, subject);
+}
+
+std::vector<Part> partsOf(const Subject &subject, const Question &question, const Query &query, bool per_link) {
+  std::vector<std::string> links{""}, objects{""};
+  if (per_link) links = std::visit([&](const auto &one) { return linksOf(one, query); }, subject);
+  if (query.per_object && !partsObjects(subject, question))
+    objects = std::visit([&](const auto &one) { return objectsOf(one, query); }, subject);
+  std::vector<Part> out;
+  for (const std::string &link : links)
+    for (const std::string &object : objects) out.push_back({link, object});
+  return out;
+}
+
+std::vector<Row> answer(const Subject &subject, const Part &part, const Question &question, const Query &query,
+                        Beside beside, Workspace &workspace) {
+  Query own;
+  const bool is_whole = std::holds_alternative<CurveSubject>(subject) && !query.per_object;
+  if (!is_whole) {
+    own = query;
+    std::visit([&](const auto &one) { narrow(one, part, question, own); }, subject);
+  }
+  Answering answering(subject, part, is_whole ? query : own, beside, workspace);
+  std::visit(answering, question);
+  return answering.rows();
+}
+
+} // namespace curve_proximity
