@@ -66,65 +66,61 @@ double deltaOf(const ListViolations::Request &request) {
 }
 
 template <class Request>
-Asking askingOf(const Request &) {
-  return {};
+Question questionOf(const Request &) {
+  return question::Search{};
 }
-Asking askingOf(const Distance::Request &request) {
-  Asking out;
-  if (request.query.gradient) out.kind = Asking::GRADIENT;
-  return out;
+Question questionOf(const Distance::Request &request) {
+  if (request.query.gradient) return question::Gradient{};
+  return question::Search{};
 }
-Asking askingOf(const NearestPairs::Request &request) {
-  constexpr std::size_t USUAL_PAIRS = 10;
+Question questionOf(const NearestPairs::Request &request) {
   if (!(request.within >= 0.0)) throw Error("within is " + std::to_string(request.within) + ": it must be at least 0");
-  Asking out;
-  out.kind = Asking::NEAREST;
-  out.limits.count = request.count != 0 ? request.count : USUAL_PAIRS;
+  question::Nearest out;
+  if (request.count != 0) out.limits.count = request.count;
   if (request.within > 0.0) out.limits.within = request.within;
   return out;
 }
-Asking askingOf(const TimeOfContact::Request &) {
-  Asking out;
-  out.kind = Asking::CONTACT;
-  return out;
+Question questionOf(const TimeOfContact::Request &) {
+  return question::Contact{};
 }
-Asking askingOf(const ClearanceProfile::Request &request) {
-  constexpr std::size_t USUAL_INTERVALS = 100;
+Question questionOf(const ClearanceProfile::Request &request) {
   if (request.intervals != 0 && !request.breaks.empty()) throw Error("give intervals or breaks, not both");
   if (request.breaks.size() == 1) throw Error("breaks has one value: two make an interval");
-  Asking out;
-  out.kind = Asking::PROFILE;
-  out.intervals = request.intervals != 0 ? request.intervals : USUAL_INTERVALS;
-  out.breaks = request.breaks;
-  out.per_link = request.per_link != 0;
   if (!(request.horizon >= 0.0))
     throw Error("horizon is " + std::to_string(request.horizon) + ": it must be at least 0");
+  question::Profile out;
+  if (request.intervals != 0) out.intervals = request.intervals;
+  out.breaks = request.breaks;
   if (request.horizon > 0.0) out.horizon = request.horizon;
   return out;
 }
-
-Asking askingOf(const ListViolations::Request &request) {
+Question questionOf(const ListViolations::Request &request) {
   if (!(request.resolution >= 0.0 && std::isfinite(request.resolution)))
     throw Error("resolution is " + std::to_string(request.resolution) + ": it must be at least 0 and finite");
-  Asking out;
-  out.kind = Asking::VIOLATIONS;
-  out.resolution = request.resolution;
-  return out;
+  return question::Violations{request.resolution};
+}
+
+template <class Request>
+bool isPerLink(const Request &) {
+  return false;
+}
+bool isPerLink(const ClearanceProfile::Request &request) {
+  return request.per_link != 0;
 }
 
 template <class Response>
-void deliver(QueryResponse &answer, Response &response) {
+void deliver(const QueryRequest &, QueryResponse &answer, Response &response) {
   response.results = std::move(answer.results);
 }
-void deliver(QueryResponse &answer, Distance::Response &response) {
+void deliver(const QueryRequest &request, QueryResponse &answer, Distance::Response &response) {
+  if (asksFor<question::Gradient>(request.question)) response.gradients = answer.takeDetails<Gradient>();
   response.results = std::move(answer.results);
-  response.gradients = std::move(answer.gradients);
 }
-void deliver(QueryResponse &answer, ClearanceProfile::Response &response) {
+void deliver(const QueryRequest &, QueryResponse &answer, ClearanceProfile::Response &response) {
   response.profiles = takeProfiles(answer);
 }
 
-void deliver(QueryResponse &answer, ListViolations::Response &response) {
+void deliver(const QueryRequest &, QueryResponse &answer, ListViolations::Response &response) {
   response.violations = takeViolations(answer);
 }
 
@@ -327,7 +323,8 @@ typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType
     response.frame_id = frames_.fixedFrame();
     Turn turn(turns_, call.client, waitUntil(call, at_work));
     QueryRequest request(query_type, deltaOf(asked), asked.query);
-    request.asking = askingOf(asked);
+    request.question = questionOf(asked);
+    request.per_link = isPerLink(asked);
     request.budget_ms = asked.query.budget_ms;
     request.arrival = call.arrival;
     request.turn = &turn;
@@ -339,7 +336,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType
     response.message = std::move(answer.message);
     response.warnings = std::move(answer.warnings);
     response.scene = std::move(answer.scene);
-    deliver(answer, response);
+    deliver(request, answer, response);
     markers_->show(std::move(drawing));
   };
   return handler<Service>(QUERY_TIMES_WIRE, work);

@@ -35,7 +35,7 @@
 #include "parameters/tuning.h"
 #include "pipeline/pipeline.h"
 #include "queries/batch_action.h"
-#include "queries/pairs.h"
+#include "queries/measure_pairs.h"
 #include "queries/queries.h"
 #include "transport/request_threads.h"
 #include "transport/service.h"

@@ -4,7 +4,6 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "messages/gradient_message.h"
 #include "messages/scene_message.h"
 #include "messages/trajectory_message.h"
+#include "queries/time_budget.h"
 #include "transport/memory_account.h"
 #include "transport/name_limits.h"
 #include "transport/turns.h"
@@ -212,24 +212,14 @@ std::size_t Constraints::checkLimits(const EvaluateConstraints::Request &request
 
 /* A request on its way. */
 struct Constraints::Work {
-  /* In the shape of cprox_options.stop. */
-  static bool isOver(void *user) {
-    const Work &work = *static_cast<const Work *>(user);
-    if (work.turn) work.turn->yield();
-    return work.stop || Clock::now() >= work.deadline;
-  }
-
-  using Clock = std::chrono::steady_clock;
   const SnapshotPtr snapshot;
-  const Clock::time_point deadline;
-  const std::atomic<bool> &stop;
-  Turn *const turn;
+  TimeBudget budget;
   FrameLookup lookup;
   std::size_t derivatives = 0; /* of all rows so far */
   double joints_age = NONE;    /* [s] of the case at hand */
 
   /* The robot made ready last, for trajectories that begin at the same base. */
-  std::shared_ptr<const PreparedRobot> robot;
+  std::shared_ptr<const PreparedRobot> robot = nullptr;
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
 
   /* What the movers of the case at hand take. */
@@ -247,8 +237,8 @@ MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work)
   out.trajectory = toDescription(message.trajectory, joints.positions, remark);
   out.trajectory.id = message.id;
   out.rest = joints.positions;
-  out.stop = Work::isOver;
-  out.stop_user = &work;
+  out.stop = TimeBudget::isOver;
+  out.stop_user = &work.budget;
   checkTrajectory(out.trajectory);
 
   // Where the robot stands, or the frame that its virtual joint moves in.
@@ -320,17 +310,13 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
                          std::shared_ptr<const LevelDrawing> &drawing, Turn *turn) {
   if (providers_->all().empty()) throw Error("~constraint_providers names none");
   const memory::Share share(checkLimits(request), static_cast<std::size_t>(parameters_.max_request_mb) << 20);
-  const auto deadline =
-      std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                             std::chrono::duration<double, std::milli>(parameters_.budget_ms));
+  const TimeBudget budget(parameters_.budget_ms, TimeBudget::Clock::now(), stop_, turn);
   const SnapshotPtr snapshot = live_.scene.snapshot();
   response.scene = live_.state(*snapshot);
   live_.demand(*snapshot, request.scene_epoch, request.scene_version);
   const ResourceOptions resources = resourceOptions("", parameters_);
   const WorkspacePool::Lease workspace(workspaces_);
-  Work work{
-      snapshot,    deadline, stop_, turn, FrameLookup(frames_, turn), 0, NONE, nullptr, Eigen::Isometry3d::Identity(),
-      std::nullopt};
+  Work work{snapshot, budget, FrameLookup(frames_, turn)};
   Doubts doubts(parameters_.max_age, response.scene.sensors, live_.lost);
   std::size_t failed = 0;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
@@ -344,8 +330,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
     cprox_status fault = CPROX_OK;
     const std::string why = sentenceOf(
         [&] {
-          if (stop_) throw Error("the server is shutting down");
-          if (std::chrono::steady_clock::now() >= deadline) throw Error("~budget_ms are over");
+          budget.demand();
           described = toCase(asked, work);
           rows = answerCase(*providers_, described, resources, *workspace);
           for (const ConstraintRow &row : rows) work.derivatives += countDerivatives(row);

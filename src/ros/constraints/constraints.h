@@ -16,7 +16,7 @@
 #include "../../providers/provider_set.h"
 #include "markers/level_markers.h"
 #include "parameters/parameters.h"
-#include "queries/movers.h"
+#include "queries/surroundings.h"
 #include "transport/workspaces.h"
 #include "world/frames.h"
 #include "world/live_scene.h"

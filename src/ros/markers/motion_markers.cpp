@@ -13,11 +13,11 @@ constexpr int SWEEP_SAMPLES = 60;      /* of the way of its closest point */
 constexpr double SWEEP_RADIUS = 0.008; /* [m] as it is drawn */
 
 /** A collision element of a link, or of what it carries. */
-struct Part {
+struct ShownPart {
   const LinkGeometry *element;
   double padding; /**< [m] */
 };
-using Parts = std::vector<Part>;
+using Parts = std::vector<ShownPart>;
 
 Parts partsOf(const Snapshot &scene, const std::string &link) {
   Parts parts;
@@ -37,7 +37,7 @@ double linkClearance(const Parts &parts, const Eigen::Isometry3d &link, const St
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-4;
   double least = std::numeric_limits<double>::infinity();
-  for (const Part &part : parts) {
+  for (const ShownPart &part : parts) {
     const cprox_obstacle a = cprox_obstacle_at(part.element->geometry.hull.get(), toPose(link * part.element->pose));
     for (const StandingBody &object : objects) {
       cprox_result result{};
@@ -51,7 +51,7 @@ double linkClearance(const Parts &parts, const Eigen::Isometry3d &link, const St
 
 void addLink(Canvas &canvas, const std::string &space, const Parts &parts, const Eigen::Isometry3d &link,
              const ResourceOptions &resources, const std_msgs::ColorRGBA &tint) {
-  for (const Part &part : parts) {
+  for (const ShownPart &part : parts) {
     const LinkGeometry &element = *part.element;
     canvas.addShape(space, element.description, element.geometry.hull, resources, link * element.pose, tint);
   }
@@ -90,7 +90,7 @@ void addRobot(Canvas &canvas, const Snapshot &scene, const LinkPoses &links, con
   for (const auto &link : links) {
     const Parts parts = partsOf(scene, link.first);
     addLink(canvas, "robot", parts, link.second, resources, colour(0.93, 0.93, 0.91, 1.0));
-    for (const Part &part : parts)
+    for (const ShownPart &part : parts)
       placed.push_back({part.element->geometry.body.get(), link.second * part.element->pose,
                         part.padding + part.element->geometry.margin});
   }

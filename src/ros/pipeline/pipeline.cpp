@@ -255,13 +255,14 @@ void Pipeline::tellClearance(const QueryRequest &request, const ProximityResults
   again.paths = request.paths;
   again.trajectories = request.trajectories;
   again.multi_dof_trajectories = request.multi_dof_trajectories;
-  again.asking.kind = Asking::PROFILE;
-  again.asking.intervals = static_cast<std::size_t>(parameters_.profile_intervals);
+  question::Profile asked;
+  asked.intervals = static_cast<std::size_t>(parameters_.profile_intervals);
+  again.question = asked;
   std_msgs::Header begin = results.header;
   if (begin.stamp.isZero()) begin.stamp = ros::Time::now();
   for (const bool per_link : {false, true}) {
     if (per_link && (!parameters_.profile_per_link || request.trajectories.empty())) continue;
-    again.asking.per_link = per_link;
+    again.per_link = per_link;
     QueryResponse answer;
     Drawing not_drawn;
     queries_.answer(again, answer, not_drawn);

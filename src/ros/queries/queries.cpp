@@ -34,19 +34,13 @@ QueryType queryTypeFromName(const std::string &name) {
 }
 
 std::vector<Profile> takeProfiles(QueryResponse &answer) {
-  std::vector<Profile> profiles = std::move(answer.profiles);
-  for (std::size_t i = 0; i < profiles.size(); ++i) {
-    Profile &profile = profiles[i];
-    profile.summary = std::move(answer.results[i]);
-    const std::string &status = profile.summary.status;
-    if (status != Proximity::STATUS_STALE && status != Proximity::STATUS_UNKNOWN) continue;
-    std::fill(profile.lower.begin(), profile.lower.end(), 0.0);
-  }
+  std::vector<Profile> profiles = answer.takeDetails<Profile>();
+  for (std::size_t i = 0; i < profiles.size(); ++i) profiles[i].summary = std::move(answer.results[i]);
   return profiles;
 }
 
 std::vector<ViolationIntervals> takeViolations(QueryResponse &answer) {
-  std::vector<ViolationIntervals> violations = std::move(answer.violations);
+  std::vector<ViolationIntervals> violations = answer.takeDetails<ViolationIntervals>();
   for (std::size_t i = 0; i < violations.size(); ++i) {
     violations[i].summary = std::move(answer.results[i]);
     for (std::string &a : violations[i].a)
@@ -72,15 +66,15 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   if (request.delta != 0.0 && request.query_type != QueryType::TOLERANCE)
     throw Error("delta is " + std::to_string(request.delta) + ": it is the clearance that tolerance asks for");
   const std::size_t motions = request.trajectories.size() + request.multi_dof_trajectories.size();
-  const bool own_rows = request.asking.kind != Asking::ANSWER && request.asking.kind != Asking::GRADIENT;
+  const bool own_rows = !asksFor<question::Search, question::Gradient>(request.question);
   if (own_rows && more.per_object) throw Error("per_object does not apply: it is of distance, tolerance and collision");
   if (!more.body.id.empty() && request.paths.empty() && request.multi_dof_trajectories.empty())
     throw Error("body applies to paths and multi_dof_trajectories: there is none");
-  if (more.gradient && request.asking.kind != Asking::GRADIENT)
+  if (more.gradient && !asksFor<question::Gradient>(request.question))
     throw Error("gradient does not apply: it is of the service distance");
   if (more.gradient && more.per_object)
     throw Error("gradient does not apply with per_object: there is one for the nearest object");
-  if (request.asking.per_link && motions == 0 && !more.robot_state)
+  if (request.per_link && motions == 0 && !more.robot_state)
     throw Error("per_link is about the robot along a trajectory or as it stands (robot_state): there is neither");
   if (more.self_collision && motions == 0 && !more.robot_state && !more.movers)
     throw Error("self_collision is about the robot along a trajectory or as it stands (robot_state): there is neither");
@@ -153,22 +147,22 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   }
   const std::size_t motions =
       request.trajectories.size() + request.multi_dof_trajectories.size() + (request.more.robot_state ? 1 : 0);
-  const Asking &asking = request.asking;
-  if (asking.kind == Asking::NEAREST) targets = asking.limits.count;
-  if (asking.kind == Asking::PROFILE) targets = std::max(asking.intervals, asking.breaks.size());
-  if (asking.kind == Asking::VIOLATIONS) targets = MOST_VIOLATIONS;
+  if (const auto *nearest = std::get_if<question::Nearest>(&request.question)) targets = nearest->limits.count;
+  if (const auto *profile = std::get_if<question::Profile>(&request.question))
+    targets = std::max(profile->intervals, profile->breaks.size());
+  if (asksFor<question::Violations>(request.question)) targets = MOST_VIOLATIONS;
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), targets, "results");
-  const bool often = asking.kind != Asking::ANSWER && asking.kind != Asking::GRADIENT &&
+  const bool often = !asksFor<question::Search, question::Gradient>(request.question) &&
                      request.more.self_collision; // as many rows of kind self
   const std::size_t profiles =
-      (asking.per_link && snapshot.robot() ? snapshot.robot()->links().size() + snapshot.attached().size() : 1) *
+      (request.per_link && snapshot.robot() ? snapshot.robot()->links().size() + snapshot.attached().size() : 1) *
       (often ? 2 : 1);
   const std::size_t movers = request.more.movers ? 1 : 0;
   const std::size_t rows = (curves + motions * profiles + movers) * targets + motions + movers;
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
   constexpr std::size_t VECTOR = 3 * sizeof(double), COPIES = 2, KINDS = 2, DERIVATIVES = 3;
   std::size_t bytes = rows * ROW_BYTES + points * memory::OF_POINT + values * memory::OF_VALUE;
-  if (asking.kind == Asking::GRADIENT)
+  if (asksFor<question::Gradient>(request.question))
     bytes += COPIES * (rows * sizeof(Gradient) + points * VECTOR + values * KINDS * DERIVATIVES * sizeof(double));
   return bytes;
 }
@@ -191,7 +185,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
   live_.demand(*snapshot, request.more.scene_epoch, request.more.scene_version);
   Query query = toQuery(request, *snapshot);
   const double budget_ms = request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load();
-  TimeBudget budget(budget_ms, request, stop_, request.turn);
+  TimeBudget budget(budget_ms, request.arrival, stop_, request.turn, request.cancelled);
   query.allow_empty = parameters_.allow_empty;
   query.options.stop = TimeBudget::isOver;
   query.options.stop_user = &budget;

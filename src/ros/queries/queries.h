@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What a service call does between its request and its response: queries.cpp for all, curve_queries.cpp for curves,
- * motion_queries.cpp for motions. */
+/** What a service call does between its request and its response: queries.cpp for all, curve_rows.cpp for curves,
+ *  motion_rows.cpp for what moves otherwise. */
 #ifndef CURVE_PROXIMITY_ROS_QUERIES_H
 #define CURVE_PROXIMITY_ROS_QUERIES_H
 
 #include <curve_proximity/Curve.h>
-#include <curve_proximity/Gradient.h>
-#include <curve_proximity/Profile.h>
 #include <curve_proximity/Proximity.h>
 #include <curve_proximity/ProximityQuery.h>
 #include <curve_proximity/SceneState.h>
-#include <curve_proximity/ViolationIntervals.h>
 #include <nav_msgs/Path.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
@@ -28,10 +25,11 @@
 #include <thread>
 #include <vector>
 
+#include "../scene/subject.h"
 #include "parameters/parameters.h"
 #include "parameters/tuning.h"
-#include "queries/asking.h"
-#include "queries/movers.h"
+#include "queries/row_message.h"
+#include "queries/surroundings.h"
 #include "transport/statistics.h"
 #include "transport/turns.h"
 #include "transport/workspaces.h"
@@ -80,7 +78,8 @@ struct QueryRequest {
   List<nav_msgs::Path> paths;
   List<trajectory_msgs::JointTrajectory> trajectories;
   List<trajectory_msgs::MultiDOFJointTrajectory> multi_dof_trajectories;
-  Asking asking;
+  Question question;          /**< its query_type is that of the above */
+  bool per_link = false;      /**< rows for each link of a motion */
   const ProximityQuery &more; /**< all else; what stands in the four lists above is not looked at */
   double budget_ms = 0.0;     /**< 0: the server's */
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
@@ -113,23 +112,33 @@ struct QueryResponse {
   std::vector<std::string> warnings;
   SceneState scene;
   std::vector<Proximity> results;
-  std::vector<Profile> profiles; /**< of Asking::PROFILE: one for each of the results, their summaries not filled in */
-  std::vector<Gradient> gradients;            /**< of Asking::GRADIENT: one for each of the results */
-  std::vector<ViolationIntervals> violations; /**< of Asking::VIOLATIONS likewise, their summaries not filled in */
+  std::vector<DetailMessage> details; /**< of the results; may be shorter: those behind have none */
 
-  /** Rows without an answer have no profile and no gradient: fills up what is asked for. */
-  void fillUp(const Asking &asking) {
-    if (asking.kind == Asking::PROFILE) profiles.resize(results.size());
-    if (asking.kind == Asking::GRADIENT) gradients.resize(results.size());
-    if (asking.kind == Asking::VIOLATIONS) violations.resize(results.size());
+  /** Adds a row, to be filled. */
+  Proximity &add(DetailMessage detail = {}) {
+    results.emplace_back();
+    if (!std::holds_alternative<std::monostate>(detail)) {
+      details.resize(results.size());
+      details.back() = std::move(detail);
+    }
+    return results.back();
+  }
+
+  /** The details of all rows, which are of one kind; rows without an answer have an empty one. */
+  template <class Message>
+  std::vector<Message> takeDetails() {
+    details.resize(results.size());
+    std::vector<Message> out;
+    for (DetailMessage &detail : details) {
+      auto *found = std::get_if<Message>(&detail);
+      out.push_back(found ? std::move(*found) : Message());
+    }
+    return out;
   }
 };
 
-/** The profiles of an answer with their summaries. What rests on nothing or on data too old has lower bounds of 0. */
+/** The details, each with its row as its summary. */
 std::vector<Profile> takeProfiles(QueryResponse &answer);
-
-/** The same of violations. Where the answer rests on data too old, there may be more of them than there are intervals.
- */
 std::vector<ViolationIntervals> takeViolations(QueryResponse &answer);
 
 /** What the markers show of a query. */
@@ -223,6 +232,9 @@ class Queries {
   MovingObject toRider(const ProximityQuery &query, const Snapshot &snapshot, std::vector<TimedPose> poses) const;
   void answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp, std::vector<TimedPose> poses,
                   const std::string &remark, Work &work);
+  struct Moving;
+  void answerMoving(const std::string &id, const std::vector<std::string> &kinds, Work &work,
+                    const std::function<void(Workspace &, Moving &)> &ask);
   void answerPath(const nav_msgs::Path &path, const std::string &id, Work &work);
   void answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not = "");
   void answerState(Work &work);

@@ -4,9 +4,48 @@
 #include <limits>
 
 #include "messages/geometry_message.h"
-#include "queries/asking.h"
+#include "messages/gradient_message.h"
 
 namespace curve_proximity {
+namespace {
+
+ViolationIntervals toMessage(const Violations &violations) {
+  if (violations.list.size() > MOST_VIOLATIONS)
+    throw Error("there are more than " + std::to_string(MOST_VIOLATIONS) +
+                " violations: a larger resolution has fewer");
+  ViolationIntervals message;
+  for (const Violation &one : violations.list) {
+    message.enter_lower.push_back(one.enter_lower);
+    message.enter_upper.push_back(one.enter_upper);
+    message.leave_lower.push_back(one.leave_lower);
+    message.leave_upper.push_back(one.leave_upper);
+    message.verdict.emplace_back(cprox_verdict_name(one.verdict));
+    message.upper.push_back(one.upper);
+    message.t.push_back(one.t);
+    message.a.push_back(one.a);
+    message.b.push_back(one.b);
+  }
+  return message;
+}
+
+Profile toMessage(const std::vector<ClearanceInterval> &intervals) {
+  Profile message;
+  for (const ClearanceInterval &interval : intervals) {
+    message.t0.push_back(interval.t0);
+    message.t1.push_back(interval.t1);
+    message.lower.push_back(interval.lower);
+    message.upper.push_back(interval.upper);
+    message.t.push_back(interval.t);
+    message.a.push_back(interval.a);
+    message.b.push_back(interval.b);
+    message.witness_a.push_back(toPointMessage(interval.witness_a));
+    message.witness_b.push_back(toPointMessage(interval.witness_b));
+    message.converged.push_back(interval.status == CPROX_OK);
+  }
+  return message;
+}
+
+} // namespace
 
 void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
   if (answer.result.status < 0) {
@@ -58,40 +97,21 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   return message;
 }
 
-ViolationIntervals toMessage(const Violations &violations) {
-  if (violations.list.size() > MOST_VIOLATIONS)
-    throw Error("there are more than " + std::to_string(MOST_VIOLATIONS) +
-                " violations: a larger resolution has fewer");
-  ViolationIntervals message;
-  for (const Violation &one : violations.list) {
-    message.enter_lower.push_back(one.enter_lower);
-    message.enter_upper.push_back(one.enter_upper);
-    message.leave_lower.push_back(one.leave_lower);
-    message.leave_upper.push_back(one.leave_upper);
-    message.verdict.emplace_back(cprox_verdict_name(one.verdict));
-    message.upper.push_back(one.upper);
-    message.t.push_back(one.t);
-    message.a.push_back(one.a);
-    message.b.push_back(one.b);
-  }
-  return message;
+void fillRow(const Answer &answer, const Question &question, QueryType query_type, Proximity &message) {
+  fillRow(answer, query_type, message);
+  if (asksFor<question::Contact>(question) && answer.result.status >= 0)
+    message.t_contact_lower = answer.result.t_contact_lower;
 }
 
-Profile toMessage(const std::vector<ClearanceInterval> &intervals) {
-  Profile message;
-  for (const ClearanceInterval &interval : intervals) {
-    message.t0.push_back(interval.t0);
-    message.t1.push_back(interval.t1);
-    message.lower.push_back(interval.lower);
-    message.upper.push_back(interval.upper);
-    message.t.push_back(interval.t);
-    message.a.push_back(interval.a);
-    message.b.push_back(interval.b);
-    message.witness_a.push_back(toPointMessage(interval.witness_a));
-    message.witness_b.push_back(toPointMessage(interval.witness_b));
-    message.converged.push_back(interval.status == CPROX_OK);
-  }
-  return message;
+DetailMessage toMessage(const Row &row, const TrajectoryDescription *trajectory) {
+  if (const auto *gradient = std::get_if<CurveGradient>(&row.detail)) return toMessage(*gradient);
+  if (const auto *gradient = std::get_if<ClearanceGradient>(&row.detail)) return toMessage(*gradient, *trajectory);
+  if (const auto *found = std::get_if<Violations>(&row.detail)) return toMessage(*found);
+  const auto *intervals = std::get_if<std::vector<ClearanceInterval>>(&row.detail);
+  if (!intervals) return {};
+  Profile profile = toMessage(*intervals);
+  profile.link = row.part.link;
+  return profile;
 }
 
 } // namespace curve_proximity

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <curve_proximity/core.hpp>
 #include <sstream>
 #include <string>
 
-#include "queries/queries.h"
 #include "transport/turns.h"
 
 namespace curve_proximity {
@@ -17,12 +17,15 @@ namespace curve_proximity {
 /** Ends a query when its time is over or the server goes, and makes way for others meanwhile. */
 class TimeBudget {
  public:
-  /** turn: of the thread that asks; may be null. */
-  TimeBudget(double milliseconds, const QueryRequest &request, const std::atomic<bool> &stop, Turn *turn)
+  using Clock = std::chrono::steady_clock;
+
+  /** begin: of the time. turn: of the thread that asks; cancelled: set, it ends the query; both may be null. */
+  TimeBudget(double milliseconds, Clock::time_point begin, const std::atomic<bool> &stop, Turn *turn,
+             const std::atomic<bool> *cancelled = nullptr)
       : milliseconds_(milliseconds),
-        deadline_(deadlineOf(request.arrival, milliseconds)),
+        deadline_(deadlineOf(begin, milliseconds)),
         stop_(stop),
-        cancelled_(request.cancelled),
+        cancelled_(cancelled),
         turn_(turn) {}
 
   /** In the shape of cprox_options.stop. */
@@ -37,6 +40,11 @@ class TimeBudget {
     return stop_ || isCancelled() || Clock::now() >= deadline_;
   }
 
+  /** Throws Error where it is reached. */
+  void demand() const {
+    if (isReached()) throw Error(stop_ ? "the server is shutting down" : "~budget_ms are over");
+  }
+
   std::string reason() const {
     if (stop_) return "the server is shutting down";
     if (isCancelled()) return "cancelled";
@@ -46,12 +54,10 @@ class TimeBudget {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  static Clock::time_point deadlineOf(Clock::time_point arrival, double milliseconds) {
+  static Clock::time_point deadlineOf(Clock::time_point begin, double milliseconds) {
     constexpr double FOREVER = 1e12; /* [ms] decades: within what the clock can count */
     const std::chrono::duration<double, std::milli> wait(std::min(milliseconds, FOREVER));
-    return arrival + std::chrono::duration_cast<Clock::duration>(wait);
+    return begin + std::chrono::duration_cast<Clock::duration>(wait);
   }
 
   bool isCancelled() const {

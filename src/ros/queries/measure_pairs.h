@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** ~measure_pairs: two bodies at a time, without the scene. */
-#ifndef CURVE_PROXIMITY_ROS_PAIRS_H
-#define CURVE_PROXIMITY_ROS_PAIRS_H
+#ifndef CURVE_PROXIMITY_ROS_MEASURE_PAIRS_H
+#define CURVE_PROXIMITY_ROS_MEASURE_PAIRS_H
 
 #include <curve_proximity/MeasurePairs.h>
 

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "queries/movers.h"
+#include "queries/surroundings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <curve_proximity/nearest_name.hpp>
-#include <iterator>
 
 #include "messages/geometry_message.h"
 #include "messages/trajectory_message.h"
-#include "queries/row_message.h"
 
 namespace curve_proximity {
 namespace {
@@ -89,7 +86,7 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot) {
 Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
                            std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, std::size_t points,
                            FrameLookup &lookup, std::size_t most_bytes, const Stop &stop)
-    : snapshot_(snapshot), has_subject_(subject != nullptr) {
+    : has_subject_(subject != nullptr) {
   const std::int64_t origin = originOf(query, *snapshot, has_subject_, stamp);
   const std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
   const std::size_t own = has_subject_ ? snapshot->robot()->links().size() * (points + 2) : 0;
@@ -106,7 +103,7 @@ Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &qu
 Surroundings::Surroundings(const SnapshotPtr &snapshot, const ProximityQuery &query, const FurtherRobots &robots,
                            const MovingObject &rides, const ResourceOptions &resources, const ros::Time &stamp,
                            FrameLookup &lookup, std::size_t most_bytes, const Stop &stop)
-    : snapshot_(snapshot), rides_(rides.object.id), rides_over_{rides.poses.front().time, rides.poses.back().time} {
+    : rides_(rides.object.id), rides_over_{rides.poses.front().time, rides.poses.back().time} {
   const std::int64_t origin = originOf(query, *snapshot, true, stamp);
   std::vector<MovingObject> objects = movingObjects(*snapshot, origin);
   objects.push_back(rides);
@@ -123,81 +120,9 @@ std::size_t Surroundings::gather(const ProximityQuery &query, const FurtherRobot
   return gathered.values;
 }
 
-/** What the subject is measured against by name: objects that stand, objects and robots that move. */
-std::vector<std::string> Surroundings::namesBeside() const {
-  std::vector<std::string> out;
-  for (const auto &object : snapshot_->objects()) out.push_back(object.first);
-  for (const auto &object : snapshot_->moving()) out.push_back(object.first);
-  for (std::size_t i = has_subject_ ? 1 : 0; i < robots_.size(); ++i) out.push_back(robots_[i].name);
-  return out;
-}
-
-void Surroundings::ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace,
-                       MotionRows &out) const {
-  if (asking.kind == Asking::GRADIENT && !has_subject_)
-    throw Error("gradients among what moves are by a trajectory of the robot: ask about one");
-  const Against against = against_self ? Against::BOTH : Against::OTHERS;
-  if (!query.per_object) return askOnce(query, against, asking, workspace, out);
-  for (const std::string &name : query.objects.empty() ? namesBeside() : query.objects) {
-    Query one = query;
-    one.per_object = false;
-    one.objects = {name};
-    askOnce(one, against, asking, workspace, out);
-    if (out.answers.back().b.empty()) out.answers.back().b = name; // nothing of it is measured
-  }
-}
-
-void Surroundings::askOnce(const Query &asked, Against against, const Asking &asking, Workspace &workspace,
-                           MotionRows &out) const {
-  Query query = asked;
-  if (!rides_.empty()) {
-    query.links = {rides_};
-    if (rides_over_[0] < rides_over_[1] && asking.kind != Asking::PROFILE) query.options.interval = rides_over_.data();
-  }
-  const MovingRobot *subject = has_subject_ ? &robots_.front() : nullptr;
-  const auto plainly = [&](const Query &one) {
-    return subject ? curve_proximity::ask(*movers_, *subject, one, workspace)
-                   : curve_proximity::ask(*movers_, against, one, workspace);
-  };
-  if (asking.kind == Asking::ANSWER) out.answers.push_back(plainly(query));
-  if (asking.kind == Asking::GRADIENT) {
-    ClearanceRow row = clearanceGradient(*movers_, *subject, query, workspace);
-    out.gradients.push_back(std::move(row.gradient));
-    out.answers.push_back(std::move(row.answer));
-  }
-  if (asking.kind == Asking::CONTACT)
-    out.answers.push_back(subject ? timeOfContact(*movers_, *subject, query, workspace)
-                                  : timeOfContact(*movers_, against, query, workspace));
-  if (asking.kind == Asking::NEAREST) {
-    std::vector<Answer> pairs = subject ? nearestPairs(*movers_, *subject, asking.limits, query, workspace)
-                                        : nearestPairs(*movers_, against, asking.limits, query, workspace);
-    if (pairs.empty() && !std::isfinite(asking.limits.within)) pairs = {plainly(query)};
-    std::move(pairs.begin(), pairs.end(), std::back_inserter(out.answers));
-  }
-  std::array<double, 2> domain = movers_->domain();
-  if (subject && !subject->motion->stands()) domain = subject->motion->domain();
-  if (rides_over_[0] < rides_over_[1]) domain = rides_over_;
-  if (asking.kind == Asking::VIOLATIONS) {
-    const double resolution = resolutionOf(asking, domain[0], domain[1]);
-    out.answers.push_back(plainly(query));
-    out.violations.push_back(toMessage(subject ? violations(*movers_, *subject, resolution, query, workspace)
-                                               : violations(*movers_, against, resolution, query, workspace)));
-  }
-  if (asking.kind == Asking::PROFILE) {
-    const std::vector<double> breaks = breaksOf(asking, domain[0], domain[1]);
-    std::vector<std::string> links{""};
-    if (asking.per_link && subject) links = query.links.empty() ? movingNames(*subject->motion) : query.links;
-    for (const std::string &link : links) {
-      Query of_link = query;
-      if (!link.empty()) of_link.links = {link};
-      out.answers.push_back(plainly(of_link));
-      if (out.answers.back().a.empty()) out.answers.back().a = link; // nothing is near it
-      out.profiles.push_back(
-          toMessage(subject ? clearanceProfile(*movers_, *subject, breaks, of_link, workspace, asking.horizon)
-                            : clearanceProfile(*movers_, against, breaks, of_link, workspace, asking.horizon)));
-      out.profiles.back().link = link;
-    }
-  }
+MoversSubject Surroundings::subject(bool against_self) const {
+  return {*movers_, has_subject_ ? &robots_.front() : nullptr, against_self ? Against::BOTH : Against::OTHERS, rides_,
+          rides_over_};
 }
 
 } // namespace curve_proximity

@@ -2,14 +2,11 @@
 /* What a request asks of motions: trajectories of the robot, the robot where it stands, and all that moves. */
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
-#include "messages/gradient_message.h"
 #include "messages/scene_message.h"
 #include "messages/topics.h"
 #include "messages/trajectory_message.h"
 #include "queries/queries.h"
-#include "queries/row_message.h"
 #include "world/robot_description.h"
 
 namespace curve_proximity {
@@ -113,43 +110,78 @@ MovingObject Queries::toRider(const ProximityQuery &query, const Snapshot &snaps
   return out;
 }
 
+/** What is asked about, and what of it is drawn. */
+struct Queries::Moving {
+  std::vector<Row> rows;
+  std::string remark;                        /**< of each row that has an answer */
+  TrajectoryDescription trajectory;          /**< of gradients */
+  std::shared_ptr<const RobotMotion> motion; /**< likewise below: as in Drawing */
+  std::shared_ptr<const Movers> movers;
+  std::vector<MovingRobot> robots;
+  std::optional<ObjectDescription> rider;
+
+  /** Adds the rows of all parts of a subject. */
+  void ask(const Subject &subject, const Query &query, const QueryRequest &request, Workspace &workspace) {
+    for (const Part &part : partsOf(subject, request.question, query, request.per_link)) {
+      for (Row &row : curve_proximity::answer(subject, part, request.question, query, Beside::SEARCH, workspace)) {
+        if (row.answer.a.empty()) row.answer.a = part.link; // nothing is near it
+        if (row.answer.b.empty()) row.answer.b = part.object;
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+};
+
+/** Adds the rows that `ask` has gathered, or a row of each of the kinds that has failed. */
+void Queries::answerMoving(const std::string &id, const std::vector<std::string> &kinds, Work &work,
+                           const std::function<void(Workspace &, Moving &)> &ask) {
+  const std::size_t before = work.response.results.size();
+  if (work.request.turn) work.request.turn->yield();
+  try {
+    Moving moving;
+    const WorkspacePool::Lease workspace(workspaces_);
+    ask(*workspace, moving);
+    std::vector<DetailMessage> details;
+    for (const Row &row : moving.rows) details.push_back(toMessage(row, &moving.trajectory));
+    std::vector<Answer> answers;
+    for (std::size_t i = 0; i < details.size(); ++i) {
+      Answer &answer = answers.emplace_back(std::move(moving.rows[i].answer));
+      answer.id = id;
+      if (kinds.front() == Proximity::KIND_MOVERS) answer.kind = kinds.front();
+      Proximity &row = work.response.add(std::move(details[i]));
+      fillRow(answer, work.request.question, work.query.query_type, row);
+      if (answer.result.status >= 0) addRemark(moving.remark, row);
+    }
+    if (moving.motion || !work.drawing.motion) {
+      work.drawing.motion = std::move(moving.motion);
+      work.drawing.movers = std::move(moving.movers);
+      work.drawing.robots = std::move(moving.robots);
+      work.drawing.rider = std::move(moving.rider);
+      work.drawing.motion_answers = std::move(answers);
+    }
+  } catch (const Error &error) {
+    for (const std::string &kind : kinds) work.response.add() = toFailedRow(id, kind, error.what());
+  }
+  tellFailure(id, before, work.response);
+}
+
 /** A body along poses in the frame of the header. */
 void Queries::answerRide(const std::string &id, const std::string &frame, const ros::Time &stamp,
                          std::vector<TimedPose> poses, const std::string &remark, Work &work) {
-  const QueryRequest &request = work.request;
-  const std::size_t before = work.response.results.size();
-  if (request.turn) request.turn->yield();
-  work.lookup.begin();
-  try {
+  answerMoving(id, {Proximity::KIND_MOVERS}, work, [&](Workspace &workspace, Moving &out) {
+    work.lookup.begin();
     if (!work.query.links.empty()) throw Error("links and group do not apply to a body");
     const Eigen::Isometry3d in_fixed = work.lookup.toFixed(frame, stamp);
     for (TimedPose &pose : poses) pose.pose = in_fixed * pose.pose;
-    const MovingObject rides = toRider(request.more, *work.snapshot, std::move(poses));
-    const Surroundings around(work.snapshot, request.more, robots_, rides, resourceOptions("", parameters_), stamp,
+    const MovingObject rides = toRider(work.request.more, *work.snapshot, std::move(poses));
+    const Surroundings around(work.snapshot, work.request.more, robots_, rides, resourceOptions("", parameters_), stamp,
                               work.lookup, mostBytes(), stopOf(work.query));
-    const WorkspacePool::Lease workspace(workspaces_);
-    MotionRows rows;
-    around.ask(covered(work.query, NAN, true, work), false, request.asking, *workspace, rows);
-    std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(work.response.profiles));
-    std::move(rows.violations.begin(), rows.violations.end(), std::back_inserter(work.response.violations));
-    for (Answer &answer : rows.answers) {
-      answer.kind = Proximity::KIND_MOVERS;
-      answer.id = id;
-      work.response.results.emplace_back();
-      fillRow(answer, work.query, request.asking, work.response.results.back());
-      if (answer.result.status >= 0) addRemark(remark, work.response.results.back());
-    }
-    if (!work.drawing.motion) {
-      work.drawing.movers = around.movers();
-      work.drawing.robots = around.robots();
-      work.drawing.rider = rides.object;
-      work.drawing.motion_answers = std::move(rows.answers);
-    }
-  } catch (const Error &error) {
-    work.response.results.push_back(toFailedRow(id, Proximity::KIND_MOVERS, error.what()));
-    work.response.fillUp(request.asking);
-  }
-  tellFailure(id, before, work.response);
+    out.ask(around.subject(false), covered(work.query, NAN, true, work), work.request, workspace);
+    out.remark = remark;
+    out.movers = around.movers();
+    out.robots = around.robots();
+    out.rider = rides.object;
+  });
 }
 
 void Queries::answerPath(const nav_msgs::Path &path, const std::string &id, Work &work) {
@@ -157,10 +189,7 @@ void Queries::answerPath(const nav_msgs::Path &path, const std::string &id, Work
   try {
     along = toPoses(path);
   } catch (const Error &error) {
-    work.response.results.push_back(toFailedRow(id, Proximity::KIND_MOVERS, error.what()));
-    work.response.fillUp(work.request.asking);
-    tellFailure(id, work.response.results.size() - 1, work.response);
-    return;
+    return answerMoving(id, {Proximity::KIND_MOVERS}, work, [&](Workspace &, Moving &) { throw error; });
   }
   answerRide(id, path.header.frame_id, along.stamp, std::move(along.poses), along.remark, work);
 }
@@ -172,9 +201,8 @@ void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &traje
       try {
         poses = toPoses(trajectory, i);
       } catch (const Error &error) {
-        work.response.results.push_back(toFailedRow(trajectory.joint_names[i], Proximity::KIND_MOVERS, error.what()));
-        work.response.fillUp(work.request.asking);
-        tellFailure(trajectory.joint_names[i], work.response.results.size() - 1, work.response);
+        answerMoving(trajectory.joint_names[i], {Proximity::KIND_MOVERS}, work,
+                     [&](Workspace &, Moving &) { throw error; });
         continue;
       }
       answerRide(trajectory.joint_names[i], trajectory.header.frame_id, trajectory.header.stamp, std::move(poses), "",
@@ -229,104 +257,58 @@ void Queries::answerState(Work &work) {
 void Queries::answerMovers(Work &work) {
   const QueryRequest &request = work.request;
   if (!request.more.movers) return;
-  const std::size_t before = work.response.results.size();
-  try {
+  answerMoving("movers", {Proximity::KIND_MOVERS}, work, [&](Workspace &workspace, Moving &out) {
     if (!work.query.links.empty()) throw Error("links and group do not apply to movers");
     const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), 0, work.lookup, mostBytes(),
                               stopOf(work.query));
-    const WorkspacePool::Lease workspace(workspaces_);
-    MotionRows rows;
-    around.ask(covered(work.query, NAN, true, work), request.more.self_collision != 0, request.asking, *workspace,
-               rows);
-    std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(work.response.profiles));
-    std::move(rows.violations.begin(), rows.violations.end(), std::back_inserter(work.response.violations));
-    for (Answer &answer : rows.answers) {
-      answer.kind = Proximity::KIND_MOVERS;
-      work.response.results.emplace_back();
-      fillRow(answer, work.query, request.asking, work.response.results.back());
-    }
-    if (!work.drawing.motion) {
-      work.drawing.movers = around.movers();
-      work.drawing.robots = around.robots();
-      work.drawing.rider.reset();
-      work.drawing.motion_answers = std::move(rows.answers);
-    }
-  } catch (const Error &error) {
-    work.response.results.push_back(toFailedRow("movers", Proximity::KIND_MOVERS, error.what()));
-    work.response.fillUp(request.asking);
-  }
-  tellFailure("movers", before, work.response);
+    out.ask(around.subject(request.more.self_collision != 0), covered(work.query, NAN, true, work), request, workspace);
+    out.movers = around.movers();
+    out.robots = around.robots();
+  });
 }
 
 void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
                            const std::string &why_not, Work &work) {
   const QueryRequest &request = work.request;
-  QueryResponse &response = work.response;
+  std::vector<std::string> kinds{Proximity::KIND_ENVIRONMENT};
+  if (request.more.self_collision) kinds.push_back(Proximity::KIND_SELF);
   const std::string id = trajectory.id;
-  const std::size_t before = response.results.size();
-  if (request.turn) request.turn->yield();
-
-  // The trajectory, the joints that it leaves alone, and where the robot stands.
-  work.lookup.begin();
-  try {
+  answerMoving(id, kinds, work, [&](Workspace &workspace, Moving &out) {
+    // The trajectory, the joints that it leaves alone, and where the robot stands.
+    work.lookup.begin();
     if (!why_not.empty()) throw Error(why_not);
     const Robot &robot = *work.snapshot->robot();
     adoptBase(live_.srdf.virtual_joints, robot, trajectory);
-    std::string told = remark;
-    for (const std::string &way : longWays(robot, trajectory)) told += (told.empty() ? "" : "; ") + way;
+    out.remark = remark;
+    for (const std::string &way : longWays(robot, trajectory)) out.remark += (out.remark.empty() ? "" : "; ") + way;
     const Eigen::Isometry3d base = trajectory.base.empty()
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
                                        : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
-    auto motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions,
-                                                      live_.disabled(), base, work.query.links);
+    out.motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions, live_.disabled(),
+                                                     base, work.query.links);
+    out.trajectory = std::move(trajectory);
 
-    const WorkspacePool::Lease workspace(workspaces_);
     Query environment = work.query;
     environment.links.clear(); // the motion has them
-    MotionRows rows;
     if (movesBeside(request.more, *work.snapshot)) {
-      const Surroundings around(work.snapshot, request.more, robots_, motion, stamp, trajectory.points.size(),
+      const Surroundings around(work.snapshot, request.more, robots_, out.motion, stamp, out.trajectory.points.size(),
                                 work.lookup, mostBytes(), stopOf(work.query));
-      Query among = environment;
-      among.links = ownNames(*work.snapshot, work.query.links);
-      among.coverage = covered(environment, work.joints.age, true, work).coverage;
-      around.ask(among, false, request.asking, *workspace, rows);
-      for (Answer &answer : rows.answers) answer.id = id;
-      work.drawing.movers = around.movers();
-      work.drawing.robots.assign(around.robots().begin() + 1, around.robots().end());
+      const std::vector<std::string> own = ownNames(*work.snapshot, work.query.links);
+      Query among = covered(environment, work.joints.age, true, work);
+      among.links = own;
+      out.ask(around.subject(false), among, request, workspace);
+      out.movers = around.movers();
+      out.robots.assign(around.robots().begin() + 1, around.robots().end());
     } else {
-      work.drawing.movers = nullptr;
-      work.drawing.robots.clear();
-      askMotion(*motion, covered(environment, work.joints.age, true, work), false, request.asking, *workspace, rows);
+      out.ask(MotionSubject{*out.motion, false}, covered(environment, work.joints.age, true, work), request, workspace);
     }
-    if (request.more.self_collision) {
-      Query self = environment; // of no objects
-      self.per_object = false;
-      self.objects.clear();
-      if (request.turn) request.turn->yield();
-      askMotion(*motion, covered(self, work.joints.age, false, work), true, request.asking, *workspace, rows);
-    }
-    std::vector<Answer> &answers = rows.answers;
-    std::move(rows.profiles.begin(), rows.profiles.end(), std::back_inserter(response.profiles));
-    std::move(rows.violations.begin(), rows.violations.end(), std::back_inserter(response.violations));
-    for (const ClearanceGradient &gradient : rows.gradients)
-      response.gradients.push_back(toMessage(gradient, trajectory));
-    for (const Answer &answer : answers) {
-      response.results.emplace_back();
-      Proximity &row = response.results.back();
-      fillRow(answer, environment, request.asking, row);
-      if (answer.result.status >= 0) addRemark(told, row);
-    }
-    work.drawing.rider.reset();
-    work.drawing.motion = std::move(motion);
-    work.drawing.motion_answers = std::move(answers);
-  } catch (const Error &error) {
-    response.results.push_back(toFailedRow(id, Proximity::KIND_ENVIRONMENT, error.what()));
-    if (request.more.self_collision) response.results.push_back(toFailedRow(id, Proximity::KIND_SELF, error.what()));
-    response.fillUp(request.asking);
-  }
-
-  tellFailure(id, before, response);
+    if (!request.more.self_collision) return;
+    Query self = environment; // of no objects
+    self.per_object = false;
+    self.objects.clear();
+    if (request.turn) request.turn->yield();
+    out.ask(MotionSubject{*out.motion, true}, covered(self, work.joints.age, false, work), request, workspace);
+  });
 }
 
 } // namespace curve_proximity

@@ -3,10 +3,8 @@
 #include <cmath>
 
 #include "messages/curve_message.h"
-#include "messages/gradient_message.h"
 #include "messages/topics.h"
 #include "queries/curve_search.h"
-#include "queries/row_message.h"
 #include "queries/time_budget.h"
 
 namespace curve_proximity {
@@ -90,9 +88,8 @@ Queries::CurvePlace Queries::place(const Curve &curve, CurveSearch &search, Work
 /** Adds the rows of one curve. What is wrong with it fails its row only. */
 void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work) {
   if (work.request.turn) work.request.turn->yield();
-  const Asking &asking = work.request.asking;
+  const Question &question = work.request.question;
   const CurvePlace where = place(message, search, work);
-  std::vector<Answer> answers;
   try {
     if (!where.why_not.empty()) throw Error(where.why_not);
     Query of_place;
@@ -101,21 +98,14 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
     const Targets &targets = where.stamped->targets;
     toDescription(message, *where.frame, search.description);
     CompiledCurve curve = make(search.description, targets.boxes(), query.options, *search.workspace);
-    if (asking.kind == Asking::GRADIENT) {
-      CurveClearance clearance = clearanceGradient(targets, curve, search.description, query, *search.workspace);
-      answers.push_back(std::move(clearance.answer));
-      work.response.gradients.push_back(toMessage(clearance.gradient));
-    } else {
-      askCurve(targets, curve, query, asking, *search.workspace, answers);
-    }
-    if (asking.kind == Asking::PROFILE)
-      work.response.profiles.push_back(profileOf(targets, curve, query, asking, *search.workspace));
-    if (asking.kind == Asking::VIOLATIONS)
-      work.response.violations.push_back(violationsOf(targets, curve, query, asking, *search.workspace));
-    for (const Answer &answer : answers) {
-      Proximity &row = work.response.results.emplace_back();
-      fillRow(answer, query, asking, row);
+    std::vector<Row> rows = curve_proximity::answer(CurveSubject{targets, curve, &search.description}, {}, question,
+                                                    query, Beside::SEARCH, *search.workspace);
+    std::vector<Answer> answers;
+    for (Row &found : rows) {
+      Proximity &row = work.response.add(toMessage(found));
+      fillRow(found.answer, question, query.query_type, row);
       if (std::isnan(row.lower)) search.failures.count(row, search.curves);
+      answers.push_back(std::move(found.answer));
     }
     if (work.drawing.hasRoom()) {
       search.drawn = &where.stamped->links;
@@ -129,12 +119,8 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
 
 /** The row of what could not be made a curve, or of a curve that cannot be answered. */
 void Queries::refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work) {
-  const Asking &asking = work.request.asking;
-  work.response.results.push_back(toFailedRow(id, Proximity::KIND_CURVE, why));
+  work.response.add() = toFailedRow(id, Proximity::KIND_CURVE, why);
   search.failures.count(work.response.results.back(), search.curves);
-  if (asking.kind == Asking::PROFILE) work.response.profiles.emplace_back();
-  if (asking.kind == Asking::GRADIENT) work.response.gradients.emplace_back();
-  if (asking.kind == Asking::VIOLATIONS) work.response.violations.emplace_back();
   ++search.curves;
 }
 

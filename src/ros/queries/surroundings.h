@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What moves beside a robot: objects of the scene and further robots of a request, on one clock. */
-#ifndef CURVE_PROXIMITY_ROS_MOVERS_H
-#define CURVE_PROXIMITY_ROS_MOVERS_H
+#ifndef CURVE_PROXIMITY_ROS_SURROUNDINGS_H
+#define CURVE_PROXIMITY_ROS_SURROUNDINGS_H
 
 #include <curve_proximity/ProximityQuery.h>
 #include <ros/time.h>
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "queries/asking.h"
+#include "../scene/subject.h"
 #include "transport/memory_account.h"
 #include "world/frames.h"
 #include "world/robot_description.h"
@@ -56,9 +56,8 @@ class Surroundings {
                std::shared_ptr<const RobotMotion> subject, const ros::Time &stamp, std::size_t points,
                FrameLookup &lookup, std::size_t most_bytes, const Stop &stop);
 
-  /** Appends the rows of the subject, else of all that moves; against_self: of that each robot against itself, too.
-   *  Throws Error for what is not available of movers. query: its links are those of the subject. */
-  void ask(const Query &query, bool against_self, const Asking &asking, Workspace &workspace, MotionRows &out) const;
+  /** The subject, else all that moves; against_self: each robot against itself, too. Kept by reference. */
+  MoversSubject subject(bool against_self) const;
 
   const std::shared_ptr<const Movers> &movers() const {
     return movers_;
@@ -70,10 +69,7 @@ class Surroundings {
  private:
   std::size_t gather(const ProximityQuery &query, const FurtherRobots &robots, std::int64_t origin,
                      FrameLookup &lookup);
-  void askOnce(const Query &query, Against against, const Asking &asking, Workspace &workspace, MotionRows &out) const;
-  std::vector<std::string> namesBeside() const;
 
-  SnapshotPtr snapshot_;
   bool has_subject_ = false;
   std::string rides_;                  /* the body that is asked about; else empty */
   std::array<double, 2> rides_over_{}; /* [s] from when to when */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "queries/pairs.h"
+#include "queries/measure_pairs.h"
 
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -10,27 +9,12 @@
 #include "messages/geometry_message.h"
 #include "messages/shape_message.h"
 #include "queries/row_message.h"
+#include "queries/time_budget.h"
 #include "transport/name_limits.h"
 #include "world/robot_description.h"
 
 namespace curve_proximity {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/* What ends a search. */
-struct Watch {
-  const std::atomic<bool> &stop;
-  const Clock::time_point deadline;
-  Turn *const turn;
-
-  /* In the shape of cprox_options.stop. */
-  static bool isOver(void *user) {
-    const Watch &watch = *static_cast<const Watch *>(user);
-    if (watch.turn) watch.turn->yield();
-    return watch.stop || Clock::now() >= watch.deadline;
-  }
-};
 
 PlacedBody toPlacedBody(const Body &body, const geometry_msgs::Pose &pose, const char *name) {
   try {
@@ -82,7 +66,7 @@ Pairs::Pairs(const Parameters &parameters, const Tuning &tuning, Statistics &sta
     : parameters_(parameters), tuning_(tuning), statistics_(statistics), stop_(stop), opinions_(std::move(opinions)) {}
 
 void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response &response, Turn *turn) {
-  const Clock::time_point begin = Clock::now();
+  const TimeBudget::Clock::time_point begin = TimeBudget::Clock::now();
   if (request.pairs.size() > static_cast<std::size_t>(parameters_.max_curves))
     throw Error(std::to_string(request.pairs.size()) +
                 " pairs are more than ~max_curves = " + std::to_string(parameters_.max_curves));
@@ -90,19 +74,16 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
   if (!(request.epsilon >= 0.0) || !std::isfinite(request.epsilon))
     throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be finite and at least 0");
 
-  Watch watch{stop_,
-              begin + std::chrono::duration_cast<Clock::duration>(
-                          std::chrono::duration<double, std::milli>(tuning_.budget_ms.load())),
-              turn};
+  TimeBudget budget(tuning_.budget_ms, begin, stop_, turn);
   Query query;
   query.options.epsilon = request.epsilon > 0.0 ? request.epsilon : tuning_.epsilon.load();
   query.options.max_nodes = static_cast<std::uint32_t>(tuning_.max_nodes.load());
-  query.options.stop = Watch::isOver;
-  query.options.stop_user = &watch;
+  query.options.stop = TimeBudget::isOver;
+  query.options.stop_user = &budget;
   query.second_opinion = opinions_;
   ResourceOptions resources = resourceOptions("", parameters_);
   resources.mesh_tolerance = 0.0; // pairs are of the meshes themselves
-  resources.stop = [&watch] { return Watch::isOver(&watch); };
+  resources.stop = [&budget] { return TimeBudget::isOver(&budget); };
   const WorkspacePool::Lease workspace(workspaces_);
 
   std::size_t failed = 0;
@@ -110,8 +91,7 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
     const PairQuery &asked = request.pairs[i];
     Proximity row;
     const std::string why = sentenceOf([&] {
-      if (stop_) throw Error("the server is shutting down");
-      if (Clock::now() >= watch.deadline) throw Error("~budget_ms are over");
+      budget.demand();
       const PairDescription pair = toDescription(asked);
       row = toRow(askPair(pair, query, resources, *workspace), pair.asked);
     });
@@ -126,7 +106,7 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
   if (failed > 0)
     response.message =
         std::to_string(failed) + " of " + std::to_string(request.pairs.size()) + " rows failed; " + response.message;
-  statistics_.record(Clock::now() - begin, response.success != 0, response.results);
+  statistics_.record(TimeBudget::Clock::now() - begin, response.success != 0, response.results);
 }
 
 } // namespace curve_proximity
