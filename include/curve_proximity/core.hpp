@@ -58,6 +58,11 @@ class Workspace {
     return handle_.get();
   }
 
+  /** [bytes] What it holds. */
+  std::size_t bytes() const {
+    return cprox_workspace_bytes(handle_.get());
+  }
+
   /** Why the last call did not end with CPROX_OK; "" where it did. */
   std::string reason() const {
     return cprox_workspace_error(handle_.get());

@@ -160,6 +160,30 @@ CASE(a_solid_that_is_being_made_has_its_workspace_alone) {
   cprox_workspace_free(other);
 }
 
+/* ---- memory ---- */
+
+CASE(a_workspace_says_what_it_holds) {
+  cprox_workspace *fresh = cprox_workspace_create();
+  const size_t empty = cprox_workspace_bytes(fresh);
+  assert_int_equal(cprox_workspace_bytes(NULL), 0);
+  assert_in_range(empty, 1, 4096);
+  const vec3 control[4] = {vec(-1, 0.4, 0), vec(-0.3, 0.5, 0.6), vec(0.5, 0.2, -0.7), vec(1, 0.6, 0.1)};
+  cprox_curve *curve = NULL;
+  cprox_body *box = NULL;
+  assert_int_equal(curve_from(describe_bezier(control, 4, 0.0, 1.0), fresh, &curve), CPROX_OK);
+  assert_int_equal(cprox_body_create_box(vec(0.1, 0.1, 0.1), fresh, &box), CPROX_OK);
+  cprox_result r;
+  for (int i = 0; i < 2; i++)
+    cprox_distance(cprox_point_along(curve), cprox_obstacle_at(box, CPROX_POSE_IDENTITY), NULL, fresh, &r);
+  const size_t grown = cprox_workspace_bytes(fresh);
+  assert_true(grown > empty);
+  cprox_distance(cprox_point_along(curve), cprox_obstacle_at(box, CPROX_POSE_IDENTITY), NULL, fresh, &r);
+  assert_int_equal(cprox_workspace_bytes(fresh), grown); /* the same query needs no more */
+  cprox_body_free(box);
+  cprox_curve_free(curve);
+  cprox_workspace_free(fresh);
+}
+
 int main(void) {
   return cases_run(workspace_setup, workspace_teardown);
 }

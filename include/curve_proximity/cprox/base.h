@@ -110,6 +110,9 @@ CPROX_API cprox_workspace *cprox_workspace_create(void);
 /** Frees a workspace; NULL is allowed. */
 CPROX_API void cprox_workspace_free(cprox_workspace *workspace);
 
+/** [bytes] The memory that a workspace holds: what its largest queries so far have needed. NULL: 0. */
+CPROX_API size_t cprox_workspace_bytes(const cprox_workspace *workspace);
+
 /** One line, for a person, that says why the last call with this workspace did not end with CPROX_OK
  *  ("knot 7 is 0.3, below knot 6 at 0.5"). "" where it did, with one exception: a query that was to leave a certificate
  *  and could not says why ("no certificate: target 0 ..."), after its own reason where there is one; its status and

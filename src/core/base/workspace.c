@@ -28,6 +28,13 @@ void cprox_workspace_free(cprox_workspace *workspace) {
   free(workspace);
 }
 
+size_t cprox_workspace_bytes(const cprox_workspace *workspace) {
+  if (!workspace) return 0;
+  size_t sum = sizeof *workspace;
+  for (int i = 0; i < WORKSPACE_BUFFERS; i++) sum += workspace->bytes[i];
+  return sum;
+}
+
 const char *cprox_workspace_error(const cprox_workspace *workspace) {
   if (workspace && workspace->was_refused)
     return "the workspace is in use: a function that a query calls needs a workspace of its own to ask anything";

@@ -516,11 +516,11 @@ cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox
                                 cprox_motion_gradient *gradient) {
   const query apart = robot_depth_apart(q), hulls = robot_depth_hulls(q);
   const bool two = q->is_signed && robot_depth_has_meshes(q, first, last);
-  const char *why;
-  cprox_result r;
+  const char *why = "";
+  cprox_result r = {0};
   cprox_status status = gradient_of_models(two || !q->is_signed ? &apart : &hulls, first, last, &r, gradient, &why);
   if (status >= 0 && two && !robot_depth_is_settled(q, &r)) {
-    cprox_result deep;
+    cprox_result deep = {0};
     status = gradient_of_models(&hulls, first, last, &deep, gradient, &why);
     if (status >= 0) status = robot_depth_join(q, INFINITY, &r, &deep);
     r = deep;

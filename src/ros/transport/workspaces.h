@@ -12,7 +12,7 @@
 
 namespace curve_proximity {
 
-/** Keeps a few that nobody uses: they have grown already. A hard query leaves megabytes in its own. */
+/** Keeps a few that nobody uses: they have grown already. Those that a hard query has made large are freed. */
 class WorkspacePool {
  public:
   /** One workspace, for as long as the lease lives; the pool must outlive it. */
@@ -44,11 +44,12 @@ class WorkspacePool {
   }
 
   void giveBack(std::unique_ptr<Workspace> workspace) {
+    if (workspace->bytes() > MOST_BYTES) return;
     const std::lock_guard<std::mutex> lock(mutex_);
     if (n_idle_ < MOST_IDLE) idle_[n_idle_++] = std::move(workspace);
   }
 
-  static constexpr std::size_t MOST_IDLE = 4;
+  static constexpr std::size_t MOST_IDLE = 4, MOST_BYTES = std::size_t{2} << 20; // a workspace
 
   std::mutex mutex_;
   std::array<std::unique_ptr<Workspace>, MOST_IDLE> idle_; // so that giving back never allocates
