@@ -100,7 +100,7 @@ void appendList(std::string &line, const Eigen::MatrixXd &matrix, const Trajecto
 constexpr std::size_t FROM_VALUE = 34, FROM_T = 29;
 
 std::string motionLine(const ConstraintRow &row, const MotionRow &one, const TrajectoryDescription &trajectory) {
-  std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + cprox_status_name(row.status);
+  std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + statusName(row);
   appendValue(line, one.value, one.bounded, one.lower, one.upper);
   line += one.valid ? ",true" : ",false";
   for (const double t : {one.t, one.t0, one.t1}) append(line, t);
@@ -139,7 +139,7 @@ std::string gradientsHeader() {
 
 std::string constraintsLine(const ConstraintRow &row) {
   const ConstraintValue &value = row.value;
-  std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + cprox_status_name(row.status);
+  std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + statusName(row);
   if (row.status < 0) return line + std::string(29, ',') + quotedField(row.message) + ",,,,\n";
   appendValue(line, value.value, value.bounded, value.lower, value.upper);
   line += value.valid ? ",true" : ",false";
@@ -158,7 +158,7 @@ std::string constraintsLine(const ConstraintRow &row) {
 }
 
 std::string constraintsLines(const ConstraintRow &row, const TrajectoryDescription &trajectory) {
-  std::string start = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + cprox_status_name(row.status);
+  std::string start = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + statusName(row);
   const std::size_t gradients = columnsOf(trajectory);
   if (row.status < 0)
     return start + std::string(FROM_VALUE + 1, ',') + quotedField(row.message) + std::string(gradients, ',') + '\n';
@@ -175,7 +175,7 @@ std::string constraintsLines(const ConstraintRow &row, const TrajectoryDescripti
 }
 
 std::string gradientsLine(const ConstraintRow &row, const GradientCheck *check) {
-  std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + cprox_status_name(row.status) + ',';
+  std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + statusName(row) + ',';
   if (!check) return line + std::string(7, ',') + quotedField(row.message) + '\n';
   line += cprox_verdict_name(verdictOf(*check));
   line += ',' + std::to_string(check->count) + ',';

@@ -78,6 +78,7 @@ Outcome answerOne(const Session &session, ConstraintCase described, const std::s
   out.stopped = row.status == CPROX_STOPPED || (row.status < 0 && interrupted(nullptr));
   if (row.status >= 0) {
     const std::string why = sentenceOf([&] { tellAnswer(session, described, row, workspace, out); }, &row.status);
+    out.undecided = out.undecided || row.gap;
     if (row.status >= 0) return out;
     row.message = why;
   }
@@ -97,6 +98,9 @@ int answerCases(const Arguments &arguments, Console &console) {
   resources.base_dir = folderOf(arguments.cases);
   resources.find_package = packageFinder(resources.base_dir);
   const World world = readSides(arguments, resources, warnings);
+  Coverage files = warnings.coverage();
+  files.add(world.snapshot->coverage());
+  if (world.snapshot->robot()) files.add(world.snapshot->robot()->coverage());
   const std::unique_ptr<ProviderSet> providers = loadProvider(arguments);
   const Session session{*providers, arguments, resources};
   Output output(arguments);
@@ -110,7 +114,11 @@ int answerCases(const Arguments &arguments, Console &console) {
     ConstraintCase described;
     described.id = caseId(entry);
     const std::string place = arguments.cases + ": case " + std::to_string(given) + " (id '" + described.id + "')";
-    const std::string fault = sentenceOf([&] { described = parseCase(entry, world, warnings); });
+    Warnings own;
+    const std::string fault = sentenceOf([&] { described = parseCase(entry, world, own); });
+    described.coverage = files;
+    described.coverage.add(own.coverage());
+    warnings.add(own);
     for (; warned < warnings.sentences().size(); ++warned) console.say("warning: " + warnings.sentences()[warned]);
     return [&, described, fault, place](Workspace &workspace) {
       return answerOne(session, described, fault, place, workspace);

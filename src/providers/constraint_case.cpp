@@ -212,6 +212,30 @@ void askProvider(ProviderSet &providers, const LoadedProvider &loaded, const Con
   row.microseconds = microsecondsSince(begin);
 }
 
+Coverage coverageOf(const ConstraintCase &described) {
+  Coverage out = described.coverage;
+  if (!described.motion) return out;
+  out.add(described.motion->trajectory.coverage);
+  const Snapshot &snapshot = *described.motion->robot->snapshot();
+  out.add(snapshot.coverage());
+  out.add(snapshot.robot()->coverage());
+  return out;
+}
+
+/** What is not covered bounds nothing. */
+void applyCoverage(const Coverage &coverage, ConstraintRow &row) {
+  if (coverage.complete() || row.status < 0) return;
+  row.gap = coverage.gap();
+  row.message += (row.message.empty() ? "" : "; ") + coverage.message();
+  row.value.bounded = false;
+  if (!row.motion) return;
+  row.motion->bounded = false;
+  for (MotionRow &one : row.motion->rows) {
+    one.bounded = false;
+    one.reason += (one.reason.empty() ? "" : "; ") + coverage.message();
+  }
+}
+
 } // namespace
 
 Geometry sideGeometry(const ShapeDescription &shape, const ResourceOptions &resources) {
@@ -264,6 +288,10 @@ ConstraintRow failedRow(const std::string &id, const std::string &why, cprox_sta
   return row;
 }
 
+const char *statusName(const ConstraintRow &row) {
+  return row.gap ? gapName(*row.gap) : cprox_status_name(row.status);
+}
+
 std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCase &described,
                                       const ResourceOptions &resources, Workspace &workspace) {
   std::vector<std::string> names = described.providers;
@@ -277,6 +305,7 @@ std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCa
   const std::string why = sentenceOf([&] { makeReady(described, asked); }, &fault);
   if (fault < 0) return {failedRow(described.id, why, fault)};
 
+  const Coverage coverage = coverageOf(described);
   std::vector<ConstraintRow> rows;
   for (const std::string &name : names) {
     ConstraintRow row;
@@ -300,6 +329,7 @@ std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCa
       row.status = row.value.status;
       row.message = row.value.reason;
     }
+    applyCoverage(coverage, row);
     rows.push_back(std::move(row));
   }
   if (rows.empty())

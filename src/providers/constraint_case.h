@@ -5,6 +5,7 @@
 #define CURVE_PROXIMITY_PROVIDERS_CONSTRAINT_CASE_H
 
 #include <curve_proximity/constraint_provider.hpp>
+#include <curve_proximity/coverage.hpp>
 #include <curve_proximity/geometry.hpp>
 #include <curve_proximity/scene.hpp>
 #include <functional>
@@ -40,6 +41,7 @@ struct ConstraintCase {
   std::optional<ResourceOptions> resources_a, resources_b; /**< where its mesh files are, if not where all are */
   std::optional<CurveDescription> curve;                   /**< a rides it; a may then have no shape */
   std::optional<MotionCase> motion;                        /**< this, and neither a, b nor curve */
+  Coverage coverage; /**< what of its source is not used; those of a motion's scene, robot and trajectory come to it */
 };
 
 /** A side that is named. */
@@ -61,11 +63,15 @@ struct ConstraintRow {
   std::string id, provider;
   cprox_status status = CPROX_INVALID; /**< negative: no answer, and message says why */
   std::string message;
+  std::optional<Gap> gap;              /**< the row does not cover all that was given: it has no bounds */
   ConstraintValue value;                        /**< of a trajectory: its nearest row, and the least of all values */
   std::optional<MotionValue> motion;            /**< of a trajectory */
   double microseconds = 0.0;                    /**< of the evaluation */
   std::shared_ptr<const Constraint> constraint; /**< the pair made ready; null where it could not be */
 };
+
+/** gapName(gap) if there is a gap, else the name of the status. */
+const char *statusName(const ConstraintRow &row);
 
 /** A row for each provider that the case names, in that order. Never throws but for memory. */
 std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCase &asked,
