@@ -3,6 +3,7 @@
 """The gate as an action between a planner and a controller: what is clear passes, what is not is refused with its reason, and what
 stops being clear while it runs is cancelled. The types are made of control_msgs' published definition."""
 import math
+import threading
 import time
 import unittest
 
@@ -10,8 +11,8 @@ import actionlib
 import genpy.dynamic
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
-from curve_proximity.msg import CollisionObject, Proximity, ProximityResults, Refusal, SceneState
-from helpers import Server, bezier, connected, fingerprint, free_flight, joints, path, run, sphere, thing, until
+from curve_proximity.msg import CollisionObject, PoseTrajectory, Proximity, ProximityResults, Refusal, SceneState, Waypoint
+from helpers import Server, bezier, connected, fingerprint, free_flight, joints, path, pose, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -45,50 +46,106 @@ def types():
 
 
 TYPES = types()
-Action, Goal, Result = (TYPES['control_msgs/FollowJointTrajectory' + name] for name in ('Action', 'Goal', 'Result'))
+Action, Goal, Result, Feedback = (TYPES['control_msgs/FollowJointTrajectory' + name] for name in ('Action', 'Goal', 'Result', 'Feedback'))
+
+
+class Arm:
+    """The robot: its joint goes along the trajectory that it was given last, at a part of its speed, and tells where it is."""
+
+    def __init__(self, states):
+        self.states, self.turn, self.speed, self.offset, self.silent, self.given = states, 0.0, 1.0, 0.0, False, 0
+        rospy.Timer(rospy.Duration(0.02), lambda _: self.silent or self.states.publish(joints(turn=self.position())))
+
+    def rest(self):
+        """Stands at 0 from now on, whatever it was given."""
+        self.turn, self.speed, self.offset, self.silent, self.given = 0.0, 1.0, 0.0, False, self.given + 1
+        time.sleep(0.1)
+
+    def position(self):
+        return self.turn + self.offset
+
+    def take(self, trajectory):
+        threading.Thread(target=self.follow, args=(trajectory,), daemon=True).start()
+
+    def follow(self, trajectory, goes_on=lambda position: True):
+        """Until its end, or until another one is given, or goes_on(position) is false: then False."""
+        self.given += 1
+        mine, at, now = self.given, 0.0, time.monotonic()
+        times = [p.time_from_start.to_sec() for p in trajectory.points]
+        while trajectory.header.stamp > rospy.Time.now() and goes_on(self.position()):
+            time.sleep(0.01)
+        while times and at < times[-1]:
+            if mine != self.given or not goes_on(self.position()):
+                return False
+            time.sleep(0.01)
+            now, before = time.monotonic(), now
+            at += self.speed * (now - before)
+            i = max(1, sum(t <= at for t in times[:-1]))
+            share = min(1.0, (at - times[i - 1]) / (times[i] - times[i - 1]))
+            self.turn = (1 - share) * trajectory.points[i - 1].positions[0] + share * trajectory.points[i].positions[0]
+        return True
 
 
 class Controller:
-    """Takes as long as the trajectory does."""
+    """Moves the arm, tells where it is, and ends when it is at the end."""
 
-    def __init__(self):
-        self.begun, self.cancelled, self.ended = 0, 0, 0
-        self.server = actionlib.SimpleActionServer('/controller/follow_joint_trajectory', Action, self.execute, False)
+    def __init__(self, arm, name='/controller'):
+        self.arm, self.begun, self.cancelled, self.ended, self.dead = arm, 0, 0, 0, False
+        self.server = actionlib.SimpleActionServer(name + '/follow_joint_trajectory', Action, self.execute, False)
         self.server.start()
 
     def execute(self, goal):
         self.begun += 1
-        end = time.monotonic() + goal.trajectory.points[-1].time_from_start.to_sec()
-        while time.monotonic() < end:
-            if self.server.is_preempt_requested():
-                self.cancelled += 1
-                return self.server.set_preempted(Result(), 'cancelled')
-            time.sleep(0.01)
+
+        def tell(position):
+            if not self.arm.silent and not self.dead:
+                self.server.publish_feedback(Feedback(joint_names=['turn'], actual=JointTrajectoryPoint(positions=[position])))
+            return not self.server.is_preempt_requested()
+        reached = self.arm.follow(goal.trajectory, tell)
+        if self.dead:
+            return None
+        if not reached:
+            self.cancelled += 1
+            return self.server.set_preempted(Result(), 'cancelled')
         self.ended += 1
-        self.server.set_succeeded(Result())
+        return self.server.set_succeeded(Result())
+
+    def die(self):
+        """Its topics are gone, as those of a process that ends."""
+        self.dead, server = True, self.server.action_server
+        server.status_list_timeout = rospy.Duration(0)
+        for end in (server.status_pub, server.result_pub, server.feedback_pub, server.goal_sub, server.cancel_sub):
+            end.unregister()
 
 
-def turning(to, seconds):
+def turning(to, seconds, parts=2, first=0):
     return JointTrajectory(joint_names=['turn'], points=[
-        JointTrajectoryPoint(positions=[p], time_from_start=rospy.Duration(t)) for p, t in ((0.0, 0), (0.5 * to, seconds / 2), (to, seconds))])
+        JointTrajectoryPoint(positions=[to * i / parts], time_from_start=rospy.Duration(seconds * i / parts)) for i in range(first, parts + 1)])
+
+
+def ends_of(client, seconds=10):
+    """The state and the sentence with which a client's goal ends."""
+    assert client.wait_for_result(rospy.Duration(seconds))
+    return client.get_state(), client.get_result().error_string
 
 
 class Gate(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server, cls.controller, cls.refused, cls.passed = Server(), Controller(), [], []
-        heard = [rospy.Subscriber('/gate/refused', Refusal, cls.refused.append),
-                 rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.passed.append)]
-        cls.topic = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
         cls.states = rospy.Publisher('/curve_proximity/joint_states', JointState, queue_size=5)
+        cls.arm = Arm(cls.states)
+        cls.server, cls.controller, cls.refused, cls.passed = Server(), Controller(cls.arm), [], []
+        heard = [rospy.Subscriber('/gate/refused', Refusal, cls.refused.append),
+                 rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.passed.append),
+                 rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.arm.take)]
+        cls.topic = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
         cls.client = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
         assert cls.client.wait_for_server(rospy.Duration(20))
         assert connected(cls.states, cls.topic, *heard)
         time.sleep(1.0)  # the gate finds the controller
-        cls.states.publish(joints(turn=0.0))
-        time.sleep(0.2)
 
     def setUp(self):
+        self.arm.rest()
         self.server.replace(sphere('far', 0.1, (0, 0, 5)))
         del self.refused[:], self.passed[:]
 
@@ -126,6 +183,99 @@ class Gate(unittest.TestCase):
         self.assertEqual((self.client.get_state(), self.controller.cancelled), (GoalStatus.ABORTED, before + 1))
         self.assertTrue(until(lambda: self.refused, 5))
         self.assertEqual((self.refused[0].row.b, self.refused[0].cancelled), ('post', True))
+
+    def test_a_robot_that_is_slow_is_not_taken_to_be_where_the_clock_is(self):
+        self.arm.speed = 0.3
+        self.client.send_goal(Goal(trajectory=turning(3.0, 3.0, parts=30)))
+        time.sleep(2.4)  # by the clock the arm is past the post
+        self.assertLess(self.arm.position(), 1.0)
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        state, why = ends_of(self.client)
+        self.assertEqual(state, GoalStatus.ABORTED)
+        self.assertIn("'post'", why)
+        self.assertLess(self.arm.position(), 1.0)
+
+    def test_what_a_robot_has_passed_stops_it_no_more(self):
+        self.client.send_goal(Goal(trajectory=turning(3.0, 3.0, parts=30)))
+        self.assertTrue(until(lambda: self.arm.position() > 2.4, 5))
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.assertEqual(ends_of(self.client)[0], GoalStatus.SUCCEEDED)
+
+    def test_a_robot_that_is_silent_or_elsewhere_is_stopped(self):
+        for fault, word in (('silent', 'has not told where its joints are'), ('offset', "joint 'turn' at")):
+            self.arm.rest()
+            before = self.controller.cancelled
+            self.client.send_goal(Goal(trajectory=turning(2.0, 4.0)))
+            self.assertTrue(until(self.controller.server.is_active, 5))
+            time.sleep(0.2)
+            setattr(self.arm, fault, 0.5)
+            state, why = ends_of(self.client, 3)
+            self.assertEqual((state, self.controller.cancelled), (GoalStatus.ABORTED, before + 1))
+            self.assertIn(word, why)
+
+    def test_a_goal_that_does_not_begin_where_the_robot_is_does_not_pass(self):
+        self.arm.offset = 1.0
+        time.sleep(0.2)
+        self.client.send_goal(Goal(trajectory=turning(3.0, 2.0)))
+        state, why = ends_of(self.client)
+        self.assertEqual(state, GoalStatus.REJECTED)
+        self.assertIn("joint 'turn' at 1 is", why)
+
+    def test_the_way_to_a_first_point_that_is_not_at_time_zero_counts(self):
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))  # between the arm and the first point
+        self.client.send_goal(Goal(trajectory=turning(3.0, 1.0, parts=4, first=3)))
+        state, why = ends_of(self.client)
+        self.assertEqual(state, GoalStatus.REJECTED)
+        self.assertIn("'post'", why)
+        self.arm.silent = True
+        time.sleep(0.7)
+        self.client.send_goal(Goal(trajectory=turning(3.0, 1.0, parts=4, first=3)))
+        state, why = ends_of(self.client)
+        self.assertEqual(state, GoalStatus.REJECTED)
+        self.assertIn("~joint_states does not tell of joint 'turn'", why)
+
+    def test_a_goal_that_begins_later_is_asked_about_at_its_time(self):
+        """A cart stands where the arm will be, from five seconds after now on."""
+        now = rospy.Time.now()
+        way = [Waypoint(time=t, pose=pose(p)) for t, p in ((0, (0, 3, 0.5)), (5, (0, 3, 0.5)), (5.5, (0, 0.5, 0.5)), (60, (0, 0.5, 0.5)))]
+        self.server.apply(sphere('cart', 0.1, trajectory=PoseTrajectory(start=now, waypoints=way)))
+        goal = turning(3.0, 2.0)
+        for stamp, passes in ((now + rospy.Duration(5.5), False), (now, True)):
+            goal.header.stamp = stamp
+            self.client.send_goal(Goal(trajectory=goal))
+            state, why = ends_of(self.client)
+            self.assertEqual(state, GoalStatus.SUCCEEDED if passes else GoalStatus.REJECTED, why)
+            self.assertTrue(passes or "'cart'" in why, why)
+
+    def test_a_long_question_keeps_no_running_goal_waiting(self):
+        other = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
+        self.assertTrue(other.wait_for_server(rospy.Duration(10)))
+        self.client.send_goal(Goal(trajectory=turning(2.0, 6.0)))
+        self.assertTrue(until(self.controller.server.is_active, 5))
+        ended = []
+        other.send_goal(Goal(trajectory=turning(0.5, 30.0, parts=30000)), done_cb=lambda *_: ended.append('asked'))
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.assertEqual(ends_of(self.client)[0], GoalStatus.ABORTED)
+        other.cancel_goal()
+
+    def test_a_stop_passes(self):
+        self.server.apply(sphere('post', 0.1, (0.5, 0, 0.5)))  # in contact with the arm as it stands
+        self.client.send_goal(Goal(trajectory=JointTrajectory(joint_names=['turn'])))
+        self.assertEqual(ends_of(self.client)[0], GoalStatus.SUCCEEDED)
+        self.topic.publish(JointTrajectory(joint_names=['turn']))
+        self.assertTrue(until(lambda: self.passed, 5))
+        self.assertEqual((self.passed[0].points, self.refused), ([], []))
+
+    def test_the_goal_of_a_controller_that_goes_away_is_aborted(self):
+        controller = Controller(self.arm, '/lost')
+        client = actionlib.SimpleActionClient('/lost_gate/follow_joint_trajectory', Action)
+        self.assertTrue(client.wait_for_server(rospy.Duration(10)))
+        time.sleep(1.0)
+        client.send_goal(Goal(trajectory=turning(2.0, 20.0)))
+        self.assertTrue(until(controller.server.is_active, 5))
+        controller.die()
+        state, why = ends_of(client)
+        self.assertEqual((state, why), (GoalStatus.ABORTED, "the controller's action '/lost/follow_joint_trajectory' is not there"))
 
     def test_a_client_may_cancel(self):
         before = self.controller.cancelled
@@ -231,6 +381,7 @@ class Gate(unittest.TestCase):
         self.topic.publish(turning(2.0, 0.3))
         self.assertTrue(until(lambda: self.passed, 5))
         time.sleep(0.5)
+        self.arm.rest()
         self.topic.publish(turning(2.0, 30.0))
         self.topic.publish(turning(0.5, 30.0))  # the post is not in the way of this one
         self.assertTrue(until(lambda: len(self.passed) == 3, 5))

@@ -43,6 +43,12 @@ class Comparer {
     EXPECT_EQ(file_[name].size(), value.size()) << name;
   }
 
+  void operator()(const char *name, const std::vector<std::string> &value) {
+    names.insert(name);
+    ASSERT_TRUE(file_[name]) << name << " is not documented";
+    EXPECT_EQ(file_[name].as<std::vector<std::string>>(), value) << name;
+  }
+
   void operator()(const char *name, const ObjectDescription &value) {
     names.insert(name);
     ASSERT_TRUE(file_[name]) << name << " is not documented";

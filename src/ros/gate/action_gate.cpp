@@ -4,12 +4,18 @@
 #include <ros/console.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "transport/guard.h"
 
 namespace curve_proximity {
 namespace {
+
+using trajectory_msgs::JointTrajectory;
+
+constexpr std::uint32_t THREADS = 4;
+constexpr double PERIOD = 0.1; /* [s] between two looks for the controller */
 
 void complain(const std::string &why) {
   ROS_ERROR("gate: %s", why.c_str());
@@ -22,92 +28,161 @@ ActionGate::ActionGate(const ros::NodeHandle &handle, const GateParameters &para
       handle_(handle),
       refused_(std::move(refused)),
       calls_(handle, parameters.server, parameters.delta),
-      spinner_(1, &queue_) {
+      spinner_(THREADS, &queue_) {
   handle_.setCallbackQueue(&queue_);
+  watches_ = std::make_unique<MotionWatches>(handle_, parameters_);
   client_ = std::make_unique<Client>(handle_, parameters_.controller, &queue_);
   server_ = std::make_unique<Server>(
       handle_, "follow_joint_trajectory",
       [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, complain); },
-      [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, complain); }, false);
+      [this](Server::GoalHandle goal) { guarded([&] { cancel(goal); }, complain); }, false);
   server_->start();
-  timer_ = handle_.createWallTimer(ros::WallDuration(MotionWatch::PERIOD),
-                                   [this](const ros::WallTimerEvent &) { guarded([this] { watch(); }, complain); });
+  timer_ = handle_.createWallTimer(ros::WallDuration(PERIOD),
+                                   [this](const ros::WallTimerEvent &) { guarded([this] { findLost(); }, complain); });
   spinner_.start();
 }
 
 ActionGate::~ActionGate() {
   timer_.stop();
   spinner_.stop();
-  for (Running &running : running_) running.out.cancel(); // nobody would watch it
+  watches_.reset();
+  for (const RunningPointer &running : all()) running->out.cancel(); // nobody would watch it
+  for (const RunningPointer &running : all()) running->out.reset();
   running_.clear();
   server_.reset();
   client_.reset();
   queue_.clear();
 }
 
-ProximityQuery ActionGate::queryOf(const trajectory_msgs::JointTrajectory &trajectory) const {
-  ProximityQuery query;
-  query.trajectories.push_back(trajectory);
-  query.trajectories.front().header.stamp = ros::Time(); // the scene as it is now
-  query.current_joints = true;
-  query.self_collision = parameters_.self_collision;
-  return query;
-}
-
 void ActionGate::tell(Refusal refusal, const std::string &id, bool cancelled) {
   refusal.source = Refusal::ACTION;
   refusal.id = id;
   refusal.cancelled = cancelled;
+  refusal.delta = parameters_.delta;
   ROS_WARN("gate: goal '%s' %s: %s", id.c_str(), cancelled ? "is cancelled" : "does not pass", refusal.message.c_str());
   refused_.publish(refusal);
 }
 
-void ActionGate::begin(Server::GoalHandle goal) {
-  const auto asked = goal.getGoal();
-  const std::string id = goal.getGoalID().id;
-  control::FollowJointTrajectoryResult result;
-  result.error_code = control::FollowJointTrajectoryResult::INVALID_GOAL;
-  Refusal refusal;
+std::vector<ActionGate::RunningPointer> ActionGate::all() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return {running_.begin(), running_.end()};
+}
+
+/** Whether it was there: whoever forgets it tells its client how it ended. */
+bool ActionGate::forget(const RunningPointer &running) {
+  if (running->watch) watches_->remove(running->watch);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  running->ended = true;
+  running->out.reset();
+  const auto found = std::find(running_.begin(), running_.end(), running);
+  if (found == running_.end()) return false;
+  running_.erase(found);
+  return true;
+}
+
+/* ---- a new goal ---- */
+
+bool ActionGate::isClear(const JointTrajectory &trajectory, ProximityQuery &query, Refusal &refusal) {
   bool clear = false;
-  const ProximityQuery query = queryOf(asked->trajectory);
-  guarded([&] { clear = calls_.isClear(query, refusal); }, [&](const std::string &why) { refusal.message = why; });
-  if (clear && !client_->isServerConnected()) {
+  guarded(
+      [&] {
+        query.trajectories = {watches_->fromHere(trajectory)};
+        query.current_joints = true;
+        query.self_collision = parameters_.self_collision;
+        clear = calls_.isClear(query, refusal);
+      },
+      [&](const std::string &why) { refusal.message = why; });
+  return clear;
+}
+
+void ActionGate::begin(Server::GoalHandle goal) {
+  const JointTrajectory &trajectory = goal.getGoal()->trajectory;
+  Refusal refusal;
+  ProximityQuery query;
+  bool passes = trajectory.points.empty() || isClear(trajectory, query, refusal);
+  if (passes && !client_->isServerConnected()) {
     refusal = Refusal();
-    refusal.message = "the controller's action '" + parameters_.controller + "' is not there";
-    clear = false;
+    refusal.message = lostController();
+    passes = false;
   }
-  if (!clear) {
+  if (!passes) {
+    control::FollowJointTrajectoryResult result;
+    result.error_code = control::FollowJointTrajectoryResult::INVALID_GOAL;
     result.error_string = refusal.message;
     goal.setRejected(result, refusal.message);
-    return tell(std::move(refusal), id, false);
+    return tell(std::move(refusal), goal.getGoalID().id, false);
   }
+  if (goal.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING) return goal.setCanceled();
+
   goal.setAccepted();
-  running_.push_back({goal, {}, MotionWatch(query, asked->trajectory.header.stamp, refusal.scene), ""});
-  Running &running = running_.back();
-  running.out = client_->sendGoal(
-      *asked, [this](Client::GoalHandle done) { guarded([&] { end(std::move(done)); }, complain); },
-      [this](Client::GoalHandle from, const boost::shared_ptr<const control::FollowJointTrajectoryFeedback> &feedback) {
+  const auto running = std::make_shared<Running>();
+  running->in = goal;
+  if (!trajectory.points.empty()) {
+    const std::weak_ptr<Running> weak = running;
+    running->watch =
+        std::make_shared<MotionWatch>(std::move(query), refusal.scene, parameters_, [this, weak](Refusal why) {
+          const RunningPointer stopped = weak.lock();
+          if (!stopped) return;
+          stop(stopped, why.message);
+          tell(std::move(why), stopped->in.getGoalID().id, true);
+        });
+  }
+  send(running);
+}
+
+void ActionGate::send(const RunningPointer &running) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    running_.push_back(running);
+  }
+  if (running->watch) watches_->add(running->watch);
+  Client::GoalHandle out = client_->sendGoal(
+      *running->in.getGoal(),
+      [this, running](Client::GoalHandle done) { guarded([&] { end(running, done); }, complain); },
+      [running](Client::GoalHandle, const boost::shared_ptr<const control::FollowJointTrajectoryFeedback> &feedback) {
         guarded(
             [&] {
-              for (Running &one : running_)
-                if (one.out == from) one.in.publishFeedback(*feedback);
+              if (running->watch)
+                running->watch->tell(feedback->joint_names, feedback->actual.positions, feedback->header.stamp);
+              running->in.publishFeedback(*feedback);
             },
             complain);
       });
+  bool unwanted;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (running->ended) return;
+    running->out = out;
+    unwanted = !running->stopped.empty();
+  }
+  if (unwanted || running->in.getGoalStatus().status == actionlib_msgs::GoalStatus::PREEMPTING) out.cancel();
 }
 
-void ActionGate::cancel(Server::GoalHandle goal) {
-  for (Running &running : running_)
-    if (running.in == goal) running.out.cancel();
+/* ---- a goal that runs ---- */
+
+void ActionGate::cancel(const Server::GoalHandle &goal) {
+  for (const RunningPointer &running : all())
+    if (running->in == goal) stop(running, "");
 }
 
-void ActionGate::end(Client::GoalHandle done) {
-  const auto running =
-      std::find_if(running_.begin(), running_.end(), [&](const Running &one) { return one.out == done; });
-  if (running == running_.end() || !(done.getCommState() == actionlib::CommState::DONE)) return;
+/** why: ""; the client wants it. */
+void ActionGate::stop(const RunningPointer &running, const std::string &why) {
+  Client::GoalHandle out;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (running->ended) return;
+    if (!why.empty()) running->stopped = why;
+    out = running->out;
+  }
+  if (!out.isExpired()) out.cancel(); // else send() will
+}
+
+void ActionGate::end(const RunningPointer &running, const Client::GoalHandle &done) {
+  if (!(done.getCommState() == actionlib::CommState::DONE)) return;
   const auto given = done.getResult();
   control::FollowJointTrajectoryResult result = given ? *given : control::FollowJointTrajectoryResult();
   const actionlib::TerminalState state = done.getTerminalState();
+  if (!forget(running)) return;
   if (!running->stopped.empty()) {
     result.error_code = control::FollowJointTrajectoryResult::PATH_TOLERANCE_VIOLATED;
     result.error_string = running->stopped;
@@ -119,20 +194,27 @@ void ActionGate::end(Client::GoalHandle done) {
   } else {
     running->in.setAborted(result, state.getText());
   }
-  running_.erase(running);
 }
 
-void ActionGate::check(Running &running) {
-  Refusal refusal;
-  if (running.watch.isStillClear(calls_, refusal)) return;
-  running.stopped = refusal.message;
-  running.out.cancel();
-  tell(std::move(refusal), running.in.getGoalID().id, true);
+/** A controller that has gone ends nothing itself. */
+void ActionGate::findLost() {
+  const std::vector<RunningPointer> running = all();
+  if (running.empty() || client_->isServerConnected()) return;
+  for (const RunningPointer &one : running) {
+    if (!forget(one)) continue;
+    Refusal refusal;
+    refusal.header.stamp = ros::Time::now();
+    refusal.message = lostController();
+    control::FollowJointTrajectoryResult result;
+    result.error_code = control::FollowJointTrajectoryResult::PATH_TOLERANCE_VIOLATED;
+    result.error_string = refusal.message;
+    one->in.setAborted(result, refusal.message);
+    tell(std::move(refusal), one->in.getGoalID().id, true);
+  }
 }
 
-void ActionGate::watch() {
-  for (Running &running : running_)
-    if (running.stopped.empty()) check(running);
+std::string ActionGate::lostController() const {
+  return "the controller's action '" + parameters_.controller + "' is not there";
 }
 
 } // namespace curve_proximity

@@ -13,18 +13,22 @@
 
 #include <list>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
-#include "gate/motion_watch.h"
+#include "gate/motion_watches.h"
 #include "gate/server_calls.h"
 #include "moveit/follow_joint_trajectory.h"
 #include "parameters/parameters.h"
 
 namespace curve_proximity {
 
-/** A goal of ~follow_joint_trajectory is asked about from where the robot is by ~joint_states of the server. It is
- * rejected, or handed to the action ~controller. While it runs it is watched (MotionWatch); the controller is told to
- * cancel where what is left is not clear, or the server does not answer. One thread. */
+/** A goal of ~follow_joint_trajectory is asked about from where the robot is by ~joint_states. It is rejected, or
+ * handed to the action ~controller. While it runs it is watched (MotionWatches) by the controller's feedback and
+ * ~joint_states; the controller is told to cancel where what is left is not clear, where the robot does not tell where
+ * it is, or the server does not answer. A goal without points is a stop, and passes. Questions about new goals,
+ * cancelling and feedback each have a thread. */
 class ActionGate {
  public:
   /** handle: private. refused: where refusals go. */
@@ -40,24 +44,33 @@ class ActionGate {
   struct Running {
     Server::GoalHandle in;
     Client::GoalHandle out;
-    MotionWatch watch;
-    std::string stopped; /* why the gate has cancelled it; empty: it has not */
+    std::shared_ptr<MotionWatch> watch; /* null: a stop */
+    std::string stopped;                /* why the gate has cancelled it; empty: it has not */
+    bool ended = false;
   };
+  using RunningPointer = std::shared_ptr<Running>;
 
   void begin(Server::GoalHandle goal);
-  void cancel(Server::GoalHandle goal);
-  void end(Client::GoalHandle goal);
-  void watch();
-  void check(Running &running);
-  ProximityQuery queryOf(const trajectory_msgs::JointTrajectory &trajectory) const;
+  bool isClear(const trajectory_msgs::JointTrajectory &trajectory, ProximityQuery &query, Refusal &refusal);
+  void send(const RunningPointer &running);
+  void cancel(const Server::GoalHandle &goal);
+  void stop(const RunningPointer &running, const std::string &why);
+  void end(const RunningPointer &running, const Client::GoalHandle &done);
+  bool forget(const RunningPointer &running);
+  void findLost();
+  std::vector<RunningPointer> all();
   void tell(Refusal refusal, const std::string &id, bool cancelled);
+  std::string lostController() const;
 
   const GateParameters parameters_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher refused_;
-  ServerCalls calls_;
-  std::list<Running> running_;
+  ServerCalls calls_; /* of new goals */
+  std::mutex
+      mutex_; /* of the list and its entries; no action is called while it is held: they have locks of their own */
+  std::list<RunningPointer> running_;
+  std::unique_ptr<MotionWatches> watches_;
   std::unique_ptr<Client> client_;
   std::unique_ptr<Server> server_;
   ros::WallTimer timer_;

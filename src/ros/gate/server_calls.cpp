@@ -6,12 +6,6 @@
 #include <sstream>
 
 namespace curve_proximity {
-namespace {
-
-constexpr double PATIENCE = 2.0; /* [s] */
-
-} // namespace
-
 bool isClear(const Proximity &row, double delta, bool decided) {
   return (decided && row.verdict == Proximity::VERDICT_CLEAR) ||
          row.lower > delta; // without an answer: NaN, no verdict
@@ -38,9 +32,9 @@ Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneS
   return out;
 }
 
-SceneState ServerCalls::scene() {
+SceneState ServerCalls::scene(double patience) {
   Tolerance call;
-  if (!tolerance_.call(call, PATIENCE)) throw Error("the server does not answer");
+  if (!tolerance_.call(call, patience)) throw Error("the server does not answer");
   return call.response.scene;
 }
 

@@ -25,12 +25,14 @@ bool isClear(const Proximity &row, double delta, bool decided);
 /** For one thread. */
 class ServerCalls {
  public:
+  static constexpr double PATIENCE = 2.0; /**< [s] with a server that is not there */
+
   /** server: the namespace of its services. delta [m]. */
   ServerCalls(const ros::NodeHandle &handle, const std::string &server, double delta)
       : delta_(delta), tolerance_(handle, server + "/tolerance") {}
 
-  /** Throws Error where the server does not answer. */
-  SceneState scene();
+  /** Throws Error where the server does not answer for `patience` seconds. */
+  SceneState scene(double patience = PATIENCE);
 
   /** True where all of it is clear; else `refusal` says what is not, or why there is no answer. */
   bool isClear(const ProximityQuery &query, Refusal &refusal);

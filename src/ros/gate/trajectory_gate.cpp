@@ -39,6 +39,15 @@ void addTo(ProximityQuery &query, const trajectory_msgs::MultiDOFJointTrajectory
   query.multi_dof_trajectories.push_back(trajectory);
 }
 
+/** The joints of a trajectory that tells a controller to stop; null: the message is none. */
+template <class Message>
+const std::vector<std::string> *stopOf(const Message &message) {
+  if constexpr (std::is_same_v<Message, trajectory_msgs::JointTrajectory>)
+    return message.points.empty() ? &message.joint_names : nullptr;
+  else
+    return nullptr;
+}
+
 template <class Entry>
 void keep(std::deque<Entry> &entries, Entry entry, std::size_t most) {
   if (entries.size() == most) entries.pop_front();
@@ -72,6 +81,7 @@ TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParamete
   refused_ = handle_.advertise<Refusal>("refused", QUEUE);
   if (!parameters_.server.empty())
     calls_ = std::make_unique<ServerCalls>(handle_, parameters_.server, parameters_.delta);
+  if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, parameters_);
   if (!parameters_.controller.empty()) actions_ = std::make_unique<ActionGate>(handle, parameters_, refused_);
   connect<Curve>("curve");
   connect<trajectory_msgs::JointTrajectory>("trajectory");
@@ -80,16 +90,13 @@ TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParamete
   subscribers_.push_back(handle_.subscribe<ProximityResults>(
       "proximity", QUEUE,
       [this](const ProximityResultsConstPtr &results) { guarded([&] { answer(results); }, complain); }));
-  if (parameters_.watch)
-    timer_ = handle_.createWallTimer(ros::WallDuration(MotionWatch::PERIOD),
-                                     [this](const ros::WallTimerEvent &) { guarded([this] { lookOn(); }, complain); });
   spinner_.start();
 }
 
 TrajectoryGate::~TrajectoryGate() {
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
-  timer_.stop();
   spinner_.stop();
+  watches_.reset();
   actions_.reset();
   queue_.clear();
 }
@@ -102,6 +109,10 @@ void TrajectoryGate::connect(const std::string &topic) {
   subscribers_.push_back(handle_.subscribe<Message>(topic, QUEUE, [this, out](const Pointer &message) {
     guarded(
         [&] {
+          if (const auto *stop = stopOf(*message)) {
+            forget(*stop);
+            return out.publish(message);
+          }
           receive({fingerprint(*message), [out, message] { out.publish(message); },
                    [message](ProximityQuery &query) { addTo(query, *message); }});
         },
@@ -137,7 +148,7 @@ void TrajectoryGate::decide(const Waiting &message, const ProximityResults &resu
   SceneState scene = results.scene;
   if (!isStillClear(query, scene, refusal)) return refuse(std::move(refusal), results);
   message.pass();
-  if (parameters_.watch && !query.trajectories.empty()) watch(std::move(query), results, std::move(scene));
+  if (watches_ && !query.trajectories.empty()) watch(std::move(query), results, std::move(scene));
 }
 
 /** The scene may have changed since the answer. `scene` becomes that which it is clear of. */
@@ -159,33 +170,32 @@ bool TrajectoryGate::isStillClear(const ProximityQuery &query, SceneState &scene
   return clear;
 }
 
-/** A trajectory of the same joints takes the place of the one before it. */
 void TrajectoryGate::watch(ProximityQuery query, const ProximityResults &results, SceneState scene) {
-  const ros::Time stamp = query.trajectories.front().header.stamp;
-  Running next{MotionWatch(std::move(query), stamp, std::move(scene)), {}};
-  next.of.header = results.header;
-  next.of.source = results.source;
-  next.of.id = results.id;
-  next.of.fingerprint = results.fingerprint;
-  const auto &joints = next.watch.trajectory().joint_names;
-  running_.remove_if([&](const Running &one) {
-    const auto &others = one.watch.trajectory().joint_names;
-    return std::find_first_of(others.begin(), others.end(), joints.begin(), joints.end()) != others.end();
-  });
-  running_.push_back(std::move(next));
+  ProximityResults of; // the head of its answer, without rows
+  of.header = results.header;
+  of.source = results.source;
+  of.id = results.id;
+  of.fingerprint = results.fingerprint;
+  const std::vector<std::string> joints = query.trajectories.front().joint_names;
+  const auto end = [this, of, joints](Refusal refusal) {
+    trajectory_msgs::JointTrajectory stop;
+    stop.joint_names = joints;
+    clear_trajectory_.publish(stop);
+    refuse(std::move(refusal), of);
+  };
+  forget(joints);
+  running_.push_back(std::make_shared<MotionWatch>(std::move(query), std::move(scene), parameters_, end));
+  watches_->add(running_.back());
 }
 
-void TrajectoryGate::lookOn() {
-  running_.remove_if([this](Running &one) {
-    if (one.watch.isOver()) return true;
-    Refusal refusal;
-    if (one.watch.isStillClear(*calls_, refusal)) return false;
-    trajectory_msgs::JointTrajectory stop;
-    stop.joint_names = one.watch.trajectory().joint_names;
-    clear_trajectory_.publish(stop);
-    refusal.cancelled = true;
-    refuse(std::move(refusal), one.of);
-    return true;
+/** A trajectory of the same joints takes the place of the one before it; an empty list of joints is all. */
+void TrajectoryGate::forget(const std::vector<std::string> &joints) {
+  running_.remove_if([&](const std::shared_ptr<MotionWatch> &one) {
+    const auto &others = one->trajectory().joint_names;
+    const bool same = joints.empty() ||
+                      std::find_first_of(others.begin(), others.end(), joints.begin(), joints.end()) != others.end();
+    if (same) watches_->remove(one);
+    return same || one->isOver();
   });
 }
 

@@ -7,7 +7,6 @@
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
-#include <ros/wall_timer.h>
 
 #include <cstdint>
 #include <deque>
@@ -15,10 +14,11 @@
 #include <list>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gate/action_gate.h"
-#include "gate/motion_watch.h"
+#include "gate/motion_watches.h"
 #include "gate/server_calls.h"
 #include "parameters/parameters.h"
 
@@ -33,8 +33,9 @@ bool isClear(const ProximityResults &results, double delta);
  * ~clear_multi_dof_trajectory, ~clear_path. ~queue_size messages and as many answers wait for each other; what is older
  * never passes. Before it hands a message on, it looks at the scene of ~server: where that is another one than the
  * answer's, it asks again. What does not pass is told on ~refused. With ~watch it looks on while a trajectory runs
- * (MotionWatch); where what is left is not clear, a trajectory without points follows on ~clear_trajectory, at which
- * joint_trajectory_controller stops. With ~controller it is also a FollowJointTrajectory action: see ActionGate. */
+ * (MotionWatches, by ~joint_states); where what is left is not clear, a trajectory without points follows on
+ * ~clear_trajectory, at which joint_trajectory_controller stops. A trajectory without points is a stop, and passes at
+ * once. With ~controller it is also a FollowJointTrajectory action: see ActionGate. */
 class TrajectoryGate {
  public:
   TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters);
@@ -53,11 +54,6 @@ class TrajectoryGate {
     std::uint64_t fingerprint;
     ProximityResultsConstPtr results;
   };
-  struct Running {
-    MotionWatch watch;
-    ProximityResults of; /* the head of its answer, without rows */
-  };
-
   template <class Message>
   void connect(const std::string &topic);
   void receive(Waiting message);
@@ -65,18 +61,18 @@ class TrajectoryGate {
   void decide(const Waiting &message, const ProximityResults &results);
   bool isStillClear(const ProximityQuery &query, SceneState &scene, Refusal &refusal);
   void watch(ProximityQuery query, const ProximityResults &results, SceneState scene);
-  void lookOn();
+  void forget(const std::vector<std::string> &joints);
   void refuse(Refusal refusal, const ProximityResults &results);
 
   const GateParameters parameters_;
   std::deque<Waiting> waiting_; /* touched by the one thread of the queue alone */
   std::deque<Answered> answered_;
-  std::list<Running> running_;
+  std::list<std::shared_ptr<MotionWatch>> running_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher refused_, clear_trajectory_;
-  std::unique_ptr<ServerCalls> calls_; /* null: the scene is not looked at again */
-  ros::WallTimer timer_;
+  std::unique_ptr<ServerCalls> calls_;     /* null: the scene is not looked at again */
+  std::unique_ptr<MotionWatches> watches_; /* null: nothing is watched */
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<ActionGate> actions_;
   ros::AsyncSpinner spinner_;

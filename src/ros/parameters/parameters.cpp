@@ -166,6 +166,17 @@ class Reader {
     }
   }
 
+  void operator()(const char *name, std::vector<std::string> &value) {
+    Xml given;
+    if (!get(name, given)) return;
+    if (given.getType() != Xml::TypeArray) wrong(name, "a list of names is expected");
+    value.clear();
+    for (int i = 0; i < given.size(); ++i) {
+      if (given[i].getType() != Xml::TypeString) wrong(name, "a list of names is expected");
+      value.push_back(static_cast<std::string>(given[i]));
+    }
+  }
+
   void operator()(const char *name, std::map<std::string, std::string> &value) {
     Xml given;
     if (!get(name, given)) return;
@@ -258,6 +269,9 @@ Parameters readParameters(const ros::NodeHandle &handle) {
   if (parameters.cloud_id.empty()) throw ParameterError("parameter ~cloud_id: the name of an object is expected");
   if (parameters.octomap_id.empty() || parameters.octomap_id == parameters.cloud_id)
     throw ParameterError("parameter ~octomap_id: the name of an object is expected, another than ~cloud_id");
+  for (const std::string &id : parameters.expected_sensors)
+    if (id != parameters.cloud_id && id != parameters.octomap_id)
+      throw ParameterError("parameter ~expected_sensors: '" + id + "' is neither ~cloud_id nor ~octomap_id");
   if (parameters.robot_description.find('<') != std::string::npos)
     throw ParameterError(
         "parameter ~robot_description: the name of the parameter that holds the URDF is expected, not the URDF itself");

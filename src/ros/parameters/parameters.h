@@ -66,6 +66,8 @@ struct Parameters {
   std::string octomap_id = "<octomap>";
   bool unknown_is_occupied = false;
   bool empty_cloud_clears = false;
+  double least_valid_share = 0.01;
+  std::vector<std::string> expected_sensors, assumed_joints;
   double max_age = 0.0;
   bool allow_empty = false;
   std::vector<ProviderSpec> constraint_providers = {
@@ -130,6 +132,9 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("octomap_id", parameters.octomap_id);
   visit("unknown_is_occupied", parameters.unknown_is_occupied);
   visit("empty_cloud_clears", parameters.empty_cloud_clears);
+  visit("least_valid_share", parameters.least_valid_share, Range{0.0, false, 1.0});
+  visit("expected_sensors", parameters.expected_sensors);
+  visit("assumed_joints", parameters.assumed_joints);
   visit("max_age", parameters.max_age, Range{0.0, false, 1e9});
   visit("allow_empty", parameters.allow_empty);
   visit("constraint_providers", parameters.constraint_providers);
@@ -139,10 +144,13 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
 struct GateParameters {
   double delta = 0.0; /**< [m] */
   int queue_size = 10;
-  std::string server;         /**< the namespace of the server's services; empty: the scene is not looked at again */
-  std::string controller;     /**< the action of the controller; empty: there is no action */
-  bool self_collision = true; /**< of goals of the action */
-  bool watch = false;         /**< ~clear_trajectory is watched while it runs */
+  std::string server;            /**< the namespace of the server's services; empty: the scene is not looked at again */
+  std::string controller;        /**< the action of the controller; empty: there is no action */
+  bool self_collision = true;    /**< of goals of the action */
+  bool watch = false;            /**< ~clear_trajectory is watched while it runs */
+  double path_tolerance = 0.1;   /**< [rad, m] how far each joint may be from the trajectory that runs */
+  double feedback_timeout = 0.5; /**< [s] without a word of the robot; then what runs is stopped */
+  double server_timeout = 2.0;   /**< [s] for an answer about what runs; then it is stopped */
 };
 
 template <class Fields, class Visitor>
@@ -153,6 +161,9 @@ void visitGateParameters(Fields &parameters, Visitor &&visit) {
   visit("controller", parameters.controller);
   visit("self_collision", parameters.self_collision);
   visit("watch", parameters.watch);
+  visit("path_tolerance", parameters.path_tolerance, Range{0.0, true});
+  visit("feedback_timeout", parameters.feedback_timeout, Range{0.0, true});
+  visit("server_timeout", parameters.server_timeout, Range{0.0, true});
 }
 
 /** Reads the parameters of a private handle; those that are not set keep their defaults.

@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gate/motion_watches.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <curve_proximity/core.hpp>
+#include <sstream>
+#include <utility>
+
+#include "transport/guard.h"
+
+namespace curve_proximity {
+namespace {
+
+using std::chrono::steady_clock;
+using trajectory_msgs::JointTrajectory;
+
+constexpr std::chrono::seconds AT_LEAST{1};
+constexpr std::uint32_t QUEUE = 10;
+constexpr double PATIENCE = 0.1; /* [s] with a server that is not there */
+
+void complain(const std::string &why) {
+  ROS_ERROR("gate: %s", why.c_str());
+}
+
+Refusal refusalBecause(const std::string &why, const SceneState &scene) {
+  Refusal out;
+  out.header.stamp = ros::Time::now();
+  out.scene = scene;
+  out.message = why;
+  return out;
+}
+
+} // namespace
+
+/* ---- one ---- */
+
+MotionWatch::MotionWatch(ProximityQuery query, SceneState scene, const GateParameters &parameters, Stop stop)
+    : began_(std::max(ros::Time::now(), query.trajectories.front().header.stamp)),
+      patience_(parameters.feedback_timeout),
+      stop_(std::move(stop)),
+      query_(std::move(query)),
+      scene_(std::move(scene)),
+      progress_(query_.trajectories.front(), parameters.path_tolerance),
+      told_(began_) {}
+
+void MotionWatch::tell(const std::vector<std::string> &names, const std::vector<double> &positions, ros::Time stamp) {
+  const ros::Time now = ros::Time::now();
+  if (stamp.isZero() || stamp > now) stamp = now;
+  if (stamp < began_) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const std::string &joint : trajectory().joint_names)
+    if (std::find(names.begin(), names.end(), joint) == names.end()) return;
+  const std::string why = progress_.tell(names, positions, std::max(0.0, (stamp - told_).toSec()));
+  elsewhere_ = why;
+  if (why.empty()) told_ = std::max(told_, stamp);
+}
+
+bool MotionWatch::isOver() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return progress_.isAtEnd() && ros::Time::now() > began_ + trajectory().points.back().time_from_start;
+}
+
+std::string MotionWatch::doubt() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!elsewhere_.empty()) return elsewhere_;
+  const double silence = (ros::Time::now() - told_).toSec();
+  if (silence <= patience_) return "";
+  std::ostringstream text;
+  text.precision(3);
+  text << "the robot has not told where its joints are for " << silence
+       << " s, longer than ~feedback_timeout = " << patience_;
+  return text.str();
+}
+
+JointTrajectory MotionWatch::rest() const {
+  std::size_t first;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    first = progress_.point();
+  }
+  const auto &points = trajectory().points;
+  const ros::Duration elapsed = ros::Time::now() - began_;
+  JointTrajectory rest = trajectory();
+  if (elapsed <= ros::Duration(0)) return rest;
+  const ros::Duration next = points[std::min(first + 1, points.size() - 1)].time_from_start;
+  const ros::Duration now = std::max(points[first].time_from_start, std::min(elapsed, next));
+  rest.header.stamp = ros::Time();
+  rest.points.erase(rest.points.begin(), rest.points.begin() + static_cast<std::ptrdiff_t>(first));
+  for (auto &point : rest.points) point.time_from_start -= now;
+  return rest;
+}
+
+bool MotionWatch::isStillClear(ServerCalls &calls, Refusal &refusal) {
+  bool clear = false;
+  guarded(
+      [&] {
+        const auto now = steady_clock::now();
+        const SceneState scene = calls.scene(PATIENCE);
+        clear = scene.epoch == scene_.epoch && scene.version == scene_.version && now - asked_ < AT_LEAST;
+        if (clear) return;
+        asked_ = now;
+        query_.trajectories.front() = rest();
+        clear = calls.isClear(query_, refusal);
+        scene_ = refusal.scene;
+      },
+      [&](const std::string &why) { refusal = refusalBecause(why, scene_); });
+  return clear;
+}
+
+void MotionWatch::stop(Refusal refusal) {
+  if (stopped_.exchange(true)) return;
+  refusal.cancelled = true;
+  guarded([&] { stop_(std::move(refusal)); }, complain);
+}
+
+/* ---- all ---- */
+
+MotionWatches::MotionWatches(const ros::NodeHandle &handle, const GateParameters &parameters)
+    : parameters_(parameters), calls_(handle, parameters.server, parameters.delta) {
+  ros::NodeHandle own = handle;
+  states_ = own.subscribe<sensor_msgs::JointState>(
+      "joint_states", QUEUE,
+      [this](const sensor_msgs::JointStateConstPtr &state) { guarded([&] { tell(*state); }, complain); });
+  looking_ = std::thread([this] {
+    while (wait()) look();
+  });
+  supervising_ = std::thread([this] {
+    while (wait()) supervise();
+  });
+}
+
+MotionWatches::~MotionWatches() {
+  states_.shutdown();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  end_.notify_all();
+  looking_.join();
+  supervising_.join();
+}
+
+void MotionWatches::add(std::shared_ptr<MotionWatch> watch) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  watches_.push_back(std::move(watch));
+}
+
+void MotionWatches::remove(const std::shared_ptr<MotionWatch> &watch) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  watches_.remove(watch);
+}
+
+std::vector<std::shared_ptr<MotionWatch>> MotionWatches::all() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return {watches_.begin(), watches_.end()};
+}
+
+void MotionWatches::tell(const sensor_msgs::JointState &state) {
+  const ros::Time now = ros::Time::now();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::size_t n = std::min(state.name.size(), state.position.size());
+    for (std::size_t i = 0; i < n; ++i)
+      joints_[state.name[i]] = {state.position[i],
+                                state.header.stamp.isZero() ? now : std::min(now, state.header.stamp)};
+  }
+  for (const auto &watch : all()) watch->tell(state.name, state.position, state.header.stamp);
+}
+
+JointTrajectory MotionWatches::fromHere(JointTrajectory trajectory) const {
+  const ros::Time now = ros::Time::now();
+  std::vector<double> here;
+  std::string unknown;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const std::string &joint : trajectory.joint_names) {
+      const auto found = joints_.find(joint);
+      if (found == joints_.end() || now - found->second.second > ros::Duration(parameters_.feedback_timeout))
+        unknown = joint;
+      else
+        here.push_back(found->second.first);
+    }
+  }
+  trajectory_msgs::JointTrajectoryPoint &first = trajectory.points.front();
+  if (first.time_from_start > ros::Duration(0)) {
+    if (!unknown.empty())
+      throw Error(
+          "the first point is not at time 0, and where the robot begins is not known: ~joint_states does not "
+          "tell of joint '" +
+          unknown + "'");
+    trajectory_msgs::JointTrajectoryPoint begin;
+    begin.positions = here;
+    begin.velocities.resize(first.velocities.size());
+    begin.accelerations.resize(first.accelerations.size());
+    trajectory.points.insert(trajectory.points.begin(), begin);
+  } else if (unknown.empty() && trajectory.header.stamp <= now) {
+    JointTrajectory start = trajectory;
+    start.points.resize(1);
+    const std::string why =
+        TrajectoryProgress(start, parameters_.path_tolerance).tell(trajectory.joint_names, here, 0.0);
+    if (!why.empty()) throw Error(why);
+  }
+  return trajectory;
+}
+
+bool MotionWatches::wait() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  return !end_.wait_for(lock, std::chrono::duration<double>(PERIOD), [this] { return ending_; });
+}
+
+void MotionWatches::look() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    looked_ = steady_clock::now();
+  }
+  for (const auto &watch : all()) {
+    Refusal refusal;
+    if (watch->stopped_ || watch->isOver()) {
+      remove(watch);
+    } else if (!watch->isStillClear(calls_, refusal)) {
+      watch->stop(std::move(refusal));
+      remove(watch);
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    looked_ = steady_clock::now();
+  }
+}
+
+/* What the robot tells needs no server; and the server may keep the other thread waiting. */
+void MotionWatches::supervise() {
+  bool silent;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    silent = std::chrono::duration<double>(steady_clock::now() - looked_).count() > parameters_.server_timeout;
+  }
+  for (const auto &watch : all()) {
+    const std::string why = silent ? "the server has not answered for ~server_timeout" : watch->doubt();
+    if (why.empty() || watch->isOver()) continue;
+    watch->stop(refusalBecause(why, SceneState()));
+    remove(watch);
+  }
+}
+
+} // namespace curve_proximity
