@@ -148,6 +148,11 @@ Eigen::Isometry3d linkPose(const std::string &link, const ros::Time &stamp, cons
   return robot->linkPoses(joints.positions, rootPose(*robot, live.srdf, stamp, lookup)).at(link);
 }
 
+/** A source of LiveScene::unknowns: an object that came by topic and could not be used. */
+std::string refusedObject(const std::string &id) {
+  return "object " + id;
+}
+
 std::string joined(const std::vector<std::string> &sentences) {
   std::string text;
   for (const std::string &sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
@@ -175,8 +180,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       queries_(parameters_, tuning_, live_, frames_, statistics_, stop_,
                loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf),
                secondOpinions(parameters_)),
-      constraints_(parameters_, live_, frames_, queries_.robots(), stop_),
-      pairs_(parameters_, tuning_, statistics_, stop_, secondOpinions(parameters_)) {
+      constraints_(parameters_, live_, frames_, queries_.robots()),
+      pairs_(parameters_, tuning_, statistics_, secondOpinions(parameters_)) {
   memory::setLimit(static_cast<std::size_t>(parameters_.memory_limit_mb) << 20);
   warnOfOtherLinks(live_);
   checkPathBody(parameters_);
@@ -216,7 +221,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
                 Turn turn(turns_, call.client, waitUntil(call, at_work));
                 response.frame_id = frames_.fixedFrame();
                 std::shared_ptr<const LevelDrawing> drawing;
-                constraints_.answer(request, response, drawing, &turn);
+                const TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
+                constraints_.answer(request, response, drawing, budget, &turn);
                 if (drawing) markers_->show(std::move(drawing));
               })),
       advertise<MeasurePairs>(
@@ -225,7 +231,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
                                 [this](const Call &call, const RequestThreads::AtWork &at_work,
                                        MeasurePairs::Request &request, MeasurePairs::Response &response) {
                                   Turn turn(turns_, call.client, waitUntil(call, at_work));
-                                  pairs_.answer(request, response, &turn);
+                                  TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
+                                  pairs_.answer(request, response, budget);
                                 }))};
   const auto take_object = [this](const CollisionObjectConstPtr &object) { takeObject(object); };
   const auto take_attached = [this](const AttachedCollisionObjectConstPtr &object) { takeAttached(object); };
@@ -357,7 +364,7 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
   SceneChange change = toSceneChange(request, to_fixed, faults);
   addAttachments(request, to_fixed, link_to_fixed, *before, change, faults);
   for (std::string &fault : applyChange(change, *before)) faults.push_back(std::move(fault));
-  if (faults.empty()) live_.lost = false;
+  if (faults.empty()) live_.unknowns.forget(LOST_SCENE);
   return faults;
 }
 
@@ -378,8 +385,14 @@ std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const
   };
   for (const Operation &operation : change.operations) {
     const std::string &id = operation.object.id;
-    if (faults.empty() || object(before, id) != object(*after, id)) live_.sensors.forget(id);
+    if (!faults.empty() && object(before, id) == object(*after, id)) continue;
+    if (operation.kind == Operation::Kind::REMOVE && id.empty())
+      live_.sensors.awaitsAll();
+    else
+      live_.sensors.forget(id);
+    live_.unknowns.forget(refusedObject(id));
   }
+  if (change.clear) live_.sensors.awaitsAll();
   state_file_.changed();
   return faults;
 }
@@ -392,18 +405,22 @@ void ProximityServer::applyScene(const Call &call, const RequestThreads::AtWork 
   const std::vector<std::string> faults = apply(request);
   response.success = faults.empty();
   response.message = joined(faults);
-  response.scene = live_.state(*live_.scene.snapshot());
+  response.scene = live_.state();
 }
 
 /** As ~apply_scene with one object; there is nobody to be told but the log. */
 template <class Fill>
 void ProximityServer::changeScene(const char *topic, Fill &&fill) {
-  const auto complain = [&](const std::string &why) { ROS_ERROR("%s: %s", topic, why.c_str()); };
+  std::string id;
+  const auto complain = [&](const std::string &why) {
+    ROS_ERROR("%s: %s", topic, why.c_str());
+    live_.unknowns.set(refusedObject(id), {{std::string(topic) + ": object '" + id + "' is not used: " + why, id}});
+  };
   const RequestThreads::AtWork at_work(threads_);
   guarded(
       [&] {
         ApplyScene::Request request;
-        fill(request);
+        id = fill(request);
         const memory::Share share(SCENE_TIMES_WIRE * ros::serialization::serializationLength(request), requestLimit());
         for (const std::string &fault : apply(request)) complain(fault);
       },
@@ -411,12 +428,17 @@ void ProximityServer::changeScene(const char *topic, Fill &&fill) {
 }
 
 void ProximityServer::takeObject(const CollisionObjectConstPtr &object) {
-  changeScene("~collision_object", [&](ApplyScene::Request &request) { request.objects.push_back(*object); });
+  changeScene("~collision_object", [&](ApplyScene::Request &request) {
+    request.objects.push_back(*object);
+    return object->id;
+  });
 }
 
 void ProximityServer::takeAttached(const AttachedCollisionObjectConstPtr &object) {
-  changeScene("~attached_collision_object",
-              [&](ApplyScene::Request &request) { request.attached_collision_objects.push_back(*object); });
+  changeScene("~attached_collision_object", [&](ApplyScene::Request &request) {
+    request.attached_collision_objects.push_back(*object);
+    return object->object.id;
+  });
 }
 
 /** The scene of ~scene_file: all of it, or no start. */
@@ -441,17 +463,18 @@ void ProximityServer::restoreScene() {
   if (!kept) return;
   const std::vector<std::string> faults = apply(kept->request);
   for (const std::string &fault : faults) ROS_WARN("of the scene before the restart: %s", fault.c_str());
+  if (kept->behind || !faults.empty()) state_file_.lose();
   for (const std::string &id : kept->sensors) live_.sensors.awaits(id);
-  live_.lost = !faults.empty();
   ROS_INFO("the scene is as before the restart: %zu objects; of sensors %zu are awaited",
            live_.scene.snapshot()->objects().size(), kept->sensors.size());
 }
 
 void ProximityServer::getScene(const GetScene::Request &request, GetScene::Response &response) {
+  std::vector<SensorState> sensors = live_.sensors.states();
   const SnapshotPtr snapshot = live_.scene.snapshot();
   toMessage(*snapshot, request.ids, response);
   for (CollisionObject &object : response.objects) object.header.frame_id = frames_.fixedFrame();
-  response.scene = live_.state(*snapshot);
+  response.scene = live_.state(*snapshot, std::move(sensors));
   response.frame_id = frames_.fixedFrame();
   response.success = true;
 }

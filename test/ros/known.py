@@ -15,7 +15,7 @@ from curve_proximity.msg import CollisionObject, ConstraintQuery
 from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
 from geometry_msgs.msg import TransformStamped
-from helpers import Node, Server, bezier, connected, joints, run, sphere, thing, until
+from helpers import Node, Server, bezier, connected, joint_trajectory, joints, run, sphere, thing, until
 from sensor_msgs.msg import JointState, PointCloud2, PointField
 from tf2_msgs.msg import TFMessage
 
@@ -113,9 +113,7 @@ class Known(unittest.TestCase):
         self.assertEqual((row.status, row.verdict, row.lower), ('ok', 'clear', math.inf))
 
     def test_joint_states_and_their_age(self):
-        with open(ARM) as text:
-            rospy.set_param('/robot_description', text.read())
-        self.addCleanup(rospy.delete_param, '/robot_description')
+        self.set_robot()
         _, server = self.begin('jointed', max_age=0.5, fixed_frame='base')
         states = self.publisher('/jointed/joint_states', JointState)
         server.replace(sphere('ball', 0.1, (0, 0, 9)))
@@ -179,7 +177,7 @@ class Known(unittest.TestCase):
         before = server.replace(sphere('ball', 0.25), sphere('other', 0.1, (5, 5, 5), padding=0.01)).scene
         clouds.publish(cloud((0, 0, -3)))
         self.assertTrue(until(lambda: server.scene().scene.sensors, 5))
-        self.assertTrue(until(lambda: os.path.exists(path) and b'cloud' in open(path, 'rb').read(), 5))
+        self.assertTrue(until(lambda: self.written(path) and b'cloud' in open(path, 'rb').read(), 5))
         again, server = self.crash(node, 'kept', state_file=path)
         scene = server.scene()
         self.assertEqual({o.id for o in scene.objects}, {'ball', 'other'})
@@ -197,6 +195,107 @@ class Known(unittest.TestCase):
         self.assertTrue(any('lost' in w for w in server.distance(LINE).warnings))
         self.assertTrue(server.apply(sphere('ball', 0.25)).success)
         self.assertEqual(server.distance(LINE).warnings, [])
+
+    def test_a_change_that_was_not_written_yet_when_the_server_died_is_not_forgotten(self):
+        path = tempfile.mkdtemp() + '/kept.scene'
+        node, server = self.begin('hasty', state_file=path)
+        server.replace(sphere('ball', 0.25))
+        self.assertTrue(until(lambda: self.written(path), 5))
+        self.assertTrue(server.apply(sphere('on_line', 0.25, (0, 0, 1))).success)  # and at once:
+        _, server = self.crash(node, 'hasty', state_file=path)
+        row, = server.tolerance(LINE, 0.1).results
+        self.assertEqual((row.status, row.verdict), ('unknown', 'undecided'))
+        self.assertIn('lost', row.message)
+        self.assertTrue(server.apply(sphere('ball', 0.25)).success)
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].verdict, 'clear')
+
+    @staticmethod
+    def written(path):
+        return os.path.exists(path) and not os.path.exists(path + '.behind')
+
+    def test_a_scene_that_began_with_another_robot_is_not_taken_over(self):
+        path = tempfile.mkdtemp() + '/kept.scene'
+        node, server = self.begin('second', state_file=path)
+        server.replace(sphere('ball', 0.25))
+        self.assertTrue(until(lambda: self.written(path), 5))
+        self.set_robot()
+        node, server = self.crash(node, 'second', state_file=path, fixed_frame='base')
+        self.assertEqual(server.scene().objects, [])
+        self.assertIn('another scene file, robot', node.output())
+
+    def set_robot(self, more=''):
+        with open(ARM) as text:
+            rospy.set_param('/robot_description', text.read().replace('</robot>', more + '</robot>'))
+        self.addCleanup(rospy.delete_param, '/robot_description')
+
+    def test_what_is_expected_and_has_not_come_is_unknown(self):
+        _, server = self.begin('expecting', expected_sensors=['cloud'], ask_planning_scene=True)
+        server.replace(sphere('ball', 0.25))
+        row, = server.tolerance(LINE, 0.1).results
+        self.assertEqual((row.status, row.verdict), ('unknown', 'undecided'))
+        self.assertIn('no planning scene has come', row.message)
+        self.assertIn("'cloud'", row.message)
+        self.assertEqual([(s.id, s.unknown) for s in server.scene().scene.sensors], [('cloud', True)])
+
+    def test_an_object_by_topic_that_cannot_be_used_is_unknown_until_it_can(self):
+        _, server = self.begin('refusing')
+        objects = self.publisher('/refusing/collision_object', CollisionObject)
+        server.replace(sphere('ball', 0.25))
+        objects.publish(sphere('post', 0.1, (0, 0, 1), frame='nowhere'))
+        row = until(lambda: (lambda r: r.status == 'unknown' and r)(server.tolerance(LINE, 0.1).results[0]), 5)
+        self.assertEqual(row.verdict, 'undecided')
+        self.assertIn("object 'post' is not used", row.message)
+        self.assertEqual(server.tolerance(LINE, 0.1, objects=['ball']).results[0].verdict, 'clear')
+        objects.publish(sphere('post', 0.1, (0, 0, 5)))
+        self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear', 5))
+
+    def test_a_scene_that_is_emptied_knows_nothing_of_what_sensors_see(self):
+        _, server = self.begin('emptied')
+        clouds = self.publisher('/emptied/cloud', PointCloud2)
+        for emptied in (lambda: server.replace(sphere('ball', 0.25)),
+                        lambda: server.apply(thing('', operation=CollisionObject.REMOVE), sphere('ball', 0.25))):
+            clouds.publish(cloud((0, 0, -3)))
+            self.assertTrue(until(lambda: any(not s.unknown for s in server.scene().scene.sensors), 5))
+            self.assertTrue(emptied().success)
+            self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')
+
+    def test_a_cloud_of_hardly_a_valid_point_is_one_of_none(self):
+        _, server = self.begin('covered')
+        clouds = self.publisher('/covered/cloud', PointCloud2)
+        server.replace(sphere('ball', 0.25))
+        clouds.publish(cloud((0, 0, -30), *[(math.nan, 0, 0)] * 999))
+        self.assertTrue(until(lambda: server.scene().scene.sensors, 5))
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')
+        clouds.publish(cloud(*[(0, 0, -30)] * 100, *[(math.nan, 0, 0)] * 900))
+        self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear', 5))
+
+    def test_joints_that_nobody_has_told_are_unknown(self):
+        self.set_robot('<joint name="lift" type="prismatic"><parent link="arm"/><child link="hand"/><axis xyz="0 0 1"/>'
+                       '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint><link name="hand"/>')
+        turning, whole = joint_trajectory(['turn'], (0.0,), (0.5,)), joint_trajectory(['turn', 'lift'], (0.0, 0.0), (0.5, 0.0))
+        _, server = self.begin('untold', fixed_frame='base')
+        states = self.publisher('/untold/joint_states', JointState)
+        server.replace(sphere('ball', 0.1, (0, 0, 9)))
+        self.assertEqual(server.tolerance([], 0.01, trajectory=whole, current_joints=True).results[0].verdict, 'clear')
+        row = server.tolerance([], 0.01, trajectory=turning, current_joints=True).results[0]
+        self.assertEqual((row.status, row.verdict), ('unknown', 'undecided'))
+        self.assertIn("where joint 'lift' is was not told", row.message)
+        states.publish(joints(turn=0.0))
+        row = until(lambda: (lambda r: r.results and r.results[0])(server.tolerance([], 0.01, robot_state=True)), 5)
+        self.assertEqual(row.status, 'unknown')
+        states.publish(joints(lift=0.0))
+        self.assertTrue(until(lambda: server.tolerance([], 0.01, robot_state=True).results[0].verdict == 'clear', 5))
+        _, assuming = self.begin('assuming', fixed_frame='base', assumed_joints=['lift'])
+        assuming.replace(sphere('ball', 0.1, (0, 0, 9)))
+        for fields in (dict(current_joints=True), {}):  # {}: at 0 by the request's own words
+            self.assertEqual(assuming.tolerance([], 0.01, trajectory=turning, **fields).results[0].verdict, 'clear')
+
+    def test_a_request_that_asks_nothing_is_an_error(self):
+        _, server = self.begin('asked')
+        server.replace(sphere('ball', 0.25))
+        answer = server.tolerance([], 0.1)
+        self.assertEqual((answer.success, answer.results), (False, []))
+        self.assertIn('nothing is asked', answer.message)
 
     def test_a_scene_that_a_restart_has_lost_is_said_and_never_clear(self):
         node, server = self.begin('forgetful', state_file='')

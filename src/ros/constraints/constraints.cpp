@@ -124,7 +124,7 @@ ConstraintResult toMessage(const ConstraintRow &row, const ConstraintCase &asked
   ConstraintResult message;
   message.id = row.id;
   message.provider = row.provider;
-  message.status = cprox_status_name(row.status);
+  message.status = statusName(row);
   message.message = row.message;
 
   // What has no value has no numbers.
@@ -170,8 +170,8 @@ void limit(const char *parameter, int most, std::size_t count, const char *what)
 } // namespace
 
 Constraints::Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames,
-                         const FurtherRobots &robots, const std::atomic<bool> &stop)
-    : parameters_(parameters), live_(live), frames_(frames), robots_(robots), stop_(stop) {
+                         const FurtherRobots &robots)
+    : parameters_(parameters), live_(live), frames_(frames), robots_(robots) {
   try {
     providers_ = std::make_unique<ProviderSet>(parameters.constraint_providers);
   } catch (const ProviderError &error) {
@@ -307,17 +307,17 @@ ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) c
 }
 
 void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
-                         std::shared_ptr<const LevelDrawing> &drawing, Turn *turn) {
+                         std::shared_ptr<const LevelDrawing> &drawing, const TimeBudget &budget, Turn *turn) {
   if (providers_->all().empty()) throw Error("~constraint_providers names none");
   const memory::Share share(checkLimits(request), static_cast<std::size_t>(parameters_.max_request_mb) << 20);
-  const TimeBudget budget(parameters_.budget_ms, TimeBudget::Clock::now(), stop_, turn);
+  std::vector<SensorState> sensors = live_.sensors.states();
   const SnapshotPtr snapshot = live_.scene.snapshot();
-  response.scene = live_.state(*snapshot);
+  response.scene = live_.state(*snapshot, std::move(sensors));
   live_.demand(*snapshot, request.scene_epoch, request.scene_version);
   const ResourceOptions resources = resourceOptions("", parameters_);
   const WorkspacePool::Lease workspace(workspaces_);
   Work work{snapshot, budget, FrameLookup(frames_, turn)};
-  Doubts doubts(parameters_.max_age, response.scene.sensors, live_.lost);
+  Doubts doubts(parameters_.max_age, response.scene.sensors, live_.unknowns.all());
   std::size_t failed = 0;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
     const ConstraintQuery &asked = request.cases[i];
@@ -360,10 +360,6 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
   }
   response.scene.transform_age = work.lookup.oldest();
   doubts.tell(response.warnings);
-  const std::vector<std::string> &said = response.warnings;
-  for (std::string &remark : live_.remarks.get()) response.warnings.push_back(std::move(remark));
-  if (live_.lost && std::find(said.begin(), said.end(), SCENE_LOST) == said.end())
-    response.warnings.push_back(SCENE_LOST);
   response.success = failed == 0;
   if (failed)
     response.message =

@@ -6,7 +6,6 @@
 #include <curve_proximity/EvaluateConstraints.h>
 #include <ros/node_handle.h>
 
-#include <atomic>
 #include <curve_proximity/scene.hpp>
 #include <memory>
 #include <string>
@@ -17,6 +16,7 @@
 #include "markers/level_markers.h"
 #include "parameters/parameters.h"
 #include "queries/surroundings.h"
+#include "queries/time_budget.h"
 #include "transport/workspaces.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
@@ -29,13 +29,13 @@ class Constraints {
   /** Loads those of parameters.constraint_providers. Throws ParameterError, naming the parameter, for a type that no
    * package declares and for parameters that a provider refuses. A plugin that does not load, or throws, is told by
    * name on the log and in every answer; the others go on. All is kept by reference. */
-  Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames, const FurtherRobots &robots,
-              const std::atomic<bool> &stop);
+  Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames, const FurtherRobots &robots);
 
-  /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row.
+  /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row, and so
+   * does what is not begun when the budget is over.
    * drawing: the last case that a Fourier gap has answered, if any. */
   void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
-              std::shared_ptr<const LevelDrawing> &drawing, Turn *turn);
+              std::shared_ptr<const LevelDrawing> &drawing, const TimeBudget &budget, Turn *turn);
 
   /** A sentence for each provider that failed to load. */
   std::vector<std::string> failures() const;
@@ -53,7 +53,6 @@ class Constraints {
   const LiveScene &live_;
   const Frames &frames_;
   const FurtherRobots &robots_;
-  const std::atomic<bool> &stop_;
   std::unique_ptr<ProviderSet> providers_;
   WorkspacePool workspaces_;
 };

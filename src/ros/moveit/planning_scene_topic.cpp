@@ -35,6 +35,8 @@ constexpr std::chrono::milliseconds LOOK_AGAIN{100};
 const char *const NO_FULL_SCENE =
     "~planning_scene has sent diffs and no full scene: what else is in that scene is not known";
 
+const char *const NO_SCENE = "no planning scene has come: ~ask_planning_scene expects one of move_group";
+
 ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
   ros::NodeHandle own(handle);
   own.setCallbackQueue(&queue);
@@ -96,6 +98,7 @@ PlanningSceneTopic::PlanningSceneTopic(const ros::NodeHandle &handle, const Para
   ros::SubscribeOptions topic = checkedSubscription<moveit::PlanningScene>(
       "planning_scene", SCENES_KEPT,
       [this](const moveit::PlanningSceneConstPtr &message) { take(*message, "~planning_scene"); });
+  publishUnknowns();
   subscriber_ = handle_.subscribe(topic);
   spinner_.start();
   if (parameters_.ask_planning_scene) asker_ = std::thread([this] { ask(); });
@@ -133,7 +136,7 @@ PlanningSceneContext PlanningSceneTopic::context(const Snapshot &snapshot, Frame
 void PlanningSceneTopic::take(const moveit::PlanningScene &message, const char *source) {
   const std::lock_guard<std::mutex> lock(taking_);
   tryToUse(message, source);
-  publishRemarks();
+  publishUnknowns();
 }
 
 void PlanningSceneTopic::tryToUse(const moveit::PlanningScene &message, const char *source) {
@@ -155,7 +158,7 @@ void PlanningSceneTopic::use(const moveit::PlanningScene &message) {
   std::vector<std::string> wrong = std::move(change.wrong);
   for (std::string &fault : apply_(change.change, *before)) wrong.push_back(std::move(fault));
   state_ = std::move(change.state);
-  if (message.is_diff == 0 && wrong.empty()) live_.lost = false;
+  if (message.is_diff == 0 && wrong.empty()) live_.unknowns.forget(LOST_SCENE);
   live_.joints.suggest(message.robot_state.joint_state, before->robot().get());
 
   {
@@ -208,7 +211,7 @@ bool PlanningSceneTopic::compare(const moveit::PlanningScene &message) {
       [&](const std::string &why) { complain("~get_planning_scene: the scene cannot be compared: " + why); });
   const std::vector<std::string> found = report().differences;
   if (!found.empty()) complain("the scene differs from that of ~get_planning_scene: " + joined(found));
-  publishRemarks();
+  publishUnknowns();
   return same;
 }
 
@@ -223,16 +226,19 @@ void PlanningSceneTopic::keepUnused(const std::vector<std::string> &wrong, bool 
   }
 }
 
-/** What answers say of the scene. */
-void PlanningSceneTopic::publishRemarks() {
+/** What answers do not know of the scene. */
+void PlanningSceneTopic::publishUnknowns() {
   const PlanningSceneReport now = report();
-  std::vector<std::string> remarks;
-  if (now.full == 0 && now.diffs > 0) remarks.emplace_back(NO_FULL_SCENE);
-  if (!now.unused.empty()) remarks.push_back("not used of ~planning_scene: " + joined(now.unused));
+  std::vector<Unknown> unknowns;
+  if (now.full == 0 && now.diffs > 0) unknowns.push_back({NO_FULL_SCENE, ""});
+  if (now.full == 0 && now.diffs == 0 && parameters_.ask_planning_scene) unknowns.push_back({NO_SCENE, ""});
+  if (!now.unused.empty())
+    unknowns.push_back({"not used of ~planning_scene: " + joined(now.unused), "", Missing::ANYTHING});
   if (!now.differences.empty())
-    remarks.push_back("the scene differs from that of ~get_planning_scene: " + joined(now.differences));
+    unknowns.push_back(
+        {"the scene differs from that of ~get_planning_scene: " + joined(now.differences), "", Missing::ANYTHING});
   if (now.full == 0 && now.diffs == 1) complain(NO_FULL_SCENE);
-  live_.remarks.set(std::move(remarks));
+  live_.unknowns.set("planning scene", std::move(unknowns));
 }
 
 void PlanningSceneTopic::complain(const std::string &why) {

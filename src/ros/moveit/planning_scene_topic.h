@@ -73,7 +73,7 @@ class PlanningSceneTopic {
   bool compare(const moveit::PlanningScene &message);
   PlanningSceneContext context(const Snapshot &snapshot, FrameLookup &lookup) const;
   void keepUnused(const std::vector<std::string> &wrong, bool full);
-  void publishRemarks();
+  void publishUnknowns();
   void complain(const std::string &why);
   void ask();
   bool wait(double period, std::uint32_t &publishers, bool &begun);

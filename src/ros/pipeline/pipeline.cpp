@@ -208,7 +208,7 @@ void Pipeline::requestOf(const Job &job, ProximityResults &results, const Ask &a
   ProximityQuery more;
   const bool moves = movesRobot(job);
   more.self_collision = parameters_.self_collision && moves;
-  more.current_joints = moves && !live_.joints.joints().empty();
+  more.current_joints = moves;
   if (const auto *motion = std::get_if<moveit::RobotTrajectoryConstPtr>(&job))
     return requestOfMotions(**motion, more, results, ask);
   if (const auto *motions = std::get_if<moveit::DisplayTrajectoryConstPtr>(&job))

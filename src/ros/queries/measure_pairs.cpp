@@ -61,11 +61,11 @@ Proximity toRow(const Answer &answer, PairDescription::Asked asked) {
 
 } // namespace
 
-Pairs::Pairs(const Parameters &parameters, const Tuning &tuning, Statistics &statistics, const std::atomic<bool> &stop,
+Pairs::Pairs(const Parameters &parameters, const Tuning &tuning, Statistics &statistics,
              std::shared_ptr<const SecondOpinions> opinions)
-    : parameters_(parameters), tuning_(tuning), statistics_(statistics), stop_(stop), opinions_(std::move(opinions)) {}
+    : parameters_(parameters), tuning_(tuning), statistics_(statistics), opinions_(std::move(opinions)) {}
 
-void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response &response, Turn *turn) {
+void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response &response, TimeBudget &budget) {
   const TimeBudget::Clock::time_point begin = TimeBudget::Clock::now();
   if (request.pairs.size() > static_cast<std::size_t>(parameters_.max_curves))
     throw Error(std::to_string(request.pairs.size()) +
@@ -74,7 +74,6 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
   if (!(request.epsilon >= 0.0) || !std::isfinite(request.epsilon))
     throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be finite and at least 0");
 
-  TimeBudget budget(tuning_.budget_ms, begin, stop_, turn);
   Query query;
   query.options.epsilon = request.epsilon > 0.0 ? request.epsilon : tuning_.epsilon.load();
   query.options.max_nodes = static_cast<std::uint32_t>(tuning_.max_nodes.load());

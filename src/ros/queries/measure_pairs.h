@@ -5,14 +5,13 @@
 
 #include <curve_proximity/MeasurePairs.h>
 
-#include <atomic>
 #include <curve_proximity/second_opinion.hpp>
 #include <memory>
 
 #include "parameters/parameters.h"
 #include "parameters/tuning.h"
+#include "queries/time_budget.h"
 #include "transport/statistics.h"
-#include "transport/turns.h"
 #include "transport/workspaces.h"
 
 namespace curve_proximity {
@@ -20,17 +19,16 @@ namespace curve_proximity {
 /** Any number of threads. All is kept by reference but the opinions, which may be null. */
 class Pairs {
  public:
-  Pairs(const Parameters &parameters, const Tuning &tuning, Statistics &statistics, const std::atomic<bool> &stop,
+  Pairs(const Parameters &parameters, const Tuning &tuning, Statistics &statistics,
         std::shared_ptr<const SecondOpinions> opinions);
 
   /** Throws Error where nothing can be answered at all; what is wrong with one pair becomes its row. */
-  void answer(const MeasurePairs::Request &request, MeasurePairs::Response &response, Turn *turn);
+  void answer(const MeasurePairs::Request &request, MeasurePairs::Response &response, TimeBudget &budget);
 
  private:
   const Parameters &parameters_;
   const Tuning &tuning_;
   Statistics &statistics_;
-  const std::atomic<bool> &stop_;
   const std::shared_ptr<const SecondOpinions> opinions_;
   WorkspacePool workspaces_;
 };

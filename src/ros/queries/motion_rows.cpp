@@ -279,6 +279,9 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     if (!why_not.empty()) throw Error(why_not);
     const Robot &robot = *work.snapshot->robot();
     adoptBase(live_.srdf.virtual_joints, robot, trajectory);
+    const bool current = request.more.current_joints || request.more.robot_state;
+    work.doubts.joints(
+        current ? unknownJoints(robot, trajectory.joints, work.joints.positions, parameters_.assumed_joints) : "");
     out.remark = remark;
     for (const std::string &way : longWays(robot, trajectory)) out.remark += (out.remark.empty() ? "" : "; ") + way;
     const Eigen::Isometry3d base = trajectory.base.empty()

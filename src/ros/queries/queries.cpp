@@ -179,9 +179,11 @@ void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawi
 }
 
 void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
-  // One snapshot for all: what changes meanwhile does not change this answer.
+  // One snapshot for all: what changes meanwhile does not change this answer. Sensors are looked at before: an object
+  // may be newer than what is said of it, and not older.
+  std::vector<SensorState> sensors = live_.sensors.states();
   const SnapshotPtr snapshot = live_.scene.snapshot();
-  response.scene = live_.state(*snapshot);
+  response.scene = live_.state(*snapshot, std::move(sensors));
   live_.demand(*snapshot, request.more.scene_epoch, request.more.scene_version);
   Query query = toQuery(request, *snapshot);
   const double budget_ms = request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load();
@@ -198,14 +200,19 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
             snapshot,
             std::move(query),
             FrameLookup(frames_, request.turn),
-            currentJoints(request.more.joint_state, current && snapshot->robot(), live_.joints),
-            Doubts(parameters_.max_age, response.scene.sensors, live_.lost),
+            currentJoints(request.more.joint_state, current && snapshot->robot(), live_.joints,
+                          !request.more.robot_state && request.curves.size() == 0),
+            Doubts(parameters_.max_age, response.scene.sensors, live_.unknowns.all()),
             response,
             drawing,
             budget_ms,
             0,
             0,
             nullptr};
+  if (request.size() == 0 && !request.more.robot_state && !request.more.movers) {
+    response.success = false;
+    response.message = "nothing is asked: there is no curve, path or trajectory, no robot_state and no movers";
+  }
   answerCurves(work);
   answerTrajectories(work);
   answerMultiDofTrajectories(work);
@@ -244,10 +251,6 @@ void Queries::describe(Work &work) const {
     response.warnings.push_back("row '" + first->id + "' (" + first->kind + ") was measured against nothing" +
                                 (response.scene.objects == 0 ? ": there is no object" : ""));
   work.doubts.tell(response.warnings);
-  const auto &said = response.warnings;
-  for (std::string &remark : live_.remarks.get()) response.warnings.push_back(std::move(remark));
-  if (live_.lost && std::find(said.begin(), said.end(), SCENE_LOST) == said.end())
-    response.warnings.push_back(SCENE_LOST);
 }
 
 void Queries::tellProgress(Work &work) {

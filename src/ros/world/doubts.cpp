@@ -5,8 +5,6 @@
 #include <limits>
 #include <sstream>
 
-#include "world/live_scene.h"
-
 namespace curve_proximity {
 namespace {
 
@@ -22,10 +20,13 @@ std::string tooOld(const std::string &what, double age, double max_age) {
 void Doubts::objects(const Query &query, bool any) {
   objects_ = Coverage();
   const bool everything = query.objects.empty() && query.links.empty();
-  if (lost_ && everything) objects_.add(Gap::UNKNOWN, SCENE_LOST, Missing::GEOMETRY);
+  const auto asked = [&](const std::string &id) {
+    return any && (everything || std::find(query.objects.begin(), query.objects.end(), id) != query.objects.end());
+  };
+  for (const Unknown &unknown : unknowns_)
+    if (asked(unknown.object)) objects_.add(Gap::UNKNOWN, unknown.message, unknown.missing);
   for (const SensorState &sensor : sensors_) {
-    const bool named = std::find(query.objects.begin(), query.objects.end(), sensor.id) != query.objects.end();
-    if (!any || !(everything || named)) continue;
+    if (!asked(sensor.id)) continue;
     if (sensor.unknown) {
       objects_.add(Gap::UNKNOWN, "what is at object '" + sensor.id + "' is unknown: its sensor sees nothing",
                    Missing::GEOMETRY);
@@ -42,10 +43,16 @@ void Doubts::ages(double transforms, double joints) {
   if (joints > max_age_) ages_.add(Gap::STALE, tooOld("a joint value", joints, max_age_));
 }
 
+void Doubts::joints(const std::string &unknown) {
+  joints_ = Coverage();
+  if (!unknown.empty()) joints_.add(Gap::UNKNOWN, unknown);
+}
+
 Coverage Doubts::coverage() {
   Coverage out = ages_;
+  out.add(joints_);
   out.add(objects_);
-  if (!out.complete()) told_.insert(out.message());
+  for (const std::string &sentence : out.sentences()) told_.insert(sentence);
   return out;
 }
 
@@ -61,7 +68,9 @@ void Doubts::apply(ConstraintResult &row) {
 
 void Doubts::tell(std::vector<std::string> &warnings) const {
   constexpr std::size_t MOST = 10;
-  for (const std::string &why : told_)
+  std::set<std::string> all = told_;
+  for (const Unknown &unknown : unknowns_) all.insert(unknown.message);
+  for (const std::string &why : all)
     if (warnings.size() < MOST) warnings.push_back(why);
 }
 

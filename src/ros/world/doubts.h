@@ -9,17 +9,19 @@
 #include <curve_proximity/query.hpp>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "world/unknowns.h"
 
 namespace curve_proximity {
 
 /** What answers do not cover of the world as it is now. For one request. */
 class Doubts {
  public:
-  /** max_age [s]: ~max_age, 0 for none. lost: the scene of the server before this one is gone, so that nothing is known
-   * of what is not named. */
-  Doubts(double max_age, const std::vector<SensorState> &sensors, bool lost = false)
-      : max_age_(max_age), sensors_(sensors), lost_(lost) {}
+  /** max_age [s]: ~max_age, 0 for none. */
+  Doubts(double max_age, const std::vector<SensorState> &sensors, std::vector<Unknown> unknowns)
+      : max_age_(max_age), sensors_(sensors), unknowns_(std::move(unknowns)) {}
 
   /** Which objects the rows to come are about: those of the query, or none. */
   void objects(const Query &query, bool any = true);
@@ -27,20 +29,23 @@ class Doubts {
   /** [s] The ages of transforms and of joint values of the rows to come; NaN: none were used. */
   void ages(double transforms, double joints);
 
+  /** What is not known of the joints of the rows to come; "": nothing. */
+  void joints(const std::string &unknown);
+
   /** For Query::coverage of the rows to come. */
   Coverage coverage();
 
   /** Nothing is proven, with the reason. */
   void apply(ConstraintResult &row);
 
-  /** A sentence for each doubt that a row had. */
+  /** A sentence for each doubt that a row had, and for all that is unknown of the scene. */
   void tell(std::vector<std::string> &warnings) const;
 
  private:
   const double max_age_;
   const std::vector<SensorState> sensors_;
-  const bool lost_;
-  Coverage objects_, ages_;
+  const std::vector<Unknown> unknowns_;
+  Coverage objects_, ages_, joints_;
   std::set<std::string> told_;
 };
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "world/live_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "messages/trajectory_message.h"
 
@@ -17,17 +19,22 @@ const VirtualJoint *fixedJointOf(const Robot &robot, const Srdf &srdf) {
 
 } // namespace
 
-SceneState LiveScene::state(const Snapshot &snapshot) const {
+SceneState LiveScene::state(const Snapshot &snapshot, std::vector<SensorState> seen) const {
   SceneState out;
   out.epoch = epoch;
   out.version = snapshot.version();
   out.joint_state_age = out.transform_age = std::numeric_limits<double>::quiet_NaN();
-  out.sensors = sensors.states();
+  out.sensors = std::move(seen);
   out.objects =
       static_cast<std::uint32_t>(snapshot.objects().size() + snapshot.moving().size() + snapshot.attached().size());
   if (!snapshot.robot()) return out;
   for (const auto &link : snapshot.robot()->links()) out.links += !link.second.empty();
   return out;
+}
+
+SceneState LiveScene::state() const {
+  std::vector<SensorState> seen = sensors.states();
+  return state(*scene.snapshot(), std::move(seen));
 }
 
 const std::vector<std::array<std::string, 2>> &LiveScene::disabled() const {
@@ -59,7 +66,8 @@ Eigen::Isometry3d rootPose(const Robot &robot, const Srdf &srdf, const ros::Time
   }
 }
 
-CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, const JointBoard &board) {
+CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, const JointBoard &board,
+                            bool may_be_none) {
   CurrentJoints out;
   out.positions = toJointPositions(given);
   if (!current) return out;
@@ -67,9 +75,28 @@ CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, 
     if (!out.positions.emplace(name, joint.position).second) continue;
     out.age = std::fmax(out.age, joint.age.seconds());
   }
-  if (out.positions.empty())
+  if (out.positions.empty() && !may_be_none)
     throw Error("no joint position is known: joint_state names none, and none has come on ~joint_states");
   return out;
+}
+
+std::string unknownJoints(const Robot &robot, const std::vector<std::string> &moved, const JointPositions &positions,
+                          const std::vector<std::string> &assumed) {
+  constexpr std::size_t MOST = 5;
+  const auto among = [](const std::vector<std::string> &names, const std::string &name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::string names;
+  std::size_t n = 0;
+  for (const Robot::Joint &joint : robot.joints()) {
+    const bool turns = joint.type == Robot::JointType::REVOLUTE || joint.type == Robot::JointType::PRISMATIC;
+    if (!turns || !joint.leader.empty() || positions.count(joint.name) > 0) continue;
+    if (among(moved, joint.name) || among(assumed, joint.name)) continue;
+    if (n++ < MOST) names += (names.empty() ? "'" : ", '") + joint.name + "'";
+  }
+  if (n == 0) return "";
+  if (n > MOST) names += " and " + std::to_string(n - MOST) + " more";
+  return "where joint " + names + " is was not told: neither by the request nor on ~joint_states (~assumed_joints)";
 }
 
 } // namespace curve_proximity

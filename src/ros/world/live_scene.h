@@ -10,34 +10,15 @@
 #include <atomic>
 #include <curve_proximity/scene.hpp>
 #include <curve_proximity/srdf.hpp>
-#include <mutex>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "world/frames.h"
 #include "world/joint_board.h"
 #include "world/sensor_board.h"
+#include "world/unknowns.h"
 
 namespace curve_proximity {
-
-/** Sentences about the scene that every answer repeats. Any number of threads. */
-class Remarks {
- public:
-  void set(std::vector<std::string> sentences) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    sentences_ = std::move(sentences);
-  }
-
-  std::vector<std::string> get() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return sentences_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::vector<std::string> sentences_;
-};
 
 /** What the services, the topics and the sensors share. */
 struct LiveScene {
@@ -56,22 +37,22 @@ struct LiveScene {
    * apart. */
   std::atomic<bool> matrix_has_srdf{false};
 
-  Remarks remarks;
-  std::atomic<bool> lost{false}; /**< the scene of the server before this one is gone, and none has been sent since */
+  Unknowns unknowns;
 
   /** The pairs of links that are not checked against each other, beside the allowed pairs of the scene. */
   const std::vector<std::array<std::string, 2>> &disabled() const;
 
-  /** The scene of a snapshot; what was measured and the ages of joints and transforms are left open. */
-  SceneState state(const Snapshot &snapshot) const;
+  /** The scene of a snapshot, with sensors as they were before it was taken; what was measured and the ages of joints
+   * and transforms are left open. */
+  SceneState state(const Snapshot &snapshot, std::vector<SensorState> seen) const;
+  SceneState state() const; /**< of the latest snapshot */
 
   /** Throws Error where the snapshot is not the one that is meant. 0: any. */
   void demand(const Snapshot &snapshot, const ros::Time &epoch_wanted, std::uint64_t version_wanted) const;
 };
 
-/** What answers say while LiveScene::lost is set. */
-constexpr const char *SCENE_LOST =
-    "the scene of the server before this one is lost, and none has been sent since: send it again";
+/** A source of LiveScene::unknowns: the scene of the server before this one, until a scene is sent. */
+constexpr const char *LOST_SCENE = "lost scene";
 
 /** Where the root link stands in the fixed frame: by tf2, or where tf2 knows nothing by a fixed virtual joint. Throws
  *  Error where neither does. */
@@ -83,9 +64,15 @@ struct CurrentJoints {
   double age = std::numeric_limits<double>::quiet_NaN(); /**< [s]; NaN: none of them was told */
 };
 
-/** `given`, and where `current` is set the latest values of the others. Throws Error where there are none, and for what
- *  toJointPositions() refuses. */
-CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, const JointBoard &board);
+/** `given`, and where `current` is set the latest values of the others. Throws Error where there are none and
+ *  `may_be_none` is not set, and for what toJointPositions() refuses. */
+CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, const JointBoard &board,
+                            bool may_be_none = false);
+
+/** A sentence about the joints of a robot of which neither `moved` nor `positions` nor `assumed` tells; "": there is
+ *  none. Mimic joints follow; planar and floating joints are tf2's. */
+std::string unknownJoints(const Robot &robot, const std::vector<std::string> &moved, const JointPositions &positions,
+                          const std::vector<std::string> &assumed);
 
 } // namespace curve_proximity
 #endif

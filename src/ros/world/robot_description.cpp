@@ -75,10 +75,14 @@ std::shared_ptr<const Robot> parseRobot(const std::string &xml, const std::strin
 
 } // namespace
 
+std::string robotText(const ros::NodeHandle &handle, const Parameters &parameters, std::string &name) {
+  return findText(handle, parameters.robot_description, Parameters().robot_description, "robot_description", "URDF",
+                  name);
+}
+
 std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Parameters &parameters) {
   std::string name;
-  const std::string xml =
-      findText(handle, parameters.robot_description, Parameters().robot_description, "robot_description", "URDF", name);
+  const std::string xml = robotText(handle, parameters, name);
   if (xml.empty()) {
     ROS_INFO("there is no robot_description: this server knows objects only");
     return nullptr;

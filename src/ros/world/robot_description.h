@@ -19,6 +19,10 @@ namespace curve_proximity {
 /** Finds files of packages by rospack. */
 ResourceOptions resourceOptions(const std::string &base_dir, const Parameters &parameters);
 
+/** The URDF in the parameter that ~robot_description names, and the parameter's full name; "" where nobody has set it.
+ */
+std::string robotText(const ros::NodeHandle &handle, const Parameters &parameters, std::string &name);
+
 /** The robot whose URDF stands in the parameter that ~robot_description names, searched upwards from the handle's
  *  namespace; null, with a line in the log, where nobody has set one.
  *  Throws ParameterError where a name was given but no URDF stands there, Error where the URDF is unusable. */

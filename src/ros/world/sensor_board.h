@@ -30,9 +30,15 @@ class SensorBoard {
     set(id, {Age(stamp), true});
   }
 
-  /** The object was there before the server started; no message has come since. */
+  /** A sensor is expected to show the object; no message has come since the server started. */
   void awaits(const std::string &id) {
     set(id, {std::nullopt, true});
+  }
+
+  /** The scene was emptied: nothing is known of what sensors see until their next messages. */
+  void awaitsAll() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (auto &sensor : sensors_) sensor.second.unknown = true;
   }
 
   /** The object is no sensor's any more: somebody has set or removed it. */

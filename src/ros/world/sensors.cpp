@@ -27,6 +27,7 @@ Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, Li
           "cloud", 1, [this](const sensor_msgs::PointCloud2ConstPtr &message) { takeCloud(message); }),
       checkedSubscription<OctomapMessage>("octomap", 1,
                                           [this](const OctomapMessage::ConstPtr &message) { takeOctomap(message); })};
+  for (const std::string &id : parameters.expected_sensors) live_.sensors.awaits(id);
   for (ros::SubscribeOptions &topic : topics) subscribers_.push_back(handle_.subscribe(topic));
   spinner_.start();
 }
@@ -66,8 +67,11 @@ void Sensors::take(const char *topic, const std_msgs::Header &header, SensorCoun
 void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
   take("~cloud", message->header, cloud_, cloud_seq_, [&] {
     Cloud cloud = toCloud(*message);
-    if (cloud.points.cols() == 0) {
-      if (!parameters_.empty_cloud_clears) return live_.sensors.sawNothing(parameters_.cloud_id, message->header.stamp);
+    const auto valid = static_cast<double>(cloud.points.cols());
+    const double all = valid + static_cast<double>(cloud.left_out);
+    if (valid == 0.0 || valid < parameters_.least_valid_share * all) {
+      if (valid > 0.0 || !parameters_.empty_cloud_clears)
+        return live_.sensors.sawNothing(parameters_.cloud_id, message->header.stamp);
       remove(parameters_.cloud_id);
       return live_.sensors.saw(parameters_.cloud_id, message->header.stamp);
     }

@@ -16,11 +16,12 @@
 
 #include "messages/scene_message.h"
 #include "transport/guard.h"
+#include "world/robot_description.h"
 
 namespace curve_proximity {
 namespace {
 
-constexpr const char *MAGIC = "curve_proximity scene 1";
+constexpr const char *MAGIC = "curve_proximity scene 2";
 constexpr std::chrono::seconds PERIOD{1}; /* between two writings at least */
 constexpr std::size_t MOST_BYTES = std::size_t{64} << 20;
 
@@ -48,6 +49,13 @@ std::string automaticPath(const std::string &name) {
   std::string file = name.substr(name.find_first_not_of('/'));
   std::replace(file.begin(), file.end(), '/', '.');
   return (folder / (file + ".scene")).string();
+}
+
+std::string textOf(const std::string &path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file) text << file.rdbuf();
+  return text.str();
 }
 
 /** All of a file, or nothing: written beside it, flushed, then renamed. */
@@ -103,7 +111,13 @@ StateFile::StateFile(const ros::NodeHandle &handle, const Parameters &parameters
       handle_(handle),
       path_(parameters.state_file == "auto" ? automaticPath(handle.getNamespace()) : parameters.state_file) {
   handle_.getParam("/run_id", run_);
-  if (run_.empty()) path_.clear(); // nothing would tell this run from the next one
+  std::string name;
+  const std::string description = robotText(handle, parameters, name);
+  std::ostringstream beginning;
+  for (const std::string *part : {&parameters.scene_file, &description, &parameters.fixed_frame})
+    beginning << part->size() << ' ' << *part << '\n';
+  beginning << textOf(parameters.scene_file);
+  beginning_ = std::to_string(hashOf(beginning.str()));
 }
 
 StateFile::~StateFile() {
@@ -119,20 +133,28 @@ StateFile::~StateFile() {
 std::optional<KeptScene> StateFile::read() {
   std::string before; // the run in which a server of this name had a scene
   handle_.getParam(KEPT_BY_SERVER, before);
-  const bool expected = !run_.empty() && before == run_;
+  const bool is_behind = isKept() && textOf(behindPath()) == run_;
+  bool expected = !run_.empty() && (before == run_ || is_behind);
   std::optional<KeptScene> out;
   const auto complain = [&](const std::string &why) {
     ROS_WARN("the state file '%s' is not used: %s", path_.c_str(), why.c_str());
   };
   guarded(
       [&] {
-        if (path_.empty()) return;
+        if (!isKept()) return;
         std::ifstream file(path_, std::ios::binary);
         if (!file) return;
-        std::string magic, run, md5, size, hash;
-        for (std::string *line : {&magic, &run, &md5, &size, &hash}) std::getline(file, *line);
+        std::string magic, run, beginning, md5, size, hash;
+        for (std::string *line : {&magic, &run, &beginning, &md5, &size, &hash}) std::getline(file, *line);
         if (magic != MAGIC) throw Error("it is none");
         if (run != run_) return; // another run's
+        if (beginning != beginning_) {
+          expected = false;
+          ROS_WARN(
+              "the scene of the server before this one is not taken over: it began with another scene file, robot "
+              "or fixed frame");
+          return;
+        }
         if (md5 != ros::message_traits::md5sum<ApplySceneRequest>()) throw Error("it is of another version");
         std::ostringstream rest;
         rest << file.rdbuf();
@@ -143,14 +165,29 @@ std::optional<KeptScene> StateFile::read() {
                                            static_cast<std::uint32_t>(bytes.size()));
         ros::serialization::deserialize(stream, kept.sensors);
         ros::serialization::deserialize(stream, kept.request);
+        kept.behind = is_behind;
         out = std::move(kept);
       },
       complain);
-  if (expected && !out) {
-    live_.lost = true;
-    ROS_WARN("the scene of the server before this one is lost: answers say so until a scene is sent");
-  }
+  if (expected && !out) lose();
   return out;
+}
+
+void StateFile::lose() {
+  live_.unknowns.set(LOST_SCENE,
+                     {{"the scene of the server before this one, or its last change, is lost, and none has been "
+                       "sent since: send it again",
+                       ""}});
+  ROS_WARN("the scene of the server before this one is lost: answers say so until a scene is sent");
+}
+
+/** Without a run nothing would tell this one from the next one. */
+bool StateFile::isKept() const {
+  return !path_.empty() && !run_.empty();
+}
+
+std::string StateFile::behindPath() const {
+  return path_ + ".behind";
 }
 
 void StateFile::watch(const std::string &fixed_frame) {
@@ -160,6 +197,7 @@ void StateFile::watch(const std::string &fixed_frame) {
 
 void StateFile::changed() {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (!changed_ && isKept()) std::ofstream(behindPath()) << run_;
   changed_ = true;
   wake_.notify_all();
 }
@@ -177,6 +215,9 @@ void StateFile::run() {
             if (!told && !ending_) handle_.setParam(KEPT_BY_SERVER, run_);
             told = true;
             write();
+            lock.lock();
+            if (!changed_) std::filesystem::remove(behindPath());
+            lock.unlock();
           },
           [&](const std::string &why) {
             if (!failed_) ROS_WARN("the scene is not kept: %s", why.c_str());
@@ -190,12 +231,13 @@ void StateFile::run() {
 }
 
 void StateFile::write() {
-  if (path_.empty()) return;
+  if (!isKept()) return;
   const KeptScene kept = keptOf(live_, fixed_frame_);
   const std::string bytes = serialised(kept.sensors) + serialised(kept.request);
   std::ostringstream text;
   text << MAGIC << '\n'
        << run_ << '\n'
+       << beginning_ << '\n'
        << ros::message_traits::md5sum<ApplySceneRequest>() << '\n'
        << bytes.size() << '\n'
        << hashOf(bytes) << '\n'

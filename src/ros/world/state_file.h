@@ -22,10 +22,13 @@ namespace curve_proximity {
 struct KeptScene {
   ApplySceneRequest request;        /**< replaces the scene */
   std::vector<std::string> sensors; /**< objects that sensors kept, and objects too large to be written */
+  bool behind = false;              /**< the last changes are not in it */
 };
 
-/** The file: a line of text ("curve_proximity scene 1"), the run (/run_id), the type's MD5, a count of bytes and their
- *  FNV-1a hash, a line each; then the names of sensors' objects and the request of ~apply_scene, serialised. */
+/** The file: a line of text ("curve_proximity scene 2"), the run (/run_id), a hash of what the scene began with (the
+ * scene file, the robot, the fixed frame), the type's MD5, a count of bytes and their FNV-1a hash, a line each; then
+ * the names of sensors' objects and the request of ~apply_scene, serialised. Beside it stands a file ".behind" with the run
+ * from a change of the scene until it is written. */
 class StateFile {
  public:
   /** handle: private. live: kept by reference. Writes nothing before watch(). */
@@ -34,23 +37,30 @@ class StateFile {
   /** Writes what has changed since the last time. */
   ~StateFile();
 
-  /** The scene of the server before this one; nothing where there is none. Sets live.lost where there was one that
-   *  cannot be read. */
+  /** The scene of the server before this one; nothing where there is none, or where it began with another scene file,
+   *  robot or fixed frame. Where there was one that cannot be read: lose(). */
   std::optional<KeptScene> read();
+
+  /** From now on nothing is known of the scene, until one is sent. */
+  void lose();
 
   /** From now on changes are written, once a second at most. fixed_frame: that of the objects' poses. */
   void watch(const std::string &fixed_frame);
 
-  /** Somebody has changed the scene, and not by a sensor. */
+  /** Somebody has changed the scene, and not by a sensor. When it returns, a server that is killed leaves a word of it.
+   */
   void changed();
 
  private:
   void run();
   void write();
+  std::string behindPath() const;
+  bool isKept() const;
 
   LiveScene &live_;
   ros::NodeHandle handle_;
-  std::string path_, run_, fixed_frame_;
+  const std::string path_;
+  std::string run_, beginning_, fixed_frame_;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool changed_ = false, ending_ = false, failed_ = false;

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What is not known of the scene: what was expected and has not come, and what came and could not be used. */
+#ifndef CURVE_PROXIMITY_ROS_UNKNOWNS_H
+#define CURVE_PROXIMITY_ROS_UNKNOWNS_H
+
+#include <curve_proximity/coverage.hpp>
+#include <map>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace curve_proximity {
+
+/** One thing, as a sentence. */
+struct Unknown {
+  std::string message;
+  std::string object; /**< what it is about; "": anything in the scene */
+  Missing missing = Missing::GEOMETRY;
+};
+
+/** Rows that take in what is unknown are never clear. Any number of threads. */
+class Unknowns {
+ public:
+  /** Those of one source take the place of those that it told before; none: all is known. */
+  void set(const std::string &source, std::vector<Unknown> unknowns) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (unknowns.empty())
+      sources_.erase(source);
+    else
+      sources_[source] = std::move(unknowns);
+  }
+
+  void forget(const std::string &source) {
+    set(source, {});
+  }
+
+  /** Of all sources. */
+  std::vector<Unknown> all() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<Unknown> out;
+    for (const auto &source : sources_) out.insert(out.end(), source.second.begin(), source.second.end());
+    return out;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::string, std::vector<Unknown>> sources_;
+};
+
+} // namespace curve_proximity
+#endif
