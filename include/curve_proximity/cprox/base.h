@@ -36,8 +36,8 @@ extern "C" {
 /** The version of the library that is loaded, as "MAJOR.MINOR.PATCH". Never NULL. */
 CPROX_API const char *cprox_version(void);
 
-/** Every status: code, value, short name, sentence. Zero and above: an answer that is true. Below: none, and nothing
- * was changed. */
+/** Every status: code, value, short name, sentence. status >= 0: the result is valid. status < 0: an error; outputs are
+ *  unchanged. */
 #define CPROX_STATUS_LIST(X)                                                                      \
   X(CPROX_OK, 0, "ok", "answered to the accuracy asked")                                          \
   X(CPROX_BUDGET, 1, "budget", "out of nodes; the interval is true but wider")                    \

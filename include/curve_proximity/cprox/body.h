@@ -95,11 +95,11 @@ typedef void (*cprox_support_fn)(const void *shape, const double direction[3], d
  *
  *  shape        handed to the callback, kept by reference: must outlive the body.
  *  centre       a point of the shape [m]; radius: every point of the shape is within it of the centre [m], > 0.
- *  slack        how far the callback's answers may be from the shape and from its maximum [m], >= 0: it widens every
- * interval. margin       [m] >= 0, a ball added to the shape.
+ *  slack        [m] >= 0: how far the callback's points may be from the shape and from its maximum; widens intervals.
+ *  margin       [m] >= 0: a ball added to the shape.
  *
- *  A callback that answers with NaN or outside the ball is caught by the query: CPROX_INVALID. One that is not the
- * support function of a convex shape is not caught: then the intervals mean nothing. Thread safety: as the callback's.
+ *  Queries detect NaN and points outside the ball, and return CPROX_INVALID. They do not detect a callback that is not
+ *  the support function of a convex shape: then the intervals mean nothing. Thread safety: as the callback's.
  */
 CPROX_API cprox_status cprox_body_create_support(cprox_support_fn support, const void *shape, cprox_vec3 centre,
                                                  double radius, double slack, double margin, cprox_workspace *workspace,
@@ -144,7 +144,7 @@ typedef struct cprox_distance_grid {
   double truncated_at;
 } cprox_distance_grid;
 
-/** The set that a grid of distances knows, which lies in the grid's box: beyond the box nothing stands.
+/** The set that a grid of distances describes. Space outside the grid's box is free.
  *
  *  Between the points the value is trilinear, clipped to what the eight corners prove of a distance. The rest of what
  *  that may be off by counts like the `error` of cprox_body_create_distance(): at most error + 0.87 cell, 0 more than
@@ -172,8 +172,8 @@ typedef enum cprox_mesh_fill {
  *  memory_limit  the most bytes that the body may take, SIZE_MAX: any. Beyond it CPROX_MEMORY, and the reason names the
  *                bytes.
  *
- *  Curves, tubes, balls and convex bodies are held against meshes; meshes are not carried along curves. A surface has
- *  no inside, so that depth is not measured: what a surface overlaps has distance 0. Both arrays are copied. Cost: n
+ *  A mesh can be an obstacle for curves, tubes and convex bodies. It cannot be carried along a curve. A surface has no
+ *  inside, so depth is not measured: what overlaps a surface has distance 0. Both arrays are copied. Cost: n
  *  log n. Source: doc/non-convex.md. */
 CPROX_API cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3],
                                               size_t m, cprox_mesh_fill fill, size_t memory_limit,
@@ -213,9 +213,9 @@ CPROX_API cprox_status cprox_body_create_points(const cprox_vec3 *points, size_t
  *
  *  changed, points  n of them; numbers as the points were given first, positions finite. Of one named twice the last
  *                   counts.
- *  retired          a body made from the same points by updates, of which no query and no snapshot makes use any more,
- *                   or NULL. Where the call succeeds it is used up, handle and all: with two bodies in turns only what
- *                   has changed is written.
+ *  retired          a body made from the same points by updates, which no query uses any more, or NULL. On success
+ *                   its memory is reused and the handle becomes invalid: with two bodies in turns only the changes are
+ *                   written.
  *
  *  Cost: blocks of 4096 neighbouring points with a change in them are sorted anew; without `retired` the rest is
  *  copied. Points that wander far make wide boxes and slow queries, never wrong ones: make the body anew then. */

@@ -186,7 +186,8 @@ typedef struct cprox_violation {
   double leave_lower;
   /** farther than delta after: up to enter_lower of the next violation, or to the end */
   double leave_upper;
-  /** violated, or undecided: nowhere proven, then enter_upper and leave_lower are the ends of the other side */
+  /** VIOLATED: proven on [enter_upper, leave_lower]. UNDECIDED: nothing is proven; then enter_upper and leave_lower are
+   *  the ends of the other side */
   cprox_verdict verdict;
   /** [m] the least distance that was measured in it, */
   double upper;

@@ -2,9 +2,9 @@
 /** The queries: distance, tolerance, collision of what moves against what stands; static pairs.
  *
  *  Every answer is an interval [lower, upper] that contains the true value, rounding included, or a verdict that
- * follows from one. Numbers must be finite, and no length, position or accuracy may exceed 1e60 m, whose powers still
- * fit into a double: everything else is refused with CPROX_INVALID and a reason. Any number of threads may ask at once,
- * each with its own workspace. */
+ *  follows from one. Numbers must be finite. Lengths, positions and accuracies are limited to 1e60 m, so that their
+ *  powers stay finite. Other values return CPROX_INVALID with an error message. Any number of threads may ask at once,
+ *  each with its own workspace. */
 #ifndef CURVE_PROXIMITY_CPROX_QUERY_H
 #define CURVE_PROXIMITY_CPROX_QUERY_H
 
@@ -188,23 +188,23 @@ typedef struct cprox_options {
   cprox_certificate *certificate;
   /** distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve: the shortest
    *  way by which the mover, there, could leave the target (a part of it, for compounds). Curves have no inside
-   *  beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP, and lower only bounds it. A hull
-   *  raises lower to its own depth, and where both agree to epsilon the status is CPROX_OK. Robots: meshes that are
+   *  beyond their radius. Meshes, points and octrees have no depth: the status is CPROX_OVERLAP and lower is a bound. A
+   *  hull raises lower to its own depth; where both agree to epsilon the status is CPROX_OK. Robots: meshes that are
    *  apart are measured; of those that overlap lower, witness points and gradient are those of the hulls, and lod says
    *  so; points, octrees and meshes without a hull are refused. Default false: distances are 0 at least */
   bool signed_distance;
-  /** the finest model of targets that may answer, CPROX_LOD_MESH (or NONE): any. HULL: level-of-detail bodies by their
-   *  hulls. SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they
-   *  are. A coarser model contains the body: lower and clear hold for the body itself as well, but upper, the witness
+  /** the finest model of targets that may answer, CPROX_LOD_MESH (or NONE): any. HULL: convex hulls
+   *  replace level-of-detail bodies. SPHERE: bounding balls replace all bodies except points, octrees and halfspaces.
+   *  A coarser model contains the body: lower and clear hold for the body itself as well, but upper, the witness
    *  points and violated are the model's */
   cprox_lod max_lod;
   /** robots: NULL for the whole motion, or two times [s], begin < end, within its domain: distance, tolerance,
-   * collision, contact, nearest pairs and violations are then asked of this interval alone, without certificate */
+   *  collision, contact, nearest pairs and violations are then asked of this interval alone, without certificate */
   const double *interval;
-  /** robots, distance: several queries, each of an interval or of some pairs, that are one question together: called at
-   *  each node with the upper bound of this query (infinity while it has none), it returns the least one of all of
-   *  them. A query need not look closer than that, so that its lower is either near its own upper, or at most a width
-   *  below the least one. NULL: a query of its own. Calls come from the thread that asks; parallel.hpp has a use of it
+  /** robots, distance: shares the upper bound between queries that split one problem by intervals or pairs. Called at
+   *  each node with this query's upper bound (infinity while it has none); returns the minimum over all queries. A
+   *  query looks no closer than that: its lower is near its own upper, or at most a width below the least one. NULL: a
+   *  query of its own. Calls come from the thread that asks; parallel.hpp uses it
    */
   double (*share)(void *user, double upper);
   /** handed to share */

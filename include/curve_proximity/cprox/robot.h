@@ -155,8 +155,8 @@ typedef enum cprox_motion_kind {
 
   /** The motions of several robots on one clock, for their joined robot (cprox_robot_join()). It lasts from the first
    *  start to the last end. A motion that has not begun stands at its first values, one that has ended at its last
-   * ones. A state stands all the time. Refused are motions that leave a pause in which none of them lasts: their clocks
-   * do not overlap. variables, n_variables and rest are not read. There is no certificate.
+   *  ones. A state stands all the time. Motions must overlap in time: a gap in which no motion is active is an error.
+   *  variables, n_variables and rest are not read. There is no certificate.
    *
    *  joined, n_joined         one motion for each of the joined robots, in their order. */
   CPROX_MOTION_JOINED
@@ -166,7 +166,7 @@ typedef enum cprox_motion_kind {
 typedef struct cprox_joined_motion {
   /** of a robot like the one that was joined; it is copied */
   const cprox_motion *motion;
-  /** [s] is added to all times of the motion, and each sum is rounded: that is when things happen */
+  /** [s] start time: added to each time of the motion; the rounded sums define the problem */
   double start;
   /** [s] >= 0: the start is only known to within this, before or after. INFINITY: the motion may be anywhere on its
    *  path at any time, whatever the start. Queries answer for all starts that are possible: the least distance of all,

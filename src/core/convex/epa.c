@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Facets of a closed surface round 0 whose vertices belong to the set. Along any unit n every point p of a facet has
- * n·p >= min n·w over its vertices, so the least of these offsets is a depth that is proven, whatever the normals'
- * accuracy. */
+/* Expanding polytope algorithm (van den Bergen 2001) with a proven depth: the facets of a closed surface round 0 whose
+ * vertices belong to the set. Along any unit n every point p of a facet has n·p >= min n·w over its vertices, so the
+ * least of these offsets is a lower bound of the depth, whatever the normals' accuracy. */
 #include "convex/epa.h"
 
 #include <stdlib.h>

@@ -230,7 +230,7 @@ static pair_list list_pairs(const robot_scene *s, robot_pair *pairs) {
 
 /* ---- far pairs ---- */
 
-/* So near two parts come at one of a few times, at most. */
+/* An upper bound of the distance of two parts: the least one measured at nine times. */
 static double measured_apart(robot_scene *s, const size_t parts[2]) {
   enum { PLACES = 8 };
   const robot_pair pair = pair_of(s, parts[0], parts[1], true);
