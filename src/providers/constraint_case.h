@@ -63,7 +63,7 @@ struct ConstraintRow {
   std::string id, provider;
   cprox_status status = CPROX_INVALID; /**< negative: no answer, and message says why */
   std::string message;
-  std::optional<Gap> gap;              /**< the row does not cover all that was given: it has no bounds */
+  std::optional<Gap> gap;                       /**< the row does not cover all that was given: it has no bounds */
   ConstraintValue value;                        /**< of a trajectory: its nearest row, and the least of all values */
   std::optional<MotionValue> motion;            /**< of a trajectory */
   double microseconds = 0.0;                    /**< of the evaluation */

@@ -24,8 +24,8 @@
 #include <utility>
 #include <vector>
 
-#include "gate/trajectory_progress.h"
 #include "gate/server_calls.h"
+#include "gate/trajectory_progress.h"
 #include "parameters/parameters.h"
 
 namespace curve_proximity {
