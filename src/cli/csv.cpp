@@ -20,32 +20,40 @@ bool isBlank(std::string_view text) {
   return trimmed(text).empty();
 }
 
-/* The names of the columns: spreadsheets and data frames write them above the rows. */
-bool isHeader(std::string_view text) {
-  const std::size_t comma = text.find(',');
-  if (comma == std::string_view::npos) return false;
-  const auto name = [](std::string_view field) {
-    field = trimmed(field);
-    const bool quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
-    return quoted ? field.substr(1, field.size() - 2) : field;
-  };
-  const std::string_view rest = text.substr(comma + 1);
-  return name(text.substr(0, comma)) == "id" && name(rest.substr(0, rest.find(','))) == "basis";
+/* The name of a column from `id` to the last coordinate. */
+std::string nameOf(std::size_t column) {
+  static const char *const kHead[] = {"id", "basis", "degree", "t0", "t1", "radius", "n"};
+  if (column < kFirstPoint) return kHead[column];
+  const std::size_t coordinate = column - kFirstPoint;
+  return "xyz"[coordinate % 3] + std::to_string(coordinate / 3);
+}
+
+/* Is it x, y or z with a number? */
+bool isCoordinate(const std::string &name) {
+  return name.size() > 1 && std::string_view("xyz").find(name[0]) != std::string_view::npos &&
+         parseCount(name.substr(1)).has_value();
+}
+
+/* The names of the columns: spreadsheets and data frames write them above the rows. Throws BadInput where they are in
+ * another order than that by which rows are read. */
+bool isHeader(const std::string &text) {
+  if (trimmed(text).substr(0, 4).find("id") == std::string_view::npos) return false;
+  std::vector<std::string> names;
+  for (const std::string &field : splitFields(text)) names.emplace_back(trimmed(field));
+  if (names.size() < 2 || names[0] != "id" || names[1] != "basis") return false;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == nameOf(i) || (i >= kFirstPoint && !isCoordinate(names[i]))) continue;
+    throw BadInput("the header's column " + std::to_string(i + 1) + " is '" + names[i] + "': rows are read as " +
+                   nameOf(i) + " there");
+  }
+  return true;
 }
 
 /* "column 9 (y0)": where a number stands that is wrong. */
 std::string columnName(std::size_t column, std::size_t n) {
-  static const char *const kHead[] = {"id", "basis", "degree", "t0", "t1", "radius", "n"};
-  std::string name;
-  if (column < kFirstPoint) {
-    name = kHead[column];
-  } else if (column < kFirstPoint + 3 * n) {
-    const std::size_t coordinate = column - kFirstPoint;
-    name = "xyz"[coordinate % 3] + std::to_string(coordinate / 3);
-  } else {
-    name = "knot" + std::to_string(column - kFirstPoint - 3 * n);
-  }
-  return "column " + std::to_string(column + 1) + " (" + name + ")";
+  const bool is_named = column < kFirstPoint + 3 * n || column < kFirstPoint;
+  return "column " + std::to_string(column + 1) + " (" +
+         (is_named ? nameOf(column) : "knot" + std::to_string(column - kFirstPoint - 3 * n)) + ")";
 }
 
 /* A field as it may be shown: short, whatever it holds. */
@@ -156,7 +164,12 @@ std::optional<CsvRow> CsvFile::next() {
     /* what is no row: a carriage return, the byte order mark that spreadsheets leave, comments, blank lines */
     if (!text.empty() && text.back() == '\r') text.pop_back();
     if (line_ == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);
-    if (isBlank(text) || text.front() == '#' || isHeader(text)) continue;
+    if (isBlank(text) || text.front() == '#') continue;
+    try {
+      if (isHeader(text)) continue;
+    } catch (const BadInput &e) {
+      throw BadUsage(path_ + ": line " + std::to_string(line_) + ": " + e.what());
+    }
 
     ++row_;
     if (pieces_ > 0) {

@@ -90,6 +90,10 @@ TrajectoryDescription toTrajectory(const Json &value) {
   if (!trajectory || !trajectory->find("joint_names") || !trajectory->find("points"))
     throw BadInput("the trajectory needs joint_trajectory with joint_names and points");
   requireKeys(*trajectory, {"header", "joint_names", "points"});
+  if (const Json *header = trajectory->find("header")) {
+    if (header->kind != Json::Kind::MAP) throw BadInput("the trajectory's header must be a map");
+    requireKeys(*header, {"seq", "stamp", "frame_id"});
+  }
   if (const Json *way = value.find("shortest_way")) out.shortest_way = way->truth("shortest_way");
   if (const Json *interpolation = value.find("interpolation"))
     out.interpolation = interpolationFromName(interpolation->text("interpolation"));

@@ -38,7 +38,7 @@ std::string pairId(const YamlValue &entry) {
 
 PairDescription parsePair(const YamlValue &entry, Warnings &warnings) {
   const YamlValue value(entry.named(pairId(entry)));
-  value.warnOfOthers({"id", "a", "b", "ask", "velocity_a", "velocity_b", "duration"}, warnings);
+  value.refuseOthers({"id", "a", "b", "ask", "velocity_a", "velocity_b", "duration"});
   PairDescription out;
   out.id = value.at("id").text();
   out.a = readPlaced(value.at("a"), warnings);
