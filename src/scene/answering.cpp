@@ -266,6 +266,22 @@ Coverage coverageOf(const Query &query, const Coverage &given, const std::string
   return out;
 }
 
+Coverage coverageOf(const Snapshot &snapshot) {
+  Coverage out = snapshot.coverage();
+  const auto note = [&](const char *what, const std::string &id, bool is_open) {
+    if (is_open)
+      out.add(Gap::PARTIAL, what + (" '" + id) + "' is to be solid, but its mesh is not closed: it has no inside",
+              Missing::GEOMETRY);
+  };
+  for (const auto &[id, object] : snapshot.objects())
+    for (const ObjectShape &shape : object->shapes) note("object", id, shape.geometry.is_open);
+  for (const auto &[id, object] : snapshot.moving())
+    for (const Geometry &geometry : object->geometries) note("object", id, geometry.is_open);
+  for (const auto &[id, object] : snapshot.attached())
+    for (const LinkGeometry &shape : object->shapes) note("attached object", id, shape.geometry.is_open);
+  return out;
+}
+
 void applyCoverage(const Coverage &coverage, const Query &query, Answer &answer) {
   cprox_result &result = answer.result;
   if (result.status < 0 || coverage.complete()) return;

@@ -118,6 +118,9 @@ void answerNothing(const Query &query, cprox_result &result);
  * does not allow that. nothing: why nothing is; "" where something is. */
 Coverage coverageOf(const Query &query, const Coverage &given, const std::string &nothing);
 
+/* The gaps of a snapshot: those of its changes, and objects that are to be solid but whose mesh is not closed. */
+Coverage coverageOf(const Snapshot &snapshot);
+
 /* Of an answer that there is: writes gap, status and message; takes from the result what it does not prove. */
 void applyCoverage(const Coverage &coverage, const Query &query, Answer &answer);
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 /* Counts changes of what a file holds, of how meshes are read and of how hulls are made, between versions of the
  * library. */
-constexpr std::uint64_t FORMAT = 3;
+constexpr std::uint64_t FORMAT = 4;
 
 constexpr std::size_t MEMORY_LIMIT = std::size_t{64} << 20;
 constexpr std::uintmax_t FOLDER_LIMIT = std::uintmax_t{1} << 30, FOLDER_AFTER = FOLDER_LIMIT / 4 * 3;

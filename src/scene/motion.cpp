@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 
+#include "answering.h"
 #include "motion_data.h"
 #include "short_way.h"
 
@@ -174,7 +175,7 @@ std::unique_ptr<RobotMotion::Data> startOf(const PreparedRobot &robot, const std
   data->snapshot = data->prepared->snapshot;
   data->kinematics = data->prepared->kinematics;
   data->id = id;
-  data->coverage = data->snapshot->coverage();
+  data->coverage = coverageOf(*data->snapshot);
   data->coverage.add(data->kinematics->robot->coverage());
   return data;
 }

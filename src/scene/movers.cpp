@@ -236,7 +236,7 @@ Movers::Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, con
   checkNames(*snapshot, robots, objects);
   auto data = std::make_unique<Data>();
   data->snapshot = std::move(snapshot);
-  data->coverage = data->snapshot->coverage();
+  data->coverage = coverageOf(*data->snapshot);
   for (const MovingObject &object : objects) {
     data->objects.push_back(bodyOf(object, resources));
     data->object_names.push_back(object.object.id);

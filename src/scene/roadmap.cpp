@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "answering.h"
 #include "asked_pairs.h"
 
 namespace curve_proximity {
@@ -137,7 +138,7 @@ class Lanes {
 bool speaksForAll(const PreparedRobot &robot, const Query &query) {
   const SnapshotPtr &snapshot = robot.snapshot();
   const cprox_lod finest = query.options.max_lod;
-  return query.coverage.complete() && snapshot->coverage().complete() && snapshot->robot()->coverage().complete() &&
+  return query.coverage.complete() && coverageOf(*snapshot).complete() && snapshot->robot()->coverage().complete() &&
          !query.per_object && !query.options.signed_distance && (finest == CPROX_LOD_MESH || finest == CPROX_LOD_NONE);
 }
 

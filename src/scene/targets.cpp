@@ -99,7 +99,7 @@ Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &quer
   addObjects(everything, objects, *data);
   if (!links.empty() || !named_links.empty()) addLinks(everything, named_links, links, *data);
   if (!links.empty() || !everything) addAttached(everything, objects, links, *data);
-  data->coverage = data->snapshot->coverage();
+  data->coverage = coverageOf(*data->snapshot);
   if (!links.empty() || !named_links.empty()) data->coverage.add(data->snapshot->robot()->coverage());
   if (data->items.size() <= FEW_SHAPES) {
     std::vector<cprox_obstacle> all;

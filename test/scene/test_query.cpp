@@ -186,6 +186,9 @@ TEST(Ask, the_inside_of_a_mesh_counts_where_it_is_asked_for_and_closed) {
   expectContains(ask(true, 12).message, "closed mesh: its inside counts");
   EXPECT_NEAR(ask(true, 11).result.upper, 0.9, 1e-6);
   expectContains(ask(true, 11).message, "not closed");
+  EXPECT_EQ(ask(true, 11).status, "partial");
+  EXPECT_EQ(ask(true, 11).result.lower, 0.0);
+  EXPECT_EQ(ask(false, 11).status, "ok");
 }
 
 TEST(Ask, with_nothing_to_measure_everything_is_far_if_the_caller_says_so) {
