@@ -71,9 +71,9 @@ def number_of(value):
 
 
 def word_of(value):
-    if not isinstance(value, str) or ',' in value:
+    if not isinstance(value, (str, float)) or ',' in str(value):
         raise Invalid('no word')
-    return value
+    return str(value)
 
 
 def vector_of(value):
@@ -291,8 +291,10 @@ class Mesh:
             word, *rest = line.split()
             if word == 'v':
                 vertices.append(self._vertex(rest))
-            elif word == 'f' and len(rest) == 3 and all(one.isdigit() and int(one) > 0 for one in rest):
-                faces.append([int(one) - 1 for one in rest])
+            elif word == 'f' and len(rest) == 3 and all(one.lstrip('-').isdigit() and int(one) for one in rest):
+                faces.append([int(one) - 1 if int(one) > 0 else len(vertices) + int(one) for one in rest])
+                if min(faces[-1]) < 0:
+                    raise Invalid('index')
             elif word not in ('o', '#'):
                 raise Invalid(word)
         for face in faces:
@@ -304,7 +306,7 @@ class Mesh:
         """Facets of three vertices; other words than those of the format are skipped."""
         solid, corners = False, None  # corners: of an open facet
         for line in lines:
-            word, *rest = line.split()
+            word, *rest = line.lower().split()
             if word == 'solid' and not solid:
                 solid, corners = True, None
             elif not solid:

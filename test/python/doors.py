@@ -282,8 +282,7 @@ def rows_of(motion, self):
     found = motion.rows(1e3, self_collision=self)
     if not len(found['lower']) and not found['gap']:
         raise ValueError('nothing moves')
-    clear, least = least_of(found['lower'])
-    return clear and not found['gap'], least
+    return least_of(found['lower'])[0] and not found['gap'], None  # there are none of pairs that stand
 
 
 def proof_of(motion, self):
