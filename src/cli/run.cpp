@@ -78,7 +78,14 @@ class Run {
     }
 
     /* the input may have to be waited for: others deliver meanwhile */
-    std::optional<Task> task = rows_.next();
+    std::optional<Task> task;
+    try {
+      task = rows_.next();
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      exhausted_ = true; // no other thread goes on behind what cannot be read
+      throw;
+    }
 
     const std::lock_guard<std::mutex> lock(mutex_);
     exhausted_ = !task;
