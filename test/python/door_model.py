@@ -325,12 +325,15 @@ class Mesh:
             raise Invalid('no end')
 
     def at(self, base, solid):
-        """Its triangles there. solid: with the box that it bounds."""
+        """Its triangles there. solid: with the box about them, unless they are closed and bound something else."""
         moved = [[[a + b for a, b in zip(base, corner)] for corner in one] for one in self.triangles]
         corners = [corner for one in moved for corner in one]
         low, high = ([f(corner[i] for corner in corners) for i in range(3)] for f in (min, max))
         box = ([(a + b) / 2 for a, b in zip(low, high)], [(b - a) / 2 for a, b in zip(low, high)], 0.0)
-        return {'triangles': moved, 'inside': box if solid else None}
+        edges = [(tuple(one[k]), tuple(one[(k + 1) % 3])) for one in moved for k in range(3)]
+        is_closed = sorted(edges) == sorted((b, a) for a, b in edges)
+        on_faces = all(any(len({corner[i] for corner in one}) == 1 and one[0][i] in (low[i], high[i]) for i in range(3)) for one in moved)
+        return {'triangles': moved, 'inside': box if solid and (on_faces or not is_closed) else None}
 
 
 # ------------------------------------------------------------------------------------------------------------- distances
