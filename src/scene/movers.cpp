@@ -176,6 +176,19 @@ bool ownMayTouch(const Movers::Data &data, std::size_t i, std::size_t object) {
   return other.mover >= data.robots.size() && mayTouchInOwn(data, data.geometries[i], other.name);
 }
 
+/* By the scene's list, where the robot's own one has no entry of the pair that forbids it: an entry of a pair wins over
+ * the defaults of names, and the names of this list are other ones. */
+bool mayTouchInScene(const Movers::Data &data, const MoverGeometry &geometry, const std::string &object) {
+  if (!data.snapshot->mayTouch(geometry.name, object)) return false;
+  if (geometry.mover >= data.robots.size()) return true;
+  const std::string link = geometry.name.substr(geometry.name.find('/') + 1);
+  for (const AllowedPair &pair : data.robots[geometry.mover]->data().snapshot->allowed()) {
+    const bool same = (pair.a == link && pair.b == object) || (pair.a == object && pair.b == link);
+    if (same && !pair.allowed) return false;
+  }
+  return true;
+}
+
 /* Of each geometry whether some list of allowed pairs has a name of it: two of which none has may not touch. */
 std::vector<bool> namedAnywhere(const Allowed &allowed, const Movers::Data &data) {
   std::set<std::string> names;
@@ -212,14 +225,15 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
     const std::string &name = geometries[i].name;
     for (std::size_t k = 0; k < items.size(); ++k) {
       const std::string &object = *items[k].owner;
-      if (!mayTouchInOwn(data, geometries[i], object) && !data.snapshot->mayTouch(name, object) &&
+      if (!mayTouchInOwn(data, geometries[i], object) && !mayTouchInScene(data, geometries[i], object) &&
           !allowed.has(name, object))
         data.environment.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
     for (std::size_t k = i + 1; k < geometries.size(); ++k) {
       if (geometries[k].mover == mover) continue;
       if ((named[i] || named[k]) &&
-          (allowed.has(name, geometries[k].name) || data.snapshot->mayTouch(name, geometries[k].name) ||
+          (allowed.has(name, geometries[k].name) ||
+           (mayTouchInScene(data, geometries[i], geometries[k].name) && mayTouchInScene(data, geometries[k], name)) ||
            ownMayTouch(data, i, k) || ownMayTouch(data, k, i)))
         continue;
       data.among.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
