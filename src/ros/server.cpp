@@ -392,7 +392,10 @@ std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const
       live_.sensors.forget(id);
     live_.unknowns.forget(refusedObject(id));
   }
-  if (change.clear) live_.sensors.awaitsAll();
+  if (change.clear) {
+    live_.sensors.awaitsAll();
+    live_.unknowns.forgetAll(refusedObject(""));
+  }
   state_file_.changed();
   return faults;
 }

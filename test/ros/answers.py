@@ -185,8 +185,8 @@ class Answers(TestCase):
 
     def test_no_curves_get_no_results(self):
         response = self.server.distance([])
-        self.assertTrue(response.success)
-        self.assertEqual(response.results, [])
+        self.assertEqual((response.success, response.results), (False, []))
+        self.assertIn('nothing is asked', response.message)
 
 
 class Scene(TestCase):

@@ -270,9 +270,11 @@ class Gate(unittest.TestCase):
         controller = Controller(self.arm, '/lost')
         client = actionlib.SimpleActionClient('/lost_gate/follow_joint_trajectory', Action)
         self.assertTrue(client.wait_for_server(rospy.Duration(10)))
-        time.sleep(1.0)
-        client.send_goal(Goal(trajectory=turning(2.0, 20.0)))
-        self.assertTrue(until(controller.server.is_active, 5))
+
+        def begins():  # the gate finds the controller in its own time
+            client.send_goal(Goal(trajectory=turning(2.0, 20.0)))
+            return until(controller.server.is_active, 1)
+        self.assertTrue(until(begins, 20))
         controller.die()
         state, why = ends_of(client)
         self.assertEqual((state, why), (GoalStatus.ABORTED, "the controller's action '/lost/follow_joint_trajectory' is not there"))

@@ -181,6 +181,11 @@ void StateFile::lose() {
   ROS_WARN("the scene of the server before this one is lost: answers say so until a scene is sent");
 }
 
+/** For a server that comes after this one, should it be killed. */
+void StateFile::markBehind() const {
+  if (isKept()) std::ofstream(behindPath()) << run_;
+}
+
 /** Without a run nothing would tell this one from the next one. */
 bool StateFile::isKept() const {
   return !path_.empty() && !run_.empty();
@@ -191,13 +196,18 @@ std::string StateFile::behindPath() const {
 }
 
 void StateFile::watch(const std::string &fixed_frame) {
-  fixed_frame_ = fixed_frame;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    fixed_frame_ = fixed_frame;
+    watching_ = true;
+    if (changed_) markBehind();
+  }
   thread_ = std::thread([this] { run(); });
 }
 
 void StateFile::changed() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!changed_ && isKept()) std::ofstream(behindPath()) << run_;
+  if (!changed_ && watching_) markBehind();
   changed_ = true;
   wake_.notify_all();
 }

@@ -56,6 +56,7 @@ class StateFile {
   void write();
   std::string behindPath() const;
   bool isKept() const;
+  void markBehind() const;
 
   LiveScene &live_;
   ros::NodeHandle handle_;
@@ -63,7 +64,7 @@ class StateFile {
   std::string run_, beginning_, fixed_frame_;
   std::mutex mutex_;
   std::condition_variable wake_;
-  bool changed_ = false, ending_ = false, failed_ = false;
+  bool watching_ = false, changed_ = false, ending_ = false, failed_ = false;
   std::thread thread_;
 };
 

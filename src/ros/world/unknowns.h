@@ -35,6 +35,14 @@ class Unknowns {
     set(source, {});
   }
 
+  /** Those of all sources whose names begin so. */
+  void forgetAll(const std::string &prefix) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (auto it = sources_.lower_bound(prefix);
+         it != sources_.end() && it->first.compare(0, prefix.size(), prefix) == 0;)
+      it = sources_.erase(it);
+  }
+
   /** Of all sources. */
   std::vector<Unknown> all() const {
     const std::lock_guard<std::mutex> lock(mutex_);
