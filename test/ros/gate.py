@@ -58,7 +58,9 @@ class Arm:
 
     def rest(self):
         """Stands at 0 from now on, whatever it was given."""
-        self.turn, self.speed, self.offset, self.silent, self.given = 0.0, 1.0, 0.0, False, self.given + 1
+        self.given += 1
+        time.sleep(0.05)  # what moved it has noticed
+        self.turn, self.speed, self.offset, self.silent = 0.0, 1.0, 0.0, False
         time.sleep(0.1)
 
     def position(self):

@@ -292,7 +292,7 @@ class Meshes(TestCase):
             self.assertLessEqual(row.lower, 0.6)
             self.assertGreaterEqual(row.upper, 0.6)
             self.assertIn('surface alone', row.message)
-            self.assertEqual(self.server.tolerance(self.BETWEEN, 0.59).results[0].verdict, 'clear')
+            self.assertEqual(self.server.tolerance(self.BETWEEN, 0.59, objects=['bracket']).results[0].verdict, 'clear')
 
     def test_a_mesh_that_is_to_be_solid_and_is_not_closed_says_so(self):
         self.server.replace(self.bracket(solid=True))
