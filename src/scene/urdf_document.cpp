@@ -277,7 +277,12 @@ class Document {
     out->parent_link_name = endOf(who, element, "parent");
     out->child_link_name = endOf(who, element, "child");
     out->parent_to_joint_origin_transform = originOf(who, element);
-    const std::vector<double> axis = numbersOr(onlyLeaf(who, element, "axis", {"xyz"}), "xyz", {1, 0, 0});
+    /* an axis has no rotation; some exporters write one of zeros */
+    const XMLElement *given = onlyChild(element, "axis");
+    const std::vector<double> turn = numbersOr(given, "rpy", {0, 0, 0});
+    const bool turned = std::any_of(turn.begin(), turn.end(), [](double angle) { return angle != 0.0; });
+    onlyLeaf(who, element, "axis", turned ? Words{"xyz"} : Words{"xyz", "rpy"});
+    const std::vector<double> axis = numbersOr(given, "xyz", {1, 0, 0});
     out->axis = urdf::Vector3(axis[0], axis[1], axis[2]);
 
     /* effort and velocity say nothing of where the joint goes */
