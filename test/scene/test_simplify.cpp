@@ -175,9 +175,10 @@ TEST(Simplify, nothing_is_clear_that_the_mesh_would_hit) {
       resources.mesh_tolerance = simple ? 0.3 : 0.0;
       Scene scene(nullptr, resources);
       ASSERT_TRUE(scene.apply(scene_change).empty());
-      moved = scene.snapshot()->objects().begin()->second->shapes.front().geometry.margin;
+      const Geometry &made = scene.snapshot()->objects().begin()->second->shapes.front().geometry;
+      moved = made.margin;
       answers[simple ? 1 : 0] = askOne(scene, {}, path, Query());
-      ASSERT_EQ(answers[simple ? 1 : 0].status, "ok");
+      ASSERT_EQ(answers[simple ? 1 : 0].status, made.is_open ? "partial" : "ok");
     }
     EXPECT_GT(moved, 0.0);
     EXPECT_LE(answers[1].result.lower, answers[0].result.upper);
