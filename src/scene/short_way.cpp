@@ -41,9 +41,11 @@ bool turnsFreely(const std::string &name, const Robot &robot, const TrajectoryDe
   });
 }
 
-/* The columns that go the long way at least once. */
+/* The columns that go the long way at least once; none where a point lacks a value, which checkTrajectory() refuses. */
 std::vector<std::size_t> longColumns(const Robot &robot, const TrajectoryDescription &trajectory) {
   std::vector<std::size_t> out;
+  for (const TrajectoryPoint &point : trajectory.points)
+    if (point.positions.size() != trajectory.joints.size()) return out;
   for (std::size_t k = 0; k < trajectory.joints.size(); ++k)
     if (goesLong(trajectory, k) && turnsFreely(trajectory.joints[k], robot, trajectory)) out.push_back(k);
   return out;

@@ -3,6 +3,7 @@
 """The gate as an action between a planner and a controller: what is clear passes, what is not is refused with its reason, and what
 stops being clear while it runs is cancelled. The types are made of control_msgs' published definition."""
 import math
+import signal
 import threading
 import time
 import unittest
@@ -12,7 +13,7 @@ import genpy.dynamic
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
 from curve_proximity.msg import CollisionObject, PoseTrajectory, Proximity, ProximityResults, Refusal, SceneState, Waypoint
-from helpers import Server, bezier, connected, fingerprint, free_flight, joints, path, pose, run, sphere, thing, until
+from helpers import Node, Server, bezier, connected, fingerprint, free_flight, joints, path, pose, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -280,6 +281,35 @@ class Gate(unittest.TestCase):
         controller.die()
         state, why = ends_of(client)
         self.assertEqual((state, why), (GoalStatus.ABORTED, "the controller's action '/lost/follow_joint_trajectory' is not there"))
+
+    def test_a_server_that_is_gone_or_hangs_ends_the_motion(self):
+        client = actionlib.SimpleActionClient('/alone_gate/follow_joint_trajectory', Action)
+        self.assertTrue(client.wait_for_server(rospy.Duration(10)))
+        for how, word in ((signal.SIGKILL, 'the server does not answer'), (signal.SIGSTOP, '~server_timeout')):
+            self.arm.rest()
+            node = Node('alone', fixed_frame='base')
+            try:
+                Server('/alone').replace(sphere('far', 0.1, (0, 0, 5)))
+                before = self.controller.cancelled
+                client.send_goal(Goal(trajectory=turning(2.0, 20.0)))
+                self.assertTrue(until(self.controller.server.is_active, 5), client.get_goal_status_text())
+                time.sleep(0.3)
+                node.process.send_signal(how)
+                state, why = ends_of(client)
+                self.assertEqual((state, self.controller.cancelled), (GoalStatus.ABORTED, before + 1))
+                self.assertIn(word, why)
+            finally:
+                node.process.send_signal(signal.SIGCONT)
+                node.end()
+
+    def test_a_goal_that_makes_no_sense_is_rejected_and_the_next_one_passes(self):
+        far = [JointTrajectoryPoint(positions=[0.5], time_from_start=rospy.Duration(0.2))]
+        for names, positions in ((['turn'], []), (['turn'], [math.nan]), (['turn'], [0.0, 1.0]), (['none'], [0.0]), ([], [])):
+            self.client.send_goal(Goal(trajectory=JointTrajectory(joint_names=names, points=[JointTrajectoryPoint(positions=positions)] + far)))
+            state, why = ends_of(self.client)
+            self.assertEqual((state, bool(why)), (GoalStatus.REJECTED, True), (names, positions))
+        self.client.send_goal(Goal(trajectory=turning(0.2, 0.2)))
+        self.assertEqual(ends_of(self.client)[0], GoalStatus.SUCCEEDED)
 
     def test_a_client_may_cancel(self):
         before = self.controller.cancelled

@@ -576,6 +576,29 @@ TEST_F(Movement, links_of_a_query_name_movers_and_their_links) {
   expectDistance(distance({"far"}), 0.0);
 }
 
+/* A cart goes through a post and past a ball that moves. Both have a default that allows contact, and an entry of the
+ * pair that forbids it: the motion and the movers see the same. */
+TEST_F(Movement, an_entry_of_a_pair_wins_over_the_defaults_of_its_names) {
+  SceneChange all = change({add("post", {shape(ShapeType::BOX, {0.2, 0.2, 0.2})}, translation(1, 0, 0))});
+  all.allowed = {{"post", "", true}, {"ball", "", true}};
+  for (const bool forbidden : {false, true}) {
+    if (forbidden) all.allowed.insert(all.allowed.end(), {{"cart", "post", false}, {"cart", "ball", false}});
+    all.clear = true;
+    ASSERT_TRUE(carts.apply(all).empty());
+    const auto there = slide(carts.snapshot(), 0, 2, 0);
+    const MovingObject ball =
+        mover("ball", {shape(ShapeType::SPHERE, {0.1})}, {{0, translation(2, 0, 0)}, {1, translation(0, 0, 0)}});
+    const Movers movers(carts.snapshot(), {{"a", there}}, {ball});
+    Query query = collision();
+    query.allow_empty = true;
+    const cprox_verdict expected = forbidden ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR;
+    EXPECT_EQ(askEnvironment(*there, query, workspace).front().result.verdict, expected);
+    query.links = {"a"};
+    EXPECT_EQ(ask(movers, Against::OBJECTS, query, workspace).result.verdict, expected);
+    EXPECT_EQ(ask(movers, Against::MOVERS, query, workspace).result.verdict, expected);
+  }
+}
+
 /* ---- the scene holds what moves ---- */
 
 Operation launch(const std::string &id, std::vector<TimedPose> poses, double radius = 0.1) {
@@ -655,6 +678,20 @@ TEST_F(Movement, stamps_are_put_on_one_clock) {
   EXPECT_NO_THROW(checkClocks({"a", cart, 0.5}, {}, objects));
   expectContains(errorOf([&] { checkClocks(early, {}, objects); }), "it begins 0.5 s after that of 'a' has ended");
   expectContains(errorOf([&] { checkClocks(late, {}, objects); }), "stale: it ends 1 s before that of 'a' begins");
+}
+
+/* ---- what is not checked yet ---- */
+
+TEST_F(Movement, trajectories_whose_points_lack_values_have_no_long_ways) {
+  const Robot &robot = *carts.snapshot()->robot();
+  TrajectoryDescription t;
+  t.joints = {"slide"};
+  t.points = {{{}, {}, {}, 0.0}, {{9.0}, {}, {}, 1.0}};
+  EXPECT_TRUE(longWays(robot, t).empty());
+  t.points = {{{0.0}, {}, {}, 0.0}, {{}, {}, {}, 1.0}};
+  EXPECT_TRUE(longWays(robot, t).empty());
+  t.shortest_way = true;
+  EXPECT_FALSE(errorOf([&] { RobotMotion(carts.snapshot(), t, {}, {}, translation(0, 0, 0)); }).empty());
 }
 
 } // namespace
