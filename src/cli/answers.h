@@ -35,7 +35,7 @@ void answer(const Asked &asked, const Arguments &arguments, const Query &query, 
 /** A task for each part of it that has rows of its own. query is kept by reference. */
 void addTasks(const Asked &asked, const Arguments &arguments, const Query &query, std::vector<Task> &tasks);
 
-/** Adds a row without an answer, and the complaint that says why. subject: its id, kind, place and part. */
+/** Adds a row without an answer, and the error message that says why. subject: its id, kind, place and part. */
 void addFailure(const Asked &asked, const Arguments &arguments, cprox_status status, const std::string &why,
                 Outcome &out);
 

@@ -87,7 +87,6 @@ class ProximityServer {
   Tuning tuning_;
   Statistics statistics_;
   std::atomic<bool> stop_{false};
-  std::atomic<int> running_{0};              /* handlers that have begun and not ended */
   ros::CallbackQueue queue_, control_queue_; /* of requests; of what watches over them, with a thread of its own */
   ros::NodeHandle handle_, control_handle_;  /* their callbacks go to these queues */
   RequestThreads threads_;                   /* of queue_ */
