@@ -94,6 +94,62 @@ static void links_at(const ball_robot *b, const double *from, const double *to, 
   robot_ref_links(&b->t, values, links);
 }
 
+/* A part of one polynomial, or with degree 0 a straight edge. */
+typedef struct edge_path {
+  size_t degree;
+  double from[TEST_MAX_VARIABLES + 1], to[TEST_MAX_VARIABLES + 1];
+  double control[MOTION_MAX_DEGREE + 1][TEST_MAX_VARIABLES + 1];
+  motion_interval over;
+  cprox_motion *motion;
+} edge_path;
+
+static void draw_path(rng *r, const ball_robot *b, double scale, bool straight, edge_path *p) {
+  draw_edge(r, b, scale, p->from, p->to);
+  p->degree = straight ? 0 : 1 + rng_index(r, MOTION_MAX_DEGREE), p->motion = NULL;
+  if (straight || b->t.n_variables == 0) {
+    p->degree = 0;
+    return;
+  }
+  const size_t n = b->t.n_variables, d = p->degree;
+  double control[(MOTION_MAX_DEGREE + 1) * (TEST_MAX_VARIABLES + 1)], knots[2 * (MOTION_MAX_DEGREE + 1)];
+  int32_t variables[TEST_MAX_VARIABLES + 1];
+  for (size_t k = 0; k < n; k++) variables[k] = (int32_t)k;
+  for (size_t i = 0; i <= d; i++)
+    for (size_t k = 0; k < n; k++)
+      p->control[i][k] = control[i * n + k] = p->from[k] + rng_uniform(r, -1, 1) * (p->to[k] - p->from[k]);
+  for (size_t i = 0; i < 2 * (d + 1); i++) knots[i] = i <= d ? 0.0 : 1.0;
+  const cprox_motion_description spline = {.kind = CPROX_MOTION_BSPLINE,
+                                           .variables = variables,
+                                           .n_variables = n,
+                                           .control = control,
+                                           .n_control = d + 1,
+                                           .degree = d,
+                                           .knots = knots,
+                                           .n_knots = 2 * (d + 1)};
+  if (cprox_motion_create(b->robot, &spline, ws, &p->motion) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
+  const bool whole = rng_index(r, 2);
+  p->over = (motion_interval){
+      .a = whole ? 0.0 : rng_uniform(r, 0, 0.5), .b = whole ? 1.0 : rng_uniform(r, 0.5, 1), .last = 1};
+}
+
+/* By de Casteljau's scheme. */
+static void path_links(const ball_robot *b, const edge_path *p, long double t, ref_pose *links) {
+  if (p->degree == 0) {
+    links_at(b, p->from, p->to, t, links);
+    return;
+  }
+  const long double u = (long double)p->over.a + t * ((long double)p->over.b - (long double)p->over.a);
+  long double values[TEST_MAX_VARIABLES + 1] = {0};
+  for (size_t k = 0; k < b->t.n_variables; k++) {
+    long double c[MOTION_MAX_DEGREE + 1];
+    for (size_t i = 0; i <= p->degree; i++) c[i] = (long double)p->control[i][k];
+    for (size_t n = p->degree; n > 0; n--)
+      for (size_t i = 0; i < n; i++) c[i] += u * (c[i + 1] - c[i]);
+    values[k] = c[0];
+  }
+  robot_ref_links(&b->t, values, links);
+}
+
 /* A point of a geometry's line: -1 … 1 along a capsule, else the centre. */
 static vec3l centre_of(const ball_robot *b, const ref_pose *links, size_t i, double along) {
   const ref_pose at = pose_of(&b->geometries[i].pose);
@@ -118,7 +174,7 @@ static vec3l lane_of(lane3 v, int i) {
   return (vec3l){v.x[i], v.y[i], v.z[i]};
 }
 
-/* 12,500 robots and edges (seed 401, sizes of 1e-3 to 1e3 m; CPROX_TEST_SCALE=100 for 10^7 lanes), eight random
+/* 12,500 robots and edges, every other one a polynomial of degree 1 to 9 (seed 401, sizes of 1e-3 to 1e3 m; CPROX_TEST_SCALE=100 for 10^7 lanes), eight random
  * intervals each: every ball's centre is where long double has it, within what the edge allows for rounding, and from
  * there it stays within the motion bound, seen from the base and from the frames of other balls. */
 CASE(lanes_are_where_they_say_and_stay_where_they_say) {
@@ -146,10 +202,12 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
     assert_true(c->in_lanes && c->n_parts == b.n && c->n_lane_pairs == n_selves);
     assert_true(edge_lanes_size(c) <= sizeof memory.lanes && edge_motion_size(c) <= sizeof memory.motion);
 
-    double from[TEST_MAX_VARIABLES + 1] = {0}, to[TEST_MAX_VARIABLES + 1] = {0};
-    draw_edge(&r, &b, scale, from, to);
+    edge_path path;
+    draw_path(&r, &b, scale, i % 2, &path);
     edge_motion motion = edge_motion_in(c, memory.motion);
-    const bool fits = edge_motion_fill(c, from, to, &motion); /* a mimic joint may turn by what others shift */
+    const bool fits = path.degree == 0 /* a mimic joint may turn by what others shift */
+                          ? edge_motion_fill(c, path.from, path.to, &motion)
+                          : edge_motion_fill_along(c, path.motion, &path.over, &motion);
     if (fits) edge_motion_relate(c, &motion);
     edge_found found = {0};
     edge_open open = {0};
@@ -175,8 +233,8 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
                                                           : rng_index(&r, 2) ? 1
                                                                              : -1);
       ref_pose here[TEST_MAX_LINKS], there[TEST_MAX_LINKS];
-      links_at(&b, from, to, middle, here);
-      links_at(&b, from, to, t, there);
+      path_links(&b, &path, middle, here);
+      path_links(&b, &path, t, there);
       for (size_t p = 0; p < c->n_parts; p++) {
         const edge_part *part = &c->parts[p];
         const size_t g = (size_t)c->members[part->first_member];
@@ -215,6 +273,7 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
         fullest_pair = full > fullest_pair ? full : fullest_pair;
       }
     }
+    cprox_motion_free(path.motion);
     cprox_edge_checker_free(c);
     cprox_obstacles_free(set);
     cprox_body_free(box);

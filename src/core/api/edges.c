@@ -7,8 +7,9 @@
 #include "edges/kernels.h"
 #include "kinematics/motion.h"
 #include "problem/obstacles.h"
+#include "problem/problem.h"
+#include "robot_query/answer.h"
 #include "solve/list.h"
-#include "solve/solve.h"
 
 /* A call in the workspace's memory. */
 typedef struct edges_call {
@@ -129,8 +130,10 @@ static cprox_status search(const edges_call *call, const cprox_motion *motion, c
   options.interval = rest->to > rest->from && (rest->from > 0.0 || rest->to < 1.0) ? interval : NULL;
   const cprox_mover mover = mover_of(motion, rest);
   if (first) return list_time_of_contact(mover, targets, n, &options, call->workspace, r);
-  if (asked->delta > 0.0) return list_tolerance(mover, targets, n, asked->delta, &options, call->workspace, r, NULL);
-  return list_collision(mover, targets, n, &options, call->workspace, r, NULL);
+  query q = query_create(mover, targets, n, asked->delta, asked->delta > 0.0, &options, call->workspace);
+  const arguments_query has = {"edges", ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL};
+  const cprox_status begun = query_begin(&q, has);
+  return begun == CPROX_OK ? robot_answer(&q, 0, n, INFINITY, r) : begun;
 }
 
 /* ---- an edge ---- */
@@ -154,7 +157,7 @@ static cprox_status ask_search(const edges_call *call, const double *from, const
   cprox_motion *motion = NULL;
   cprox_status status = create_motion(call, from, to, &motion);
   if (status < 0) return status;
-  cprox_result r;
+  cprox_result r = {0};
   status = search(call, motion, rest, false, &r);
   if (status >= 0) take_search(call, rest, &r, out);
   cprox_motion_free(motion);
@@ -167,7 +170,7 @@ static cprox_status find_first(const edges_call *call, const double *from, const
   cprox_motion *motion = NULL;
   cprox_status status = create_motion(call, from, to, &motion);
   if (status < 0) return status;
-  cprox_result r;
+  cprox_result r = {0};
   status = search(call, motion, &all, true, &r);
   cprox_motion_free(motion);
   if (status < 0) return status;

@@ -78,6 +78,10 @@ void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, siz
   return memory;
 }
 
+void *workspace_filled(const cprox_workspace *workspace, workspace_buffer buffer) {
+  return workspace->memory[buffer];
+}
+
 void *cprox_workspace_reserve(cprox_workspace *workspace, size_t bytes) {
   return workspace_reserve(workspace, WORKSPACE_CALLER, bytes);
 }

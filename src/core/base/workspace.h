@@ -40,6 +40,11 @@ typedef enum workspace_buffer {
   WORKSPACE_ROBOT_REST,
   WORKSPACE_POSE_BASIS,
   WORKSPACE_EDGES,
+  WORKSPACE_EDGE_ROBOT,
+  WORKSPACE_EDGE_SELF,
+  WORKSPACE_EDGE_WHOLE,
+  WORKSPACE_EDGE_SCENE,
+  WORKSPACE_EDGE_OPEN,
   WORKSPACE_CALLER, /* cprox_workspace_reserve() */
   WORKSPACE_BUFFERS
 } workspace_buffer;
@@ -47,6 +52,9 @@ typedef enum workspace_buffer {
 /* The buffer, grown to at least `bytes` (by half as much again each time); what it held stays. NULL where memory is
  * out. */
 void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, size_t bytes);
+
+/* The buffer as it is; NULL: nothing was ever reserved. */
+void *workspace_filled(const cprox_workspace *workspace, workspace_buffer buffer);
 
 /* Sets the reason, printf-like, and returns the status; a workspace of NULL is allowed. */
 cprox_status workspace_fail(cprox_workspace *workspace, cprox_status status, const char *format, ...)

@@ -28,7 +28,7 @@ static float above(double x) {
 /* ---- memory ---- */
 
 size_t edge_motion_size(const cprox_edge_checker *c) {
-  return c->n_frames * (2 * sizeof(float) + sizeof(edge_frame_bound) + sizeof(edge_half_bound)) +
+  return c->n_frames * ((2 + 2 * EDGE_POWERS) * sizeof(float) + sizeof(edge_frame_bound) + sizeof(edge_half_bound)) +
          c->n_relations * sizeof(edge_half_bound) + c->n_parts * sizeof(float);
 }
 
@@ -38,43 +38,117 @@ edge_motion edge_motion_in(const cprox_edge_checker *c, char *memory) {
   m.relations = m.frames + c->n_frames;
   m.middle = (float *)(void *)(m.relations + c->n_relations);
   m.rate = m.middle + c->n_frames;
-  m.room = m.rate + c->n_frames;
+  m.more = m.rate + c->n_frames;
+  m.more_rate = m.more + EDGE_POWERS * c->n_frames;
+  m.room = m.more_rate + EDGE_POWERS * c->n_frames;
   return m;
+}
+
+/* ---- variables ---- */
+
+/* What a variable does over the edge: a polynomial of the edge's parameter, seen from its middle. */
+typedef struct edge_way {
+  double power[MOTION_MAX_DEGREE + 1];
+  size_t degree;
+  double rate, second; /* bounds on both derivatives */
+  double sizes;        /* of what all that was computed from */
+  double error;        /* of all powers together */
+} edge_way;
+
+static edge_way way_between(double a, double b) {
+  return (edge_way){.power = {0.5 * a + 0.5 * b, b - a},
+                    .degree = a != b,
+                    .rate = fabs(b - a),
+                    .sizes = fabs(a) + fabs(b),
+                    .error = 0x1p-50 * (fabs(a) + fabs(b))};
+}
+
+/* The coefficients of the part from a to b, by de Casteljau's scheme. */
+static void cut_out(double *c, size_t degree, double a, double b) {
+  for (size_t k = 1; b < 1.0 && k <= degree; k++)
+    for (size_t i = degree; i >= k; i--) c[i] = (1.0 - b) * c[i - 1] + b * c[i];
+  const double at = b > 0.0 ? a / b : 0.0;
+  for (size_t k = 1; at > 0.0 && k <= degree; k++)
+    for (size_t i = 0; i + k <= degree; i++) c[i] = (1.0 - at) * c[i] + at * c[i + 1];
+}
+
+/* All that is computed here is within 2^20 roundings of the largest coefficient, for degrees up to 9: differences have
+ * factors of 2^9 at most, binomials of 126, and no number goes through more than 32 roundings. doc/rounding.md */
+static edge_way way_along(const cprox_motion *m, int32_t variable, const motion_interval *over) {
+  const int32_t slot = m->slot[variable];
+  if (slot < 0) return way_between(m->rest[variable], m->rest[variable]);
+  const motion_track *t = &m->tracks[0];
+  const size_t degree = t->degree[over->first], at = over->first * t->n_moving + (size_t)slot - t->first_slot;
+  double c[MOTION_MAX_DEGREE + 1];
+  edge_way way = {.degree = degree};
+  for (size_t i = 0; i <= degree; i++) {
+    c[i] = t->coefficients[at * t->stride + i];
+    way.sizes = greater(fabs(c[i]), way.sizes);
+  }
+  way.error = 0x1p-32 * way.sizes + t->error[at];
+  cut_out(c, degree, over->a, over->b);
+  double binomial = 1.0;
+  for (size_t k = 0; k <= degree; k++) { /* c: the differences of order k */
+    way.power[k] = binomial * bernstein_at(c, degree - k, 0.5);
+    double largest = 0.0;
+    for (size_t i = 0; i + k <= degree; i++) largest = greater(fabs(c[i]), largest);
+    if (k == 1) way.rate = (double)degree * largest;
+    if (k == 2) way.second = (double)(degree * (degree - 1)) * largest;
+    for (size_t i = 0; i + k < degree; i++) c[i] = c[i + 1] - c[i];
+    binomial = binomial * (double)(degree - k) / (double)(k + 1);
+  }
+  while (way.degree > 0 && way.power[way.degree] == 0.0) way.degree--;
+  if (way.degree > 0 || way.rate > 0.0) way.rate += way.error, way.second += way.error;
+  return way;
+}
+
+/* What lanes get of it, and what they are off by. A power is rounded by u; Horner's scheme has two more roundings for
+ * each step that it goes through. False: beyond single precision. */
+static bool take_way(const edge_frame *f, const edge_way *way, edge_motion *m, size_t i) {
+  edge_frame_bound *b = &m->bounds[i];
+  const double u = EDGE_U, factor = fabs(f->multiplier), sizes = factor * way->sizes + fabs(f->offset);
+  const double error = factor * way->error + 0x1p-50 * sizes;
+  double middle = f->multiplier * way->power[0] + f->offset, beside = 0.0;
+  if (!(sizes <= EDGE_ANGLE_MOST)) return false;
+  if (!f->shifts && fabs(middle) > PI) middle -= 2.0 * PI * floor(middle / (2.0 * PI) + 0.5);
+  const size_t degree = way->degree;
+  const double rate = degree > 0 ? f->multiplier * way->power[1] : 0.0;
+  m->middle[i] = (float)middle, m->rate[i] = (float)rate;
+  b->value_error = error + u * ((f->shifts ? 2.0 * fabs(middle) : 2.0 * PI) + (degree > 1 ? 2.0 : 1.5) * fabs(rate));
+  b->rate_error = degree > 1 ? error + u * 3.0 * fabs(rate) : 0.0;
+  double half = 0.5; /* 2^(1-k) */
+  for (size_t k = 2; k <= EDGE_POWERS + 1; k++) {
+    const double power = k <= degree ? f->multiplier * way->power[k] : 0.0, size = fabs(power) * half;
+    m->more[i * EDGE_POWERS + k - 2] = (float)power, m->more_rate[i * EDGE_POWERS + k - 2] = (float)((double)k * power);
+    half *= 0.5, beside += 0.5 * size;
+    b->value_error += (double)(k + 1) * u * size;
+    b->rate_error += (double)(2 * k + 3) * u * (double)k * size;
+  }
+  b->rate = factor * way->rate + error;
+  b->second = factor * way->second + (degree > 1 ? error : 0.0);
+  b->shift = f->shifts ? fabs(middle) + 0.5 * fabs(rate) + beside + error : 0.0;
+  m->degree = degree > m->degree ? degree : m->degree;
+  m->stands = m->stands && degree == 0 && way->rate == 0.0;
+  return f->shifts || fabs(rate) + 2.0 * beside <= EDGE_TURN_MOST;
 }
 
 /* ---- frames ---- */
 
-/* The value of a variable in the middle, its rate, and what double costs the first. False: beyond single precision. */
-static bool find_values(const edge_frame *f, const double *from, const double *to, edge_motion *m, size_t i,
-                        double *error) {
-  const double a = from[f->variable], b = to[f->variable], rate = f->multiplier * (b - a);
-  double middle = f->multiplier * (0.5 * a + 0.5 * b) + f->offset;
-  const double sizes = fabs(f->multiplier) * (fabs(a) + fabs(b)) + fabs(f->offset);
-  *error = 0x1p-50 * sizes;
-  if (!(sizes <= EDGE_ANGLE_MOST) || (!f->shifts && fabs(rate) > EDGE_TURN_MOST)) return false;
-  if (!f->shifts && fabs(middle) > PI) middle -= 2.0 * PI * floor(middle / (2.0 * PI) + 0.5);
-  m->middle[i] = (float)middle, m->rate[i] = (float)rate;
-  m->bounds[i].rate = fabs(rate) + *error;
-  m->bounds[i].shift = f->shifts ? fabs(middle) + 0.5 * fabs(rate) + *error : 0.0;
-  return true;
-}
-
-static void bound_frame(const edge_frame *f, const edge_frame_bound *p, double error, edge_frame_bound *b) {
+static void bound_frame(const edge_frame *f, const edge_frame_bound *p, edge_frame_bound *b) {
   const double u = EDGE_U, length = f->length + b->shift, g = b->rate;
   const double turns = f->shifts ? 0.0 : g, shifts = f->shifts ? g : 0.0;
-  const double angle = f->shifts ? 0.0 : u * (2.0 * PI + 1.5 * g) + error;
-  const double value = f->shifts ? u * (2.0 * b->shift + g) + error : 0.0;
+  const double angle = f->shifts ? 0.0 : b->value_error, value = f->shifts ? b->value_error : 0.0;
 
   b->reach = p->reach + length, b->spin = p->spin + turns, b->speed = p->speed + p->spin * length + shifts;
   b->turn_error = p->turn_error + ROUND_TURN * u + angle;
   b->place_error = p->place_error + (b->turn_error + ROUND_PRODUCT * u) * length + 2.0 * u * b->reach + value;
-  b->spin_error = p->spin_error + turns * (b->turn_error + 3.0 * u) + u * b->spin;
+  b->spin_error = p->spin_error + turns * (b->turn_error + 3.0 * u) + u * b->spin + (f->shifts ? 0.0 : b->rate_error);
   b->speed_error = p->speed_error + p->spin_error * length +
                    p->spin * ((b->turn_error + (ROUND_PRODUCT + 3.0) * u) * length + value) +
-                   shifts * (b->turn_error + 3.0 * u) + 2.0 * u * b->speed;
+                   shifts * (b->turn_error + 3.0 * u) + 2.0 * u * b->speed + (f->shifts ? b->rate_error : 0.0);
 
-  b->acceleration = p->acceleration + p->turn * length + 2.0 * p->spin * shifts;
-  b->spin_rate = p->spin_rate + p->spin * turns;
+  b->acceleration = p->acceleration + p->turn * length + 2.0 * p->spin * shifts + (f->shifts ? b->second : 0.0);
+  b->spin_rate = p->spin_rate + p->spin * turns + (f->shifts ? 0.0 : b->second);
   b->turn = b->spin_rate + b->spin * b->spin;
 }
 
@@ -90,11 +164,12 @@ static edge_half_bound bound_relation(const cprox_edge_checker *c, const edge_re
   for (uint32_t i = r->first; i < r->first + r->n; i++) {
     const edge_step *step = &c->steps[i];
     const double g = m->bounds[step->frame].rate;
+    const double second = m->bounds[step->frame].second;
     acceleration += (spin_rate + spin * spin) * length_of(step, m);
     if (c->frames[step->frame].shifts) {
-      acceleration += 2.0 * spin * g;
+      acceleration += 2.0 * spin * g + second;
     } else {
-      spin_rate += spin * g;
+      spin_rate += spin * g + second;
       spin += g;
     }
   }
@@ -115,27 +190,52 @@ static double room_of(const edge_part *part, const edge_motion *m, double reach,
   return EDGE_UP * (place + 2.0 * (double)EDGE_ROOT_HALF * speed) + EDGE_LEAST;
 }
 
-bool edge_motion_fill(const cprox_edge_checker *c, const double *from, const double *to, edge_motion *m) {
+double edge_motion_reach(const cprox_edge_checker *c, const edge_motion *m, size_t part) {
+  return m->bounds[c->parts[part].frame].reach + c->parts[part].farthest;
+}
+
+static void begin(edge_motion *m) {
   m->bounds[0] = (edge_frame_bound){.rate = 0.0};
   m->frames[0] = (edge_half_bound){0};
-  m->stands = true;
-  for (size_t i = 1; i < c->n_frames; i++) {
-    const edge_frame *f = &c->frames[i];
-    double error;
-    if (!find_values(f, from, to, m, i, &error)) return false;
-    bound_frame(f, &m->bounds[f->parent], error, &m->bounds[i]);
-    m->frames[i] = (edge_half_bound){above(0.5 * m->bounds[i].acceleration), above(0.5 * m->bounds[i].turn)};
-    m->stands = m->stands && m->bounds[i].rate <= error;
-  }
+  m->stands = true, m->degree = 0;
+}
+
+static bool add_frame(const cprox_edge_checker *c, const edge_way *way, edge_motion *m, size_t i) {
+  const edge_frame *f = &c->frames[i];
+  if (!take_way(f, way, m, i)) return false;
+  bound_frame(f, &m->bounds[f->parent], &m->bounds[i]);
+  m->frames[i] = (edge_half_bound){above(0.5 * m->bounds[i].acceleration), above(0.5 * m->bounds[i].turn)};
+  return true;
+}
+
+static bool finish(const cprox_edge_checker *c, edge_motion *m) {
   double reach = 0.0, spin = 0.0;
   for (size_t i = 0; i < c->n_parts; i++) {
     const edge_frame_bound *b = &m->bounds[c->parts[i].frame];
-    const double far = b->reach + c->parts[i].farthest;
-    reach = far > reach ? far : reach, spin = b->spin > spin ? b->spin : spin;
+    reach = greater(edge_motion_reach(c, m, i), reach), spin = greater(b->spin, spin);
   }
   if (!(reach <= EDGE_REACH_MOST)) return false;
   for (size_t i = 0; i < c->n_parts; i++) m->room[i] = above(room_of(&c->parts[i], m, reach, spin));
   return true;
+}
+
+bool edge_motion_fill(const cprox_edge_checker *c, const double *from, const double *to, edge_motion *m) {
+  begin(m);
+  for (size_t i = 1; i < c->n_frames; i++) {
+    const edge_way way = way_between(from[c->frames[i].variable], to[c->frames[i].variable]);
+    if (!add_frame(c, &way, m, i)) return false;
+  }
+  return finish(c, m);
+}
+
+bool edge_motion_fill_along(const cprox_edge_checker *c, const cprox_motion *along, const motion_interval *over,
+                            edge_motion *m) {
+  begin(m);
+  for (size_t i = 1; i < c->n_frames; i++) {
+    const edge_way way = way_along(along, c->frames[i].variable, over);
+    if (!add_frame(c, &way, m, i)) return false;
+  }
+  return finish(c, m);
 }
 
 void edge_motion_relate(const cprox_edge_checker *c, const edge_motion *m) {

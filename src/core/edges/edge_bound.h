@@ -5,19 +5,25 @@
 #define CPROX_EDGES_EDGE_BOUND_H
 
 #include "edges/edge_model.h"
+#include "kinematics/motion.h"
 
 /* The intervals that a search begins with, and half of each by the edge's own parameter. */
 enum { EDGE_LANES = 8 };
 #define EDGE_ROOT_HALF (0.5f / (float)EDGE_LANES)
+
+/* Polynomials have so many powers beyond the first. */
+enum { EDGE_POWERS = MOTION_MAX_DEGREE - 1 };
 
 /* A frame over the whole edge. Derivatives are by the edge's parameter in [0, 1]; the first six are of float: of the
  * frame's orientation, origin, rotation rate and velocity as lanes compute them. */
 typedef struct edge_frame_bound {
   double turn_error, place_error, spin_error, speed_error;
   double reach, spin, speed; /* bounds on the origin's distance from the base, on the rotation rate, on its velocity */
-  double rate, shift;        /* of its own variable: bounds on the rate, and of a shift on its length */
-  double spin_rate;          /* on the rotation rate's derivative */
-  double acceleration, turn; /* of a point x of the frame: acceleration + turn |x| */
+  double rate, shift;        /* of its own variable: bounds on the rate, and of a shift on its length, */
+  double second;             /* on the second derivative; */
+  double value_error, rate_error; /* of float: what its value and its rate as lanes have them are off by */
+  double spin_rate;               /* on the rotation rate's derivative */
+  double acceleration, turn;      /* of a point x of the frame: acceleration + turn |x| */
 } edge_frame_bound;
 
 /* Half of the same for lanes, which multiply it by the square of half an interval. */
@@ -27,6 +33,8 @@ typedef struct edge_half_bound {
 
 typedef struct edge_motion {
   float *middle, *rate;       /* of each frame's variable */
+  float *more, *more_rate;    /* powers from the second on, and their derivatives: EDGE_POWERS of each frame */
+  size_t degree;              /* at most 1: those are all 0 */
   edge_frame_bound *bounds;   /* of each frame */
   edge_half_bound *frames;    /* of each frame as the base sees it, */
   edge_half_bound *relations; /* and as others do */
@@ -40,6 +48,14 @@ edge_motion edge_motion_in(const cprox_edge_checker *checker, char *memory);
 
 /* All but the relations. False where the edge is beyond single precision. */
 bool edge_motion_fill(const cprox_edge_checker *checker, const double *from, const double *to, edge_motion *motion);
+
+/* The same of a part of one segment of a motion of one track, or of a state. The edge's parameter is 0 at over->a and 1
+ * at over->b. */
+bool edge_motion_fill_along(const cprox_edge_checker *checker, const cprox_motion *along, const motion_interval *over,
+                            edge_motion *motion);
+
+/* How far a part is from the base at most on the way. */
+double edge_motion_reach(const cprox_edge_checker *checker, const edge_motion *motion, size_t part);
 
 /* The relations, for pairs of parts. */
 void edge_motion_relate(const cprox_edge_checker *checker, const edge_motion *motion);

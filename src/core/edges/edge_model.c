@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/workspace.h"
-#include "edges/cover.h"
 #include "problem/obstacles.h"
 
 /* Entries of rotations below this are 0. */
@@ -64,47 +63,69 @@ static bool snap(const double r[9], float out[9], int32_t from[3], float sign[3]
 
 /* ---- what is asked ---- */
 
-/* Of each geometry a row of bits: the obstacles, then the other geometries that it is asked about. */
-typedef struct asked_rows {
-  uint64_t *bits;
-  size_t words, n_obstacles;
-} asked_rows;
-
-static uint64_t *row_of(const asked_rows *rows, size_t geometry) {
+static uint64_t *row_of(const edge_rows *rows, size_t geometry) {
   return rows->bits + geometry * rows->words;
 }
 
-static void note(const asked_rows *rows, int32_t geometry, size_t bit) {
+static void note(const edge_rows *rows, int32_t geometry, size_t bit) {
   row_of(rows, (size_t)geometry)[bit / 64] |= (uint64_t)1 << (bit % 64);
 }
 
-static bool is_noted(const asked_rows *rows, int32_t geometry, size_t bit) {
+static bool is_noted(const edge_rows *rows, int32_t geometry, size_t bit) {
   return row_of(rows, (size_t)geometry)[bit / 64] >> (bit % 64) & 1u;
 }
 
-static bool is_asked(const asked_rows *rows, size_t geometry) {
+static bool is_asked(const edge_rows *rows, size_t geometry) {
   for (size_t w = 0; w < rows->words; w++)
     if (row_of(rows, geometry)[w]) return true;
   return false;
 }
 
-static bool fill_rows(const cprox_edge_checker *c, asked_rows *rows) {
-  const size_t n = c->robot->n_geometries;
-  rows->n_obstacles = obstacles_count(c->asked.obstacles);
-  rows->words = (rows->n_obstacles + n) / 64 + 1;
-  rows->bits = calloc(n * rows->words + 1, sizeof *rows->bits);
-  if (!rows->bits) return false;
-  const cprox_robot_pair *p = c->pairs;
-  for (size_t i = 0; i < c->n_pairs; i++, p++) note(rows, p->geometry, (size_t)p->other);
-  for (size_t i = 0; i < c->n_self_pairs; i++, p++) {
-    note(rows, p->geometry, rows->n_obstacles + (size_t)p->other);
-    note(rows, p->other, rows->n_obstacles + (size_t)p->geometry);
-  }
-  return true;
+static bool asks_about(const edge_rows *rows, int32_t geometry, size_t obstacle) {
+  return is_noted(rows, geometry, rows->all ? 0 : obstacle);
+}
+
+static void note_two(const edge_rows *rows, int32_t geometry, int32_t other) {
+  note(rows, geometry, rows->n_obstacles + (size_t)other);
+  note(rows, other, rows->n_obstacles + (size_t)geometry);
+}
+
+/* Joints above a link. */
+static size_t joints_between(const cprox_robot *robot, int32_t link_a, int32_t link_b) {
+  const int32_t a = link_a < 0 ? -1 : robot->links[link_a].axis, b = link_b < 0 ? -1 : robot->links[link_b].axis;
+  const int32_t common = robot_common_axis(robot, a, b);
+  size_t n = 0;
+  for (int32_t i = a; i != common; i = robot->axes[i].parent) n += robot->axes[i].first_of_joint;
+  for (int32_t i = b; i != common; i = robot->axes[i].parent) n += robot->axes[i].first_of_joint;
+  return n;
+}
+
+static bool is_worth_asking(const cprox_robot *robot, size_t g, size_t k) {
+  return joints_between(robot, robot->given_geometries[g].link, robot->given_geometries[k].link) >= 2;
+}
+
+static edge_rows rows_of(const edge_asked *asked) {
+  const bool all = !asked->pairs;
+  const size_t columns = all ? 1 : asked->n_obstacles;
+  return (edge_rows){.words = (columns + asked->robot->n_geometries) / 64 + 1, .n_obstacles = columns, .all = all};
+}
+
+static void fill_rows(const edge_rows *rows, const edge_asked *asked) {
+  const size_t n = asked->robot->n_geometries;
+  memset(rows->bits, 0, n * rows->words * sizeof *rows->bits);
+  for (size_t g = 0; g < n && asked->about_obstacles && !asked->pairs; g++) note(rows, (int32_t)g, 0);
+  for (size_t i = 0; i < asked->n_pairs && asked->about_obstacles && asked->pairs; i++)
+    note(rows, asked->pairs[i].geometry, (size_t)asked->pairs[i].other);
+  if (!asked->about_self) return;
+  for (size_t i = 0; i < asked->n_self_pairs && asked->self_pairs; i++)
+    note_two(rows, asked->self_pairs[i].geometry, asked->self_pairs[i].other);
+  for (size_t g = 0; g < n && !asked->self_pairs; g++)
+    for (size_t k = 0; k < g; k++)
+      if (is_worth_asking(asked->robot, g, k)) note_two(rows, (int32_t)g, (int32_t)k);
 }
 
 /* Which axes carry anything that is asked about. */
-static void mark_axes(const cprox_robot *robot, const asked_rows *rows, int32_t *frame_of) {
+static void mark_axes(const cprox_robot *robot, const edge_rows *rows, int32_t *frame_of) {
   for (size_t i = 0; i < robot->n_axes; i++) frame_of[i] = -1;
   for (size_t i = 0; i < robot->n_parts; i++)
     for (int32_t axis = is_asked(rows, (size_t)robot->parts[i].geometry) ? robot->parts[i].axis : -1;
@@ -113,8 +134,9 @@ static void mark_axes(const cprox_robot *robot, const asked_rows *rows, int32_t 
 }
 
 /* False: an axis is a ball. */
-static bool fill_frames(cprox_edge_checker *c, int32_t *frame_of, vec3 base) {
+static bool fill_frames(cprox_edge_checker *c) {
   const cprox_robot *robot = c->robot;
+  int32_t *frame_of = c->frame_of;
   c->frames[0] = (edge_frame){.parent = -1, .variable = -1};
   c->n_frames = 1;
   for (size_t i = 0; i < robot->n_axes; i++) {
@@ -125,7 +147,7 @@ static bool fill_frames(cprox_edge_checker *c, int32_t *frame_of, vec3 base) {
     frame_of[i] = (int32_t)c->n_frames++;
     placement at = axis->at;
     if (axis->parent < 0)
-      at.p = vec_sub(at.p, base);
+      at.p = vec_sub(at.p, c->base);
     else {
       const placement above = turn_of_axis(&robot->axes[axis->parent]);
       at = turned_back(&above, &at);
@@ -148,21 +170,21 @@ static bool fill_frames(cprox_edge_checker *c, int32_t *frame_of, vec3 base) {
 
 /* ---- parts ---- */
 
-static void add_balls(cprox_edge_checker *c, const robot_part *part, vec3 base) {
-  cover_ball balls[COVER_MOST];
-  const size_t n = cover_of_part(&part->model, balls);
+static void add_balls(cprox_edge_checker *c, const robot_covers *covers, size_t i) {
+  const robot_part *part = &c->robot->parts[i];
   placement at = part->at;
   if (part->axis < 0)
-    at.p = vec_sub(at.p, base);
+    at.p = vec_sub(at.p, c->base);
   else {
     const placement turn = turn_of_axis(&c->robot->axes[part->axis]);
     at = turned_back(&turn, &at);
   }
-  for (size_t k = 0; k < n; k++) {
-    const vec3 p = placement_apply(&at, balls[k].centre);
+  for (size_t k = covers->first[i]; k < covers->first[i + 1]; k++) {
+    const cover_ball *ball = &covers->balls[k];
+    const vec3 p = placement_apply(&at, ball->centre);
     c->balls[c->n_balls++] = (edge_ball){.centre = {(float)p.x, (float)p.y, (float)p.z},
-                                         .outer = float_above(balls[k].outer),
-                                         .inner = float_below(balls[k].inner),
+                                         .outer = float_above(ball->outer),
+                                         .inner = float_below(ball->inner),
                                          .reach = float_above(vec_norm(p) * (1.0 + EDGE_U)),
                                          .geometry = part->geometry};
   }
@@ -196,25 +218,31 @@ static void enclose(const cprox_edge_checker *c, edge_part *part) {
 }
 
 /* All parts of a geometry, which stand side by side. */
-static void add_geometry(cprox_edge_checker *c, int32_t geometry, vec3 base) {
+static void add_geometry(cprox_edge_checker *c, const robot_covers *covers, int32_t geometry) {
   for (size_t i = 0; i < c->robot->n_parts; i++)
-    if (c->robot->parts[i].geometry == geometry) add_balls(c, &c->robot->parts[i], base);
+    if (c->robot->parts[i].geometry == geometry) add_balls(c, covers, i);
   c->members[c->n_members++] = geometry;
 }
 
-static void fill_parts(cprox_edge_checker *c, const asked_rows *rows, const int32_t *frame_of, vec3 base) {
+/* Whether two geometries hang on one link and are asked about the same. */
+static bool are_alike(const cprox_edge_checker *c, size_t i, size_t k) {
+  const edge_rows *rows = &c->rows;
+  return c->robot->given_geometries[k].link == c->robot->given_geometries[i].link &&
+         memcmp(row_of(rows, i), row_of(rows, k), rows->words * sizeof *rows->bits) == 0;
+}
+
+static void fill_parts(cprox_edge_checker *c, const robot_covers *covers) {
   const cprox_robot *robot = c->robot;
   for (size_t i = 0; i < robot->n_geometries; i++) {
-    const int32_t link = robot->given_geometries[i].link, axis = robot->links[link].axis;
-    bool taken = !is_asked(rows, i); /* by the part of one before it */
-    for (size_t k = 0; k < i && !taken; k++)
-      taken = robot->given_geometries[k].link == link && memcmp(row_of(rows, i), row_of(rows, k), rows->words * 8) == 0;
+    const int32_t axis = robot->links[robot->given_geometries[i].link].axis;
+    bool taken = !is_asked(&c->rows, i); /* by the part of one before it */
+    for (size_t k = 0; k < i && !taken; k++) taken = are_alike(c, i, k);
     if (taken) continue;
-    edge_part part = {
-        .frame = axis < 0 ? 0 : frame_of[axis], .first_member = (uint32_t)c->n_members, .first = (uint32_t)c->n_balls};
+    edge_part part = {.frame = axis < 0 ? 0 : c->frame_of[axis],
+                      .first_member = (uint32_t)c->n_members,
+                      .first = (uint32_t)c->n_balls};
     for (size_t k = i; k < robot->n_geometries; k++)
-      if (robot->given_geometries[k].link == link && memcmp(row_of(rows, i), row_of(rows, k), rows->words * 8) == 0)
-        add_geometry(c, (int32_t)k, base);
+      if (are_alike(c, i, k)) add_geometry(c, covers, (int32_t)k);
     part.n_members = (uint32_t)c->n_members - part.first_member, part.n = (uint32_t)c->n_balls - part.first;
     enclose(c, &part);
     c->parts[c->n_parts++] = part;
@@ -232,8 +260,8 @@ static bool exchanges_axes(const float r[9]) {
 /* One part of a target. What its own numbers round: its place once, its axes as any rotation (7 u of a vector), its
  * sizes once; the vector from it is at most |p| and the reach of what is tested long, the latter being counted there.
  */
-static void add_obstacle(cprox_edge_checker *c, size_t index, size_t part, vec3 base) {
-  const cprox_obstacle *target = &c->asked.obstacles->targets[index];
+static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, size_t index, size_t part) {
+  const vec3 base = c->base;
   const cprox_body *body = body_part_at(target->body, part);
   part_model m = part_model_of(body);
   cprox_pose pose = target->pose;
@@ -296,31 +324,49 @@ static void add_obstacle(cprox_edge_checker *c, size_t index, size_t part, vec3 
   c->obstacles[c->n_obstacles++] = o;
 }
 
-static void fill_obstacles(cprox_edge_checker *c, vec3 base) {
-  for (size_t i = 0; i < obstacles_count(c->asked.obstacles); i++)
-    for (size_t k = 0; k < body_n_parts(c->asked.obstacles->targets[i].body); k++) add_obstacle(c, i, k, base);
+/* How far a part is from the base at most. Shifts have no bounds. */
+static double reach_of(const cprox_edge_checker *c, const edge_part *part) {
+  for (int32_t f = part->frame; f > 0; f = c->frames[f].parent)
+    if (c->frames[f].shifts) return INFINITY;
+  return c->frames[part->frame].fixed_reach + part->farthest;
 }
 
-/* Whether a part may ever come near an obstacle: by a ball round the base. Shifts have no bounds. */
-static bool is_in_reach(const cprox_edge_checker *c, const edge_part *part, const edge_obstacle *o) {
-  for (int32_t f = part->frame; f > 0; f = c->frames[f].parent)
-    if (c->frames[f].shifts) return true;
+/* How much of the way to what lies within `extent` about a point is left beyond `reach`; rounded down. Not above 0: it
+ * may be in reach. */
+static double left_of(const cprox_edge_checker *c, double apart, double reach, double extent) {
+  return apart - (reach + c->asked.delta + extent) * (1.0 + 1e-4) - 1e-30;
+}
+
+static double obstacle_beyond(const cprox_edge_checker *c, double reach, const edge_obstacle *o) {
   const vec3 p = vec((double)o->p[0], (double)o->p[1], (double)o->p[2]);
-  const double reach = c->frames[part->frame].fixed_reach + part->farthest + c->asked.delta;
   double extent = (double)o->margin;
   for (int k = 0; k < 3; k++) extent += (double)o->size[k];
-  return o->shape == EDGE_HALFSPACE || vec_norm(p) <= (reach + extent) * (1.0 + 1e-4) + 1e-30;
+  return o->shape == EDGE_HALFSPACE ? -INFINITY : left_of(c, vec_norm(p), reach, extent);
+}
+
+/* The same of a target's ball, before its parts are looked at. */
+static double target_beyond(const cprox_edge_checker *c, double reach, const cprox_obstacle *target) {
+  const cprox_body *body = target->body;
+  if (!(body->ball_radius < INFINITY)) return -INFINITY;
+  const frame f = frame_create(&target->pose, body->ball_centre);
+  const double apart = vec_norm(vec_sub(frame_to_world(&f, vec(0, 0, 0)), c->base));
+  return left_of(c, apart, reach, body->ball_radius + target->margin);
 }
 
 /* ---- pairs ---- */
 
-static void fill_near(cprox_edge_checker *c, const asked_rows *rows) {
+static void fill_near(cprox_edge_checker *c, const double *reach) {
   for (size_t i = 0; i < c->n_parts; i++) {
     edge_part *part = &c->parts[i];
+    const double own = reach ? reach[i] : reach_of(c, part);
     part->first_near = (uint32_t)c->n_near;
     for (size_t k = 0; k < c->n_obstacles; k++) {
-      if (!is_noted(rows, c->members[part->first_member], (size_t)c->obstacles[k].target)) continue;
-      if (is_in_reach(c, part, &c->obstacles[k])) c->near[c->n_near++] = (uint32_t)k;
+      if (!asks_about(&c->rows, c->members[part->first_member], (size_t)c->obstacles[k].target)) continue;
+      const double left = obstacle_beyond(c, own, &c->obstacles[k]);
+      if (left > 0.0)
+        c->beyond = lesser(left, c->beyond);
+      else
+        c->near[c->n_near++] = (uint32_t)k;
     }
     part->n_near = (uint32_t)c->n_near - part->first_near;
   }
@@ -386,7 +432,8 @@ static uint32_t relation_of(cprox_edge_checker *c, int32_t a, int32_t b) {
 }
 
 /* Of two parts all geometries are asked about each other, or none are. */
-static void fill_lane_pairs(cprox_edge_checker *c, const asked_rows *rows) {
+static void fill_lane_pairs(cprox_edge_checker *c) {
+  const edge_rows *rows = &c->rows;
   for (uint32_t x = 0; x < c->n_parts; x++)
     for (uint32_t y = 0; y < x; y++) {
       const int32_t one = c->members[c->parts[x].first_member], other = c->members[c->parts[y].first_member];
@@ -396,16 +443,6 @@ static void fill_lane_pairs(cprox_edge_checker *c, const asked_rows *rows) {
       pair.relation = relation_of(c, c->parts[pair.a].frame, c->parts[pair.b].frame);
       c->lane_pairs[c->n_lane_pairs++] = pair;
     }
-}
-
-/* Joints above a link. */
-static size_t joints_between(const cprox_robot *robot, int32_t link_a, int32_t link_b) {
-  const int32_t a = link_a < 0 ? -1 : robot->links[link_a].axis, b = link_b < 0 ? -1 : robot->links[link_b].axis;
-  const int32_t common = robot_common_axis(robot, a, b);
-  size_t n = 0;
-  for (int32_t i = a; i != common; i = robot->axes[i].parent) n += robot->axes[i].first_of_joint;
-  for (int32_t i = b; i != common; i = robot->axes[i].parent) n += robot->axes[i].first_of_joint;
-  return n;
 }
 
 /* All pairs that are asked about, in order; `to` NULL: their number. */
@@ -430,7 +467,7 @@ static size_t list_self_pairs(const cprox_robot *robot, const cprox_edge_query *
   size_t n = 0;
   for (size_t g = 0; g < robot->n_geometries; g++)
     for (size_t k = 0; k < g; k++) {
-      if (joints_between(robot, robot->given_geometries[g].link, robot->given_geometries[k].link) < 2) continue;
+      if (!is_worth_asking(robot, g, k)) continue;
       if (to) to[n] = (cprox_robot_pair){(int32_t)g, (int32_t)k};
       n++;
     }
@@ -476,53 +513,110 @@ static cprox_status check(const cprox_robot *robot, const cprox_edge_query *q, c
   return check_pairs(q->self_pairs, q->n_self_pairs, robot->n_geometries, "geometry", robot->n_geometries, workspace);
 }
 
-static bool allocate(cprox_edge_checker *c, size_t n_obstacles) {
-  const cprox_robot *robot = c->robot;
-  const size_t frames = robot->n_axes + 1;
-  c->frames = calloc(frames, sizeof *c->frames);
-  c->parts = calloc(robot->n_geometries + 1, sizeof *c->parts);
-  c->members = calloc(robot->n_geometries + 1, sizeof *c->members);
-  size_t balls = 0;
-  cover_ball made[COVER_MOST];
-  for (size_t i = 0; i < robot->n_parts; i++) balls += cover_of_part(&robot->parts[i].model, made);
-  c->balls = calloc(balls + 1, sizeof *c->balls);
-  c->obstacles = calloc(n_obstacles + 1, sizeof *c->obstacles);
-  c->near = calloc(robot->n_geometries * n_obstacles + 1, sizeof *c->near);
-  c->lane_pairs = calloc(c->n_self_pairs + 1, sizeof *c->lane_pairs);
-  c->relations = calloc(c->n_self_pairs + 1, sizeof *c->relations);
-  size_t deepest = 0;
-  for (size_t i = 0; i < robot->n_axes; i++) deepest = robot->axes[i].depth > deepest ? robot->axes[i].depth : deepest;
-  const size_t different = c->n_self_pairs < frames * frames ? c->n_self_pairs : frames * frames;
-  c->steps = calloc(different * 2 * (deepest + 1) + 1, sizeof *c->steps);
-  return c->frames && c->parts && c->members && c->balls && c->obstacles && c->near && c->lane_pairs && c->relations &&
-         c->steps;
+/* Arrays in one block; without a block their sizes are added up. */
+typedef struct arena {
+  char *at;
+  size_t bytes;
+} arena;
+
+static void *take(arena *a, size_t n, size_t size) {
+  void *here = a->at ? a->at + a->bytes : NULL;
+  a->bytes += (n * size + 15) / 16 * 16;
+  return here;
 }
 
-/* What the lanes have to say. */
-static cprox_status fill(cprox_edge_checker *c, cprox_workspace *workspace) {
-  const cprox_robot *robot = c->robot;
-  int32_t *frame_of = calloc(robot->n_axes + 1, sizeof *frame_of);
-  asked_rows rows = {.bits = NULL};
+size_t edge_model_count_pairs(const edge_asked *asked) {
+  const size_t n = asked->robot->n_geometries, all = n < 2 ? 0 : n * (n - 1) / 2;
+  if (!asked->about_self) return 0;
+  return asked->self_pairs && asked->n_self_pairs < all ? asked->n_self_pairs : all;
+}
+
+static void lay_out_robot(cprox_edge_checker *c, const edge_asked *asked, const robot_covers *covers, arena *a) {
+  const cprox_robot *robot = asked->robot;
+  const size_t frames = robot->n_axes + 1, pairs = edge_model_count_pairs(asked);
+  size_t deepest = 0;
+  for (size_t i = 0; i < robot->n_axes; i++) deepest = robot->axes[i].depth > deepest ? robot->axes[i].depth : deepest;
+  const size_t different = pairs < frames * frames ? pairs : frames * frames;
+  c->rows = rows_of(asked);
+  c->rows.bits = take(a, robot->n_geometries * c->rows.words, sizeof *c->rows.bits);
+  c->frames = take(a, frames, sizeof *c->frames);
+  c->frame_of = take(a, frames, sizeof *c->frame_of);
+  c->parts = take(a, robot->n_geometries, sizeof *c->parts);
+  c->members = take(a, robot->n_geometries, sizeof *c->members);
+  c->balls = take(a, covers->first[robot->n_parts], sizeof *c->balls);
+  c->lane_pairs = take(a, pairs, sizeof *c->lane_pairs);
+  c->relations = take(a, different, sizeof *c->relations);
+  c->steps = take(a, different * 2 * (deepest + 1), sizeof *c->steps);
+}
+
+size_t edge_model_robot_size(const edge_asked *asked, const robot_covers *covers) {
+  cprox_edge_checker none = {0};
+  arena a = {0};
+  lay_out_robot(&none, asked, covers, &a);
+  return a.bytes;
+}
+
+void edge_model_fill_robot(cprox_edge_checker *c, const edge_asked *asked, const robot_covers *covers, char *memory) {
+  const cprox_robot *robot = asked->robot;
+  arena a = {.at = memory};
+  lay_out_robot(c, asked, covers, &a);
+  c->robot = robot;
+  c->base = robot->n_axes > 0 ? robot->axes[0].at.p : vec(0, 0, 0);
+  fill_rows(&c->rows, asked);
+  mark_axes(robot, &c->rows, c->frame_of);
+  c->in_lanes = fill_frames(c);
+  if (!c->in_lanes) return;
+  fill_parts(c, covers);
+  fill_lane_pairs(c);
+}
+
+size_t edge_model_scene_size(const cprox_edge_checker *c, size_t n_obstacles) {
+  return (n_obstacles * sizeof *c->obstacles + 15) / 16 * 16 + c->n_parts * n_obstacles * sizeof *c->near + 16;
+}
+
+void edge_model_fill_scene(cprox_edge_checker *c, const cprox_obstacle *targets, size_t first, size_t last,
+                           const double *reach, char *memory) {
+  arena a = {.at = memory};
   size_t n_obstacles = 0;
-  for (size_t i = 0; i < obstacles_count(c->asked.obstacles); i++)
-    n_obstacles += body_n_parts(c->asked.obstacles->targets[i].body);
-  const bool room = frame_of && fill_rows(c, &rows) && allocate(c, n_obstacles);
-  if (room) {
-    mark_axes(robot, &rows, frame_of);
-    const vec3 base = robot->n_axes > 0 ? robot->axes[0].at.p : vec(0, 0, 0);
-    c->in_lanes = fill_frames(c, frame_of, base);
-    if (c->in_lanes) {
-      fill_parts(c, &rows, frame_of, base);
-      fill_obstacles(c, base);
-      fill_near(c, &rows);
-      fill_lane_pairs(c, &rows);
-      c->in_lanes = c->obstacle_reach <= EDGE_REACH_MOST;
-    }
+  double farthest = 0.0;
+  for (size_t i = 0; i < c->n_parts; i++) farthest = greater(reach ? reach[i] : reach_of(c, &c->parts[i]), farthest);
+  for (size_t i = first; i < last; i++) n_obstacles += body_n_parts(targets[i].body);
+  c->obstacles = take(&a, n_obstacles, sizeof *c->obstacles);
+  c->near = take(&a, c->n_parts * n_obstacles, sizeof *c->near);
+  c->n_obstacles = c->n_near = 0, c->obstacle_reach = 0.0, c->beyond = INFINITY;
+  for (size_t i = first; i < last; i++) {
+    const double left = target_beyond(c, farthest, &targets[i]);
+    if (left > 0.0) c->beyond = lesser(left, c->beyond);
+    for (size_t k = 0; !(left > 0.0) && k < body_n_parts(targets[i].body); k++) add_obstacle(c, &targets[i], i, k);
   }
-  free(frame_of), free(rows.bits);
-  return room ? CPROX_OK
-              : workspace_fail(workspace, CPROX_MEMORY, "no memory for %zu obstacles and %zu pairs", n_obstacles,
-                               c->n_self_pairs);
+  fill_near(c, reach);
+  c->in_lanes = c->in_lanes && c->obstacle_reach <= EDGE_REACH_MOST;
+}
+
+/* A handle's two sides. */
+static cprox_status fill(cprox_edge_checker *c, cprox_workspace *workspace) {
+  const cprox_edge_query *q = &c->asked;
+  const size_t n = obstacles_count(q->obstacles);
+  const edge_asked asked = {.robot = c->robot,
+                            .about_obstacles = true,
+                            .about_self = true,
+                            .pairs = q->pairs ? c->pairs : NULL,
+                            .n_pairs = c->n_pairs,
+                            .self_pairs = c->pairs + c->n_pairs,
+                            .n_self_pairs = c->n_self_pairs,
+                            .n_obstacles = n};
+  const robot_covers *covers = robot_covers_of(c->robot);
+  if (covers) c->memory[0] = malloc(edge_model_robot_size(&asked, covers) + 1);
+  if (c->memory[0]) {
+    edge_model_fill_robot(c, &asked, covers, c->memory[0]);
+    size_t n_obstacles = 0;
+    for (size_t i = 0; i < n; i++) n_obstacles += body_n_parts(q->obstacles->targets[i].body);
+    c->memory[1] = malloc(edge_model_scene_size(c, n_obstacles) + 1);
+  }
+  if (!c->memory[1])
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for %zu obstacles and %zu pairs", n, c->n_self_pairs);
+  if (c->in_lanes) edge_model_fill_scene(c, obstacles_list(q->obstacles), 0, n, NULL, c->memory[1]);
+  return CPROX_OK;
 }
 
 cprox_status cprox_edge_checker_create(const cprox_robot *robot, const cprox_edge_query *asked,
@@ -556,14 +650,7 @@ cprox_status cprox_edge_checker_create(const cprox_robot *robot, const cprox_edg
 void cprox_edge_checker_free(cprox_edge_checker *checker) {
   if (!checker) return;
   free(checker->pairs);
-  free(checker->frames);
-  free(checker->parts);
-  free(checker->members);
-  free(checker->balls);
-  free(checker->obstacles);
-  free(checker->near);
-  free(checker->lane_pairs);
-  free(checker->relations);
-  free(checker->steps);
+  free(checker->memory[0]);
+  free(checker->memory[1]);
   free(checker);
 }

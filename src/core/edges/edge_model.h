@@ -6,6 +6,7 @@
 
 #include "curve_proximity/cprox/edges.h"
 #include "kinematics/joint_tree.h"
+#include "kinematics/part_cover.h"
 
 /* Unit roundoff of float. */
 #define EDGE_U 0x1p-24
@@ -41,6 +42,7 @@ typedef struct edge_part {
   double reach_of_centre; /* the largest |centre| of any ball */
   uint32_t first, n;      /* balls */
   uint32_t first_near, n_near;
+  bool coarse; /* its balls are not looked at: what its own ball comes near is left open */
 } edge_part;
 
 typedef enum edge_shape {
@@ -85,12 +87,24 @@ typedef struct edge_relation {
   edge_step last;    /* from the last step's origin to that of frame a */
 } edge_relation;
 
+/* Of each geometry a row of bits: the obstacles, or where all are asked about one bit for them, then the other
+ * geometries that it is asked about. */
+typedef struct edge_rows {
+  uint64_t *bits;
+  size_t words, n_obstacles;
+  bool all;
+} edge_rows;
+
 struct cprox_edge_checker {
   const cprox_robot *robot;
   cprox_edge_query asked;
   cprox_robot_pair *pairs; /* of geometries and obstacles, then of geometries: all that are asked about */
   size_t n_pairs, n_self_pairs;
-  bool in_lanes; /* single precision can say something */
+  void *memory[2]; /* of the robot's side and of the scene's, where the handle owns them */
+  bool in_lanes;   /* single precision can say something */
+  vec3 base;
+  edge_rows rows;
+  int32_t *frame_of; /* of an axis; -1: it carries nothing that is asked about */
   size_t n_frames, n_parts, n_members, n_balls, n_obstacles, n_near, n_lane_pairs, n_relations, n_steps;
   edge_frame *frames;
   edge_part *parts;
@@ -102,7 +116,32 @@ struct cprox_edge_checker {
   edge_relation *relations;
   edge_step *steps;
   double obstacle_reach; /* the largest coordinate of an obstacle */
+  double beyond;         /* obstacles that are out of reach stay farther away than delta and this */
 };
+
+/* What is asked about, for the robot's side of a model. */
+typedef struct edge_asked {
+  const cprox_robot *robot;
+  bool about_obstacles, about_self;
+  const cprox_robot_pair *pairs, *self_pairs; /* NULL: all, and all that are worth asking for */
+  size_t n_pairs, n_self_pairs, n_obstacles;
+} edge_asked;
+
+/* Pairs of geometries that there are at most. */
+size_t edge_model_count_pairs(const edge_asked *asked);
+
+/* The bytes that the two sides of a model take. */
+size_t edge_model_robot_size(const edge_asked *asked, const robot_covers *covers);
+size_t edge_model_scene_size(const cprox_edge_checker *model, size_t n_obstacles);
+
+/* The robot's side, in such memory; all else must be 0. Afterwards in_lanes says whether the robot can be in lanes. */
+void edge_model_fill_robot(cprox_edge_checker *model, const edge_asked *asked, const robot_covers *covers,
+                           char *memory);
+
+/* The scene's side: targets first … last - 1, n_parts of which in all are given to edge_model_scene_size(). `reach`
+ * of each part, from the base; NULL: as far as it can. Obstacles that are out of all reach are left out. */
+void edge_model_fill_scene(cprox_edge_checker *model, const cprox_obstacle *targets, size_t first, size_t last,
+                           const double *reach, char *memory);
 
 /* Distances of lanes are held against sums of radii that are grown by this factor: it covers the rounding of squares,
  * roots and sums of what is positive. doc/rounding.md */

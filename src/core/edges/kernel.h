@@ -38,6 +38,10 @@ typedef struct lane_batch {
   uint32_t all;   /* the lanes that are in use */
   uint32_t split; /* those that are to be halved: nothing more is asked about them */
   bool related;   /* the motion's relations are known: edges that hit an obstacle do without */
+  bool measures;  /* the distances of what is not near are noted: */
+  lane least;     /* of each lane the least, and of which pair and where it was found */
+  uint32_t nearest[EDGE_LANES];
+  float nearest_at[EDGE_LANES];
 } lane_batch;
 
 /* ---- kinematics ---- */
@@ -66,8 +70,17 @@ EDGE_INLINE void place_frame(lane_batch *b, size_t i, bool moves) {
   const edge_frame *f = &b->c->frames[i];
   const lane_frame *above = &b->frames[f->parent];
   lane_frame *to = &b->frames[i];
-  const lane value = lane_all(b->motion->middle[i]) + b->middle * lane_all(b->motion->rate[i]);
-  const lane rate = lane_all(b->motion->rate[i]);
+  const edge_motion *m = b->motion;
+  lane rate = lane_all(m->rate[i]), first = rate;
+  if (m->degree > 1) { /* Horner's scheme from the highest power of all variables down to the second */
+    lane higher = lane_all(0.0f), slope = higher;
+    for (size_t k = m->degree - 1; k-- > 0;) {
+      higher = lane_all(m->more[i * EDGE_POWERS + k]) + b->middle * higher;
+      slope = lane_all(m->more_rate[i * EDGE_POWERS + k]) + b->middle * slope;
+    }
+    first = rate + b->middle * higher, rate = rate + b->middle * slope;
+  }
+  const lane value = lane_all(m->middle[i]) + b->middle * first;
   lane r[9];
   lane_compose(above, f, r);
   lane3 d = lane_turn(above, f->p);
@@ -146,9 +159,21 @@ EDGE_INLINE lane distance2_from(const edge_obstacle *o, lane3 at) {
 
 /* ---- verdicts ---- */
 
-/* The lanes in which a distance is at most the sum of what moves and a radius. */
-EDGE_INLINE uint32_t within(lane distance2, lane moves, float radius) {
+/* What is left of distances beyond the radii r, where that is more than nothing. */
+EDGE_TARGET static void note_least(lane_batch *b, uint32_t pair, lane distance2, lane r) {
+  const lane left = lane_sqrt(distance2) * lane_all(1.0f - (float)EDGE_GROW) - r;
+  const lane_bits less = (lane_bits)(left < b->least) & (lane_bits)(distance2 > r * r);
+  b->least = lane_choose(less, left, b->least);
+  for (uint32_t lanes = lane_mask(less); lanes; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    b->nearest[i] = pair, b->nearest_at[i] = b->interval[i].middle;
+  }
+}
+
+/* The lanes in which the distance of a pair is at most the sum of what moves and a radius. */
+EDGE_INLINE uint32_t within(lane_batch *b, uint32_t pair, lane distance2, lane moves, float radius) {
   const lane r = (moves + lane_all(radius)) * lane_all(1.0f + (float)EDGE_GROW);
+  if (b->measures) note_least(b, pair, distance2, r);
   return lane_mask((lane_bits)(distance2 <= r * r));
 }
 
@@ -217,7 +242,7 @@ EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, con
     const lane distance2 = distance2_from(o, place_point(own, ball->centre, &speed));
     const lane moves = moves_of(b, speed, b->motion->frames[part->frame], ball->reach);
     const float outer = ball->outer + delta + room;
-    const uint32_t near = within(distance2, moves, outer) & b->all & ~b->split;
+    const uint32_t near = within(b, near_at, distance2, moves, outer) & b->all & ~b->split;
     if (near &&
         settle_near(b, near_at, distance2, near, outer, sure_radius(ball->inner, 0.0f, delta, room + o->grown))) {
       b->found->geometry = ball->geometry, b->found->other = o->target, b->found->self = false;
@@ -238,8 +263,11 @@ EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
   const float radius = part->outer + (float)b->c->asked.delta + b->motion->room[i];
   for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
     const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
-    if (!(within(distance2_from(o, at->centre), moves, radius) & b->all & ~b->split)) continue;
-    if (open_part(b, i, k, o)) return true;
+    const uint32_t near = within(b, k, distance2_from(o, at->centre), moves, radius) & b->all & ~b->split;
+    if (near && part->coarse)
+      leave_open(b, k, near);
+    else if (near && open_part(b, i, k, o))
+      return true;
   }
   return false;
 }
@@ -256,6 +284,7 @@ EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float cos
   const edge_pair *pair = &c->lane_pairs[i];
   const edge_part *first = &c->parts[pair->a], *second = &c->parts[pair->b];
   const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
+  const uint32_t number = (uint32_t)(c->n_near + i);
   b->found->level = CPROX_EDGE_COVER;
   for (uint32_t k = first->first; k < first->first + first->n; k++) {
     const edge_ball *ball = &c->balls[k];
@@ -263,15 +292,15 @@ EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float cos
     const lane3 at = place_point(own, ball->centre, &speed);
     const lane moves = moves_of(b, relative_speed(other, at, speed), b->motion->relations[pair->relation], ball->reach);
     const lane apart2 = lane3_norm2(lane3_sub(at, b->parts[pair->b].centre));
-    if (!(within(apart2, moves, ball->outer + second->outer + room) & b->all & ~b->split)) continue;
+    if (!(within(b, number, apart2, moves, ball->outer + second->outer + room) & b->all & ~b->split)) continue;
     for (uint32_t l = second->first; l < second->first + second->n; l++) {
       const edge_ball *beside = &c->balls[l];
       const lane3 its = lane3_add(other->o, lane_turn(other, beside->centre));
       const lane distance2 = lane3_norm2(lane3_sub(at, its));
       const float outer = ball->outer + beside->outer + room;
-      const uint32_t near = within(distance2, moves, outer) & b->all & ~b->split;
+      const uint32_t near = within(b, number, distance2, moves, outer) & b->all & ~b->split;
       const float inner = sure_radius(ball->inner, beside->inner, (float)c->asked.delta, costs);
-      if (near && settle_near(b, (uint32_t)(c->n_near + i), distance2, near, outer, inner)) {
+      if (near && settle_near(b, number, distance2, near, outer, inner)) {
         b->found->geometry = ball->geometry, b->found->other = beside->geometry, b->found->self = true;
         return true;
       }
@@ -290,7 +319,10 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
   const lane3 speed = relative_speed(other, at->centre, at->speed);
   const lane moves = moves_of(b, speed, b->motion->relations[pair->relation], (float)first->reach_of_centre) +
                      b->half * lane_sqrt(lane3_norm2(lane3_sub(own->spin, other->spin))) * lane_all(first->core);
-  if (!(within(distance2, moves, first->outer + second->outer + room) & b->all & ~b->split)) return false;
+  const uint32_t number = (uint32_t)(b->c->n_near + i);
+  const uint32_t near = within(b, number, distance2, moves, first->outer + second->outer + room) & b->all & ~b->split;
+  if (near && (first->coarse || second->coarse)) leave_open(b, number, near);
+  if (!near || first->coarse || second->coarse) return false;
   return open_pair(b, i, room, costs);
 }
 
@@ -307,6 +339,14 @@ EDGE_TARGET static bool look_at_batch(lane_batch *b) {
   for (size_t i = 0; i < c->n_lane_pairs; i++)
     if (look_at_pair(b, i)) return true;
   return false;
+}
+
+/* The least of all lanes, once there are none left. */
+EDGE_TARGET static void tell_least(const lane_batch *b, edge_found *found) {
+  found->least = INFINITY, found->nearest = UINT32_MAX;
+  for (int i = 0; i < EDGE_LANES; i++)
+    if (b->least[i] < found->least)
+      found->least = b->least[i], found->nearest = b->nearest[i], found->nearest_at = b->nearest_at[i];
 }
 
 /* The intervals on top of the stack, one a lane; lanes that are left over repeat the last one. */
@@ -335,7 +375,10 @@ EDGE_TARGET static void split_batch(const lane_batch *b, lane_interval *stack, s
 
 EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *motion, edge_lanes *lanes,
                              edge_found *found) {
-  lane_batch b = {.c = c, .motion = motion, .open = &lanes->open, .found = found};
+  lane_batch b = {.c = c, .motion = motion, .open = &lanes->open, .found = found, .measures = lanes->measures};
+  const int most = lanes->most_batches > 0 && lanes->most_batches < EDGE_MOST_BATCHES ? (int)lanes->most_batches - 1
+                                                                                      : EDGE_MOST_BATCHES;
+  b.least = lane_all(INFINITY);
   b.frames = (lane_frame *)(void *)lanes->memory;
   b.parts = (lane_part *)(void *)(b.frames + c->n_frames);
   memset(&b.frames[0], 0, sizeof b.frames[0]);
@@ -353,16 +396,18 @@ EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *mot
   for (int batches = 0; n > 0; batches++) {
     load_batch(&b, stack, &n);
     if (look_at_batch(&b)) return;
+    if (n == 0 && b.split == 0) break;
     float shortest = 1.0f;
     for (uint32_t left = b.split; left; left &= left - 1) {
       const float half = b.interval[__builtin_ctz(left)].half;
       shortest = half < shortest ? half : shortest;
     }
-    if (batches == EDGE_MOST_BATCHES || shortest < EDGE_SHORTEST || n + 2 * EDGE_LANES > EDGE_STACK) {
+    if (batches >= most || shortest < EDGE_SHORTEST || n + 2 * EDGE_LANES > EDGE_STACK) {
       found->too_much = true, found->verdict = CPROX_VERDICT_UNDECIDED;
       return;
     }
     split_batch(&b, stack, &n);
   }
   if (lanes->open.n > 0) found->verdict = CPROX_VERDICT_UNDECIDED;
+  if (b.measures) tell_least(&b, found);
 }

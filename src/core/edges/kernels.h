@@ -20,6 +20,8 @@ typedef struct edge_open {
 typedef struct edge_lanes {
   char *memory;
   edge_open open;
+  uint32_t most_batches; /* more are left open; 0: as many as there may be */
+  bool measures;         /* edge_found.least is wanted */
 } edge_lanes;
 
 typedef struct edge_found {
@@ -30,6 +32,11 @@ typedef struct edge_found {
   float at;                /* violated: there, seen from the middle of the edge, */
   int32_t geometry, other; /* by this geometry and this obstacle, or */
   bool self;               /* this other geometry */
+  /* if it measures: nothing that is not open comes nearer than delta and this; the pair of which that was found, as
+   * edge_open has it, or UINT32_MAX, and where */
+  float least;
+  uint32_t nearest;
+  float nearest_at;
 } edge_found;
 
 typedef void edge_kernel(const cprox_edge_checker *checker, const edge_motion *motion, edge_lanes *lanes,

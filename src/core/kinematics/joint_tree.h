@@ -5,9 +5,12 @@
 #ifndef CPROX_KINEMATICS_JOINT_TREE_H
 #define CPROX_KINEMATICS_JOINT_TREE_H
 
+#include <stdatomic.h>
+
 #include "base/rotation.h"
 #include "curve_proximity/cprox/robot.h"
 #include "kinematics/link_model.h"
+#include "kinematics/part_cover.h"
 #include "kinematics/part_groups.h"
 #include "shape/body.h"
 
@@ -66,7 +69,8 @@ struct cprox_robot {
   robot_axis *axes; /* parents first */
   robot_part *parts;
   part_groups groups;
-  cprox_link *given_links; /* as they were given: what certificates are about */
+  _Atomic(robot_covers *) covers; /* robot_covers_of() */
+  cprox_link *given_links;        /* as they were given: what certificates are about */
   cprox_link_geometry *given_geometries;
 };
 

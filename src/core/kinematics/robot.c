@@ -364,6 +364,7 @@ void cprox_robot_free(cprox_robot *robot) {
   free(robot->axes);
   free(robot->parts);
   part_groups_free(&robot->groups);
+  robot_covers_free(atomic_load(&robot->covers));
   free(robot->given_links);
   free(robot->given_geometries);
   free(robot);

@@ -4,10 +4,10 @@
 #include <math.h>
 
 #include "curve_query/search_pair.h"
-#include "robot_query/answer.h"
+#include "solve/robot_verdict.h"
 
 cprox_status query_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
-  if (q->mover.motion) return robot_answer(q, first, last, cutoff, result);
+  if (q->mover.motion) return robot_verdict(q, first, last, cutoff, result);
   size_t n = 0;
   candidate *list = NULL;
   if (last > first) {

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "edges/cover.h"
+#include "kinematics/part_cover.h"
+
+#include <stdlib.h>
+#include <string.h>
 
 #include "base/rounding.h"
+#include "kinematics/joint_tree.h"
 
 /* Cells along a side are at most COVER_MOST: their places are rounded by less than this part of a cell. */
 static const double UP = 1.0 + 0x1p-40, DOWN = 1.0 - 0x1p-40;
@@ -71,4 +75,79 @@ size_t cover_of_part(const part_model *m, cover_ball balls[COVER_MOST]) {
   balls[0] = (cover_ball){.outer = UP * (is_point ? m->margin : m->radius), .inner = -1.0};
   if (is_point && !m->tree) balls[0].inner = DOWN * m->margin;
   return 1;
+}
+
+/* ---- of a robot ---- */
+
+/* What of a part is not in its balls. */
+typedef struct part_place {
+  placement at;
+  int32_t geometry, link, axis;
+} part_place;
+
+static void add_bytes(robot_covers *c, const void *from, size_t bytes) {
+  if (bytes > 0) memcpy(c->signature + c->n_signature, from, bytes);
+  c->n_signature += bytes;
+}
+
+static bool sign(const cprox_robot *robot, robot_covers *c) {
+  const size_t counts[] = {robot->n_axes, robot->n_parts, robot->n_geometries, robot->n_variables};
+  const size_t axes = robot->n_axes * sizeof *robot->axes, n_balls = c->first[robot->n_parts];
+  c->signature = malloc(sizeof counts + axes + robot->n_geometries * 2 * sizeof(int32_t) +
+                        robot->n_parts * (sizeof(part_place) + sizeof(size_t)) + n_balls * sizeof *c->balls);
+  if (!c->signature) return false;
+  add_bytes(c, counts, sizeof counts);
+  add_bytes(c, robot->axes, axes);
+  for (size_t i = 0; i < robot->n_geometries; i++) {
+    const int32_t link = robot->given_geometries[i].link, two[2] = {link, robot->links[link].axis};
+    add_bytes(c, two, sizeof two);
+  }
+  for (size_t i = 0; i < robot->n_parts; i++) {
+    const robot_part *part = &robot->parts[i];
+    part_place place;
+    memset(&place, 0, sizeof place);
+    place.at = part->at, place.geometry = part->geometry, place.link = part->link, place.axis = part->axis;
+    add_bytes(c, &place, sizeof place);
+    add_bytes(c, &c->first[i + 1], sizeof c->first[i + 1]);
+  }
+  add_bytes(c, c->balls, n_balls * sizeof *c->balls);
+  return true;
+}
+
+static bool cover_all(const cprox_robot *robot, robot_covers *c) {
+  size_t room = robot->n_parts + COVER_MOST, n = 0;
+  c->first = malloc((robot->n_parts + 1) * sizeof *c->first);
+  c->balls = calloc(room, sizeof *c->balls);
+  for (size_t i = 0; i < robot->n_parts && c->first && c->balls; i++) {
+    if (n + COVER_MOST > room) {
+      room += room / 2 + COVER_MOST;
+      cover_ball *grown = realloc(c->balls, room * sizeof *grown);
+      if (!grown) return false;
+      c->balls = grown;
+    }
+    c->first[i] = n;
+    n += cover_of_part(&robot->parts[i].model, c->balls + n);
+    c->n_coarse += cover_is_coarse(c->balls[n - 1].outer, c->balls[n - 1].inner);
+  }
+  if (!c->first || !c->balls) return false;
+  c->first[robot->n_parts] = n;
+  return sign(robot, c);
+}
+
+void robot_covers_free(robot_covers *c) {
+  if (!c) return;
+  free(c->first), free(c->balls), free(c->signature);
+  free(c);
+}
+
+const robot_covers *robot_covers_of(const cprox_robot *robot) {
+  cprox_robot *own = (cprox_robot *)robot; /* a robot is never a const object: cprox_robot_create() allocates it */
+  robot_covers *known = atomic_load_explicit(&own->covers, memory_order_acquire);
+  if (known) return known;
+  robot_covers *made = calloc(1, sizeof *made);
+  if (made && cover_all(robot, made) &&
+      atomic_compare_exchange_strong_explicit(&own->covers, &known, made, memory_order_acq_rel, memory_order_acquire))
+    return made;
+  robot_covers_free(made);
+  return known; /* that of another thread, which was faster */
 }

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "edges/first_level.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "edges/kernels.h"
+
+/* Beyond these the trees and groups of the search find what is near sooner than lanes do. */
+enum { MOST_PAIRS = 4096, MOST_PARTS = 1024, MOST_TARGETS = 512, MOST_NEAR = 4096, MOST_OPEN = 256 };
+
+/* One of so many parts may have a coarse cover. */
+enum { MOST_COARSE = 4 };
+
+/* So many times eight intervals: what they leave open is left to the search. */
+enum { MOST_BATCHES = 32 };
+
+/* ---- the model ---- */
+
+/* The robot's side of a model stays in the workspace from query to query. It is the same model as long as the robot's
+ * signature and what is asked about are the same, byte by byte, whatever handles they came with. */
+typedef struct kept_model {
+  cprox_edge_checker model;
+  size_t n_key;
+  edge_asked asked;
+} kept_model;
+
+static edge_asked asked_of(const query *q) {
+  const cprox_mover *m = &q->mover;
+  const bool self = mover_is_self(m), whole = mover_is_whole(m);
+  edge_asked asked = {.robot = m->motion->robot, .about_obstacles = !self, .about_self = self || whole};
+  if (!self) asked.pairs = m->pairs, asked.n_pairs = m->pairs ? m->n_pairs : 0;
+  if (asked.pairs) asked.n_obstacles = q->n;
+  if (self) asked.self_pairs = m->pairs, asked.n_self_pairs = m->pairs ? m->n_pairs : 0;
+  if (whole) asked.self_pairs = m->self_pairs, asked.n_self_pairs = m->self_pairs ? m->n_self_pairs : 0;
+  return asked;
+}
+
+static bool is_same_list(const cprox_robot_pair *a, const char *b, size_t n) {
+  return n == 0 || memcmp(a, b, n * sizeof *a) == 0;
+}
+
+static bool is_kept(const kept_model *kept, const edge_asked *asked, const robot_covers *covers) {
+  const edge_asked *old = &kept->asked;
+  const size_t pairs = asked->n_pairs * sizeof *asked->pairs, selves = asked->n_self_pairs * sizeof *asked->pairs;
+  if (kept->n_key != covers->n_signature + pairs + selves || old->n_pairs != asked->n_pairs ||
+      old->n_self_pairs != asked->n_self_pairs || old->n_obstacles != asked->n_obstacles ||
+      old->about_obstacles != asked->about_obstacles || old->about_self != asked->about_self ||
+      !old->pairs != !asked->pairs || !old->self_pairs != !asked->self_pairs)
+    return false;
+  const char *key = (const char *)(kept + 1);
+  return memcmp(covers->signature, key, covers->n_signature) == 0 &&
+         is_same_list(asked->pairs, key + covers->n_signature, asked->n_pairs) &&
+         is_same_list(asked->self_pairs, key + covers->n_signature + pairs, asked->n_self_pairs);
+}
+
+static void write_key(kept_model *kept, const edge_asked *asked, const robot_covers *covers) {
+  const size_t pairs = asked->n_pairs * sizeof *asked->pairs, selves = asked->n_self_pairs * sizeof *asked->pairs;
+  char *key = (char *)(kept + 1);
+  memcpy(key, covers->signature, covers->n_signature);
+  if (pairs > 0) memcpy(key + covers->n_signature, asked->pairs, pairs);
+  if (selves > 0) memcpy(key + covers->n_signature + pairs, asked->self_pairs, selves);
+  kept->n_key = covers->n_signature + pairs + selves;
+}
+
+static size_t aligned(size_t bytes) {
+  return (bytes + 63) / 64 * 64;
+}
+
+/* Balls that are not the part itself tell little of what is near, and there are many of them: such parts are left to the
+ * search where their own ball comes near something. A robot with more than a few of them is left to it altogether. */
+static void mark_coarse(cprox_edge_checker *c) {
+  size_t n = 0;
+  for (size_t i = 0; i < c->n_parts; i++) {
+    edge_part *part = &c->parts[i];
+    for (uint32_t k = part->first; k < part->first + part->n; k++)
+      part->coarse = part->coarse || cover_is_coarse((double)c->balls[k].outer, (double)c->balls[k].inner);
+    n += part->coarse;
+  }
+  c->in_lanes = c->in_lanes && MOST_COARSE * n <= c->n_parts;
+}
+
+/* NULL: there is none for this robot, or memory is out. */
+static cprox_edge_checker *model_of(const query *q) {
+  const edge_asked asked = asked_of(q);
+  if (asked.robot->n_parts > MOST_PARTS || edge_model_count_pairs(&asked) > MOST_PAIRS) return NULL;
+  const robot_covers *covers = robot_covers_of(asked.robot);
+  if (!covers || MOST_COARSE * covers->n_coarse > asked.robot->n_parts) return NULL;
+  const workspace_buffer buffer = mover_is_self(&q->mover)    ? WORKSPACE_EDGE_SELF
+                                  : mover_is_whole(&q->mover) ? WORKSPACE_EDGE_WHOLE
+                                                              : WORKSPACE_EDGE_ROBOT;
+  kept_model *kept = workspace_filled(q->workspace, buffer);
+  if (kept && is_kept(kept, &asked, covers)) {
+    kept->model.robot = asked.robot;
+    return &kept->model;
+  }
+  const size_t bytes = edge_model_robot_size(&asked, covers);
+  const size_t key =
+      aligned(sizeof *kept + covers->n_signature + (asked.n_pairs + asked.n_self_pairs) * sizeof *asked.pairs);
+  kept = workspace_reserve(q->workspace, buffer, key + bytes);
+  if (!kept) return NULL;
+  memset(kept, 0, sizeof *kept);
+  kept->asked = asked;
+  write_key(kept, &asked, covers);
+  edge_model_fill_robot(&kept->model, &asked, covers, (char *)kept + key);
+  mark_coarse(&kept->model);
+  return &kept->model;
+}
+
+/* ---- what is left ---- */
+
+static int32_t target_of(const cprox_edge_checker *c, uint32_t near) {
+  return c->obstacles[c->near[near]].target;
+}
+
+static const edge_part *part_of(const cprox_edge_checker *c, uint32_t near) {
+  const edge_part *part = c->parts;
+  while (near >= part->first_near + part->n_near) part++;
+  return part;
+}
+
+static void add_target(edge_rest *rest, size_t target) {
+  if (rest->n_pairs == 0 || target < rest->first) rest->first = target;
+  if (rest->n_pairs == 0 || target >= rest->last) rest->last = target + 1;
+}
+
+/* The pairs of geometries of what lanes left open, in an order of their own, to lists that have room for them. */
+static void list_open(const cprox_edge_checker *c, const edge_open *open, cprox_robot_pair *pairs,
+                      cprox_robot_pair *selves, edge_rest *rest) {
+  for (uint32_t i = 0; i < open->n; i++) {
+    const uint32_t number = open->pairs[i];
+    const bool self = number >= c->n_near;
+    const edge_pair *two = self ? &c->lane_pairs[number - c->n_near] : NULL;
+    const edge_part *part = self ? &c->parts[two->a] : part_of(c, number), *other = self ? &c->parts[two->b] : NULL;
+    bool known = false; /* by another part of the same target */
+    for (uint32_t k = 0; k < i && !self && !known; k++)
+      known = open->pairs[k] < c->n_near && target_of(c, open->pairs[k]) == target_of(c, number) &&
+              part_of(c, open->pairs[k]) == part;
+    for (uint32_t k = part->first_member; k < part->first_member + part->n_members && !known; k++) {
+      if (!self) add_target(rest, (size_t)target_of(c, number));
+      if (!self && pairs) pairs[rest->n_pairs] = (cprox_robot_pair){c->members[k], target_of(c, number)};
+      rest->n_pairs += !self;
+      for (uint32_t l = 0; self && l < other->n_members; l++, rest->n_self_pairs++)
+        if (selves) selves[rest->n_self_pairs] = (cprox_robot_pair){c->members[k], c->members[other->first_member + l]};
+    }
+  }
+}
+
+/* False where memory is out. */
+static bool take_open(const query *q, const cprox_edge_checker *c, const edge_open *open, edge_rest *rest) {
+  edge_rest counted = {0};
+  list_open(c, open, NULL, NULL, &counted);
+  cprox_robot_pair *pairs = workspace_reserve(q->workspace, WORKSPACE_EDGE_OPEN,
+                                              (counted.n_pairs + counted.n_self_pairs + 2) * sizeof *pairs);
+  if (!pairs) return false;
+  list_open(c, open, pairs, pairs + counted.n_pairs + 1, rest);
+  rest->pairs = pairs, rest->self_pairs = pairs + counted.n_pairs + 1;
+  return true;
+}
+
+/* ---- times ---- */
+
+/* Where the edge's parameter, seen from its middle, is along the motion. */
+static double time_of(const query *q, const motion_interval *over, double at) {
+  const double u = over->a + (over->b - over->a) * (0.5 + at);
+  return fmin(fmax(motion_time(q->mover.motion, over->first, fmin(fmax(u, 0.0), 1.0)), q->t0), q->t1);
+}
+
+/* The part from one parameter to another one, rounding on the side of more. */
+static void take_times(const query *q, const motion_interval *over, const edge_open *open, edge_rest *rest) {
+  const cprox_motion *m = q->mover.motion;
+  const double width = over->b - over->a, room = 0x1p-44;
+  const double a = over->a + width * (0.5 + (double)open->from) - room,
+               b = over->a + width * (0.5 + (double)open->to) + room;
+  rest->from = a > 0.0 ? fmax(motion_time_below(m, over->first, a), q->t0) : q->t0;
+  const double to = b < 1.0 ? motion_time(m, over->first, b) : q->t1;
+  rest->to = b < 1.0 ? fmin(to + 0x1p-50 * (fabs(to) + fabs(m->times[over->first])), q->t1) : q->t1;
+  if (!(open->from > -0.5f) || !(rest->from < rest->to)) rest->from = q->t0;
+  if (!(open->to < 0.5f) || !(rest->from < rest->to)) rest->to = q->t1;
+}
+
+/* ---- lanes ---- */
+
+static bool can_ask(const query *q, size_t first, size_t last, motion_interval *over) {
+  const cprox_motion *m = q->mover.motion;
+  if (!query_wants_verdict(q) || q->choice != PAIRS_ALL || q->options.max_lod != CPROX_LOD_MESH ||
+      q->options.certificate || q->is_signed || m->n_tracks != 1 || m->tracks[0].tolerance > 0.0 ||
+      last - first > MOST_TARGETS || !(q->limit < 1e6))
+    return false;
+  *over = motion_interval_of(m, q->t0, q->t1);
+  return over->last - over->first == 1;
+}
+
+/* One pair at one time. */
+static bool take_one(const query *q, int32_t geometry, int32_t other, bool self, double at, edge_rest *rest) {
+  cprox_robot_pair *pair = workspace_reserve(q->workspace, WORKSPACE_EDGE_OPEN, 2 * sizeof *pair);
+  if (!pair) return false;
+  pair[0] = (cprox_robot_pair){geometry, other};
+  *rest = (edge_rest){.pairs = pair, .self_pairs = pair, .n_pairs = !self, .n_self_pairs = self, .from = at, .to = at};
+  if (!self) rest->first = (size_t)other, rest->last = (size_t)other + 1;
+  return true;
+}
+
+static bool take_nearest(const query *q, const cprox_edge_checker *c, const edge_found *f, const motion_interval *over,
+                         edge_rest *rest) {
+  *rest = (edge_rest){.n_pairs = 0};
+  if (f->nearest == UINT32_MAX) return true;
+  const bool self = f->nearest >= c->n_near;
+  const edge_pair *two = self ? &c->lane_pairs[f->nearest - c->n_near] : NULL;
+  const edge_part *part = self ? &c->parts[two->a] : part_of(c, f->nearest);
+  const int32_t other = self ? c->members[c->parts[two->b].first_member] : target_of(c, f->nearest);
+  return take_one(q, c->members[part->first_member], other, self, time_of(q, over, (double)f->nearest_at), rest);
+}
+
+/* The model's other side. False: beyond single precision, or memory is out. */
+static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t last, const motion_interval *over,
+                  edge_motion *motion, edge_lanes *lanes) {
+  size_t n_obstacles = 0;
+  for (size_t i = first; i < last; i++) n_obstacles += body_n_parts(q->targets[i].body);
+  if (n_obstacles > MOST_TARGETS) return false;
+  const size_t scene = aligned(edge_model_scene_size(c, n_obstacles)), moves = aligned(edge_motion_size(c)),
+               rows = aligned(edge_lanes_size(c)), reaches = aligned(c->n_parts * sizeof(double)),
+               noted = c->n_parts * n_obstacles + c->n_lane_pairs + 1;
+  char *memory = workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
+                                   64 + rows + scene + moves + reaches + 2 * noted * sizeof(uint32_t));
+  if (!memory) return false;
+  memory += 64 - (uintptr_t)memory % 64;
+  *motion = edge_motion_in(c, memory + rows);
+  if (!edge_motion_fill_along(c, q->mover.motion, over, motion)) return false;
+  double *reach = (double *)(void *)(memory + rows + moves);
+  for (size_t i = 0; i < c->n_parts; i++) reach[i] = edge_motion_reach(c, motion, i);
+  edge_model_fill_scene(c, q->targets, first, last, reach, memory + rows + moves + reaches);
+  *lanes = (edge_lanes){.memory = memory, .measures = true};
+  lanes->open.pairs = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
+  lanes->open.seen = lanes->open.pairs + noted, lanes->open.edge = 1;
+  memset(lanes->open.seen, 0, noted * sizeof(uint32_t));
+  const uint64_t done = workspace_work(q->workspace),
+                 left = q->options.max_nodes > done ? q->options.max_nodes - done : 1;
+  lanes->most_batches = left < MOST_BATCHES ? (uint32_t)left : MOST_BATCHES;
+  return c->in_lanes && c->n_near <= MOST_NEAR;
+}
+
+bool edge_first_level(const query *q, size_t first, size_t last, edge_first *found) {
+  motion_interval over;
+  if (!can_ask(q, first, last, &over)) return false;
+  cprox_edge_checker *c = model_of(q);
+  if (!c || !c->in_lanes) return false;
+  edge_motion motion;
+  edge_lanes lanes;
+  c->asked.delta = q->limit;
+  const bool placed = place(q, c, first, last, &over, &motion, &lanes);
+  c->in_lanes = true; /* the robot's side is */
+  if (!placed || c->n_near + c->n_lane_pairs == 0) return false;
+  edge_found f;
+  edge_kernel_at(simd_of_machine())(c, &motion, &lanes, &f);
+  if (f.too_much || lanes.open.n > MOST_OPEN) return false;
+  *found = (edge_first){.verdict = f.verdict};
+  if (f.verdict == CPROX_VERDICT_VIOLATED)
+    return take_one(q, f.geometry, f.other, f.self, time_of(q, &over, (double)f.at), &found->rest);
+  const double least = lesser((double)f.least * (1.0 - 0x1p-20), c->beyond);
+  found->lower = greater(q->limit + greater(least, 0.0) * (1.0 - 0x1p-50), nextafter(q->limit, INFINITY));
+  if (f.verdict == CPROX_VERDICT_CLEAR) return take_nearest(q, c, &f, &over, &found->nearest);
+  take_times(q, &over, &lanes.open, &found->rest);
+  return take_open(q, c, &lanes.open, &found->rest);
+}

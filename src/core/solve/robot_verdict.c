@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "solve/robot_verdict.h"
+
+#include <math.h>
+
+#include "edges/first_level.h"
+#include "robot_query/answer.h"
+
+/* Asks the search about these pairs, between these times. */
+static cprox_status search(const query *q, const edge_rest *rest, double cutoff, cprox_result *result) {
+  query part = *q;
+  const bool self = mover_is_self(&q->mover);
+  part.mover.pairs = self ? rest->self_pairs : rest->pairs;
+  part.mover.n_pairs = self ? rest->n_self_pairs : rest->n_pairs;
+  part.mover.self_pairs = rest->self_pairs, part.mover.n_self_pairs = rest->n_self_pairs;
+  part.set = NULL;
+  part.t0 = rest->from, part.t1 = rest->to;
+  return robot_answer(&part, rest->first, rest->last, cutoff, result);
+}
+
+/* Everything else is farther than `lower`. */
+static cprox_status conclude(const query *q, double cutoff, double lower, cprox_result *result) {
+  result->lower = lesser(lower, result->lower);
+  return query_conclude(q, cutoff, result->status, result);
+}
+
+cprox_status robot_verdict(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
+  edge_first known;
+  if (!edge_first_level(q, first, last, &known)) return robot_answer(q, first, last, cutoff, result);
+  const uint64_t done = workspace_work(q->workspace);
+  cprox_result r;
+  cprox_status status;
+  if (known.verdict == CPROX_VERDICT_UNDECIDED) {
+    status = search(q, &known.rest, cutoff, &r);
+    if (status < 0) return status;
+    *result = r;
+    return conclude(q, cutoff, known.lower, result);
+  }
+  const bool clear = known.verdict == CPROX_VERDICT_CLEAR;
+  const edge_rest *one = clear ? &known.nearest : &known.rest;
+  status = search(q, one, cutoff, &r);
+  if (status < 0) return status;
+  /* a measurement is what proves contact; of what is clear it is the witness */
+  if (clear || r.verdict == CPROX_VERDICT_VIOLATED) {
+    r.lower = clear ? INFINITY : r.lower;
+    *result = r;
+    return conclude(q, cutoff, clear ? known.lower : 0.0, result);
+  }
+  workspace_forget_work(q->workspace);
+  workspace_add_work(q->workspace, done);
+  return robot_answer(q, first, last, cutoff, result);
+}
