@@ -135,6 +135,12 @@ struct convex {
   struct implicit *implicit; /* superquadrics and implicit bodies: the constraints, about the shape's origin */
 };
 
+/* Whether turning the core about its z axis leaves it as it is. */
+static inline bool convex_is_round(const convex *shape) {
+  const convex_round_core round = shape->ops->round_core;
+  return round == CONVEX_ALWAYS_ROUND || (round == CONVEX_ROUND_IF_EQUAL && shape->size[0] == shape->size[1]);
+}
+
 /* A point that a search ended at, drawn into the body. Searches themselves go on with the points as they are: what they
  * may be off counts at both ends of their intervals, and drawn points would leave a gap between these. */
 static inline vec3 convex_drawn(const convex *shape, vec3 x) {

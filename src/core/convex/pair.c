@@ -411,14 +411,9 @@ static simplex_vertex pair_farthest(void *self, vec3 n) {
   return pair_extreme(self, vec_neg(n));
 }
 
-static bool is_of_revolution(const convex *shape) {
-  if (shape->ops->round_core == CONVEX_ROUND_IF_EQUAL) return shape->size[0] == shape->size[1];
-  return shape->ops->round_core == CONVEX_ALWAYS_ROUND;
-}
-
 /* How far a point of b is moved at most if b's axis is laid on a's; infinity where one of them has none. */
 static double pair_misalignment(const pair *p) {
-  if (!is_of_revolution(p->a) || !is_of_revolution(p->b)) return INFINITY;
+  if (!convex_is_round(p->a) || !convex_is_round(p->b)) return INFINITY;
   const double tilt = feature_hypot(p->r[2], p->r[5]); /* the sine; the chord is at most sqrt(2) times as long */
   return 1.5 * tilt * p->b->scale + feature_hypot(p->t.x, p->t.y);
 }

@@ -73,6 +73,12 @@ typedef struct bound_side {
   vec3 middle, half;
 } bound_side;
 
+/* Takes off the ends of a chain the axes that turn the side beside them about its own axis of symmetry, or so nearly that
+ * planes would tell less: the first ones turn the standing side, the last ones the moving one. NULL: the side has none.
+ * Neither side is ever farther than what is returned from where it would be without a turn of these axes. */
+double motion_leave_out_round(const axis_state *axes, chain_axis *chain, size_t *n, const bound_side *moving,
+                              const bound_side *standing, uint32_t steps);
+
 /* The support of a side along n, seen from its own origin, its margin included. */
 double bound_height(const bound_side *side, vec3 n);
 

@@ -201,8 +201,11 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   entry->lower = greater(apart - displacement, entry->lower);
   const double size = greater(MOST_DISPLACEMENT * apart, moving->radius);
   if (robot_is_pruned(o, entry->lower) || !(displacement > size) || robot_is_short(o, node)) return;
+  const double round = robot_scene_round_displacement(&o->scene, pair, moving);
+  entry->lower = greater(apart - round, entry->lower);
+  if (robot_is_pruned(o, entry->lower) || round <= size) return;
   entry->needs_split = true;
-  want_pieces(o, displacement / size);
+  want_pieces(o, lesser(displacement, round) / size);
 }
 
 static inline cprox_status keep_open(robot_search *o, const list_entry *entry) {

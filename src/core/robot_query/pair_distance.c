@@ -152,15 +152,41 @@ static vec3 orthogonal_part(vec3 normal_rate, vec3 normal) {
   return vec_finite(normal_rate) ? vec_axpy(normal_rate, -vec_dot(normal_rate, normal), normal) : vec(0, 0, 0);
 }
 
-/* As if what moves were only shifted, as fast as its nearest point moves. */
+static vec3 times_symmetric(const double h[6], vec3 v) {
+  return vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
+             h[2] * v.x + h[4] * v.y + h[5] * v.z);
+}
+
+/* How the core's extreme point along d moves where d turns so, in world axes; (0,0,0) of polyhedra. `at` is the nearest
+ * point, margin included. */
+static vec3 extreme_rate(const robot_body *body, vec3 d, vec3 at, vec3 rate) {
+  const bound_side *side = &body->side;
+  if (!side->shape->ops->curvature) return vec(0, 0, 0);
+  double s[6];
+  const vec3 own = placement_turn_back(&side->at, d);
+  const vec3 x = vec_axpy(placement_turn_back(&side->at, vec_sub(at, side->at.p)), -side->margin, own);
+  side->shape->ops->curvature(side->shape, vec_scale(1.0 / vec_norm(own), own), x, s);
+  return placement_turn(&side->at, times_symmetric(s, placement_turn_back(&side->at, rate)));
+}
+
+/* (distance + how both cores bend) n' = v + (how the moving one bends) (omega x n); the Hessian of the distance is the
+ * inverse of that sum. What a face bends is not known, then the other side and that sum tell it. */
 static vec3 normal_rate_of_curved(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
                                   const chain_motion *motion) {
-  const vec3 from = vec_sub(gap->on_moving, moving->side.at.p);
-  const vec3 v = placement_turn_back(&standing->side.at, vec_add(motion->v, vec_cross(motion->omega, from)));
-  const double *h = gap->hessian;
-  const vec3 turned = vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
-                          h[2] * v.x + h[4] * v.y + h[5] * v.z);
-  return orthogonal_part(placement_turn(&standing->side.at, turned), gap->normal);
+  const vec3 n = vec_scale(1.0 / vec_norm(gap->normal), gap->normal), turned = vec_cross(motion->omega, n);
+  const vec3 core = vec_axpy(vec_sub(gap->on_moving, moving->side.at.p), moving->side.margin, n);
+  const bool by_moving = moving->side.shape->ops->curvature && !standing->side.shape->ops->curvature;
+  vec3 v = vec_add(motion->v, vec_cross(motion->omega, core)), rest = vec(0, 0, 0);
+  if (by_moving) {
+    v = vec_add(v, extreme_rate(moving, vec_neg(n), gap->on_moving, turned));
+  } else {
+    const double apart =
+        vec_dot(n, vec_sub(gap->on_moving, gap->on_standing)) + moving->side.margin + standing->side.margin;
+    v = vec_sub(v, vec_axpy(extreme_rate(standing, n, gap->on_standing, turned), apart, turned));
+    rest = turned;
+  }
+  const vec3 seen = times_symmetric(gap->hessian, placement_turn_back(&standing->side.at, v));
+  return orthogonal_part(vec_add(rest, placement_turn(&standing->side.at, seen)), n);
 }
 
 /* By a difference quotient: any rate of the normal is allowed, this one is near the best. */
@@ -168,6 +194,7 @@ vec3 robot_pair_normal_rate(const robot_gap *gap, const robot_body *moving, cons
                             const chain_motion *motion) {
   static const double STEP = 1e-5;
   vec3 n[2];
+  if (robot_body_is_halfspace(standing)) return vec(0, 0, 0); /* it has one direction, whatever moves */
   if (gap->n < 1) return normal_rate_of_curved(gap, moving, standing, motion);
   for (int k = 0; k < 2; k++) {
     vec3 w[3];

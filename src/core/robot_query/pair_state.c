@@ -567,10 +567,30 @@ static int32_t seen_from_axis(const robot_scene *s, const robot_pair *pair) {
   return pair->self ? s->motion->robot->parts[pair->standing].axis : -1;
 }
 
+/* Whether what is known of a side, but for its margin, is its shape: then it may look the same all round an axis. The
+ * certificate checker does not know of it. */
+static const bound_side *round_side(const robot_body *body) {
+  return convex_is_round(body->side.shape) && !body->tree && !body->side.margin_turns ? &body->side : NULL;
+}
+
+/* The axes that move the pair against each other. Those that turn a side about its own axis are left out where the
+ * search has one time: both sides stay within *stray of where they are without. */
+static size_t chain_of_pair(robot_scene *s, const robot_pair *pair, const robot_body *body, double *stray) {
+  size_t n = motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
+  *stray = 0.0;
+  if (robot_scene_has_two_times(s)) return n;
+  const robot_body *standing = robot_scene_standing(s, pair);
+  const bound_side *round[2] = {round_side(body), round_side(standing)};
+  if (round[0] || round[1])
+    *stray = motion_leave_out_round(s->axes, s->chain, &n, round[0], round[1], body->steps + standing->steps);
+  return n;
+}
+
 static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body *body, chain_motion *m) {
-  const size_t n =
-      motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
+  double stray;
+  const size_t n = chain_of_pair(s, pair, body, &stray);
   motion_of_part(s->axes, s->chain, n, body->side.at.p, robot_core_radius(body), s->scratch, m);
+  m->displacement += stray, m->stray += stray;
   if (!robot_scene_has_two_times(s) || !pair->self) return;
   motion_find_standing_rates(s->axes, s->chain, n, body->side.at.p, m);
   s->times.standing = start_clock_of(s->motion, pair->standing) == s->starts->other;
@@ -626,6 +646,13 @@ double robot_scene_displacement(robot_scene *s, const robot_pair *pair, const ro
                              moving->side.at.p, robot_core_radius(moving));
 }
 
+double robot_scene_round_displacement(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
+  if (robot_scene_has_two_times(s) || (!round_side(moving) && !round_side(robot_scene_standing(s, pair))))
+    return INFINITY;
+  chain_motion own;
+  return robot_scene_motion(s, pair, moving, &own)->displacement;
+}
+
 void robot_scene_displacements(robot_scene *s, const robot_pair *pair, double *other, double *lead) {
   const double moving = displacement_of_part(s, pair->moving), standing = displacement_of_part(s, pair->standing);
   const bool is_other = start_clock_of(s->motion, pair->moving) == s->starts->other;
@@ -647,7 +674,7 @@ double robot_scene_travel(robot_scene *s, int32_t index, double lead, double oth
 
 const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own) {
-  if (pair->self || pair->element[0] != ROBOT_WHOLE) {
+  if (pair->self || pair->element[0] != ROBOT_WHOLE || round_side(robot_scene_standing(s, pair))) {
     find_motion(s, pair, moving, own);
     return own;
   }

@@ -183,6 +183,8 @@ const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pai
 double robot_scene_swept_apart(robot_scene *scene, const robot_pair *pair);
 double robot_scene_coarse_displacement(robot_scene *scene, const robot_pair *pair);
 double robot_scene_displacement(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
+/* robot_scene_round_displacement(): the same where a side may turn about its own axis of symmetry; infinity elsewhere. */
+double robot_scene_round_displacement(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
 const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own);
 

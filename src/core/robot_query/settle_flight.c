@@ -351,7 +351,7 @@ static cprox_status advance(settling *s, double *from, double *lower) {
 
 /* ---- a node ---- */
 
-static bool is_one_flight(const robot_search *o, const search_node *node, int32_t *pair) {
+static bool is_one_flight(robot_search *o, const search_node *node, int32_t *pair) {
   const int32_t list = robot_known(node)->list;
   const motion_interval over = robot_interval(node);
   /* among several pairs a node of one segment would be ahead of spans, which have no control poses */
@@ -362,7 +362,12 @@ static bool is_one_flight(const robot_search *o, const search_node *node, int32_
   *pair = lists_at(&o->lists, list)->pair;
   if (*pair < 0) return false;
   const robot_pair *of = &o->scene.pairs[*pair];
-  return of->element[0] == ROBOT_WHOLE && of->element[1] == ROBOT_WHOLE;
+  if (of->element[0] != ROBOT_WHOLE || of->element[1] != ROBOT_WHOLE) return false;
+
+  /* where a side turns about its own axis little is left to bound */
+  robot_scene_enter_both(&o->scene, &over, &over);
+  const robot_body *moving = robot_scene_moving(&o->scene, of);
+  return !(robot_scene_round_displacement(&o->scene, of, moving) <= 0.25 * o->goal.epsilon);
 }
 
 cprox_status robot_bound_flight(robot_search *o, search_node *node, bool *served) {
