@@ -347,17 +347,32 @@ CASE(a_verdict_of_a_curve_costs_no_more_than_the_distance) {
 
 /* ---- constant distance ---- */
 
-/* Circles round the axis of a ball, a cylinder and a capsule, at two heights and for two accuracies: no plane parts a
- * long arc from the body, but its distance from the axis is known at once. */
+/* At one point of a circle. */
+static double distance_of_point(vec3 x, const cprox_body *body) {
+  cprox_body *point = NULL;
+  cprox_result found;
+  const cprox_options fine = accurate(1e-14);
+  assert_int_equal(cprox_body_create_point(x, ws, &point), CPROX_OK);
+  assert_true(cprox_pair(cprox_obstacle_at(point, CPROX_POSE_IDENTITY), cprox_obstacle_at(body, CPROX_POSE_IDENTITY),
+                         &fine, ws, &found) >= 0);
+  cprox_body_free(point);
+  return found.upper;
+}
+
+/* Circles round the axis of a ball and of bodies of revolution, at the side and at the rims, for two accuracies: no
+ * plane parts a long arc from the body, but the planes all round the axis do. */
 CASE(a_circle_round_an_axis_takes_few_nodes) {
+  enum { BODIES = 5 };
   rng r = rng_seed(403);
-  cprox_body *round[3];
+  cprox_body *round[BODIES];
+  assert_int_equal(cprox_body_create_cone(1.0, 0.3, ws, &round[3]), CPROX_OK);
+  assert_int_equal(cprox_body_create_ellipsoid(vec(0.3, 0.3, 0.6), ws, &round[4]), CPROX_OK);
   assert_int_equal(cprox_body_create_sphere(0.3, ws, &round[0]), CPROX_OK);
   assert_int_equal(cprox_body_create_cylinder(1.0, 0.3, ws, &round[1]), CPROX_OK);
   assert_int_equal(cprox_body_create_capsule(1.0, 0.3, ws, &round[2]), CPROX_OK);
   for (int i = 0; i < 40; i++) {
     const cprox_pose pose = rng_pose(&r, 2.0);
-    const double height = i % 2 ? rng_uniform(&r, -0.4, 0.4) : 0.0, radius = rng_uniform(&r, 0.5, 2.0);
+    const double height = i % 2 ? rng_uniform(&r, -0.8, 0.8) : 0.0, radius = rng_uniform(&r, 0.5, 2.0);
     vec3 points[3];
     for (int k = 0; k < 3; k++) {
       const cprox_pose turned = {.position = k == 0 ? pose.position : vec(0, 0, 0), .orientation = pose.orientation};
@@ -369,18 +384,39 @@ CASE(a_circle_round_an_axis_takes_few_nodes) {
     const cprox_curve_description d = {
         .kind = CPROX_CURVE_TRIGONOMETRIC, .points = points, .n = 3, .t0 = 0.0, .t1 = 6.283185307179586};
     assert_int_equal(cprox_curve_create(&d, ws, &circle), CPROX_OK);
-    for (int k = i % 2; k < 3; k++) {
+    for (int k = 0; k < BODIES; k++) {
       const cprox_options options = accurate(i % 4 < 2 ? 1e-6 : 1e-10);
-      const double distance = hypot(radius, k == 0 ? height : 0.0) - 0.3;
+      const double distance = distance_of_point(vec(radius, 0, height), round[k]);
       cprox_result found;
       assert_int_equal(
           cprox_distance(cprox_point_along(circle), cprox_obstacle_at(round[k], pose), &options, ws, &found), CPROX_OK);
       if (found.nodes > 300) fail_msg("body %d: %u nodes", k, found.nodes);
-      assert_true(found.lower <= distance + 1e-14 && distance <= found.upper + 1e-14);
+      assert_true(found.lower <= distance + 1e-13 && distance <= found.upper + 1e-13);
     }
     cprox_curve_free(circle);
   }
-  for (int k = 0; k < 3; k++) cprox_body_free(round[k]);
+  for (int k = 0; k < BODIES; k++) cprox_body_free(round[k]);
+}
+
+/* Two circles round one point: most of what is left are pairs of ranges of the 155 pieces of each. */
+CASE(concentric_circles_take_few_nodes) {
+  static const double OTHER[4] = {1.05, 1.2, 1.5, 2.0};
+  for (int i = 0; i < 4; i++) {
+    cprox_curve *circle[2];
+    for (int k = 0; k < 2; k++) {
+      const double radius = k == 0 ? 1.0 : OTHER[i];
+      const vec3 points[3] = {vec(0, 0, 0), vec(radius, 0, 0), vec(0, radius, 0)};
+      const cprox_curve_description d = {
+          .kind = CPROX_CURVE_TRIGONOMETRIC, .points = points, .n = 3, .t0 = 0.0, .t1 = 6.283185307179586};
+      assert_int_equal(cprox_curve_create(&d, ws, &circle[k]), CPROX_OK);
+    }
+    cprox_result found;
+    assert_int_equal(
+        cprox_distance(cprox_point_along(circle[0]), cprox_obstacle_curve(circle[1], 0.0), NULL, ws, &found), CPROX_OK);
+    if (found.nodes > 2000) fail_msg("radius %g: %u nodes", OTHER[i], found.nodes);
+    assert_true(found.lower <= OTHER[i] - 1.0 + 1e-14 && OTHER[i] - 1.0 <= found.upper + 1e-14);
+    for (int k = 0; k < 2; k++) cprox_curve_free(circle[k]);
+  }
 }
 
 /* ---- robots with meshes ---- */

@@ -66,6 +66,11 @@ static bool cover_is_the_body(const curve_convex *o) {
   return o->cover.radius == o->shape->margin;
 }
 
+/* And more than a point. */
+static bool has_round_core(const curve_convex *o) {
+  return convex_is_round(o->shape) && o->shape->scale > o->shape->margin;
+}
+
 /* Where the curve bends round a vertex or an edge, a plane is too weak; the distance from the cover's centre is not. */
 static void bound_by_cover(curve_convex *o, search_node *node) {
   curve_convex_node *payload = curve_convex_own(node);
@@ -74,6 +79,22 @@ static void bound_by_cover(curve_convex *o, search_node *node) {
                                points_pool_at(&o->pool, CURVE_CONVEX_SCRATCH));
   const double bound = from_centre - o->cover.radius - o->offset;
   const double slack = ROUND_UP * (payload->at.error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
+  node->lower = greater(bound - slack, node->lower);
+}
+
+/* Of a body that looks the same all round its axis the best plane, turned round it, says as much on every side: its
+ * height over the plane is that of the distance from the axis and of the place along it. */
+static void bound_all_round(curve_convex *o, search_node *node) {
+  static const vec3 AXIS = {0.0, 0.0, 1.0};
+  const curve_interval *at = &curve_convex_own(node)->at;
+  const vec3 n = o->best.normal;
+  const double across = hypot(n.x, n.y);
+  if (!isfinite(o->best.support) || !(across > 0.0)) return;
+  const double from_axis =
+      curve_side_distance_from(&o->side, at, vec(0, 0, 0), &AXIS, points_pool_at(&o->pool, CURVE_CONVEX_SCRATCH));
+  const curve_reach along = curve_side_reach(&o->side, at, vec(0.0, 0.0, n.z));
+  const double bound = across * from_axis + along.least - o->best.support;
+  const double slack = 2.0 * bound_slack(o, at->error + along.error, along.magnitude + from_axis, bound);
   node->lower = greater(bound - slack, node->lower);
 }
 
@@ -103,10 +124,12 @@ static double filter(void *self, search_node *node, double goal) {
     payload->seen = o->incumbent;
   }
   if (payload->at.slot >= 0 && node->lower < goal && payload->seen_ball != o->incumbent &&
-      (o->refined || o->nodes >= o->effort.newton_after) && know_cover(o) &&
-      (cover_is_the_body(o) || holds_best(o, node))) {
-    bound_by_cover(o, node);
-    payload->seen_ball = o->incumbent;
+      (o->refined || o->nodes >= o->effort.newton_after)) {
+    const bool covered = know_cover(o) && (cover_is_the_body(o) || holds_best(o, node));
+    if (covered) bound_by_cover(o, node);
+    const bool round = node->lower < goal && has_round_core(o);
+    if (round) bound_all_round(o, node);
+    if (covered || round) payload->seen_ball = o->incumbent;
   }
   return node->lower;
 }

@@ -4,6 +4,7 @@
 #include "base/rounding.h"
 #include "convex/depth.h"
 #include "curve/packets.h"
+#include "curve_query/bent_pieces.h"
 #include "curve_query/newton_curves.h"
 #include "problem/minkowski.h"
 
@@ -64,14 +65,51 @@ static void load_pieces(curve_curve *o, const search_node *node) {
     if (payload->side[k].slot >= 0) curve_side_load(&o->side[k], curve_side_piece(&o->side[k], &payload->side[k]));
 }
 
+/* Where the curves run beside each other planes are too weak, and how both bend tells more. The node's pieces must be
+ * the loaded ones. */
+static void bound_by_bends(const curve_curve *o, search_node *node) {
+  const curve_interval *at = curve_curve_known(node)->side;
+  const double *points[2];
+  size_t degree[2];
+  double magnitude = o->offset;
+  for (int k = 0; k < 2; k++) {
+    points[k] = points_pool_at(&o->pool, (size_t)at[k].slot);
+    degree[k] = o->side[k].curve->degree;
+    magnitude += o->side[k].root_magnitude;
+  }
+  const double apart = bent_pieces_apart(points, degree, magnitude);
+  const double slack = ROUND_UP * (at[0].error + at[1].error + 4.0 * ROUND_U * (apart + o->offset));
+  node->lower = greater(apart - o->offset - slack, node->lower);
+}
+
+/* Most searches end before that costs less than it spares. */
+enum { NODES_BEFORE_BENDS = 100 };
+
+static bool is_hard(const curve_curve *o) {
+  return o->nodes > NODES_BEFORE_BENDS;
+}
+
+static bool may_bend(const curve_curve *o, const search_node *node) {
+  if (o->carries || o->side[0].curve->arcs || o->side[1].curve->arcs) return false;
+  const curve_interval *at = curve_curve_known(node)->side;
+  return curve_side_is_piece(&o->side[0], &at[0]) && curve_side_is_piece(&o->side[1], &at[1]);
+}
+
 static double filter(void *self, search_node *node, double goal) {
   curve_curve_node *payload = curve_curve_own(node);
   curve_curve *o = self;
   o->goal = goal;
-  if (o->incumbent == 0 || payload->seen == o->incumbent) return node->lower;
-  load_pieces(o, node);
-  curve_curve_bound(o, node, o->best.normal);
-  payload->seen = o->incumbent;
+  if (o->incumbent == 0) return node->lower;
+  if (payload->seen != o->incumbent) {
+    load_pieces(o, node);
+    curve_curve_bound(o, node, o->best.normal);
+    payload->seen = o->incumbent;
+  }
+  bool pieces;
+  if (node->lower < goal && is_hard(o) && may_bend(o, node) && curve_curve_materialise(o, node, &pieces) == CPROX_OK) {
+    load_pieces(o, node);
+    bound_by_bends(o, node);
+  }
   return node->lower;
 }
 
@@ -316,7 +354,7 @@ static curve_curve_cuts choose_cuts(const curve_curve *o, const search_node *nod
   if (!holds_best(o, node)) {
     const int longer = curve_curve_longer_side(o, node), other = 1 - longer;
     curve_curve_cut_middle(&cuts, node, longer);
-    if (are_ranges(o, node) &&
+    if ((are_ranges(o, node) || (is_hard(o) && may_bend(o, node))) &&
         2.0 * length_of(&o->side[other], &payload->side[other]) > length_of(&o->side[longer], &payload->side[longer]))
       curve_curve_cut_middle(&cuts, node, other);
     return cuts;

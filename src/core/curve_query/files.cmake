@@ -1,5 +1,6 @@
 # The files of this room. A new file is one line here.
 target_sources(cprox_objects PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/bent_pieces.c
   ${CMAKE_CURRENT_LIST_DIR}/contact_bvh.c
   ${CMAKE_CURRENT_LIST_DIR}/contact_convex.c
   ${CMAKE_CURRENT_LIST_DIR}/contact_curve.c
