@@ -20,6 +20,10 @@ static const double LONGEST = 2.0, TO_GOAL = 0.2, PER_RADIAN = 32.0;
 
 typedef struct edge_problem {
   const cprox_edge_checker *checker;
+  const cprox_robot *robot; /* what that was made of */
+  const cprox_obstacles *obstacles;
+  const cprox_robot_pair *self_pairs;
+  size_t n_self_pairs;
   double from[JOINTS], to[JOINTS];
   bool valid;
 } edge_problem;
@@ -49,6 +53,32 @@ static void by_samples(const void *problems, size_t i, void *state, bench_answer
   answer->wrong = lane_sampling_hits(p->checker, p->from, p->to, s->per_radian, lanes, motion) == p->valid;
 }
 
+/* The same edge as a motion that is made for it, by the query for any motion. */
+static void as_motion(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const edge_problem *p = (const edge_problem *)problems + i;
+  const edge_state *s = state;
+  static const int32_t VARIABLES[JOINTS] = {0, 1, 2, 3, 4, 5, 6};
+  const cprox_waypoint ends[2] = {{.time = 0.0, .positions = p->from}, {.time = 1.0, .positions = p->to}};
+  const cprox_motion_description edge = {.kind = CPROX_MOTION_WAYPOINTS,
+                                         .variables = VARIABLES,
+                                         .n_variables = JOINTS,
+                                         .waypoints = ends,
+                                         .n_waypoints = 2,
+                                         .interpolation = CPROX_INTERPOLATION_LINEAR};
+  *answer = (bench_answer){.lower = NAN, .upper = NAN, .failed = true};
+  cprox_motion *motion = NULL;
+  if (cprox_motion_create(p->robot, &edge, s->workspace, &motion) < 0) return;
+  cprox_mover mover = cprox_robot_along(motion, NULL, 0);
+  mover.kind = CPROX_MOVER_ROBOT_WHOLE;
+  mover.self_pairs = p->self_pairs, mover.n_self_pairs = p->n_self_pairs;
+  cprox_result r = {0};
+  const cprox_status status = cprox_obstacles_collision(p->obstacles, mover, NULL, s->workspace, &r, NULL);
+  answer->nodes = r.nodes, answer->distance_queries = r.distance_queries;
+  answer->failed = status < 0 || r.verdict == CPROX_VERDICT_UNDECIDED;
+  answer->wrong = r.verdict != (p->valid ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
+  cprox_motion_free(motion);
+}
+
 static double apart2(const double *a, const double *b) {
   double d = 0.0;
   for (int k = 0; k < JOINTS; k++) d += (a[k] - b[k]) * (a[k] - b[k]);
@@ -63,8 +93,9 @@ static cprox_verdict verdict_of(const cprox_edge_checker *c, const double *from,
 }
 
 /* The edges that a tree from a motion's beginning and end tries. */
-static size_t grow(const cprox_edge_checker *c, const double ends[2][JOINTS], size_t wanted, rng *r, edge_problem *out,
+static size_t grow(const edge_problem *in, const double ends[2][JOINTS], size_t wanted, rng *r, edge_problem *out,
                    cprox_workspace *ws) {
+  const cprox_edge_checker *c = in->checker;
   double grown[TREE][JOINTS];
   size_t n_grown = 2, n = 0;
   memcpy(grown, ends, 2 * sizeof grown[0]);
@@ -79,7 +110,7 @@ static size_t grow(const cprox_edge_checker *c, const double ends[2][JOINTS], si
       if (d < least && d > 1e-6) least = d, nearest = k;
     }
     if (isinf(least)) continue;
-    edge_problem p = {.checker = c};
+    edge_problem p = *in;
     const double share = fmin(1.0, LONGEST / sqrt(least));
     for (int k = 0; k < JOINTS; k++) {
       p.from[k] = grown[nearest][k];
@@ -103,9 +134,10 @@ static void rows(const char *parameter, const edge_problem *all, size_t n, bool 
     if (all[i].valid == valid) some[count++] = all[i];
   edge_state state = {.workspace = ws, .per_radian = PER_RADIAN};
   const bench_method methods[] = {{"curve_proximity", certified, &state},
+                                  {"each as a motion", as_motion, &state},
                                   {"the same lanes at 32 a radian", by_samples, &state}};
   const bench_workload w = {"robots", valid ? "valid edges" : "invalid edges", parameter, some, count, NULL, 0.0};
-  if (count > 0 && bench_wanted(size, w.name)) bench_measure(&w, size, methods, lane_sampling_exists() ? 2 : 1);
+  if (count > 0 && bench_wanted(size, w.name)) bench_measure(&w, size, methods, lane_sampling_exists() ? 3 : 2);
 }
 
 void bench_robot_edges(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *ws) {
@@ -135,7 +167,13 @@ void bench_robot_edges(const robot_case *cases, size_t n, const bench_size *size
       cprox_motion_evaluate(cases[i].motion, k ? info.t1 : info.t0, ends[k]);
       memcpy(arm[k], ends[k], sizeof arm[k]);
     }
-    n_all += grow(checkers[n_worlds++], (const double(*)[JOINTS])arm, EDGES / worlds, &r, all + n_all, ws);
+    const edge_problem in = {.checker = checkers[n_worlds],
+                             .robot = balls.robot,
+                             .obstacles = sets[n_worlds],
+                             .self_pairs = self,
+                             .n_self_pairs = balls.n_self_pairs};
+    n_worlds++;
+    n_all += grow(&in, (const double(*)[JOINTS])arm, EDGES / worlds, &r, all + n_all, ws);
   }
   rows("panda_spheres scene and self", all, n_all, true, size, ws);
   rows("panda_spheres scene and self", all, n_all, false, size, ws);
