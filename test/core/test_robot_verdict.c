@@ -45,7 +45,8 @@ static cprox_body *random_body(rng *r, double size, bool round) {
   return b;
 }
 
-/* One polynomial: a state, a line, a cubic, a quintic or a B-spline of any degree. */
+/* A state, a line, a cubic, a quintic, a B-spline of any degree and one segment, or lines and cubics between waypoints.
+ */
 static void make_motion(rng *r, double scale, scene *s) {
   double values[POINTS][TEST_MAX_VARIABLES + 1], knots[2 * POINTS];
   int32_t variables[TEST_MAX_VARIABLES + 1];
@@ -70,6 +71,7 @@ static void make_motion(rng *r, double scale, scene *s) {
   for (size_t k = 0; k <= degree; k++) memcpy(control + k * n, values[k], n * sizeof *control);
   for (size_t k = 0; k < 2 * (degree + 1); k++) knots[k] = k <= degree ? t0 : t1;
   cprox_motion_description d = {.variables = variables, .n_variables = n, .waypoints = ends, .n_waypoints = 2};
+  cprox_waypoint many[POINTS];
   d.kind = CPROX_MOTION_WAYPOINTS;
   d.interpolation = kind == 1   ? CPROX_INTERPOLATION_LINEAR
                     : kind == 2 ? CPROX_INTERPOLATION_CUBIC
@@ -84,6 +86,13 @@ static void make_motion(rng *r, double scale, scene *s) {
                                    .degree = degree,
                                    .knots = knots,
                                    .n_knots = 2 * (degree + 1)};
+  if (kind == 3 && rng_index(r, 2) && n > 0) { /* waypoints, with all that they may know or less */
+    for (size_t k = 0; k < POINTS; k++)
+      many[k] = (cprox_waypoint){.time = t0 + (double)k * (t1 - t0) / POINTS, .positions = values[k]};
+    for (size_t k = 0; k + 2 < POINTS && rng_index(r, 2); k++) many[k].velocities = values[k + 2];
+    d.interpolation = CPROX_INTERPOLATION_BY_WAYPOINTS;
+    d.waypoints = many, d.n_waypoints = 2 + rng_index(r, POINTS - 1);
+  }
   if (cprox_motion_create(s->robot, &d, ws, &s->motion) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
 }
 

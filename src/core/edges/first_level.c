@@ -15,6 +15,9 @@ enum { MOST_COARSE = 4 };
 /* So many times eight intervals: what they leave open is left to the search. */
 enum { MOST_BATCHES = 32 };
 
+/* A motion of more segments is cut at its knots by the search, which takes many at once. */
+enum { MOST_SEGMENTS = 16 };
+
 /* ---- the model ---- */
 
 /* The robot's side of a model stays in the workspace from query to query. It is the same model as long as the robot's
@@ -166,17 +169,17 @@ static double time_of(const query *q, const motion_interval *over, double at) {
   return fmin(fmax(motion_time(q->mover.motion, over->first, fmin(fmax(u, 0.0), 1.0)), q->t0), q->t1);
 }
 
-/* The part from one parameter to another one, rounding on the side of more. */
-static void take_times(const query *q, const motion_interval *over, const edge_open *open, edge_rest *rest) {
+/* Adds the part of a segment from one parameter to another one to the times that are open, rounding on the side of
+ * more. */
+static void add_times(const query *q, const motion_interval *over, const edge_open *open, edge_rest *rest) {
   const cprox_motion *m = q->mover.motion;
   const double width = over->b - over->a, room = 0x1p-44;
-  const double a = over->a + width * (0.5 + (double)open->from) - room,
-               b = over->a + width * (0.5 + (double)open->to) + room;
-  rest->from = a > 0.0 ? fmax(motion_time_below(m, over->first, a), q->t0) : q->t0;
-  const double to = b < 1.0 ? motion_time(m, over->first, b) : q->t1;
-  rest->to = b < 1.0 ? fmin(to + 0x1p-50 * (fabs(to) + fabs(m->times[over->first])), q->t1) : q->t1;
-  if (!(open->from > -0.5f) || !(rest->from < rest->to)) rest->from = q->t0;
-  if (!(open->to < 0.5f) || !(rest->from < rest->to)) rest->to = q->t1;
+  const double a = fmax(over->a + width * (0.5 + (double)open->from) - room, 0.0),
+               b = fmin(over->a + width * (0.5 + (double)open->to) + room, 1.0);
+  const double from = motion_time_below(m, over->first, a), to = motion_time(m, over->first, b);
+  const double up = 0x1p-50 * (fabs(to) + fabs(m->times[over->first]));
+  rest->from = lesser(greater(from, q->t0), rest->from);
+  rest->to = greater(lesser(to + up, q->t1), rest->to);
 }
 
 /* ---- lanes ---- */
@@ -188,7 +191,7 @@ static bool can_ask(const query *q, size_t first, size_t last, motion_interval *
       last - first > MOST_TARGETS || !(q->limit < 1e6))
     return false;
   *over = motion_interval_of(m, q->t0, q->t1);
-  return over->last - over->first == 1;
+  return over->last - over->first <= MOST_SEGMENTS;
 }
 
 /* One pair at one time. */
@@ -212,9 +215,35 @@ static bool take_nearest(const query *q, const cprox_edge_checker *c, const edge
   return take_one(q, c->members[part->first_member], other, self, time_of(q, over, (double)f->nearest_at), rest);
 }
 
+/* All that a query needs in the workspace. */
+typedef struct edge_run {
+  edge_motion motion;
+  edge_lanes lanes;
+  edge_open all;   /* what is open in any segment */
+  uint32_t *known; /* whether it is there */
+  uint64_t batches;
+} edge_run;
+
+static motion_interval segment_of(const motion_interval *over, size_t k) {
+  return (motion_interval){
+      .a = k == over->first ? over->a : 0.0, .b = k + 1 == over->last ? over->b : 1.0, .first = k, .last = k + 1};
+}
+
+/* How far each part comes from the base. False: beyond single precision. */
+static bool find_reach(const query *q, const cprox_edge_checker *c, const motion_interval *over, edge_motion *motion,
+                       double *reach) {
+  for (size_t i = 0; i < c->n_parts; i++) reach[i] = 0.0;
+  for (size_t k = over->last; k-- > over->first;) {
+    const motion_interval segment = segment_of(over, k);
+    if (!edge_motion_fill_along(c, q->mover.motion, &segment, motion)) return false;
+    for (size_t i = 0; i < c->n_parts; i++) reach[i] = greater(edge_motion_reach(c, motion, i), reach[i]);
+  }
+  return true;
+}
+
 /* The model's other side. False: beyond single precision, or memory is out. */
 static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t last, const motion_interval *over,
-                  edge_motion *motion, edge_lanes *lanes) {
+                  edge_run *run) {
   size_t n_obstacles = 0;
   for (size_t i = first; i < last; i++) n_obstacles += body_n_parts(q->targets[i].body);
   if (n_obstacles > MOST_TARGETS) return false;
@@ -222,44 +251,82 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
                rows = aligned(edge_lanes_size(c)), reaches = aligned(c->n_parts * sizeof(double)),
                noted = c->n_parts * n_obstacles + c->n_lane_pairs + 1;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
-                                   64 + rows + scene + moves + reaches + 2 * noted * sizeof(uint32_t));
+                                   64 + rows + scene + moves + reaches + 4 * noted * sizeof(uint32_t));
   if (!memory) return false;
   memory += 64 - (uintptr_t)memory % 64;
-  *motion = edge_motion_in(c, memory + rows);
-  if (!edge_motion_fill_along(c, q->mover.motion, over, motion)) return false;
+  *run = (edge_run){.motion = edge_motion_in(c, memory + rows), .lanes = {.memory = memory, .measures = true}};
   double *reach = (double *)(void *)(memory + rows + moves);
-  for (size_t i = 0; i < c->n_parts; i++) reach[i] = edge_motion_reach(c, motion, i);
+  if (!find_reach(q, c, over, &run->motion, reach)) return false;
   edge_model_fill_scene(c, q->targets, first, last, reach, memory + rows + moves + reaches);
-  *lanes = (edge_lanes){.memory = memory, .measures = true};
-  lanes->open.pairs = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
-  lanes->open.seen = lanes->open.pairs + noted, lanes->open.edge = 1;
-  memset(lanes->open.seen, 0, noted * sizeof(uint32_t));
-  const uint64_t done = workspace_work(q->workspace),
-                 left = q->options.max_nodes > done ? q->options.max_nodes - done : 1;
-  lanes->most_batches = left < MOST_BATCHES ? (uint32_t)left : MOST_BATCHES;
+  uint32_t *marks = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
+  memset(marks, 0, 2 * noted * sizeof *marks);
+  run->lanes.open.seen = marks, run->known = marks + noted;
+  run->lanes.open.pairs = marks + 2 * noted, run->all.pairs = marks + 3 * noted;
+  const uint64_t done = workspace_work(q->workspace), most = q->options.max_nodes;
+  run->batches = done < most ? most - done : 1;
+  if (run->batches > MOST_BATCHES + over->last - over->first) run->batches = MOST_BATCHES + over->last - over->first;
   return c->in_lanes && c->n_near <= MOST_NEAR;
 }
 
+static void add_open(edge_run *run) {
+  const edge_open *open = &run->lanes.open;
+  for (uint32_t i = 0; i < open->n; i++) {
+    if (run->known[open->pairs[i]]) continue;
+    run->known[open->pairs[i]] = 1;
+    run->all.pairs[run->all.n++] = open->pairs[i];
+  }
+}
+
+/* One segment after another; `nearest` is where the least of all was found. False: lanes cannot tell. */
+static bool look_along(const query *q, const cprox_edge_checker *c, const motion_interval *over, edge_run *run,
+                       edge_found *f, motion_interval *nearest, edge_rest *rest) {
+  edge_kernel *kernel = edge_kernel_at(simd_of_machine());
+  *f = (edge_found){.verdict = CPROX_VERDICT_CLEAR, .least = INFINITY, .nearest = UINT32_MAX};
+  *rest = (edge_rest){.from = INFINITY, .to = -INFINITY};
+  for (size_t k = over->first; k < over->last; k++) {
+    const motion_interval segment = segment_of(over, k);
+    if (over->last - over->first > 1 && !edge_motion_fill_along(c, q->mover.motion, &segment, &run->motion))
+      return false;
+    if (run->batches == 0) return false;
+    run->lanes.open.edge++, run->lanes.most_batches = (uint32_t)run->batches;
+    edge_found one;
+    kernel(c, &run->motion, &run->lanes, &one);
+    if (one.too_much) return false;
+    run->batches -= one.batches;
+    if (one.verdict == CPROX_VERDICT_VIOLATED) {
+      *f = one, *nearest = segment;
+      return true;
+    }
+    if (one.verdict == CPROX_VERDICT_UNDECIDED) {
+      add_open(run), add_times(q, &segment, &run->lanes.open, rest);
+      f->verdict = CPROX_VERDICT_UNDECIDED;
+    }
+    if (one.least < f->least)
+      f->least = one.least, f->nearest = one.nearest, f->nearest_at = one.nearest_at, *nearest = segment;
+  }
+  return run->all.n <= MOST_OPEN;
+}
+
 bool edge_first_level(const query *q, size_t first, size_t last, edge_first *found) {
-  motion_interval over;
+  motion_interval over, nearest;
   if (!can_ask(q, first, last, &over)) return false;
   cprox_edge_checker *c = model_of(q);
   if (!c || !c->in_lanes) return false;
-  edge_motion motion;
-  edge_lanes lanes;
+  edge_run run;
   c->asked.delta = q->limit;
-  const bool placed = place(q, c, first, last, &over, &motion, &lanes);
+  const bool placed = place(q, c, first, last, &over, &run);
   c->in_lanes = true; /* the robot's side is */
   if (!placed || c->n_near + c->n_lane_pairs == 0) return false;
   edge_found f;
-  edge_kernel_at(simd_of_machine())(c, &motion, &lanes, &f);
-  if (f.too_much || lanes.open.n > MOST_OPEN) return false;
-  *found = (edge_first){.verdict = f.verdict};
+  *found = (edge_first){.verdict = CPROX_VERDICT_UNDECIDED};
+  nearest = over;
+  if (!look_along(q, c, &over, &run, &f, &nearest, &found->rest)) return false;
+  found->verdict = f.verdict;
   if (f.verdict == CPROX_VERDICT_VIOLATED)
-    return take_one(q, f.geometry, f.other, f.self, time_of(q, &over, (double)f.at), &found->rest);
+    return take_one(q, f.geometry, f.other, f.self, time_of(q, &nearest, (double)f.at), &found->rest);
   const double least = lesser((double)f.least * (1.0 - 0x1p-20), c->beyond);
   found->lower = greater(q->limit + greater(least, 0.0) * (1.0 - 0x1p-50), nextafter(q->limit, INFINITY));
-  if (f.verdict == CPROX_VERDICT_CLEAR) return take_nearest(q, c, &f, &over, &found->nearest);
-  take_times(q, &over, &lanes.open, &found->rest);
-  return take_open(q, c, &lanes.open, &found->rest);
+  if (f.verdict == CPROX_VERDICT_CLEAR) return take_nearest(q, c, &f, &nearest, &found->nearest);
+  if (!(found->rest.from < found->rest.to)) found->rest.from = q->t0, found->rest.to = q->t1;
+  return take_open(q, c, &run.all, &found->rest);
 }

@@ -395,6 +395,7 @@ EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *mot
       stack[n++] = (lane_interval){((float)(2 * i + 1) - (float)EDGE_LANES) * EDGE_ROOT_HALF, EDGE_ROOT_HALF};
   for (int batches = 0; n > 0; batches++) {
     load_batch(&b, stack, &n);
+    found->batches++;
     if (look_at_batch(&b)) return;
     if (n == 0 && b.split == 0) break;
     float shortest = 1.0f;

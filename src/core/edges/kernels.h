@@ -28,7 +28,7 @@ typedef struct edge_found {
   cprox_verdict verdict; /* undecided: what is open decides, or all where there was too much */
   bool too_much;
   cprox_edge_level level;
-  uint32_t intervals;
+  uint32_t intervals, batches;
   float at;                /* violated: there, seen from the middle of the edge, */
   int32_t geometry, other; /* by this geometry and this obstacle, or */
   bool self;               /* this other geometry */
