@@ -375,7 +375,7 @@ void readPathWords(const Words &words, Arguments &out) {
 }
 
 /* The number of a shard, from 0. */
-std::size_t readShard(const Words &words, std::size_t shards) {
+std::size_t readShardNumber(const Words &words, std::size_t shards) {
   const std::optional<std::uint64_t> shard = parseCount(words.text("--shard"));
   if (shard && *shard < shards) return static_cast<std::size_t>(*shard);
   throw BadUsage("--shard is '" + words.text("--shard") + "'; of " + std::to_string(shards) +
@@ -449,7 +449,7 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       required("--out", "FOLDER, where the shards go");
       out.shortest_way = words.has("--shortest-way");
       if (words.has("--shards")) out.shards = static_cast<std::size_t>(readCount(words, "--shards", kMostShards));
-      if (words.has("--shard")) out.shard = readShard(words, out.shards);
+      if (words.has("--shard")) out.shard = readShardNumber(words, out.shards);
       if (words.has("--failed") && !out.shard) throw BadUsage("--failed needs --shard I: it gives up one shard");
       if (words.has("--failed")) out.failed = words.text("--failed");
       out.progress = words.has("--progress") ? words.text("--progress") : "line";

@@ -9,13 +9,13 @@
 namespace curve_proximity::cli {
 namespace {
 
-std::string recordOf(const void *bytes, std::size_t size) {
+std::string recordOfBytes(const void *bytes, std::size_t size) {
   std::string record;
   for (int i = 0; i < 4; ++i) record += static_cast<char>(size >> (8 * i) & 255);
   return record.append(static_cast<const char *>(bytes), size);
 }
 
-void append(std::string &line, double value) {
+void appendExactly(std::string &line, double value) {
   char text[40];
   std::snprintf(text, sizeof text, " %a", value);
   line += text;
@@ -33,20 +33,20 @@ std::string curveWords(const CurveDescription &curve) {
   const Eigen::Index n = curve.points.cols();
   const std::size_t degree = curve.basis == "bezier" ? static_cast<std::size_t>(n) - 1 : curve.degree;
   std::string line = " " + curve.basis + " " + std::to_string(degree);
-  append(line, curve.t0);
-  append(line, curve.t1);
+  appendExactly(line, curve.t0);
+  appendExactly(line, curve.t1);
   line += " " + std::to_string(n);
   for (Eigen::Index i = 0; i < n; ++i)
-    for (int k = 0; k < 3; ++k) append(line, curve.points(k, i));
+    for (int k = 0; k < 3; ++k) appendExactly(line, curve.points(k, i));
   line += " " + std::to_string(curve.knots.size());
-  for (const double knot : curve.knots) append(line, knot);
+  for (const double knot : curve.knots) appendExactly(line, knot);
   return line;
 }
 
 } // namespace
 
 std::string emptyRecord() {
-  return recordOf("", 0);
+  return recordOfBytes("", 0);
 }
 
 CertificateHandle makeCertificate() {
@@ -57,7 +57,7 @@ CertificateHandle makeCertificate() {
 
 std::string recordOf(const CertificateHandle &certificate) {
   const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
-  return recordOf(info.bytes, info.size);
+  return recordOfBytes(info.bytes, info.size);
 }
 
 std::string proofOf(const CertificateHandle &certificate) {
@@ -79,13 +79,13 @@ std::string problemHead() {
 
 std::string curveTargetLines(const CurveDescription &curve) {
   std::string line = "targets 1\ntarget";
-  append(line, curve.radius);
+  appendExactly(line, curve.radius);
   return line + " 0 curve" + curveWords(curve) + "\n";
 }
 
 std::string moverLine(const CurveDescription &curve) {
   std::string line = "mover " + wordOf(curve.id);
-  append(line, curve.radius);
+  appendExactly(line, curve.radius);
   return line + curveWords(curve) + "\n";
 }
 

@@ -16,38 +16,31 @@ const char *kMotionHeader =
     "id,provider,status,value,lower,upper,valid,t,t0,t1,kind,a,b,ga_vx,ga_vy,ga_vz,ga_wx,ga_wy,ga_wz,gb_vx,gb_vy,gb_vz,"
     "gb_wx,gb_wy,gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_duration,g_start,microseconds,message";
 
-/* A number and the comma before it. */
-void append(std::string &line, double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, ",%.17g", value);
-  line += text;
-}
-
-void append(std::string &line, const Eigen::Vector3d &v, bool known = true) {
+void appendVector(std::string &line, const Eigen::Vector3d &v, bool known = true) {
   for (int i = 0; i < 3; ++i) {
     if (known)
-      append(line, v[i]);
+      appendField(line, v[i]);
     else
       line += ',';
   }
 }
 
-void append(std::string &line, const ConstraintGradient &gradient) {
-  append(line, gradient.linear);
-  append(line, gradient.angular);
+void appendGradient(std::string &line, const ConstraintGradient &gradient) {
+  appendVector(line, gradient.linear);
+  appendVector(line, gradient.angular);
 }
 
 void appendWitness(std::string &line, const ConstraintValue &value) {
   for (const Eigen::Vector3d *point : {&value.witness_a, &value.witness_b, &value.normal})
-    append(line, *point, value.has_points);
+    appendVector(line, *point, value.has_points);
 }
 
 /* Value and bounds, each with the comma before it. */
 void appendValue(std::string &line, double value, bool bounded, double lower, double upper) {
-  append(line, value);
+  appendField(line, value);
   if (bounded) {
-    append(line, lower);
-    append(line, upper);
+    appendField(line, lower);
+    appendField(line, upper);
   } else {
     line += ",,";
   }
@@ -90,7 +83,7 @@ void appendList(std::string &line, const Eigen::MatrixXd &matrix, const Trajecto
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index k = 0; k < m; ++k) {
       if (known)
-        append(line, matrix(i, k));
+        appendField(line, matrix(i, k));
       else
         line += ',';
     }
@@ -103,13 +96,13 @@ std::string motionLine(const ConstraintRow &row, const MotionRow &one, const Tra
   std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + statusName(row);
   appendValue(line, one.value, one.bounded, one.lower, one.upper);
   line += one.valid ? ",true" : ",false";
-  for (const double t : {one.t, one.t0, one.t1}) append(line, t);
+  for (const double t : {one.t, one.t0, one.t1}) appendField(line, t);
   for (const std::string &name : {one.kind, one.side_a, one.side_b}) line += ',' + quotedField(name);
-  append(line, one.a);
-  append(line, one.b);
+  appendGradient(line, one.a);
+  appendGradient(line, one.b);
   appendWitness(line, one);
-  append(line, one.duration);
-  append(line, one.start);
+  appendField(line, one.duration);
+  appendField(line, one.start);
   line += microseconds(row) + quotedField(one.reason.empty() ? row.message : one.reason);
   for (const List &list : listsOf(trajectory))
     if (list.given) appendList(line, one.*list.gradient, trajectory);
@@ -145,15 +138,15 @@ std::string constraintsLine(const ConstraintRow &row) {
   line += value.valid ? ",true" : ",false";
   const bool along = value.points.cols() > 0;
   if (along)
-    append(line, value.t);
+    appendField(line, value.t);
   else
     line += ',';
-  append(line, value.a);
-  append(line, value.b);
+  appendGradient(line, value.a);
+  appendGradient(line, value.b);
   appendWitness(line, value);
-  append(line, value.radius);
+  appendField(line, value.radius);
   line += microseconds(row) + quotedField(row.message) + ',' + std::to_string(value.points.cols());
-  for (Eigen::Index i = 0; i < value.points.cols(); ++i) append(line, value.points.col(i));
+  for (Eigen::Index i = 0; i < value.points.cols(); ++i) appendVector(line, value.points.col(i));
   return line + (along ? "\n" : ",,,\n");
 }
 
@@ -182,7 +175,7 @@ std::string gradientsLine(const ConstraintRow &row, const GradientCheck *check) 
   const GradientMisfit &worst = check->worst;
   if (check->count == 0) return line + ",,,,," + quotedField(check->reason) + '\n';
   line += quotedField(worst.derivative);
-  for (const double number : {worst.gradient, worst.difference, worst.misfit, worst.doubt}) append(line, number);
+  for (const double number : {worst.gradient, worst.difference, worst.misfit, worst.doubt}) appendField(line, number);
   return line + ',' + quotedField(check->reason) + '\n';
 }
 

@@ -221,6 +221,12 @@ std::vector<std::string> splitFields(std::string_view line) {
   }
 }
 
+void appendField(std::string &line, double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, ",%.17g", value);
+  line += text;
+}
+
 std::string quotedField(const std::string &text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string out = "\"";

@@ -8,7 +8,7 @@
 namespace curve_proximity::cli {
 namespace {
 
-constexpr std::size_t kDeepest = 64;
+constexpr std::size_t kDeepestNesting = 64;
 
 /* Receives what the parser finds, in the order of the text. The names are those that the parser asks for. */
 class Builder {
@@ -89,7 +89,7 @@ class Builder {
   }
   bool open(Json::Kind kind) {
     constexpr std::size_t kUsual = 8; /* joints of an arm */
-    if (depth_ == kDeepest) fail("it is nested too deep");
+    if (depth_ == kDeepestNesting) fail("it is nested too deep");
     if (!leftOut()) {
       Json &out = take();
       out.kind = kind;

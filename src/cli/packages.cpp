@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepest = 6; /* folders below an entry of ROS_PACKAGE_PATH */
+constexpr int kDeepestFolder = 6; /* folders below an entry of ROS_PACKAGE_PATH */
 
 /* Is this folder the package of that name? Its package.xml says so in <name>. */
 bool isPackage(const fs::path &folder, const std::string &name) {
@@ -65,7 +65,7 @@ std::function<std::string(const std::string &)> packageFinder(const std::string 
     }
     for (const fs::path &entry : pathList("ROS_PACKAGE_PATH")) {
       if (isPackage(entry / name, name)) return (entry / name).string();
-      const std::string found = crawl(entry, name, kDeepest);
+      const std::string found = crawl(entry, name, kDeepestFolder);
       if (!found.empty()) return found;
     }
     std::vector<fs::path> prefixes = pathList("CMAKE_PREFIX_PATH");

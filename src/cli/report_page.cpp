@@ -31,7 +31,7 @@ std::string replaced(std::string text, const std::string &from, const std::strin
 }
 
 /* As text of HTML. */
-std::string escaped(const std::string &text) {
+std::string escapedHtml(const std::string &text) {
   return replaced(replaced(replaced(text, "&", "&amp;"), "<", "&lt;"), ">", "&gt;");
 }
 
@@ -45,7 +45,7 @@ std::string withoutTags(const std::string &json) {
 std::string reportPage(const std::string &title, const std::string &data) {
   const std::pair<std::string, std::string> parts[] = {
       {"{{style}}", kReportStyle},     {"{{three}}", readScript(kThree)}, {"{{controls}}", readScript(kOrbitControls)},
-      {"{{data}}", withoutTags(data)}, {"{{script}}", kReportScript},     {"{{title}}", escaped(title)}};
+      {"{{data}}", withoutTags(data)}, {"{{script}}", kReportScript},     {"{{title}}", escapedHtml(title)}};
 
   // Each place of the frame is filled once, and what fills it is not looked at again.
   std::string frame = kReportFrame, out;

@@ -12,30 +12,23 @@
 namespace curve_proximity::cli {
 namespace {
 
-/* A number and the comma before it. */
-void append(std::string &line, double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, ",%.17g", value);
-  line += text;
-}
-
-void append(std::string &line, const cprox_vec3 &v) {
-  for (const double coordinate : {v.x, v.y, v.z}) append(line, coordinate);
+void appendPoint(std::string &line, const cprox_vec3 &v) {
+  for (const double coordinate : {v.x, v.y, v.z}) appendField(line, coordinate);
 }
 
 /* The fields from `lower` to `b_z`. */
 void appendGeometry(std::string &line, const ResultRow &row) {
   const cprox_result &result = row.result;
-  append(line, result.lower);
-  append(line, result.upper);
+  appendField(line, result.lower);
+  appendField(line, result.upper);
   if (row.has_t) {
-    append(line, result.t);
+    appendField(line, result.t);
   } else {
     line += ',';
   }
   if (row.has_points) {
-    append(line, result.witness_mover);
-    append(line, result.witness_obstacle);
+    appendPoint(line, result.witness_mover);
+    appendPoint(line, result.witness_obstacle);
   } else {
     line += ",,,,,,";
   }
@@ -97,7 +90,7 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
     std::snprintf(time, sizeof time, "%.1f", row.microseconds);
     line += ',' + std::to_string(result.nodes) + ',' + std::to_string(result.distance_queries) + ',' + time;
     if (row.has_t_b) {
-      append(line, result.t_obstacle);
+      appendField(line, result.t_obstacle);
     } else {
       line += ',';
     }
@@ -108,13 +101,13 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
   line += ',' + quotedField(row.message);
   if (columns.proof) line += ',' + row.proof;
   if (columns.contact && answered && row.has_contact)
-    append(line, result.t_contact_lower);
+    appendField(line, result.t_contact_lower);
   else if (columns.contact)
     line += ',';
   if (columns.opinion) {
     line += std::string(",") + secondOpinionName(row.second_opinion.verdict);
     if (std::isfinite(row.second_opinion.distance))
-      append(line, row.second_opinion.distance);
+      appendField(line, row.second_opinion.distance);
     else
       line += ',';
   }
@@ -127,11 +120,11 @@ std::string profileHeader() {
 
 std::string profileLine(const std::string &id, const std::string &kind, const ClearanceInterval &interval) {
   std::string line = quotedField(id) + ',' + kind + ',' + statusOf(interval.status, interval.gap);
-  for (const double value : {interval.t0, interval.t1, interval.lower, interval.upper}) append(line, value);
+  for (const double value : {interval.t0, interval.t1, interval.lower, interval.upper}) appendField(line, value);
   if (std::isfinite(interval.upper)) {
-    append(line, interval.t);
-    append(line, interval.witness_a);
-    append(line, interval.witness_b);
+    appendField(line, interval.t);
+    appendPoint(line, interval.witness_a);
+    appendPoint(line, interval.witness_b);
   } else {
     line += ",,,,,,,";
   }
@@ -156,7 +149,7 @@ std::string violationLine(const std::string &id, const std::string &kind, const 
       quotedField(id) + ',' + kind + ',' + statusOf(of.status, of.gap) + ',' + cprox_verdict_name(found.verdict);
   for (const double value :
        {found.enter_lower, found.enter_upper, found.leave_lower, found.leave_upper, found.upper, found.t})
-    append(line, value);
+    appendField(line, value);
   return line + ',' + quotedField(found.a) + ',' + quotedField(found.b) + ',' + quotedField(of.message) + '\n';
 }
 

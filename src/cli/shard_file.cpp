@@ -17,7 +17,7 @@ namespace {
 constexpr const char *kMagic = "# cprox shard 1";
 
 /* A name as one line: a backslash and a line's end are escaped. */
-std::string escaped(const std::string &name) {
+std::string escapedLine(const std::string &name) {
   std::string out;
   for (const char c : name) {
     if (c == '\\')
@@ -36,7 +36,7 @@ std::string headText(const ShardHead &head) {
   std::string out = std::string(kMagic) + "\n# fingerprint " + head.fingerprint + "\n# shard " +
                     std::to_string(head.shard) + " of " + std::to_string(head.shards) + ", rows " +
                     std::to_string(head.range.first) + " to " + std::to_string(head.range.last) + "\n";
-  for (const auto &[file, digest] : head.inputs) out += "# input " + digest + " " + escaped(file) + "\n";
+  for (const auto &[file, digest] : head.inputs) out += "# input " + digest + " " + escapedLine(file) + "\n";
   return out + "# trajectories " + head.trajectories + "\n";
 }
 

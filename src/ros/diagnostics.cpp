@@ -15,7 +15,7 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-constexpr double PERIOD = 1.0;         /* [s] */
+constexpr double REPORT_PERIOD = 1.0;  /* [s] */
 constexpr double OLD_TRANSFORM = 1.0;  /* [s] from here on a link pose that changes is a stale one */
 constexpr double QUIET_WARNING = 10.0; /* [s] between two log lines about the same */
 
@@ -43,7 +43,7 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
   updater_.add("master", this, &Diagnostics::master);
 
   // By the wall clock: the updater's own period counts in ROS time, which may stand still.
-  timer_ = handle_.createWallTimer(ros::WallDuration(PERIOD), [this](const ros::WallTimerEvent &) {
+  timer_ = handle_.createWallTimer(ros::WallDuration(REPORT_PERIOD), [this](const ros::WallTimerEvent &) {
     memory::tidy();
     guarded([this] { updater_.force_update(); },
             [](const std::string &why) { ROS_ERROR("diagnostics: %s", why.c_str()); });

@@ -30,12 +30,6 @@ constexpr std::chrono::milliseconds LAST_WRITE{50};
 /** Objects that may wait on ~collision_object while one is being made. */
 constexpr std::uint32_t OBJECTS_KEPT = 1000;
 
-ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
-  ros::NodeHandle own(handle);
-  own.setCallbackQueue(&queue);
-  return own;
-}
-
 /** Changes of more bytes than this take turns among themselves, so many at a time. */
 constexpr std::size_t LARGE_CHANGE = std::size_t{1} << 20;
 constexpr int LARGE_CHANGES = 1;
@@ -153,7 +147,7 @@ std::string refusedObject(const std::string &id) {
   return "object " + id;
 }
 
-std::string joined(const std::vector<std::string> &sentences) {
+std::string joinedFaults(const std::vector<std::string> &sentences) {
   std::string text;
   for (const std::string &sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
   return text;
@@ -407,7 +401,7 @@ void ProximityServer::applyScene(const Call &call, const RequestThreads::AtWork 
   if (call.bytes > LARGE_CHANGE) turn.emplace(scene_turns_, call.client, waitUntil(call, at_work));
   const std::vector<std::string> faults = apply(request);
   response.success = faults.empty();
-  response.message = joined(faults);
+  response.message = joinedFaults(faults);
   response.scene = live_.state();
 }
 
@@ -453,7 +447,7 @@ void ProximityServer::loadScene() {
     const yaml::SceneFile file = yaml::readScene(parameters_.scene_file, warnings);
     const std::vector<std::string> faults = apply(toMessage(yaml::toChange(file, parameters_.scene_file, warnings)));
     for (const std::string &warning : warnings.sentences()) ROS_WARN("~scene_file: %s", warning.c_str());
-    why = joined(faults);
+    why = joinedFaults(faults);
   } catch (const std::exception &error) {
     why = error.what();
   }

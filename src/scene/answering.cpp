@@ -47,6 +47,10 @@ void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
 
 } // namespace
 
+double microsecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
 Eigen::AlignedBox3d boxOf(const cprox_curve *curve) {
   const cprox_curve_info info = cprox_curve_get_info(curve);
   return {toEigen(info.lowest), toEigen(info.highest)};
@@ -285,7 +289,6 @@ Coverage coverageOf(const Snapshot &snapshot) {
 void applyCoverage(const Coverage &coverage, const Query &query, Answer &answer) {
   cprox_result &result = answer.result;
   if (result.status < 0 || coverage.complete()) return;
-  constexpr double INFINITE = std::numeric_limits<double>::infinity();
   answer.gap = coverage.gap();
   answer.status = coverage.status();
   answer.message += (answer.message.empty() ? "" : "; ") + coverage.message();

@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_SCENE_ANSWERING_H
 
 #include <array>
+#include <chrono>
 #include <functional>
 #include <limits>
 #include <string>
@@ -14,6 +15,12 @@
 #include "world.h"
 
 namespace curve_proximity {
+
+inline constexpr double INFINITE = std::numeric_limits<double>::infinity();
+
+using Clock = std::chrono::steady_clock;
+
+double microsecondsSince(Clock::time_point start);
 
 /* A box that contains the curve. */
 Eigen::AlignedBox3d boxOf(const cprox_curve *curve);

@@ -13,8 +13,6 @@
 namespace curve_proximity {
 namespace {
 
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
-
 double mostExcess(const std::vector<MovingGeometry> &geometries) {
   double most = 0.0;
   for (const MovingGeometry &geometry : geometries) most = std::max(most, geometry.excess);
@@ -56,7 +54,7 @@ void addWarnings(const RobotMotion::Data &data, const Query &query, Answer &answ
 }
 
 void finish(const RobotMotion::Data &data, const Query &query, Answer &answer, Clock::time_point start) {
-  answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  answer.microseconds = microsecondsSince(start);
   if (answer.result.status != CPROX_OK && answer.message.empty())
     answer.message = cprox_status_text(answer.result.status);
   answer.status = cprox_status_name(answer.result.status);

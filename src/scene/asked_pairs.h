@@ -3,15 +3,13 @@
 #ifndef CURVE_PROXIMITY_SCENE_ASKED_PAIRS_H
 #define CURVE_PROXIMITY_SCENE_ASKED_PAIRS_H
 
-#include <chrono>
 #include <string>
 #include <vector>
 
+#include "answering.h"
 #include "motion_data.h"
 
 namespace curve_proximity {
-
-using Clock = std::chrono::steady_clock;
 
 /* Pairs of geometries and some of the world's items, pairs of geometries alone, or both. */
 struct Asked {

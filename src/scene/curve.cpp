@@ -158,7 +158,7 @@ void checkCounts(const CurveDescription &curve) {
   check("parameters", needed.parameters, curve.parameters.size());
 }
 
-cprox_dubins_word wordOf(const std::string &basis) {
+cprox_dubins_word dubinsWordOf(const std::string &basis) {
   static constexpr std::pair<const char *, cprox_dubins_word> words[] = {
       {"dubins", CPROX_DUBINS_SHORTEST}, {"dubins_lsl", CPROX_DUBINS_LSL}, {"dubins_lsr", CPROX_DUBINS_LSR},
       {"dubins_rsl", CPROX_DUBINS_RSL},  {"dubins_rsr", CPROX_DUBINS_RSR}, {"dubins_rlr", CPROX_DUBINS_RLR},
@@ -170,7 +170,7 @@ cprox_dubins_word wordOf(const std::string &basis) {
 
 /* A curve that start, headings and lengths describe. */
 CurveHandle makeNamed(const CurveDescription &curve) {
-  const cprox_dubins_word word = hasOwnRange(curve.basis) ? wordOf(curve.basis) : CPROX_DUBINS_SHORTEST;
+  const cprox_dubins_word word = hasOwnRange(curve.basis) ? dubinsWordOf(curve.basis) : CPROX_DUBINS_SHORTEST;
   checkCounts(curve);
   const Eigen::Vector3d start = curve.points.col(0);
   const std::vector<double> &p = curve.parameters;

@@ -13,15 +13,11 @@
 namespace curve_proximity {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
-
 Answer answerOf(const CompiledCurve &curve, const cprox_result &result, Clock::time_point start) {
   Answer answer;
   answer.id = answer.a = curve.id;
   answer.result = result;
-  answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  answer.microseconds = microsecondsSince(start);
   return answer;
 }
 

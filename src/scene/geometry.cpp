@@ -149,7 +149,7 @@ void checkConstraints(const ShapeDescription &shape) {
     throw Error(std::string(shapeTypeName(shape.type)) + " takes no terms, planes or quadrics");
 }
 
-Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options, const MeshLoader &loader) {
+Geometry makeMeshShape(const ShapeDescription &shape, const ResourceOptions &options, const MeshLoader &loader) {
   const Eigen::Vector3d scale = meshScale(shape);
   if (shape.resource.empty()) {
     return makeMeshGeometry({shape.vertices, shape.triangles}, scale, shape.solid, options);
@@ -348,7 +348,7 @@ Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &opti
     throw Error(std::string(shapeTypeName(shape.type)) + " takes no curve, and is not synchronized");
   if (shape.deformed && shape.type != ShapeType::SUPERQUADRIC && shape.type != ShapeType::IMPLICIT)
     throw Error(std::string(shapeTypeName(shape.type)) + " cannot be deformed: superquadrics and implicit bodies can");
-  if (shape.type == ShapeType::MESH) return makeMesh(shape, options, loader);
+  if (shape.type == ShapeType::MESH) return makeMeshShape(shape, options, loader);
   if (shape.type == ShapeType::HEIGHT_FIELD) return makeGround(shape, options);
   if (shape.type == ShapeType::CURVE) return makeCurveGeometry(shape);
   Geometry out;

@@ -64,15 +64,15 @@ bool isFlat(const Points &points) {
 /* ---- qhull ---- */
 
 /* What qhull finds: extreme points, and the surface as triangles of their numbers. Empty where it gives up. */
-struct Surface {
+struct Facets {
   Points points;
   std::vector<HullFacet> facets;
 };
 
 /* Qhull's own check of its result (option Tv) takes a hundred times as long as its work. coveringPoints() proves what
  * is needed of the result instead. */
-Surface surfaceOf(const Points &points) {
-  Surface out;
+Facets surfaceOf(const Points &points) {
+  Facets out;
   const std::unique_ptr<FILE, int (*)(FILE *)> nowhere(std::fopen("/dev/null", "w"), std::fclose);
   const auto memory = std::make_unique<qhT>();
   qhT *qh = memory.get();
@@ -256,7 +256,7 @@ HullPoints coveringPoints(const Points &all, Points kept, const std::vector<Hull
 
 HullPoints hullPointsOf(const Points &all) {
   if (all.size() > FEW_POINTS && !isFlat(all)) {
-    Surface surface = surfaceOf(all);
+    Facets surface = surfaceOf(all);
     if (surface.points.size() >= 4) return coveringPoints(all, std::move(surface.points), surface.facets);
   }
   return {all, 0.0};

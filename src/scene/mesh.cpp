@@ -20,8 +20,6 @@
 namespace curve_proximity {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 void checkMesh(const MeshData &mesh, const Eigen::Vector3d &scale) {
   if (!scale.allFinite() || (scale.array() == 0.0).any()) throw Error("mesh scale must be finite and not 0");
   const Eigen::Index n = mesh.vertices.cols();
@@ -192,9 +190,9 @@ Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &opt
   MeshTiming ignored;
   MeshTiming &times = timing ? *timing : ignored;
   times.file = request.file;
-  Clock::time_point start = Clock::now();
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
   const auto lap = [&start] {
-    const Clock::time_point before = std::exchange(start, Clock::now());
+    const auto before = std::exchange(start, std::chrono::steady_clock::now());
     return std::chrono::duration<double>(start - before).count();
   };
   const Found found = ofMesh(request.file, [&] { return find(request, options, times); });

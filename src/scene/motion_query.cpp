@@ -11,8 +11,6 @@
 namespace curve_proximity {
 namespace {
 
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
-
 RobotPairs againstOf(bool self) {
   return self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
 }

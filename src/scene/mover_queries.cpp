@@ -17,8 +17,6 @@
 namespace curve_proximity {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 std::string faultOfMovers(const Query &query) {
   if (query.options.certificate) return "a certificate does not apply: movers on one clock have none";
   if (query.options.signed_distance) return "signed_distance does not apply: movers on one clock have no depth";
@@ -127,10 +125,6 @@ std::vector<cprox_obstacle> targetsOf(const Movers::Data &data, const Pairs &pai
 Coverage coverageOf(const Movers::Data &data, const Pairs &pairs, const Query &query) {
   const bool nothing = pairs.environment.empty() && pairs.among.empty();
   return coverageOf(query, data.coverage, nothing ? "there is no pair to measure" : "");
-}
-
-double microsecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
 /* Side a is one of `links`, where there are any. */

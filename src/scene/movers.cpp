@@ -15,7 +15,7 @@
 namespace curve_proximity {
 namespace {
 
-using Names = std::array<std::string, 2>;
+using TwoNames = std::array<std::string, 2>;
 
 void expect(cprox_status status, const std::string &who, const Workspace &workspace) {
   if (status != CPROX_OK) throw Error(who + ": " + workspace.reason(), status);
@@ -56,8 +56,8 @@ void checkNames(const Snapshot &snapshot, const std::vector<MovingRobot> &robots
 /* Which pairs of names may touch: of movers, or of what belongs to them. */
 class Allowed {
  public:
-  explicit Allowed(const std::vector<Names> &pairs) {
-    for (const Names &pair : pairs) pairs_.insert(ordered(pair[0], pair[1]));
+  explicit Allowed(const std::vector<TwoNames> &pairs) {
+    for (const TwoNames &pair : pairs) pairs_.insert(ordered(pair[0], pair[1]));
   }
 
   void addNames(std::set<std::string> &names) const {
@@ -72,11 +72,11 @@ class Allowed {
   }
 
  private:
-  static Names ordered(const std::string &a, const std::string &b) {
-    return a < b ? Names{a, b} : Names{b, a};
+  static TwoNames ordered(const std::string &a, const std::string &b) {
+    return a < b ? TwoNames{a, b} : TwoNames{b, a};
   }
 
-  std::set<Names> pairs_;
+  std::set<TwoNames> pairs_;
 };
 
 /* ---- joining ---- */
@@ -246,7 +246,7 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
 } // namespace
 
 Movers::Movers(SnapshotPtr snapshot, const std::vector<MovingRobot> &robots, const std::vector<MovingObject> &objects,
-               const std::vector<Names> &allowed, const ResourceOptions &resources, const Stop &stop) {
+               const std::vector<TwoNames> &allowed, const ResourceOptions &resources, const Stop &stop) {
   checkNames(*snapshot, robots, objects);
   auto data = std::make_unique<Data>();
   data->snapshot = std::move(snapshot);

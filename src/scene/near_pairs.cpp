@@ -12,9 +12,6 @@
 namespace curve_proximity {
 namespace {
 
-/* How far beyond its box a body may be after the box's own rounding, per metre of its distance from the origin. */
-constexpr double BOXING = 1e-13;
-
 /* The first search, where the reach is larger [m]; each further one reaches REACH_FACTOR times as far. */
 constexpr double FIRST_REACH = 0.05;
 constexpr double REACH_FACTOR = 4.0;

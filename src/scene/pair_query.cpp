@@ -84,14 +84,13 @@ bool isTranslating(PairDescription::Asked asked) {
 
 Answer askPair(const PairDescription &pair, const Query &query, const ResourceOptions &resources,
                Workspace &workspace) {
-  using Clock = std::chrono::steady_clock;
   const Geometry a = bodyOf(pair.a, resources), b = bodyOf(pair.b, resources);
   Answer answer;
   answer.kind = pairKind(pair.asked);
   answer.id = answer.a = answer.b = pair.id;
   const Clock::time_point begin = Clock::now();
   answer.result = ask(pair, place(a, pair.a), place(b, pair.b), query.options, workspace);
-  answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+  answer.microseconds = microsecondsSince(begin);
   answer.status = cprox_status_name(answer.result.status);
   if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
   Query depth = query; // pairs always have one

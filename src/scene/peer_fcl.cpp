@@ -29,13 +29,13 @@ double fclDistance(const Piece &, const Piece &) {
 
 namespace {
 
-using FclGeometry = std::shared_ptr<const fcl::CollisionGeometryd>;
+using FclShape = std::shared_ptr<const fcl::CollisionGeometryd>;
 using FclMesh = fcl::BVHModel<fcl::OBBRSSd>;
 
 /* FCL knows no points: a ball of this radius stands for one [m]. */
 constexpr double POINT_RADIUS = 1e-6;
 
-FclGeometry meshOf(const PeerMesh &mesh) {
+FclShape meshOf(const PeerMesh &mesh) {
   std::call_once(mesh.once, [&] {
     const auto model = std::make_shared<FclMesh>();
     const Eigen::Matrix3Xd &vertices = mesh.data.vertices;
@@ -50,13 +50,13 @@ FclGeometry meshOf(const PeerMesh &mesh) {
 }
 
 /* Without faces FCL looks at all vertices. */
-FclGeometry polytopeOf(const Eigen::Matrix3Xd &vertices) {
+FclShape polytopeOf(const Eigen::Matrix3Xd &vertices) {
   const auto corners = std::make_shared<std::vector<fcl::Vector3d> >();
   for (Eigen::Index i = 0; i < vertices.cols(); ++i) corners->push_back(vertices.col(i));
   return std::make_shared<fcl::Convexd>(corners, 0, std::make_shared<std::vector<int> >());
 }
 
-FclGeometry geometryOf(const Piece &piece) {
+FclShape geometryOf(const Piece &piece) {
   const Eigen::Vector3d &size = piece.size;
   switch (piece.type) {
     case ShapeType::SPHERE: return std::make_shared<fcl::Sphered>(size.x());

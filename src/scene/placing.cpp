@@ -13,9 +13,6 @@ namespace {
  * core.hpp) whose own departure from a rotation is of the same size, and second order. */
 constexpr double COMPOSING = 64.0 * std::numeric_limits<double>::epsilon() / 2.0;
 
-/* The box's own margin, per unit of length: support values, the rotation of their directions, sums. */
-constexpr double BOXING = 1e-13;
-
 /* How far the columns of a rotation may be from unit length and right angles. */
 constexpr double RIGID = 1e-9;
 

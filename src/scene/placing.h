@@ -7,6 +7,10 @@
 
 namespace curve_proximity {
 
+/* How far beyond its box a body may be, per metre of size and distance from the origin: rounding of support values, the
+ * rotation of their directions, sums. */
+inline constexpr double BOXING = 1e-13;
+
 /* Throws Error, with `who` before the reason, for a transform that is not finite or does not keep lengths. */
 void checkPose(const Eigen::Isometry3d &pose, const std::string &who);
 

@@ -15,12 +15,8 @@
 namespace curve_proximity {
 namespace {
 
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
-
 /* Room for the rounding of a sum of a few lengths. */
 constexpr double SUMS = 1e-14;
-
-using Clock = std::chrono::steady_clock;
 
 /* One search: a curve against some of the items. */
 struct Search {
@@ -175,10 +171,6 @@ void answerOf(const Search &search, const Coverage &given, Answer &answer) {
   }
   finishAnswer(search.workspace, answer);
   applyCoverage(coverageOf(search.query, given, search.chosen.empty() ? NO_OBJECT : ""), search.query, answer);
-}
-
-double microsecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
 /* With the proof of the one answer: about everything that was asked about, and not only what the search chose. */

@@ -20,8 +20,6 @@ struct SecondOpinions::Data {
 
 namespace {
 
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
-
 /* [m] for each metre of size, and for sizes below a metre: what both libraries keep to on pairs of all kinds
  * (doc/second-opinion.md). */
 constexpr double ACCURACY = 1e-5;

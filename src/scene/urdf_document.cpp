@@ -19,8 +19,6 @@ namespace {
 using tinyxml2::XMLAttribute;
 using tinyxml2::XMLElement;
 
-using Words = std::vector<std::string>;
-
 std::string attribute(const XMLElement &element, const char *name) {
   const char *text = element.Attribute(name);
   return text ? text : "";
@@ -28,10 +26,6 @@ std::string attribute(const XMLElement &element, const char *name) {
 
 std::string lineOf(const XMLElement &element) {
   return " (line " + std::to_string(element.GetLineNum()) + ")";
-}
-
-bool isAmong(const std::string &name, const Words &names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 /* ---- numbers ---- */

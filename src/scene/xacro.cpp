@@ -11,12 +11,6 @@ namespace {
 using tinyxml2::XMLAttribute;
 using tinyxml2::XMLElement;
 
-using Words = std::vector<std::string>;
-
-bool isAmong(const std::string &name, const Words &names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /* The prefixes of xacro's elements in this document. */
 Words prefixesOfXacro(const XMLElement &root) {
   const std::string space = "xmlns:", xacro = "xacro";
@@ -52,6 +46,10 @@ void refuseXacro(const XMLElement &element, const Words &prefixes, bool in_use) 
 }
 
 } // namespace
+
+bool isAmong(const std::string &name, const Words &names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 void refuseXacro(const XMLElement &root, const std::vector<std::string> &in_use) {
   static const Words of_old = {"macro", "include", "property", "if", "unless", "insert_block"}; /* without a prefix */

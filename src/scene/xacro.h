@@ -10,9 +10,13 @@
 
 namespace curve_proximity {
 
+using Words = std::vector<std::string>;
+
+bool isAmong(const std::string &name, const Words &names);
+
 /** Throws Error, with the line, for elements and attributes of xacro, and in the children of these names for values
  * that hold ${…} or $(…). */
-void refuseXacro(const tinyxml2::XMLElement &root, const std::vector<std::string> &in_use);
+void refuseXacro(const tinyxml2::XMLElement &root, const Words &in_use);
 
 } // namespace curve_proximity
 #endif

@@ -96,7 +96,7 @@ void fillWitness(const ConstraintValue &value, bool answered, Message &message) 
   message.normal = toVectorMessage(points ? value.normal : nothing);
 }
 
-TrajectoryConstraint toMessage(const MotionRow &row) {
+TrajectoryConstraint constraintMessage(const MotionRow &row) {
   TrajectoryConstraint message;
   message.kind = row.kind;
   message.a = row.side_a;
@@ -120,7 +120,7 @@ TrajectoryConstraint toMessage(const MotionRow &row) {
   return message;
 }
 
-ConstraintResult toMessage(const ConstraintRow &row, const ConstraintCase &asked) {
+ConstraintResult constraintMessage(const ConstraintRow &row, const ConstraintCase &asked) {
   ConstraintResult message;
   message.id = row.id;
   message.provider = row.provider;
@@ -147,7 +147,7 @@ ConstraintResult toMessage(const ConstraintRow &row, const ConstraintCase &asked
     const TrajectoryDescription &trajectory = asked.motion->trajectory;
     message.joints = trajectory.joints;
     for (const TrajectoryPoint &point : trajectory.points) message.times.push_back(point.time);
-    for (const MotionRow &one : row.motion->rows) message.rows.push_back(toMessage(one));
+    for (const MotionRow &one : row.motion->rows) message.rows.push_back(constraintMessage(one));
   }
   message.microseconds = answered ? row.microseconds : NONE;
   return message;
@@ -352,7 +352,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
       if (row.status < 0 && failed++ == 0)
         response.message = "case " + std::to_string(i) + " ('" + row.id + "')" +
                            (row.provider.empty() ? "" : ", provider '" + row.provider + "'") + ": " + row.message;
-      response.results.push_back(toMessage(row, described));
+      response.results.push_back(constraintMessage(row, described));
       doubts.apply(response.results.back());
       if (row.constraint && row.status >= 0 && providers_->find(row.provider)->spec.type == GAP) gap = row.constraint;
     }

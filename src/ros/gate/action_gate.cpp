@@ -14,12 +14,8 @@ namespace {
 
 using trajectory_msgs::JointTrajectory;
 
-constexpr std::uint32_t THREADS = 4;
-constexpr double PERIOD = 0.1; /* [s] between two looks for the controller */
-
-void complain(const std::string &why) {
-  ROS_ERROR("gate: %s", why.c_str());
-}
+constexpr std::uint32_t GATE_THREADS = 4;
+constexpr double LOOK_PERIOD = 0.1; /* [s] between two looks for the controller */
 
 } // namespace
 
@@ -28,17 +24,18 @@ ActionGate::ActionGate(const ros::NodeHandle &handle, const GateParameters &para
       handle_(handle),
       refused_(std::move(refused)),
       calls_(handle, parameters.server, parameters.delta),
-      spinner_(THREADS, &queue_) {
+      spinner_(GATE_THREADS, &queue_) {
   handle_.setCallbackQueue(&queue_);
   watches_ = std::make_unique<MotionWatches>(handle_, parameters_);
   client_ = std::make_unique<Client>(handle_, parameters_.controller, &queue_);
   server_ = std::make_unique<Server>(
       handle_, "follow_joint_trajectory",
-      [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, complain); },
-      [this](Server::GoalHandle goal) { guarded([&] { cancel(goal); }, complain); }, false);
+      [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, logGateError); },
+      [this](Server::GoalHandle goal) { guarded([&] { cancel(goal); }, logGateError); }, false);
   server_->start();
-  timer_ = handle_.createWallTimer(ros::WallDuration(PERIOD),
-                                   [this](const ros::WallTimerEvent &) { guarded([this] { findLost(); }, complain); });
+  timer_ = handle_.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent &) {
+    guarded([this] { findLost(); }, logGateError);
+  });
   spinner_.start();
 }
 
@@ -138,7 +135,7 @@ void ActionGate::send(const RunningPointer &running) {
   if (running->watch) watches_->add(running->watch);
   Client::GoalHandle out = client_->sendGoal(
       *running->in.getGoal(),
-      [this, running](Client::GoalHandle done) { guarded([&] { end(running, done); }, complain); },
+      [this, running](Client::GoalHandle done) { guarded([&] { end(running, done); }, logGateError); },
       [running](Client::GoalHandle, const boost::shared_ptr<const control::FollowJointTrajectoryFeedback> &feedback) {
         guarded(
             [&] {
@@ -146,7 +143,7 @@ void ActionGate::send(const RunningPointer &running) {
                 running->watch->tell(feedback->joint_names, feedback->actual.positions, feedback->header.stamp);
               running->in.publishFeedback(*feedback);
             },
-            complain);
+            logGateError);
       });
   bool unwanted;
   {

@@ -18,12 +18,8 @@ using std::chrono::steady_clock;
 using trajectory_msgs::JointTrajectory;
 
 constexpr std::chrono::seconds AT_LEAST{1};
-constexpr std::uint32_t QUEUE = 10;
-constexpr double PATIENCE = 0.1; /* [s] with a server that is not there */
-
-void complain(const std::string &why) {
-  ROS_ERROR("gate: %s", why.c_str());
-}
+constexpr std::uint32_t SCENE_QUEUE = 10;
+constexpr double SERVER_PATIENCE = 0.1; /* [s] with a server that is not there */
 
 Refusal refusalBecause(const std::string &why, const SceneState &scene) {
   Refusal out;
@@ -98,7 +94,7 @@ bool MotionWatch::isStillClear(ServerCalls &calls, Refusal &refusal) {
   guarded(
       [&] {
         const auto now = steady_clock::now();
-        const SceneState scene = calls.scene(PATIENCE);
+        const SceneState scene = calls.scene(SERVER_PATIENCE);
         clear = scene.epoch == scene_.epoch && scene.version == scene_.version && now - asked_ < AT_LEAST;
         if (clear) return;
         asked_ = now;
@@ -113,7 +109,7 @@ bool MotionWatch::isStillClear(ServerCalls &calls, Refusal &refusal) {
 void MotionWatch::stop(Refusal refusal) {
   if (stopped_.exchange(true)) return;
   refusal.cancelled = true;
-  guarded([&] { stop_(std::move(refusal)); }, complain);
+  guarded([&] { stop_(std::move(refusal)); }, logGateError);
 }
 
 /* ---- all ---- */
@@ -122,8 +118,8 @@ MotionWatches::MotionWatches(const ros::NodeHandle &handle, const GateParameters
     : parameters_(parameters), calls_(handle, parameters.server, parameters.delta) {
   ros::NodeHandle own = handle;
   states_ = own.subscribe<sensor_msgs::JointState>(
-      "joint_states", QUEUE,
-      [this](const sensor_msgs::JointStateConstPtr &state) { guarded([&] { tell(*state); }, complain); });
+      "joint_states", SCENE_QUEUE,
+      [this](const sensor_msgs::JointStateConstPtr &state) { guarded([&] { tell(*state); }, logGateError); });
   looking_ = std::thread([this] {
     while (wait()) look();
   });

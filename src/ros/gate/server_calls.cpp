@@ -1,11 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gate/server_calls.h"
 
+#include <ros/console.h>
+
 #include <algorithm>
 #include <curve_proximity/core.hpp>
 #include <sstream>
 
 namespace curve_proximity {
+
+void logGateError(const std::string &why) {
+  ROS_ERROR("gate: %s", why.c_str());
+}
+
 bool isClear(const Proximity &row, double delta, bool decided) {
   return (decided && row.verdict == Proximity::VERDICT_CLEAR) ||
          row.lower > delta; // without an answer: NaN, no verdict

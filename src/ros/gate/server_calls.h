@@ -19,6 +19,9 @@ namespace curve_proximity {
 /** A refusal by the first row that is not certified to stay farther than delta: its pair, its time, its distance. */
 Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneState &scene);
 
+/** In the log. */
+void logGateError(const std::string &why);
+
 /** Does this row prove that? decided: its verdict is about a limit of delta at least. */
 bool isClear(const Proximity &row, double delta, bool decided);
 

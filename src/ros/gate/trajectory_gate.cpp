@@ -20,11 +20,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr std::uint32_t QUEUE = 100; /* of roscpp: emptied at once */
-
-void complain(const std::string &why) {
-  ROS_ERROR("gate: %s", why.c_str());
-}
+constexpr std::uint32_t MOTION_QUEUE = 100; /* of roscpp: emptied at once */
 
 void addTo(ProximityQuery &query, const Curve &curve) {
   query.curves.push_back(curve);
@@ -78,7 +74,7 @@ bool isClear(const ProximityResults &results, double delta) {
 TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters)
     : parameters_(parameters), handle_(handle), spinner_(1, &queue_) {
   handle_.setCallbackQueue(&queue_);
-  refused_ = handle_.advertise<Refusal>("refused", QUEUE);
+  refused_ = handle_.advertise<Refusal>("refused", MOTION_QUEUE);
   if (!parameters_.server.empty())
     calls_ = std::make_unique<ServerCalls>(handle_, parameters_.server, parameters_.delta);
   if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, parameters_);
@@ -88,8 +84,8 @@ TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParamete
   connect<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
   connect<nav_msgs::Path>("path");
   subscribers_.push_back(handle_.subscribe<ProximityResults>(
-      "proximity", QUEUE,
-      [this](const ProximityResultsConstPtr &results) { guarded([&] { answer(results); }, complain); }));
+      "proximity", MOTION_QUEUE,
+      [this](const ProximityResultsConstPtr &results) { guarded([&] { answer(results); }, logGateError); }));
   spinner_.start();
 }
 
@@ -104,9 +100,9 @@ TrajectoryGate::~TrajectoryGate() {
 template <class Message>
 void TrajectoryGate::connect(const std::string &topic) {
   using Pointer = boost::shared_ptr<const Message>;
-  const ros::Publisher out = handle_.advertise<Message>("clear_" + topic, QUEUE);
+  const ros::Publisher out = handle_.advertise<Message>("clear_" + topic, MOTION_QUEUE);
   if (std::is_same_v<Message, trajectory_msgs::JointTrajectory>) clear_trajectory_ = out;
-  subscribers_.push_back(handle_.subscribe<Message>(topic, QUEUE, [this, out](const Pointer &message) {
+  subscribers_.push_back(handle_.subscribe<Message>(topic, MOTION_QUEUE, [this, out](const Pointer &message) {
     guarded(
         [&] {
           if (const auto *stop = stopOf(*message)) {
@@ -116,7 +112,7 @@ void TrajectoryGate::connect(const std::string &topic) {
           receive({fingerprint(*message), [out, message] { out.publish(message); },
                    [message](ProximityQuery &query) { addTo(query, *message); }});
         },
-        complain);
+        logGateError);
   }));
 }
 

@@ -14,7 +14,7 @@ using trajectory_msgs::JointTrajectoryPoint;
 
 constexpr double SLACK = 0.1; /* [s] that a message may have been on its way */
 
-struct Range {
+struct PositionRange {
   double least, most;
   void add(double value) {
     least = std::min(least, value), most = std::max(most, value);
@@ -26,10 +26,10 @@ double at(const std::vector<double> &values, std::size_t joint) {
 }
 
 /** Where a joint can be between two points: the range of the Bézier points of what controllers put between them. */
-Range rangeBetween(const JointTrajectoryPoint &a, const JointTrajectoryPoint &b, std::size_t joint) {
+PositionRange rangeBetween(const JointTrajectoryPoint &a, const JointTrajectoryPoint &b, std::size_t joint) {
   const double p = at(a.positions, joint), q = at(b.positions, joint);
   const double h = (b.time_from_start - a.time_from_start).toSec();
-  Range range = {std::min(p, q), std::max(p, q)};
+  PositionRange range = {std::min(p, q), std::max(p, q)};
   if (a.velocities.empty() || b.velocities.empty() || h <= 0.0) return range;
   const double v = h * at(a.velocities, joint), w = h * at(b.velocities, joint);
   range.add(p + v / 3.0), range.add(q - w / 3.0);
@@ -40,7 +40,7 @@ Range rangeBetween(const JointTrajectoryPoint &a, const JointTrajectoryPoint &b,
 }
 
 /** How far a value is from a range, full turns apart. */
-double distanceTo(const Range &range, double value) {
+double distanceTo(const PositionRange &range, double value) {
   constexpr double TURN = 2.0 * M_PI;
   value += TURN * std::round((0.5 * (range.least + range.most) - value) / TURN);
   return std::max({range.least - value, value - range.most, 0.0});

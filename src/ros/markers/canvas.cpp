@@ -19,7 +19,7 @@ constexpr double HALFSPACE_SIZE = 4.0;  /* [m] of the slab that stands for a hal
 constexpr Eigen::Index MOST_TRIANGLES = 20000, MOST_POINTS = 20000, MOST_CELLS = 50000;
 constexpr double POINT_SIZE = 0.005; /* [m] at least */
 
-using Profile = std::vector<std::pair<double, double>>;
+using Outline = std::vector<std::pair<double, double>>;
 
 /** Two triangles over the corners of a quadrilateral. */
 void addQuad(Marker &marker, const geometry_msgs::Point (&corners)[4]) {
@@ -28,7 +28,7 @@ void addQuad(Marker &marker, const geometry_msgs::Point (&corners)[4]) {
 
 /** The surface of a solid of revolution about z, as triangles: `profile` is a list of (radius, z) from bottom to top.
  */
-void addLathe(Marker &marker, const Profile &profile) {
+void addLathe(Marker &marker, const Outline &profile) {
   constexpr int SIDES = 24;
   const auto at = [](const std::pair<double, double> &p, int k) {
     const double angle = 2.0 * M_PI * k / SIDES;
@@ -41,9 +41,9 @@ void addLathe(Marker &marker, const Profile &profile) {
 }
 
 /** The outline of a capsule: two half circles. */
-Profile capsuleProfile(double height, double radius) {
+Outline capsuleProfile(double height, double radius) {
   constexpr int STEPS = 8;
-  Profile profile;
+  Outline profile;
   for (const double side : {-1.0, 1.0}) {
     for (int k = 0; k <= STEPS; ++k) {
       const double angle = 0.5 * M_PI * (side < 0 ? k - STEPS : k) / STEPS;

@@ -13,7 +13,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double LINE_WIDTH = 0.006; /* [m] */
+constexpr double CURVE_WIDTH = 0.006; /* [m] */
 constexpr int HALVINGS = 10;
 constexpr int TUBE_SIDES = 16;
 constexpr double LABEL_ABOVE = 0.1, LABEL_HEIGHT = 0.05; /* [m] */
@@ -51,7 +51,7 @@ void addControlPoints(const cprox_curve *curve, double a, double b, int halvings
 void addHull(Canvas &canvas, const std::vector<cprox_vec3> &points, double radius) {
   Eigen::Matrix3Xd all(3, static_cast<Eigen::Index>(6 * points.size()));
   Eigen::Index column = 0;
-  const double r = std::max(radius, LINE_WIDTH);
+  const double r = std::max(radius, CURVE_WIDTH);
   for (const cprox_vec3 &p : points) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const double side : {-r, r}) all.col(column++) = toEigen(p) + side * Eigen::Vector3d::Unit(axis);
@@ -78,7 +78,7 @@ void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::
   Marker &tube = canvas.add(space, Marker::TRIANGLE_LIST);
   tube.color = colour(1, 1, 1, 1);
   const auto frames = framesAlong(points);
-  const double r = std::max(radius, 0.5 * LINE_WIDTH);
+  const double r = std::max(radius, 0.5 * CURVE_WIDTH);
   const auto corner = [&](std::size_t i, int k) {
     const double angle = 2.0 * M_PI * k / TUBE_SIDES;
     const Eigen::Vector3d out = std::cos(angle) * frames[i].first + std::sin(angle) * frames[i].second;
@@ -147,14 +147,14 @@ void addPair(Canvas &canvas, const Answer &answer) {
   if (result.status < 0 || answer.b.empty() || !std::isfinite(result.upper)) return;
   const std_msgs::ColorRGBA tint = apart ? colour(0.12, 0.12, 0.14, 1.0) : clearanceColour(0.0);
   Marker &line = canvas.add("pairs", Marker::LINE_LIST);
-  setScale(line, LINE_WIDTH, 0.0, 0.0);
+  setScale(line, CURVE_WIDTH, 0.0, 0.0);
   line.color = tint;
   line.points = {toPointMessage(result.witness_mover), toPointMessage(result.witness_obstacle)};
   for (const cprox_vec3 &end : {result.witness_mover, result.witness_obstacle}) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.translation() = toEigen(end);
     Marker &ball = canvas.add("pairs", Marker::SPHERE, pose);
-    setScale(ball, 3 * LINE_WIDTH, 3 * LINE_WIDTH, 3 * LINE_WIDTH);
+    setScale(ball, 3 * CURVE_WIDTH, 3 * CURVE_WIDTH, 3 * CURVE_WIDTH);
     ball.color = tint;
   }
 

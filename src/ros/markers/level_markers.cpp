@@ -13,9 +13,9 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double PATIENCE = 0.1;                 /* [s] for all evaluations together */
+constexpr double LEVELS_PATIENCE = 0.1;          /* [s] for all evaluations together */
 constexpr double LEAST_SIDE = 8, MOST_SIDE = 64; /* cells along one side of the grid */
-constexpr double LINE_WIDTH = 0.006;             /* [m] */
+constexpr double LEVEL_WIDTH = 0.006;            /* [m] */
 constexpr double AROUND = 1.2; /* how much wider the grid is than the places where bounding spheres meet */
 
 struct Level {
@@ -47,7 +47,7 @@ class Field {
     const auto begin = std::chrono::steady_clock::now();
     at(place_.b.position.x, place_.b.position.y);
     const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    side_ = static_cast<int>(std::clamp(std::sqrt(PATIENCE / each), LEAST_SIDE, MOST_SIDE));
+    side_ = static_cast<int>(std::clamp(std::sqrt(LEVELS_PATIENCE / each), LEAST_SIDE, MOST_SIDE));
     step_ = 2.0 * AROUND * reach / side_;
     low_x_ = place_.b.position.x - AROUND * reach;
     low_y_ = place_.b.position.y - AROUND * reach;
@@ -118,7 +118,7 @@ void addLevels(Canvas &canvas, const LevelDrawing &drawing, const ResourceOption
   const Field field(drawing, reach);
   for (const Level &level : LEVELS) {
     Marker &lines = canvas.add("levels", Marker::LINE_LIST);
-    setScale(lines, LINE_WIDTH, 0.0, 0.0);
+    setScale(lines, LEVEL_WIDTH, 0.0, 0.0);
     lines.color = colour(level.r, level.g, level.b, 1.0);
     field.addLevel(lines, level.value);
   }

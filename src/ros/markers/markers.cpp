@@ -19,7 +19,7 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double PERIOD = 0.1;            /* [s] between two publications at least */
+constexpr double DRAWING_PERIOD = 0.1;    /* [s] between two publications at least */
 constexpr std::size_t MAX_SAMPLES = 2000; /* of all curves of a drawing together */
 constexpr std::size_t MAX_CURVE_SAMPLES = 160;
 constexpr double LARGE = 0.4; /* [m] the diagonal from which on an object is drawn translucent */
@@ -86,7 +86,7 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, co
                                  MarkerResources resources)
     : scene_(scene), frame_(frame), resources_(std::move(resources)) {
   publisher_ = handle.advertise<MarkerArray>("markers", 1, true);
-  timer_ = handle.createWallTimer(ros::WallDuration(PERIOD), [this](const ros::WallTimerEvent &) {
+  timer_ = handle.createWallTimer(ros::WallDuration(DRAWING_PERIOD), [this](const ros::WallTimerEvent &) {
     guarded([this] { publishIfNew(); }, [](const std::string &why) { ROS_ERROR("markers: %s", why.c_str()); });
   });
 }
@@ -95,7 +95,7 @@ bool MarkerPublisher::wantsCurves() {
   if (isWatched()) return true;
   const auto now = std::chrono::steady_clock::now();
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (now - kept_ < std::chrono::duration<double>(PERIOD)) return false;
+  if (now - kept_ < std::chrono::duration<double>(DRAWING_PERIOD)) return false;
   kept_ = now;
   return true;
 }

@@ -8,7 +8,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr int GHOSTS = 6;              /* poses of the robot on its way */
+constexpr int ROBOT_GHOSTS = 6;        /* poses of the robot on its way */
 constexpr int SWEEP_SAMPLES = 60;      /* of the way of its closest point */
 constexpr double SWEEP_RADIUS = 0.008; /* [m] as it is drawn */
 
@@ -105,8 +105,8 @@ void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
 
   // On its way, faintly.
   std::vector<LinkPoses> ghosts;
-  for (int i = 0; i < GHOSTS; ++i) {
-    const double t = i + 1 == GHOSTS ? domain[1] : domain[0] + (domain[1] - domain[0]) * i / (GHOSTS - 1);
+  for (int i = 0; i < ROBOT_GHOSTS; ++i) {
+    const double t = i + 1 == ROBOT_GHOSTS ? domain[1] : domain[0] + (domain[1] - domain[0]) * i / (ROBOT_GHOSTS - 1);
     ghosts.push_back(motion.linkPoses(t));
   }
   const bool moves = std::any_of(ghosts.begin(), ghosts.end(), [&](const LinkPoses &poses) {

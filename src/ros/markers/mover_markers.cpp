@@ -10,7 +10,7 @@ namespace curve_proximity {
 namespace {
 
 constexpr int WAY_SAMPLES = 60;
-constexpr int GHOSTS = 5;            /* poses of an object on its way */
+constexpr int OBJECT_GHOSTS = 5;     /* poses of an object on its way */
 constexpr double WAY_RADIUS = 0.005; /* [m] as it is drawn */
 
 const std_msgs::ColorRGBA OBJECT = colour(0.9, 0.6, 0.2, 1.0), GHOST = colour(0.9, 0.6, 0.2, 0.12);
@@ -47,7 +47,8 @@ void addWay(Canvas &canvas, const DrawnObject &object, const Movers &movers, con
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i <= WAY_SAMPLES; ++i) points.push_back(poseAt(i, WAY_SAMPLES).translation());
   addTube(canvas, "movers_way", points, std::vector<std_msgs::ColorRGBA>(points.size(), OBJECT), WAY_RADIUS);
-  for (int i = 0; i <= GHOSTS; ++i) addObject(canvas, "movers_way", object, poseAt(i, GHOSTS), resources, GHOST);
+  for (int i = 0; i <= OBJECT_GHOSTS; ++i)
+    addObject(canvas, "movers_way", object, poseAt(i, OBJECT_GHOSTS), resources, GHOST);
 }
 
 void addRobotAt(Canvas &canvas, const MovingRobot &robot, double t, const ResourceOptions &resources) {

@@ -6,7 +6,7 @@
 namespace curve_proximity {
 namespace {
 
-geometry_msgs::Point toPointMessage(const Eigen::Vector3d &point) {
+geometry_msgs::Point pointMessage(const Eigen::Vector3d &point) {
   geometry_msgs::Point message;
   message.x = point.x();
   message.y = point.y();
@@ -21,6 +21,10 @@ Eigen::Isometry3d toIsometry(const geometry_msgs::Pose &pose) {
   const geometry_msgs::Quaternion &q = pose.orientation;
   if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) throw Error("the position is not finite");
   return toIsometry(cprox_pose{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
+}
+
+std::string withoutSlash(const std::string &frame) {
+  return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
 }
 
 geometry_msgs::Pose toMessage(const Eigen::Isometry3d &pose) {
@@ -41,7 +45,7 @@ bool isUnset(const geometry_msgs::Pose &pose) {
 }
 
 geometry_msgs::Point toPointMessage(const cprox_vec3 &point) {
-  return toPointMessage(toEigen(point));
+  return pointMessage(toEigen(point));
 }
 
 void fillPoints(const std::vector<geometry_msgs::Point> &points, Eigen::Matrix3Xd &out) {
@@ -59,7 +63,7 @@ Eigen::Matrix3Xd toPoints(const std::vector<geometry_msgs::Point> &points) {
 std::vector<geometry_msgs::Point> toPointMessages(const Eigen::Matrix3Xd &points) {
   std::vector<geometry_msgs::Point> out;
   out.reserve(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i) out.push_back(toPointMessage(Eigen::Vector3d(points.col(i))));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) out.push_back(pointMessage(Eigen::Vector3d(points.col(i))));
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include <curve_proximity/core.hpp>
 #include <Eigen/Geometry>
+#include <string>
 #include <vector>
 
 namespace curve_proximity {
@@ -19,6 +20,9 @@ geometry_msgs::Pose toMessage(const Eigen::Isometry3d &pose);
 bool isUnset(const geometry_msgs::Pose &pose);
 
 geometry_msgs::Point toPointMessage(const cprox_vec3 &point);
+
+/** tf2 knows no leading slash; users of tf still write it. */
+std::string withoutSlash(const std::string &frame);
 
 /** Points are the columns; fillPoints() in the memory of another matrix. */
 Eigen::Matrix3Xd toPoints(const std::vector<geometry_msgs::Point> &points);

@@ -91,7 +91,7 @@ LinkScale toScaleMessage(const std::pair<const std::string, double> &scale) {
   return message;
 }
 
-AllowedContact toMessage(const AllowedPair &pair) {
+AllowedContact toContactMessage(const AllowedPair &pair) {
   AllowedContact message;
   message.first = pair.a;
   message.second = pair.b;
@@ -215,7 +215,7 @@ void toMessage(const Snapshot &snapshot, const std::vector<std::string> &ids, Ge
     response.link_padding.push_back(toPaddingMessage("", snapshot.defaultLinkPadding()));
   for (const auto &padding : snapshot.linkPaddings())
     response.link_padding.push_back(toPaddingMessage(padding.first, padding.second));
-  for (const AllowedPair &pair : snapshot.allowed()) response.allowed_contacts.push_back(toMessage(pair));
+  for (const AllowedPair &pair : snapshot.allowed()) response.allowed_contacts.push_back(toContactMessage(pair));
 }
 
 ApplySceneRequest toMessage(const SceneChange &change) {
@@ -232,7 +232,7 @@ ApplySceneRequest toMessage(const SceneChange &change) {
   for (const Attachment &attachment : change.attachments)
     request.attached_collision_objects.push_back(toMessage(attachment));
   for (const auto &scale : change.link_scale) request.link_scale.push_back(toScaleMessage(scale));
-  for (const AllowedPair &pair : change.allowed) request.allowed_contacts.push_back(toMessage(pair));
+  for (const AllowedPair &pair : change.allowed) request.allowed_contacts.push_back(toContactMessage(pair));
   return request;
 }
 

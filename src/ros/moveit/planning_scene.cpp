@@ -79,10 +79,6 @@ PlanningSceneState::Subframes toSubframes(const moveit::CollisionObject &object)
   return out;
 }
 
-std::string withoutSlash(const std::string &frame) {
-  return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
-}
-
 std::string listed(const std::set<std::string> &names) {
   constexpr std::size_t MOST = 10;
   std::string out;
@@ -143,9 +139,9 @@ std::map<Names, bool> toMatrix(const moveit::AllowedCollisionMatrix &message) {
 
 /* ---- one message ---- */
 
-class Reader {
+class SceneReader {
  public:
-  Reader(const PlanningScene &message, const PlanningSceneContext &context)
+  SceneReader(const PlanningScene &message, const PlanningSceneContext &context)
       : message_(message), context_(context), robot_(context.before.robot().get()), full_(message.is_diff == 0) {
     out_.state = context.state;
     out_.change.attachments_first = true;
@@ -577,7 +573,7 @@ std::string difference(const ObjectDescription &theirs, const ObjectDescription 
 } // namespace
 
 PlanningSceneChange toSceneChange(const PlanningScene &message, const PlanningSceneContext &context) {
-  return Reader(message, context).read();
+  return SceneReader(message, context).read();
 }
 
 std::vector<std::string> differences(const PlanningScene &message, const PlanningSceneContext &context,

@@ -30,18 +30,12 @@ constexpr std::size_t MOST_SENTENCES = 10;
 constexpr double ASK_AGAIN = 1.0;
 
 /** How soon a new publisher is noticed: roscpp does not tell. */
-constexpr std::chrono::milliseconds LOOK_AGAIN{100};
+constexpr std::chrono::milliseconds LOOK_FOR_END{100};
 
 const char *const NO_FULL_SCENE =
     "~planning_scene has sent diffs and no full scene: what else is in that scene is not known";
 
 const char *const NO_SCENE = "no planning scene has come: ~ask_planning_scene expects one of move_group";
-
-ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
-  ros::NodeHandle own(handle);
-  own.setCallbackQueue(&queue);
-  return own;
-}
 
 std::string joined(const std::vector<std::string> &sentences) {
   std::string out;
@@ -285,7 +279,7 @@ bool PlanningSceneTopic::wait(double period, std::uint32_t &publishers, bool &be
     const std::chrono::duration<double> left =
         std::chrono::duration<double>(period) - (std::chrono::steady_clock::now() - start);
     if (left.count() <= 0.0) return true;
-    wake_.wait_for(lock, std::min<std::chrono::duration<double>>(left, LOOK_AGAIN));
+    wake_.wait_for(lock, std::min<std::chrono::duration<double>>(left, LOOK_FOR_END));
   }
   return false;
 }

@@ -20,7 +20,7 @@ const Robot &robotOf(const Snapshot &snapshot) {
   return *snapshot.robot();
 }
 
-std::string joined(const std::vector<std::string> &names) {
+std::string quotedNames(const std::vector<std::string> &names) {
   std::string out;
   for (const std::string &name : names) out += (out.empty() ? "'" : ", '") + name + "'";
   return out;
@@ -116,8 +116,8 @@ JointTrajectory toTrajectory(const moveit::RobotTrajectory &message, const Robot
   unknown.insert(unknown.end(), other.begin(), other.end());
   if (joints.joint_names.empty() && free.joint_names.empty())
     throw Error(unknown.empty() ? "the trajectory names no joints"
-                                : "the robot has none of the trajectory's joints: " + joined(unknown));
-  if (!unknown.empty()) addRemark("joints that the robot does not have are left out: " + joined(unknown), remarks);
+                                : "the robot has none of the trajectory's joints: " + quotedNames(unknown));
+  if (!unknown.empty()) addRemark("joints that the robot does not have are left out: " + quotedNames(unknown), remarks);
   if (free.joint_names.empty()) return joints;
   JointTrajectory freely = toJointTrajectory(free, robot, srdf);
   if (joints.joint_names.empty()) return freely;
@@ -194,7 +194,7 @@ RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot 
   }
   out.start.header = start.joint_state.header;
   if (!unknown.empty())
-    out.remarks.push_back("joints of trajectory_start that the robot does not have: " + joined(unknown));
+    out.remarks.push_back("joints of trajectory_start that the robot does not have: " + quotedNames(unknown));
   for (const moveit::AttachedCollisionObject &attached : start.attached_collision_objects) {
     const std::string &id = attached.object.id;
     if (snapshot.attached().count(id) == 0)

@@ -113,9 +113,9 @@ ObjectDescription toBody(Xml &given, const std::string &where) {
 }
 
 /** Fills one parameter after the other from the parameter server. */
-class Reader {
+class NodeParameters {
  public:
-  explicit Reader(const ros::NodeHandle &handle) : handle_(handle) {}
+  explicit NodeParameters(const ros::NodeHandle &handle) : handle_(handle) {}
 
   void operator()(const char *name, std::string &value) {
     XmlRpc::XmlRpcValue given;
@@ -248,7 +248,7 @@ class Reader {
 
 Parameters readParameters(const ros::NodeHandle &handle) {
   Parameters parameters;
-  Reader reader(handle);
+  NodeParameters reader(handle);
   visitParameters(parameters, reader);
   reader.keep(KEPT_BY_SERVER);
   reader.warnOfOthers();
@@ -280,7 +280,7 @@ Parameters readParameters(const ros::NodeHandle &handle) {
 
 GateParameters readGateParameters(const ros::NodeHandle &handle) {
   GateParameters parameters;
-  Reader reader(handle);
+  NodeParameters reader(handle);
   visitGateParameters(parameters, reader);
   reader.warnOfOthers();
   if (!parameters.controller.empty() && parameters.server.empty())

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t RESULTS_KEPT = 100; /* for subscribers in other processes that are slow */
 
 /** One thread answers, the other takes in what comes meanwhile. */
-constexpr int THREADS = 2;
+constexpr int PIPELINE_THREADS = 2;
 
 const char *topicOf(const CurveConstPtr &) {
   return "curve";
@@ -111,7 +111,7 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
                 [](const std::string &why) { ROS_ERROR("~joint_states: %s", why.c_str()); });
       });
   subscribers_.push_back(handle_.subscribe(joints));
-  for (int i = 0; i < THREADS; i++) threads_.emplace_back([this] { takeIn(); });
+  for (int i = 0; i < PIPELINE_THREADS; i++) threads_.emplace_back([this] { takeIn(); });
   if (parameters_.state_rate == 0.0) return;
   states_ = state_handle_.advertise<ProximityResults>("state_proximity", 1);
   state_timer_ = state_handle_.createWallTimer(

@@ -51,7 +51,7 @@ class Feedback {
   std::chrono::steady_clock::time_point next_;
 };
 
-void complain(const std::string &why) {
+void logQueryError(const std::string &why) {
   ROS_ERROR("~query: %s", why.c_str());
 }
 
@@ -61,8 +61,8 @@ BatchAction::BatchAction(const ros::NodeHandle &handle, const std::string &fixed
                          const std::atomic<bool> &stop)
     : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle) {
   server_ = std::make_unique<Server>(
-      handle_, "query", [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, complain); },
-      [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, complain); }, false);
+      handle_, "query", [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, logQueryError); },
+      [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, logQueryError); }, false);
   server_->start();
   thread_ = std::thread([this] { work(); });
 }
@@ -109,7 +109,7 @@ void BatchAction::work() {
       if (ending_) return;
       batch = batches_.front();
     }
-    guarded([&] { answer(*batch); }, complain);
+    guarded([&] { answer(*batch); }, logQueryError);
     const std::lock_guard<std::mutex> lock(mutex_);
     batches_.pop_front();
   }

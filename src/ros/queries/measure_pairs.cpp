@@ -31,7 +31,7 @@ PlacedBody toPlacedBody(const Body &body, const geometry_msgs::Pose &pose, const
 }
 
 /** Throws Error: an unknown question, a velocity or duration of bodies that stand. */
-PairDescription toDescription(const PairQuery &message) {
+PairDescription toPairDescription(const PairQuery &message) {
   const std::optional<PairDescription::Asked> asked = pairQuestion(message.ask);
   if (!asked)
     throw Error("ask '" + message.ask +
@@ -91,7 +91,7 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
     Proximity row;
     const std::string why = sentenceOf([&] {
       budget.demand();
-      const PairDescription pair = toDescription(asked);
+      const PairDescription pair = toPairDescription(asked);
       row = toRow(askPair(pair, query, resources, *workspace), pair.asked);
     });
     if (!why.empty()) {

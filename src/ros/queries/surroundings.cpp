@@ -12,14 +12,6 @@ namespace {
 
 constexpr double NANOSECOND = 1e-9;
 
-/** A message that nobody filled in has zeros everywhere. */
-Eigen::Isometry3d poseOf(const geometry_msgs::Pose &pose) {
-  const geometry_msgs::Quaternion &q = pose.orientation;
-  const geometry_msgs::Point &p = pose.position;
-  const bool unset = p.x == 0 && p.y == 0 && p.z == 0 && q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0;
-  return unset ? Eigen::Isometry3d::Identity() : toIsometry(pose);
-}
-
 MovingRobot toMovingRobot(const RobotTrajectory &message, const FurtherRobots &robots, std::int64_t origin,
                           FrameLookup &lookup) {
   try {
@@ -34,7 +26,9 @@ MovingRobot toMovingRobot(const RobotTrajectory &message, const FurtherRobots &r
     if (!remark.empty()) throw Error(remark);
     adoptBase(robot.srdf.virtual_joints, *robot.alone->robot(), trajectory);
     const std_msgs::Header &header = message.base.header;
-    const Eigen::Isometry3d base = lookup.toFixed(header.frame_id, header.stamp) * poseOf(message.base.pose);
+    const Eigen::Isometry3d base =
+        lookup.toFixed(header.frame_id, header.stamp) *
+        (isUnset(message.base.pose) ? Eigen::Isometry3d::Identity() : toIsometry(message.base.pose));
     const std::int64_t stamp = static_cast<std::int64_t>(message.trajectory.header.stamp.toNSec());
     MovingRobot out;
     out.name = message.name;

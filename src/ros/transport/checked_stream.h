@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_ROS_CHECKED_STREAM_H
 #define CURVE_PROXIMITY_ROS_CHECKED_STREAM_H
 
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/serialization.h>
 #include <ros/subscribe_options.h>
@@ -75,6 +76,13 @@ class CheckedStream {
   std::uint8_t *at_;
   std::uint8_t *const end_;
 };
+
+/** The same node, its callbacks on a queue of their own. */
+inline ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
+  ros::NodeHandle own(handle);
+  own.setCallbackQueue(&queue);
+  return own;
+}
 
 /** As ros::NodeHandle::subscribe(), by CheckedStream. Within a process messages go by pointer, as ever. */
 template <class Message>

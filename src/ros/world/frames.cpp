@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "messages/geometry_message.h"
 #include "transport/turns.h"
 
 namespace curve_proximity {
@@ -18,11 +19,6 @@ constexpr std::chrono::seconds SETTLED{3};
 
 /** A wait looks again this often, even where no transform has come: the stop flag is nobody's signal. */
 constexpr std::chrono::milliseconds LOOK_AGAIN{20};
-
-/** tf2 knows no leading slash; users of tf still write it. */
-std::string withoutSlash(const std::string &frame) {
-  return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
-}
 
 Eigen::Isometry3d toIsometry(const geometry_msgs::Transform &transform) {
   const geometry_msgs::Vector3 &p = transform.translation;

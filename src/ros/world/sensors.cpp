@@ -10,16 +10,6 @@
 #include "transport/guard.h"
 
 namespace curve_proximity {
-namespace {
-
-ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
-  ros::NodeHandle own(handle);
-  own.setCallbackQueue(&queue);
-  return own;
-}
-
-} // namespace
-
 Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames)
     : parameters_(parameters), live_(live), frames_(frames), handle_(onQueue(handle, queue_)), spinner_(1, &queue_) {
   ros::SubscribeOptions topics[] = {

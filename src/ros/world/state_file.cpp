@@ -22,7 +22,7 @@ namespace curve_proximity {
 namespace {
 
 constexpr const char *MAGIC = "curve_proximity scene 2";
-constexpr std::chrono::seconds PERIOD{1}; /* between two writings at least */
+constexpr std::chrono::seconds WRITING_PERIOD{1}; /* between two writings at least */
 constexpr std::size_t MOST_BYTES = std::size_t{64} << 20;
 
 std::uint64_t hashOf(const std::string &bytes) {
@@ -236,7 +236,7 @@ void StateFile::run() {
       lock.lock();
     }
     if (ending_) return;
-    wake_.wait_for(lock, PERIOD, [this] { return ending_; });
+    wake_.wait_for(lock, WRITING_PERIOD, [this] { return ending_; });
   }
 }
 
