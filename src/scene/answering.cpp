@@ -220,6 +220,12 @@ void nameItem(const Item &item, cprox_lod max_lod, Answer &answer) {
   answer.b = *item.owner;
   answer.b_is_link = item.is_link;
   if (item.shape->is_mesh) sayModel(max_lod, *item.shape, answer);
+  if (isReplaced(max_lod, item.shape->is_mesh)) claimOneSide(answer.result);
+}
+
+void claimOneSide(cprox_result &result) {
+  result.upper = INFINITE;
+  if (result.verdict == CPROX_VERDICT_VIOLATED) result.verdict = CPROX_VERDICT_UNDECIDED;
 }
 
 void finishAnswer(const Workspace &workspace, Answer &answer) {

@@ -73,6 +73,8 @@ using ViolationNamer = std::function<void(const cprox_violation &, Violation &)>
 /* Nothing was measured. */
 Violations violationsOfNothing();
 
+void claimOneSide(Violation &violation);
+
 /* Throws Error where violations cannot be asked for in this way. */
 void checkViolations(const Query &query, double resolution);
 
@@ -95,6 +97,16 @@ double roundingOf(const CompiledCurve &curve, const std::vector<Item> &items);
 
 /* Names the shape that a curve's answer is about, and what of it has answered. */
 void nameItem(const Item &item, cprox_lod max_lod, Answer &answer);
+
+/* Whether a model that contains it stands for what is nearest, because max_lod says so. */
+inline bool isReplaced(cprox_lod max_lod, bool is_mesh) {
+  return max_lod == CPROX_LOD_SPHERE || (max_lod == CPROX_LOD_HULL && is_mesh);
+}
+
+inline const char *const MESH_BY_HULL = "the nearest shape is a mesh: its convex hull answers for it";
+
+/* What is replaced may be farther than its model, or never be met: its answer claims no upper end and no violation. */
+void claimOneSide(cprox_result &result);
 
 /* The status by name; why there is no answer, where there is none. */
 void finishAnswer(const Workspace &workspace, Answer &answer);

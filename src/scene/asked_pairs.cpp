@@ -153,9 +153,9 @@ void nameSides(const Asked &asked, const Query &query, Answer &answer) {
     if (item.shape->is_open && !answer.by_hull)
       answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
   }
+  if (isReplaced(query.options.max_lod, answer.by_hull)) claimOneSide(result);
   if (!answer.by_hull) return;
-  answer.message = deep ? "meshes overlap: their convex hulls say how deep at most"
-                        : "the nearest shape is a mesh: its convex hull answers for it";
+  answer.message = deep ? "meshes overlap: their convex hulls say how deep at most" : MESH_BY_HULL;
 }
 
 Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &query, const Workspace &workspace,

@@ -89,7 +89,10 @@ std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const Co
   const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
   const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
     out.a = curve.id;
-    if (found.obstacle_index >= 0) out.b = *items[static_cast<std::size_t>(found.obstacle_index)].owner;
+    if (found.obstacle_index < 0) return;
+    const Item &item = items[static_cast<std::size_t>(found.obstacle_index)];
+    out.b = *item.owner;
+    if (isReplaced(query.options.max_lod, item.shape->is_mesh)) out.upper = INFINITE;
   };
   std::vector<ClearanceInterval> profile =
       searchProfile(obstacles, moverOf(curve), roundingOf(curve, items), breaks, horizon, query, workspace, name);

@@ -193,7 +193,10 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
   Unlisted unlisted;
   unlisted.add(status, listed, asked.rounding);
   unlisted.addRow(limits, query.options, asked.data.id, self ? "self" : "environment", answers);
-  if (answers.empty()) applyCoverage(coverage, query, nothing, answers);
+  if (answers.empty())
+    applyCoverage(coverage, query, nothing, answers);
+  else if (answers.back().is_unlisted)
+    applyCoverage(coverage, query, answers.back());
   return answers;
 }
 
@@ -210,6 +213,7 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
     names.result.mover_part = found.mover_part;
     nameSides(asked, query, names);
     out.a = names.a, out.b = names.b;
+    if (isReplaced(query.options.max_lod, names.by_hull)) out.upper = INFINITE;
   };
   if (asked.pairs.empty()) {
     profile = profileOfNothing(breaks);

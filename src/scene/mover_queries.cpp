@@ -127,8 +127,15 @@ Coverage coverageOf(const Movers::Data &data, const Pairs &pairs, const Query &q
   return coverageOf(query, data.coverage, nothing ? "there is no pair to measure" : "");
 }
 
-/* Side a is one of `links`, where there are any. */
-void nameSides(const Movers::Data &data, Against against, const std::vector<std::string> &links, Answer &answer) {
+void sayReplaced(const Query &query, bool is_mesh, Answer &answer) {
+  if (!isReplaced(query.options.max_lod, is_mesh)) return;
+  answer.by_hull = is_mesh;
+  if (is_mesh) answer.message = MESH_BY_HULL;
+  claimOneSide(answer.result);
+}
+
+/* Side a is one of the query's links, where there are any. */
+void nameSides(const Movers::Data &data, Against against, const Query &query, Answer &answer) {
   cprox_result &result = answer.result;
   if (result.status < 0 || result.obstacle_index < 0) return;
   const MoverGeometry &moving = data.geometries[static_cast<std::size_t>(result.mover_part)];
@@ -140,14 +147,16 @@ void nameSides(const Movers::Data &data, Against against, const std::vector<std:
     const Item &item = data.snapshot->world().items()[index];
     answer.b = *item.owner;
     result.obstacle_index = item.part;
+    sayReplaced(query, moving.is_mesh || item.shape->is_mesh, answer);
     return;
   }
   const MoverGeometry &other = data.geometries[index - standing];
+  sayReplaced(query, moving.is_mesh || other.is_mesh, answer);
   answer.kind = "movers";
   answer.b = other.name;
   answer.b_is_link = other.mover < data.robots.size();
   result.obstacle_index = other.part;
-  if (isNamed(links, answer.a) || !isNamed(links, answer.b)) return;
+  if (isNamed(query.links, answer.a) || !isNamed(query.links, answer.b)) return;
   answer.b_is_link = moving.mover < data.robots.size();
   std::swap(answer.a, answer.b);
   std::swap(result.mover_part, result.obstacle_index);
@@ -178,7 +187,7 @@ Answer answerOf(const Movers &movers, Against asked, const Query &query, const s
   } else {
     core(joinedMover(data, pairs), targetsOf(data, pairs), answer.result);
     if (answer.result.status < 0) answer.message = workspace.reason();
-    nameSides(data, pairs.against, query.links, answer);
+    nameSides(data, pairs.against, query, answer);
   }
   if (query.moving_only && answer.result.status >= 0)
     answer.message += (answer.message.empty() ? "" : "; ") + std::string(MOVING_ONLY);
@@ -246,10 +255,11 @@ std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, 
     sides.result.mover_part = found.mover_part;
     sides.result.witness_mover = found.witness_mover;
     sides.result.witness_obstacle = found.witness_obstacle;
-    nameSides(data, pairs.against, query.links, sides);
+    nameSides(data, pairs.against, query, sides);
     sides = view(std::move(sides));
     out.a = sides.a, out.witness_a = sides.result.witness_mover;
     out.b = sides.b, out.witness_b = sides.result.witness_obstacle;
+    if (!std::isfinite(sides.result.upper)) out.upper = INFINITE;
   };
   std::vector<ClearanceInterval> profile = profileOfNothing(breaks);
   if (!pairs.environment.empty() || !pairs.among.empty()) {
@@ -288,7 +298,7 @@ std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairL
       answer.id = "movers", answer.kind = "environment";
       answer.result = results[i];
       widen(query, data.rounding, std::numeric_limits<double>::infinity(), answer.result);
-      nameSides(data, some.against, query.links, answer);
+      nameSides(data, some.against, query, answer);
       answer.microseconds = microsecondsSince(start);
       answer.status = cprox_status_name(answer.result.status);
       if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
@@ -297,8 +307,9 @@ std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairL
   };
   add({Against::OBJECTS, pairs.environment, {}});
   add({Against::MOVERS, {}, pairs.among});
+  const auto far = [](const cprox_result &one) { return std::isfinite(one.upper) ? one.upper : one.lower; };
   std::stable_sort(out.begin(), out.end(),
-                   [](const Answer &x, const Answer &y) { return x.result.upper < y.result.upper; });
+                   [&](const Answer &x, const Answer &y) { return far(x.result) < far(y.result); });
   for (std::size_t i = limits.count; i < out.size(); ++i)
     unlisted.lower = std::min(unlisted.lower, std::max(0.0, out[i].result.lower));
   if (out.size() > limits.count) out.resize(limits.count);
@@ -319,9 +330,10 @@ Violations violationsOf(const Movers &movers, Against against, double resolution
     Answer sides;
     sides.result.obstacle_index = found.obstacle_index;
     sides.result.mover_part = found.mover_part;
-    nameSides(data, pairs.against, query.links, sides);
+    nameSides(data, pairs.against, query, sides);
     sides = view(std::move(sides));
     out.a = sides.a, out.b = sides.b;
+    if (!std::isfinite(sides.result.upper)) claimOneSide(out);
   };
   Violations found = violationsOfNothing();
   if (!pairs.environment.empty() || !pairs.among.empty()) {

@@ -123,8 +123,8 @@ class Joiner {
     const auto first = static_cast<std::int32_t>(out_.geometries.size());
     for (const MovingGeometry &geometry : data.kinematics->geometries) {
       const bool moves = data.moves[out_.geometries.size() - static_cast<std::size_t>(first)];
-      out_.geometries.push_back(
-          {cores_.size(), robot.name + "/" + geometry.owner(), geometry.part, geometry.excess, moves, false});
+      out_.geometries.push_back({cores_.size(), robot.name + "/" + geometry.owner(), geometry.part, geometry.excess,
+                                 moves, false, geometry.is_mesh});
     }
     for (const cprox_robot_pair &pair : data.self) out_.among.push_back({pair.geometry + first, pair.other + first});
     out_.among_moves.insert(out_.among_moves.end(), data.self_moves.begin(), data.self_moves.end());
@@ -138,7 +138,7 @@ class Joiner {
   void addObject(const MovingObject &object, const MovingBody &made) {
     for (std::size_t i = 0; i < made.geometries.size(); ++i)
       out_.geometries.push_back({cores_.size(), object.object.id, static_cast<int>(i), made.geometries[i].excess,
-                                 object.poses.size() > 1, true});
+                                 object.poses.size() > 1, true, made.geometries[i].is_mesh});
     cores_.push_back(made.robot.get());
     motions_.push_back({made.motion.get(), object.start, object.tolerance});
     names_.push_back(object.object.id);

@@ -22,6 +22,7 @@ struct MoverGeometry {
   double excess = 0.0;
   bool moves = true; /* along its own motion; of a state true */
   bool is_object = false;
+  bool is_mesh = false;
 };
 
 /* Whose link or object that is: "robot/link" is of "robot". */

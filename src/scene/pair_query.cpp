@@ -95,6 +95,7 @@ Answer askPair(const PairDescription &pair, const Query &query, const ResourceOp
   if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
   Query depth = query; // pairs always have one
   depth.options.signed_distance = pair.asked == PairDescription::DISTANCE;
+  if (isReplaced(query.options.max_lod, a.is_mesh || b.is_mesh)) claimOneSide(answer.result);
   applyCoverage(coverageOf(query, {}, ""), depth, answer);
   addOpinion(pair, query, answer);
   return answer;

@@ -306,7 +306,7 @@ Stop stopOf(const Query &query) {
 
 /* Whether there is a pair to measure; a closest pair that nobody measured is unknown. */
 bool hasPair(const Query &query, Answer &answer) {
-  if (answer.result.obstacle_index >= 0 && std::isfinite(answer.result.upper)) return true;
+  if (answer.result.obstacle_index >= 0 && (answer.by_hull || std::isfinite(answer.result.upper))) return true;
   refuseSecondOpinion(query, "no pair was measured", answer);
   return false;
 }
@@ -421,7 +421,7 @@ void refuseSecondOpinion(const Query &query, const std::string &why, Answer &ans
 }
 
 void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, const Query &query, Answer &answer) {
-  if (!isWanted(query, answer) || !hasPair(query, answer) || byBalls(query, answer)) return;
+  if (!isWanted(query, answer) || byBalls(query, answer) || !hasPair(query, answer)) return;
   const SecondOpinions::Data &data = query.second_opinion->data();
   const Snapshot &snapshot = *targets.snapshot;
   const auto part = static_cast<std::size_t>(answer.result.obstacle_index);
@@ -456,7 +456,7 @@ void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, 
 }
 
 void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answer &answer) {
-  if (!isWanted(query, answer) || !hasPair(query, answer) || byBalls(query, answer)) return;
+  if (!isWanted(query, answer) || byBalls(query, answer) || !hasPair(query, answer)) return;
   const SecondOpinions::Data &data = query.second_opinion->data();
   const Snapshot &snapshot = *motion.snapshot;
   const auto part = static_cast<std::size_t>(answer.result.obstacle_index);

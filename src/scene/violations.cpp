@@ -22,6 +22,11 @@ Violations violationsOfNothing() {
   return out;
 }
 
+void claimOneSide(Violation &violation) {
+  violation.upper = INFINITE;
+  violation.verdict = CPROX_VERDICT_UNDECIDED;
+}
+
 Violations searchViolations(const Obstacles &obstacles, const cprox_mover &mover, double rounding, double resolution,
                             const Query &query, Workspace &workspace, const ViolationNamer &name) {
   constexpr std::size_t FIRST_ROOM = 64, MOST_ROOM = 65536;
@@ -56,7 +61,10 @@ Violations violations(const Targets &targets, const CompiledCurve &curve, double
   const std::vector<Item> &items = targets.data().items;
   const auto name = [&](const cprox_violation &found, Violation &out) {
     out.a = curve.id;
-    if (found.obstacle_index >= 0) out.b = *items[static_cast<std::size_t>(found.obstacle_index)].owner;
+    if (found.obstacle_index < 0) return;
+    const Item &item = items[static_cast<std::size_t>(found.obstacle_index)];
+    out.b = *item.owner;
+    if (isReplaced(query.options.max_lod, item.shape->is_mesh)) claimOneSide(out);
   };
   Violations found = violationsOfNothing();
   if (!items.empty()) {
@@ -83,6 +91,7 @@ Violations violations(const RobotMotion &motion, bool self, double resolution, c
     nameSides(asked, query, names);
     out.a = names.a;
     out.b = names.b;
+    if (isReplaced(query.options.max_lod, names.by_hull)) claimOneSide(out);
   };
   Violations found = violationsOfNothing();
   if (!asked.pairs.empty()) {
