@@ -12,13 +12,6 @@
 namespace curve_proximity::python {
 namespace {
 
-/* As Python's warnings, which may be errors. */
-void warn(const std::string &path, const std::vector<std::string> &sentences) {
-  for (const std::string &sentence : sentences) {
-    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + sentence).c_str(), 1) != 0) throw py::error_already_set();
-  }
-}
-
 /* A matrix as an array (rows, columns); none: None. */
 py::object fromMatrix(const Eigen::MatrixXd &matrix) {
   if (matrix.size() == 0) return py::none();
@@ -29,6 +22,12 @@ py::object fromMatrix(const Eigen::MatrixXd &matrix) {
 }
 
 } // namespace
+
+void warn(const std::string &path, const std::vector<std::string> &sentences) {
+  for (const std::string &sentence : sentences) {
+    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + sentence).c_str(), 1) != 0) throw py::error_already_set();
+  }
+}
 
 ResourceOptions resourcesOf(const std::string &path, const Packages &packages) {
   ResourceOptions out;

@@ -20,6 +20,9 @@ using Packages = std::map<std::string, std::string>;
 /** Of files beside `path`, with the folders of packages. */
 ResourceOptions resourcesOf(const std::string &path, const Packages &packages);
 
+/** As Python's warnings, which may be errors. */
+void warn(const std::string &path, const std::vector<std::string> &sentences);
+
 /** A robot with what its SRDF says. */
 struct LoadedRobot {
   std::shared_ptr<const Robot> robot;

@@ -6,6 +6,7 @@
 
 #include "answering.h"
 #include "asked_pairs.h"
+#include "short_way.h"
 
 namespace curve_proximity {
 namespace {
@@ -55,6 +56,26 @@ TrajectoryDescription straight(const Roadmap &roadmap, const std::array<std::uin
   TrajectoryDescription out;
   out.joints = roadmap.joints;
   out.points = {pointAt(roadmap, edge[0], 0.0), pointAt(roadmap, edge[1], 1.0)};
+  out.shortest_way = roadmap.shortest_way;
+  return out;
+}
+
+/* With a vertex of its own for each edge that goes the shorter way to where it is after whole turns. */
+Roadmap shortened(const Robot &robot, const Roadmap &roadmap) {
+  Roadmap out = roadmap;
+  std::vector<Eigen::VectorXd> further;
+  for (std::array<std::uint32_t, 2> &edge : out.edges) {
+    TrajectoryDescription motion = straight(roadmap, edge);
+    takeShortWays(robot, motion);
+    const std::vector<double> &end = motion.points[1].positions;
+    const Eigen::Map<const Eigen::VectorXd> to(end.data(), static_cast<Eigen::Index>(end.size()));
+    if (to == roadmap.vertices.col(edge[1])) continue;
+    edge[1] = static_cast<std::uint32_t>(static_cast<std::size_t>(roadmap.vertices.cols()) + further.size());
+    further.push_back(to);
+  }
+  const Eigen::Index before = roadmap.vertices.cols();
+  out.vertices.conservativeResize(Eigen::NoChange, before + static_cast<Eigen::Index>(further.size()));
+  for (std::size_t i = 0; i < further.size(); ++i) out.vertices.col(before + static_cast<Eigen::Index>(i)) = further[i];
   return out;
 }
 
@@ -144,9 +165,23 @@ bool speaksForAll(const PreparedRobot &robot, const Query &query) {
 
 } // namespace
 
-std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &roadmap, bool self,
-                                        const Query &query, const std::vector<cprox_verdict> &known, Pool &pool) {
-  check(roadmap, query, known);
+std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap) {
+  std::vector<std::string> out;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < roadmap.edges.size(); ++i) {
+    const std::vector<std::string> ways = longWays(robot, straight(roadmap, roadmap.edges[i]));
+    if (ways.empty() || n++ > 0) continue;
+    for (const std::string &way : ways) out.push_back("edge " + std::to_string(i) + ": " + way);
+  }
+  if (n > 1) out.back() += " (" + std::to_string(n) + " edges do so)";
+  return out;
+}
+
+std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &given, bool self, const Query &query,
+                                        const std::vector<cprox_verdict> &known, Pool &pool) {
+  check(given, query, known);
+  const bool shortens = given.shortest_way && robot.snapshot()->robot();
+  const Roadmap roadmap = shortens ? shortened(*robot.snapshot()->robot(), given) : given;
   const std::size_t n = roadmap.edges.size();
   std::vector<cprox_verdict> verdicts = known;
   if (verdicts.empty()) verdicts.assign(n, CPROX_VERDICT_CLEAR);

@@ -1099,6 +1099,17 @@ class Files(unittest.TestCase):
         for motion in (short, given):
             self.assertAlmostEqual(motion.link_poses(1)['l'][0, 0], -1)
 
+    def test_an_edge_goes_the_long_way_with_a_warning(self):
+        # the link's ball stands 1 m from the axis: the long way leads by +x, the short one by -x
+        scene = self.scene('continuous')
+        scene.add('post', 'sphere', [.1], cprox.transform([1, 0, 0]))
+        with self.assertWarnsRegex(UserWarning, "edge 1: continuous joint 'j' turns by -6.2 rad"):
+            self.assertEqual(cprox.edges(scene, ['j'], [[0.5], [3.1]], [[0.6], [-3.1]], self_collision=False).tolist(), [0, 1])
+        with warnings.catch_warnings():
+            warnings.simplefilter('error')
+            self.assertEqual(cprox.edges(scene, ['j'], [[0.5], [3.1]], [[0.6], [-3.1]], shortest_way=True,
+                                         self_collision=False).tolist(), [0, 0])
+
 
 class Examples(unittest.TestCase):
     def test_an_arm_is_pushed_out_by_scipy_and_proven_clear(self):

@@ -226,7 +226,7 @@ class Movers:
 def edge_verdicts(scene: Scene, joints: Sequence[str], vertices: ArrayLike, edges: ArrayLike, delta: float,
                   self_collision: bool = ..., known: Optional[ArrayLike] = ..., rest: Mapping[str, float] = ...,
                   base: Optional[ArrayLike] = ..., epsilon: float = ..., max_nodes: int = ..., threads: int = ...,
-                  allow_empty: bool = ...) -> ndarray: ...
+                  allow_empty: bool = ..., shortest_way: bool = ...) -> ndarray: ...
 
 
 def edges(scene: Scene, joints: Sequence[str], start: ArrayLike, end: ArrayLike, delta: float = ...,
