@@ -554,16 +554,16 @@ class Movers(unittest.TestCase):
         self.assertEqual(whole.b.split('/')[0], 'right')
 
         profile, = self.profile(ClearanceProfileRequest(query=asked(), intervals=8)).profiles
-        self.assertAlmostEqual(min(profile.upper), whole.upper, delta=2e-6)
+        self.assertAlmostEqual(min(profile.lower), whole.lower, delta=2e-6)
         self.assertEqual((profile.t0[0], profile.t1[-1], profile.summary.b), (0.0, 2.0, whole.b))
         for i in range(8):
             for t in numpy.linspace(profile.t0[i], profile.t1[i], 4):
                 self.assertGreaterEqual(between(*self.pandas(t, 0.75, 1.6))[1], profile.lower[i] - 1e-6, t)
             a, b = profile.witness_a[i], profile.witness_b[i]
-            self.assertAlmostEqual(math.dist((a.x, a.y, a.z), (b.x, b.y, b.z)), profile.upper[i], delta=1e-6)
+            self.assertAlmostEqual(math.dist((a.x, a.y, a.z), (b.x, b.y, b.z)), profile.lower[i], delta=3e-6)
         links = self.profile(ClearanceProfileRequest(query=asked(), intervals=4, per_link=True)).profiles
         self.assertIn('panda_hand', [one.link for one in links])
-        self.assertAlmostEqual(min(min(one.upper) for one in links), whole.upper, delta=2e-6)
+        self.assertAlmostEqual(min(min(one.lower) for one in links), whole.lower, delta=2e-6)
 
         rows = self.server.distance([], trajectory=swing(-0.8, 0.8, stamp=1000.0), per_object=True,
                                     moving_robots=[other(swing(-0.8, 0.8, stamp=1000.75))]).results
