@@ -20,11 +20,11 @@ struct Roadmap {
   Eigen::MatrixXd vertices;                        /**< [rad], [m] a posture a column, a joint a row */
   std::vector<std::array<std::uint32_t, 2>> edges; /**< the columns of both ends, which may be one */
   JointPositions rest;                             /**< of the other joints */
-  /** Continuous joints turn the shorter way along an edge; otherwise as their values say, from 3.1 to -3.1 by 6.2 rad. */
+  /** Continuous joints turn the shorter way along an edge; otherwise as their values say: from 3.1 to -3.1 by 6.2. */
   bool shortest_way = false;
 };
 
-/** A sentence for each continuous joint that turns by more than half a turn along the first edge that has one; none with
+/** A sentence for each continuous joint that turns by more than half a turn on the first edge that has one; none with
  *  shortest_way. As longWays() of a trajectory. */
 std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap);
 
