@@ -64,11 +64,12 @@ class Trajectory(unittest.TestCase):
         with open(DATA + '/reference/expected_hull_model.json') as text:
             cases = [case for case in json.load(text)['cases'] if case['robot'].endswith('panda.urdf')]
         self.assertEqual(len(cases), 21)
+        hulls = Server('/hulls')
         for case in cases[::4]:
             objects, allowed = read_scene(f"{DATA}/{case['scene']}")
-            self.server.replace(*objects, allowed_contacts=allowed)
+            hulls.replace(*objects, allowed_contacts=allowed)
             path, still = read_trajectory(f"{DATA}/trajectories/{os.path.basename(case['trajectory'])}")
-            rows = self.rows(self.server.distance([], trajectory=path, joint_state=still, self_collision=True, epsilon=1e-6))
+            rows = self.rows(hulls.distance([], trajectory=path, joint_state=still, self_collision=True, epsilon=1e-6))
             for expected in case['results']:
                 with self.subTest(trajectory=case['trajectory'], kind=expected['kind']):
                     row = rows[expected['kind']]
