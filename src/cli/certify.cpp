@@ -84,12 +84,6 @@ TrajectoryDescription trajectoryOf(const std::string &path) {
   return readTrajectory(path, warnings);
 }
 
-/* What is to be said of the trajectory itself stands in the row. */
-Answer withWays(Answer answer, const std::vector<std::string> &ways) {
-  for (const std::string &way : ways) answer.message += (answer.message.empty() ? "" : "; ") + way;
-  return answer;
-}
-
 Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Arguments &arguments, Library &library,
                   Workspace &workspace) {
   std::string id;
@@ -115,11 +109,8 @@ Outcome answerRow(const Dataset &dataset, const ManifestRow &manifest, const Arg
     Outcome out;
     Query around = query; // a row about the robot itself that names no scene means that there is none
     around.allow_empty = query.allow_empty || (row.self && row.files.scene.empty());
-    const std::vector<std::string> ways = longWays(*world.snapshot->robot(), trajectory);
-    addAnswer(manifest.number, id, withWays(askEnvironment(motion, around, workspace).front(), ways), row.query_type,
-              out);
-    if (row.self)
-      addAnswer(manifest.number, id, withWays(askSelf(motion, query, workspace), ways), row.query_type, out);
+    addAnswer(manifest.number, id, askEnvironment(motion, around, workspace).front(), row.query_type, out);
+    if (row.self) addAnswer(manifest.number, id, askSelf(motion, query, workspace), row.query_type, out);
     return out;
   } catch (const std::bad_alloc &) {
     return unanswered(manifest.number, id.empty() ? std::to_string(manifest.number) : id, "failed",

@@ -283,7 +283,6 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     work.doubts.joints(
         current ? unknownJoints(robot, trajectory.joints, work.joints.positions, parameters_.assumed_joints) : "");
     out.remark = remark;
-    for (const std::string &way : longWays(robot, trajectory)) out.remark += (out.remark.empty() ? "" : "; ") + way;
     const Eigen::Isometry3d base = trajectory.base.empty()
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
                                        : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
