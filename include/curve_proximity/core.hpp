@@ -712,6 +712,14 @@ inline cprox_result pair(const cprox_obstacle &a, const cprox_obstacle &b, const
   return result;
 }
 
+/** Whether a static pair is farther apart than delta [m], as cprox_pair_tolerance(); delta 0: whether it touches. */
+inline cprox_result pairTolerance(const cprox_obstacle &a, const cprox_obstacle &b, double delta,
+                                  const cprox_options &options, Workspace &workspace) {
+  cprox_result result{};
+  require(cprox_pair_tolerance(a, b, delta, &options, workspace.get(), &result), workspace);
+  return result;
+}
+
 /** A body that moves on from where it stands, without turning; velocity [m/s], world frame. */
 inline cprox_translating translating(const cprox_obstacle &from, const Eigen::Vector3d &velocity) {
   return {from, toVec3(velocity)};

@@ -337,6 +337,19 @@ CPROX_API cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle t
 CPROX_API cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                   cprox_workspace *workspace, cprox_result *result);
 
+/** Are two standing bodies farther apart than delta? delta >= 0 [m]; 0: do they touch or overlap?
+ *
+ *  verdict clear: lower > delta; the search ends at the first direction that proves it. violated: upper <= delta; it
+ *  ends at the first two points that prove it, or where the bodies have a point in common (upper is 0 then, and both
+ *  witness points are that one). undecided: the distance is within epsilon of delta, or the budget was too small. How
+ *  deep bodies overlap is not measured: lower <= 0 bounds the signed distance of cprox_pair(). upper = infinity where
+ *  bounding balls or boxes alone proved the bodies clear: then there is no witness, and the points are NaN.
+ *  Bodies as for cprox_pair(); options too, but for start and signed_distance, which are refused.
+ *  Returns as cprox_distance(). Cost: at most about that of cprox_pair(); bodies far apart: one look at their balls. */
+CPROX_API cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double delta,
+                                            const cprox_options *options, cprox_workspace *workspace,
+                                            cprox_result *result);
+
 #ifdef __cplusplus
 }
 #endif

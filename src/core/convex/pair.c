@@ -209,6 +209,8 @@ static bool pair_newton(const pair *p, double d, vec3 *next) {
 /* ---- the search ---- */
 
 bool pair_is_reached(const pair_goal *goal, double margins, double rounding, double lower, double upper) {
+  if (goal->verdict && (lower - margins - rounding > goal->limit || upper - margins + rounding <= goal->limit))
+    return true;
   const double above = lower - margins - rounding - goal->floor;
   const double relative = goal->relative_epsilon * greater(upper - margins, 0.0);
   const double asked = greater(greater(goal->epsilon, relative), goal->fraction * above);

@@ -17,6 +17,8 @@ typedef struct pair_placement {
 typedef struct pair_goal {
   double epsilon, relative_epsilon;
   double floor, fraction; /* or this fraction of what its lower end is above the floor; 0: none */
+  bool verdict; /* or the side of `limit` that the distance is on: no more than that is known then, nor a depth */
+  double limit;
   uint32_t max_steps;
   bool (*stop)(void *user); /* searches through many elements ask it now and then; NULL: never */
   void *stop_user;

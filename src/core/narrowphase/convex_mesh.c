@@ -97,6 +97,10 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
     seeker->bound = -INFINITY;
     return;
   }
+  if (s->goal.verdict && s->best.upper <= s->goal.limit) {
+    seeker->bound = -INFINITY;
+    return;
+  }
   const double relative = s->goal.relative_epsilon * fabs(s->best.upper) - 4.0 * rounding_of(s);
   const double width = fmax(s->goal.epsilon, relative);
   seeker->bound = fmin(seeker->bound, s->best.upper - width + margins(s));
@@ -139,6 +143,8 @@ static void any_convex(search *s, pair_answer *answer) {
   tree_seeker seeker = {.centre = s->place->t, .radius = k->scale, .bound = INFINITY, .visit = visit, .self = s};
   s->best = (pair_answer){.upper = INFINITY};
   s->lower = INFINITY;
+  /* what is farther than the limit does not matter to a verdict */
+  if (s->goal.verdict) seeker.bound = ROUND_UP * (s->goal.limit + margins(s) + 4.0 * rounding_of(s));
   tree_seek(body->tree, &seeker);
   *answer = s->best;
   if (answer->support_failed) return;

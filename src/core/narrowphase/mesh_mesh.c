@@ -159,16 +159,22 @@ static bool is_repeated(const tree *t, uint32_t pack, uint32_t lane) {
   return lane > 0 && ids[lane] == ids[lane - 1];
 }
 
+/* What is farther than this does not matter: to a distance the best, to a verdict its limit, too. */
+static double farthest(const dual *d) {
+  return d->goal.verdict ? lesser(d->best.upper, nextafter(d->goal.limit, INFINITY)) : d->best.upper;
+}
+
 /* How much lower than the best a bound must be to matter. */
 static double worth(const dual *d) {
-  return d->best.upper - width_allowed(d->goal.epsilon, d->goal.relative_epsilon, d->best.upper);
+  if (d->goal.verdict && d->best.upper <= d->goal.limit) return -INFINITY;
+  return lesser(d->best.upper - width_allowed(d->goal.epsilon, d->goal.relative_epsilon, d->best.upper), farthest(d));
 }
 
 /* What is in a lane of tree 1 - which, as a segment in the frame of tree `which`. */
 static tree_segment interval_of(const dual *d, int which, dual_side other) {
   vec3 corner[8];
   tree_segment segment = {.n = corners_of(tree_of(d, 1 - which), other, corner),
-                          .beyond = d->best.upper + d->margins + d->rounding};
+                          .beyond = farthest(d) + d->margins + d->rounding};
   vec3 low = across(d, 1 - which, corner[0]), high = low;
   for (size_t k = 0; k < segment.n; k++) {
     corner[k] = across(d, 1 - which, corner[k]);
@@ -361,6 +367,10 @@ static void conclude(const dual *d, pair_answer *answer) {
   answer->rounding = fmax(answer->rounding, d->rounding);
   CORE_CHECK(!(d->lower > answer->upper), "lower %.17g, upper %.17g", d->lower, answer->upper);
   answer->lower = fmin(d->lower, answer->upper);
+  if (d->goal.verdict && answer->upper <= d->goal.limit) { /* whatever is inside of what */
+    answer->lower = fmin(answer->lower, least_of(d));
+    return;
+  }
   const bool apart = answer->lower + d->margins > d->rounding;
   if ((answer->exhausted || answer->stopped) && !apart) answer->lower = fmin(least_unseen(d), answer->upper);
 
@@ -398,7 +408,7 @@ bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, c
   d.best = (pair_answer){.upper = INFINITY};
   d.lower = INFINITY;
   d.least = -d.margins - d.rounding;
-  seed(&d);
+  if (!d.goal.verdict) seed(&d);
   if (!d.best.overlap && !d.best.support_failed) try_vertex(&d);
   if (!d.best.overlap && !d.best.support_failed) descend(&d);
   if (d.out_of_memory) return false;

@@ -399,6 +399,134 @@ static void pair_leave(const cprox_obstacle *a, const cprox_obstacle *b, const p
   start->distance = answer->overlap ? 0.0 : fmax(distance, 0.0);
 }
 
+/* ---- the verdict ---- */
+
+/* Where the ball round a part, or all of a body, stands. */
+typedef struct pair_ball_at {
+  vec3 centre;
+  double radius, error;
+} pair_ball_at;
+
+static pair_ball_at ball_at(const cprox_obstacle *target) {
+  const cprox_body *body = target->body;
+  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  const double reach = vec_norm(body->ball_centre);
+  return (pair_ball_at){.centre = frame_turn_to_world(&f, body->ball_centre),
+                        .radius = body->ball_radius + target->margin,
+                        .error = ROUND_ROTATION * reach};
+}
+
+/* The balls round both are farther apart than this, which may be below 0. Positions are subtracted first. */
+static double balls_apart(const cprox_obstacle *a, const cprox_obstacle *b) {
+  if (!isfinite(a->body->ball_radius) || !isfinite(b->body->ball_radius)) return -INFINITY;
+  const pair_ball_at x = ball_at(a), y = ball_at(b);
+  const vec3 apart = vec_sub(a->pose.position, b->pose.position);
+  const double distance = vec_norm(vec_add(apart, vec_sub(x.centre, y.centre)));
+  const double sizes = vec_norm(apart) + vec_norm(x.centre) + vec_norm(y.centre) + x.radius + y.radius;
+  return distance - x.radius - y.radius - ROUND_UP * ROUND_U * (8.0 * sizes + x.error + y.error);
+}
+
+/* Until a part is proven to be as near as the limit; those that are proven farther are one less. */
+static cprox_status pair_over_parts_until(pair_task *task, pair_reply *best) {
+  const double limit = task->goal->limit;
+  *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
+  for (size_t i = 0; i < body_n_parts(task->a->body); i++)
+    for (size_t j = 0; j < body_n_parts(task->b->body); j++) {
+      if (best->answer.upper <= limit) return CPROX_OK;
+      if (i + j > 0 && (best->answer.stopped || pair_is_stopped(task))) {
+        best->answer.stopped = true;
+        best->answer.lower = fmin(best->answer.lower, -pair_deepest(task));
+        return CPROX_OK;
+      }
+      cprox_status status;
+      pair_reply one = {.part = 0};
+      if (pair_has_lod(task, i, j) && task->finest >= CPROX_LOD_MESH) {
+        if ((status = pair_of_models(task, i, j, CPROX_LOD_HULL, &one))) return status;
+        if (one.answer.lower > limit) {
+          one.answer.upper = INFINITY;
+          pair_join(best, &one);
+          continue;
+        }
+      }
+      if ((status = pair_of_models(task, i, j, task->finest, &one))) return status;
+      pair_join(best, &one);
+      task->done = best->answer.steps;
+    }
+  return CPROX_OK;
+}
+
+static cprox_result pair_verdict(const pair_reply *best, const pair_task *task, const cprox_options *options) {
+  const double limit = task->goal->limit;
+  const pair_answer *answer = &best->answer;
+  const bool met = answer->upper <= 0.0, seen = isfinite(answer->upper);
+  const vec3 nowhere = vec(NAN, NAN, NAN);
+  cprox_result r = {.verdict = CPROX_VERDICT_UNDECIDED,
+                    .lower = fmax(answer->lower, -pair_deepest(task)),
+                    .upper = fmax(answer->upper, 0.0),
+                    .t_obstacle = NAN,
+                    .witness_mover = !seen ? nowhere
+                                     : met ? answer->common
+                                           : answer->on_a,
+                    .witness_obstacle = !seen ? nowhere
+                                        : met ? answer->common
+                                              : answer->on_b,
+                    .normal = met ? vec(0, 0, 0) : answer->normal,
+                    .obstacle_part = best->part,
+                    .lod = best->lod,
+                    .nodes = answer->steps,
+                    .distance_queries = answer->supports};
+  if (r.lower > limit)
+    r.verdict = CPROX_VERDICT_CLEAR;
+  else if (r.upper <= limit)
+    r.verdict = CPROX_VERDICT_VIOLATED;
+  else
+    r.status = pair_status(answer, options);
+  return r;
+}
+
+cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double delta, const cprox_options *options,
+                                  cprox_workspace *workspace, cprox_result *result) {
+  WORKSPACE_USE(workspace);
+  workspace_clear(workspace);
+  const cprox_options asked = arguments_options(options);
+  cprox_status status;
+  if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
+  if ((status = arguments_check_options(&asked, (arguments_query){"a pair's verdict", ARGUMENTS_SEARCH}, workspace)) ||
+      (status = arguments_check_delta(delta, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
+      (status = pair_check_target("b", &b, workspace)))
+    return status;
+
+  const double apart = balls_apart(&a, &b);
+  if (apart > delta) {
+    const vec3 nowhere = vec(NAN, NAN, NAN);
+    *result = (cprox_result){.verdict = CPROX_VERDICT_CLEAR,
+                             .lower = apart,
+                             .upper = INFINITY,
+                             .t_obstacle = NAN,
+                             .witness_mover = nowhere,
+                             .witness_obstacle = nowhere,
+                             .obstacle_index = -1,
+                             .lod = CPROX_LOD_SPHERE};
+    return CPROX_OK;
+  }
+  const pair_goal goal = {.epsilon = asked.epsilon,
+                          .relative_epsilon = asked.relative_epsilon,
+                          .verdict = true,
+                          .limit = delta,
+                          .max_steps = asked.max_nodes,
+                          .stop = asked.stop,
+                          .stop_user = asked.stop_user};
+  const cprox_lod finest = asked.max_lod == CPROX_LOD_NONE ? CPROX_LOD_MESH : asked.max_lod;
+  pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .options = &asked, .workspace = workspace};
+  pair_reply best;
+  if ((status = pair_over_parts_until(&task, &best))) return status;
+  *result = pair_verdict(&best, &task, &asked);
+  if (result->status != CPROX_OK) workspace_fail(workspace, result->status, "%s", cprox_status_text(result->status));
+  return result->status;
+}
+
+/* ---- the signed distance ---- */
+
 cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options *options, cprox_workspace *workspace,
                         cprox_result *result) {
   WORKSPACE_USE(workspace);
