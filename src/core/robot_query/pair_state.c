@@ -567,18 +567,18 @@ static int32_t seen_from_axis(const robot_scene *s, const robot_pair *pair) {
   return pair->self ? s->motion->robot->parts[pair->standing].axis : -1;
 }
 
-/* Whether what is known of a side, but for its margin, is its shape: then it may look the same all round an axis. The
- * certificate checker does not know of it. */
+/* Whether what is known of a side, but for its margin, is its shape: then it may look the same all round an axis. */
 static const bound_side *round_side(const robot_body *body) {
-  return convex_is_round(body->side.shape) && !body->tree && !body->side.margin_turns ? &body->side : NULL;
+  return convex_is_round(body->side.shape) && !body->tree ? &body->side : NULL;
 }
 
 /* The axes that move the pair against each other. Those that turn a side about its own axis are left out where the
- * search has one time: both sides stay within *stray of where they are without. */
+ * search has one time: both sides stay within *stray of where they are without. The certificate checker does not know
+ * of it, so nothing that is written for it rests on that. */
 static size_t chain_of_pair(robot_scene *s, const robot_pair *pair, const robot_body *body, double *stray) {
   size_t n = motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
   *stray = 0.0;
-  if (robot_scene_has_two_times(s)) return n;
+  if (robot_scene_has_two_times(s) || body->side.margin_turns) return n;
   const robot_body *standing = robot_scene_standing(s, pair);
   const bound_side *round[2] = {round_side(body), round_side(standing)};
   if (round[0] || round[1])
