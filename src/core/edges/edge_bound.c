@@ -181,10 +181,11 @@ static edge_half_bound bound_relation(const cprox_edge_checker *c, const edge_re
 /* ---- parts ---- */
 
 /* Places of a part are off by this, and so is what moves in half of the longest interval; two parts add theirs. */
-static double room_of(const edge_part *part, const edge_motion *m, double reach, double spin) {
+static double room_of(const edge_part *part, const edge_motion *m, double reach, double spin, double world) {
   const edge_frame_bound *b = &m->bounds[part->frame];
   const double u = EDGE_U, s = part->reach_of_centre;
-  const double place = b->place_error + (b->turn_error + ROUND_PRODUCT * u) * s + ROUND_APART * u * (b->reach + s);
+  const double place =
+      b->place_error + (b->turn_error + ROUND_PRODUCT * u) * s + ROUND_APART * u * (b->reach + s) + ROUND_WORLD * world;
   const double speed = b->speed_error + b->spin_error * (s + (double)part->core + 2.0 * reach) + spin * place +
                        16.0 * u * spin * reach + 3.0 * u * b->speed;
   return EDGE_UP * (place + 2.0 * (double)EDGE_ROOT_HALF * speed) + EDGE_LEAST;
@@ -209,13 +210,14 @@ static bool add_frame(const cprox_edge_checker *c, const edge_way *way, edge_mot
 }
 
 static bool finish(const cprox_edge_checker *c, edge_motion *m) {
+  const double world = vec_norm(c->base);
   double reach = 0.0, spin = 0.0;
   for (size_t i = 0; i < c->n_parts; i++) {
     const edge_frame_bound *b = &m->bounds[c->parts[i].frame];
     reach = greater(edge_motion_reach(c, m, i), reach), spin = greater(b->spin, spin);
   }
   if (!(reach <= EDGE_REACH_MOST)) return false;
-  for (size_t i = 0; i < c->n_parts; i++) m->room[i] = above(room_of(&c->parts[i], m, reach, spin));
+  for (size_t i = 0; i < c->n_parts; i++) m->room[i] = above(room_of(&c->parts[i], m, reach, spin, world));
   return true;
 }
 

@@ -265,7 +265,11 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
   const cprox_body *body = body_part_at(target->body, part);
   part_model m = part_model_of(body);
   cprox_pose pose = target->pose;
-  if (target->body->kind == CPROX_BODY_COMPOUND) pose = frame_compose(&target->pose, &target->body->parts[part].pose);
+  double world = vec_norm(base) + vec_norm(target->pose.position) + vec_norm(m.centre); /* rounding in double */
+  if (target->body->kind == CPROX_BODY_COMPOUND) {
+    pose = frame_compose(&target->pose, &target->body->parts[part].pose);
+    world += vec_norm(target->body->parts[part].pose.position);
+  }
   const frame f = frame_create(&pose, m.centre);
   const cprox_body_kind kind = m.shape->ops->kind;
   const double *size = m.shape->size, margin = m.margin + target->margin;
@@ -286,6 +290,7 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
       exact = false, o.shape = EDGE_BOX;
       sizes[0] = m.half.x, sizes[1] = m.half.y, sizes[2] = m.half.z;
       p = frame_to_world(&f, m.middle);
+      world += vec_norm(m.middle);
   }
   int32_t from[3] = {0};
   float sign[3];
@@ -293,6 +298,7 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
   if (o.shape == EDGE_HALFSPACE) {
     const vec3 n = rotate(f.r, vec(size[0], size[1], size[2]));
     o.r[0] = (float)n.x, o.r[3] = (float)n.y, o.r[6] = (float)n.z;
+    world += fabs(size[3]) + vec_norm(p);
     p = vec_axpy(p, -size[3], n); /* of the plane: that nearest to the base */
     p = vec_axpy(base, -vec_dot(n, vec_sub(base, p)), n);
     sizes[0] = 0.0;
@@ -302,7 +308,8 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
   const vec3 seen = vec_sub(p, base);
   const double far = vec_norm(seen),
                growth = (1.0 + 1e-6) * EDGE_U *
-                        (14.0 * far + 4.0 * (fabs(sizes[0]) + fabs(sizes[1]) + fabs(sizes[2]) + margin));
+                            (14.0 * far + 4.0 * (fabs(sizes[0]) + fabs(sizes[1]) + fabs(sizes[2]) + margin)) +
+                        ROUND_WORLD * (world + vec_norm(p));
   o.p[0] = (float)seen.x, o.p[1] = (float)seen.y, o.p[2] = (float)seen.z;
   if (o.shape == EDGE_BOX && exchanges_axes(o.r)) {
     o.shape = EDGE_ALIGNED_BOX;
@@ -350,7 +357,8 @@ static double target_beyond(const cprox_edge_checker *c, double reach, const cpr
   if (!(body->ball_radius < INFINITY)) return -INFINITY;
   const frame f = frame_create(&target->pose, body->ball_centre);
   const double apart = vec_norm(vec_sub(frame_to_world(&f, vec(0, 0, 0)), c->base));
-  return left_of(c, apart, reach, body->ball_radius + target->margin);
+  const double world = vec_norm(c->base) + vec_norm(target->pose.position) + vec_norm(body->ball_centre);
+  return left_of(c, apart - ROUND_WORLD * world, reach, body->ball_radius + target->margin);
 }
 
 /* ---- pairs ---- */

@@ -11,6 +11,9 @@
 /* Unit roundoff of float. */
 #define EDGE_U 0x1p-24
 
+/* What double arithmetic costs before coordinates are seen from the base, by the sizes of those in the world. */
+#define ROUND_WORLD 0x1p-42
+
 /* Frame 0 is the base, which stands; every other one is an axis that turns about its own z, or shifts along it. */
 typedef struct edge_frame {
   int32_t parent; /* a frame before this one */
