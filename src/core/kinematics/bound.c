@@ -171,7 +171,7 @@ static double round_stray(const axis_state *axis, const bound_side *side, uint32
   static const double PLANES_LOSE = 1.0 / 16, MOST = 0.25, HALF_TURN = 3.15;
   const double arm = round_arm(axis, side, steps), whole = lever_arm(axis, side->at.p) + side->shape->scale;
   if (!(arm <= whole * lesser(PLANES_LOSE * axis->w * axis->w, MOST))) return INFINITY;
-  return ROUND_UP * (axis->shift < 2.0 ? axis->shift : HALF_TURN) * arm;
+  return ROUND_UP * lesser(axis->shift, HALF_TURN) * arm;
 }
 
 double motion_leave_out_round(const axis_state *axes, chain_axis *chain, size_t *n, const bound_side *moving,

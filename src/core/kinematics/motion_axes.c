@@ -306,8 +306,6 @@ static void line_over(const cprox_motion *m, const motion_interval *own, const r
   state->g = factor * of[MOTION_G * stride];
   state->shift = factor * of[MOTION_SHIFT * stride], state->variation = factor * of[MOTION_VARIATION * stride];
   state->line = factor * of[MOTION_LINE * stride], state->stray = factor * of[MOTION_STRAY * stride];
-  /* a turn takes no point farther than to the other side */
-  if (axis->kind == AXIS_REVOLUTE) state->shift = lesser(state->shift, 2.0), state->line = lesser(state->line, 2.0);
   state->error = factor * error * (n + 0.5 * n * n);
   state->z = world_axis(axis, before);
   state->velocity = vec_scale(axis->multiplier * of[MOTION_FIRST * stride], state->z);
