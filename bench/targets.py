@@ -48,9 +48,9 @@ def size_of(row):
     return float(re.search(r'\d+(\.\d+)?', row['parameter']).group())
 
 
-def exponent(rows):
-    """The slope of log time against the log of the size, by least squares."""
-    points = [(math.log(size_of(row)), math.log(float(row['median_us']))) for row in rows]
+def exponent(rows, column='median_us'):
+    """The slope of log time (or of another column) against the log of the size, by least squares."""
+    points = [(math.log(size_of(row)), math.log(float(row[column]))) for row in rows]
     mean_x, mean_y = (sum(c) / len(points) for c in zip(*points))
     return sum((x - mean_x) * (y - mean_y) for x, y in points) / sum((x - mean_x) ** 2 for x, _ in points)
 
@@ -73,8 +73,9 @@ def figure(rows, target):
     if kind in ('growth', 'node growth'):
         by_accuracy, column = sorted(ours, key=lambda row: row['parameter']), 'median_us' if kind == 'growth' else 'nodes'
         return float(by_accuracy[-1][column]) / float(by_accuracy[0][column])
-    if kind == 'exponent':
-        return max(exponent([row for row in ours if row['workload'] == name]) for name in {row['workload'] for row in ours})
+    if kind in ('exponent', 'error exponent'):
+        column = 'median_us' if kind == 'exponent' else 'error'
+        return max(exponent([row for row in ours if row['workload'] == name], column) for name in {row['workload'] for row in ours})
     if kind == 'microseconds':
         return max(float(row['median_us']) for row in ours)
     if kind in ('nodes', 'distance_queries'):

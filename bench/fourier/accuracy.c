@@ -114,19 +114,29 @@ static cprox_gap *make_paper(const shape *a, const shape *b, uint32_t samples, c
 }
 #endif
 
+/* A gap of the kernel, decided by the sum alone as the paper's is, or as cprox_gap_test() answers: by bounds per
+ * direction first. A chart of the verdict says nothing of the sum. */
 typedef struct method {
   const char *name;
   gap_maker make;
+  bool sum_alone;
 } method;
 
 static const method METHODS[] = {
-    {"curve_proximity", make_certified},
-    {"curve_proximity tuned", make_tuned},
+    {"curve_proximity sum", make_certified, true},
+    {"curve_proximity", make_certified, false},
+    {"curve_proximity tuned sum", make_tuned, true},
+    {"curve_proximity tuned", make_tuned, false},
 #ifdef HAVE_LIQUID
-    {"paper", make_paper},
+    {"paper", make_paper, true}, /* of gap_build() alone: it has no bounds per direction */
 #endif
 };
 enum { N_METHODS = sizeof METHODS / sizeof *METHODS };
+
+static void decide_by_sum(cprox_gap *gap) {
+  enclosures_free(&gap->bounds_a);
+  enclosures_free(&gap->bounds_b);
+}
 
 /* "May collide": a verdict, for which most sums may stop early. */
 static bool may_collide(const cprox_gap *gap, const cprox_pose *a, const cprox_pose *b, cprox_workspace *ws) {
@@ -190,6 +200,7 @@ static void measure_reach(const method *m, const shape *a, const shape *b, uint3
     fourier_row(workload, m->name, parameter, NAN, 0, NAN, 0, 0);
     return;
   }
+  if (m->sum_alone) decide_by_sum(gap);
   const cprox_gap_info info = cprox_gap_get_info(gap);
   rng r = rng_seed(77);
   double most = 0.0;
@@ -240,15 +251,19 @@ void fourier_obstacle(const bench_size *size) {
   cprox_workspace *ws = cprox_workspace_create();
   const int rays = size->problems >= 200 ? 120 : 48;
   const uint32_t samples[] = {0, 9, 17, 33, 65};
-  for (int i = 0; i < 5; i++) {
-    cprox_gap *gap = samples[i] ? make_certified(&s[0], &s[1], samples[i], ws) : NULL;
-    for (int slice = 0; slice < (samples[i] == 17 ? 12 : 1); slice++)
+  for (int i = 0; i < 9; i++) {
+    const uint32_t n = samples[(i + 1) / 2]; /* the sum alone, then the verdict */
+    const bool sum_alone = i % 2 == 1;
+    cprox_gap *gap = n ? make_certified(&s[0], &s[1], n, ws) : NULL;
+    if (sum_alone) decide_by_sum(gap);
+    for (int slice = 0; slice < (n == 17 ? 12 : 1); slice++)
       for (int k = 0; k < rays; k++) {
         const double phi = 2 * PI * k / rays, theta = 0.6 + 2 * PI * slice / 12;
         char parameter[96];
-        snprintf(parameter, sizeof parameter, "n %u theta %.4f phi %.4f", samples[i], theta, phi);
+        snprintf(parameter, sizeof parameter, "n %u theta %.4f phi %.4f", n, theta, phi);
         const double x = gap ? ray_end(gap, phi, theta, ws) : exact_end(&s[0], &s[1], phi, theta);
-        fourier_row("obstacle L T", gap ? "curve_proximity" : "exact", parameter, NAN, 0, x, 0, 0);
+        const char *method = !gap ? "exact" : sum_alone ? "curve_proximity sum" : "curve_proximity";
+        fourier_row("obstacle L T", method, parameter, NAN, 0, x, 0, 0);
       }
     cprox_gap_free(gap);
   }
@@ -256,8 +271,8 @@ void fourier_obstacle(const bench_size *size) {
   shapes_free(s);
 }
 
-/* Along one ray out of an overlap, the three rows of the paper's Fig. 5: the value, the part of the sum that a verdict
- * takes, the length of the gradient by the position [1/m]. */
+/* Along one ray out of an overlap, the three rows of the paper's Fig. 5: the value, the part of the sum that it takes to
+ * decide by the sum alone, and that a verdict takes, the length of the gradient by the position [1/m]. */
 void fourier_profile(const bench_size *size) {
   shape s[SHAPES];
   shapes_create(s);
@@ -268,17 +283,21 @@ void fourier_profile(const bench_size *size) {
   for (int i = 0; i < 3; i++) {
     cprox_gap *gap = make_certified(&s[0], &s[1], samples[i], ws);
     const double terms = (double)cprox_gap_get_info(gap).terms;
+    cprox_gap by_sum = *gap; /* its bounds are the gap's to free */
+    by_sum.bounds_a = by_sum.bounds_b = (enclosures){0};
     for (int k = 0; k <= steps; k++) {
       const double x = 1.8 * k / steps;
       const cprox_pose b = shape_pose(x * cos(0.4), x * sin(0.4), 0.6);
-      cprox_gap_result whole, early;
-      if (cprox_gap_evaluate(gap, &a, &b, ws, &whole) < CPROX_OK || cprox_gap_test(gap, &a, &b, ws, &early) < CPROX_OK)
+      cprox_gap_result whole, early, verdict;
+      if (cprox_gap_evaluate(gap, &a, &b, ws, &whole) < CPROX_OK || cprox_gap_test(&by_sum, &a, &b, ws, &early) < 0 ||
+          cprox_gap_test(gap, &a, &b, ws, &verdict) < CPROX_OK)
         abort();
       char parameter[96];
       snprintf(parameter, sizeof parameter, "n %u x %.4f clearance %.4f", samples[i], x,
                shape_distance(&s[0], &a, &s[1], &b));
       fourier_row("profile value", "curve_proximity", parameter, NAN, 0, whole.value, 0, 0);
-      fourier_row("profile terms", "curve_proximity", parameter, NAN, 0, fmin(1.0, early.terms / terms), 0, 0);
+      fourier_row("profile terms", "curve_proximity sum", parameter, NAN, 0, fmin(1.0, early.terms / terms), 0, 0);
+      fourier_row("profile terms", "curve_proximity", parameter, NAN, 0, fmin(1.0, verdict.terms / terms), 0, 0);
       fourier_row("profile gradient", "curve_proximity", parameter, NAN, 0, vec_norm(whole.position_b), 0, 0);
     }
     cprox_gap_free(gap);

@@ -6,11 +6,26 @@ import re
 
 import matplotlib.pyplot as plt
 
-NAMES = {'curve_proximity': 'certified', 'curve_proximity tuned': 'tuned (no guarantee)',
+# The sum alone, and the verdict: bounds per direction first.
+NAMES = {'curve_proximity sum': 'certified, the sum V alone', 'curve_proximity tuned sum': 'tuned (no guarantee), V alone',
+         'curve_proximity': 'certified verdict: bounds per direction, then V', 'curve_proximity tuned': 'tuned verdict',
          'curve_proximity signal': 'signal (for solvers)',
          'paper': "Parks-McClellan kernel, Lysenko 2011, threshold corrected"}
 COLOURS = {'curve_proximity': '#0b6e99', 'curve_proximity tuned': '#6b8e23', 'curve_proximity signal': '#7b4ea3', 'paper': '#c2571a',
-           'exact': '#333333'}
+           'exact': '#333333', 'curve_proximity sum': '#0b6e99', 'curve_proximity tuned sum': '#6b8e23'}
+SPACE_NAMES = {'curve_proximity': 'certified, V alone', 'curve_proximity tuned': 'tuned (no guarantee), V alone'}
+
+
+def line_of(method):
+    """A verdict by bounds per direction is dashed, a sum alone is not."""
+    return 'o--' if method in ('curve_proximity', 'curve_proximity tuned') else 'o-'
+
+
+def exponent(by_n):
+    """The slope of log mean against log n, by least squares."""
+    points = [(math.log(n), math.log(sum(values) / len(values))) for n, values in by_n.items()]
+    mean_x, mean_y = (sum(c) / len(points) for c in zip(*points))
+    return sum((x - mean_x) * (y - mean_y) for x, y in points) / sum((x - mean_x) ** 2 for x, _ in points)
 
 
 def over_reach(rows, save, legend_below):
@@ -25,8 +40,13 @@ def over_reach(rows, save, legend_below):
     figure, axes = plt.subplots()
     for method, by_n in found.items():
         n = sorted(by_n)
-        axes.loglog(n, [sum(by_n[k]) / len(by_n[k]) for k in n], 'o-', color=COLOURS[method], label=NAMES[method])
-        axes.fill_between(n, [min(by_n[k]) for k in n], [max(by_n[k]) for k in n], color=COLOURS[method], alpha=0.13, linewidth=0)
+        label = f'{NAMES[method]}: n^{exponent(by_n):.2f}' if len(n) > 2 else NAMES[method]
+        axes.loglog(n, [sum(by_n[k]) / len(by_n[k]) for k in n], line_of(method), color=COLOURS[method], label=label)
+        axes.fill_between(n, [min(by_n[k]) for k in n], [max(by_n[k]) for k in n], color=COLOURS[method], alpha=0.1, linewidth=0)
+    n = sorted({k for by_n in found.values() for k in by_n})
+    if found['curve_proximity sum'][n[0]]:
+        first = found['curve_proximity sum'][n[0]]
+        axes.loglog(n, [sum(first) / len(first) * n[0] / k for k in n], ':', color=COLOURS['exact'], label="the paper's conjecture O(1/n)")
     axes.set_xlabel('samples an axis n')
     axes.set_ylabel('largest clearance called colliding, over the period')
     axes.set_title('Over-reach of Fourier gaps: four pairs of planar shapes')
@@ -52,7 +72,7 @@ def space(rows, save, legend_below):
     for method, by_n in share.items():
         n = sorted(by_n)
         for axes, values in ((left, by_n), (right, cost[method])):
-            axes.plot(n, [sum(values[k]) / len(values[k]) for k in n], 'o-', color=COLOURS[method], label=NAMES[method])
+            axes.plot(n, [sum(values[k]) / len(values[k]) for k in n], 'o-', color=COLOURS[method], label=SPACE_NAMES[method])
             axes.fill_between(n, [min(values[k]) for k in n], [max(values[k]) for k in n], color=COLOURS[method], alpha=0.13,
                               linewidth=0)
     left.axhline(100.0, color=COLOURS['exact'], label='certified distance (cprox_pair)')
@@ -80,7 +100,7 @@ def cost(rows, save, legend_below):
     figure, axes = plt.subplots()
     for method, by_n in found.items():
         means = [[sum(values) / len(values) for values in zip(*by_n[n])] for n in sorted(by_n)]
-        axes.loglog(*zip(*means), 'o-', color=COLOURS[method], label=NAMES[method])
+        axes.loglog(*zip(*means), line_of(method), color=COLOURS[method], label=NAMES[method])
         for n, (x, y) in zip(sorted(by_n), means):
             axes.annotate(f'n = {n}', (x, y), textcoords='offset points', xytext=(5, 4), fontsize=8, color=COLOURS[method])
     axes.set_xlabel('time of value and gradient [ns]')
@@ -130,12 +150,12 @@ def tables(rows, save, legend_below):
     return save(figure, 'fourier_tables')
 
 
-def outlines(rows):
-    """n, theta -> closed lists of x, y."""
+def outlines(rows, *methods):
+    """n, theta -> closed lists of x, y, of these methods."""
     found = collections.defaultdict(lambda: ([], []))
     for row in rows:
         match = re.fullmatch(r'n (\d+) theta ([\d.]+) phi ([\d.]+)', row['parameter'])
-        if row['workload'].startswith('obstacle') and match:
+        if row['workload'].startswith('obstacle') and match and row['method'] in methods:
             n, theta, phi = int(match.group(1)), float(match.group(2)), float(match.group(3))
             x, y = found[n, theta]
             x.append(float(row['error']) * math.cos(phi))
@@ -147,14 +167,15 @@ def outlines(rows):
 
 
 def convergence(rows, save, legend_below):
-    """The outline of one obstacle for several n around the exact one: the paper's Fig. 5."""
-    found = outlines(rows)
+    """The outline of one obstacle for several n around the exact one, by the sum alone and by the verdict: the paper's Fig. 5."""
+    found, verdict = outlines(rows, 'exact', 'curve_proximity sum'), outlines(rows, 'curve_proximity')
     if not found:
         return None
     theta = min(key[1] for key in found)
     figure, axes = plt.subplots(figsize=(5.4, 5.4))
     for k, n in enumerate(sorted({key[0] for key in found} - {0})):
-        axes.plot(*found[n, theta], color=plt.cm.viridis(0.15 + 0.2 * k), label=f'n = {n}')
+        axes.plot(*found[n, theta], color=plt.cm.viridis(0.15 + 0.2 * k), label=f'n = {n}, V alone')
+        axes.plot(*verdict[n, theta], '--', linewidth=0.9, color=plt.cm.viridis(0.15 + 0.2 * k), label=f'n = {n}, verdict')
     axes.plot(*found[0, theta], color=COLOURS['exact'], label='exact', linewidth=1.2)
     axes.set_aspect('equal')
     axes.set_title('Outline of the obstacle of an L and a T, one rotation (certified)')
@@ -164,21 +185,23 @@ def convergence(rows, save, legend_below):
 
 def profile(rows, save, legend_below):
     """The rows of the paper's Fig. 5 along one ray: value, part of the sum before a verdict, gradient."""
-    kinds = {'profile value': 'V/θ', 'profile terms': 'part of the sum', 'profile gradient': 'gradient [1/m]'}
+    kinds = {'profile value': 'V/θ', 'profile terms': 'part of the sum\n(dashed: verdict)', 'profile gradient': 'gradient [1/m]'}
     found = collections.defaultdict(lambda: collections.defaultdict(list))
     touch = math.inf
     for row in rows:
         match = re.fullmatch(r'n (\d+) x ([\d.]+) clearance (-?[\d.]+)', row['parameter'])
         if row['workload'] in kinds and match:
-            found[row['workload']][int(match.group(1))].append((float(match.group(2)), float(row['error'])))
+            key = (int(match.group(1)), row['method'] if row['workload'] == 'profile terms' else 'curve_proximity sum')
+            found[row['workload']][key].append((float(match.group(2)), float(row['error'])))
             if float(match.group(3)) > 0.0:
                 touch = min(touch, float(match.group(2)))
     if not found:
         return None
     figure, grid = plt.subplots(3, 1, figsize=(7.2, 6.4), sharex=True)
     for axes, (workload, label) in zip(grid, kinds.items()):
-        for k, n in enumerate(sorted(found[workload])):
-            axes.plot(*zip(*sorted(found[workload][n])), 'o-', color=plt.cm.viridis(0.15 + 0.3 * k), label=f'n = {n}', markersize=3)
+        samples = sorted({key[0] for key in found[workload]})
+        for (n, method), points in sorted(found[workload].items()):
+            axes.plot(*zip(*sorted(points)), line_of(method), color=plt.cm.viridis(0.15 + 0.3 * samples.index(n)), label=f'n = {n}', markersize=3)
         axes.axvline(touch, color=COLOURS['exact'], linewidth=1.0, label='apart from here on' if workload == 'profile value' else None)
         axes.set_ylabel(label)
         if workload != 'profile terms':
@@ -191,8 +214,9 @@ def profile(rows, save, legend_below):
 
 
 def obstacle(rows, save, legend_below):
-    """Slices of the SE(2) obstacle at n = 17, rotation upwards: the paper's Fig. 6."""
-    slices = {key[1]: value for key, value in outlines(rows).items() if key[0] == 17}
+    """Slices of the SE(2) obstacle at n = 17, by the sum alone and by the verdict, rotation upwards: the paper's Fig. 6."""
+    slices = {key[1]: value for key, value in outlines(rows, 'curve_proximity sum').items() if key[0] == 17}
+    verdict = outlines(rows, 'curve_proximity')
     if not slices:
         return None
     columns = 4
@@ -203,6 +227,7 @@ def obstacle(rows, save, legend_below):
     for axes, (theta, (x, y)) in zip(grid.flat, sorted(slices.items())):
         axes.fill(x, y, color=COLOURS['curve_proximity'], alpha=0.25, linewidth=0)
         axes.plot(x, y, color=COLOURS['curve_proximity'], linewidth=1.2)
+        axes.plot(*verdict[17, theta], '--', color=COLOURS['exact'], linewidth=0.9)
         axes.plot(0.0, 0.0, '+', color=COLOURS['exact'])
         axes.set_aspect('equal')
         axes.set_title(f'{theta:.2f} rad', fontsize=10)
@@ -210,7 +235,7 @@ def obstacle(rows, save, legend_below):
         axes.set_xlabel('x of the T [m]')
     for axes in grid[:, 0]:
         axes.set_ylabel('y of the T [m]')
-    figure.suptitle('Where a T may not stand beside an L at the origin, by its rotation (certified, n = 17)')
+    figure.suptitle('Where a T may not stand beside an L at the origin, by its rotation (n = 17; solid: V alone, dashed: verdict)')
     return save(figure, 'fourier_obstacle')
 
 

@@ -170,6 +170,13 @@ static cprox_status bound_leg(const stretch *s, leg at, cprox_workspace *workspa
   status = WORKSPACE_LEND(workspace, cprox_gap_evaluate(gap, s->pose_a, &b, workspace, r));
   if (status != CPROX_OK) return status;
 
+  if (gap->table && s->turn.curve) {
+    /* The images swing far, but add next to nothing: what is apart from them moves as the solid does. */
+    const double arm = arm_of(gap, s->pose_a, way.middle);
+    const double moved = way.most + way.slack + arm * (turn.most + turn.slack + 1e-13);
+    *most = r->value + r->error + gap->stirring[0] * moved + gap->images;
+    return CPROX_OK;
+  }
   double rise = 0.0;
   for (size_t i = 0; i <= s->way.degree; i++) rise = fmax(rise, vec_dot(r->position_b, way.away[i]));
   if (!s->turn.curve) {

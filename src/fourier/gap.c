@@ -7,6 +7,7 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "fourier/grid.h"
+#include "fourier/raster.h"
 
 #define TAU 6.28318530717958647693
 
@@ -114,7 +115,8 @@ static double rounding_bound(const cprox_gap *gap, const kernel *w, const cprox_
   for (int m = 1; m <= N; m++) {
     const double count = gap->info.dimension == 2 ? 8.0 * m : 24.0 * m * m + 2.0;
     const double weight = w->in_ball ? 1.0 : w->w[m];
-    sum += count * weight * solid_error_scale(fixed, step * m) * solid_error_scale(turned, step * m);
+    const double scale = gap->table ? gap->table->bounds.mass : solid_error_scale(turned, step * m);
+    sum += count * weight * solid_error_scale(fixed, step * m) * scale;
   }
   return ROUND_U * (16.0 * N + 200.0 + corners + (double)gap->n_blocks / 16.0) * sum * gap->inverse;
 }
@@ -183,7 +185,7 @@ static bool fill_blocks(const cprox_gap *gap, const kernel *w, const cprox_solid
                         cprox_workspace *workspace, draft *drafts) {
   sources from = {.w = w, .fixed = fixed, .ball = ball};
   if (fixed->n == 1 && grid_is_aligned(&fixed->pieces[0]) &&
-      !grid_transform(&fixed->pieces[0], gap->info.dimension, gap->N, TAU / gap->info.period, &from.grid))
+      !grid_transform(&fixed->pieces[0], gap->info.dimension, gap->N, TAU / gap->info.period, workspace, &from.grid))
     return false;
   list_blocks(w, gap->info.dimension, drafts);
   enum { BLOCKS_BETWEEN_LOOKS = 8 };
@@ -196,8 +198,43 @@ static bool fill_blocks(const cprox_gap *gap, const kernel *w, const cprox_solid
   return !stopped;
 }
 
+double gap_farthest_frequency(int N, double period) {
+  return sqrt(3.0) * (1.0 + 1e-9) * TAU * N / period;
+}
+
+/* T(0), which a table has as it has every other value. */
+static double measure_of_turned(const cprox_gap *gap, double measure) {
+  if (!gap->table) return measure;
+  wave_jet jet;
+  table_at(gap->table, vec(0, 0, 0), false, &jet);
+  return jet.value.re;
+}
+
+double gap_images(const table_bounds *table, double peak, double measure) {
+  return fmin(isfinite(peak) ? table->image_mass * peak : INFINITY, table->image_peak * measure);
+}
+
+/* Bounds of the turned solid's function, or of what its table stands for. */
+static bool find_bounds(cprox_gap *gap, const cprox_solid *fixed, const cprox_solid *turned, double *energy,
+                        double *measure) {
+  solid_bounds bounds;
+  if (!gap->table) {
+    if (!solid_find_bounds(turned, &bounds)) return false;
+    *energy = bounds.energy;
+    *measure = cprox_solid_get_info(turned).measure;
+    return true;
+  }
+  const table_bounds *t = &gap->table->bounds;
+  if (!solid_find_bounds(fixed, &bounds)) return false;
+  *energy = t->energy;
+  *measure = t->mass;
+  gap->images = gap_images(t, bounds.peak, cprox_solid_get_info(fixed).measure) * gap->inverse *
+                pow(gap->info.period, gap->info.dimension);
+  return true;
+}
+
 /* Everything that depends on the spectra. */
-static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cprox_solid *turned,
+static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cprox_solid *turned, bool tabulated,
                  cprox_workspace *workspace) {
   const int dimension = gap->info.dimension;
   gap->n_blocks = list_blocks(w, dimension, NULL);
@@ -205,21 +242,26 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
   draft *drafts = gap->n_blocks > 0 ? calloc(gap->n_blocks, sizeof *drafts) : NULL;
   const bool folded = is_centred_ball(turned);
   bool failed = !drafts || !allocate(gap) || !fill_blocks(gap, w, fixed, folded ? turned : NULL, workspace, drafts);
+  if (!failed && tabulated) {
+    gap->table = table_create(turned->pieces, gap_farthest_frequency(gap->N, gap->info.period), workspace);
+    failed = !gap->table;
+  }
+  double energy = INFINITY, measure = cprox_solid_get_info(turned).measure;
+  failed = failed || (!folded && !find_bounds(gap, fixed, turned, &energy, &measure));
   if (!failed) {
     order(gap, drafts);
-    const double measure = cprox_solid_get_info(turned).measure, L = gap->info.period;
-    gap->constant = cprox_solid_get_info(fixed).measure * measure;
+    const double L = gap->info.period;
+    gap->constant = cprox_solid_get_info(fixed).measure * measure_of_turned(gap, measure);
     const double volume = dimension == 2 ? L * L : L * L * L;
     /* folded: T is 1 at each term, so that what is left of its energy is the number of lattice points left: of no use
      */
-    solid_bounds bounds = {INFINITY, INFINITY};
-    failed = !folded && !solid_find_bounds(turned, &bounds);
-    gap->half_energy = 0.5 * fmax(0.0, volume * bounds.energy - measure * measure);
+    const double mean = measure_of_turned(gap, measure);
+    gap->half_energy = 0.5 * fmax(0.0, volume * energy - mean * mean);
     bound_derivatives(gap, folded, measure);
     gap->turned_reach = folded ? 0.0 : turned->radius + vec_norm(turned->centre);
     gap->info.rounding = rounding_bound(gap, w, fixed, turned, (double)(corners_of(fixed) + corners_of(turned)));
-    gap->turned = folded ? NULL : turned;
-    if (folded) cprox_solid_free(turned);
+    gap->turned = folded || gap->table ? NULL : turned;
+    if (!gap->turned) cprox_solid_free(turned);
   } else {
     cprox_solid_free(turned);
   }
@@ -229,7 +271,7 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
 
 cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, size_t memory_limit,
                        cprox_workspace *workspace, cprox_gap **gap) {
-  const double bytes = gap_bytes(plan->dimension, plan->N), L = plan->period;
+  const double bytes = gap_bytes(plan->dimension, plan->N) + plan->bytes, L = plan->period;
   cprox_gap *made = bytes <= (double)memory_limit ? calloc(1, sizeof *made) : NULL;
   if (!made) {
     cprox_solid_free(a);
@@ -262,7 +304,7 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
                              : gap_threshold(&w, plan, a, b);
   made->inverse = 1.0 / (made->info.threshold * volume);
   cprox_solid *turned = made->info.turned_first ? a : b, *fixed = made->info.turned_first ? b : a;
-  const bool ok = fill(made, &w, fixed, turned, workspace);
+  const bool ok = fill(made, &w, fixed, turned, plan->tabulated, workspace);
   cprox_solid_free(fixed);
   if (!ok) {
     cprox_gap_free(made);
@@ -272,6 +314,7 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
   made->simd = simd_of_machine();
   made->info.terms = count_terms(made);
   made->info.bytes = sizeof *made + made->n_blocks * (sizeof *made->blocks + (2 * LANES + 1) * sizeof *made->c);
+  if (made->table) made->info.bytes += table_bytes(made->table);
   *gap = made;
   return CPROX_OK;
 }
@@ -287,7 +330,11 @@ cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const 
   if (status != CPROX_OK) return status;
 
   double reach;
-  cprox_solid *p = solid_offset(a, plan.offset, &reach), *q = solid_offset(b, plan.offset, &reach);
+  const cprox_solid *form[2];
+  status = gap_forms(&plan, a, b, workspace, form);
+  if (status != CPROX_OK) return status;
+  cprox_solid *p = solid_offset(form[0], plan.offset, &reach), *q = solid_offset(form[1], plan.offset, &reach);
+  gap_forms_free(a, b, form);
   if (!p || !q) {
     cprox_solid_free(p);
     cprox_solid_free(q);
@@ -312,6 +359,7 @@ cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const 
 void cprox_gap_free(cprox_gap *gap) {
   if (!gap) return;
   cprox_solid_free(gap->turned);
+  table_free(gap->table);
   enclosures_free(&gap->bounds_a);
   enclosures_free(&gap->bounds_b);
   free(gap->blocks);

@@ -7,6 +7,7 @@
 #include "fourier/apart.h"
 #include "fourier/kernel.h"
 #include "fourier/solid.h"
+#include "fourier/table.h"
 #include "simd/dispatch.h"
 
 /* Lattice points with one k_y, k_z and LANES consecutive k_x are summed side by side. */
@@ -24,6 +25,9 @@ typedef struct gap_plan {
   double over_reach;
   bool unbounded;    /* no over-reach can be proven, however many samples */
   bool turned_first; /* whether the first solid is the one to turn; the lattice lies in the other's frame */
+  bool tabulated;    /* the turned solid is a grid, whose spectrum is looked up */
+  double bytes;      /* of its table */
+  double cell[2];    /* of the cells that cover the first and the second solid in its place [m]; 0: it is what it is */
 } gap_plan;
 
 struct cprox_gap {
@@ -38,7 +42,9 @@ struct cprox_gap {
   vec3 centre_a, centre_b;
   double radius_a, radius_b;     /* of the bare solids about these */
   enclosures bounds_a, bounds_b; /* per direction, of the bare solids */
-  cprox_solid *turned;           /* offset, about its centre; NULL: a ball, folded into the coefficients */
+  cprox_solid *turned;           /* offset, about its centre; NULL: a table, or a ball, folded into the coefficients */
+  spectrum_table *table;         /* of the turned solid, or NULL */
+  double images;                 /* what the images of a tabulated solid add to a value at most */
   int N;
   size_t n_blocks;
   block *blocks;   /* by descending energy of the coefficients */
@@ -80,6 +86,17 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
 /* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default
  * with their size, which gap_plan_choose() refuses. */
 cprox_gap_options gap_options(const cprox_gap_options *options);
+
+/* The solids that a plan is about: those given, or covers of them, for gap_forms_free(). */
+cprox_status gap_forms(const gap_plan *plan, const cprox_solid *a, const cprox_solid *b, cprox_workspace *workspace,
+                       const cprox_solid *form[2]);
+void gap_forms_free(const cprox_solid *a, const cprox_solid *b, const cprox_solid *form[2]);
+
+/* What the images of a tabulated solid can overlap a solid of this peak and measure. */
+double gap_images(const table_bounds *table, double peak, double measure);
+
+/* |q| of the lattice's farthest point. */
+double gap_farthest_frequency(int N, double period);
 
 /* Chooses the plan for what the options ask. */
 cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,

@@ -136,6 +136,13 @@ static bool offset_grid(const piece *p, int dimension, double rho, piece *out, d
   return ok;
 }
 
+static bool copy_cells(const piece *p, piece *out) {
+  const size_t n = (size_t)p->counts[0] * p->counts[1] * p->counts[2];
+  out->cells = malloc(n);
+  if (out->cells) memcpy(out->cells, p->cells, n);
+  return out->cells != NULL;
+}
+
 bool piece_offset(const piece *p, int dimension, double rho, piece *out, double *reach) {
   *out = piece_create(p->kind);
   memcpy(out->size, p->size, sizeof out->size);
@@ -173,7 +180,7 @@ bool piece_offset(const piece *p, int dimension, double rho, piece *out, double 
     case PIECE_SOUP:
       ok = rho > 0.0 && piece_is_polytope(p) ? offset_polytope(p, rho, out, reach) : offset_corners(p, rho, out, reach);
       break;
-    case PIECE_GRID: ok = offset_grid(p, dimension, rho, out, reach); break;
+    case PIECE_GRID: ok = rho > 0.0 ? offset_grid(p, dimension, rho, out, reach) : copy_cells(p, out); break;
   }
   if (!ok) piece_free(out);
   return ok;

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 
 #include "fourier/gap.h"
+#include "fourier/grid.h"
+#include "fourier/raster.h"
 
 /* The signal's blur sigma in L/n. */
 #define SIGNAL_BLUR 2.2
@@ -22,6 +24,8 @@ static double tuned_reach(int dimension, int samples) {
  * how fast that grows with depth. */
 typedef struct enlarged {
   double reach, most, slope;
+  double images;          /* what a tabulated solid's images overlap at most */
+  double table_period[3]; /* of the table's window */
   bool ok;
 } enlarged;
 
@@ -31,18 +35,68 @@ static double slope_of(const cprox_solid *s) {
   return sum;
 }
 
-static enlarged enlarge(const cprox_solid *a, const cprox_solid *b, double rho) {
-  double reach_a, reach_b;
-  solid_bounds bound_a, bound_b;
-  cprox_solid *p = solid_offset(a, rho, &reach_a), *q = solid_offset(b, rho, &reach_b);
-  enlarged e = {.ok = p && q && solid_find_bounds(p, &bound_a) && solid_find_bounds(q, &bound_b)};
-  if (e.ok) {
-    e.reach = reach_a + reach_b;
-    e.most = fmin(cprox_solid_get_info(p).measure * bound_b.peak, cprox_solid_get_info(q).measure * bound_a.peak);
-    e.slope = fmin(slope_of(p) * bound_b.peak, slope_of(q) * bound_a.peak);
+/* How far the solid reaches from its centre along each axis. */
+static void find_extents(const cprox_solid *s, double extent[3]) {
+  for (int j = 0; j < 3; j++) extent[j] = 0.0;
+  for (size_t i = 0; i < s->n; i++) {
+    vec3 low, high;
+    piece_box(&s->pieces[i], 3, &low, &high);
+    low = vec_sub(low, s->centre), high = vec_sub(high, s->centre);
+    extent[0] = fmax(extent[0], fmax(-low.x, high.x));
+    extent[1] = fmax(extent[1], fmax(-low.y, high.y));
+    extent[2] = fmax(extent[2], fmax(-low.z, high.z));
   }
-  cprox_solid_free(p);
-  cprox_solid_free(q);
+}
+
+/* What the spline between a turned grid's nodes makes of its function (doc/fourier.md, "Covers and tables"). Of a cover
+ * whose cells are not made yet: what that of any grid with such cells makes of it at most. It holds the bare solid and
+ * all within the offset, and is within the enlarged one. */
+static void tabulate(const gap_plan *plan, const cprox_solid *fixed, double peak, const cprox_solid *bare,
+                     const cprox_solid *turned, enlarged *e) {
+  const double cell = plan->cell[plan->turned_first ? 0 : 1];
+  table_bounds t;
+  if (cell > 0.0) {
+    double least[3], most[3];
+    find_extents(bare, least);
+    find_extents(turned, most);
+    for (int j = 0; j < 3; j++) least[j] = fmax(least[j] + plan->offset, cell), most[j] += vec_norm(turned->centre);
+    table_bound_cover(least, most, cell, cprox_solid_get_info(turned).measure, &t);
+  } else {
+    e->ok = table_find_bounds(turned->pieces, &t, NULL);
+    if (!e->ok) return;
+  }
+  e->most *= t.peak, e->slope *= t.peak;
+  e->images = gap_images(&t, peak, cprox_solid_get_info(fixed).measure);
+  for (int j = 0; j < 3; j++) e->table_period[j] = t.period[j];
+}
+
+/* Both solids at the plan's offset. A cover is within the closed form that is enlarged by what the cells add: its bounds
+ * are those of that form, and its peak is 1. */
+static enlarged enlarge(const gap_plan *plan, const cprox_solid *a, const cprox_solid *b) {
+  double reach[2];
+  solid_bounds bounds[2];
+  const cprox_solid *const bare[2] = {a, b};
+  cprox_solid *s[2] = {NULL, NULL};
+  enlarged e = {.ok = true};
+  for (int i = 0; i < 2; i++) {
+    const double cell = plan->cell[i], more = cell > 0.0 ? raster_growth(bare[i], cell) + sqrt(3.0) * cell : 0.0;
+    s[i] = e.ok ? solid_offset(bare[i], plan->offset + more, &reach[i]) : NULL;
+    e.ok = s[i] && solid_find_bounds(s[i], &bounds[i]);
+  }
+  /* where neither is a sum of indicators more samples than covers are made for could prove nothing: neither do these */
+  const bool known = e.ok && (isfinite(bounds[0].peak) || isfinite(bounds[1].peak));
+  for (int i = 0; known && i < 2; i++)
+    if (plan->cell[i] > 0.0) bounds[i].peak = 1.0;
+  if (e.ok) {
+    e.reach = reach[0] + reach[1];
+    e.most =
+        fmin(cprox_solid_get_info(s[0]).measure * bounds[1].peak, cprox_solid_get_info(s[1]).measure * bounds[0].peak);
+    e.slope = fmin(slope_of(s[0]) * bounds[1].peak, slope_of(s[1]) * bounds[0].peak);
+    const int turned = plan->turned_first ? 0 : 1;
+    if (plan->tabulated) tabulate(plan, s[1 - turned], bounds[1 - turned].peak, bare[turned], s[turned], &e);
+  }
+  cprox_solid_free(s[0]);
+  cprox_solid_free(s[1]);
   return e;
 }
 
@@ -86,7 +140,9 @@ static double over_reach(const gap_plan *plan, const enlarged *e, double t, cons
   if (isinf(e->most)) return INFINITY;
   const double L = plan->period, volume = power(L, plan->dimension);
   /* lengths in units of L, overlaps in units of L^d */
-  const double x = kernel_reach(outside, kernel_steps(plan->N), e->most / volume, e->slope * L / volume, t / volume);
+  const double left = t - e->images; /* the images may take so much of the threshold */
+  if (!(left > 0.0)) return INFINITY;
+  const double x = kernel_reach(outside, kernel_steps(plan->N), e->most / volume, e->slope * L / volume, left / volume);
   return x < 0.5 ? e->reach + x * L : INFINITY;
 }
 
@@ -103,8 +159,9 @@ static cprox_status choose_period(const cprox_solid *a, const cprox_solid *b, co
   for (int step = 0; step < MOST_STEPS && (asked > 0.0 || plan->period <= LONGEST_PERIOD * size); step++) {
     if (cprox_workspace_wants_stop(workspace)) return CPROX_STOPPED;
     plan->offset = kernel_offset(plan->dimension, n, plan->mode) * plan->period / n;
-    const enlarged e = enlarge(a, b, plan->offset);
+    const enlarged e = enlarge(plan, a, b);
     if (!e.ok) return no_memory(workspace);
+    plan->bytes = plan->tabulated ? table_size(e.table_period, gap_farthest_frequency(plan->N, plan->period)) : 0.0;
     plan->unbounded = plan->mode == CPROX_GAP_MODE_CERTIFIED && isinf(e.most);
     plan->over_reach = over_reach(plan, &e, gap_threshold(k, plan, a, b), outside);
     const bool known = plan->over_reach < INFINITY;
@@ -138,14 +195,109 @@ static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_wor
   return status;
 }
 
+/* In the units of gap_cost_of_turning(), where a box is 2: what a look-up in a table costs. */
+#define COST_OF_TABLE 150.0
+
+/* Above this a solid that is not turned is covered by cells, too: the transforms of so many triangles. */
+enum { MOST_TRIANGLES = 150 };
+
+/* Up to so many samples covers and tables take the place of what costs too much: beyond, images of 1e-5 of a solid are no
+ * longer small beside the threshold, and tables take more memory than a gap should. */
+enum { TABLE_MOST_N = 32 };
+
+/* Cells that cover a solid have this share of the certified offset as their edge. */
+#define CELL_SHARE 0.25
+
+/* What the least period over the solids' size will be, about: the proven over-reach is some 5.3 L/n. */
+static double expected_period(int n, cprox_gap_mode mode) {
+  return mode == CPROX_GAP_MODE_CERTIFIED ? 1.0 / fmax(0.4, 1.0 - 5.3 / n) : 1.1;
+}
+
+static bool is_tabulated(const cprox_solid *s) {
+  return raster_is_possible(s) && gap_cost_of_turning(s) > COST_OF_TABLE;
+}
+
+static bool is_grid(const cprox_solid *s) {
+  return s->n == 1 && grid_is_aligned(&s->pieces[0]);
+}
+
+/* Triangles of the offset: that of a mesh has wedges and caps besides the faces, some fifteen times as many. */
+static double triangles_of(const cprox_solid *s) {
+  double n = 0.0;
+  for (size_t i = 0; i < s->n; i++) {
+    const piece *p = &s->pieces[i];
+    if (p->kind == PIECE_SOUP) n += piece_is_polytope(p) ? (double)p->n_corners / 3.0 : 15.0 * (double)p->n_triangles;
+    if (p->kind == PIECE_CAPSULE) n += 20.0;
+    if (p->kind == PIECE_GRID && !is_grid(s)) n += (double)p->counts[1] * p->counts[2];
+  }
+  return n;
+}
+
+/* Which solid is turned, and what takes the place of one whose closed form costs too much. */
+static void choose_forms(const cprox_solid *a, const cprox_solid *b, gap_plan *plan) {
+  /* a sweep's threshold is so low that images count beside it, too */
+  if (plan->N > TABLE_MOST_N || sweep_length(a) > 0.0 || sweep_length(b) > 0.0) {
+    plan->turned_first = gap_cost_of_turning(a) < gap_cost_of_turning(b);
+    return;
+  }
+  const bool table_a = is_tabulated(a), table_b = is_tabulated(b);
+  const double cost_a = table_a ? COST_OF_TABLE : gap_cost_of_turning(a);
+  const double cost_b = table_b ? COST_OF_TABLE : gap_cost_of_turning(b);
+  plan->turned_first = cost_a < cost_b || (table_a && table_b && a->radius < b->radius);
+  plan->tabulated = plan->turned_first ? table_a : table_b;
+  const int n = 2 * plan->N + 1;
+  const double period = plan->period > 0.0 ? plan->period : expected_period(n, plan->mode) * solids_size(a, b);
+  const double cell = CELL_SHARE * kernel_offset(plan->dimension, n, CPROX_GAP_MODE_CERTIFIED) * period / n;
+  const cprox_solid *const both[2] = {a, b};
+  for (int i = 0; i < 2; i++) {
+    const bool turned = plan->turned_first == (i == 0);
+    const bool covered =
+        turned ? plan->tabulated : raster_is_possible(both[i]) && triangles_of(both[i]) > MOST_TRIANGLES;
+    plan->cell[i] = covered && !is_grid(both[i]) ? cell : 0.0;
+  }
+}
+
+/* Below what a table takes: its solid reaches at least as far along an axis as its radius over the root of 3. */
+static double least_table_bytes(const gap_plan *plan, const cprox_solid *a, const cprox_solid *b) {
+  if (!plan->tabulated) return 0.0;
+  const double radius = plan->turned_first ? a->radius : b->radius;
+  const double nodes = 3.0 * plan->N * radius / (1.05 * solids_size(a, b));
+  return 4.0 * nodes * nodes * nodes * sizeof(wave);
+}
+
+void gap_forms_free(const cprox_solid *a, const cprox_solid *b, const cprox_solid *form[2]) {
+  if (form[0] != a) cprox_solid_free((cprox_solid *)form[0]);
+  if (form[1] != b) cprox_solid_free((cprox_solid *)form[1]);
+}
+
+cprox_status gap_forms(const gap_plan *plan, const cprox_solid *a, const cprox_solid *b, cprox_workspace *workspace,
+                       const cprox_solid *form[2]) {
+  form[0] = a, form[1] = b;
+  for (int i = 0; i < 2; i++) {
+    if (plan->cell[i] == 0.0) continue;
+    const cprox_solid *cover = raster_cover(form[i], plan->cell[i], workspace);
+    if (!cover) {
+      gap_forms_free(a, b, form);
+      if (cprox_workspace_wants_stop(workspace)) return fourier_stopped(workspace);
+      return fourier_fail(workspace, CPROX_MEMORY, "no memory for the cells of n = %d", 2 * plan->N + 1);
+    }
+    form[i] = cover;
+  }
+  return CPROX_OK;
+}
+
 static cprox_status plan_for(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N,
                              cprox_workspace *workspace, gap_plan *plan) {
   *plan = (gap_plan){.mode = options->mode,
                      .dimension = a->dimension,
                      .N = N,
                      .beta = kernel_beta(a->dimension, 2 * N + 1),
-                     .period = options->period,
-                     .turned_first = gap_cost_of_turning(a) < gap_cost_of_turning(b)};
+                     .period = options->period};
+  choose_forms(a, b, plan);
+  const double least = least_table_bytes(plan, a, b);
+  if (least > (double)options->memory_limit)
+    return fourier_fail(workspace, CPROX_INVALID, "n = %d samples need %.3g bytes, beyond the limit of %zu", 2 * N + 1,
+                        least, options->memory_limit);
   return settle(a, b, workspace, plan);
 }
 

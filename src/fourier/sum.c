@@ -351,6 +351,21 @@ static void plain_lanes(const gap_job *job, const turned_piece *t, lanes *o) {
   }
 }
 
+/* A tabulated solid, one frequency after the other; where the coefficients are 0 it is not looked up. */
+INLINE void table_lanes(const gap_job *job, const double *coefficients, bool gradient, lanes *o) {
+  for (int l = 0; l < LANES; l++) {
+    if (coefficients[l] == 0.0 && coefficients[LANES + l] == 0.0) continue;
+    const vec3 q = rotate_back(job->turn, vec(o->qx[l], o->qy, o->qz));
+    wave_jet jet;
+    table_at(job->gap->table, q, gradient, &jet);
+    o->re[l] = jet.value.re, o->im[l] = jet.value.im;
+    if (!gradient) continue;
+    const vec3 re = rotate(job->turn, vec_cross(jet.re, q)), im = rotate(job->turn, vec_cross(jet.im, q));
+    o->kre[0][l] = re.x, o->kre[1][l] = re.y, o->kre[2][l] = re.z;
+    o->kim[0][l] = im.x, o->kim[1][l] = im.y, o->kim[2][l] = im.z;
+  }
+}
+
 /* Sums of a chunk, a lane each. */
 typedef struct totals {
   double v[LANES], x[3][LANES], m[3][LANES], energy[LANES];
@@ -395,7 +410,7 @@ INLINE void sum_block(const gap_job *job, const ready *r, const block *b, const 
   o.qy = step * b->k[1], o.qz = step * b->k[2];
   for (int l = 0; l < LANES; l++) {
     o.qx[l] = step * (b->k[0] + l);
-    o.re[l] = r->n ? 0.0 : 1.0;
+    o.re[l] = r->n || job->gap->table ? 0.0 : 1.0;
     o.im[l] = 0.0;
     for (int j = 0; j < 3; j++) o.kre[j][l] = o.kim[j][l] = 0.0;
   }
@@ -410,6 +425,7 @@ INLINE void sum_block(const gap_job *job, const ready *r, const block *b, const 
     else
       plain_lanes(job, t, &o);
   }
+  if (!plane && job->gap->table) table_lanes(job, coefficients, gradient, &o);
   phase_lanes(&r->at, b, plane, c, s);
   if (r->real)
     add_block(coefficients, c, s, gradient, plane, true, &o, sum);
@@ -506,7 +522,7 @@ size_t gap_scratch_size(const cprox_gap *gap) {
 /* Carves the scratch memory: pieces, phases and vectors of edges, tables. */
 static ready prepare(const gap_job *job) {
   const cprox_solid *turned = job->gap->turned;
-  ready r = {.pieces = job->scratch, .n = turned ? turned->n : 0, .real = true};
+  ready r = {.pieces = job->scratch, .n = turned ? turned->n : 0, .real = !job->gap->table};
   phase *edges = (phase *)(r.pieces + r.n);
   vec3 *ends = (vec3 *)(edges + 2 * edges_of(turned));
   double *tables = (double *)(ends + 2 * edges_of(turned));

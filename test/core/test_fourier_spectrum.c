@@ -417,7 +417,7 @@ CASE(grids_transform_axis_by_axis_to_the_same_spectrum) {
     grid_table table;
     const int N = 5, top = dimension == 2 ? 0 : N;
     const double step = 1.7;
-    assert_true(grid_is_aligned(&s->pieces[0]) && grid_transform(&s->pieces[0], dimension, N, step, &table));
+    assert_true(grid_is_aligned(&s->pieces[0]) && grid_transform(&s->pieces[0], dimension, N, step, ws, &table));
     for (int z = -top; z <= top; z++)
       for (int y = -N; y <= N; y++)
         for (int x = -N; x <= N; x++) {
