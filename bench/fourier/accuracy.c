@@ -262,8 +262,8 @@ void fourier_obstacle(const bench_size *size) {
         char parameter[96];
         snprintf(parameter, sizeof parameter, "n %u theta %.4f phi %.4f", n, theta, phi);
         const double x = gap ? ray_end(gap, phi, theta, ws) : exact_end(&s[0], &s[1], phi, theta);
-        const char *method = !gap ? "exact" : sum_alone ? "curve_proximity sum" : "curve_proximity";
-        fourier_row("obstacle L T", method, parameter, NAN, 0, x, 0, 0);
+        const char *by = !gap ? "exact" : sum_alone ? "curve_proximity sum" : "curve_proximity";
+        fourier_row("obstacle L T", by, parameter, NAN, 0, x, 0, 0);
       }
     cprox_gap_free(gap);
   }

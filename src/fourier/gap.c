@@ -206,7 +206,7 @@ double gap_farthest_frequency(int N, double period) {
 static double measure_of_turned(const cprox_gap *gap, double measure) {
   if (!gap->table) return measure;
   wave_jet jet;
-  table_at(gap->table, vec(0, 0, 0), false, &jet);
+  lookup_at(gap->table, vec(0, 0, 0), false, &jet);
   return jet.value.re;
 }
 
@@ -243,7 +243,7 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
   const bool folded = is_centred_ball(turned);
   bool failed = !drafts || !allocate(gap) || !fill_blocks(gap, w, fixed, folded ? turned : NULL, workspace, drafts);
   if (!failed && tabulated) {
-    gap->table = table_create(turned->pieces, gap_farthest_frequency(gap->N, gap->info.period), workspace);
+    gap->table = lookup_create(turned->pieces, gap_farthest_frequency(gap->N, gap->info.period), workspace);
     failed = !gap->table;
   }
   double energy = INFINITY, measure = cprox_solid_get_info(turned).measure;
@@ -314,7 +314,7 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
   made->simd = simd_of_machine();
   made->info.terms = count_terms(made);
   made->info.bytes = sizeof *made + made->n_blocks * (sizeof *made->blocks + (2 * LANES + 1) * sizeof *made->c);
-  if (made->table) made->info.bytes += table_bytes(made->table);
+  if (made->table) made->info.bytes += lookup_bytes(made->table);
   *gap = made;
   return CPROX_OK;
 }
@@ -359,7 +359,7 @@ cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const 
 void cprox_gap_free(cprox_gap *gap) {
   if (!gap) return;
   cprox_solid_free(gap->turned);
-  table_free(gap->table);
+  lookup_free(gap->table);
   enclosures_free(&gap->bounds_a);
   enclosures_free(&gap->bounds_b);
   free(gap->blocks);

@@ -6,8 +6,8 @@
 
 #include "fourier/apart.h"
 #include "fourier/kernel.h"
+#include "fourier/lookup.h"
 #include "fourier/solid.h"
-#include "fourier/table.h"
 #include "simd/dispatch.h"
 
 /* Lattice points with one k_y, k_z and LANES consecutive k_x are summed side by side. */

@@ -60,9 +60,9 @@ static void tabulate(const gap_plan *plan, const cprox_solid *fixed, double peak
     find_extents(bare, least);
     find_extents(turned, most);
     for (int j = 0; j < 3; j++) least[j] = fmax(least[j] + plan->offset, cell), most[j] += vec_norm(turned->centre);
-    table_bound_cover(least, most, cell, cprox_solid_get_info(turned).measure, &t);
+    lookup_bound_cover(least, most, cell, cprox_solid_get_info(turned).measure, &t);
   } else {
-    e->ok = table_find_bounds(turned->pieces, &t, NULL);
+    e->ok = lookup_find_bounds(turned->pieces, &t, NULL);
     if (!e->ok) return;
   }
   e->most *= t.peak, e->slope *= t.peak;
@@ -161,7 +161,7 @@ static cprox_status choose_period(const cprox_solid *a, const cprox_solid *b, co
     plan->offset = kernel_offset(plan->dimension, n, plan->mode) * plan->period / n;
     const enlarged e = enlarge(plan, a, b);
     if (!e.ok) return no_memory(workspace);
-    plan->bytes = plan->tabulated ? table_size(e.table_period, gap_farthest_frequency(plan->N, plan->period)) : 0.0;
+    plan->bytes = plan->tabulated ? lookup_size(e.table_period, gap_farthest_frequency(plan->N, plan->period)) : 0.0;
     plan->unbounded = plan->mode == CPROX_GAP_MODE_CERTIFIED && isinf(e.most);
     plan->over_reach = over_reach(plan, &e, gap_threshold(k, plan, a, b), outside);
     const bool known = plan->over_reach < INFINITY;

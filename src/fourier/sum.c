@@ -352,12 +352,12 @@ static void plain_lanes(const gap_job *job, const turned_piece *t, lanes *o) {
 }
 
 /* A tabulated solid, one frequency after the other; where the coefficients are 0 it is not looked up. */
-INLINE void table_lanes(const gap_job *job, const double *coefficients, bool gradient, lanes *o) {
+INLINE void lookup_lanes(const gap_job *job, const double *coefficients, bool gradient, lanes *o) {
   for (int l = 0; l < LANES; l++) {
     if (coefficients[l] == 0.0 && coefficients[LANES + l] == 0.0) continue;
     const vec3 q = rotate_back(job->turn, vec(o->qx[l], o->qy, o->qz));
     wave_jet jet;
-    table_at(job->gap->table, q, gradient, &jet);
+    lookup_at(job->gap->table, q, gradient, &jet);
     o->re[l] = jet.value.re, o->im[l] = jet.value.im;
     if (!gradient) continue;
     const vec3 re = rotate(job->turn, vec_cross(jet.re, q)), im = rotate(job->turn, vec_cross(jet.im, q));
@@ -425,7 +425,7 @@ INLINE void sum_block(const gap_job *job, const ready *r, const block *b, const 
     else
       plain_lanes(job, t, &o);
   }
-  if (!plane && job->gap->table) table_lanes(job, coefficients, gradient, &o);
+  if (!plane && job->gap->table) lookup_lanes(job, coefficients, gradient, &o);
   phase_lanes(&r->at, b, plane, c, s);
   if (r->real)
     add_block(coefficients, c, s, gradient, plane, true, &o, sum);

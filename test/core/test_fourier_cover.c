@@ -136,11 +136,11 @@ CASE(a_tables_value_is_the_transform_of_windowed_cells) {
   rng r = rng_seed(5102);
   for (size_t i = 0; i < test_cases(5); i++) {
     piece g = some_grid(&r);
-    spectrum_table *t = table_create(&g, 12.0, ws);
+    spectrum_table *t = lookup_create(&g, 12.0, ws);
     assert_non_null(t);
     double weights[3][16], *const weight[3] = {weights[0], weights[1], weights[2]};
     table_bounds bounds;
-    assert_true(table_find_bounds(&g, &bounds, weight));
+    assert_true(lookup_find_bounds(&g, &bounds, weight));
     for (int k = 0; k < 4; k++) {
       const vec3 q = vec_scale(rng_uniform(&r, 0.0, 12.0), rng_unit(&r));
       long double axis[3][16][2];
@@ -160,19 +160,19 @@ CASE(a_tables_value_is_the_transform_of_windowed_cells) {
             re += pr * c[0] - pi * c[1], im += pr * c[1] + pi * c[0];
           }
       wave_jet at, more, less;
-      table_at(t, q, true, &at);
+      lookup_at(t, q, true, &at);
       const double tolerance = 1e-12 * bounds.mass;
       assert_true(fabs(at.value.re - (double)re) < tolerance && fabs(at.value.im - (double)im) < tolerance);
       const double h = 1e-5;
       for (int j = 0; j < 3; j++) {
         const vec3 step = vec(j == 0 ? h : 0, j == 1 ? h : 0, j == 2 ? h : 0);
-        table_at(t, vec_add(q, step), false, &more);
-        table_at(t, vec_sub(q, step), false, &less);
+        lookup_at(t, vec_add(q, step), false, &more);
+        lookup_at(t, vec_sub(q, step), false, &less);
         assert_true(fabs((more.value.re - less.value.re) / (2 * h) - along(at.re, j)) < 1e-8 * bounds.mass);
         assert_true(fabs((more.value.im - less.value.im) / (2 * h) - along(at.im, j)) < 1e-8 * bounds.mass);
       }
     }
-    table_free(t);
+    lookup_free(t);
     piece_free(&g);
   }
 }
@@ -185,7 +185,7 @@ CASE(a_tables_function_is_at_least_one_on_its_cells) {
     piece g = some_grid(&r);
     double weights[3][16], *const weight[3] = {weights[0], weights[1], weights[2]};
     table_bounds b;
-    assert_true(table_find_bounds(&g, &b, weight));
+    assert_true(lookup_find_bounds(&g, &b, weight));
     double low[3], high[3];
     for (int j = 0; j < 3; j++) {
       low[j] = along(g.centre, j), high[j] = low[j] + g.size[0] * g.counts[j];
@@ -210,7 +210,7 @@ CASE(a_tables_function_is_at_least_one_on_its_cells) {
     for (int j = 0; j < 3; j++) most[j] = fmax(-low[j], high[j]), least[j] = fmax(g.size[0], 0.9 * most[j]);
     table_bounds ahead;
     const double cube = g.size[0] * g.size[0] * g.size[0];
-    table_bound_cover(least, most, g.size[0], cube * g.counts[0] * g.counts[1] * g.counts[2], &ahead);
+    lookup_bound_cover(least, most, g.size[0], cube * g.counts[0] * g.counts[1] * g.counts[2], &ahead);
     assert_true(ahead.peak >= b.peak && ahead.image_mass >= b.image_mass && ahead.image_peak >= b.image_peak * 0.999);
     piece_free(&g);
   }

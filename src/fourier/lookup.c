@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "fourier/table.h"
+#include "fourier/lookup.h"
 
 #include <stdlib.h>
 
@@ -71,7 +71,7 @@ static void add_cells(const piece *grid, layer *const of[3], table_bounds *bound
   bounds->energy = root * root * (1.0 + 1e-9);
 }
 
-bool table_find_bounds(const piece *grid, table_bounds *bounds, double *const weight[3]) {
+bool lookup_find_bounds(const piece *grid, table_bounds *bounds, double *const weight[3]) {
   layer *layers = calloc((size_t)grid->counts[0] + grid->counts[1] + grid->counts[2], sizeof *layers);
   if (!layers) return false;
   layer *const of[3] = {layers, layers + grid->counts[0], layers + grid->counts[0] + grid->counts[1]};
@@ -96,7 +96,8 @@ bool table_find_bounds(const piece *grid, table_bounds *bounds, double *const we
 
 /* The outermost layer, at an eighth of the period, has the largest images, and over a layer there the window falls the
  * most: the nearer the farthest cell, the more. */
-void table_bound_cover(const double least[3], const double most[3], double cell, double measure, table_bounds *bounds) {
+void lookup_bound_cover(const double least[3], const double most[3], double cell, double measure,
+                        table_bounds *bounds) {
   *bounds = (table_bounds){0};
   double central = 1.0, all = 1.0;
   for (int j = 0; j < 3; j++) {
@@ -119,7 +120,7 @@ static void choose_nodes(const double period[3], double most, spectrum_table *t)
   }
 }
 
-double table_size(const double period[3], double most) {
+double lookup_size(const double period[3], double most) {
   double bytes = sizeof(wave);
   for (int j = 0; j < 3; j++) {
     const double last = ceil(most * period[j] / TAU) + 0.5 * TABLE_ORDER;
@@ -128,11 +129,11 @@ double table_size(const double period[3], double most) {
   return bytes;
 }
 
-spectrum_table *table_create(const piece *grid, double most, cprox_workspace *workspace) {
+spectrum_table *lookup_create(const piece *grid, double most, cprox_workspace *workspace) {
   spectrum_table *t = calloc(1, sizeof *t);
   double *weights = calloc((size_t)grid->counts[0] + grid->counts[1] + grid->counts[2], sizeof *weights);
   double *const weight[3] = {weights, weights + grid->counts[0], weights + grid->counts[0] + grid->counts[1]};
-  if (t && weights && table_find_bounds(grid, &t->bounds, weight)) {
+  if (t && weights && lookup_find_bounds(grid, &t->bounds, weight)) {
     choose_nodes(t->bounds.period, most, t);
     grid_range range[3];
     for (int j = 0; j < 3; j++) range[j] = (grid_range){t->first[j], t->last[j], 1.0 / t->per_step[j], weight[j]};
@@ -144,13 +145,13 @@ spectrum_table *table_create(const piece *grid, double most, cprox_workspace *wo
   return NULL;
 }
 
-void table_free(spectrum_table *table) {
+void lookup_free(spectrum_table *table) {
   if (!table) return;
   free(table->value);
   free(table);
 }
 
-size_t table_bytes(const spectrum_table *table) {
+size_t lookup_bytes(const spectrum_table *table) {
   size_t nodes = 1;
   for (int j = 0; j < 3; j++) nodes *= (size_t)(table->last[j] - table->first[j]) + 1;
   return nodes * sizeof(wave) + sizeof *table;

@@ -5,8 +5,8 @@
  * sinc(y/P)^6 along each axis, and images of it at the distances P, which the window all but takes away. The window is
  * nonnegative, and cells are weighted by one over its least value on them: the function is nonnegative and at least 1
  * on the solid, so that a certified gap's proof holds for it (doc/fourier.md, "Covers and tables"). */
-#ifndef CPROX_FOURIER_TABLE_H
-#define CPROX_FOURIER_TABLE_H
+#ifndef CPROX_FOURIER_LOOKUP_H
+#define CPROX_FOURIER_LOOKUP_H
 
 #include "fourier/piece.h"
 
@@ -32,23 +32,23 @@ typedef struct spectrum_table {
 
 /* Of a grid about the origin, in its own axes. weight: of the layers along each axis, room for its counts; may be NULL.
  * False where memory is out. */
-bool table_find_bounds(const piece *grid, table_bounds *bounds, double *const weight[3]);
+bool lookup_find_bounds(const piece *grid, table_bounds *bounds, double *const weight[3]);
 
 /* The same of any grid with cells of this edge and at most this measure whose farthest cell along each axis reaches to
  * between least and most from the origin. */
-void table_bound_cover(const double least[3], const double most[3], double cell, double measure, table_bounds *bounds);
+void lookup_bound_cover(const double least[3], const double most[3], double cell, double measure, table_bounds *bounds);
 
 /* Bytes of a table for |q| <= most whose window has these periods. */
-double table_size(const double period[3], double most);
+double lookup_size(const double period[3], double most);
 
 /* NULL where memory is out or the stop function wants an end. */
-spectrum_table *table_create(const piece *grid, double most, cprox_workspace *workspace);
-void table_free(spectrum_table *table);
-size_t table_bytes(const spectrum_table *table);
+spectrum_table *lookup_create(const piece *grid, double most, cprox_workspace *workspace);
+void lookup_free(spectrum_table *table);
+size_t lookup_bytes(const spectrum_table *table);
 
 /* The spline along one axis: the values, and the derivatives by the node, of the six functions about a place; the first
  * is that of the node *from. */
-static inline void table_spline(double at, bool gradient, int *from, double w[TABLE_ORDER], double d[TABLE_ORDER]) {
+static inline void lookup_spline(double at, bool gradient, int *from, double w[TABLE_ORDER], double d[TABLE_ORDER]) {
   const double low = floor(at), f = at - low;
   *from = (int)low - (TABLE_ORDER / 2 - 1);
   double b[TABLE_ORDER];
@@ -71,7 +71,7 @@ static inline void table_spline(double at, bool gradient, int *from, double w[TA
 }
 
 /* T at q; gradient too where asked. Frequencies beyond the table's have the value 0. */
-static inline void table_at(const spectrum_table *t, vec3 q, bool gradient, wave_jet *jet) {
+static inline void lookup_at(const spectrum_table *t, vec3 q, bool gradient, wave_jet *jet) {
   *jet = (wave_jet){0};
   /* a real function's spectrum at -q is the conjugate of that at q */
   const double sign = q.z < 0.0 ? -1.0 : 1.0;
@@ -79,7 +79,7 @@ static inline void table_at(const spectrum_table *t, vec3 q, bool gradient, wave
   int from[3];
   double w[3][TABLE_ORDER], d[3][TABLE_ORDER] = {{0}};
   for (int j = 0; j < 3; j++) {
-    table_spline(at[j], gradient, &from[j], w[j], d[j]);
+    lookup_spline(at[j], gradient, &from[j], w[j], d[j]);
     if (from[j] < t->first[j] || from[j] + TABLE_ORDER - 1 > t->last[j]) return;
   }
   const size_t row = (size_t)(t->last[0] - t->first[0]) + 1, layer = row * ((size_t)(t->last[1] - t->first[1]) + 1);
