@@ -7,7 +7,9 @@
 #include <ros/service_client.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -17,7 +19,7 @@ namespace curve_proximity {
  *
  *  A persistent connection costs about a tenth of a new connection per call. ROS does not reconnect a persistent
  *  connection. This class looks the service up again after a failure, with pauses that double from 10 ms to 500 ms.
- *  For one thread. */
+ *  For one thread, but for end(). */
 template <class Service>
 class PersistentClient {
  public:
@@ -34,16 +36,20 @@ class PersistentClient {
         std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(patience));
     std::chrono::milliseconds pause{10};
     while (true) {
-      if (!client_.isValid()) {
-        ++lookups_;
-        client_ = handle_.template serviceClient<Service>(name_, true);
-      }
-      if (client_.isValid() && client_.call(service)) return true;
-      client_.shutdown();
-      if (!ros::ok() || std::chrono::steady_clock::now() + pause >= deadline) return false;
+      ros::ServiceClient client = connected();
+      if (client.isValid() && client.call(service)) return true;
+      client.shutdown();
+      if (!ros::ok() || ended_ || std::chrono::steady_clock::now() + pause >= deadline) return false;
       std::this_thread::sleep_for(pause);
       pause = std::min(2 * pause, std::chrono::milliseconds{500});
     }
+  }
+
+  /** Ends a call that waits for its answer, which returns false, and all later ones. By any thread. */
+  void end() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ended_ = true;
+    client_.shutdown();
   }
 
   /** The number of lookups so far. */
@@ -52,8 +58,20 @@ class PersistentClient {
   }
 
  private:
+  ros::ServiceClient connected() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (ended_) return {};
+    if (!client_.isValid()) {
+      ++lookups_;
+      client_ = handle_.template serviceClient<Service>(name_, true);
+    }
+    return client_;
+  }
+
   ros::NodeHandle handle_;
   const std::string name_;
+  std::mutex mutex_; /* of the client, and not held during a call */
+  std::atomic<bool> ended_{false};
   ros::ServiceClient client_;
   unsigned lookups_ = 0;
 };

@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The server as a nodelet: it answers, and its manager outlives whatever becomes of it."""
 import struct
+import threading
 import time
 import unittest
 from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rospy
-from curve_proximity.msg import Body, CollisionObject
-from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance
-from helpers import Call, Server, bezier, raw_call, resident_mb, ring_and_shells, run, serialized, sphere
+from curve_proximity.msg import Body, CollisionObject, Curve, Proximity, ProximityResults
+from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance, Tolerance, ToleranceResponse
+from helpers import Call, Server, bezier, connected, fingerprint, raw_call, resident_mb, ring_and_shells, run, serialized, sphere
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -105,6 +106,31 @@ class Nodelet(unittest.TestCase):
                         raise rospy.ServiceException('refused')
             finally:
                 rospy.delete_param('/wrong_gate')
+        self.assertEqual(self.list_nodelets().nodelets, [])
+
+    def test_a_gate_whose_server_hangs_is_unloaded_all_the_same(self):
+        asked, ending = threading.Event(), threading.Event()
+
+        def hang(_):
+            asked.set()
+            ending.wait(60)
+            return ToleranceResponse()
+        service = rospy.Service('/hung/tolerance', Tolerance, hang)
+        self.addCleanup(service.shutdown)
+        self.addCleanup(ending.set)
+        rospy.set_param('/hung_gate/server', '/hung')
+        self.addCleanup(rospy.delete_param, '/hung_gate')
+        self.assertTrue(self.load_nodelet('/hung_gate', 'curve_proximity/TrajectoryGate', [], [], [], '').success)
+        curves = rospy.Publisher('/hung_gate/curve', Curve, queue_size=1)
+        answers = rospy.Publisher('/hung_gate/proximity', ProximityResults, queue_size=1)
+        self.assertTrue(connected(curves, answers))
+        clear = Proximity(verdict=Proximity.VERDICT_CLEAR, lower=1.0, upper=1.0)
+        curves.publish(LINE)
+        answers.publish(ProximityResults(success=True, source='curve', query_type='collision', fingerprint=fingerprint(LINE), results=[clear]))
+        self.assertTrue(asked.wait(10))
+        begin = time.monotonic()
+        self.assertTrue(self.unload_nodelet('/hung_gate').success)
+        self.assertLess(time.monotonic() - begin, 10.0)
         self.assertEqual(self.list_nodelets().nodelets, [])
 
 

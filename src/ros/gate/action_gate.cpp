@@ -40,6 +40,7 @@ ActionGate::ActionGate(const ros::NodeHandle &handle, const GateParameters &para
 }
 
 ActionGate::~ActionGate() {
+  calls_.end();
   timer_.stop();
   spinner_.stop();
   watches_.reset();

@@ -135,6 +135,7 @@ MotionWatches::~MotionWatches() {
     ending_ = true;
   }
   end_.notify_all();
+  calls_.end();
   looking_.join();
   supervising_.join();
 }

@@ -25,7 +25,7 @@ void logGateError(const std::string &why);
 /** Does this row prove that? decided: its verdict is about a limit of delta at least. */
 bool isClear(const Proximity &row, double delta, bool decided);
 
-/** For one thread. */
+/** For one thread, but for end(). */
 class ServerCalls {
  public:
   static constexpr double PATIENCE = 2.0; /**< [s] with a server that is not there */
@@ -36,6 +36,11 @@ class ServerCalls {
 
   /** Throws Error where the server does not answer for `patience` seconds. */
   SceneState scene(double patience = PATIENCE);
+
+  /** Ends a call that waits for the server, and all later ones: they fail. By any thread. */
+  void end() {
+    tolerance_.end();
+  }
 
   /** True where all of it is clear; else `refusal` says what is not, or why there is no answer. */
   bool isClear(const ProximityQuery &query, Refusal &refusal);

@@ -90,6 +90,7 @@ TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParamete
 }
 
 TrajectoryGate::~TrajectoryGate() {
+  if (calls_) calls_->end(); // a subscriber that is shut down waits for its callback
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
   spinner_.stop();
   watches_.reset();
