@@ -331,7 +331,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType
     request.turn = &turn;
     QueryResponse answer;
     auto drawing = std::make_shared<Drawing>();
-    if (request.curves.size() >= MANY_CURVES && !markers_->wantsCurves()) drawing->most_lines = 0;
+    if (!markers_->isWatched()) drawing->most_lines = 0;
     queries_.answer(request, answer, *drawing);
     response.success = answer.success;
     response.message = std::move(answer.message);

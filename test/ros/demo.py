@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 import rospy
-from helpers import Server, bezier, box, bspline, joints, run, sphere, until
+from helpers import Server, bezier, box, bspline, connected, joints, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -45,29 +45,29 @@ class Demo(unittest.TestCase):
         self.assertAlmostEqual(one.upper, nearest.upper, delta=3e-6)
 
     def test_markers_show_curve_closest_pair_scene_and_robot(self):
+        self.listen()
         self.assertTrue(self.server.distance(LINE).success)
-        received = []
-        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
-        # latched: the last query is shown to whoever comes later
-        kinds = until(lambda: received and {m.ns for m in received[-1].markers if m.action == Marker.ADD}, 10)
-        subscriber.unregister()
-        self.assertLessEqual({'scene', 'robot', 'curves', 'pairs', 'labels'}, kinds)
-        tube = next(m for m in received[-1].markers if m.ns == 'curves' and m.type == Marker.TRIANGLE_LIST)
+        shown = self.markers({'scene', 'robot', 'curves', 'pairs', 'labels'})
+        tube = next(m for m in shown if m.ns == 'curves' and m.type == Marker.TRIANGLE_LIST)
         self.assertEqual(len(tube.points), len(tube.colors))
         self.assertGreater(len(tube.points), 1000)
         self.assertTrue(all(math.isfinite(c) for p in tube.points for c in (p.x, p.y, p.z)))
         # the links are their mesh files, by a name that RViz finds on any working directory
-        meshes = [m.mesh_resource for m in received[-1].markers if m.type == Marker.MESH_RESOURCE and m.ns == 'robot']
+        meshes = [m.mesh_resource for m in shown if m.type == Marker.MESH_RESOURCE and m.ns == 'robot']
         self.assertEqual(len(meshes), 11)
         self.assertTrue(all(m.startswith('file:///') and os.path.isfile(m[7:]) for m in meshes))
-        self.assertEqual({m.header.frame_id for m in received[-1].markers}, {'world'})
+        self.assertEqual({m.header.frame_id for m in shown}, {'world'})
+
+    def listen(self):
+        """Nothing is drawn where nobody listens."""
+        self.received = []
+        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, self.received.append)
+        self.addCleanup(subscriber.unregister)
+        self.assertTrue(connected(subscriber))
 
     def markers(self, wanted):
         """Those of the first array that has all the wanted namespaces."""
-        received = []
-        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
-        found = until(lambda: next((a for a in received if wanted <= {m.ns for m in a.markers}), None), 10)
-        subscriber.unregister()
+        found = until(lambda: next((a for a in self.received if wanted <= {m.ns for m in a.markers}), None), 10)
         self.assertTrue(found, wanted)
         return found.markers
 
@@ -86,6 +86,7 @@ class Demo(unittest.TestCase):
 
     def test_a_budget_that_ends_early_leaves_open_hulls(self):
         winding = bspline([(0.9 + 0.1 * math.sin(3 * i), 0.04 * i - 0.6, 0.5 + 0.3 * math.cos(2 * i)) for i in range(30)], 3)
+        self.listen()
         row, = self.server.distance(winding, max_nodes=1, epsilon=1e-12).results
         self.assertEqual(row.status, 'budget')
         self.assertGreater(len([m for m in self.markers({'open'}) if m.ns == 'open']), 0)
@@ -98,6 +99,7 @@ class Demo(unittest.TestCase):
         trajectory = JointTrajectory(joint_names=names, points=[
             JointTrajectoryPoint(positions=[state[n] for n in names], time_from_start=rospy.Duration(t))
             for t, state in ((0, READY), (2, end))])
+        self.listen()
         response = self.server.distance([], trajectory=trajectory, joint_state=joints(panda_finger_joint1=0.035))
         self.assertTrue(response.success, response.message)
         shown = self.markers({'robot', 'swept', 'sweep'})

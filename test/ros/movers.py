@@ -293,6 +293,7 @@ class Movers(unittest.TestCase):
         received = []
         subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
         self.addCleanup(subscriber.unregister)
+        self.assertTrue(connected(subscriber))
         row, = self.server.distance([], movers=True).results
         shown = until(lambda: next((a for a in received if {'movers', 'movers_way', 'pairs'} <= {m.ns for m in a.markers} and
                                     [m.type for m in a.markers if m.ns == 'movers'] == [Marker.CUBE]), None), 10)

@@ -91,16 +91,8 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, co
   });
 }
 
-bool MarkerPublisher::wantsCurves() {
-  if (isWatched()) return true;
-  const auto now = std::chrono::steady_clock::now();
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (now - kept_ < std::chrono::duration<double>(DRAWING_PERIOD)) return false;
-  kept_ = now;
-  return true;
-}
-
 void MarkerPublisher::show(std::shared_ptr<const Drawing> drawing) {
+  if (!isWatched()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (drawing->motion || drawing->movers) motion_ = drawing;
   if (!drawing->lines.empty()) curves_ = std::move(drawing);
@@ -108,19 +100,30 @@ void MarkerPublisher::show(std::shared_ptr<const Drawing> drawing) {
 }
 
 void MarkerPublisher::show(std::shared_ptr<const LevelDrawing> levels) {
+  if (!isWatched()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   levels_ = std::move(levels);
   changed_ = true;
 }
 
 void MarkerPublisher::showState(std::shared_ptr<const Drawing> drawing) {
+  if (!isWatched()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   state_ = std::move(drawing);
   changed_ = changed_ || !motion_;
 }
 
+void MarkerPublisher::forget() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  curves_.reset();
+  motion_.reset();
+  state_.reset();
+  levels_.reset();
+  changed_ = true;
+}
+
 void MarkerPublisher::publishIfNew() {
-  if (!isWatched()) return;
+  if (!isWatched()) return forget();
   const SnapshotPtr scene = scene_.snapshot();
   std::shared_ptr<const Drawing> curves, motion;
   std::shared_ptr<const LevelDrawing> levels;

@@ -9,7 +9,6 @@
 #include <ros/wall_timer.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -42,7 +41,8 @@ visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *
                                           const LevelDrawing *levels, const std::string &frame,
                                           const MarkerResources &resources);
 
-/** Publishes ~markers, latched, a few times a second at most and only where somebody listens. */
+/** Publishes ~markers, latched, a few times a second at most. Where nobody listens nothing is drawn, and no drawing is
+ *  kept: it would hold the scene that it was made in. */
 class MarkerPublisher {
  public:
   /** handle: its callback queue runs the timer. scene: kept by reference. */
@@ -61,11 +61,8 @@ class MarkerPublisher {
     return publisher_.getNumSubscribers() > 0;
   }
 
-  /** Whether the curves of a request should be kept for show(). Somebody who comes later sees what was kept: so much is
-   * enough that it is no older than the last request by more than the time between two publications. */
-  bool wantsCurves();
-
  private:
+  void forget();
   void publishIfNew();
 
   const Scene &scene_;
@@ -74,7 +71,6 @@ class MarkerPublisher {
   std::mutex mutex_;
   std::shared_ptr<const Drawing> curves_, motion_, state_;
   std::shared_ptr<const LevelDrawing> levels_;
-  std::chrono::steady_clock::time_point kept_{}; /* when wantsCurves() last said so */
   bool changed_ = true;
   std::uint64_t shown_scene_ = 0;
   ros::Publisher publisher_;

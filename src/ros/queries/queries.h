@@ -168,9 +168,6 @@ struct Drawing {
   }
 };
 
-/** Of requests with so many curves only some are drawn where nobody listens. */
-constexpr std::size_t MANY_CURVES = 64;
-
 /** Answers requests, from any number of threads at once. */
 class Queries {
  public:
