@@ -145,7 +145,7 @@ TEST_F(Cart, each_trajectory_begins_where_the_one_before_has_ended) {
   expectRefused(message, "2 joints have 1 positions");
 }
 
-TEST_F(Cart, contacts_are_rows_that_touch_or_are_violated) {
+TEST_F(Cart, contacts_are_rows_that_are_not_clear) {
   Proximity row;
   row.a = "mast";
   row.b = "wall";
@@ -158,15 +158,26 @@ TEST_F(Cart, contacts_are_rows_that_touch_or_are_violated) {
   EXPECT_EQ(contact.depth, -1e-7);
   EXPECT_EQ(contact.body_type_1, moveit::ContactInformation::ROBOT_LINK);
   EXPECT_EQ(contact.body_type_2, moveit::ContactInformation::WORLD_OBJECT);
-  row.upper = 0.1;
+  row.lower = row.upper = 0.1;
+  EXPECT_FALSE(toContact(row, 1e-6, *snapshot));
+  row.verdict = Proximity::VERDICT_CLEAR;
   EXPECT_FALSE(toContact(row, 1e-6, *snapshot));
   row.verdict = Proximity::VERDICT_VIOLATED;
-  EXPECT_TRUE(toContact(row, 1e-6, *snapshot));
+  EXPECT_EQ(toContact(row, 1e-6, *snapshot)->contact_body_2, "wall");
+
+  // What is not known is no contact, and not clear: the second body is the word for it.
   row.verdict = Proximity::VERDICT_UNDECIDED;
-  EXPECT_FALSE(toContact(row, 1e-6, *snapshot));
+  row.status = Proximity::STATUS_STALE;
+  row.lower = 0.0;
+  EXPECT_EQ(toContact(row, 1e-6, *snapshot)->contact_body_1, "mast");
+  EXPECT_EQ(toContact(row, 1e-6, *snapshot)->contact_body_2, "<stale>");
+  EXPECT_EQ(toContact(row, 1e-6, *snapshot)->depth, 0.0);
+  row.status = Proximity::STATUS_OK;
+  EXPECT_EQ(toContact(row, 1e-6, *snapshot)->contact_body_2, "<undecided>");
   row.verdict = "";
-  row.upper = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(toContact(row, 1e-6, *snapshot));
+  row.status = Proximity::STATUS_INVALID;
+  row.lower = row.upper = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(toContact(row, 1e-6, *snapshot)->contact_body_2, "<invalid>");
 }
 
 } // namespace

@@ -231,8 +231,16 @@ RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot 
 
 std::optional<moveit::ContactInformation> toContact(const Proximity &row, double epsilon, const Snapshot &snapshot) {
   const bool touches = row.verdict.empty() ? row.upper <= epsilon : row.verdict == Proximity::VERDICT_VIOLATED;
-  if (!touches || !std::isfinite(row.upper)) return std::nullopt;
+  const bool clear = row.verdict.empty() ? row.lower > epsilon : row.verdict == Proximity::VERDICT_CLEAR;
+  if (clear) return std::nullopt;
   moveit::ContactInformation out;
+  if (!touches || !std::isfinite(row.upper)) {
+    out.contact_body_1 = row.a;
+    out.body_type_1 = bodyType(row.a, snapshot);
+    out.contact_body_2 = "<" + (row.status == Proximity::STATUS_OK ? Proximity::VERDICT_UNDECIDED : row.status) + ">";
+    out.body_type_2 = moveit::ContactInformation::WORLD_OBJECT;
+    return out;
+  }
   out.position.x = 0.5 * (row.witness_a.x + row.witness_b.x);
   out.position.y = 0.5 * (row.witness_a.y + row.witness_b.y);
   out.position.z = 0.5 * (row.witness_a.z + row.witness_b.z);

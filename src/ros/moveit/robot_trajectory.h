@@ -34,9 +34,10 @@ RobotMotions toMotions(const moveit::RobotTrajectory &message, const Snapshot &s
  *  trajectory_start says. A remark names what that state carries and the scene does not. */
 RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot &snapshot, const Srdf &srdf);
 
-/** A row that is violated, or, where it has no verdict, whose distance is at most `epsilon` [m]: a contact in the
- * middle of the witness points. Its depth is minus the distance: below 0 for what is apart, but within the limit of a
- *  tolerance query. Nothing for any other row. */
+/** Nothing for a row that is clear, or, where it has no verdict, farther than `epsilon` [m]. A row that is violated, or
+ *  without a verdict at most `epsilon` away, is a contact in the middle of the witness points. Its depth is minus the
+ *  distance: below 0 for what is apart, but within the limit of a tolerance query. Of any other row nothing is proven:
+ *  its second body is '<' + the status + '>', such as "<stale>", or "<undecided>", and all numbers are 0. */
 std::optional<moveit::ContactInformation> toContact(const Proximity &row, double epsilon, const Snapshot &snapshot);
 
 } // namespace curve_proximity
