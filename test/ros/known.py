@@ -11,7 +11,7 @@ import time
 import unittest
 
 import rospy
-from curve_proximity.msg import CollisionObject, ConstraintQuery
+from curve_proximity.msg import CollisionObject, ConstraintQuery, ProximityResults
 from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
 from geometry_msgs.msg import TransformStamped
@@ -114,7 +114,7 @@ class Known(unittest.TestCase):
 
     def test_joint_states_and_their_age(self):
         self.set_robot()
-        _, server = self.begin('jointed', max_age=0.5, fixed_frame='base')
+        _, server = self.begin('jointed', max_age=0.5, fixed_frame='base', state_rate=20.0)
         states = self.publisher('/jointed/joint_states', JointState)
         server.replace(sphere('ball', 0.1, (0, 0, 9)))
         states.publish(joints(turn=0.0))
@@ -125,6 +125,11 @@ class Known(unittest.TestCase):
         stale = until(lambda: (lambda r: r.results[0].status == 'stale' and r)(server.tolerance([], 0.01, robot_state=True)), 5)
         self.assertEqual(stale.results[0].verdict, 'undecided')
         self.assertGreater(stale.scene.joint_state_age, 0.5)
+        told = []
+        listener = rospy.Subscriber('/jointed/state_proximity', ProximityResults, told.append)
+        self.addCleanup(listener.unregister)
+        self.assertTrue(until(lambda: told, 10))
+        self.assertEqual({(row.status, row.verdict) for row in told[-1].results}, {('stale', 'undecided')})
 
     @staticmethod
     def moving(frame, age):
