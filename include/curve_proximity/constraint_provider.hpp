@@ -52,6 +52,10 @@ struct ConstraintPair {
   /** false: the request names no providers, so that one that is second to another for such pairs may throw
    *  DoesNotApply. */
   bool is_named = true;
+
+  /** Called now and then during prepare(); true ends it: it may then throw Error. NULL: nothing ends it. */
+  bool (*stop)(void *user) = nullptr;
+  void *stop_user = nullptr; /**< handed to stop */
 };
 
 /** A compiled curve with its description, from compile() or makeConstraintCurve(). */

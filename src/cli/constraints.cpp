@@ -135,7 +135,7 @@ ConstraintCase readMotionCase(const Arguments &arguments, const World &world, Wa
   ConstraintCase out;
   MotionCase motion;
   motion.trajectory = readOwnTrajectory(arguments, world, warnings);
-  motion.stop = interrupted;
+  out.stop = interrupted;
   try {
     const Rest rest = restOf(motion.trajectory, world);
     motion.rest = rest.joints;

@@ -116,14 +116,14 @@ struct Asked {
   std::string key;
 };
 
-void gatherMovers(const MotionCase &described, Asked &asked) {
+void gatherMovers(const ConstraintCase &all, const MotionCase &described, Asked &asked) {
   const SnapshotPtr &snapshot = described.robot->snapshot();
   asked.robot = MovingRobot{snapshot->robot()->name(), asked.motion, 0.0, 0.0};
   const std::vector<MovingObject> objects = movingObjects(*snapshot, described.origin);
   checkClocks(*asked.robot, described.other_robots, objects);
   std::vector<MovingRobot> robots = described.other_robots;
   robots.insert(robots.begin(), *asked.robot);
-  const Stop stop = [&described] { return described.stop && described.stop(described.stop_user); };
+  const Stop stop = [&all] { return all.stop && all.stop(all.stop_user); };
   asked.movers.emplace(snapshot, robots, objects, std::vector<std::array<std::string, 2>>(), ResourceOptions(), stop);
 }
 
@@ -133,7 +133,7 @@ void makeReady(const ConstraintCase &described, Asked &asked) {
       throw Error("a case is about a trajectory or about two sides: give one of them");
     const MotionCase &motion = *described.motion;
     asked.motion = std::make_shared<const RobotMotion>(*motion.robot, motion.trajectory, motion.rest);
-    if (motion.isAmongMovers()) gatherMovers(motion, asked);
+    if (motion.isAmongMovers()) gatherMovers(described, motion, asked);
     return;
   }
   if (!described.a.pose.matrix().allFinite()) throw Error("a: the pose is not finite");
@@ -159,8 +159,11 @@ void makeReady(const ConstraintCase &described, Asked &asked) {
 
 ConstraintPair toPair(const ConstraintCase &described, const ResourceOptions &resources) {
   return {toBody(described.a, "a", described.resources_a.value_or(resources)),
-          toBody(described.b, "b", described.resources_b.value_or(resources)), described.curve.has_value(),
-          !described.providers.empty()};
+          toBody(described.b, "b", described.resources_b.value_or(resources)),
+          described.curve.has_value(),
+          !described.providers.empty(),
+          described.stop,
+          described.stop_user};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -184,15 +187,16 @@ void summarise(ConstraintRow &row) {
   if (value.reason.empty()) value.reason = all.message;
 }
 
-void askAboutMotion(const LoadedProvider &loaded, const MotionCase &described, const Asked &asked, Workspace &workspace,
-                    ConstraintRow &row) {
-  const std::unique_ptr<const MotionConstraint> constraint = loaded.provider->prepareMotion(*described.robot);
+void askAboutMotion(const LoadedProvider &loaded, const ConstraintCase &described, const Asked &asked,
+                    Workspace &workspace, ConstraintRow &row) {
+  const MotionCase &motion = *described.motion;
+  const std::unique_ptr<const MotionConstraint> constraint = loaded.provider->prepareMotion(*motion.robot);
   if (!constraint) throw Error("the provider made nothing of the robot");
   if (asked.movers && !constraint->takesMovers())
     throw Error("the provider answers for scenes in which nothing moves beside the robot");
   row.motion.emplace();
   const Clock::time_point begin = Clock::now();
-  constraint->evaluate({described.trajectory, *asked.motion, described.stop, described.stop_user,
+  constraint->evaluate({motion.trajectory, *asked.motion, described.stop, described.stop_user,
                         asked.movers ? &*asked.movers : nullptr, asked.robot ? &*asked.robot : nullptr},
                        workspace, *row.motion);
   row.microseconds = microsecondsSince(begin);
@@ -203,7 +207,7 @@ void askProvider(ProviderSet &providers, const LoadedProvider &loaded, const Con
                  const ResourceOptions &resources, const Asked &asked, Workspace &workspace, ConstraintRow &row) {
   if (!loaded.provider) throw Error("provider '" + loaded.spec.name + "' failed to load: " + loaded.failure);
   if (described.motion) {
-    askAboutMotion(loaded, *described.motion, asked, workspace, row);
+    askAboutMotion(loaded, described, asked, workspace, row);
     return;
   }
   row.constraint = providers.prepared(loaded, asked.key, [&] { return toPair(described, resources); });

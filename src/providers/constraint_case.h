@@ -22,9 +22,7 @@ namespace curve_proximity {
 struct MotionCase {
   std::shared_ptr<const PreparedRobot> robot;
   TrajectoryDescription trajectory;
-  JointPositions rest;                /**< of joints that the trajectory does not name */
-  bool (*stop)(void *user) = nullptr; /**< as ConstraintMotion::stop */
-  void *stop_user = nullptr;
+  JointPositions rest;                   /**< of joints that the trajectory does not name */
   std::vector<MovingRobot> other_robots; /**< that move at the same time; objects that do are those of the scene */
   std::int64_t origin = 0;               /**< [ns] when the trajectory begins, on the clock of the objects' stamps */
 
@@ -41,6 +39,8 @@ struct ConstraintCase {
   std::optional<ResourceOptions> resources_a, resources_b; /**< where its mesh files are, if not where all are */
   std::optional<CurveDescription> curve;                   /**< a rides it; a may then have no shape */
   std::optional<MotionCase> motion;                        /**< this, and neither a, b nor curve */
+  bool (*stop)(void *user) = nullptr;                      /**< as ConstraintMotion::stop */
+  void *stop_user = nullptr;
   Coverage coverage; /**< what of its source is not used; those of a motion's scene, robot and trajectory come to it */
 };
 

@@ -89,6 +89,7 @@ class FourierGapConstraint : public Constraint {
     const SolidHandle a = side(pair.a, "a"), b = side(pair.b, "b");
     const SolidHandle &first = pair.along_curve ? b : a, &second = pair.along_curve ? a : b;
     const Workspace workspace;
+    cprox_workspace_set_stop(workspace.get(), pair.stop, pair.stop_user);
     cprox_gap *gap = nullptr;
     require(cprox_gap_create(first.get(), second.get(), &parameters.options, workspace.get(), &gap), workspace);
     gap_.reset(gap, cprox_gap_free);

@@ -104,6 +104,18 @@ Answer refusal(const std::string &id, const std::string &kind, const std::string
   return answer;
 }
 
+Answer unasked(const std::string &id, const std::string &kind, const Query &query) {
+  Answer answer = refusal(id, kind, cprox_status_text(CPROX_STOPPED));
+  cprox_result &result = answer.result;
+  result.status = CPROX_STOPPED;
+  result.mover_part = -1;
+  result.lower = query.options.signed_distance ? -std::numeric_limits<double>::infinity() : 0.0;
+  result.upper = std::numeric_limits<double>::infinity();
+  result.t_obstacle = std::numeric_limits<double>::quiet_NaN();
+  answer.status = cprox_status_name(CPROX_STOPPED);
+  return answer;
+}
+
 cprox_options withoutRounding(cprox_options options, double rounding) {
   if (options.epsilon > 4.0 * rounding) options.epsilon -= 2.0 * rounding;
   return options;

@@ -43,6 +43,9 @@ void requireBody(const Item &item);
 /* The answer to such a query. */
 Answer refusal(const std::string &id, const std::string &kind, const std::string &why);
 
+/* An answer that knows nothing, since the stop function has ended the query before its search began. */
+Answer unasked(const std::string &id, const std::string &kind, const Query &query);
+
 /* The part of epsilon that rounding takes is not the core's to use. */
 cprox_options withoutRounding(cprox_options options, double rounding);
 

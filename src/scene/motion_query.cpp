@@ -83,7 +83,13 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query
   for (std::size_t i = 0; i < named.size(); ++i) {
     wanted.push_back(named[i]);
     if (i + 1 < named.size() && items[named[i + 1]].owner == items[named[i]].owner) continue;
-    answers.push_back(answerOf(askedItems(data, wanted, query), query, workspace));
+    const bool ended = !answers.empty() && query.options.stop && query.options.stop(query.options.stop_user);
+    if (ended) {
+      answers.push_back(unasked(data.id, "environment", query));
+      applyCoverage(coverageOf(query, data.coverage, ""), query, answers.back());
+    } else {
+      answers.push_back(answerOf(askedItems(data, wanted, query), query, workspace));
+    }
     answers.back().b = *items[named[i]].owner;
     wanted.clear();
   }

@@ -225,10 +225,17 @@ void ask(const Targets &targets, const CompiledCurve &curve, const Query &query,
     const Clock::time_point start = Clock::now();
     std::size_t last = first + 1;
     while (last < items.size() && items[last].owner == items[first].owner) ++last;
-    Search search{curve, query, items, nullptr, workspace, {}, INFINITE};
-    chooseAll(search, first, last);
-    answers.emplace_back();
-    answerOf(search, data.coverage, answers.back());
+    const bool ended = !answers.empty() && query.options.stop && query.options.stop(query.options.stop_user);
+    if (ended) {
+      answers.push_back(unasked(curve.id, "curve", query));
+      answers.back().a = curve.id;
+      applyCoverage(coverageOf(query, data.coverage, ""), query, answers.back());
+    } else {
+      Search search{curve, query, items, nullptr, workspace, {}, INFINITE};
+      chooseAll(search, first, last);
+      answers.emplace_back();
+      answerOf(search, data.coverage, answers.back());
+    }
     if (answers.back().b.empty()) { // refused: say of which
       answers.back().b = *items[first].owner;
       answers.back().b_is_link = items[first].is_link;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "answering.h"
 #include "movers_data.h"
 
 namespace curve_proximity {
@@ -132,6 +133,20 @@ std::array<double, 2> domain(const MoversSubject &subject) {
   return {own[0] + subject.robot->start, own[1] + subject.robot->start};
 }
 
+/* The profile of what no search was begun for. */
+std::vector<ClearanceInterval> unmeasured(const std::vector<double> &breaks, const Answer &answer) {
+  std::vector<ClearanceInterval> out(breaks.size() - 1);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].t0 = out[i].t = breaks[i];
+    out[i].t1 = breaks[i + 1];
+    out[i].lower = answer.result.lower;
+    out[i].upper = answer.result.upper;
+    out[i].status = CPROX_STOPPED;
+    out[i].gap = answer.gap;
+  }
+  return out;
+}
+
 /* The rows of one question about one part of a subject. */
 class Answering {
  public:
@@ -226,6 +241,34 @@ std::vector<Part> partsOf(const Subject &subject, const Question &question, cons
   std::vector<Part> out;
   for (const std::string &link : links)
     for (const std::string &object : objects) out.push_back({link, object});
+  return out;
+}
+
+Row stoppedSearch(const std::string &curve, const Query &query) {
+  Row row{{}, unasked(curve, "curve", query), {}};
+  row.answer.a = curve;
+  applyCoverage(query.coverage, query, row.answer);
+  return row;
+}
+
+std::vector<Row> answerParts(const Subject &subject, const std::vector<Part> &parts, const Question &question,
+                             const Query &query, Beside beside, Workspace &workspace) {
+  std::vector<Row> out;
+  for (const Part &part : parts) {
+    const bool ended = !out.empty() && query.options.stop && query.options.stop(query.options.stop_user);
+    if (ended && asksFor<question::Search, question::Profile>(question)) {
+      Row row{part, unasked(out.back().answer.id, out.back().answer.kind, query), {}};
+      if (out.back().answer.gap) {
+        row.answer.gap = out.back().answer.gap;
+        row.answer.status = out.back().answer.status;
+      }
+      if (const auto *profile = std::get_if<question::Profile>(&question))
+        row.detail = unmeasured(breaksOf(*profile, domainOf(subject)), row.answer);
+      out.push_back(std::move(row));
+      continue;
+    }
+    for (Row &row : answer(subject, part, question, query, beside, workspace)) out.push_back(std::move(row));
+  }
   return out;
 }
 

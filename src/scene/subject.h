@@ -72,6 +72,14 @@ enum class Beside {
             that answer */
 };
 
+/** The rows of all parts. The stop function is asked between two of them. Where it wants an end, rows of searches and
+ *  profiles of further parts have the status stopped, and know nothing. */
+std::vector<Row> answerParts(const Subject &subject, const std::vector<Part> &parts, const Question &question,
+                             const Query &query, Beside beside, Workspace &workspace);
+
+/** The row of a curve whose search does not begin, since the stop function has ended the query before. */
+Row stoppedSearch(const std::string &curve, const Query &query);
+
 /** The rows of one part. Throws Error as the function that answers the question for the subject does, and where the
  *  subject has no answer to it. Cost: that of the function. */
 std::vector<Row> answer(const Subject &subject, const Part &part, const Question &question, const Query &query,

@@ -113,6 +113,17 @@ static cprox_status measure_motion(query *q, double t0, double t1, double cutoff
   return status;
 }
 
+/* An interval that a stopped profile does not come to: nothing is known of it. */
+static cprox_profile_interval unmeasured(const query *q, double t0, double t1) {
+  return (cprox_profile_interval){.t0 = t0,
+                                  .t1 = t1,
+                                  .lower = q->is_signed ? -INFINITY : 0.0,
+                                  .upper = INFINITY,
+                                  .t = t0,
+                                  .obstacle_index = -1,
+                                  .mover_part = -1};
+}
+
 cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size_t n, const double *breaks,
                           size_t n_intervals, double horizon, const cprox_options *options, cprox_workspace *workspace,
                           cprox_profile_interval *intervals) {
@@ -138,6 +149,10 @@ cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size
     q.choice = PAIRS_MOVING;
   }
   for (size_t i = 0; i < n_intervals; i++) {
+    if (failure == CPROX_STOPPED) {
+      intervals[i] = unmeasured(&q, breaks[i], breaks[i + 1]);
+      continue;
+    }
     workspace_forget_work(workspace);
     status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], cutoff, &standing, &intervals[i])
                           : measure(&q, breaks[i], breaks[i + 1], cutoff, &piece, &intervals[i]);

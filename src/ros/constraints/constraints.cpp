@@ -237,8 +237,6 @@ MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work)
   out.trajectory = toDescription(message.trajectory, joints.positions, remark);
   out.trajectory.id = message.id;
   out.rest = joints.positions;
-  out.stop = TimeBudget::isOver;
-  out.stop_user = &work.budget;
   checkTrajectory(out.trajectory);
 
   // Where the robot stands, or the frame that its virtual joint moves in.
@@ -287,6 +285,8 @@ ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) c
   ConstraintCase out;
   out.id = message.id;
   out.providers = message.providers;
+  out.stop = TimeBudget::isOver;
+  out.stop_user = &work.budget;
   if (hasTrajectory(message)) {
     out.motion = toMotionCase(message, work);
     return out;

@@ -96,6 +96,11 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
     if (!where.coverage.complete()) of_place = work.query, of_place.coverage = where.coverage;
     const Query &query = where.coverage.complete() ? work.query : of_place;
     const Targets &targets = where.stamped->targets;
+    if (asksFor<question::Search>(question) && !query.per_object && TimeBudget::isOver(query.options.stop_user)) {
+      fillRow(stoppedSearch(message.id, query).answer, query.query_type, work.response.add());
+      ++search.curves;
+      return;
+    }
     toDescription(message, *where.frame, search.description);
     CompiledCurve curve = make(search.description, targets.boxes(), query.options, *search.workspace);
     std::vector<Row> rows = curve_proximity::answer(CurveSubject{targets, curve, &search.description}, {}, question,

@@ -7,6 +7,7 @@
 #include "messages/topics.h"
 #include "messages/trajectory_message.h"
 #include "queries/queries.h"
+#include "queries/time_budget.h"
 #include "world/robot_description.h"
 
 namespace curve_proximity {
@@ -37,6 +38,11 @@ void tellFailure(const std::string &id, std::size_t before, QueryResponse &respo
 /** Of a row that has an answer. */
 void addRemark(const std::string &remark, Proximity &row) {
   if (!remark.empty()) row.message += (row.message.empty() ? "" : "; ") + remark;
+}
+
+/** Throws Error where the budget of a query is over before what is asked about is made. */
+void demandTime(const Query &query) {
+  static_cast<const TimeBudget *>(query.options.stop_user)->demand();
 }
 
 /** What ends a query ends what is made for it. */
@@ -122,12 +128,11 @@ struct Queries::Moving {
 
   /** Adds the rows of all parts of a subject. */
   void ask(const Subject &subject, const Query &query, const QueryRequest &request, Workspace &workspace) {
-    for (const Part &part : partsOf(subject, request.question, query, request.per_link)) {
-      for (Row &row : curve_proximity::answer(subject, part, request.question, query, Beside::SEARCH, workspace)) {
-        if (row.answer.a.empty()) row.answer.a = part.link; // nothing is near it
-        if (row.answer.b.empty()) row.answer.b = part.object;
-        rows.push_back(std::move(row));
-      }
+    const std::vector<Part> parts = partsOf(subject, request.question, query, request.per_link);
+    for (Row &row : answerParts(subject, parts, request.question, query, Beside::SEARCH, workspace)) {
+      if (row.answer.a.empty()) row.answer.a = row.part.link; // nothing is near it
+      if (row.answer.b.empty()) row.answer.b = row.part.object;
+      rows.push_back(std::move(row));
     }
   }
 };
@@ -173,6 +178,7 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
     if (!work.query.links.empty()) throw Error("links and group do not apply to a body");
     const Eigen::Isometry3d in_fixed = work.lookup.toFixed(frame, stamp);
     for (TimedPose &pose : poses) pose.pose = in_fixed * pose.pose;
+    demandTime(work.query);
     const MovingObject rides = toRider(work.request.more, *work.snapshot, std::move(poses));
     const Surroundings around(work.snapshot, work.request.more, robots_, rides, resourceOptions("", parameters_), stamp,
                               work.lookup, mostBytes(), stopOf(work.query));
@@ -277,6 +283,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     // The trajectory, the joints that it leaves alone, and where the robot stands.
     work.lookup.begin();
     if (!why_not.empty()) throw Error(why_not);
+    demandTime(work.query);
     const Robot &robot = *work.snapshot->robot();
     adoptBase(live_.srdf.virtual_joints, robot, trajectory);
     const bool current = request.more.current_joints || request.more.robot_state;
@@ -286,6 +293,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     const Eigen::Isometry3d base = trajectory.base.empty()
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
                                        : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
+    demandTime(work.query);
     out.motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions, live_.disabled(),
                                                      base, work.query.links);
     out.trajectory = std::move(trajectory);
