@@ -50,6 +50,8 @@ def size_of(row):
 
 def exponent(rows, column='median_us'):
     """The slope of log time (or of another column) against the log of the size, by least squares."""
+    if not all(float(row[column]) > 0.0 for row in rows):
+        return math.inf  # nothing that grows: a target of it is missed
     points = [(math.log(size_of(row)), math.log(float(row[column]))) for row in rows]
     mean_x, mean_y = (sum(c) / len(points) for c in zip(*points))
     return sum((x - mean_x) * (y - mean_y) for x, y in points) / sum((x - mean_x) ** 2 for x, _ in points)
