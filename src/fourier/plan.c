@@ -199,7 +199,7 @@ static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_wor
 #define COST_OF_TABLE 150.0
 
 /* Above this a solid that is not turned is covered by cells, too: the transforms of so many triangles. */
-enum { MOST_TRIANGLES = 150 };
+enum { MOST_TRIANGLES = 400 };
 
 /* Up to so many samples covers and tables take the place of what costs too much: beyond, images of 1e-5 of a solid are no
  * longer small beside the threshold, and tables take more memory than a gap should. */
