@@ -154,9 +154,10 @@ static cprox_mover mover_of(rng *r, const scene *s, bool *targets) {
   return m;
 }
 
-/* 600 scenes (seed 411; sizes of 1e-2 to 1e2 m, a third of them 1e2 to 1e14 times as far from the origin), 12 verdicts each, all of a distance of 0 or beside the true one by
- * 1e-7 to 1e-1 of the size. The distance that is certified by the search alone never contradicts a verdict or an
- * interval, and what the search alone decides is decided, and is the same. */
+/* 600 scenes (seed 411; sizes of 1e-2 to 1e2 m, a third of them 1e2 to 1e14 times as far from the origin), 12 verdicts
+ * each, all of a distance of 0 or beside the true one by 1e-7 to 1e-1 of the size. The distance that is certified by
+ * the search alone never contradicts a verdict or an interval, and what the search alone decides is decided, and is
+ * the same. */
 CASE(verdicts_and_intervals_agree_with_the_certified_distance) {
   rng r = rng_seed(411);
   size_t counts[3] = {0}, lanes[4] = {0};
@@ -223,6 +224,49 @@ CASE(verdicts_and_intervals_agree_with_the_certified_distance) {
   print_message("clear, undecided, violated: %zu %zu %zu; lanes %zu %zu %zu, not asked %zu\n",
                 counts[CPROX_VERDICT_CLEAR], counts[CPROX_VERDICT_UNDECIDED], counts[CPROX_VERDICT_VIOLATED],
                 lanes[CPROX_VERDICT_CLEAR], lanes[CPROX_VERDICT_UNDECIDED], lanes[CPROX_VERDICT_VIOLATED], lanes[3]);
+}
+
+/* A ball of radius .1 or .4 slides past another one, .4 m away: what the workspace keeps of one robot is not the other's,
+ * however alike they are; nor where the first one is freed and the second one gets its memory. */
+CASE(a_workspace_keeps_nothing_of_one_robot_for_another) {
+  const double radii[2] = {0.1, 0.4};
+  cprox_body *balls[2], *post;
+  cprox_robot *robots[2];
+  cprox_motion *motions[2];
+  for (int k = 0; k < 2; k++) assert_int_equal(cprox_body_create_sphere(radii[k], ws, &balls[k]), CPROX_OK);
+  assert_int_equal(cprox_body_create_sphere(0.1, ws, &post), CPROX_OK);
+  const cprox_obstacle obstacle =
+      cprox_obstacle_at(post, (cprox_pose){.position = vec(0, 0.4, 0), .orientation = {1, 0, 0, 0}});
+  const cprox_link link = {.parent = -1,
+                           .type = CPROX_JOINT_PRISMATIC,
+                           .origin = CPROX_POSE_IDENTITY,
+                           .axis = vec(1, 0, 0),
+                           .multiplier = 1};
+  const int32_t variable = 0;
+  const double from = -1, to = 1;
+  const cprox_waypoint ends[2] = {{.time = 0, .positions = &from}, {.time = 1, .positions = &to}};
+  const cprox_motion_description line = {.kind = CPROX_MOTION_WAYPOINTS,
+                                         .interpolation = CPROX_INTERPOLATION_LINEAR,
+                                         .variables = &variable,
+                                         .n_variables = 1,
+                                         .waypoints = ends,
+                                         .n_waypoints = 2};
+  for (int i = 0; i < 12; i++) {
+    const int first = i % 2, both = i < 6;
+    for (int k = 0; k < 2; k++) {
+      const int which = k == 0 ? first : !first;
+      const cprox_link_geometry geometry = {.body = balls[which], .pose = CPROX_POSE_IDENTITY};
+      assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robots[k]), CPROX_OK);
+      assert_int_equal(cprox_motion_create(robots[k], &line, ws, &motions[k]), CPROX_OK);
+      cprox_result r;
+      assert_int_equal(cprox_collision(cprox_robot_along(motions[k], NULL, 0), obstacle, NULL, ws, &r), CPROX_OK);
+      assert_int_equal(r.verdict, which ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
+      if (both && k == 0) continue;
+      for (int j = both ? 0 : k; j <= k; j++) cprox_motion_free(motions[j]), cprox_robot_free(robots[j]);
+    }
+  }
+  for (int k = 0; k < 2; k++) cprox_body_free(balls[k]);
+  cprox_body_free(post);
 }
 
 int main(void) {
