@@ -1100,9 +1100,9 @@ class Files(unittest.TestCase):
             self.assertAlmostEqual(motion.link_poses(1)['l'][0, 0], -1)
 
     def test_an_edge_goes_the_long_way_with_a_warning(self):
-        # the link's ball stands 1 m from the axis: the long way leads by +x, the short one by -x
+        # a corner of the bar, sqrt(2) * .05 m from the axis, passes the ball only on the long way
         scene = self.scene('continuous')
-        scene.add('post', 'sphere', [.1], cprox.transform([1, 0, 0]))
+        scene.add('post', 'sphere', [.01], cprox.transform([.0757, 0, .5]))
         with self.assertWarnsRegex(UserWarning, "edge 1: continuous joint 'j' turns by -6.2 rad"):
             self.assertEqual(cprox.edges(scene, ['j'], [[0.5], [3.1]], [[0.6], [-3.1]], self_collision=False).tolist(), [0, 1])
         with warnings.catch_warnings():
