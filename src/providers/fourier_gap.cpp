@@ -86,7 +86,8 @@ class FourierGapConstraint : public Constraint {
     if (pair.along_curve && pair.a.parts.empty())
       throw DoesNotApply("FourierGap carries a body along the curve, such as a sphere: give side a a shape");
     pair_.along_curve = pair.along_curve;
-    const SolidHandle a = side(pair.a, "a"), b = side(pair.b, "b");
+    const Stop stop = [&pair] { return pair.stop && pair.stop(pair.stop_user); };
+    const SolidHandle a = side(pair.a, "a", stop), b = side(pair.b, "b", stop);
     const SolidHandle &first = pair.along_curve ? b : a, &second = pair.along_curve ? a : b;
     const Workspace workspace;
     cprox_workspace_set_stop(workspace.get(), pair.stop, pair.stop_user);
@@ -262,9 +263,9 @@ class FourierGapConstraint : public Constraint {
     return std::max(1.0, r.value);
   }
 
-  SolidHandle side(const ConstraintBody &described, const char *name) const {
+  SolidHandle side(const ConstraintBody &described, const char *name, const Stop &stop) const {
     try {
-      return makeSolid(described, parameters_.dimension);
+      return makeSolid(described, parameters_.dimension, stop);
     } catch (const Error &error) {
       throw Error(std::string("side ") + name + ": " + error.what(), error.status());
     }

@@ -60,8 +60,8 @@ struct Hull {
 };
 
 /* The hull of points with an interior. What the hull's computation dropped is taken in again: all is scaled about the
- * middle until every point is behind every face. */
-Hull hullOf(const Eigen::Matrix3Xd &points) {
+ * middle until every point is behind every face. Cost: points times faces. */
+Hull hullOf(const Eigen::Matrix3Xd &points, const Stop &stop = {}) {
   shapes::Mesh mesh(static_cast<unsigned>(points.cols()), 0);
   Eigen::Map<Eigen::Matrix3Xd>(mesh.vertices, 3, points.cols()) = points;
   const bodies::ConvexMesh hull(&mesh);
@@ -77,7 +77,9 @@ Hull hullOf(const Eigen::Matrix3Xd &points) {
   lookOutward(out.vertices, out.middle, out.triangles);
 
   double scale = 1.0;
+  std::size_t looked = 0;
   for (const auto &t : out.triangles) {
+    if (looked++ % 16 == 0 && stop && stop()) throw Error("stopped while its hull was made", CPROX_STOPPED);
     const Eigen::Vector3d a = toEigen(out.vertices[t[0]]);
     const Eigen::Vector3d n = (toEigen(out.vertices[t[1]]) - a).cross(toEigen(out.vertices[t[2]]) - a).normalized();
     const double depth = n.dot(a - out.middle);
@@ -91,8 +93,8 @@ Hull hullOf(const Eigen::Matrix3Xd &points) {
   return out;
 }
 
-SolidHandle hullSolid(const Eigen::Matrix3Xd &points) {
-  const Hull hull = hullOf(points);
+SolidHandle hullSolid(const Eigen::Matrix3Xd &points, const Stop &stop = {}) {
+  const Hull hull = hullOf(points, stop);
   return meshSolid(hull.vertices, hull.triangles);
 }
 
@@ -458,7 +460,7 @@ SolidHandle planarSolid(const ConstraintBody::Part &part, double padding) {
   }
 }
 
-SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding) {
+SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding, const Stop &stop) {
   const ShapeDescription &shape = part.shape;
   const std::vector<double> &d = shape.dimensions;
   cprox_solid_description solid{};
@@ -487,7 +489,8 @@ SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding) {
       solid.radius = d.at(1) + padding;
       return own(solid);
     case ShapeType::CONE: return padding > 0.0 ? polytopeRound(part.body, padding) : coneSolid(d.at(0), d.at(1));
-    case ShapeType::POLYTOPE: return padding > 0.0 ? polytopeRound(part.body, padding) : hullSolid(shape.vertices);
+    case ShapeType::POLYTOPE:
+      return padding > 0.0 ? polytopeRound(part.body, padding) : hullSolid(shape.vertices, stop);
     case ShapeType::MESH:
       return padding > 0.0 ? polytopeRound(part.body, padding + part.excess) : meshOf(loadedShape(shape, {}));
     case ShapeType::POINTS: return cloudSolid(shape, padding, 3);
@@ -500,14 +503,14 @@ SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding) {
 
 } // namespace
 
-SolidHandle makeSolid(const ConstraintBody &side, int dimension) {
+SolidHandle makeSolid(const ConstraintBody &side, int dimension, const Stop &stop) {
   if (side.parts.empty()) throw Error("the side has no shape");
   std::vector<SolidHandle> parts;
   std::vector<cprox_pose> poses;
   bool moved = false;
   for (const ConstraintBody::Part &part : side.parts) {
     try {
-      parts.push_back(dimension == 2 ? planarSolid(part, side.padding) : spatialSolid(part, side.padding));
+      parts.push_back(dimension == 2 ? planarSolid(part, side.padding) : spatialSolid(part, side.padding, stop));
     } catch (const Error &error) {
       throw Error(std::string(shapeTypeName(part.shape.type)) + ": " + error.what(), error.status());
     }
