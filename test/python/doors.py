@@ -431,6 +431,8 @@ def robot_case(r, folder, program):
         return case.judge_code('cprox ' + command[0], truth, code, errors, measures), None
     door, self, said, remarks = ask_python(r, folder)
     whole_truth = truth
+    if door.startswith('rows') and truth is not None:  # of what moves
+        truth = model.truth_of(places, seen, False)
     if door == 'edges' and kind.startswith('way'):  # edges are not from the file
         said = None
     if door == 'edges' and truth is not None:  # from the first to the last posture, and with it the robot itself
