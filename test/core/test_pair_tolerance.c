@@ -110,6 +110,37 @@ CASE(bodies_far_apart_take_one_look_at_their_balls) {
   }
 }
 
+/* 4,000 pairs (seed 424) of bodies of three balls each: of the parts that a verdict does not
+ * come to nothing is known. */
+CASE(a_verdict_of_compounds_never_contradicts_their_distance) {
+  rng r = rng_seed(424);
+  tally all = {0};
+  const size_t cases = test_cases(4000);
+  for (size_t i = 0; i < cases; i++) {
+    cprox_body *parts[2][3], *bodies[2];
+    for (int side = 0; side < 2; side++) {
+      cprox_pose poses[3];
+      for (int k = 0; k < 3; k++) {
+        assert_int_equal(cprox_body_create_sphere(rng_uniform(&r, 0.05, 0.2), ws, &parts[side][k]), CPROX_OK);
+        poses[k] = rng_pose(&r, 0.6);
+      }
+      assert_int_equal(cprox_body_create_compound((const cprox_body *const *)parts[side], poses, 3, ws, &bodies[side]),
+                       CPROX_OK);
+    }
+    const cprox_obstacle a = cprox_obstacle_at(bodies[0], rng_pose(&r, 0.8));
+    const cprox_obstacle b = cprox_obstacle_at(bodies[1], rng_pose(&r, 0.8));
+    cprox_result d;
+    assert_int_equal(cprox_pair(a, b, NULL, ws, &d), CPROX_OK);
+    compare(i, a, b, fmax(d.upper + rng_uniform(&r, -0.2, 0.4), 0.0), &d, &all);
+    compare(i, a, b, rng_uniform(&r, 0.0, 1.0), &d, &all);
+    for (int side = 0; side < 2; side++) {
+      cprox_body_free(bodies[side]);
+      for (int k = 0; k < 3; k++) cprox_body_free(parts[side][k]);
+    }
+  }
+  assert_true(all.clear > cases / 10 && all.violated > cases / 10);
+}
+
 /* Boxes whose faces touch exactly, and nearly; a square in the plane of a face; a body with itself. */
 CASE(what_touches_is_never_clear) {
   rng r = rng_seed(423);

@@ -302,14 +302,20 @@ static void pair_join(pair_reply *all, const pair_reply *one) {
   all->answer.exhausted = exhausted, all->answer.stopped = stopped;
 }
 
-/* Whether the hulls of two parts are farther apart than the best so far: then they need not be looked into. */
+/* What is farther apart than this need not be looked into: than the best so far, or than a verdict asks. */
+static double pair_of_interest(const pair_task *task, const pair_reply *best) {
+  return task->goal->verdict ? task->goal->limit : best->answer.upper;
+}
+
+/* Whether the hulls of two parts say that. */
 static cprox_status pair_ends_at_hulls(const pair_task *task, size_t i, size_t j, pair_reply *best, bool *ends) {
   *ends = false;
-  if (!pair_has_lod(task, i, j) || !isfinite(best->answer.upper) || task->finest < CPROX_LOD_MESH) return CPROX_OK;
+  const double most = pair_of_interest(task, best);
+  if (!pair_has_lod(task, i, j) || !isfinite(most) || task->finest < CPROX_LOD_MESH) return CPROX_OK;
   pair_reply one = {.part = 0};
   const cprox_status status = pair_of_models(task, i, j, CPROX_LOD_HULL, &one);
   if (status) return status;
-  *ends = one.answer.lower > best->answer.upper;
+  *ends = one.answer.lower > most;
   one.answer.upper = INFINITY;
   if (!*ends) one.answer.lower = INFINITY;
   pair_join(best, &one);
@@ -345,14 +351,15 @@ static bool pair_is_stopped(const pair_task *task) {
 }
 
 /* The nearest of all pairs of parts; its lower is the least of all their lower bounds. Stopped: the nearest of those
- * that were looked at. */
+ * that were looked at. A verdict ends with a part that is proven to be near. */
 static cprox_status pair_over_parts(pair_task *task, pair_reply *best) {
   *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
   for (size_t i = 0; i < body_n_parts(task->a->body); i++) {
     for (size_t j = 0; j < body_n_parts(task->b->body); j++) {
       bool ends;
-      if (i + j > 0 && (best->answer.stopped || pair_is_stopped(task))) {
-        best->answer.stopped = true;
+      const bool decided = task->goal->verdict && best->answer.upper <= task->goal->limit;
+      if (decided || (i + j > 0 && (best->answer.stopped || pair_is_stopped(task)))) {
+        best->answer.stopped = !decided; /* of the other parts nothing is known */
         best->answer.lower = fmin(best->answer.lower, -pair_deepest(task));
         return CPROX_OK;
       }
@@ -361,7 +368,7 @@ static cprox_status pair_over_parts(pair_task *task, pair_reply *best) {
       if (ends) continue;
       pair_reply one = {.part = 0};
       if ((status = pair_of_models(task, i, j, task->finest, &one))) return status;
-      if ((status = pair_bound_depth(task, i, j, &one))) return status;
+      if (!task->goal->verdict && (status = pair_bound_depth(task, i, j, &one))) return status;
       pair_join(best, &one);
       task->done = best->answer.steps;
     }
@@ -426,35 +433,6 @@ static double balls_apart(const cprox_obstacle *a, const cprox_obstacle *b) {
   return distance - x.radius - y.radius - ROUND_UP * ROUND_U * (8.0 * sizes + x.error + y.error);
 }
 
-/* Until a part is proven to be as near as the limit; those that are proven farther are one less. */
-static cprox_status pair_over_parts_until(pair_task *task, pair_reply *best) {
-  const double limit = task->goal->limit;
-  *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
-  for (size_t i = 0; i < body_n_parts(task->a->body); i++)
-    for (size_t j = 0; j < body_n_parts(task->b->body); j++) {
-      if (best->answer.upper <= limit) return CPROX_OK;
-      if (i + j > 0 && (best->answer.stopped || pair_is_stopped(task))) {
-        best->answer.stopped = true;
-        best->answer.lower = fmin(best->answer.lower, -pair_deepest(task));
-        return CPROX_OK;
-      }
-      cprox_status status;
-      pair_reply one = {.part = 0};
-      if (pair_has_lod(task, i, j) && task->finest >= CPROX_LOD_MESH) {
-        if ((status = pair_of_models(task, i, j, CPROX_LOD_HULL, &one))) return status;
-        if (one.answer.lower > limit) {
-          one.answer.upper = INFINITY;
-          pair_join(best, &one);
-          continue;
-        }
-      }
-      if ((status = pair_of_models(task, i, j, task->finest, &one))) return status;
-      pair_join(best, &one);
-      task->done = best->answer.steps;
-    }
-  return CPROX_OK;
-}
-
 static cprox_result pair_verdict(const pair_reply *best, const pair_task *task, const cprox_options *options) {
   const double limit = task->goal->limit;
   const pair_answer *answer = &best->answer;
@@ -471,6 +449,7 @@ static cprox_result pair_verdict(const pair_reply *best, const pair_task *task, 
                                         : met ? answer->common
                                               : answer->on_b,
                     .normal = met ? vec(0, 0, 0) : answer->normal,
+                    .obstacle_index = seen ? 0 : -1,
                     .obstacle_part = best->part,
                     .lod = best->lod,
                     .nodes = answer->steps,
@@ -519,7 +498,7 @@ cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double del
   const cprox_lod finest = asked.max_lod == CPROX_LOD_NONE ? CPROX_LOD_MESH : asked.max_lod;
   pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .options = &asked, .workspace = workspace};
   pair_reply best;
-  if ((status = pair_over_parts_until(&task, &best))) return status;
+  if ((status = pair_over_parts(&task, &best))) return status;
   *result = pair_verdict(&best, &task, &asked);
   if (result->status != CPROX_OK) workspace_fail(workspace, result->status, "%s", cprox_status_text(result->status));
   return result->status;
