@@ -66,9 +66,9 @@ static void as_motion(const void *problems, size_t i, void *state, bench_answer 
                                          .n_waypoints = 2,
                                          .interpolation = CPROX_INTERPOLATION_LINEAR};
   *answer = (bench_answer){.lower = NAN, .upper = NAN, .failed = true};
-  cprox_motion *motion = NULL;
-  if (cprox_motion_create(p->robot, &edge, s->workspace, &motion) < 0) return;
-  cprox_mover mover = cprox_robot_along(motion, NULL, 0);
+  cprox_motion *along = NULL;
+  if (cprox_motion_create(p->robot, &edge, s->workspace, &along) < 0) return;
+  cprox_mover mover = cprox_robot_along(along, NULL, 0);
   mover.kind = CPROX_MOVER_ROBOT_WHOLE;
   mover.self_pairs = p->self_pairs, mover.n_self_pairs = p->n_self_pairs;
   cprox_result r = {0};
@@ -76,7 +76,7 @@ static void as_motion(const void *problems, size_t i, void *state, bench_answer 
   answer->nodes = r.nodes, answer->distance_queries = r.distance_queries;
   answer->failed = status < 0 || r.verdict == CPROX_VERDICT_UNDECIDED;
   answer->wrong = r.verdict != (p->valid ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
-  cprox_motion_free(motion);
+  cprox_motion_free(along);
 }
 
 static double apart2(const double *a, const double *b) {

@@ -65,7 +65,7 @@ static void load_pieces(curve_curve *o, const search_node *node) {
     if (payload->side[k].slot >= 0) curve_side_load(&o->side[k], curve_side_piece(&o->side[k], &payload->side[k]));
 }
 
-/* Where the curves run beside each other planes are too weak, and how both bend tells more. The node's pieces must be
+/* Where the curves run beside each other planes are too weak, and how both bend says more. The node's pieces must be
  * the loaded ones. */
 static void bound_by_bends(const curve_curve *o, search_node *node) {
   const curve_interval *at = curve_curve_known(node)->side;

@@ -170,7 +170,7 @@ static vec3 extreme_rate(const robot_body *body, vec3 d, vec3 at, vec3 rate) {
 }
 
 /* (distance + how both cores bend) n' = v + (how the moving one bends) (omega x n); the Hessian of the distance is the
- * inverse of that sum. What a face bends is not known, then the other side and that sum tell it. */
+ * inverse of that sum. What a face bends is not known, then the other side and that sum say it. */
 static vec3 normal_rate_of_curved(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
                                   const chain_motion *motion) {
   const vec3 n = vec_scale(1.0 / vec_norm(gap->normal), gap->normal), turned = vec_cross(motion->omega, n);
