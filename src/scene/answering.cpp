@@ -109,8 +109,8 @@ Answer unasked(const std::string &id, const std::string &kind, const Query &quer
   cprox_result &result = answer.result;
   result.status = CPROX_STOPPED;
   result.mover_part = -1;
-  result.lower = query.options.signed_distance ? -std::numeric_limits<double>::infinity() : 0.0;
-  result.upper = std::numeric_limits<double>::infinity();
+  result.lower = query.options.signed_distance ? -INFINITE : 0.0;
+  result.upper = INFINITE;
   result.t_obstacle = std::numeric_limits<double>::quiet_NaN();
   answer.status = cprox_status_name(CPROX_STOPPED);
   return answer;
@@ -195,7 +195,7 @@ std::vector<ClearanceInterval> profileOfNothing(const std::vector<double> &break
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i].t0 = out[i].t = breaks[i];
     out[i].t1 = breaks[i + 1];
-    out[i].lower = out[i].upper = std::numeric_limits<double>::infinity();
+    out[i].lower = out[i].upper = INFINITE;
   }
   return out;
 }
@@ -267,7 +267,7 @@ void Unlisted::addRow(const PairLimits &limits, const cprox_options &options, co
   row.is_unlisted = true;
   row.result.status = status;
   row.result.lower = lower;
-  row.result.upper = std::numeric_limits<double>::infinity();
+  row.result.upper = INFINITE;
   row.result.t = row.result.t_obstacle = std::numeric_limits<double>::quiet_NaN();
   row.result.mover_part = -1;
   row.status = cprox_status_name(status);
@@ -275,7 +275,7 @@ void Unlisted::addRow(const PairLimits &limits, const cprox_options &options, co
 }
 
 void answerNothing(const Query &query, cprox_result &result) {
-  result.lower = result.upper = std::numeric_limits<double>::infinity();
+  result.lower = result.upper = INFINITE;
   result.obstacle_index = -1;
   result.verdict = query.query_type == QueryType::DISTANCE ? CPROX_VERDICT_UNDECIDED : CPROX_VERDICT_CLEAR;
 }
@@ -343,7 +343,7 @@ void applyCoverage(const Coverage &coverage, const std::array<double, 2> &domain
   if (list.empty()) {
     list.emplace_back();
     list.front().enter_upper = list.front().leave_lower = list.front().t = domain[0];
-    list.front().upper = std::numeric_limits<double>::infinity();
+    list.front().upper = INFINITE;
   }
   double before = domain[0];
   for (Violation &one : list) {

@@ -297,7 +297,7 @@ std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairL
       Answer answer;
       answer.id = "movers", answer.kind = "environment";
       answer.result = results[i];
-      widen(query, data.rounding, std::numeric_limits<double>::infinity(), answer.result);
+      widen(query, data.rounding, INFINITE, answer.result);
       nameSides(data, some.against, query, answer);
       answer.microseconds = microsecondsSince(start);
       answer.status = cprox_status_name(answer.result.status);
@@ -413,7 +413,7 @@ void differentiate(const Movers &movers, Against against, const Query &query, Wo
                                                                            workspace.get(), &result, &out.gradient);
                  if (status < 0) throw Error(workspace.reason(), status);
                  out.reason = workspace.reason();
-                 widen(query, rounding, std::numeric_limits<double>::infinity(), result);
+                 widen(query, rounding, INFINITE, result);
                });
   if (out.answer.result.status < 0) throw Error(out.answer.message, out.answer.result.status);
 }
@@ -558,7 +558,7 @@ Answer ask(const Movers &movers, Against against, const Query &query, Workspace 
                   [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
                     const cprox_options options = withoutRounding(query.options, rounding);
                     result.status = askCore(query, options, mover, targets, workspace, result);
-                    if (result.status >= 0) widen(query, rounding, std::numeric_limits<double>::infinity(), result);
+                    if (result.status >= 0) widen(query, rounding, INFINITE, result);
                   });
 }
 

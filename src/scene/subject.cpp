@@ -135,15 +135,8 @@ std::array<double, 2> domain(const MoversSubject &subject) {
 
 /* The profile of what no search was begun for. */
 std::vector<ClearanceInterval> unmeasured(const std::vector<double> &breaks, const Answer &answer) {
-  std::vector<ClearanceInterval> out(breaks.size() - 1);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i].t0 = out[i].t = breaks[i];
-    out[i].t1 = breaks[i + 1];
-    out[i].lower = answer.result.lower;
-    out[i].upper = answer.result.upper;
-    out[i].status = CPROX_STOPPED;
-    out[i].gap = answer.gap;
-  }
+  std::vector<ClearanceInterval> out = profileOfNothing(breaks);
+  for (ClearanceInterval &one : out) one.lower = answer.result.lower, one.status = CPROX_STOPPED, one.gap = answer.gap;
   return out;
 }
 
