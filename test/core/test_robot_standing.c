@@ -215,6 +215,100 @@ CASE(all_pairs_at_once_are_as_far_as_the_nearest_alone) {
   assert_true(answered > test_cases(150) / 2 && standing > test_cases(150) / 2);
 }
 
+/* ---- some pairs of all ---- */
+
+enum { MOST_VIOLATIONS = 64 };
+
+/* Whether t may be in one of the intervals. */
+static bool contains(const cprox_violations *v, double t) {
+  for (size_t i = 0; i < v->count; i++)
+    if (v->list[i].enter_lower <= t && t <= v->list[i].leave_upper) return true;
+  return false;
+}
+
+static double least_of_profile(const test_robot *t, const cprox_obstacle *targets, const cprox_robot_pair *pairs,
+                               size_t n, const cprox_options *o) {
+  const cprox_motion_info info = cprox_motion_get_info(t->motion);
+  const double breaks[3] = {info.t0, info.t0 + 0.3 * (info.t1 - info.t0), info.t1};
+  cprox_profile_interval two[2];
+  assert_true(profile_of_list(cprox_robot_along(t->motion, pairs, n), targets, TARGETS, breaks, 2, o, ws, two) >= 0);
+  return fmin(two[0].upper, two[1].upper);
+}
+
+/* A list has moving pairs alone, standing pairs alone, or both: each is taken for what it is. */
+CASE(a_list_of_pairs_is_violated_when_one_of_its_pairs_is) {
+  rng r = rng_seed(90210);
+  size_t lists[3] = {0}, violated = 0;
+  for (size_t i = 0; i < test_cases(400); i++) {
+    test_robot t;
+    robot_make(&r, 1.0, &t);
+    if (t.spline) {
+      robot_free(&t);
+      continue;
+    }
+    stop_some(&r, &t);
+    cprox_obstacle targets[TARGETS];
+    for (int k = 0; k < TARGETS; k++) {
+      cprox_body *ball;
+      assert_int_equal(cprox_body_create_sphere(rng_uniform(&r, 0.01, 0.2), ws, &ball), CPROX_OK);
+      targets[k] = cprox_obstacle_at(ball, (cprox_pose){rng_in_cube(&r, 2.0), {.w = 1.0}});
+    }
+    cprox_robot_pair pairs[MOST_PAIRS];
+    size_t n = 0, moving = 0;
+    const size_t wanted = rng_index(&r, 3); /* what moves, what stands, any */
+    for (int32_t g = 0; g < (int32_t)t.n_links; g++) {
+      const bool moves = cprox_motion_get_link_info(t.motion, g, -1).n_moved > 0;
+      for (int32_t k = 0; k < TARGETS; k++)
+        if ((wanted == 2 || moves == (wanted == 0)) && rng_index(&r, 2)) {
+          pairs[n++] = (cprox_robot_pair){g, k};
+          moving += moves;
+        }
+    }
+    if (n > 0) {
+      lists[moving == n ? 0 : moving == 0 ? 1 : 2]++;
+      const cprox_options o = accurate(1e-6);
+      double least = INFINITY, profile = INFINITY;
+      cprox_result d;
+      for (size_t k = 0; k < n; k++) {
+        const cprox_mover alone = cprox_robot_along(t.motion, &pairs[k], 1);
+        assert_true(distance_of_list(alone, targets, TARGETS, &o, ws, &d, NULL) >= 0);
+        least = fmin(least, d.upper);
+        profile = fmin(profile, least_of_profile(&t, targets, &pairs[k], 1, &o));
+      }
+      assert_true(fabs(profile - least) <= 4e-6);
+      assert_true(fabs(least_of_profile(&t, targets, pairs, n, &o) - least) <= 4e-6);
+
+      const double delta = least + rng_uniform(&r, -0.5, 1.0) * fmax(least, 0.05);
+      cprox_violation listed[MOST_VIOLATIONS], single[MOST_VIOLATIONS];
+      cprox_violations all = {.list = listed, .room = MOST_VIOLATIONS};
+      if (delta >= 0.0) {
+        const cprox_mover mover = cprox_robot_along(t.motion, pairs, n);
+        assert_int_equal(violations_of_list(mover, targets, TARGETS, delta, 1e-4, &o, ws, &all), CPROX_OK);
+        violated += all.count > 0;
+        if (delta < least - 1e-5) assert_int_equal(all.count, 0);
+        if (delta > least + 1e-5) assert_true(all.count > 0);
+        bool met[MOST_VIOLATIONS] = {false};
+        for (size_t k = 0; k < n; k++) {
+          cprox_violations one = {.list = single, .room = MOST_VIOLATIONS};
+          const cprox_mover alone = cprox_robot_along(t.motion, &pairs[k], 1);
+          assert_int_equal(violations_of_list(alone, targets, TARGETS, delta, 1e-4, &o, ws, &one), CPROX_OK);
+          for (size_t v = 0; v < one.count; v++)
+            if (one.list[v].verdict == CPROX_VERDICT_VIOLATED)
+              assert_true(contains(&all, 0.5 * (one.list[v].enter_upper + one.list[v].leave_lower)));
+          for (size_t v = 0; v < all.count; v++)
+            met[v] = met[v] || contains(&one, 0.5 * (listed[v].enter_upper + listed[v].leave_lower));
+        }
+        for (size_t v = 0; v < all.count; v++) assert_true(met[v] || listed[v].verdict != CPROX_VERDICT_VIOLATED);
+      }
+    }
+    for (int k = 0; k < TARGETS; k++) cprox_body_free((cprox_body *)targets[k].body);
+    robot_free(&t);
+  }
+  print_message("lists that move, stand, both: %zu, %zu, %zu; %zu violated\n", lists[0], lists[1], lists[2], violated);
+  for (int k = 0; k < 3; k++) assert_true(lists[k] > test_cases(400) / 40);
+  assert_true(violated > test_cases(400) / 10);
+}
+
 /* A crowd of obstacles round a link that stands adds distance queries once, and no node. */
 CASE(what_stands_costs_no_work_on_intervals) {
   enum { CROWD = 40 };
