@@ -141,6 +141,56 @@ CASE(random_robots_leave_certificates_that_hold) {
   cprox_certificate_free(c);
 }
 
+/* A crank round a coaxial cylinder, and a wheel that turns about its own axis beside a box: the distance stays the same,
+ * or nearly, however far they turn. */
+CASE(turning_cranks_and_wheels_leave_certificates_that_hold) {
+  static tally sum[3];
+  cprox_certificate *c = cprox_certificate_create();
+  const double angles[3] = {0.5, 6.3, 100.0};
+  cprox_body *box = NULL, *cylinder = NULL;
+  assert_int_equal(cprox_body_create_box(vec(0.1, 0.05, 0.02), ws, &box), CPROX_OK);
+  assert_int_equal(cprox_body_create_cylinder(0.5, 0.2, ws, &cylinder), CPROX_OK);
+  const cprox_pose off = {{1, 0, 0}, {.w = 1.0}};
+  for (int i = 0; i < 3; i++)
+    for (int wheel = 0; wheel < 2; wheel++)
+      for (int beside = 0; beside < 2; beside++) {
+        const cprox_link link = {.parent = -1,
+                                 .type = CPROX_JOINT_REVOLUTE,
+                                 .origin = CPROX_POSE_IDENTITY,
+                                 .axis = {0, 0, 1},
+                                 .variable = 0,
+                                 .multiplier = 1.0};
+        const cprox_link_geometry geometry = {
+            .body = wheel ? cylinder : box, .pose = wheel ? CPROX_POSE_IDENTITY : off, .link = 0};
+        cprox_robot *robot = NULL;
+        cprox_motion *motion = NULL;
+        assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
+        const int32_t variable = 0;
+        const double from = 0.3, to = from + angles[i];
+        const cprox_waypoint points[2] = {{.time = 0, .positions = &from}, {.time = 1, .positions = &to}};
+        const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                            .variables = &variable,
+                                            .n_variables = 1,
+                                            .waypoints = points,
+                                            .n_waypoints = 2};
+        assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
+        cprox_pose place = wheel ? off : CPROX_POSE_IDENTITY;
+        place.position.y += beside ? 0.05 : 0.0;
+        const cprox_obstacle obstacle = cprox_obstacle_at(wheel ? box : cylinder, place);
+        const cprox_mover turning = cprox_robot_along(motion, NULL, 0);
+        ask_thrice(&turning, &obstacle, 1, 1e-3, wheel ? "wheel" : "crank", c, sum);
+        cprox_motion_free(motion);
+        cprox_robot_free(robot);
+      }
+  print_tally("cranks and wheels, distance to 1e-3", &sum[0]);
+  print_tally("cranks and wheels, .9 of it", &sum[1]);
+  print_tally("cranks and wheels, 1.1 of it", &sum[2]);
+  assert_true(sum[0].apart == 12 && sum[1].apart == 12 && sum[2].near == 12);
+  cprox_body_free(box);
+  cprox_body_free(cylinder);
+  cprox_certificate_free(c);
+}
+
 /* ---- meshes ---- */
 
 /* 60 robots with meshes on links and beside them (seed 5). The answer is that without a certificate; what is proven is
