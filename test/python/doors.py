@@ -440,7 +440,7 @@ def robot_case(r, folder, program):
         truth = model.truth_of(ends, seen, post)
         if self:
             own = model.truth_of_self(ends, seen, post, model.disabled_of(srdf) if srdf else ())
-            truth = None if math.isinf(own) else min(truth, own)
+            truth = None if math.isinf(max(own, truth)) else min(truth, own)  # one of them measures nothing
         self = False
     asked = truth_self if self else truth
     row = {'robot': 'robot.urdf', 'scene': 'scene.yaml', 'trajectory': 'way.yaml', 'query': r.choice(('collision', 'distance'))}
