@@ -251,7 +251,7 @@ std::vector<Row> answerParts(const Subject &subject, const std::vector<Part> &pa
     const bool ended = !out.empty() && query.options.stop && query.options.stop(query.options.stop_user);
     if (ended && asksFor<question::Search, question::Profile>(question)) {
       Row row{part, unasked(out.back().answer.id, out.back().answer.kind, query), {}};
-      if (out.back().answer.gap) {
+      if (out.back().answer.gap && out.back().answer.gap != Gap::EMPTY) { // this part may have what that one lacks
         row.answer.gap = out.back().answer.gap;
         row.answer.status = out.back().answer.status;
       }
