@@ -478,6 +478,39 @@ CASE(obstacles_and_the_other_robot_are_asked_about_at_once) {
   }
 }
 
+/* Each arm overlaps its own base, which nobody asks about: the two have one joint between them. So the arms are the one
+ * pair, 10 m apart. */
+CASE(what_is_not_asked_about_leaves_no_pair_out) {
+  enum { LINKS = 2 };
+  const cprox_link links[LINKS] = {
+      {.parent = -1, .type = CPROX_JOINT_FIXED, .origin = HERE},
+      {.parent = 0, .type = CPROX_JOINT_REVOLUTE, .origin = HERE, .axis = {0, 0, 1}, .variable = 0, .multiplier = 1.0}};
+  cprox_body *bodies[LINKS] = {NULL};
+  for (int k = 0; k < LINKS; k++) assert_int_equal(cprox_body_create_sphere(0.3, NULL, &bodies[k]), CPROX_OK);
+  const cprox_link_geometry geometries[LINKS] = {{.body = bodies[0], .pose = HERE, .link = 0},
+                                                 {.body = bodies[1], .pose = HERE, .link = 1}};
+  cprox_robot *arm = NULL, *both = NULL;
+  cprox_motion *turn = NULL, *motion = NULL;
+  assert_int_equal(cprox_robot_create(links, LINKS, geometries, LINKS, 1, ws, &arm), CPROX_OK);
+  const cprox_waypoint points[2] = {{.time = 0.0, .positions = (const double[]){0.0}},
+                                    {.time = 1.0, .positions = (const double[]){1.0}}};
+  const cprox_motion_description d = {
+      .variables = (const int32_t[]){0}, .n_variables = 1, .waypoints = points, .n_waypoints = 2};
+  assert_int_equal(cprox_motion_create(arm, &d, ws, &turn), CPROX_OK);
+  const cprox_robot *robots[2] = {arm, arm};
+  cprox_pose bases[2] = {HERE, HERE};
+  bases[1].position.x = 10.0;
+  const cprox_joined_motion joined[2] = {{turn, 0.0, 0.0}, {turn, 0.0, 0.0}};
+  assert_int_equal(cprox_robot_join(robots, bases, 2, ws, &both), CPROX_OK);
+  assert_int_equal(join(both, joined, 2, &motion), CPROX_OK);
+  cprox_result r = {0};
+  assert_int_equal(distance_of_list(cprox_robot_self(motion, NULL, 0), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
+  assert_true(r.lower <= 9.4 + 1e-12 && r.upper >= 9.4 - 1e-12 && r.upper - r.lower <= 1.01e-6);
+  cprox_motion_free(motion), cprox_motion_free(turn);
+  cprox_robot_free(both), cprox_robot_free(arm);
+  for (int k = 0; k < LINKS; k++) cprox_body_free(bodies[k]);
+}
+
 /* ---- many ---- */
 
 enum { MANY = 300 };

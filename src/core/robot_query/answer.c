@@ -42,7 +42,7 @@ static void report(const robot_search *o, const robot_sample *sample, cprox_resu
 }
 
 static cprox_lod lod_of(const robot_search *o) {
-  if (o->scene.n_pairs == 0 && !o->scene.groups && isinf(o->scene.beyond)) return CPROX_LOD_NONE;
+  if (o->scene.n_pairs == 0 && !o->scene.groups && isinf(o->scene.plan.beyond)) return CPROX_LOD_NONE;
   if (o->refined) return CPROX_LOD_MESH;
   const bool by_balls = o->gaps + o->planes == 0 || o->scene.q->options.max_lod == CPROX_LOD_SPHERE;
   return by_balls ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;

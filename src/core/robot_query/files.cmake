@@ -12,6 +12,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/oracle.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_distance.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_lists.c
+  ${CMAKE_CURRENT_LIST_DIR}/pair_plan.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_state.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_table.c
   ${CMAKE_CURRENT_LIST_DIR}/prove_contact.c

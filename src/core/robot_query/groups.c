@@ -82,8 +82,8 @@ static void ask_given(const robot_scene *s, uint64_t *rows) {
   const robot_part *parts = s->motion->robot->parts;
   const int32_t n_parts = (int32_t)s->motion->robot->n_parts;
   for (size_t k = 0; k < n; k++) {
-    const int32_t first = robot_scene_first_part(s, pairs[k].geometry),
-                  other = robot_scene_first_part(s, pairs[k].other);
+    const int32_t first = (int32_t)pair_plan_first_part(s->motion->robot, pairs[k].geometry),
+                  other = (int32_t)pair_plan_first_part(s->motion->robot, pairs[k].other);
     for (int32_t i = first; i < n_parts && parts[i].geometry == pairs[k].geometry; i++)
       for (int32_t j = other; j < n_parts && parts[j].geometry == pairs[k].other; j++) {
         const int32_t a = place_of(g, i), b = place_of(g, j);

@@ -51,10 +51,10 @@ bool robot_search_root(robot_search *o, const motion_interval *over, const motio
   for (size_t i = 0; i < n_pairs; i++) {
     o->n_standing += !together && robot_scene_stands(s, &s->pairs[i]);
     add_entry(o, standing, moving, n, robot_scene_stands(s, &s->pairs[i]) && !together,
-              (list_entry){.lower = robot_scene_apart(s, &s->pairs[i]), .pair = (int32_t)i});
+              (list_entry){.lower = s->plan.pairs[i].apart, .pair = (int32_t)i});
   }
   for (size_t i = 0; i < n_parts; i++)
-    if (robot_scene_asks(s, i))
+    if (start_class_has(s->motion, s->starts, (int32_t)i, -1))
       add_entry(o, standing, moving, n, s->parts[i].carrier < 0 && !together,
                 (list_entry){.lower = -INFINITY, .pair = LIST_CLUSTER, .part = (int32_t)i});
   for (int still = 0; s->groups && still <= !together; still++) { /* all parts with all */
@@ -202,7 +202,7 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->goal = *goal;
   o->best = o->touch = (robot_sample){.pair = -1};
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
-  o->dropped = o->scene.beyond, o->touch_at = INFINITY;
+  o->dropped = o->scene.plan.beyond, o->touch_at = INFINITY;
   o->standing = -1;
   o->n_standing = 0;
   o->seeded = o->refined = o->looked_inside = o->unsure = false;

@@ -82,158 +82,29 @@ static robot_body part_body(const query *q, size_t i) {
 
 /* ---- pairs ---- */
 
-static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing, bool self) {
-  robot_pair pair = {
-      .moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}, .near = {-1, -1}, .self = self};
+static robot_pair pair_of(const robot_scene *s, const planned_pair *planned, bool self) {
+  robot_pair pair = {.moving = planned->moving,
+                     .standing = planned->standing,
+                     .element = {ROBOT_WHOLE, ROBOT_WHOLE},
+                     .near = {ROBOT_WHOLE, ROBOT_WHOLE},
+                     .self = self};
   if (!self) return pair;
   const cprox_robot *robot = s->motion->robot;
-  pair.common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
+  pair.common = robot_common_axis(robot, robot->parts[pair.moving].axis, robot->parts[pair.standing].axis);
   pair.shared = robot_axis_depth(robot, pair.common);
   return pair;
 }
 
 robot_pair robot_scene_self_pair(const robot_scene *s, int32_t moving, int32_t standing) {
-  return pair_of(s, (size_t)moving, (size_t)standing, true);
-}
-
-static int32_t geometry_of_part(const robot_scene *s, size_t part) {
-  return s->motion->robot->parts[part].geometry;
-}
-
-static int32_t target_of_obstacle(const robot_scene *s, size_t obstacle) {
-  return s->obstacles[obstacle].index;
-}
-
-/* The parts of a geometry stand side by side, in the order of the geometries; so do the obstacles of a target. The
- * first of n of them whose number is `number` or more. */
-static size_t first_from(const robot_scene *s, int32_t (*number_of)(const robot_scene *, size_t), size_t n,
-                         int32_t number) {
-  size_t low = 0, high = n;
-  while (low < high) {
-    const size_t middle = low + (high - low) / 2;
-    if (number_of(s, middle) < number)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
-static size_t first_part(const robot_scene *s, int32_t geometry) {
-  const cprox_robot *robot = s->motion->robot;
-  if (robot->n_parts == robot->n_geometries) return (size_t)geometry; /* each has one */
-  return first_from(s, geometry_of_part, robot->n_parts, geometry);
-}
-
-int32_t robot_scene_first_part(const robot_scene *s, int32_t geometry) {
-  return (int32_t)first_part(s, geometry);
-}
-
-/* Where pairs go that are asked about. */
-typedef struct pair_list {
-  robot_pair *pairs; /* NULL: they are only counted */
-  size_t n;
-  double apart; /* of the pair with itself that may come nearest, by sweeps, */
-  size_t nearest[2];
-  double beyond; /* the least of those that were left out */
-} pair_list;
-
-/* How deep two may overlap sweeps do not say. */
-static double parts_apart(const robot_scene *s, size_t part, size_t other) {
-  const part_sweep *sweeps = s->motion->sweeps;
-  const double apart = sweeps ? part_sweeps_apart(&sweeps[part], &sweeps[other]) : -INFINITY;
-  return s->q->is_signed && apart <= 0.0 ? -INFINITY : apart;
-}
-
-double robot_scene_apart(const robot_scene *s, const robot_pair *pair) {
-  return pair->self ? parts_apart(s, (size_t)pair->moving, (size_t)pair->standing) : -INFINITY;
-}
-
-/* An obstacle: -1. */
-static bool is_of_class(const robot_scene *s, size_t part, int32_t other) {
-  return !s->starts || start_class_has(s->motion, s->starts, (int32_t)part, other);
-}
-
-static void take_obstacle(const robot_scene *s, size_t part, size_t obstacle, pair_list *to) {
-  if (!is_of_class(s, part, -1)) return;
-  if (to->pairs) to->pairs[to->n] = pair_of(s, part, obstacle, false);
-  to->n++;
-}
-
-/* Whether two parts may come near enough to matter. */
-static bool may_be_near(const robot_scene *s, size_t part, size_t other, pair_list *to) {
-  if (!is_of_class(s, part, (int32_t)other)) return false;
-  const double apart = parts_apart(s, part, other);
-  if (apart > s->reach) {
-    to->beyond = lesser(apart, to->beyond);
-    return false;
-  }
-  if (apart < to->apart) to->apart = apart, to->nearest[0] = part, to->nearest[1] = other;
-  return true;
-}
-
-static void take_part(const robot_scene *s, size_t part, size_t other, pair_list *to) {
-  if (to->pairs) to->pairs[to->n] = pair_of(s, part, other, true);
-  to->n++;
-}
-
-/* The pairs of convex parts of a geometry and a target, or of two geometries. */
-static void list_geometry(const robot_scene *s, int32_t geometry, int32_t other, bool self, pair_list *to) {
-  const cprox_robot *robot = s->motion->robot;
-  const size_t others = self ? robot->n_parts : s->n_obstacles;
-  const size_t first = self ? first_part(s, other) : first_from(s, target_of_obstacle, others, other);
-  for (size_t i = first_part(s, geometry); i < robot->n_parts && robot->parts[i].geometry == geometry; i++) {
-    for (size_t k = first; k < others; k++) {
-      if ((self ? robot->parts[k].geometry : s->obstacles[k].index) != other) break;
-      if (!self)
-        take_obstacle(s, i, k, to);
-      else if (may_be_near(s, i, k, to))
-        take_part(s, i, k, to);
-    }
-  }
-}
-
-bool robot_scene_asks(const robot_scene *s, size_t part) {
-  return is_of_class(s, part, -1);
-}
-
-/* All pairs that are worth asking for. */
-static void list_all(const robot_scene *s, bool self, pair_list *to) {
-  const cprox_robot *robot = s->motion->robot;
-  for (size_t i = 0; i < robot->n_parts; i++) {
-    const robot_part *part = &robot->parts[i];
-    for (size_t k = 0; k < s->n_obstacles && !self && robot_scene_asks(s, i); k++) take_obstacle(s, i, k, to);
-    for (size_t k = 0; k < robot->n_parts && self; k++) {
-      const robot_part *other = &robot->parts[k];
-      if (other->geometry < part->geometry && may_be_near(s, i, k, to) &&
-          motion_relates_links(s->motion, part->link, other->link))
-        take_part(s, i, k, to);
-    }
-  }
-}
-
-/* Those that are not found by groups. */
-static pair_list list_pairs(const robot_scene *s, robot_pair *pairs) {
-  const cprox_mover *mover = &s->q->mover;
-  pair_list list = {.pairs = pairs, .apart = INFINITY, .beyond = INFINITY};
-  const bool whole = mover_is_whole(mover);
-  for (int self = mover_is_self(mover); self <= (mover_is_self(mover) || whole); self++) {
-    if (self && s->groups) continue;
-    const bool second = self && whole;
-    const cprox_robot_pair *given = second ? mover->self_pairs : mover->pairs;
-    const size_t count = second ? mover->n_self_pairs : mover->n_pairs;
-    if (!given) list_all(s, self, &list);
-    for (size_t i = 0; given && i < count; i++) list_geometry(s, given[i].geometry, given[i].other, self, &list);
-  }
-  return list;
+  return pair_of(s, &(planned_pair){.moving = moving, .standing = standing}, true);
 }
 
 /* ---- far pairs ---- */
 
 /* An upper bound of the distance of two parts: the least one measured at nine times. */
-static double measured_apart(robot_scene *s, const size_t parts[2]) {
+static double measured_apart(robot_scene *s, const planned_pair *parts) {
   enum { PLACES = 8 };
-  const robot_pair pair = pair_of(s, parts[0], parts[1], true);
+  const robot_pair pair = pair_of(s, parts, true);
   double least = INFINITY;
   for (int k = 0; k <= PLACES; k++) {
     const double t = s->q->t0 + (s->q->t1 - s->q->t0) * k / PLACES;
@@ -246,27 +117,7 @@ static double measured_apart(robot_scene *s, const size_t parts[2]) {
   return ROUND_UP * least;
 }
 
-/* Two robots that stay farther apart do not matter to the query. */
-static double reach_of(robot_scene *s, double cutoff) {
-  const query *q = s->q;
-  if (q->is_signed) return INFINITY;
-  if (query_wants_verdict(q)) return q->limit + q->options.epsilon;
-  const pair_list all = list_pairs(s, NULL);
-  return all.apart < INFINITY ? lesser(measured_apart(s, all.nearest), cutoff) : cutoff;
-}
-
 /* ---- beginning ---- */
-
-/* So many pairs with itself there are at most. */
-static size_t count_self_pairs(const robot_scene *s) {
-  const cprox_mover *mover = &s->q->mover;
-  const bool whole = mover_is_whole(mover);
-  const size_t n = s->motion->robot->n_parts, all = n * (n - 1) / 2;
-  const cprox_robot_pair *given = whole ? mover->self_pairs : mover->pairs;
-  const size_t count = whole ? mover->n_self_pairs : mover->n_pairs;
-  if (!s->self || n < 2) return 0;
-  return given && count < all && n == s->motion->robot->n_geometries ? count : all;
-}
 
 bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last, size_t most_listed, double cutoff) {
   return robot_scene_begin_class(s, q, NULL, first, last, most_listed, cutoff);
@@ -313,10 +164,32 @@ double robot_scene_clock(const robot_scene *s, double lead, double other) {
   return greater(earliest - rounding, s->q->t0);
 }
 
+/* What the plan says becomes the scene's pairs. many: more with itself than are listed one by one, unless those are
+ * left out that do not matter to the query because they stay too far apart. */
+static bool list_pairs(robot_scene *s, bool many, bool leaves_out, double cutoff) {
+  const query *q = s->q;
+  const bool distance = !query_wants_verdict(q);
+  pair_plan *plan = &s->plan;
+  *plan = (pair_plan){.q = q, .starts = s->starts, .reach = INFINITY};
+  if (leaves_out && !q->is_signed) plan->reach = distance ? cutoff : q->limit + q->options.epsilon;
+  if (!pair_plan_list(plan, s->obstacles, s->n_obstacles, s->self && !s->groups)) return false;
+  const planned_pair *nearest = leaves_out && !q->is_signed && distance ? pair_plan_nearest(plan) : NULL;
+  if (nearest) pair_plan_leave_out(plan, lesser(measured_apart(s, nearest), cutoff));
+  if (many && leaves_out && plan->n > MOST_NEAR) {
+    if (!robot_groups_begin(s)) return false;
+    pair_plan_leave_to_groups(plan);
+  }
+  s->n_pairs = plan->n;
+  s->pairs = workspace_reserve(q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *s->pairs);
+  if (!s->pairs) return false;
+  for (size_t i = 0; i < plan->n; i++) s->pairs[i] = pair_of(s, &plan->pairs[i], i >= plan->n_against);
+  return true;
+}
+
 bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *starts, size_t first, size_t last,
                              size_t most_listed, double cutoff) {
   const bool self = mover_is_self(&q->mover) || mover_is_whole(&q->mover);
-  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self, .reach = INFINITY, .starts = starts};
+  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self, .starts = starts};
   if (starts) {
     s->lead_tolerance = start_tolerance(s->motion, starts->lead);
     s->other_tolerance = start_tolerance(s->motion, starts->other);
@@ -324,7 +197,7 @@ bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;
   const bool leaves_out = self && s->motion->sweeps && most_listed < SIZE_MAX;
-  const bool many = count_self_pairs(s) > most_listed;
+  const bool many = pair_plan_count_self(&q->mover) > most_listed;
   if (many && !leaves_out && !robot_groups_begin(s)) return false;
   size_t deepest = 0;
   for (size_t i = 0; s->self && !s->groups && i < robot->n_parts; i++) {
@@ -360,18 +233,7 @@ bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *
     s->has_solids = s->has_solids || s->parts[i].body.winding;
   }
 
-  if (leaves_out) s->reach = reach_of(s, cutoff);
-  pair_list listed_pairs = list_pairs(s, NULL);
-  if (many && leaves_out && listed_pairs.n > MOST_NEAR) {
-    if (!robot_groups_begin(s)) return false;
-    listed_pairs = list_pairs(s, NULL);
-  }
-  s->beyond = listed_pairs.beyond;
-  s->n_pairs = listed_pairs.n;
-  s->pairs = workspace_reserve(q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *s->pairs);
-  if (!s->pairs) return false;
-  list_pairs(s, s->pairs);
-  return true;
+  return list_pairs(s, many, leaves_out, cutoff);
 }
 
 int32_t robot_scene_add_pair(robot_scene *s, const robot_pair *pair) {

@@ -7,8 +7,8 @@
 #include "problem/candidates.h"
 #include "robot_query/element.h"
 #include "robot_query/pair_distance.h"
+#include "robot_query/pair_plan.h"
 #include "robot_query/pair_table.h"
-#include "robot_query/starts.h"
 
 /* A pair of a part of the robot that moves and what it is held against. */
 typedef struct robot_pair {
@@ -65,8 +65,7 @@ typedef struct robot_scene {
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
-  double reach;                /* pairs with itself that stay farther apart than this are left out, */
-  double beyond;               /* which all stay farther apart than this */
+  pair_plan plan;              /* what was listed in the beginning: these come first */
   pair_table met;              /* what was made of targets of the set, and of groups */
   struct robot_groups *groups; /* of parts, where pairs with itself are found by them (robot_query/groups.h), or NULL */
   robot_element element[2];    /* those of the pair that was placed last: moving, standing */
@@ -117,12 +116,6 @@ double robot_scene_travel(robot_scene *scene, int32_t pair, double lead, double 
 /* Of two times: how far the side of the pair moves that is on the other clock, and the one on the lead. */
 void robot_scene_displacements(robot_scene *scene, const robot_pair *pair, double *other, double *lead);
 
-/* Of a geometry. */
-int32_t robot_scene_first_part(const robot_scene *scene, int32_t geometry);
-
-/* A pair is never nearer than this; -infinity where that is not known. */
-double robot_scene_apart(const robot_scene *scene, const robot_pair *pair);
-
 /* A pair of two parts of the robot, of which nothing is known. */
 robot_pair robot_scene_self_pair(const robot_scene *scene, int32_t moving, int32_t standing);
 
@@ -131,9 +124,6 @@ static inline bool robot_scene_stands(const robot_scene *scene, const robot_pair
   const int32_t other = pair->self ? scene->parts[pair->standing].carrier : -1;
   return scene->parts[pair->moving].carrier == other;
 }
-
-/* Whether the robot's part is asked about, against obstacles. */
-bool robot_scene_asks(const robot_scene *scene, size_t part);
 
 /* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move
  * all obstacles in memory. */

@@ -39,6 +39,7 @@ int32_t start_clock_of(const cprox_motion *m, int32_t part) {
 }
 
 bool start_class_has(const cprox_motion *m, const start_class *of, int32_t part, int32_t other) {
+  if (!of) return true;
   const int32_t a = start_clock_of(m, part), b = start_clock_of(m, other);
   const int32_t low = a < b ? a : b, high = a < b ? b : a;
   if (high < 0) return of->lead == CLOCK_KNOWN && of->other == CLOCK_NONE;

@@ -26,7 +26,7 @@ static inline bool start_class_is_one_of_many(const cprox_motion *motion) {
   return start_class_next(motion, &first);
 }
 
-/* Whether a pair of parts, or of a part and an obstacle (-1), belongs to a class. */
+/* Whether a pair of parts, or of a part and an obstacle (-1), belongs to a class; NULL: to any. */
 bool start_class_has(const cprox_motion *motion, const start_class *of, int32_t part, int32_t other);
 
 /* The clock that moves a part, if it has a tolerance; else CLOCK_KNOWN, or CLOCK_STANDS where nothing moves it. */

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Which pairs a robot's query asks about, listed once and before anything is placed: those of a class of starts, as far
+ * as they may come near enough to matter. */
+#ifndef CPROX_ROBOT_QUERY_PAIR_PLAN_H
+#define CPROX_ROBOT_QUERY_PAIR_PLAN_H
+
+#include "problem/problem.h"
+#include "robot_query/element.h"
+#include "robot_query/starts.h"
+
+/* A part that moves and an obstacle, or of a pair with itself another part. */
+typedef struct planned_pair {
+  int32_t moving, standing;
+  double apart; /* the two are never nearer, by their sweeps; -infinity: that is not known */
+} planned_pair;
+
+typedef struct pair_plan {
+  const query *q;
+  const start_class *starts; /* only pairs of this class; NULL: all, as if all starts were known */
+  planned_pair *pairs;       /* in the workspace: */
+  size_t n_against;          /* so many against obstacles, */
+  size_t n;                  /* then those with itself; all together */
+  double reach;              /* pairs with itself that stay farther apart than this are left out, */
+  double beyond;             /* which all stay farther apart than this */
+} pair_plan;
+
+/* So many pairs with itself there are at most. */
+size_t pair_plan_count_self(const cprox_mover *mover);
+
+/* Lists the pairs: q, starts and reach are given. obstacles: those of one target side by side, in the order of the
+ * targets; self: pairs of the robot with itself, too. False where memory is out. */
+bool pair_plan_list(pair_plan *plan, const robot_body *obstacles, size_t n_obstacles, bool self);
+
+/* The pair with itself that may come nearest, or NULL. */
+const planned_pair *pair_plan_nearest(const pair_plan *plan);
+
+/* A reach that was found later. */
+void pair_plan_leave_out(pair_plan *plan, double reach);
+
+/* Leaves pairs with itself to groups of parts. */
+void pair_plan_leave_to_groups(pair_plan *plan);
+
+/* The parts of a geometry stand side by side. */
+size_t pair_plan_first_part(const cprox_robot *robot, int32_t geometry);
+
+#endif
