@@ -65,7 +65,7 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
                       .epsilon = epsilon,
                       .relative_epsilon = options.relative_epsilon,
                       .max_nodes = options.max_nodes};
-  if (!robot_scene_begin(&w.search.scene, &q, 0, n, ROBOT_MOST_LISTED, INFINITY)) return false;
+  if (!robot_scene_begin(&w.search.scene, &q, NULL, 0, n, ROBOT_MOST_LISTED, INFINITY)) return false;
   robot_search_begin(&w.search, &goal);
   w.oracle = robot_search_oracle(&w.search);
   const search_oracle outer = {.self = &w, .filter = filter, .probe = probe, .split = split, .release = release};

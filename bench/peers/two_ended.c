@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "robot_query/answer.h"
-#include "robot_query/pair_state.h"
+#include "robot_query/placed_robot_pair.h"
 #include "solve/solve.h"
 
 /* A pair on an interval: what is known of its distance at both ends. */
@@ -55,13 +55,14 @@ static interval pop(search *s) {
 }
 
 /* How far the part can get along the way: the variation of each axis times a lever_arm that holds everywhere. */
-static double way_of(search *s, const robot_pair *pair, const axis_state *axes, chain_axis *chain) {
+static double way_of(search *s, robot_pair *pair, const axis_state *axes, chain_axis *chain) {
   const cprox_robot *robot = s->scene.motion->robot;
   const robot_part *part = &robot->parts[pair->moving];
-  const int32_t from = s->scene.self ? robot->parts[pair->standing].axis : -1;
-  const double standing = s->scene.self ? robot->parts[pair->standing].reach : 0.0;
+  const int32_t from = pair->self ? robot->parts[pair->standing].axis : -1;
+  const double standing = pair->self ? robot->parts[pair->standing].reach : 0.0;
   const size_t n = motion_chain(s->scene.motion, from, part->axis, chain);
-  robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair); /* the states of their axes */
+  placed_robot_pair placed; /* the states of their axes */
+  placed_robot_pair_of(&s->scene, pair, &placed);
   double way = 0.0;
   for (size_t i = 0; i < n; i++) {
     const robot_axis *axis = &robot->axes[chain[i].axis];
@@ -72,14 +73,17 @@ static double way_of(search *s, const robot_pair *pair, const axis_state *axes, 
   return way;
 }
 
-static double ball_gap(search *s, const robot_pair *pair) {
-  return robot_pair_ball_distance(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair));
+static double ball_gap(search *s, robot_pair *pair) {
+  placed_robot_pair placed;
+  placed_robot_pair_of(&s->scene, pair, &placed);
+  return robot_pair_ball_distance(placed.moving, placed.standing);
 }
 
-static double measured_gap(search *s, const robot_pair *pair) {
+static double measured_gap(search *s, robot_pair *pair) {
   robot_gap gap;
-  robot_pair_measure(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair),
-                     (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
+  placed_robot_pair placed;
+  placed_robot_pair_of(&s->scene, pair, &placed);
+  robot_pair_measure(placed.moving, placed.standing, (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
   s->distance_queries++;
   s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
   return fmax(gap.lower, 0.0);
@@ -137,10 +141,10 @@ static void bound_centrally(search *s, interval *node, int order) {
   node->lower = INFINITY;
   for (size_t i = 0; i < node->n; i++) {
     ends e = node->list[i];
-    const robot_pair *pair = &s->scene.pairs[e.pair];
-    const robot_body *moving = robot_scene_moving(&s->scene, pair), *standing = robot_scene_standing(&s->scene, pair);
-    chain_motion own;
-    const chain_motion *motion = robot_scene_motion(&s->scene, pair, moving, &own);
+    placed_robot_pair placed;
+    placed_robot_pair_at(&s->scene, e.pair, &placed);
+    const robot_body *moving = placed.moving, *standing = placed.standing;
+    const chain_motion *motion = placed_robot_pair_move(&placed);
     e.lower = fmax(e.lower, robot_pair_ball_distance(moving, standing) - motion->displacement);
     if (!(e.lower > s->upper - s->epsilon)) {
       robot_gap gap;
@@ -188,7 +192,7 @@ static bool begin(search *s, query *q, const cprox_mover *mover, const cprox_obs
   *q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
   query_ask_whole(q);
   *s = (search){.upper = INFINITY, .dropped = INFINITY, .epsilon = epsilon};
-  return robot_scene_begin(&s->scene, q, 0, n, SIZE_MAX, INFINITY);
+  return robot_scene_begin(&s->scene, q, NULL, 0, n, SIZE_MAX, INFINITY);
 }
 
 void central_distance(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, int order, double epsilon,

@@ -248,7 +248,7 @@ CASE(the_box_round_a_part_bounds_specks_exactly) {
     query q = query_create(cprox_robot_along(motion, NULL, 0), targets, SPECKS, -1.0, false, NULL, ws);
     q.set = set->bvh;
     robot_scene scene;
-    assert_true(robot_scene_begin(&scene, &q, 0, SPECKS, SIZE_MAX, INFINITY));
+    assert_true(robot_scene_begin(&scene, &q, NULL, 0, SPECKS, SIZE_MAX, INFINITY));
     robot_scene_enter(&scene, 0, 0.0, 1.0);
     const cluster_view view = cluster_see(&scene, 0, false);
     for (int k = 0; k < 2; k++) { /* all of them, and those below a bar */
@@ -296,11 +296,9 @@ CASE(no_corner_of_a_core_moves_farther_than_is_said_and_margins_add_nothing) {
     assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
     const query q = query_create(cprox_robot_along(motion, NULL, 0), NULL, 0, -1.0, false, NULL, ws);
     robot_scene scene;
-    assert_true(robot_scene_begin(&scene, &q, 0, 0, SIZE_MAX, INFINITY));
+    assert_true(robot_scene_begin(&scene, &q, NULL, 0, 0, SIZE_MAX, INFINITY));
     robot_scene_enter(&scene, 0, 0.0, 1.0);
-    const robot_pair any = {.moving = 0, .element = {-1, -1}};
-    robot_scene_moving(&scene, &any);
-    const long double said = robot_scene_coarse_displacement(&scene, &any);
+    const long double said = robot_scene_part_displacement(&scene, 0);
 
     long double moved = 0.0L;
     for (int k = 0; k < 8; k++) {
@@ -365,12 +363,10 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
     query q = query_create(cprox_robot_along(motion, NULL, 0), targets, BALLS, -1.0, false, NULL, ws);
     q.set = set->bvh;
     robot_scene scene;
-    assert_true(robot_scene_begin(&scene, &q, 0, BALLS, SIZE_MAX, INFINITY));
+    assert_true(robot_scene_begin(&scene, &q, NULL, 0, BALLS, SIZE_MAX, INFINITY));
     robot_scene_enter(&scene, 0, 0.0, 1.0);
-    const robot_pair any = {.moving = 0, .element = {-1, -1}};
     size_t seen = 0;
-    robot_scene_moving(&scene, &any);
-    lanes_below(&scene, 0, robot_scene_coarse_displacement(&scene, &any), truth, &seen);
+    lanes_below(&scene, 0, robot_scene_part_displacement(&scene, 0), truth, &seen);
     assert_int_equal(seen, BALLS);
     cprox_obstacles_free(set);
     cprox_motion_free(motion);

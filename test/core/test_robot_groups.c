@@ -96,11 +96,11 @@ CASE(groups_hold_the_pairs_of_the_list_each_once) {
     static int listed[MOST_GEOMETRIES][MOST_GEOMETRIES];
     memset(listed, 0, sizeof listed);
     robot_scene scene;
-    assert_true(robot_scene_begin(&scene, &q, 0, 0, SIZE_MAX, INFINITY));
+    assert_true(robot_scene_begin(&scene, &q, NULL, 0, 0, SIZE_MAX, INFINITY));
     assert_null(scene.groups);
     const size_t n_listed = scene.n_pairs;
     for (size_t k = 0; k < n_listed; k++) listed[scene.pairs[k].moving][scene.pairs[k].standing]++;
-    assert_true(robot_scene_begin(&scene, &q, 0, 0, 0, INFINITY));
+    assert_true(robot_scene_begin(&scene, &q, NULL, 0, 0, 0, INFINITY));
     robot_scene_enter(&scene, 0, 0.0, 1.0);
     static int32_t parts[MOST_PAIRS][2];
     const size_t n = list_all(&scene, parts);
@@ -223,7 +223,7 @@ CASE(no_part_leaves_what_its_group_says) {
     make_crowded(&r, rng_log_uniform(&r, 0.05, 3), false, &c);
     const query q = query_create(cprox_robot_self(c.motion, NULL, 0), NULL, 0, -1.0, false, NULL, ws);
     robot_scene scene;
-    assert_true(robot_scene_begin(&scene, &q, 0, 0, 0, INFINITY));
+    assert_true(robot_scene_begin(&scene, &q, NULL, 0, 0, 0, INFINITY));
     const size_t n = scene.groups ? c.robot->groups.n : 0;
     for (int k = 0; k < 4 && n > 0; k++) {
       enter_somewhere(&r, &scene);
@@ -262,7 +262,7 @@ static searched search(const crowded_robot *c, search_goal goal, size_t most_lis
   query q = query_create(cprox_robot_self(c->motion, NULL, 0), NULL, 0, -1.0, false, NULL, ws);
   query_ask_whole(&q);
   static robot_search o;
-  assert_true(robot_scene_begin(&o.scene, &q, 0, 0, most_listed, INFINITY));
+  assert_true(robot_scene_begin(&o.scene, &q, NULL, 0, 0, most_listed, INFINITY));
   robot_search_begin(&o, &goal);
   const motion_interval over = {.b = 1.0, .last = c->motion->n_segments};
   search_node root;

@@ -54,13 +54,6 @@ static double known_upper(const search_goal *goal, const search_best *best) {
   return lesser(best->upper, goal->cutoff);
 }
 
-/* Neither above the limit nor able to say more: closer to the best point than epsilon (verdicts) or than rounding. */
-static bool is_unresolved(const search_goal *goal, const search_best *best, const search_node *node) {
-  const double gap = known_upper(goal, best) + goal->beyond - node->lower;
-  const double floor = 2.0 * (node->slack + best->slack);
-  return gap <= floor || (goal->limit >= 0.0 && gap <= goal->epsilon);
-}
-
 /* Left to right: from here on nothing is asked any more, since contact came before. */
 static double time_cutoff(const search_goal *goal, const search_best *best) {
   return best->upper <= goal->limit + goal->epsilon ? lesser(best->at, goal->time_cutoff) : goal->time_cutoff;
@@ -71,7 +64,7 @@ typedef enum node_state { NODE_OPEN, NODE_PRUNED, NODE_UNRESOLVED, NODE_BEYOND }
 static node_state state_of(const search_goal *goal, const search_best *best, const search_node *node) {
   if (search_is_pruned(goal, best->upper, node->lower)) return NODE_PRUNED;
   if (goal->order == SEARCH_LEFT_TO_RIGHT) return node->start >= time_cutoff(goal, best) ? NODE_BEYOND : NODE_OPEN;
-  return is_unresolved(goal, best, node) ? NODE_UNRESOLVED : NODE_OPEN;
+  return search_is_unresolved(goal, best, node->lower, node->slack) ? NODE_UNRESOLVED : NODE_OPEN;
 }
 
 /* A child that is settled at birth leaves at once. */

@@ -128,6 +128,13 @@ static inline bool search_is_pruned(const search_goal *goal, double upper, doubl
   return goal->limit >= 0.0 ? lower > goal->limit : lower >= search_pruning_bound(goal, upper);
 }
 
+/* A lower bound that is neither above the limit nor able to say more: closer to the best point than epsilon (verdicts)
+ * or than rounding. slack: how much of the bound is rounding. */
+static inline bool search_is_unresolved(const search_goal *goal, const search_best *best, double lower, double slack) {
+  const double gap = lesser(best->upper, goal->cutoff) + goal->beyond - lower;
+  return gap <= 2.0 * (slack + best->slack) || (goal->limit >= 0.0 && gap <= goal->epsilon);
+}
+
 /* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
 static inline bool search_is_answered(const search_goal *goal, double upper) {
   if (goal->order == SEARCH_LEFT_TO_RIGHT || goal->is_signed) return false;

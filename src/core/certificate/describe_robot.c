@@ -7,7 +7,7 @@
 #include "problem/obstacles.h"
 #include "problem/problem.h"
 #include "problem/validate.h"
-#include "robot_query/pair_state.h"
+#include "robot_query/robot_scene.h"
 
 /* ---- the robot ---- */
 
@@ -93,7 +93,7 @@ size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obs
           CPROX_OK)
     return 0;
   robot_scene scene;
-  if (!robot_scene_begin(&scene, &q, 0, n, SIZE_MAX, INFINITY)) return 0;
+  if (!robot_scene_begin(&scene, &q, NULL, 0, n, SIZE_MAX, INFINITY)) return 0;
   const cprox_robot *robot = mover->motion->robot;
   text t = {.at = out, .size = out ? size : 0};
   say(&t, "robot %s %zu %zu %zu\n", id, robot->n_links, robot->n_parts, robot->n_variables);

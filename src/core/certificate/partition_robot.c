@@ -23,20 +23,12 @@ static const double MOST_DISPLACEMENT = 0.25;
 
 typedef enum outcome { SETTLED, WRITTEN, OPEN, TOO_NEAR } outcome;
 
-/* A pair over the interval at hand. */
-typedef struct view {
-  robot_pair *pair;
-  const robot_body *moving, *standing;
-  const chain_motion *motion;
-  chain_motion own;
-} view;
-
-static bool is_halfspace(const view *v) {
+static bool is_halfspace(const placed_robot_pair *v) {
   return robot_body_is_halfspace(v->standing);
 }
 
 /* Does a normal in the frame of what stands settle the pair? unsure: by how much it may be off. */
-static bool settles(const robot_cover *c, const view *v, vec3 own, double unsure) {
+static bool settles(const robot_cover *c, const placed_robot_pair *v, vec3 own, double unsure) {
   vec3 n = placement_turn(&v->standing->side.at, own);
   const double length = vec_norm(n);
   if (!(length > 0.0) || !isfinite(length)) return false;
@@ -54,7 +46,7 @@ static bool settles(const robot_cover *c, const view *v, vec3 own, double unsure
   return middle - v->motion->displacement > needed || bound > needed;
 }
 
-static outcome settle(const robot_cover *c, const view *v, double width, vec3 *written) {
+static outcome settle(const robot_cover *c, const placed_robot_pair *v, double width, vec3 *written) {
   if (v->pair->normal_known && settles(c, v, v->pair->normal, 0.0)) return SETTLED;
 
   /* from the box to the centre */
@@ -93,9 +85,9 @@ static cprox_status certify_open_pairs(robot_cover *c, size_t from, size_t to, d
   for (size_t i = from; i < to; i++) {
     int32_t *open = reserve(c, to + *kept + 1);
     if (!open) return CPROX_MEMORY;
-    view v = {.pair = &c->scene->pairs[open[i]]};
-    v.moving = robot_scene_moving(c->scene, v.pair), v.standing = robot_scene_standing(c->scene, v.pair);
-    v.motion = robot_scene_motion(c->scene, v.pair, v.moving, &v.own);
+    placed_robot_pair v;
+    placed_robot_pair_at(c->scene, open[i], &v);
+    placed_robot_pair_move(&v);
     vec3 written = vec(0, 0, 0);
     const outcome out = settle(c, &v, width, &written);
     if (out == TOO_NEAR) return CPROX_PRECISION;

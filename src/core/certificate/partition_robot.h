@@ -5,7 +5,7 @@
 #define CPROX_CERTIFICATE_PARTITION_ROBOT_H
 
 #include "certificate/certificate.h"
-#include "robot_query/pair_state.h"
+#include "robot_query/placed_robot_pair.h"
 
 typedef struct robot_cover {
   robot_scene *scene;

@@ -55,7 +55,7 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
   const cprox_status known = check_kinds(mover->motion, targets, n, workspace);
   if (known != CPROX_OK) return known;
   robot_scene scene;
-  if (!robot_scene_begin(&scene, &q, 0, n, SIZE_MAX, INFINITY)) return CPROX_MEMORY;
+  if (!robot_scene_begin(&scene, &q, NULL, 0, n, SIZE_MAX, INFINITY)) return CPROX_MEMORY;
   for (size_t i = 0; i < scene.motion->robot->n_parts; i++) scene.parts[i].body.side.margin_turns = true;
   if (scene.n_pairs > MOST_PAIRS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);

@@ -39,10 +39,12 @@ static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_ga
   int32_t found = -1;
   for (size_t i = 0; i < s->n_pairs; i++) {
     const robot_pair *pair = &s->pairs[i];
-    const int32_t other = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
+    const int32_t other = pair->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
     if (s->parts[pair->moving].body.index != answer->mover_part || other != answer->obstacle_index) continue;
     robot_gap gap;
-    robot_pair_measure(robot_scene_moving(s, pair), robot_scene_standing(s, pair), (robot_accuracy){0}, &gap);
+    placed_robot_pair p;
+    placed_robot_pair_at(s, (int32_t)i, &p);
+    robot_pair_measure(p.moving, p.standing, (robot_accuracy){0}, &gap);
     if (gap.support_failed || (found >= 0 && gap.upper >= nearest->upper)) continue;
     *nearest = gap;
     found = (int32_t)i;
@@ -97,14 +99,16 @@ cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) 
   robot_gap gap = {.support_failed = false};
   const int32_t index = nearest_pair(s, answer, &gap);
   if (index < 0) return CPROX_PRECISION;
-  const robot_pair *pair = &s->pairs[index];
-  const robot_body *moving = robot_scene_moving(s, pair), *standing = robot_scene_standing(s, pair);
+  placed_robot_pair placed;
+  placed_robot_pair_at(s, index, &placed);
+  const robot_pair *pair = placed.pair;
+  const robot_body *moving = placed.moving, *standing = placed.standing;
   const cprox_body *part = body_of_part(m->robot, pair->moving);
-  const cprox_body *other = s->self ? body_of_part(m->robot, pair->standing) : body_of_obstacle(s, pair->standing);
+  const cprox_body *other = pair->self ? body_of_part(m->robot, pair->standing) : body_of_obstacle(s, pair->standing);
   if (!part || !other)
     return workspace_fail(
         s->q->workspace, CPROX_INVALID, "%s %d is a mesh: its convex hull cannot prove that it is near",
-        !part || s->self ? "geometry" : "target", (int)(part ? answer->obstacle_index : answer->mover_part));
+        !part || pair->self ? "geometry" : "target", (int)(part ? answer->obstacle_index : answer->mover_part));
 
   cprox_certificate *to = c->certificate;
   certificate_begin(to, 8, CPROX_CLAIM_NEAR, c->delta, (uint32_t)s->n_pairs);

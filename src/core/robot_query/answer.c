@@ -58,7 +58,7 @@ void robot_search_report(const robot_search *o, cprox_result *result) {
 static cprox_status answer_class(const query *q, const start_class *starts, size_t first, size_t last, double cutoff,
                                  cprox_result *result, double *travel) {
   robot_search o;
-  if (!robot_scene_begin_class(&o.scene, q, starts, first, last, ROBOT_MOST_LISTED, cutoff))
+  if (!robot_scene_begin(&o.scene, q, starts, first, last, ROBOT_MOST_LISTED, cutoff))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   /* verdicts, too: depth first stays with one deep pair, while the distance that they follow from leaves it */
   search_goal goal = query_goal(q, SEARCH_BEST_FIRST, cutoff);
@@ -75,7 +75,7 @@ static cprox_status answer_class(const query *q, const start_class *starts, size
   if (goal.share) cutoff = lesser(cutoff, goal.share(goal.share_user, r.upper));
   query_conclude(q, cutoff, status, &r);
   const double at = o.best.pair >= 0 ? motion_time(q->mover.motion, o.best.segment, o.best.u) : 0.0;
-  if (travel) *travel = o.best.pair >= 0 ? robot_scene_travel(&o.scene, o.best.pair, at, o.best.other) : INFINITY;
+  if (travel) *travel = o.best.pair >= 0 ? placed_robot_pair_travel(&o.scene, o.best.pair, at, o.best.other) : INFINITY;
   *result = r;
   return r.status;
 }
@@ -140,7 +140,7 @@ cprox_status robot_answer_and_travel(const query *q, cprox_result *result, doubl
 static cprox_status contact_of_class(const query *q, const start_class *starts, double time_cutoff,
                                      cprox_result *result) {
   robot_search o;
-  if (!robot_scene_begin_class(&o.scene, q, starts, 0, q->n, ROBOT_MOST_LISTED, INFINITY))
+  if (!robot_scene_begin(&o.scene, q, starts, 0, q->n, ROBOT_MOST_LISTED, INFINITY))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
   goal.time_cutoff = time_cutoff;

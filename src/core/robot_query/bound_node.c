@@ -54,34 +54,34 @@ static double width_of_node(const robot_search *o) {
   return to - from;
 }
 
-static vec3 normal_in_middle(const robot_search *o, const robot_pair *pair, const robot_body *standing) {
-  const vec3 n = placement_turn(&standing->side.at, known_normal(o, pair));
+static vec3 normal_in_middle(const robot_search *o, const placed_robot_pair *p) {
+  const vec3 n = placement_turn(&p->standing->side.at, known_normal(o, p->pair));
   return vec_scale(1.0 / vec_norm(n), n);
 }
 
 /* In the place of a normal that is not known yet. */
-static void keep_guess(const robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing) {
-  const vec3 guess = robot_pair_guess(moving, standing);
-  if (vec_norm2(guess) > 0.0) robot_place_normal(o, pair, guess);
+static void keep_guess(const robot_search *o, const placed_robot_pair *p) {
+  const vec3 guess = robot_pair_guess(p->moving, p->standing);
+  if (vec_norm2(guess) > 0.0) robot_place_normal(o, p->pair, guess);
 }
 
 /* How far the two are apart along it: only to choose by, its rounding is not counted. */
-static double plane_middle(const robot_search *o, const robot_pair *pair, const robot_body *moving,
-                           const robot_body *standing) {
-  const vec3 n = normal_in_middle(o, pair, standing);
-  const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
-  return along - bound_height(&moving->side, vec_neg(n)) - robot_pair_height(standing, n);
+static double plane_middle(const robot_search *o, const placed_robot_pair *p) {
+  const vec3 n = normal_in_middle(o, p);
+  const double along = vec_dot(n, vec_sub(p->moving->side.at.p, p->standing->side.at.p));
+  return along - bound_height(&p->moving->side, vec_neg(n)) - robot_pair_height(p->standing, n);
 }
 
 /* What that normal says of the node. */
-static double bound_by_normal(robot_search *o, const robot_pair *pair, const robot_body *moving,
-                              const robot_body *standing, const chain_motion *motion, double goal, double *slack) {
+static double bound_by_normal(robot_search *o, const placed_robot_pair *p, double goal, double *slack) {
+  const robot_pair *pair = p->pair;
+  const robot_body *moving = p->moving, *standing = p->standing;
   const double here = robot_scene_place(&o->scene, o->scene.centre.segment, o->scene.centre.u);
   const bool turning = here >= pair->from && here <= pair->to;
-  const vec3 n = normal_in_middle(o, pair, standing);
+  const vec3 n = normal_in_middle(o, p);
   if (pair->self && robot_scene_has_two_times(&o->scene)) {
     o->planes++;
-    return motion_plane_bound_of_two(motion, &o->scene.times, &moving->side, &standing->side, n,
+    return motion_plane_bound_of_two(p->motion, &o->scene.times, &moving->side, &standing->side, n,
                                      robot_pair_height(standing, n), moving->steps + standing->steps, slack);
   }
   vec3 normal_rate = placement_turn(&standing->side.at, vec_scale(turning ? width_of_node(o) : 0.0, pair->normal_rate));
@@ -91,7 +91,7 @@ static double bound_by_normal(robot_search *o, const robot_pair *pair, const rob
   heights[0] = robot_pair_height(standing, vec_axpy(n, -0.5, normal_rate));
   heights[1] = vec_norm2(normal_rate) > 0.0 ? robot_pair_height(standing, vec_axpy(n, 0.5, normal_rate)) : heights[0];
   o->planes++;
-  return motion_plane_bound(motion, &moving->side, &standing->side, n, normal_rate, heights,
+  return motion_plane_bound(p->motion, &moving->side, &standing->side, n, normal_rate, heights,
                             moving->steps + standing->steps, goal, slack);
 }
 
@@ -108,13 +108,12 @@ static double pieces_for(const robot_search *o, double middle, double bound) {
 }
 
 /* The plane of the distance just measured, turning as its feature does. */
-static double bound_by_gap(robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing,
-                           const chain_motion *motion, const robot_gap *gap, double *slack) {
-  if (robot_scene_has_two_times(&o->scene)) return bound_by_normal(o, pair, moving, standing, motion, 0.0, slack);
-  const vec3 normal_rate = vec_scale(1.0 / width_of_node(o), robot_pair_normal_rate(gap, moving, standing, motion));
-  pair->normal_rate = placement_turn_back(&standing->side.at, normal_rate);
-  ends_of_node(o, true, &pair->from, &pair->to);
-  return bound_by_normal(o, pair, moving, standing, motion, robot_pruning_bound(o), slack);
+static double bound_by_gap(robot_search *o, const placed_robot_pair *p, const robot_gap *gap, double *slack) {
+  if (robot_scene_has_two_times(&o->scene)) return bound_by_normal(o, p, 0.0, slack);
+  const vec3 rate = robot_pair_normal_rate(gap, p->moving, p->standing, p->motion);
+  p->pair->normal_rate = placement_turn_back(&p->standing->side.at, vec_scale(1.0 / width_of_node(o), rate));
+  ends_of_node(o, true, &p->pair->from, &p->pair->to);
+  return bound_by_normal(o, p, robot_pruning_bound(o), slack);
 }
 
 static bool keep_entry(robot_search *o, const list_entry *entry) {
@@ -132,14 +131,14 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
                      .element = {found->element[0], found->element[1]},
                      .near = {ROBOT_WHOLE, ROBOT_WHOLE},
                      .self = whole->self};
-  const robot_body *moving = robot_scene_moving(&o->scene, &pair), *standing = robot_scene_standing(&o->scene, &pair);
-  chain_motion own;
-  const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
-  robot_keep_normal(o, &pair, standing, &found->gap);
-  list_entry entry = {.lower = found->gap.lower - motion->displacement, .bounded = true};
-  double slack = moving->side.error + standing->side.error;
+  placed_robot_pair p;
+  placed_robot_pair_of(&o->scene, &pair, &p);
+  const double displacement = placed_robot_pair_move(&p)->displacement;
+  robot_keep_normal(o, &p, &found->gap);
+  list_entry entry = {.lower = found->gap.lower - displacement, .bounded = true};
+  double slack = p.moving->side.error + p.standing->side.error;
   if (!robot_is_pruned(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
-    entry.lower = fmax(entry.lower, bound_by_gap(o, &pair, moving, standing, motion, &found->gap, &slack));
+    entry.lower = fmax(entry.lower, bound_by_gap(o, &p, &found->gap, &slack));
   if (robot_is_pruned(o, entry.lower)) {
     o->dropped = fmin(o->dropped, entry.lower);
     return CPROX_OK;
@@ -153,27 +152,28 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
 
 /* The nearest elements in the middle, if they are nearer than the best, or of a verdict violate its limit: less what
  * the part moves they bound all. */
-static cprox_status bound_by_nearest(robot_search *o, list_entry *entry, const robot_gap *hulls, double displacement) {
+static cprox_status bound_by_nearest(robot_search *o, const placed_robot_pair *p, list_entry *entry,
+                                     const robot_gap *hulls) {
   const double limit = o->goal.limit, best = o->best_bound.upper;
   const double reach = limit >= 0.0 ? lesser(best, nextafter(limit, INFINITY)) : best;
-  robot_refinement nearest = robot_refinement_from(o, entry->pair, hulls, reach, 0.0);
+  robot_refinement nearest = robot_refinement_from(o, p, hulls, reach, 0.0);
   const cprox_status status = robot_refine_elements(o, &nearest);
-  if (status >= 0 && nearest.complete) entry->lower = fmax(entry->lower, nearest.rest - displacement - hulls->slack);
+  if (status >= 0 && nearest.complete)
+    entry->lower = fmax(entry->lower, nearest.rest - p->motion->displacement - hulls->slack);
   return status;
 }
 
 /* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
-static cprox_status refine_pair_elements(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
-                                         double displacement) {
-  const double spare = 4.0 * hulls->slack;
-  robot_refinement c =
-      robot_refinement_from(o, entry->pair, hulls, robot_pruning_bound(o) + displacement + spare, displacement + spare);
+static cprox_status refine_pair_elements(robot_search *o, const placed_robot_pair *p, search_node *node,
+                                         list_entry *entry, const robot_gap *hulls) {
+  const double displacement = p->motion->displacement, room = displacement + 4.0 * hulls->slack;
+  robot_refinement c = robot_refinement_from(o, p, hulls, robot_pruning_bound(o) + room, room);
   c.listing = true;
   const cprox_status status = robot_refine_elements(o, &c);
   if (status < 0) return status;
-  if (!c.complete) return o->goal.limit >= 0.0 ? bound_by_nearest(o, entry, hulls, displacement) : CPROX_OK;
+  if (!c.complete) return o->goal.limit >= 0.0 ? bound_by_nearest(o, p, entry, hulls) : CPROX_OK;
   entry->lower = fmax(entry->lower, c.rest - displacement - hulls->slack);
-  const robot_pair whole = o->scene.pairs[entry->pair];
+  const robot_pair whole = *p->pair;
   for (size_t i = 0; i < c.n_found; i++) {
     const cprox_status listed = enlist(o, node, &whole, &c.found[i]);
     if (listed < 0) return listed;
@@ -184,24 +184,24 @@ static cprox_status refine_pair_elements(robot_search *o, search_node *node, lis
 /* Raises the bound of one pair over the node that the scene is at by balls and boxes. A part that moves too far to be
  * measured wants the node cut. */
 static void bound_pair_roughly(robot_search *o, const search_node *node, list_entry *entry) {
-  const robot_pair *pair = &o->scene.pairs[entry->pair];
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  placed_robot_pair p;
+  placed_robot_pair_at(&o->scene, entry->pair, &p);
   entry->needs_split = false;
   o->balls++;
   double coarse = INFINITY;
-  if (pair->element[0] == ROBOT_WHOLE && pair->element[1] == ROBOT_WHOLE) {
-    coarse = robot_scene_coarse_displacement(&o->scene, pair);
-    entry->lower = greater(robot_pair_balls(moving, standing) - coarse, entry->lower);
+  if (robot_pair_is_whole(p.pair)) {
+    coarse = placed_robot_pair_coarse_displacement(&p);
+    entry->lower = greater(robot_pair_balls(p.moving, p.standing) - coarse, entry->lower);
     if (robot_is_pruned(o, entry->lower)) return;
   }
-  const double apart = robot_pair_ball_distance(moving, standing);
+  const double apart = robot_pair_ball_distance(p.moving, p.standing);
   entry->lower = greater(apart - coarse, entry->lower);
   if (robot_is_pruned(o, entry->lower)) return;
-  const double displacement = robot_scene_displacement(&o->scene, pair, moving);
+  const double displacement = placed_robot_pair_displacement(&p);
   entry->lower = greater(apart - displacement, entry->lower);
-  const double size = greater(MOST_DISPLACEMENT * apart, moving->radius);
+  const double size = greater(MOST_DISPLACEMENT * apart, p.moving->radius);
   if (robot_is_pruned(o, entry->lower) || !(displacement > size) || robot_is_short(o, node)) return;
-  const double round = robot_scene_round_displacement(&o->scene, pair, moving);
+  const double round = placed_robot_pair_round_displacement(&p);
   entry->lower = greater(apart - round, entry->lower);
   if (robot_is_pruned(o, entry->lower) || round <= size) return;
   entry->needs_split = true;
@@ -215,9 +215,9 @@ static inline cprox_status keep_open(robot_search *o, const list_entry *entry) {
 }
 
 /* The clusters of one side take the place of the pair. */
-static cprox_status open_pair(robot_search *o, const search_node *node, list_entry *entry) {
+static cprox_status open_pair(robot_search *o, const placed_robot_pair *p, const search_node *node, list_entry *entry) {
   uint32_t count;
-  const int32_t first = robot_scene_open_pair(&o->scene, entry->pair, &count);
+  const int32_t first = placed_robot_pair_open(p, &count);
   if (first < 0) return robot_no_memory(o);
   o->refined = true;
   cprox_status status = CPROX_OK;
@@ -232,11 +232,12 @@ static cprox_status open_pair(robot_search *o, const search_node *node, list_ent
 
 /* Of a posture the nearest elements say all. What is nearer than the best by no more than rounding is not looked for.
  */
-static cprox_status bound_posture(robot_search *o, list_entry *entry, const robot_gap *hulls) {
+static cprox_status bound_posture(robot_search *o, const placed_robot_pair *p, list_entry *entry,
+                                  const robot_gap *hulls) {
   const double rounding = hulls->slack;
   const double reach =
       o->goal.limit < 0.0 ? lesser(o->best_bound.upper, o->goal.cutoff) : robot_pruning_bound(o) + 4.0 * rounding;
-  robot_refinement c = robot_refinement_from(o, entry->pair, hulls, reach, -rounding);
+  robot_refinement c = robot_refinement_from(o, p, hulls, reach, -rounding);
   const cprox_status status = robot_refine_elements(o, &c);
   if (status >= 0 && c.complete) entry->lower = fmax(entry->lower, c.rest - hulls->slack);
   return status;
@@ -244,23 +245,21 @@ static cprox_status bound_posture(robot_search *o, list_entry *entry, const robo
 
 /* The same by planes and distances, the cheapest way that settles it. */
 static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
-  robot_pair *pair = &o->scene.pairs[entry->pair];
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  *slack = moving->side.error + standing->side.error;
-  chain_motion own;
-  const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
-  const double displacement = motion->displacement;
-  const bool can_open = robot_can_open((const robot_body *const[2]){moving, standing});
+  placed_robot_pair p;
+  placed_robot_pair_at(&o->scene, entry->pair, &p);
+  *slack = p.moving->side.error + p.standing->side.error;
+  const double displacement = placed_robot_pair_move(&p)->displacement;
+  const bool can_open = robot_can_open((const robot_body *const[2]){p.moving, p.standing});
 
-  if (!pair->normal_known) keep_guess(o, pair, moving, standing);
-  if (pair->normal_known) {
-    const double bound = bound_by_normal(o, pair, moving, standing, motion, robot_pruning_bound(o), slack);
+  if (!p.pair->normal_known) keep_guess(o, &p);
+  if (p.pair->normal_known) {
+    const double bound = bound_by_normal(o, &p, robot_pruning_bound(o), slack);
     entry->lower = fmax(entry->lower, bound);
     if (robot_is_pruned(o, entry->lower)) return CPROX_OK;
 
     /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much
      * more */
-    const double pieces = o->goal.limit >= 0.0 ? pieces_for(o, plane_middle(o, pair, moving, standing), bound) : 2.0;
+    const double pieces = o->goal.limit >= 0.0 ? pieces_for(o, plane_middle(o, &p), bound) : 2.0;
     if (pieces > ENOUGH_PIECES && !robot_is_short(o, node)) {
       want_pieces(o, pieces);
       return CPROX_OK;
@@ -271,34 +270,32 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   if (o->cut) return CPROX_OK;
   robot_gap gap;
   const robot_accuracy accuracy = {ROBOT_GAP_FRACTION * o->goal.epsilon, robot_pruning_bound(o), EXCESS_FRACTION,
-                                   known_normal(o, pair), o->goal.is_signed};
-  const cprox_status status = robot_measure(o, entry->pair, accuracy, &gap);
+                                   known_normal(o, p.pair), o->goal.is_signed};
+  const cprox_status status = robot_measure(o, &p, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - displacement);
-  if (pair->normal_known && (gap.upper > 0.0 || o->goal.is_signed))
-    entry->lower = fmax(entry->lower, bound_by_gap(o, pair, moving, standing, motion, &gap, slack));
+  if (p.pair->normal_known && (gap.upper > 0.0 || o->goal.is_signed))
+    entry->lower = fmax(entry->lower, bound_by_gap(o, &p, &gap, slack));
   if (robot_is_pruned(o, entry->lower)) return CPROX_OK;
-  if (o->scene.motion->is_state && !robot_is_convex(moving, standing)) return bound_posture(o, entry, &gap);
+  if (o->scene.motion->is_state && !placed_robot_pair_is_convex(&p)) return bound_posture(o, &p, entry, &gap);
   const double pieces = pieces_for(o, gap.lower, entry->lower);
-  const robot_pair *whole = &o->scene.pairs[entry->pair];
-  if (can_open && !robot_is_pruned(o, gap.lower) && o->goal.limit < 0.0 && whole->element[0] == ROBOT_WHOLE &&
-      whole->element[1] == ROBOT_WHOLE) {
-    const cprox_status refined = bound_by_nearest(o, entry, &gap, displacement);
+  if (can_open && !robot_is_pruned(o, gap.lower) && o->goal.limit < 0.0 && robot_pair_is_whole(p.pair)) {
+    const cprox_status refined = bound_by_nearest(o, &p, entry, &gap);
     if (refined < 0 || robot_is_pruned(o, entry->lower)) return refined;
   }
   const bool too_many = o->n_next > MOST_OPEN && !robot_is_short(o, node);
   if (can_open && !too_many && (!robot_is_pruned(o, gap.lower) || robot_is_short(o, node)))
-    return open_pair(o, node, entry);
+    return open_pair(o, &p, node, entry);
   want_pieces(o, pieces);
-  if (can_open || robot_is_convex(moving, standing) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
+  if (can_open || placed_robot_pair_is_convex(&p) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
   if (o->goal.limit < 0.0 && gap.lower < o->best_bound.upper) {
-    const cprox_status refined = bound_by_nearest(o, entry, &gap, displacement);
+    const cprox_status refined = bound_by_nearest(o, &p, entry, &gap);
     if (refined < 0 || robot_is_pruned(o, entry->lower)) return refined;
   }
   if (robot_is_pruned(o, gap.lower) && !robot_is_short(o, node)) return CPROX_OK;
-  return refine_pair_elements(o, node, entry, &gap, displacement);
+  return refine_pair_elements(o, &p, node, entry, &gap);
 }
 
 /* The pairs of a part and the target in a box of the set's tree. */
@@ -462,13 +459,13 @@ static cprox_status measure_standing(robot_search *o, list_entry *entry) {
                                    .fraction = EXCESS_FRACTION,
                                    .depth = o->goal.is_signed};
   robot_gap gap;
-  const cprox_status status = robot_measure(o, entry->pair, accuracy, &gap);
+  placed_robot_pair p;
+  placed_robot_pair_at(&o->scene, entry->pair, &p);
+  const cprox_status status = robot_measure(o, &p, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower);
-  const robot_pair *pair = &o->scene.pairs[entry->pair];
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  if (robot_is_convex(moving, standing) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
-  return bound_posture(o, entry, &gap);
+  if (placed_robot_pair_is_convex(&p) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
+  return bound_posture(o, &p, entry, &gap);
 }
 
 static cprox_status settle_entries(robot_search *o) {

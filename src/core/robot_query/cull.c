@@ -24,7 +24,8 @@ int32_t cluster_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count)
   }
   int32_t first = -1;
   for (size_t i = 0; i < *count; i++) {
-    const robot_pair pair = {.moving = part, .standing = obstacle + (int32_t)i, .element = {-1, -1}, .near = {-1, -1}};
+    const planned_pair two = {.moving = part, .standing = obstacle + (int32_t)i};
+    const robot_pair pair = robot_scene_pair_of(s, &two, false);
     const int32_t added = robot_scene_add_pair(s, &pair);
     if (added < 0) return -1;
     if (i == 0) first = added;
@@ -99,8 +100,7 @@ static void from_turned_boxes(const double *rows, const cluster_view *v, double 
 
 cluster_view cluster_see(robot_scene *s, int32_t part, bool moves) {
   const obstacle_bvh *set = s->q->set;
-  const robot_pair any = {.moving = part, .element = {-1, -1}};
-  const robot_body *body = robot_scene_moving(s, &any);
+  const robot_body *body = robot_scene_part(s, part);
   const double sizes = vec_norm(body->side.at.p) + vec_norm(set->centre) + set->boxes->scale + body->radius;
   const double ball = TREE_ROUND * ROUND_U, box = (3.0 * TREE_ROUND + ROUND_JOINT * (body->steps + 1.0)) * ROUND_U;
   cluster_view v = {.part = part,
@@ -109,7 +109,7 @@ cluster_view cluster_see(robot_scene *s, int32_t part, bool moves) {
                     .middle = body->side.middle,
                     .half = body->side.half,
                     .radius = body->radius,
-                    .displacement = moves ? robot_scene_coarse_displacement(s, &any) : 0.0,
+                    .displacement = moves ? robot_scene_part_displacement(s, part) : 0.0,
                     .beyond_ball = body->radius + ROUND_UP * (body->side.error + ball * sizes),
                     .beyond_box = body->side.margin + ROUND_UP * (body->side.error + box * sizes)};
   for (int i = 0; i < 9; i++) v.r[i] = body->side.at.r[i];

@@ -6,7 +6,7 @@
 #define CPROX_ROBOT_QUERY_CULL_H
 
 #include "bvh/bvh.h"
-#include "robot_query/pair_state.h"
+#include "robot_query/robot_scene.h"
 
 /* A part in the middle of the node at hand, as the tree's boxes see it. */
 typedef struct cluster_view {

@@ -13,11 +13,12 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/pair_distance.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_lists.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_plan.c
-  ${CMAKE_CURRENT_LIST_DIR}/pair_state.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_table.c
+  ${CMAKE_CURRENT_LIST_DIR}/placed_robot_pair.c
   ${CMAKE_CURRENT_LIST_DIR}/prove_contact.c
   ${CMAKE_CURRENT_LIST_DIR}/rank.c
   ${CMAKE_CURRENT_LIST_DIR}/refine.c
+  ${CMAKE_CURRENT_LIST_DIR}/robot_scene.c
   ${CMAKE_CURRENT_LIST_DIR}/settle_flight.c
   ${CMAKE_CURRENT_LIST_DIR}/starts.c
 )

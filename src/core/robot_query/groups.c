@@ -258,8 +258,7 @@ static void place_group(robot_scene *s, int32_t group) {
   double *seen = g->seen ? g->seen + (size_t)group * g->depths + robot_axis_depth(s->motion->robot, of->axis) : NULL;
   if (seen) *seen = 0.0;
   if (of->half < 0) {
-    const robot_pair any = {.moving = g->of->part[of->first], .element = {ROBOT_WHOLE, ROBOT_WHOLE}};
-    const robot_body *body = robot_scene_moving(s, &any);
+    const robot_body *body = robot_scene_part(s, g->of->part[of->first]);
     state->centre = body->side.at.p;
     state->radius = ROUND_UP * (body->radius + body->side.error);
     state->core = ROUND_UP * robot_core_radius(body);
@@ -355,7 +354,7 @@ int32_t robot_groups_pair(robot_scene *s, group_pair pair) {
   const int32_t moving = parts[first_moves ? 0 : 1], standing = parts[first_moves ? 1 : 0];
   const int32_t known = pair_table_find(&s->met, MADE_SELF_PAIRS, moving, (uint32_t)standing);
   if (known >= 0) return known;
-  const robot_pair made = robot_scene_self_pair(s, moving, standing);
+  const robot_pair made = robot_scene_pair_of(s, &(planned_pair){.moving = moving, .standing = standing}, true);
   const int32_t number = robot_scene_add_pair(s, &made);
   if (number < 0) return -1;
   return pair_table_note(&s->met, s->q->workspace, MADE_SELF_PAIRS, moving, (uint32_t)standing, number) ? number : -1;

@@ -4,7 +4,7 @@
 #ifndef CPROX_ROBOT_QUERY_GROUPS_H
 #define CPROX_ROBOT_QUERY_GROUPS_H
 
-#include "robot_query/pair_state.h"
+#include "robot_query/robot_scene.h"
 
 /* Two groups of parts; both may be the same one: all pairs of its parts. */
 typedef struct group_pair {

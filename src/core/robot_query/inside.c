@@ -49,9 +49,10 @@ static bool find_convex(const robot_body *host, const robot_body *guest, vec3 *w
 
 /* The pair's hulls or balls tell most apart; then each solid side is asked about the other one. */
 static cprox_status look_at_pair(robot_search *o, int32_t index) {
-  const robot_pair *pair = &o->scene.pairs[index];
-  if (pair->element[0] != ROBOT_WHOLE || pair->element[1] != ROBOT_WHOLE) return CPROX_OK;
-  const robot_body *const side[2] = {robot_scene_moving(&o->scene, pair), robot_scene_standing(&o->scene, pair)};
+  if (!robot_pair_is_whole(&o->scene.pairs[index])) return CPROX_OK;
+  placed_robot_pair p;
+  placed_robot_pair_at(&o->scene, index, &p);
+  const robot_body *const side[2] = {p.moving, p.standing};
   if (!side[0]->winding && !side[1]->winding) return CPROX_OK;
   if (robot_is_answered(o) || robot_pair_balls(side[0], side[1]) > 0.0) return CPROX_OK;
   if (robot_pair_ball_distance(side[0], side[1]) > 0.0) return CPROX_OK;
@@ -81,8 +82,8 @@ static cprox_status look_at_pair(robot_search *o, int32_t index) {
 cprox_status robot_look_inside(robot_search *o, const search_node *node) {
   if (o->looked_inside || !o->scene.has_solids) return CPROX_OK;
   o->looked_inside = true;
-  cprox_status status = robot_visit_near(o, node, look_at_pair);
-  if (status >= 0 && !isfinite(o->touch_at)) status = robot_visit_near_standing(o, node, look_at_pair);
+  cprox_status status = robot_visit_near(o, node, robot_known(node)->list, look_at_pair);
+  if (status >= 0 && !isfinite(o->touch_at)) status = robot_visit_near(o, node, o->standing, look_at_pair);
   if (o->unsure) o->dropped = fmin(o->dropped, 0.0);
   return status;
 }

@@ -63,8 +63,9 @@ void robot_place_normal(const robot_search *o, robot_pair *pair, vec3 normal) {
   place_normal_at(o, pair, normal, o->scene.centre.segment, o->scene.centre.u);
 }
 
-void robot_keep_normal(const robot_search *o, robot_pair *pair, const robot_body *standing, const robot_gap *gap) {
-  if (vec_norm2(gap->normal) > 0.0) robot_place_normal(o, pair, placement_turn_back(&standing->side.at, gap->normal));
+void robot_keep_normal(const robot_search *o, const placed_robot_pair *p, const robot_gap *gap) {
+  if (vec_norm2(gap->normal) > 0.0)
+    robot_place_normal(o, p->pair, placement_turn_back(&p->standing->side.at, gap->normal));
 }
 
 static cprox_status measure_bodies(robot_search *o, const robot_body *moving, const robot_body *standing,
@@ -84,24 +85,19 @@ cprox_status robot_measure_placed(robot_search *o, int32_t index, const robot_bo
   return CPROX_OK;
 }
 
-cprox_status robot_measure(robot_search *o, int32_t index, robot_accuracy accuracy, robot_gap *gap) {
-  robot_pair *pair = &o->scene.pairs[index];
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  const cprox_status status = measure_bodies(o, moving, standing, accuracy, gap);
+cprox_status robot_measure(robot_search *o, const placed_robot_pair *p, robot_accuracy accuracy, robot_gap *gap) {
+  const cprox_status status = measure_bodies(o, p->moving, p->standing, accuracy, gap);
   if (status < 0) return status;
-  robot_keep_normal(o, pair, standing, gap);
-  if (robot_is_convex(moving, standing)) keep_sample(o, index, gap);
+  robot_keep_normal(o, p, gap);
+  if (placed_robot_pair_is_convex(p)) keep_sample(o, p->index, gap);
   return CPROX_OK;
 }
 
-robot_refinement robot_refinement_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach,
-                                       double room) {
-  const robot_pair *pair = &o->scene.pairs[index];
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  const double most = fmax(hulls->upper, 0.0) + (moving->tree ? 4.0 * moving->radius : 0.0) +
-                      (standing->tree ? 4.0 * standing->radius : 0.0);
-  return (robot_refinement){.scene = &o->scene,
-                            .pair = index,
+robot_refinement robot_refinement_from(robot_search *o, const placed_robot_pair *p, const robot_gap *hulls,
+                                       double reach, double room) {
+  const double most = fmax(hulls->upper, 0.0) + (p->moving->tree ? 4.0 * p->moving->radius : 0.0) +
+                      (p->standing->tree ? 4.0 * p->standing->radius : 0.0);
+  return (robot_refinement){.pair = p,
                             .reach = fmin(reach, most + room),
                             .room = room,
                             .goal = &o->goal,
@@ -117,146 +113,162 @@ cprox_status robot_refine_elements(robot_search *o, robot_refinement *c) {
   o->refined = true;
   if (c->support_failed) return refuse_callback(o);
   if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
-  if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair, &c->nearest.gap);
+  if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair->index, &c->nearest.gap);
   return CPROX_OK;
 }
 
-cprox_status robot_measure_whole(robot_search *o, int32_t index) {
+static cprox_status measure_whole(robot_search *o, const placed_robot_pair *p) {
   robot_gap gap;
   const double floor = o->goal.is_signed ? robot_pruning_bound(o) : fmax(o->goal.limit, 0.0);
-  const cprox_status status = robot_measure(o, index,
+  const cprox_status status = robot_measure(o, p,
                                             (robot_accuracy){.epsilon = ROBOT_GAP_FRACTION * o->goal.epsilon,
                                                              .floor = floor,
                                                              .fraction = SEED_FRACTION,
                                                              .depth = o->goal.is_signed},
                                             &gap);
-  const robot_pair *pair = &o->scene.pairs[index];
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   /* a verdict is not about what is farther than its limit */
   const bool verdict = o->goal.limit >= 0.0 && o->goal.order != SEARCH_LEFT_TO_RIGHT;
   const double most = verdict ? lesser(o->best_bound.upper, o->goal.limit + o->goal.epsilon) : o->best_bound.upper;
-  if (status < 0 || robot_is_convex(moving, standing) || gap.lower >= most) return status;
-  robot_refinement c = robot_refinement_from(o, index, &gap, most, 0.0);
+  if (status < 0 || placed_robot_pair_is_convex(p) || gap.lower >= most) return status;
+  robot_refinement c = robot_refinement_from(o, p, &gap, most, 0.0);
   return robot_refine_elements(o, &c);
 }
 
-/* The pair that comes closest by balls and boxes. */
-typedef struct nearest_pair {
-  double apart;
-  int32_t pair; /* -1: none is nearer */
-} nearest_pair;
-
-static void try_pair(robot_search *o, int32_t index, nearest_pair *nearest) {
-  const robot_pair *pair = &o->scene.pairs[index];
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  o->balls++;
-  if (robot_pair_balls(moving, standing) >= nearest->apart) return;
-  const double apart = robot_pair_ball_distance(moving, standing);
-  if (apart < nearest->apart) *nearest = (nearest_pair){.apart = apart, .pair = index};
+cprox_status robot_measure_whole(robot_search *o, int32_t index) {
+  placed_robot_pair p;
+  placed_robot_pair_at(&o->scene, index, &p);
+  return measure_whole(o, &p);
 }
 
-/* What is to be opened, the nearest on top. */
-typedef struct cluster_stack {
-  uint32_t at[TREE_LANES * TREE_DEEPEST];
-  double apart[TREE_LANES * TREE_DEEPEST];
-  size_t count;
-} cluster_stack;
+/* ---- near pairs ---- */
 
-static void push_nearest_last(cluster_stack *stack, const cluster_lanes *lanes, double most) {
-  const size_t first = stack->count;
-  for (uint32_t l = 0; l < TREE_LANES; l++) {
-    if (!(lanes->live >> l & 1u) || !(lanes->apart[l] < most)) continue;
-    size_t i = stack->count++;
-    for (; i > first && stack->apart[i - 1] < lanes->apart[l]; i--)
-      stack->apart[i] = stack->apart[i - 1], stack->at[i] = stack->at[i - 1];
-    stack->apart[i] = lanes->apart[l], stack->at[i] = lanes->under[l];
-  }
+/* Through all that entries of lists stand for, the nearest first. */
+typedef struct pair_walk {
+  robot_pair_visit *visit; /* NULL: the pair that comes closest by balls and boxes is wanted */
+  double reach;            /* what is farther in the middle of the node is of no interest; how near that pair is, */
+  int32_t nearest;         /* and its number; -1: none is nearer */
+  double known;            /* it ends where contact is proven earlier than this */
+} pair_walk;
+
+static pair_walk walk_for(const robot_search *o, robot_pair_visit *visit, double reach) {
+  return (pair_walk){.visit = visit, .reach = reach, .nearest = -1, .known = o->touch_at};
+}
+
+static cprox_status walk_pair(robot_search *o, pair_walk *w, int32_t index) {
+  if (w->visit) return w->visit(o, index);
+  placed_robot_pair p;
+  placed_robot_pair_at(&o->scene, index, &p);
+  o->balls++;
+  if (robot_pair_balls(p.moving, p.standing) >= w->reach) return CPROX_OK;
+  const double apart = robot_pair_ball_distance(p.moving, p.standing);
+  if (apart < w->reach) w->reach = apart, w->nearest = index;
+  return CPROX_OK;
 }
 
 cprox_status robot_no_memory(const robot_search *o) {
   return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
 }
 
-/* The same of all that is under a node of the set's tree. */
-static cprox_status try_cluster(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
+/* What is to be opened, the nearest on top: nodes of the set's tree, or pairs of groups. */
+typedef struct walk_stack {
+  size_t count;
+  struct walk_place {
+    double apart;
+    uint32_t under;
+    group_pair groups;
+  } at[TREE_LANES * TREE_DEEPEST > GROUP_STACK ? TREE_LANES *TREE_DEEPEST : GROUP_STACK];
+} walk_stack;
+
+/* Among those from `first` on, where it is near enough. */
+static void walk_push(walk_stack *stack, size_t first, const pair_walk *w, struct walk_place place) {
+  if (!(place.apart < w->reach)) return;
+  size_t i = stack->count++;
+  for (; i > first && stack->at[i - 1].apart < place.apart; i--) stack->at[i] = stack->at[i - 1];
+  stack->at[i] = place;
+}
+
+/* Whether there is one that is still near enough; it becomes *place. */
+static bool walk_pop(const robot_search *o, walk_stack *stack, const pair_walk *w, struct walk_place *place) {
+  while (stack->count > 0 && o->touch_at == w->known) {
+    *place = stack->at[--stack->count];
+    if (place->apart < w->reach) return true;
+  }
+  return false;
+}
+
+/* All that is under a node of the set's tree, for one part. */
+static cprox_status walk_cluster(robot_search *o, pair_walk *w, const list_entry *entry) {
   const cluster_view view = cluster_see(&o->scene, entry->part, false);
-  cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
-  while (stack.count > 0) {
-    const uint32_t at = stack.at[--stack.count];
-    if (stack.apart[stack.count] >= nearest->apart) continue;
+  walk_stack stack;
+  struct walk_place top = {.apart = -INFINITY, .under = entry->under};
+  cprox_status status = CPROX_OK;
+  stack.count = 0;
+  walk_push(&stack, 0, w, top);
+  while (status >= 0 && walk_pop(o, &stack, w, &top)) {
     cluster_lanes lanes;
-    cluster_measure(&view, at, INFINITY, &lanes);
-    if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, nearest->apart);
-    for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
-      if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < nearest->apart)) continue;
+    cluster_measure(&view, top.under, INFINITY, &lanes);
+    const size_t first = stack.count;
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < w->reach)) continue;
+      if (!(top.under & TREE_LEAF)) {
+        walk_push(&stack, first, w, (struct walk_place){.apart = lanes.apart[l], .under = lanes.under[l]});
+        continue;
+      }
       size_t count;
       const int32_t pairs = cluster_pairs(&o->scene, entry->part, lanes.under[l], &count);
       if (pairs < 0) return robot_no_memory(o);
-      for (size_t k = 0; k < count; k++) try_pair(o, pairs + (int32_t)k, nearest);
+      for (size_t k = 0; k < count && status >= 0; k++) status = walk_pair(o, w, pairs + (int32_t)k);
     }
   }
-  return CPROX_OK;
+  return status;
 }
 
-/* What two groups consist of, of what is nearer than `most`; the nearest on top, groups with themselves above all. */
-typedef struct group_stack {
-  group_pair at[GROUP_STACK];
-  double apart[GROUP_STACK];
-  size_t count;
-} group_stack;
-
-static void begin_groups(group_stack *stack, group_pair groups) {
-  stack->at[0] = groups, stack->apart[0] = -INFINITY;
-  stack->count = 1;
-}
-
-static void push_groups_inside(robot_search *o, group_stack *stack, group_pair groups, double most) {
-  group_pair inside[GROUP_PAIRS_INSIDE];
-  const size_t n = robot_groups_open(&o->scene, groups, inside), first = stack->count;
-  for (size_t k = 0; k < n; k++) {
-    const double apart = group_pair_is_one(inside[k]) ? -INFINITY : robot_groups_apart(&o->scene, inside[k]);
-    if (!(apart < most)) continue;
-    size_t i = stack->count++;
-    for (; i > first && stack->apart[i - 1] < apart; i--)
-      stack->apart[i] = stack->apart[i - 1], stack->at[i] = stack->at[i - 1];
-    stack->apart[i] = apart, stack->at[i] = inside[k];
-  }
-}
-
-/* The pair that comes closest of those of two groups. */
-static cprox_status try_groups(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
-  group_stack stack;
-  begin_groups(&stack, (group_pair){{entry->part, (int32_t)entry->under}});
-  while (stack.count > 0) {
-    const group_pair groups = stack.at[--stack.count];
-    if (stack.apart[stack.count] >= nearest->apart) continue;
-    if (robot_groups_are_parts(&o->scene, groups)) {
-      const int32_t pair = robot_groups_pair(&o->scene, groups);
+/* The pairs of two groups; groups with themselves are above all. */
+static cprox_status walk_groups(robot_search *o, pair_walk *w, group_pair groups) {
+  walk_stack stack;
+  struct walk_place top = {.apart = -INFINITY, .groups = groups};
+  cprox_status status = CPROX_OK;
+  stack.count = 0;
+  walk_push(&stack, 0, w, top);
+  while (status >= 0 && walk_pop(o, &stack, w, &top)) {
+    if (robot_groups_are_parts(&o->scene, top.groups)) {
+      const int32_t pair = robot_groups_pair(&o->scene, top.groups);
       if (pair < 0) return robot_no_memory(o);
-      try_pair(o, pair, nearest);
-    } else {
-      push_groups_inside(o, &stack, groups, nearest->apart);
+      status = walk_pair(o, w, pair);
+      continue;
+    }
+    group_pair inside[GROUP_PAIRS_INSIDE];
+    const size_t n = robot_groups_open(&o->scene, top.groups, inside), first = stack.count;
+    for (size_t k = 0; k < n; k++) {
+      const double apart = group_pair_is_one(inside[k]) ? -INFINITY : robot_groups_apart(&o->scene, inside[k]);
+      walk_push(&stack, first, w, (struct walk_place){.apart = apart, .groups = inside[k]});
     }
   }
-  return CPROX_OK;
+  return status;
+}
+
+static cprox_status walk_list(robot_search *o, pair_walk *w, int32_t list) {
+  const size_t n = lists_count(&o->lists, list);
+  cprox_status status = CPROX_OK;
+  for (size_t k = 0; k < n && status >= 0 && o->touch_at == w->known; k++) {
+    const list_entry entry = lists_at(&o->lists, list)[k];
+    if (!w->visit && entry.lower >= w->reach) continue;
+    if (entry.pair >= 0)
+      status = walk_pair(o, w, entry.pair);
+    else if (entry.pair == LIST_CLUSTER)
+      status = walk_cluster(o, w, &entry);
+    else
+      status = walk_groups(o, w, (group_pair){{entry.part, (int32_t)entry.under}});
+  }
+  return status;
 }
 
 cprox_status robot_seed_here(robot_search *o, int32_t list) {
   double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
   if (o->best.pair >= 0) most = lesser(most, o->goal.cutoff); /* one distance is always measured */
-  const size_t n = lists_count(&o->lists, list);
-  nearest_pair nearest = {.apart = most, .pair = -1};
-  for (size_t k = 0; k < n; k++) {
-    const list_entry entry = lists_at(&o->lists, list)[k];
-    cprox_status status = CPROX_OK;
-    if (entry.lower >= nearest.apart) continue;
-    if (entry.pair >= 0)
-      try_pair(o, entry.pair, &nearest);
-    else
-      status = entry.pair == LIST_CLUSTER ? try_cluster(o, &entry, &nearest) : try_groups(o, &entry, &nearest);
-    if (status < 0) return status;
-  }
-  return nearest.pair < 0 ? CPROX_OK : robot_measure_whole(o, nearest.pair);
+  pair_walk walk = walk_for(o, NULL, most);
+  const cprox_status status = walk_list(o, &walk, list);
+  return status < 0 || walk.nearest < 0 ? status : robot_measure_whole(o, walk.nearest);
 }
 
 size_t robot_knot_near(const cprox_motion *m, size_t first, size_t last, size_t step, double t) {
@@ -323,83 +335,27 @@ static cprox_status seed_span(robot_search *o, int32_t list, const motion_interv
 }
 
 cprox_status robot_measure_if_near(robot_search *o, int32_t index) {
-  const robot_pair *pair = &o->scene.pairs[index];
-  if (pair->element[0] != ROBOT_WHOLE || pair->element[1] != ROBOT_WHOLE) return CPROX_OK;
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  if (robot_pair_balls(moving, standing) > o->goal.epsilon) return CPROX_OK;
-  return robot_pair_ball_distance(moving, standing) > o->goal.epsilon ? CPROX_OK : robot_measure_whole(o, index);
-}
-
-/* Pairs under a node of the set's tree that may touch, until contact is proven. */
-static cprox_status visit_near_cluster(robot_search *o, const list_entry *entry, robot_pair_visit *visit) {
-  const cluster_view view = cluster_see(&o->scene, entry->part, false);
-  const double known = o->touch_at;
-  cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
-  cprox_status status = CPROX_OK;
-  while (stack.count > 0 && status >= 0 && o->touch_at == known) {
-    const uint32_t at = stack.at[--stack.count];
-    const double near = nextafter(o->goal.epsilon, INFINITY);
-    cluster_lanes lanes;
-    cluster_measure(&view, at, INFINITY, &lanes);
-    if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, near);
-    for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
-      if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < near)) continue;
-      size_t count;
-      const int32_t pairs = cluster_pairs(&o->scene, entry->part, lanes.under[l], &count);
-      if (pairs < 0) return robot_no_memory(o);
-      for (size_t k = 0; k < count && status >= 0; k++) status = visit(o, pairs + (int32_t)k);
-    }
-  }
-  return status;
+  if (!robot_pair_is_whole(&o->scene.pairs[index])) return CPROX_OK;
+  placed_robot_pair p;
+  placed_robot_pair_at(&o->scene, index, &p);
+  if (robot_pair_balls(p.moving, p.standing) > o->goal.epsilon) return CPROX_OK;
+  return robot_pair_ball_distance(p.moving, p.standing) > o->goal.epsilon ? CPROX_OK : measure_whole(o, &p);
 }
 
 cprox_status robot_visit_near_groups(robot_search *o, group_pair groups, robot_pair_visit *visit) {
-  const double known = o->touch_at, near = nextafter(o->goal.epsilon, INFINITY);
-  group_stack stack;
-  begin_groups(&stack, groups);
-  cprox_status status = CPROX_OK;
-  while (stack.count > 0 && status >= 0 && o->touch_at == known) {
-    const group_pair top = stack.at[--stack.count];
-    if (!robot_groups_are_parts(&o->scene, top)) {
-      push_groups_inside(o, &stack, top, near);
-      continue;
-    }
-    const int32_t pair = robot_groups_pair(&o->scene, top);
-    if (pair < 0) return robot_no_memory(o);
-    status = visit(o, pair);
-  }
-  return status;
+  pair_walk walk = walk_for(o, visit, nextafter(o->goal.epsilon, INFINITY));
+  return walk_groups(o, &walk, groups);
 }
 
-static cprox_status visit_near_list(robot_search *o, int32_t list, robot_pair_visit *visit) {
-  const double known = o->touch_at;
-  const size_t n = lists_count(&o->lists, list);
-  cprox_status status = CPROX_OK;
-  for (size_t k = 0; k < n && status >= 0 && o->touch_at == known; k++) {
-    const list_entry entry = lists_at(&o->lists, list)[k];
-    if (entry.pair >= 0)
-      status = visit(o, entry.pair);
-    else if (entry.pair == LIST_CLUSTER)
-      status = visit_near_cluster(o, &entry, visit);
-    else
-      status = robot_visit_near_groups(o, (group_pair){{entry.part, (int32_t)entry.under}}, visit);
-  }
-  return status;
-}
-
-cprox_status robot_visit_near(robot_search *o, const search_node *node, robot_pair_visit *visit) {
+cprox_status robot_visit_near(robot_search *o, const search_node *node, int32_t list, robot_pair_visit *visit) {
+  if (list < 0) return CPROX_OK;
   const robot_node *payload = robot_known(node);
+  const bool stands = o->scene.groups && list == o->standing;
+  pair_walk walk = walk_for(o, visit, nextafter(o->goal.epsilon, INFINITY));
   robot_scene_enter(&o->scene, payload->first, payload->a, payload->a);
-  return visit_near_list(o, payload->list, visit);
-}
-
-cprox_status robot_visit_near_standing(robot_search *o, const search_node *root, robot_pair_visit *visit) {
-  if (o->standing < 0) return CPROX_OK;
-  const robot_node *payload = robot_known(root);
-  robot_scene_enter(&o->scene, payload->first, payload->a, payload->a);
-  if (o->scene.groups) robot_groups_choose(&o->scene, PAIRS_STANDING);
-  const cprox_status status = visit_near_list(o, o->standing, visit);
-  if (o->scene.groups) robot_groups_choose(&o->scene, PAIRS_MOVING);
+  if (stands) robot_groups_choose(&o->scene, PAIRS_STANDING);
+  const cprox_status status = walk_list(o, &walk, list);
+  if (stands) robot_groups_choose(&o->scene, PAIRS_MOVING);
   return status;
 }
 

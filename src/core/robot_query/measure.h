@@ -24,17 +24,13 @@ static inline bool robot_is_answered(const robot_search *o) {
   return search_is_answered(&o->goal, o->best_bound.upper);
 }
 
-static inline bool robot_is_convex(const robot_body *moving, const robot_body *standing) {
-  return !moving->tree && !standing->tree;
-}
-
 /* Found where the scene is. */
 void robot_place_normal(const robot_search *o, robot_pair *pair, vec3 normal);
 
-void robot_keep_normal(const robot_search *o, robot_pair *pair, const robot_body *standing, const robot_gap *gap);
+void robot_keep_normal(const robot_search *o, const placed_robot_pair *placed, const robot_gap *gap);
 
 /* The distance of the convex sides of a pair; it is that of the pair itself where that has no elements. */
-cprox_status robot_measure(robot_search *o, int32_t index, robot_accuracy accuracy, robot_gap *gap);
+cprox_status robot_measure(robot_search *o, const placed_robot_pair *placed, robot_accuracy accuracy, robot_gap *gap);
 
 /* The same of two convex bodies as they are at u of a segment. The class of starts has one clock. */
 cprox_status robot_measure_placed(robot_search *o, int32_t index, const robot_body *moving, const robot_body *standing,
@@ -42,8 +38,8 @@ cprox_status robot_measure_placed(robot_search *o, int32_t index, const robot_bo
 
 /* Sets out from what is known of the hulls. No element is farther from the other side than the hulls' distance and
  * their sizes. */
-robot_refinement robot_refinement_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach,
-                                       double room);
+robot_refinement robot_refinement_from(robot_search *o, const placed_robot_pair *placed, const robot_gap *hulls,
+                                       double reach, double room);
 
 cprox_status robot_refine_elements(robot_search *o, robot_refinement *c);
 
@@ -59,9 +55,9 @@ typedef cprox_status robot_pair_visit(robot_search *o, int32_t index);
 /* Visits pairs of two groups that may touch where the scene is, until contact is proven. */
 cprox_status robot_visit_near_groups(robot_search *o, group_pair groups, robot_pair_visit *visit);
 
-/* The same of the pairs of a node, where that begins; and of those that stand still against each other. */
-cprox_status robot_visit_near(robot_search *o, const search_node *node, robot_pair_visit *visit);
-cprox_status robot_visit_near_standing(robot_search *o, const search_node *root, robot_pair_visit *visit);
+/* The same of the pairs of a list, where a node begins: the node's own, or those that stand still against each other
+ * (-1: there are none). */
+cprox_status robot_visit_near(robot_search *o, const search_node *node, int32_t list, robot_pair_visit *visit);
 
 /* The distance of a pair is 0: the point, of the world, is in both where the scene is. */
 void robot_keep_common(robot_search *o, int32_t index, vec3 point);

@@ -113,7 +113,8 @@ static cprox_status look_at(robot_search *o, search_node *node) {
   if (!o->seeded) {
     o->seeded = true;
     /* contact at the beginning answers at once; halves of halves would only close in on it */
-    if (o->goal.order == SEARCH_LEFT_TO_RIGHT) status = robot_visit_near(o, node, robot_measure_if_near);
+    if (o->goal.order == SEARCH_LEFT_TO_RIGHT)
+      status = robot_visit_near(o, node, robot_known(node)->list, robot_measure_if_near);
     if (status >= 0 && !isfinite(o->touch_at) && !others_seeded(o)) status = robot_seed(o, node);
     if (status >= 0) status = settle(o, node);
   }

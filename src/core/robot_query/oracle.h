@@ -6,8 +6,8 @@
 
 #include "branch_and_bound/search.h"
 #include "robot_query/pair_lists.h"
-#include "robot_query/pair_state.h"
 #include "robot_query/refine.h"
+#include "robot_query/robot_scene.h"
 
 /* The payload of a node: from u = a of segment `first` to u = b of segment last - 1, the same of another clock that the
  * class of starts may have, and the list of its pairs. */

@@ -36,7 +36,7 @@ static const cprox_robot_pair *given_pairs(const cprox_mover *mover, bool self, 
 
 size_t pair_plan_count_self(const cprox_mover *mover) {
   const size_t n = mover->motion->robot->n_parts, all = n * (n - 1) / 2;
-  if ((!mover_is_self(mover) && !mover_is_whole(mover)) || n < 2) return 0;
+  if (!pair_plan_has_self(mover) || n < 2) return 0;
   size_t count;
   const cprox_robot_pair *given = given_pairs(mover, true, &count);
   return given && count < all && n == mover->motion->robot->n_geometries ? count : all;
@@ -98,13 +98,13 @@ static bool take_given(pair_plan *p, const cprox_robot_pair *given, const robot_
   return took;
 }
 
-bool pair_plan_list(pair_plan *p, const robot_body *obstacles, size_t n_obstacles, bool self) {
+bool pair_plan_list(pair_plan *p, const robot_body *obstacles, size_t n_obstacles, bool grouped) {
   const cprox_mover *mover = &p->q->mover;
   const cprox_robot *robot = mover->motion->robot;
   bool took = true;
   p->n = p->n_against = 0;
   p->beyond = INFINITY;
-  for (int with = mover_is_self(mover); with <= self && took; with++) {
+  for (int with = mover_is_self(mover); with <= (pair_plan_has_self(mover) && !grouped) && took; with++) {
     size_t count;
     const cprox_robot_pair *given = given_pairs(mover, with, &count);
     for (size_t i = 0; given && i < count && took; i++) took = take_given(p, &given[i], obstacles, n_obstacles, with);
@@ -133,9 +133,4 @@ void pair_plan_leave_out(pair_plan *p, double reach) {
       p->pairs[n++] = p->pairs[i];
   }
   p->n = n;
-}
-
-void pair_plan_leave_to_groups(pair_plan *p) {
-  p->n = p->n_against;
-  p->beyond = INFINITY;
 }

@@ -24,21 +24,21 @@ typedef struct pair_plan {
   double beyond;             /* which all stay farther apart than this */
 } pair_plan;
 
-/* So many pairs with itself there are at most. */
+/* Whether pairs of the robot with itself are asked about; so many of them there are at most. */
+static inline bool pair_plan_has_self(const cprox_mover *mover) {
+  return mover_is_self(mover) || mover_is_whole(mover);
+}
 size_t pair_plan_count_self(const cprox_mover *mover);
 
 /* Lists the pairs: q, starts and reach are given. obstacles: those of one target side by side, in the order of the
- * targets; self: pairs of the robot with itself, too. False where memory is out. */
-bool pair_plan_list(pair_plan *plan, const robot_body *obstacles, size_t n_obstacles, bool self);
+ * targets; grouped: pairs of the robot with itself are left to groups of parts. False where memory is out. */
+bool pair_plan_list(pair_plan *plan, const robot_body *obstacles, size_t n_obstacles, bool grouped);
 
 /* The pair with itself that may come nearest, or NULL. */
 const planned_pair *pair_plan_nearest(const pair_plan *plan);
 
 /* A reach that was found later. */
 void pair_plan_leave_out(pair_plan *plan, double reach);
-
-/* Leaves pairs with itself to groups of parts. */
-void pair_plan_leave_to_groups(pair_plan *plan);
 
 /* The parts of a geometry stand side by side. */
 size_t pair_plan_first_part(const cprox_robot *robot, int32_t geometry);

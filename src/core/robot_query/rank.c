@@ -30,11 +30,12 @@ static size_t parts_of_pair(const ranking *r, const cprox_robot_pair *pair) {
   return parts_of_geometry(r, pair->geometry) * others;
 }
 
-static void look_at_parts(robot_scene *s, const robot_pair *pair, pair_rank *rank) {
-  const robot_body *moving = robot_scene_moving(s, pair), *standing = robot_scene_standing(s, pair);
-  const double apart = robot_pair_ball_distance(moving, standing);
+static void look_at_parts(robot_scene *s, robot_pair *pair, pair_rank *rank) {
+  placed_robot_pair p;
+  placed_robot_pair_of(s, pair, &p);
+  const double apart = robot_pair_ball_distance(p.moving, p.standing);
   rank->near = lesser(rank->near, apart);
-  if (rank->lower > -INFINITY) rank->lower = lesser(rank->lower, apart - robot_scene_coarse_displacement(s, pair));
+  if (rank->lower > -INFINITY) rank->lower = lesser(rank->lower, apart - placed_robot_pair_coarse_displacement(&p));
 }
 
 static void look_over(ranking *r, const motion_interval *over) {
@@ -87,7 +88,7 @@ static int nearer_first(const void *a, const void *b) {
 pair_rank *robot_rank_pairs(const query *q) {
   ranking r = {.q = q, .n = q->mover.n_pairs};
   r.rank = workspace_reserve(q->workspace, WORKSPACE_ROBOT_RANKING, (r.n + 1) * sizeof *r.rank);
-  if (!r.rank || !robot_scene_begin(&r.scene, q, 0, q->n, SIZE_MAX, INFINITY)) return NULL;
+  if (!r.rank || !robot_scene_begin(&r.scene, q, NULL, 0, q->n, SIZE_MAX, INFINITY)) return NULL;
   for (size_t i = 0; i < r.n; i++) r.rank[i] = (pair_rank){.lower = INFINITY, .near = INFINITY, .pair = i};
 
   const motion_interval over = motion_interval_of(q->mover.motion, q->t0, q->t1);

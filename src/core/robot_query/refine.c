@@ -119,7 +119,7 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   int32_t code[2] = {d->code[0], d->code[1]};
   code[d->through] = robot_element_code(at);
   const robot_body *side[2] = {d->side[0], d->side[1]};
-  side[d->through] = robot_element_make(side[d->through], code[d->through], &c->scene->element[d->through]);
+  side[d->through] = robot_element_make(side[d->through], code[d->through], &c->pair->scene->element[d->through]);
   const int other = 1 - d->through;
   if (side[other]->tree)
     descend_under(c, side, code, other);
@@ -173,7 +173,7 @@ typedef struct cluster_descent {
 
 static const robot_body *side_of(robot_refinement *c, const cluster_descent *d, int which, int32_t code) {
   const robot_body *whole = d->whole[which];
-  return code == ROBOT_WHOLE ? whole : robot_element_make(whole, code, &c->scene->element[which]);
+  return code == ROBOT_WHOLE ? whole : robot_element_make(whole, code, &c->pair->scene->element[which]);
 }
 
 /* What one side consists of takes its place, the nearest on top. */
@@ -218,31 +218,28 @@ static void descend_clusters(robot_refinement *c, const robot_body *const side[2
   d.whole[MOVING] = side[MOVING], d.whole[STANDING] = side[STANDING];
   d.open[0] = (open_sides){.apart = -INFINITY, .code = {ROBOT_WHOLE, ROBOT_WHOLE}};
   d.count = 1;
-  const robot_pair *pair = &c->scene->pairs[c->pair];
-  if (pair->near[MOVING] != pair->near[STANDING]) visit_sides(c, &d, pair->near);
+  robot_pair *known = c->pair->pair;
+  if (known->near[MOVING] != known->near[STANDING]) visit_sides(c, &d, known->near);
   while (d.count > 0) {
     const open_sides top = d.open[--d.count];
     if (top.apart < c->reach) visit_sides(c, &d, top.code);
   }
-  robot_pair *known = &c->scene->pairs[c->pair];
   for (int k = 0; k < 2 && c->nearest.gap.upper < INFINITY; k++) known->near[k] = c->nearest.element[k];
 }
 
 /* The standing side's elements first, where both have some: each of them is small. */
 void robot_refinement_run(robot_refinement *c) {
-  robot_scene *s = c->scene;
   c->n_found = 0, c->gaps = 0;
   c->last[0] = c->last[1] = vec(0, 0, 0);
   c->complete = true;
   c->support_failed = c->no_memory = false;
   c->nearest.gap.upper = c->least = INFINITY;
   if (c->listing) {
-    c->found = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_FOUND, MOST_FOUND * sizeof *c->found);
+    c->found = workspace_reserve(c->pair->scene->q->workspace, WORKSPACE_ROBOT_FOUND, MOST_FOUND * sizeof *c->found);
     c->no_memory = c->found == NULL;
     if (c->no_memory) return;
   }
-  const robot_pair *pair = &s->pairs[c->pair];
-  const robot_body *const side[2] = {robot_scene_moving(s, pair), robot_scene_standing(s, pair)};
+  const robot_body *const side[2] = {c->pair->moving, c->pair->standing};
   if (!c->listing && robot_can_open(side)) {
     descend_clusters(c, side);
     c->rest = fmin(c->reach, c->least);

@@ -5,7 +5,7 @@
 #define CPROX_ROBOT_QUERY_REFINE_H
 
 #include "branch_and_bound/search.h"
-#include "robot_query/pair_state.h"
+#include "robot_query/placed_robot_pair.h"
 
 /* Two elements (-1: the side is convex) that are near each other. */
 typedef struct robot_found {
@@ -14,8 +14,7 @@ typedef struct robot_found {
 } robot_found;
 
 typedef struct robot_refinement {
-  robot_scene *scene;
-  int32_t pair;      /* of whole sides, of which one at least is made of elements */
+  const placed_robot_pair *pair; /* of whole sides, of which one at least is made of elements */
   double reach;      /* pairs of elements that are farther are of no interest; finite. It falls to the nearest one's
                         distance, */
   double room;       /* and this more */

@@ -224,11 +224,6 @@ static flight_bound bound_by(settling *s, double from, double to, double level) 
   return bound;
 }
 
-static bool is_unresolved(const robot_search *o, double lower, double slack) {
-  const double known = lesser(o->best_bound.upper, o->goal.cutoff) + o->goal.beyond - lower;
-  return known <= 2.0 * (slack + o->best_bound.slack) || (o->goal.limit >= 0.0 && known <= o->goal.epsilon);
-}
-
 /* Where the pair's balls and boxes come nearest, as far as the poses tell. */
 static double promising(settling *s) {
   flight *f = &s->f;
@@ -300,7 +295,7 @@ static cprox_status settle(settling *s, size_t most, double *lower) {
   for (size_t count = 0; n > 0; count++) {
     const size_t least = least_of(all, n);
     stretch top = all[least];
-    if (robot_is_pruned(o, top.lower) || is_unresolved(o, top.lower, s->slack)) break;
+    if (robot_is_pruned(o, top.lower) || search_is_unresolved(&o->goal, &o->best_bound, top.lower, s->slack)) break;
     if (count >= most || n + 1 > MOST_STRETCHES || (count > 0 && !take_interval(o))) break;
     if (isnan(top.lowest)) top.lowest = promising(s);
     all[least] = all[--n];
@@ -360,14 +355,13 @@ static bool is_one_flight(robot_search *o, const search_node *node, int32_t *pai
     return false;
   if (lists_count(&o->lists, list) != 1 || motion_is_span(&over) || o->scene.motion->is_state) return false;
   *pair = lists_at(&o->lists, list)->pair;
-  if (*pair < 0) return false;
-  const robot_pair *of = &o->scene.pairs[*pair];
-  if (of->element[0] != ROBOT_WHOLE || of->element[1] != ROBOT_WHOLE) return false;
+  if (*pair < 0 || !robot_pair_is_whole(&o->scene.pairs[*pair])) return false;
 
   /* where a side turns about its own axis little is left to bound */
+  placed_robot_pair placed;
   robot_scene_enter_both(&o->scene, &over, &over);
-  const robot_body *moving = robot_scene_moving(&o->scene, of);
-  return !(robot_scene_round_displacement(&o->scene, of, moving) <= 0.25 * o->goal.epsilon);
+  placed_robot_pair_at(&o->scene, *pair, &placed);
+  return !(placed_robot_pair_round_displacement(&placed) <= 0.25 * o->goal.epsilon);
 }
 
 cprox_status robot_bound_flight(robot_search *o, search_node *node, bool *served) {

@@ -479,7 +479,7 @@ static cprox_status gradient_of_models(const query *q, size_t first, size_t last
   gradient_search g = {.q = q, .lower = INFINITY, .previous = INFINITY};
   if (start_class_is_one_of_many(q->mover.motion))
     return workspace_fail(q->workspace, CPROX_INVALID, "there is no gradient where starts have tolerances");
-  if (!robot_scene_begin(&g.o.scene, q, first, last, SIZE_MAX, INFINITY))
+  if (!robot_scene_begin(&g.o.scene, q, NULL, first, last, SIZE_MAX, INFINITY))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   g.within = motion_interval_of(q->mover.motion, q->t0, q->t1);
   search_outcome found;

@@ -59,8 +59,9 @@ static cprox_status refuse(const spot_pair *p) {
 static void measure_elements(spot_pair *p, const int32_t element[2], robot_gap *gap) {
   robot_pair pair = p->pair;
   pair.element[0] = element[0], pair.element[1] = element[1];
-  const robot_body *moving = robot_scene_moving(p->scene, &pair), *standing = robot_scene_standing(p->scene, &pair);
-  robot_pair_measure(moving, standing, exactly(p), gap);
+  placed_robot_pair elements;
+  placed_robot_pair_of(p->scene, &pair, &elements);
+  robot_pair_measure(elements.moving, elements.standing, exactly(p), gap);
   p->gaps++;
 }
 
@@ -106,15 +107,13 @@ static void sharpen(const robot_body *moving, const robot_body *standing, robot_
 
 /* What is nearest of all elements: those that were nearest last say how far it is worth looking. */
 static cprox_status measure_trees(spot_pair *p, robot_gap *gap) {
-  const robot_body *moving = robot_scene_moving(p->scene, &p->pair),
-                   *standing = robot_scene_standing(p->scene, &p->pair);
+  const robot_body *moving = p->placed.moving, *standing = p->placed.standing;
   const double radii = moving->radius + (robot_body_is_halfspace(standing) ? 0.0 : standing->radius);
   robot_gap hulls;
   robot_pair_measure(moving, standing, (robot_accuracy){.epsilon = 1e-3 * moving->radius}, &hulls);
   p->gaps++;
   if (hulls.support_failed) return refuse(p);
-  robot_refinement c = {.scene = p->scene,
-                        .pair = p->index,
+  robot_refinement c = {.pair = &p->placed,
                         .reach = fmax(hulls.upper, 0.0) + 4.0 * radii,
                         .accuracy = 1e-9 * radii,
                         .normal = hulls.upper > 0.0 ? hulls.normal : vec(0, 0, 0)};
@@ -154,8 +153,8 @@ void spot_differentiate(spot_pair *p, const motion_spot *spot) {
 cprox_status spot_measure(spot_pair *p, size_t segment, double u, motion_spot *spot) {
   const cprox_motion *motion = p->scene->motion;
   robot_scene_enter(p->scene, segment, u, u);
-  const robot_body *moving = robot_scene_moving(p->scene, &p->pair),
-                   *standing = robot_scene_standing(p->scene, &p->pair);
+  placed_robot_pair_at(p->scene, p->index, &p->placed);
+  const robot_body *moving = p->placed.moving, *standing = p->placed.standing;
   *spot = (motion_spot){.segment = segment, .u = u};
   if (moving->tree || standing->tree) {
     const cprox_status status = measure_trees(p, &spot->gap);
@@ -373,8 +372,7 @@ static cprox_status convex_is_alone(spot_pair *p, const robot_body *moving, cons
 
 /* Other elements may be as near, elsewhere. */
 static cprox_status elements_are_alone(spot_pair *p, const motion_spot *spot, double size, double apart, bool *alone) {
-  robot_refinement c = {.scene = p->scene,
-                        .pair = p->index,
+  robot_refinement c = {.pair = &p->placed,
                         .reach = spot->gap.upper + 2.0 * apart,
                         .room = 2.0 * apart,
                         .accuracy = 0.1 * apart,
@@ -396,14 +394,17 @@ static cprox_status elements_are_alone(spot_pair *p, const motion_spot *spot, do
 
 cprox_status spot_is_alone(spot_pair *p, const motion_spot *spot, double apart, bool *alone) {
   robot_scene_enter(p->scene, spot->segment, spot->u, spot->u);
-  robot_pair pair = p->pair;
-  const robot_body *moving = robot_scene_moving(p->scene, &pair), *standing = robot_scene_standing(p->scene, &pair);
+  placed_robot_pair_at(p->scene, p->index, &p->placed);
+  const robot_body *moving = p->placed.moving, *standing = p->placed.standing;
   if (moving->tree || standing->tree) {
     const double size = robot_body_is_halfspace(standing) ? moving->radius : fmin(moving->radius, standing->radius);
     const cprox_status status = elements_are_alone(p, spot, size, apart, alone);
     if (status < 0 || !*alone) return status;
+    robot_pair pair = p->pair;
     pair.element[0] = p->element[0], pair.element[1] = p->element[1];
-    moving = robot_scene_moving(p->scene, &pair), standing = robot_scene_standing(p->scene, &pair);
+    placed_robot_pair elements;
+    placed_robot_pair_of(p->scene, &pair, &elements);
+    moving = elements.moving, standing = elements.standing;
   }
   return convex_is_alone(p, moving, standing, &spot->gap, alone);
 }
@@ -445,8 +446,7 @@ static cprox_status find_side(spot_pair *p, const motion_interval *within, const
   motion_spot next;
   cprox_status status = step_across(p, within, spot, sign, &next, found);
   if (status < 0 || !*found) return status;
-  const robot_body *moving = robot_scene_moving(p->scene, &p->pair),
-                   *standing = robot_scene_standing(p->scene, &p->pair);
+  const robot_body *moving = p->placed.moving, *standing = p->placed.standing;
   const double speed = sign * next.slope * (m->times[spot->segment + 1] - m->times[spot->segment]);
   for (int k = 0; k < SIDE_PLACES && *found; k++) {
     const double step = (k + 1) * CLEAR_OF_OTHER * depth_size(moving, standing) / speed;

@@ -5,7 +5,7 @@
 #define CPROX_SOLVE_MOTION_SPOT_H
 
 #include "kinematics/jacobian.h"
-#include "robot_query/pair_state.h"
+#include "robot_query/placed_robot_pair.h"
 
 typedef struct motion_spot {
   size_t segment; /* at u of this segment */
@@ -17,7 +17,8 @@ typedef struct motion_spot {
 typedef struct spot_pair {
   robot_scene *scene;
   robot_pair pair;                      /* whole parts */
-  int32_t index;                        /* that pair in the scene */
+  int32_t index;                        /* that pair in the scene, */
+  placed_robot_pair placed;             /* where it was measured last */
   int32_t element[2];                   /* the elements that were nearest last; -1: none */
   uint32_t gaps;                        /* distances measured */
   double *values, *rates, *by_variable; /* of all variables, at the spot measured last */

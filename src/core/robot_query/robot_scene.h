@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A query about a robot, made ready: what stands, the pairs, and where everything is over a node. */
-#ifndef CPROX_ROBOT_QUERY_PAIR_STATE_H
-#define CPROX_ROBOT_QUERY_PAIR_STATE_H
+#ifndef CPROX_ROBOT_QUERY_ROBOT_SCENE_H
+#define CPROX_ROBOT_QUERY_ROBOT_SCENE_H
 
 #include "kinematics/bound.h"
 #include "problem/candidates.h"
@@ -28,6 +28,11 @@ typedef struct robot_pair {
   bool self; /* what stands is a part of the robot, too */
 } robot_pair;
 
+/* Of whole sides, no elements. */
+static inline bool robot_pair_is_whole(const robot_pair *pair) {
+  return pair->element[0] == ROBOT_WHOLE && pair->element[1] == ROBOT_WHOLE;
+}
+
 /* A part over the node at hand. */
 typedef struct part_state {
   uint32_t placed, displaced, moved; /* the node for which `body.side.at`, `displacement` and `motion` were found */
@@ -49,9 +54,8 @@ typedef struct track_state {
 typedef struct robot_scene {
   const query *q;
   const cprox_motion *motion;
-  bool self;                              /* there are pairs with itself */
   bool has_solids;                        /* a side of a pair may be a solid mesh */
-  const start_class *starts;              /* only pairs of this class; NULL: all, as if all starts were known */
+  const start_class *starts;              /* only pairs of this class; NULL: all */
   double lead_tolerance, other_tolerance; /* [s] of its clocks */
   robot_body *obstacles;
   part_state *parts;
@@ -84,16 +88,13 @@ typedef struct robot_scene {
 #define ROBOT_MOST_LISTED 200
 #endif
 
-/* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the
+/* Makes the scene of targets first … last - 1 ready, for pairs of a class (kept by reference; NULL: all, as if all
+ * starts were known); false where memory is out. Of a set, only those without a box; the
  * rest come as they are needed. If the robot could have more than `most_listed` pairs with itself, these come as groups
  * of its parts come near each other; SIZE_MAX: every pair is listed. Otherwise those of several robots that stay too
  * far apart to matter are left out; `cutoff`: an upper bound known from elsewhere, or infinity. */
-bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last, size_t most_listed,
-                       double cutoff);
-
-/* The same of the pairs of a class, which is kept by reference. */
-bool robot_scene_begin_class(robot_scene *scene, const query *q, const start_class *starts, size_t first, size_t last,
-                             size_t most_listed, double cutoff);
+bool robot_scene_begin(robot_scene *scene, const query *q, const start_class *starts, size_t first, size_t last,
+                       size_t most_listed, double cutoff);
 
 /* Whether the class's pairs are at two times. */
 static inline bool robot_scene_has_two_times(const robot_scene *scene) {
@@ -109,15 +110,11 @@ bool robot_scene_fit(const robot_scene *scene, motion_interval *lead, motion_int
 /* The earliest time of the clock of all at which its two clocks can be at these times, or later; rounded down. */
 double robot_scene_clock(const robot_scene *scene, double lead, double other);
 
-/* A bound on how far the sides of a pair move towards or away from each other between any two times that are asked
- * about, with the same starts as where it was measured, at these times. */
-double robot_scene_travel(robot_scene *scene, int32_t pair, double lead, double other);
-
 /* Of two times: how far the side of the pair moves that is on the other clock, and the one on the lead. */
 void robot_scene_displacements(robot_scene *scene, const robot_pair *pair, double *other, double *lead);
 
-/* A pair of two parts of the robot, of which nothing is known. */
-robot_pair robot_scene_self_pair(const robot_scene *scene, int32_t moving, int32_t standing);
+/* A pair of which nothing is known yet; self: of two parts of the robot. */
+robot_pair robot_scene_pair_of(const robot_scene *scene, const planned_pair *planned, bool self);
 
 /* Whether the motion does not move the sides of a pair against each other. */
 static inline bool robot_scene_stands(const robot_scene *scene, const robot_pair *pair) {
@@ -159,23 +156,17 @@ double robot_scene_place(const robot_scene *scene, size_t segment, double u);
 /* One more pair; its number, or -1 where memory is out. It may move all pairs in memory. */
 int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
 
-/* The pairs that a pair is opened into: of one side's clusters or elements instead of that side. The first one's number
- * and how many, or -1 where memory is out. It may move all pairs in memory. */
-int32_t robot_scene_open_pair(robot_scene *scene, int32_t pair, uint32_t *count);
+/* A whole part in the middle of the node; how far it moves over it, seen from the world: then its displacements are
+ * known, too. */
+void robot_scene_place_part(robot_scene *scene, int32_t part);
+static inline const robot_body *robot_scene_part(robot_scene *scene, int32_t part) {
+  if (scene->parts[part].placed != scene->node) robot_scene_place_part(scene, part);
+  return &scene->parts[part].body;
+}
+double robot_scene_part_displacement(robot_scene *scene, int32_t part);
 
-/* The two sides of a pair in the middle of the node, how far the one moves as the other sees it, and how it moves. Of
- * pairs of elements, only those of one pair at a time. */
-const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
-const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
-/* robot_scene_swept_apart(): of a motion of several tracks: over all of the node the sides are never nearer than this;
- * told without a look at how they move. -infinity where that leaves open whether they touch.
- * robot_scene_coarse_displacement(): how far both sides move together, as the axis above both sees it: quicker. */
+/* Of a motion of several tracks: over all of the node the sides of a pair are never nearer than this; told without a
+ * look at how they move. -infinity where that leaves open whether they touch. */
 double robot_scene_swept_apart(robot_scene *scene, const robot_pair *pair);
-double robot_scene_coarse_displacement(robot_scene *scene, const robot_pair *pair);
-double robot_scene_displacement(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
-/* robot_scene_round_displacement(): the same where a side may turn about its own axis of symmetry; infinity elsewhere. */
-double robot_scene_round_displacement(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
-const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
-                                       chain_motion *own);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "robot_query/pair_state.h"
+#include "robot_query/robot_scene.h"
 
 #include <math.h>
 
@@ -82,7 +82,7 @@ static robot_body part_body(const query *q, size_t i) {
 
 /* ---- pairs ---- */
 
-static robot_pair pair_of(const robot_scene *s, const planned_pair *planned, bool self) {
+robot_pair robot_scene_pair_of(const robot_scene *s, const planned_pair *planned, bool self) {
   robot_pair pair = {.moving = planned->moving,
                      .standing = planned->standing,
                      .element = {ROBOT_WHOLE, ROBOT_WHOLE},
@@ -95,32 +95,21 @@ static robot_pair pair_of(const robot_scene *s, const planned_pair *planned, boo
   return pair;
 }
 
-robot_pair robot_scene_self_pair(const robot_scene *s, int32_t moving, int32_t standing) {
-  return pair_of(s, &(planned_pair){.moving = moving, .standing = standing}, true);
-}
-
 /* ---- far pairs ---- */
 
 /* An upper bound of the distance of two parts: the least one measured at nine times. */
 static double measured_apart(robot_scene *s, const planned_pair *parts) {
   enum { PLACES = 8 };
-  const robot_pair pair = pair_of(s, parts, true);
   double least = INFINITY;
   for (int k = 0; k <= PLACES; k++) {
     const double t = s->q->t0 + (s->q->t1 - s->q->t0) * k / PLACES;
     const motion_interval at = motion_interval_of(s->motion, t, t);
     robot_scene_enter_place(s, at.first, at.a);
-    const robot_body *a = robot_scene_moving(s, &pair), *b = robot_scene_standing(s, &pair);
+    const robot_body *a = robot_scene_part(s, parts->moving), *b = robot_scene_part(s, parts->standing);
     const double apart = vec_norm(vec_sub(a->side.at.p, b->side.at.p));
     least = lesser(apart + a->radius + b->radius + a->side.error + b->side.error, least);
   }
   return ROUND_UP * least;
-}
-
-/* ---- beginning ---- */
-
-bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last, size_t most_listed, double cutoff) {
-  return robot_scene_begin_class(s, q, NULL, first, last, most_listed, cutoff);
 }
 
 /* ---- two times ---- */
@@ -172,24 +161,24 @@ static bool list_pairs(robot_scene *s, bool many, bool leaves_out, double cutoff
   pair_plan *plan = &s->plan;
   *plan = (pair_plan){.q = q, .starts = s->starts, .reach = INFINITY};
   if (leaves_out && !q->is_signed) plan->reach = distance ? cutoff : q->limit + q->options.epsilon;
-  if (!pair_plan_list(plan, s->obstacles, s->n_obstacles, s->self && !s->groups)) return false;
+  if (!pair_plan_list(plan, s->obstacles, s->n_obstacles, s->groups)) return false;
   const planned_pair *nearest = leaves_out && !q->is_signed && distance ? pair_plan_nearest(plan) : NULL;
   if (nearest) pair_plan_leave_out(plan, lesser(measured_apart(s, nearest), cutoff));
   if (many && leaves_out && plan->n > MOST_NEAR) {
     if (!robot_groups_begin(s)) return false;
-    pair_plan_leave_to_groups(plan);
+    plan->n = plan->n_against, plan->beyond = INFINITY;
   }
   s->n_pairs = plan->n;
   s->pairs = workspace_reserve(q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *s->pairs);
   if (!s->pairs) return false;
-  for (size_t i = 0; i < plan->n; i++) s->pairs[i] = pair_of(s, &plan->pairs[i], i >= plan->n_against);
+  for (size_t i = 0; i < plan->n; i++) s->pairs[i] = robot_scene_pair_of(s, &plan->pairs[i], i >= plan->n_against);
   return true;
 }
 
-bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *starts, size_t first, size_t last,
-                             size_t most_listed, double cutoff) {
-  const bool self = mover_is_self(&q->mover) || mover_is_whole(&q->mover);
-  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self, .starts = starts};
+bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts, size_t first, size_t last,
+                       size_t most_listed, double cutoff) {
+  const bool self = pair_plan_has_self(&q->mover);
+  *s = (robot_scene){.q = q, .motion = q->mover.motion, .starts = starts};
   if (starts) {
     s->lead_tolerance = start_tolerance(s->motion, starts->lead);
     s->other_tolerance = start_tolerance(s->motion, starts->other);
@@ -200,12 +189,12 @@ bool robot_scene_begin_class(robot_scene *s, const query *q, const start_class *
   const bool many = pair_plan_count_self(&q->mover) > most_listed;
   if (many && !leaves_out && !robot_groups_begin(s)) return false;
   size_t deepest = 0;
-  for (size_t i = 0; s->self && !s->groups && i < robot->n_parts; i++) {
+  for (size_t i = 0; self && !s->groups && i < robot->n_parts; i++) {
     const size_t depth = robot_axis_depth(robot, robot->parts[i].axis);
     deepest = depth > deepest ? depth : deepest;
   }
   s->n_displacements = deepest + 1;
-  const size_t all_displacements = s->self && !s->groups && s->n_displacements * robot->n_parts <= MOST_DISPLACEMENTS
+  const size_t all_displacements = self && !s->groups && s->n_displacements * robot->n_parts <= MOST_DISPLACEMENTS
                                        ? s->n_displacements * robot->n_parts
                                        : 0;
   const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts + s->motion->n_tracks * sizeof *s->tracks +
@@ -243,25 +232,6 @@ int32_t robot_scene_add_pair(robot_scene *s, const robot_pair *pair) {
   s->pairs = pairs;
   pairs[s->n_pairs] = *pair;
   return (int32_t)s->n_pairs++;
-}
-
-int32_t robot_scene_open_pair(robot_scene *s, int32_t index, uint32_t *count) {
-  const robot_pair whole = s->pairs[index];
-  *count = whole.n_inner;
-  if (whole.n_inner > 0) return whole.inner;
-  const robot_body *const side[2] = {robot_scene_moving(s, &whole), robot_scene_standing(s, &whole)};
-  const int opened = robot_side_to_open(side);
-  const cluster_hull *hull = robot_cluster_of(side[opened], whole.element[opened]);
-  int32_t first = -1;
-  for (uint32_t i = 0; i < hull->count; i++) {
-    robot_pair inner = whole; /* with the direction that parts the whole */
-    inner.element[opened] = robot_inner_code(hull, i);
-    const int32_t number = robot_scene_add_pair(s, &inner);
-    if (number < 0) return -1;
-    if (i == 0) first = number;
-  }
-  s->pairs[index].inner = first, s->pairs[index].n_inner = *count = hull->count;
-  return first;
 }
 
 /* ---- over a node ---- */
@@ -387,75 +357,12 @@ static void place_axis(robot_scene *s, int32_t axis) {
   }
 }
 
-static void place_part(robot_scene *s, int32_t index) {
+void robot_scene_place_part(robot_scene *s, int32_t index) {
   part_state *state = &s->parts[index];
   const robot_part *part = &s->motion->robot->parts[index];
   place_axis(s, part->axis);
   state->body.side.at = part->axis < 0 ? part->at : placement_compose(&s->axes[part->axis].frame, &part->at);
   state->placed = s->node;
-}
-
-static inline part_state *place(robot_scene *s, int32_t index) {
-  part_state *state = &s->parts[index];
-  if (state->placed != s->node) place_part(s, index);
-  return state;
-}
-
-/* An element or a cluster, made anew only where it is not the last one. */
-static const robot_body *element_of(const robot_scene *s, const robot_body *owner, int32_t part, int32_t code,
-                                    bool self, robot_element *element) {
-  if (element->node == s->node && element->part == part && element->code == code && element->self == self)
-    return &element->body;
-  const robot_body *made = robot_element_make(owner, code, element);
-  element->node = s->node, element->part = part, element->code = code, element->self = self;
-  return made;
-}
-
-const robot_body *robot_scene_moving(robot_scene *s, const robot_pair *pair) {
-  const robot_body *body = &place(s, pair->moving)->body;
-  return pair->element[0] == ROBOT_WHOLE ? body
-                                         : element_of(s, body, pair->moving, pair->element[0], true, &s->element[0]);
-}
-
-const robot_body *robot_scene_standing(robot_scene *s, const robot_pair *pair) {
-  const robot_body *body = pair->self ? &place(s, pair->standing)->body : &s->obstacles[pair->standing];
-  return pair->element[1] == ROBOT_WHOLE
-             ? body
-             : element_of(s, body, pair->standing, pair->element[1], pair->self, &s->element[1]);
-}
-
-/* What the motion of a pair's moving side is seen from. */
-static int32_t seen_from_axis(const robot_scene *s, const robot_pair *pair) {
-  return pair->self ? s->motion->robot->parts[pair->standing].axis : -1;
-}
-
-/* Whether what is known of a side, but for its margin, is its shape: then it may look the same all round an axis. */
-static const bound_side *round_side(const robot_body *body) {
-  return convex_is_round(body->side.shape) && !body->tree ? &body->side : NULL;
-}
-
-/* The axes that move the pair against each other. Those that turn a side about its own axis are left out where the
- * search has one time: both sides stay within *stray of where they are without. The certificate checker does not know
- * of it, so nothing that is written for it rests on that. */
-static size_t chain_of_pair(robot_scene *s, const robot_pair *pair, const robot_body *body, double *stray) {
-  size_t n = motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
-  *stray = 0.0;
-  if (robot_scene_has_two_times(s) || body->side.margin_turns) return n;
-  const robot_body *standing = robot_scene_standing(s, pair);
-  const bound_side *round[2] = {round_side(body), round_side(standing)};
-  if (round[0] || round[1])
-    *stray = motion_leave_out_round(s->axes, s->chain, &n, round[0], round[1], body->steps + standing->steps);
-  return n;
-}
-
-static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body *body, chain_motion *m) {
-  double stray;
-  const size_t n = chain_of_pair(s, pair, body, &stray);
-  motion_of_part(s->axes, s->chain, n, body->side.at.p, robot_core_radius(body), s->scratch, m);
-  m->displacement += stray, m->stray += stray;
-  if (!robot_scene_has_two_times(s) || !pair->self) return;
-  motion_find_standing_rates(s->axes, s->chain, n, body->side.at.p, m);
-  s->times.standing = start_clock_of(s->motion, pair->standing) == s->starts->other;
 }
 
 /* Where a whole part is over the node. */
@@ -479,11 +386,10 @@ double robot_scene_swept_apart(robot_scene *s, const robot_pair *pair) {
   return apart > 0.0 ? apart : -INFINITY; /* boxes that overlap do not say how far */
 }
 
-/* How far a whole part moves, seen from the world; its displacements are known then. */
-static double displacement_of_part(robot_scene *s, int32_t index) {
-  part_state *state = place(s, index);
+double robot_scene_part_displacement(robot_scene *s, int32_t index) {
+  part_state *state = &s->parts[index];
   if (state->displaced == s->node) return state->displacement;
-  const robot_body *body = &state->body;
+  const robot_body *body = robot_scene_part(s, index);
   const int32_t axis = s->motion->robot->parts[index].axis;
   double *displacements = s->displacements ? s->displacements + (size_t)index * s->n_displacements : NULL;
   state->displaced = s->node;
@@ -493,55 +399,10 @@ static double displacement_of_part(robot_scene *s, int32_t index) {
   return state->displacement;
 }
 
-double robot_scene_coarse_displacement(robot_scene *s, const robot_pair *pair) {
-  if (!pair->self) return displacement_of_part(s, pair->moving);
-  if (s->groups) return robot_groups_displacement_of(s, pair);
-  const double coarse = displacement_of_part(s, pair->moving), other = displacement_of_part(s, pair->standing);
-  if (!s->displacements) return coarse + other;
-  return s->displacements[(size_t)pair->moving * s->n_displacements + pair->shared] +
-         s->displacements[(size_t)pair->standing * s->n_displacements + pair->shared];
-}
-
-double robot_scene_displacement(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
-  if (!pair->self && pair->element[0] == ROBOT_WHOLE) return displacement_of_part(s, pair->moving);
-  return motion_displacement(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
-                             moving->side.at.p, robot_core_radius(moving));
-}
-
-double robot_scene_round_displacement(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
-  if (robot_scene_has_two_times(s) || (!round_side(moving) && !round_side(robot_scene_standing(s, pair))))
-    return INFINITY;
-  chain_motion own;
-  return robot_scene_motion(s, pair, moving, &own)->displacement;
-}
-
 void robot_scene_displacements(robot_scene *s, const robot_pair *pair, double *other, double *lead) {
-  const double moving = displacement_of_part(s, pair->moving), standing = displacement_of_part(s, pair->standing);
+  const double moving = robot_scene_part_displacement(s, pair->moving),
+               standing = robot_scene_part_displacement(s, pair->standing);
   const bool is_other = start_clock_of(s->motion, pair->moving) == s->starts->other;
   *other = is_other ? moving : standing;
   *lead = is_other ? standing : moving;
-}
-
-double robot_scene_travel(robot_scene *s, int32_t index, double lead, double other) {
-  const double clock = robot_scene_clock(s, lead, other), t0 = s->q->t0 - clock, t1 = s->q->t1 - clock;
-  const bool shifted = s->starts && (s->lead_tolerance > 0.0 || robot_scene_has_two_times(s));
-  const motion_interval over =
-      shifted ? motion_interval_of(s->motion, lead + t0, lead + t1) : motion_interval_of(s->motion, s->q->t0, s->q->t1);
-  const motion_interval late = shifted ? motion_interval_of(s->motion, other + t0, other + t1) : over;
-  robot_scene_enter_both(s, &over, &late);
-  const robot_pair *pair = &s->pairs[index];
-  const robot_body *moving = robot_scene_moving(s, pair), *standing = robot_scene_standing(s, pair);
-  return ROUND_UP * 2.0 * (robot_scene_displacement(s, pair, moving) + moving->side.error + standing->side.error);
-}
-
-const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
-                                       chain_motion *own) {
-  if (pair->self || pair->element[0] != ROBOT_WHOLE || round_side(robot_scene_standing(s, pair))) {
-    find_motion(s, pair, moving, own);
-    return own;
-  }
-  part_state *state = &s->parts[pair->moving];
-  if (state->moved != s->node) find_motion(s, pair, moving, &state->motion);
-  state->moved = s->node;
-  return &state->motion;
 }
