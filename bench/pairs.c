@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Pairs of convex bodies whose distance is known by construction: at one size, and over twelve decades of size and of
- * size ratio, to a relative 1e-9, beside FCL; and depths of overlap. A method that says how far it may be off is wrong
+ * size ratio, to a relative 1e-9, beside FCL; depths of overlap; whether they touch. A method that says how far it may be off is wrong
  * where its interval misses the distance; FCL, which does not, where it is off by more than a thousandth of the
  * distance and 1e-9 of the sizes. */
 #define _POSIX_C_SOURCE 200809L
@@ -40,7 +40,11 @@ typedef struct kinds {
 static const kinds KINDS[] = {{"ellipsoids", CPROX_BODY_ELLIPSOID, CPROX_BODY_ELLIPSOID},
                               {"box and cylinder", CPROX_BODY_BOX, CPROX_BODY_CYLINDER},
                               {"capsule and box", CPROX_BODY_CAPSULE, CPROX_BODY_BOX},
-                              {"polytopes of 200", CPROX_BODY_POLYTOPE, CPROX_BODY_POLYTOPE}};
+                              {"polytopes of 200", CPROX_BODY_POLYTOPE, CPROX_BODY_POLYTOPE},
+                              {"sphere and box", CPROX_BODY_SPHERE, CPROX_BODY_BOX},
+                              {"capsules", CPROX_BODY_CAPSULE, CPROX_BODY_CAPSULE},
+                              {"boxes", CPROX_BODY_BOX, CPROX_BODY_BOX},
+                              {"cylinders", CPROX_BODY_CYLINDER, CPROX_BODY_CYLINDER}};
 
 typedef struct asked {
   cprox_workspace *workspace;
@@ -70,6 +74,7 @@ static convex convex_make(rng *r, cprox_body_kind kind, double scale, const aske
   convex c = {.size = 2.0 * scale};
   cprox_status status;
   switch (kind) {
+    case CPROX_BODY_SPHERE: status = cprox_body_create_sphere(s[0], NULL, &c.body); break;
     case CPROX_BODY_BOX: status = cprox_body_create_box(vec(s[0], s[1], s[2]), NULL, &c.body); break;
     case CPROX_BODY_CYLINDER: status = cprox_body_create_cylinder(s[0], s[1], NULL, &c.body); break;
     case CPROX_BODY_CAPSULE: status = cprox_body_create_capsule(s[0], s[1], NULL, &c.body); break;
@@ -144,7 +149,25 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   a->wrong = p->distance < 0.0 ? r.lower > 0.0 : r.lower > p->distance + doubt || r.upper < p->distance - doubt;
 }
 
+static void our_verdict(const void *problems, size_t i, void *state, bench_answer *a) {
+  const pair *p = (const pair *)problems + i;
+  cprox_result r = {.status = CPROX_INVALID};
+  cprox_pair_tolerance(cprox_obstacle_at(p->a.body, p->at), cprox_obstacle_at(p->b.body, p->bt), 0.0, NULL,
+                       ((const asked *)state)->workspace, &r);
+  *a = (bench_answer){
+      .lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries, .failed = r.status < 0};
+  a->wrong = p->distance < 0.0 ? r.verdict == CPROX_VERDICT_CLEAR : r.verdict == CPROX_VERDICT_VIOLATED;
+}
+
 #ifdef CPROX_BENCH_FCL
+static void fcl_verdict(const void *problems, size_t i, void *state, bench_answer *a) {
+  const pair *p = (const pair *)problems + i;
+  (void)state;
+  const int touch = pair_fcl_collides(p->a.fcl, &p->at, p->b.fcl, &p->bt);
+  *a = (bench_answer){.lower = NAN, .upper = NAN, .failed = touch < 0};
+  a->wrong = touch >= 0 && touch != (p->distance < 0.0);
+}
+
 static void fcl(const void *problems, size_t i, void *state, bench_answer *a) {
   const pair *p = (const pair *)problems + i;
   (void)state;
@@ -167,6 +190,20 @@ static void measure(const bench_size *size, const char *workload, const kinds *k
 #endif
   };
   bench_measure(&w, size, methods, pairs[0].distance < 0.0 ? 1 : sizeof methods / sizeof *methods);
+}
+
+/* Whether they touch, and no more. */
+static void measure_verdict(const bench_size *size, const char *apart, const kinds *k, const pair *pairs, asked *q) {
+  char workload[64], parameter[64];
+  snprintf(workload, sizeof workload, "verdict %s", apart);
+  snprintf(parameter, sizeof parameter, "%s %zu cases", k->name, size->problems);
+  const bench_workload w = {"pairs", workload, parameter, pairs, size->problems, NULL, 0.0};
+  const bench_method methods[] = {{"curve_proximity", our_verdict, q},
+#ifdef CPROX_BENCH_FCL
+                                  {"FCL", fcl_verdict, q}
+#endif
+  };
+  bench_measure(&w, size, methods, sizeof methods / sizeof *methods);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -223,6 +260,7 @@ static void one_kind(const bench_size *size, const kinds *k, asked *q) {
     } else {
       measure(size, workloads[w], k, pairs, size->problems, q);
       measure_tail(workloads[w], k, pairs, many, q);
+      measure_verdict(size, workloads[w], k, pairs, q);
     }
     for (size_t i = 0; i < many; i++) pair_free(&pairs[i]);
   }

@@ -11,6 +11,8 @@
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/ellipsoid.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
@@ -29,6 +31,7 @@ fcl::Transform3d placed(const cprox_pose &pose) {
 
 void *pair_fcl_make(cprox_body_kind kind, const double size[3]) {
   switch (kind) {
+    case CPROX_BODY_SPHERE: return new Geometry(std::make_shared<fcl::Sphered>(size[0]));
     case CPROX_BODY_BOX: return new Geometry(std::make_shared<fcl::Boxd>(size[0], size[1], size[2]));
     case CPROX_BODY_CYLINDER: return new Geometry(std::make_shared<fcl::Cylinderd>(size[1], size[0]));
     case CPROX_BODY_CAPSULE: return new Geometry(std::make_shared<fcl::Capsuled>(size[1], size[0]));
@@ -57,4 +60,14 @@ double pair_fcl_distance(const void *a, const cprox_pose *pa, const void *b, con
   return found.min_distance;
 } catch (const std::exception &) {
   return NAN;
+}
+
+int pair_fcl_collides(const void *a, const cprox_pose *pa, const void *b, const cprox_pose *pb) try {
+  const fcl::CollisionRequestd request;
+  fcl::CollisionResultd found;
+  fcl::collide(static_cast<const Geometry *>(a)->get(), placed(*pa), static_cast<const Geometry *>(b)->get(),
+               placed(*pb), request, found);
+  return found.isCollision();
+} catch (const std::exception &) {
+  return -1;
 }

@@ -19,6 +19,9 @@ void pair_fcl_free(void *geometry);
 /* To a tolerance of 1e-10; NAN where it throws. */
 double pair_fcl_distance(const void *a, const cprox_pose *pa, const void *b, const cprox_pose *pb);
 
+/* Whether they touch, by its defaults: 0 or 1; -1 where it throws. */
+int pair_fcl_collides(const void *a, const cprox_pose *pa, const void *b, const cprox_pose *pb);
+
 #ifdef __cplusplus
 }
 #endif

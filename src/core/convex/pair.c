@@ -607,8 +607,9 @@ static void pair_go_inside(pair *p, double margin_a, double margin_b, double siz
     pair_prove_overlap(p, goal, pair_expand, answer);
   if (answer->measured) return;
 
-  pair_separate_slightly(p, size, goal);
-  if (pair_is_open(p, margins, goal)) {
+  const bool settled = goal->verdict && goal->limit >= 0.0 && answer->overlap;
+  if (!settled) pair_separate_slightly(p, size, goal);
+  if (!settled && pair_is_open(p, margins, goal)) {
     if (goal->wants_depth)
       pair_measure_depth(p, margin_a, margin_b, goal, pair_expand_beside, answer);
     else

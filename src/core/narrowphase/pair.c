@@ -9,6 +9,7 @@
 #include "curve_proximity/cprox/query.h"
 #include "implicit/implicit.h"
 #include "narrowphase/convex_mesh.h"
+#include "narrowphase/formula.h"
 #include "narrowphase/mesh_mesh.h"
 #include "narrowphase/relative_pose.h"
 #include "narrowphase/witness.h"
@@ -376,6 +377,16 @@ static cprox_status pair_over_parts(pair_task *task, pair_reply *best) {
   return CPROX_OK;
 }
 
+/* By the two kinds where that is enough, else by a search. */
+static cprox_status pair_of_bodies(pair_task *task, pair_reply *best) {
+  if (task->finest != CPROX_LOD_SPHERE && pair_by_formula(task->a, task->b, &best->answer)) {
+    best->part = 0;
+    best->lod = CPROX_LOD_HULL;
+    return CPROX_OK;
+  }
+  return pair_over_parts(task, best);
+}
+
 static cprox_status pair_status(const pair_answer *answer, const cprox_options *options) {
   const double width = answer->upper - answer->lower;
   if (width <= width_allowed(options->epsilon, options->relative_epsilon, answer->upper)) return CPROX_OK;
@@ -416,11 +427,13 @@ typedef struct pair_ball_at {
 
 static pair_ball_at ball_at(const cprox_obstacle *target) {
   const cprox_body *body = target->body;
+  pair_ball_at ball = {.centre = body->ball_centre, .radius = body->ball_radius + target->margin};
+  const double reach2 = vec_norm2(body->ball_centre);
+  if (!(reach2 > 0.0)) return ball;
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
-  const double reach = vec_norm(body->ball_centre);
-  return (pair_ball_at){.centre = frame_turn_to_world(&f, body->ball_centre),
-                        .radius = body->ball_radius + target->margin,
-                        .error = ROUND_ROTATION * reach};
+  ball.centre = frame_turn_to_world(&f, body->ball_centre);
+  ball.error = ROUND_ROTATION * sqrt(reach2);
+  return ball;
 }
 
 /* The balls round both are farther apart than this, which may be below 0. Positions are subtracted first. */
@@ -498,7 +511,7 @@ cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double del
   const cprox_lod finest = asked.max_lod == CPROX_LOD_NONE ? CPROX_LOD_MESH : asked.max_lod;
   pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .options = &asked, .workspace = workspace};
   pair_reply best;
-  if ((status = pair_over_parts(&task, &best))) return status;
+  if ((status = pair_of_bodies(&task, &best))) return status;
   *result = pair_verdict(&best, &task, &asked);
   if (result->status != CPROX_OK) workspace_fail(workspace, result->status, "%s", cprox_status_text(result->status));
   return result->status;
@@ -542,7 +555,7 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
                     .finest = finest,
                     .options = &asked,
                     .workspace = workspace};
-  if ((status = pair_over_parts(&task, &best))) return status;
+  if ((status = pair_of_bodies(&task, &best))) return status;
 
   const pair_answer *answer = &best.answer;
   status = pair_status(answer, &asked);

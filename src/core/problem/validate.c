@@ -24,29 +24,31 @@ cprox_status arguments_check_length(const char *name, double value, cprox_worksp
 
 /* An option that is set and that the query does not have is refused: the answer would not be what was asked for. */
 static cprox_status check_applies(const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
-  const struct {
+  const bool level = options->max_lod != CPROX_LOD_NONE && options->max_lod != CPROX_LOD_MESH;
+  const unsigned set = (options->signed_distance ? ARGUMENTS_SIGNED : 0u) |
+                       (options->certificate ? ARGUMENTS_CERTIFICATE : 0u) | (options->stop ? ARGUMENTS_STOP : 0u) |
+                       (options->relative_epsilon != 0.0 ? ARGUMENTS_RELATIVE : 0u) | (level ? ARGUMENTS_LOD : 0u) |
+                       (options->interval ? ARGUMENTS_INTERVAL : 0u) | (options->share ? ARGUMENTS_SHARE : 0u) |
+                       (options->start ? ARGUMENTS_START : 0u);
+  const unsigned wrong = set & ~(unsigned)asked.has;
+  if (!wrong) return CPROX_OK;
+  static const struct {
     arguments_option option;
-    bool set;
     const char *name, *hint;
   } all[] = {
-      {ARGUMENTS_SIGNED, options->signed_distance, "signed_distance", "it is an option of distance queries"},
-      {ARGUMENTS_CERTIFICATE, options->certificate != NULL, "certificate",
-       "ask about one mover by distance, tolerance or collision for that"},
-      {ARGUMENTS_STOP, options->stop != NULL, "stop", "it is short and does not poll"},
-      {ARGUMENTS_RELATIVE, options->relative_epsilon != 0.0, "relative_epsilon", "set epsilon alone"},
-      {ARGUMENTS_LOD, options->max_lod != CPROX_LOD_NONE && options->max_lod != CPROX_LOD_MESH, "max_lod",
-       "bodies answer as they are"},
-      {ARGUMENTS_INTERVAL, options->interval != NULL, "interval",
-       "it is an option of distance, tolerance, collision and time of contact"},
-      {ARGUMENTS_SHARE, options->share != NULL, "share", "it is an option of distance queries"},
-      {ARGUMENTS_START, options->start != NULL, "start", "it is an option of cprox_pair()"},
+      {ARGUMENTS_SIGNED, "signed_distance", "it is an option of distance queries"},
+      {ARGUMENTS_CERTIFICATE, "certificate", "ask about one mover by distance, tolerance or collision for that"},
+      {ARGUMENTS_STOP, "stop", "it is short and does not poll"},
+      {ARGUMENTS_RELATIVE, "relative_epsilon", "set epsilon alone"},
+      {ARGUMENTS_LOD, "max_lod", "bodies answer as they are"},
+      {ARGUMENTS_INTERVAL, "interval", "it is an option of distance, tolerance, collision and time of contact"},
+      {ARGUMENTS_SHARE, "share", "it is an option of distance queries"},
+      {ARGUMENTS_START, "start", "it is an option of cprox_pair()"},
   };
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-    if (all[i].set && !(asked.has & all[i].option))
-      return workspace_fail(workspace, CPROX_INVALID, "%s does not apply to %s: %s", all[i].name, asked.name,
-                            all[i].hint);
-  }
-  return CPROX_OK;
+  size_t first = 0;
+  while (!(wrong & (unsigned)all[first].option)) first++;
+  return workspace_fail(workspace, CPROX_INVALID, "%s does not apply to %s: %s", all[first].name, asked.name,
+                        all[first].hint);
 }
 
 cprox_options arguments_options(const cprox_options *options) {
