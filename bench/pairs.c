@@ -10,6 +10,7 @@
 #include <time.h>
 
 #include "base/frame.h"
+#include "pairs_meshes.h"
 #include "support/measure.h"
 #include "support/problems.h"
 #ifdef CPROX_BENCH_FCL
@@ -273,6 +274,7 @@ int main(int argc, char **argv) {
   rng r = rng_seed(600);
   for (int i = 0; i < POLYTOPES; i++) q.polytope[i] = polytope_make(&r);
   for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) one_kind(&size, &KINDS[k], &q);
+  if (bench_wanted(&size, "meshes")) pairs_meshes(&size, q.workspace);
   for (int i = 0; i < POLYTOPES; i++) convex_free(&q.polytope[i]);
   cprox_workspace_free(q.workspace);
   return 0;

@@ -8,6 +8,7 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
 using Model = fcl::BVHModel<fcl::OBBRSSd>;
@@ -49,4 +50,14 @@ double mesh_fcl_distance(const void *a, const cprox_pose *pa, const void *b, con
   return found.min_distance;
 } catch (const std::exception &) {
   return NAN;
+}
+
+int mesh_fcl_collides(const void *a, const cprox_pose *pa, const void *b, const cprox_pose *pb) try {
+  const fcl::CollisionRequestd request;
+  fcl::CollisionResultd found;
+  fcl::collide(static_cast<const Geometry *>(a)->get(), placed(*pa), static_cast<const Geometry *>(b)->get(),
+               placed(*pb), request, found);
+  return found.isCollision();
+} catch (const std::exception &) {
+  return -1;
 }

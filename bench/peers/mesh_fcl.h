@@ -18,6 +18,9 @@ void mesh_fcl_free(void *mesh);
 /* NAN where it throws. */
 double mesh_fcl_distance(const void *a, const cprox_pose *pa, const void *b, const cprox_pose *pb);
 
+/* Whether they touch, by its defaults: 0 or 1; -1 where it throws. */
+int mesh_fcl_collides(const void *a, const cprox_pose *pa, const void *b, const cprox_pose *pb);
+
 #ifdef __cplusplus
 }
 #endif

@@ -270,6 +270,31 @@ CASE(what_a_budget_leaves_open_is_bounded_by_what_is_meant) {
   assert_true(ended > 20);
 }
 
+/* Meshes whose hulls are apart (seed 152) are clear at once, few nodes and supports for any number of triangles; one
+ * through the hole of another, whose hulls overlap, is clear by its triangles. */
+CASE(hulls_that_are_apart_settle_a_verdict_at_once) {
+  rng r = rng_seed(152);
+  for (size_t i = 0; i < test_cases(100); i++) {
+    test_mesh a = mesh_torus(60, 40, 1.0, 0.3, 0.05), b = mesh_torus(60, 40, 0.3, 0.1, 0.02);
+    cprox_body *x = mesh_body(&a, CPROX_MESH_FILL_SOLID, ws), *y = mesh_body(&b, CPROX_MESH_FILL_SURFACE, ws);
+    const cprox_pose at = rng_pose(&r, 10.0);
+    cprox_pose there = {.position = at.position, .orientation = rng_quat(&r)};
+    cprox_result t;
+    assert_int_equal(cprox_pair_tolerance(cprox_obstacle_at(x, at), cprox_obstacle_at(y, there), 0.0, NULL, ws, &t),
+                     CPROX_OK);
+    assert_int_equal(t.verdict, CPROX_VERDICT_CLEAR); /* 0.42 at most in a hole of 0.65 */
+    there.position = vec_axpy(at.position, rng_uniform(&r, 1.9, 2.0), rng_unit(&r));
+    assert_int_equal(cprox_pair_tolerance(cprox_obstacle_at(x, at), cprox_obstacle_at(y, there), 0.0, NULL, ws, &t),
+                     CPROX_OK);
+    assert_int_equal(t.verdict, CPROX_VERDICT_CLEAR);
+    assert_true(t.nodes + t.distance_queries <= 24);
+    cprox_body_free(x);
+    cprox_body_free(y);
+    mesh_free(&a);
+    mesh_free(&b);
+  }
+}
+
 static bool at_once(void *user) {
   (void)user;
   return true;
@@ -279,8 +304,7 @@ static bool at_once(void *user) {
 CASE(a_search_through_meshes_can_be_stopped) {
   test_mesh a = mesh_torus(40, 25, 1.0, 0.3, 0.1);
   cprox_body *x = mesh_body(&a, CPROX_MESH_FILL_SURFACE, ws);
-  cprox_pose there = CPROX_POSE_IDENTITY;
-  there.position.x = 4.0;
+  const cprox_pose there = {.position = {2.8, 0.3, 0.2}, .orientation = {1.0, 0.3, 0.2, 0.1}}; /* not at once */
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   cprox_result p, q;
   assert_int_equal(cprox_pair(cprox_obstacle_at(x, CPROX_POSE_IDENTITY), cprox_obstacle_at(x, there), &options, ws, &p),

@@ -67,6 +67,56 @@ CASE(nearest_is_that_of_all_elements_for_every_kernel) {
   }
 }
 
+static double reach_of(const tree *t, tree_place at, vec3 d) {
+  vec3 v[3];
+  const int n = tree_corners(t, at, v);
+  double most = -INFINITY;
+  for (int k = 0; k < n; k++) most = fmax(most, vec_dot(d, v[k]));
+  if (t->kind == TREE_BOXES)
+    most = d.x * v[d.x > 0.0].x + d.y * v[d.y > 0.0].y + d.z * v[d.z > 0.0].z; /* v: low, high */
+  return most;
+}
+
+/* The farthest below a node or pack, one by one. */
+static double farthest_below(const tree *t, uint32_t at, vec3 d) {
+  double most = -INFINITY;
+  for (uint32_t l = 0; l < TREE_LANES; l++)
+    most = fmax(most, at & TREE_LEAF ? reach_of(t, (tree_place){at & ~TREE_LEAF, l}, d)
+                                     : farthest_below(t, t->nodes[at].child[l], d));
+  return most;
+}
+
+/* 60 trees (seed 32) of each kind and both builds, 20 directions each, of any length and along axes: exactly as far as
+ * the farthest corner, one by one, at a corner that is there; kernels agree to the bit. No lane reaches farther than
+ * is said. */
+CASE(farthest_is_that_of_all_corners_for_every_kernel) {
+  static vec3 low[MOST], high[MOST];
+  rng r = rng_seed(32);
+  for (size_t i = 0; i < test_cases(60); i++) {
+    const tree_kind kind = (tree_kind)(i % 3);
+    test_mesh mesh = {0};
+    tree *t =
+        make(&r, kind, 1 + rng_index(&r, i % 4 ? 60 : MOST), i % 2 ? TREE_BY_AREA : TREE_BY_MORTON, low, high, &mesh);
+    for (int k = 0; k < 20; k++) {
+      vec3 d = vec_scale(k % 2 ? 1.0 : rng_log_uniform(&r, 1e-100, 1e100), rng_unit(&r));
+      if (k % 5 == 0) d = vec(k % 3 == 0, -(k % 3 == 1), k % 3 == 2);
+      const double most = farthest_below(t, 0, d);
+      for (simd_level j = SIMD_BASE; j <= simd_of_machine(); j++) {
+        vec3 at;
+        const double found = tree_kernel_at(j)->farthest(t, d, &at);
+        assert_true(found == most && vec_dot(d, at) == most);
+      }
+      vec3 u = k % 5 == 0 ? d : rng_unit(&r);
+      for (uint32_t node = 0; node < t->n_nodes; node++)
+        for (uint32_t l = 0; l < TREE_LANES; l++)
+          assert_true(farthest_below(t, t->nodes[node].child[l], u) <=
+                      tree_lane_reach(t, node, l, u) + 8.0 * 1.2e-16 * t->scale);
+    }
+    tree_free(t);
+    if (kind == TREE_TRIANGLES) mesh_free(&mesh);
+  }
+}
+
 /* Bounds over an interval (seed 37): no element of a lane is nearer to a point of the interval's hull than the lane's
  * bound. */
 CASE(bounds_hold_over_the_hull_and_agree_between_kernels) {

@@ -145,6 +145,13 @@ typedef struct tree_hit {
 
 tree_hit tree_nearest(const tree *t, vec3 x, double bound);
 
+/* How far the elements reach along d, of any length but 0, and a corner that does: the support function of their hull,
+ * within 4 u |d| scale. */
+double tree_farthest(const tree *t, vec3 d, vec3 *at);
+
+/* What is in a lane of a node reaches no farther along d, |d| = 1, but for 8 u scale. */
+double tree_lane_reach(const tree *t, uint32_t at, uint32_t lane, vec3 d);
+
 /* A segment of curve as the tree sees it: the hull of points, thickened by a radius. */
 typedef struct tree_segment {
   vec3 x;                        /* where own normals are taken */

@@ -418,4 +418,66 @@ TREE_TARGET static tree_hit nearest(const tree *t, vec3 x, double bound) {
   return hit;
 }
 
-const tree_kernel TREE_KERNEL = {.measure = measure, .nearest = nearest};
+/* ---- the point farthest along a direction ---- */
+
+/* Products and sums of a corner's coordinates are monotone in each of them: in the same order, no corner within a box
+ * comes out farther than the box. */
+TREE_TARGET static inline void reach_of_corners(const double *x, const double *y, const double *z, vec3 d,
+                                                double reach[TREE_LANES]) {
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) reach[l] = d.x * x[l] + d.y * y[l] + d.z * z[l];
+}
+
+TREE_TARGET static inline void reach_of_boxes(const double low[3][TREE_LANES], const double high[3][TREE_LANES], vec3 d,
+                                              double reach[TREE_LANES]) {
+  reach_of_corners(d.x > 0.0 ? high[0] : low[0], d.y > 0.0 ? high[1] : low[1], d.z > 0.0 ? high[2] : low[2], d, reach);
+}
+
+TREE_TARGET static inline void keep_farthest(const double *x, const double *y, const double *z, vec3 d, double *most,
+                                             vec3 *at) {
+  _Alignas(64) double reach[TREE_LANES];
+  reach_of_corners(x, y, z, d, reach);
+  for (int l = 0; l < TREE_LANES; l++)
+    if (reach[l] > *most) *most = reach[l], *at = (vec3){x[l], y[l], z[l]};
+}
+
+TREE_TARGET static inline void keep_farthest_of_pack(const tree *t, uint32_t pack, vec3 d, double *most, vec3 *at) {
+  const double *v = t->packs + (size_t)pack * tree_pack_size(t->kind);
+  if (t->kind == TREE_BOXES) {
+    const double *w = v + 3 * TREE_LANES;
+    keep_farthest(d.x > 0.0 ? w : v, d.y > 0.0 ? w + 8 : v + 8, d.z > 0.0 ? w + 16 : v + 16, d, most, at);
+    return;
+  }
+  const int corners = t->kind == TREE_TRIANGLES ? 3 : 1;
+  for (int k = 0; k < corners; k++, v += 3 * TREE_LANES) keep_farthest(v, v + 8, v + 16, d, most, at);
+}
+
+TREE_TARGET static double farthest(const tree *t, vec3 d, vec3 *at) {
+  open_node open[TREE_LANES * TREE_DEEPEST]; /* d2: minus the reach */
+  size_t count = 0;
+  double most = -INFINITY;
+  uint32_t next = 0;
+  for (;;) {
+    if (next & TREE_LEAF) {
+      keep_farthest_of_pack(t, next & ~TREE_LEAF, d, &most, at);
+    } else {
+      _Alignas(64) double reach[TREE_LANES];
+      const tree_node *node = &t->nodes[next];
+      reach_of_boxes(node->low, node->high, d, reach);
+      const size_t floor = count;
+      for (uint32_t left = node->lanes; left; left &= left - 1) {
+        const unsigned l = (unsigned)__builtin_ctz(left);
+        if (!(reach[l] > most)) continue;
+        const open_node child = {-reach[l], node->child[l]};
+        size_t i = count++;
+        for (; i > floor && open[i - 1].d2 < child.d2; i--) open[i] = open[i - 1];
+        open[i] = child;
+      }
+    }
+    while (count > 0 && !(-open[count - 1].d2 > most)) count--;
+    if (count == 0) return most;
+    next = open[--count].at;
+  }
+}
+
+const tree_kernel TREE_KERNEL = {.measure = measure, .nearest = nearest, .farthest = farthest};

@@ -9,6 +9,7 @@
 typedef struct tree_kernel {
   void (*measure)(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment, tree_lanes *lanes);
   tree_hit (*nearest)(const tree *t, vec3 x, double bound);
+  double (*farthest)(const tree *t, vec3 d, vec3 *at);
 } tree_kernel;
 
 extern const tree_kernel tree_kernel_plain;

@@ -13,6 +13,29 @@ tree_hit tree_nearest(const tree *t, vec3 x, double bound) {
   return t->kernel->nearest(t, x, bound);
 }
 
+double tree_farthest(const tree *t, vec3 d, vec3 *at) {
+  return t->kernel->farthest(t, d, at);
+}
+
+double tree_lane_reach(const tree *t, uint32_t at, uint32_t lane, vec3 d) {
+  const tree_node *node = &t->nodes[at];
+  const double *x = d.x > 0.0 ? node->high[0] : node->low[0], *y = d.y > 0.0 ? node->high[1] : node->low[1],
+               *z = d.z > 0.0 ? node->high[2] : node->low[2];
+  const double box = d.x * x[lane] + d.y * y[lane] + d.z * z[lane];
+  if (!t->slabs) return box;
+
+  /* the slab along its part of d, the box along the rest */
+  const tree_slabs *slabs = &t->slabs[at];
+  const vec3 s = vec(slabs->s[0][lane], slabs->s[1][lane], slabs->s[2][lane]);
+  const double part = vec_dot(d, s);
+  const vec3 r = vec_axpy(d, -part, s);
+  const double slab = part * (part > 0.0 ? slabs->high[lane] : slabs->low[lane]) +
+                      r.x * (r.x > 0.0 ? node->high[0][lane] : node->low[0][lane]) +
+                      r.y * (r.y > 0.0 ? node->high[1][lane] : node->low[1][lane]) +
+                      r.z * (r.z > 0.0 ? node->high[2][lane] : node->low[2][lane]) + 64.0 * ROUND_U * t->scale;
+  return lesser(slab, box);
+}
+
 void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment, tree_lanes *lanes) {
   t->kernel->measure(t, at, wanted, segment, lanes);
 }

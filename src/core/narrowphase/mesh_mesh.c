@@ -6,6 +6,7 @@
 #include "base/rounding.h"
 #include "bvh/bvh.h"
 #include "bvh/winding.h"
+#include "convex/feature.h"
 #include "narrowphase/convex_mesh.h"
 
 /* A box or an element of one of the two trees: a lane of a node, or of a pack (TREE_LEAF). */
@@ -36,6 +37,7 @@ typedef struct dual {
   size_t count; /* of the heap in the workspace */
   uint64_t entries, visits;
   bool out_of_memory;
+  vec3 normal; /* unit, from the second to the first: of the best so far, at first of the hulls; (0,0,0): none */
 } dual;
 
 static const tree *tree_of(const dual *d, int which) {
@@ -106,12 +108,13 @@ static void measure(dual *d, tree_place at, tree_place there) {
   answer.steps += d->best.steps;
   answer.supports += d->best.supports;
   answer.exhausted = answer.exhausted || d->best.exhausted;
-  d->lower = fmin(d->lower, answer.lower);
+  d->lower = lesser(d->lower, answer.lower);
   if (!(answer.overlap || answer.support_failed || answer.upper < d->best.upper)) {
     d->best.steps = answer.steps, d->best.supports = answer.supports, d->best.exhausted = answer.exhausted;
     return;
   }
   d->best = answer;
+  if (vec_norm2(answer.normal) > 0.0) d->normal = answer.normal;
   d->best.on_a = vec_add(answer.on_a, own);
   d->best.on_b = vec_add(answer.on_b, own);
   d->best.common = vec_add(answer.common, own);
@@ -127,30 +130,26 @@ static tree_place place_of(dual_side s) {
   return (tree_place){s.at & ~TREE_LEAF, s.lane};
 }
 
-static size_t corners_of_box(vec3 low, vec3 high, vec3 corner[8]) {
-  for (unsigned k = 0; k < 8; k++)
-    corner[k] = vec(k & 1u ? high.x : low.x, k & 2u ? high.y : low.y, k & 4u ? high.z : low.z);
-  return 8;
-}
-
-static size_t corners_of(const tree *t, dual_side s, vec3 corner[8]) {
-  if (is_element(s)) {
-    const size_t n = (size_t)tree_corners(t, place_of(s), corner);
-    return t->kind == TREE_BOXES ? corners_of_box(corner[0], corner[1], corner) : n;
+/* The box of a lane, or of an element. */
+static void box_of(const tree *t, dual_side s, vec3 *low, vec3 *high) {
+  if (!is_element(s)) {
+    const tree_node *node = &t->nodes[s.at];
+    *low = vec(node->low[0][s.lane], node->low[1][s.lane], node->low[2][s.lane]);
+    *high = vec(node->high[0][s.lane], node->high[1][s.lane], node->high[2][s.lane]);
+    return;
   }
-  const tree_node *node = &t->nodes[s.at];
-  return corners_of_box(vec(node->low[0][s.lane], node->low[1][s.lane], node->low[2][s.lane]),
-                        vec(node->high[0][s.lane], node->high[1][s.lane], node->high[2][s.lane]), corner);
+  vec3 corner[3];
+  const int n = tree_corners(t, place_of(s), corner);
+  *low = *high = corner[0];
+  for (int k = 1; k < n; k++) {
+    *low = vec(lesser(low->x, corner[k].x), lesser(low->y, corner[k].y), lesser(low->z, corner[k].z));
+    *high = vec(greater(high->x, corner[k].x), greater(high->y, corner[k].y), greater(high->z, corner[k].z));
+  }
 }
 
 static double width2_of(const tree *t, dual_side s) {
-  vec3 corner[8], low, high;
-  const size_t n = corners_of(t, s, corner);
-  low = high = corner[0];
-  for (size_t k = 1; k < n; k++) {
-    low = vec(fmin(low.x, corner[k].x), fmin(low.y, corner[k].y), fmin(low.z, corner[k].z));
-    high = vec(fmax(high.x, corner[k].x), fmax(high.y, corner[k].y), fmax(high.z, corner[k].z));
-  }
+  vec3 low, high;
+  box_of(t, s, &low, &high);
   return vec_norm2(vec_sub(high, low));
 }
 
@@ -170,23 +169,71 @@ static double worth(const dual *d) {
   return lesser(d->best.upper - width_allowed(d->goal.epsilon, d->goal.relative_epsilon, d->best.upper), farthest(d));
 }
 
-/* What is in a lane of tree 1 - which, as a segment in the frame of tree `which`. */
-static tree_segment interval_of(const dual *d, int which, dual_side other) {
-  vec3 corner[8];
-  tree_segment segment = {.n = corners_of(tree_of(d, 1 - which), other, corner),
-                          .beyond = farthest(d) + d->margins + d->rounding};
+/* The best normal parts many more: along it a lane's slab counts, not its box alone. */
+static void add_normal(const dual *d, int which, dual_side other, tree_segment *segment) {
+  segment->known = vec_norm2(d->normal) > 0.0;
+  if (!segment->known) return;
+  vec3 across_second; /* the normal in the frame of the second */
+  feature_unit(rotate_back(d->place->r, d->normal), &across_second);
+  segment->normal = which == 0 ? vec_neg(d->normal) : across_second;
+  segment->along = INFINITY;
+  for (size_t k = 0; k < segment->n; k++)
+    segment->along =
+        lesser(vec_dot(segment->normal, vec(segment->p[0][k], segment->p[1][k], segment->p[2][k])), segment->along);
+  if (is_element(other)) return;
+  const double reach =
+      tree_lane_reach(tree_of(d, 1 - which), other.at, other.lane, which == 0 ? across_second : vec_neg(d->normal));
+  segment->along =
+      greater(segment->along, -reach - vec_dot(d->normal, d->place->t) - vec_dot(segment->normal, segment->x));
+}
+
+/* The corners of a box, about its middle, in the frame of tree `which`. */
+static void turn_box(const dual *d, int which, vec3 low, vec3 high, tree_segment *segment) {
+  const double *r = d->place->r;
+  const vec3 h = vec_scale(0.5, vec_sub(high, low));
+  const vec3 x = which == 0 ? vec(r[0], r[3], r[6]) : vec(r[0], r[1], r[2]);
+  const vec3 y = which == 0 ? vec(r[1], r[4], r[7]) : vec(r[3], r[4], r[5]);
+  const vec3 z = which == 0 ? vec(r[2], r[5], r[8]) : vec(r[6], r[7], r[8]);
+  segment->x = across(d, 1 - which, vec_axpy(vec_scale(0.5, low), 0.5, high));
+  segment->n = 8;
+  for (unsigned k = 0; k < 8; k++) {
+    const vec3 q =
+        vec_axpy(vec_axpy(vec_scale(k & 1u ? h.x : -h.x, x), k & 2u ? h.y : -h.y, y), k & 4u ? h.z : -h.z, z);
+    segment->p[0][k] = q.x, segment->p[1][k] = q.y, segment->p[2][k] = q.z;
+  }
+}
+
+/* A point, or the corners of a triangle, about the middle of their box. */
+static void turn_corners(const dual *d, int which, dual_side other, tree_segment *segment) {
+  vec3 corner[3];
+  segment->n = (size_t)tree_corners(tree_of(d, 1 - which), place_of(other), corner);
   vec3 low = across(d, 1 - which, corner[0]), high = low;
-  for (size_t k = 0; k < segment.n; k++) {
-    corner[k] = across(d, 1 - which, corner[k]);
-    low = vec(fmin(low.x, corner[k].x), fmin(low.y, corner[k].y), fmin(low.z, corner[k].z));
-    high = vec(fmax(high.x, corner[k].x), fmax(high.y, corner[k].y), fmax(high.z, corner[k].z));
+  for (size_t k = 0; k < segment->n; k++) {
+    const vec3 q = corner[k] = across(d, 1 - which, corner[k]);
+    low = vec(lesser(low.x, q.x), lesser(low.y, q.y), lesser(low.z, q.z));
+    high = vec(greater(high.x, q.x), greater(high.y, q.y), greater(high.z, q.z));
   }
-  segment.x = vec_axpy(vec_scale(0.5, low), 0.5, high);
-  for (size_t k = 0; k < segment.n; k++) {
-    const vec3 q = vec_sub(corner[k], segment.x);
-    segment.p[0][k] = q.x, segment.p[1][k] = q.y, segment.p[2][k] = q.z;
+  segment->x = vec_axpy(vec_scale(0.5, low), 0.5, high);
+  for (size_t k = 0; k < segment->n; k++) {
+    const vec3 q = vec_sub(corner[k], segment->x);
+    segment->p[0][k] = q.x, segment->p[1][k] = q.y, segment->p[2][k] = q.z;
   }
-  return segment;
+}
+
+/* What is in a lane of tree 1 - which, as a segment in the frame of tree `which`. */
+static void interval_of(const dual *d, int which, dual_side other, tree_segment *segment) {
+  const tree *t = tree_of(d, 1 - which);
+  if (is_element(other) && t->kind != TREE_BOXES) {
+    turn_corners(d, which, other, segment);
+  } else {
+    vec3 low, high;
+    box_of(t, other, &low, &high);
+    turn_box(d, which, low, high, segment);
+  }
+  segment->radius = 0.0;
+  segment->stepping = false;
+  segment->beyond = farthest(d) + d->margins + d->rounding;
+  add_normal(d, which, other, segment);
 }
 
 /* Lanes of a node or a pack of tree `which` against a box or an element of the other one: what of them may matter
@@ -194,11 +241,12 @@ static tree_segment interval_of(const dual *d, int which, dual_side other) {
  * in which all is looked at. */
 static void spread(dual *d, int which, uint32_t at, uint32_t wanted, dual_side other, double above) {
   const tree *t = tree_of(d, which);
-  const tree_segment segment = interval_of(d, which, other);
+  tree_segment segment;
+  interval_of(d, which, other, &segment);
   const bool leaf = (at & TREE_LEAF) != 0;
   tree_lanes lanes;
   tree_measure(t, at, wanted, &segment, &lanes);
-  d->lower = fmin(d->lower, fmax(lanes.rest - d->margins - d->rounding, above));
+  d->lower = lesser(d->lower, greater(lanes.rest - d->margins - d->rounding, above));
   d->best.steps++;
   dual_entry entry = {.lower = INFINITY, .far2 = INFINITY, .other = other, .at = at, .which = (uint8_t)which};
   for (uint32_t left = lanes.live; left; left &= left - 1) {
@@ -207,8 +255,8 @@ static void spread(dual *d, int which, uint32_t at, uint32_t wanted, dual_side o
     const bool alone = leaf && is_element(other);
     if (alone)
       entry = (dual_entry){.lower = INFINITY, .far2 = INFINITY, .other = other, .at = at, .which = entry.which};
-    entry.lower = fmin(entry.lower, fmax(lanes.bound[l] - d->margins - d->rounding, above));
-    entry.far2 = fmin(entry.far2, lanes.distance2[l]);
+    entry.lower = lesser(entry.lower, greater(lanes.bound[l] - d->margins - d->rounding, above));
+    entry.far2 = lesser(entry.far2, lanes.distance2[l]);
     entry.lanes |= 1u << l;
     entry.number = d->entries + l;
     if (alone) push(d, entry);
@@ -255,7 +303,8 @@ static void exchange(dual *d, const dual_entry *e) {
 static bool waits(dual *d, const dual_entry *e, dual_side own) {
   if (e->by_both) return false;
   const int which = 1 - e->which;
-  const tree_segment segment = interval_of(d, which, own);
+  tree_segment segment;
+  interval_of(d, which, own, &segment);
   tree_lanes lanes;
   tree_measure(tree_of(d, which), e->other.at, 1u << e->other.lane, &segment, &lanes);
   d->best.steps++;
@@ -279,7 +328,7 @@ static void visit(dual *d, const dual_entry *e) {
   }
   double widest2 = 0.0;
   for (uint32_t left = e->lanes; left; left &= left - 1)
-    widest2 = fmax(widest2, width2_of(tree_of(d, e->which), (dual_side){e->at, (uint32_t)__builtin_ctz(left)}));
+    widest2 = greater(widest2, width2_of(tree_of(d, e->which), (dual_side){e->at, (uint32_t)__builtin_ctz(left)}));
   const bool wider = is_element(e->other) || widest2 >= width2_of(tree_of(d, 1 - e->which), e->other);
   if (!wider)
     exchange(d, e);
@@ -303,7 +352,7 @@ static void descend(dual *d) {
     d->best.exhausted = d->best.exhausted || d->best.steps > d->goal.max_steps;
     const dual_entry top = pop(d);
     if (top.lower >= worth(d) || d->best.stopped || d->best.steps > d->goal.max_steps) {
-      d->lower = fmin(d->lower, top.lower);
+      d->lower = lesser(d->lower, top.lower);
       if (top.lower >= worth(d)) d->best.exhausted = d->best.stopped = false;
       break;
     }
@@ -312,9 +361,34 @@ static void descend(dual *d) {
   }
 }
 
-/* An element of the first that is near the second, and one of the second that is near that. */
-static void seed(dual *d) {
-  const tree_hit hit = tree_nearest(tree_of(d, 0), d->place->t, INFINITY);
+/* ---- the hulls ---- */
+
+static double hull_support(const convex *shape, vec3 d, convex_hint *hint, vec3 *at) {
+  (void)hint;
+  vec3 unused;
+  return tree_farthest(shape->user, d, at ? at : &unused);
+}
+
+static const convex_ops hull_ops = {.kind = CPROX_BODY_POLYTOPE, .support = hull_support};
+
+/* The hulls of both, by their support functions: where they are apart, how far, and where. */
+static void part_hulls(dual *d, pair_answer *answer) {
+  enum { MOST_STEPS = 24 };
+  convex hull[2];
+  for (int i = 0; i < 2; i++)
+    hull[i] = (convex){.ops = &hull_ops, .user = tree_of(d, i), .scale = tree_of(d, i)->scale + 1e-100};
+  const pair_goal goal = {.verdict = true,
+                          .limit = d->goal.verdict ? d->goal.limit : 0.0,
+                          .max_steps = MOST_STEPS < d->goal.max_steps ? MOST_STEPS : d->goal.max_steps};
+  pair_separate(&hull[0], d->side[0]->margin, &hull[1], d->side[1]->margin, d->place, &goal, answer);
+  d->best.steps += answer->steps;
+  d->best.supports += answer->supports;
+  d->normal = answer->lower > -d->margins ? answer->normal : vec(0, 0, 0);
+}
+
+/* An element of the first that is near a point, and one of the second that is near that. */
+static void seed(dual *d, vec3 near) {
+  const tree_hit hit = tree_nearest(tree_of(d, 0), near, INFINITY);
   vec3 v[3];
   tree_corners(tree_of(d, 0), hit.at, v);
   const tree_hit there = tree_nearest(tree_of(d, 1), across(d, 0, v[0]), INFINITY);
@@ -364,22 +438,22 @@ static void conclude(const dual *d, pair_answer *answer) {
     overlap(d, d->best.common, answer);
     return;
   }
-  answer->rounding = fmax(answer->rounding, d->rounding);
+  answer->rounding = greater(answer->rounding, d->rounding);
   CORE_CHECK(!(d->lower > answer->upper), "lower %.17g, upper %.17g", d->lower, answer->upper);
-  answer->lower = fmin(d->lower, answer->upper);
+  answer->lower = lesser(d->lower, answer->upper);
   if (d->goal.verdict && answer->upper <= d->goal.limit) { /* whatever is inside of what */
-    answer->lower = fmin(answer->lower, least_of(d));
+    answer->lower = lesser(answer->lower, least_of(d));
     return;
   }
   const bool apart = answer->lower + d->margins > d->rounding;
-  if ((answer->exhausted || answer->stopped) && !apart) answer->lower = fmin(least_unseen(d), answer->upper);
+  if ((answer->exhausted || answer->stopped) && !apart) answer->lower = lesser(least_unseen(d), answer->upper);
 
   /* surfaces that do not meet: one inside of the other, where that is solid, or each outside of the other */
   for (int solid = 1; apart && solid >= 0 && !answer->overlap; solid--) {
     vec3 inner = vec(0, 0, 0);
     const winding_side side = side_of(d, solid, &inner);
     if (side == WINDING_INSIDE) overlap(d, inner, answer);
-    if (side == WINDING_NEAR) answer->lower = fmin(answer->lower, least_of(d));
+    if (side == WINDING_NEAR) answer->lower = lesser(answer->lower, least_of(d));
   }
 }
 
@@ -404,11 +478,18 @@ bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, c
   dual d = {.side = {a, b}, .place = &place, .goal = *goal, .margins = a->margin + b->margin, .workspace = workspace};
   d.rounding = ROUND_UP * (place.error + (2.0 * ROUND_ROTATION + 2.0 * TREE_ROUND) * ROUND_U *
                                              (vec_norm(place.t) + x->scale + y->scale + d.margins));
-  d.goal.epsilon = fmax(goal->epsilon - 4.0 * d.rounding, 0.0);
+  d.goal.epsilon = greater(goal->epsilon - 4.0 * d.rounding, 0.0);
   d.best = (pair_answer){.upper = INFINITY};
   d.lower = INFINITY;
   d.least = -d.margins - d.rounding;
-  if (!d.goal.verdict) seed(&d);
+  pair_answer hulls;
+  part_hulls(&d, &hulls);
+  if (d.goal.verdict && hulls.lower > d.goal.limit) { /* neither is inside of the other, then */
+    *answer =
+        (pair_answer){.lower = hulls.lower, .upper = INFINITY, .steps = d.best.steps, .supports = d.best.supports};
+    return true;
+  }
+  if (!d.goal.verdict) seed(&d, vec_norm2(d.normal) > 0.0 ? hulls.on_b : place.t);
   if (!d.best.overlap && !d.best.support_failed) try_vertex(&d);
   if (!d.best.overlap && !d.best.support_failed) descend(&d);
   if (d.out_of_memory) return false;
