@@ -475,6 +475,49 @@ CASE(a_false_start_is_as_true_as_none) {
   cprox_workspace_free(workspace);
 }
 
+/* Seed 64, 20,000 pairs of boxes and polytopes, apart, touching and overlapping: vertices of another answer, or numbers
+ * of none, change no truth. Of the pair's own answer they leave one step, if it stands as it did. */
+CASE(numbers_of_any_vertices_change_no_truth) {
+  rng r = rng_seed(64);
+  static test_shape a, b;
+  uint64_t cold = 0, warm = 0;
+  for (size_t i = 0; i < test_cases(20000); i++) {
+    shape_make(&r, i % 3 ? CPROX_BODY_POLYTOPE : CPROX_BODY_BOX, 1.0, i % 5 ? 3.0 : 1e5, &a);
+    shape_make(&r, i % 2 ? CPROX_BODY_POLYTOPE : CPROX_BODY_BOX, 1.0, 3.0, &b);
+    const cprox_obstacle pa = cprox_obstacle_at(a.body, rng_pose(&r, 0.5));
+    const cprox_obstacle pb = cprox_obstacle_at(b.body, rng_pose(&r, i % 4 ? 3.0 : 0.5));
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    cprox_pair_start start = {.usable = false};
+    cprox_result none, own, some;
+    assert_true(cprox_pair(pa, pb, &options, NULL, &none) >= 0);
+    options.start = &start;
+    assert_true(cprox_pair(pa, pb, &options, NULL, &own) >= 0);
+    assert_true(own.lower == none.lower && own.upper == none.upper);
+    assert_true(cprox_pair(pa, pb, &options, NULL, &own) >= 0);
+    if (none.lower > 1e-3 && a.body->kind != b.body->kind) cold += none.nodes, warm += own.nodes;
+
+    start = (cprox_pair_start){.usable = true,
+                               .point_a = rng_in_cube(&r, 2.0),
+                               .point_b = rng_in_cube(&r, 2.0),
+                               .normal = rng_unit(&r),
+                               .n_vertices = (int32_t)rng_index(&r, 5) - 1};
+    for (int k = 0; k < 3; k++) {
+      start.vertices_a[k] = (int32_t)rng_index(&r, 12) - (i % 7 == 0);
+      start.vertices_b[k] = i % 11 ? (int32_t)rng_index(&r, 12) : INT32_MAX;
+    }
+    assert_true(cprox_pair(pa, pb, &options, NULL, &some) >= 0);
+    const double narrow = fmax(none.upper - none.lower, 1e-6) * (1.0 + 1e-9);
+    if (!(none.lower <= some.upper && some.lower <= none.upper && none.lower <= own.upper && own.lower <= none.upper))
+      fail_msg("case %zu: [%.17g, %.17g], but from vertices [%.17g, %.17g] and [%.17g, %.17g]", i, none.lower,
+               none.upper, own.lower, own.upper, some.lower, some.upper);
+    if (some.status == CPROX_OK && none.status == CPROX_OK) assert_true(some.upper - some.lower <= narrow);
+    cprox_body_free(a.body);
+    cprox_body_free(b.body);
+  }
+  print_message("%lu steps from scratch, %lu from their own vertices\n", (unsigned long)cold, (unsigned long)warm);
+  assert_true(2 * warm < cold);
+}
+
 int main(void) {
   return cases_run(NULL, NULL);
 }

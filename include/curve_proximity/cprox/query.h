@@ -142,6 +142,12 @@ typedef struct cprox_pair_start {
   cprox_vec3 normal;
   /** [m] between the two points; 0 where they overlapped */
   double distance;
+  /** 0 … 3: of boxes and polytopes, the vertices between which the nearest points lie */
+  int32_t n_vertices;
+  /** numbers of vertices of a */
+  int32_t vertices_a[3];
+  /** numbers of vertices of b */
+  int32_t vertices_b[3];
 } cprox_pair_start;
 
 /** How a query is to be answered. Start from CPROX_OPTIONS_DEFAULT, which sets the size.

@@ -157,7 +157,7 @@ static simplex_vertex approach_support_step(const approach_task *task, vec3 u, a
 
 void approach_search(const approach_task *task, approach_answer *answer) {
   *answer = (approach_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
-  vec3 y = task->t;
+  vec3 y = task->goal->placed ? task->goal->place : task->t;
   bool newton = false;
   vec3 back = y; /* the last place on b, for when Newton's step was too long */
   for (int round = 0; round < APPROACH_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {

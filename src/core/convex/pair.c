@@ -10,6 +10,7 @@
 #include "convex/epa.h"
 #include "convex/feature.h"
 #include "convex/simplex.h"
+#include "convex/vertices.h"
 
 enum {
   PAIR_MAX_STEPS = 256,
@@ -65,12 +66,21 @@ static double missed(const convex *shape, double value, vec3 d, vec3 at) {
   return shape->implicit ? fmax(value - vec_dot(d, at), 0.0) : 0.0;
 }
 
+/* The support function, and the number of the vertex where the shape is a polytope. */
+static double support_of(const convex *shape, vec3 d, vec3 *at, int32_t *id) {
+  if (shape->ops != &convex_polytope) return shape->ops->support(shape, d, NULL, at);
+  double h;
+  *id = vertices_extreme(shape, d, &h);
+  *at = vertices_at(shape, *id);
+  return h;
+}
+
 /* The point of M that is least along u. */
 static simplex_vertex pair_extreme(pair *p, vec3 u) {
-  simplex_vertex x = {.id = -1};
+  simplex_vertex x = {.id = -1, .id_b = -1};
   const vec3 da = vec_neg(u), db = rotate_back(p->r, u);
-  const double ha = p->a->ops->support(p->a, da, NULL, &x.a);
-  const double hb = p->b->ops->support(p->b, db, NULL, &x.b);
+  const double ha = support_of(p->a, da, &x.a, &x.id);
+  const double hb = support_of(p->b, db, &x.b, &x.id_b);
   if (isnan(ha) || isnan(hb)) p->support_failed = true;
   x.w = pair_difference(p, x.a, x.b);
   x.behind = missed(p->a, ha, da, x.a) + missed(p->b, hb, db, x.b);
@@ -274,6 +284,59 @@ static void pair_restart(pair *p) {
   pair_accept(p, &s);
 }
 
+/* ---- vertices of a former answer ---- */
+
+static bool vertex_of(const convex *shape, int32_t id, vec3 *at) {
+  if (shape->ops == &convex_polytope && id >= 0 && id < shape->n) {
+    *at = vertices_at(shape, id);
+    return true;
+  }
+  if (shape->ops != &convex_box || id < 0 || id > 7) return false;
+  const double *h = shape->size;
+  *at = vec(id & 1 ? h[0] : -h[0], id & 2 ? h[1] : -h[1], id & 4 ? h[2] : -h[2]);
+  return true;
+}
+
+static int32_t number_of(const convex *shape, vec3 at, int32_t id) {
+  if (shape->ops != &convex_box) return id;
+  const double *h = shape->size;
+  if (fabs(at.x) != h[0] || fabs(at.y) != h[1] || fabs(at.z) != h[2]) return -1;
+  return (int32_t)(at.x > 0.0) | (int32_t)(at.y > 0.0) << 1 | (int32_t)(at.z > 0.0) << 2;
+}
+
+static void pair_keep_vertices(const pair *p, pair_vertices *kept) {
+  kept->n = 0;
+  if (p->nearest.inside || p->s.n > 3) return;
+  for (int i = 0; i < p->s.n; i++) {
+    kept->a[i] = number_of(p->a, p->s.vertex[i].a, p->s.vertex[i].id);
+    kept->b[i] = number_of(p->b, p->s.vertex[i].b, p->s.vertex[i].id_b);
+    if (kept->a[i] < 0 || kept->b[i] < 0) return;
+  }
+  kept->n = p->s.n;
+}
+
+/* The simplex of a former answer where the shapes are now, and the extreme point along its normal: if that feature is
+ * still the nearest, both bounds meet there. */
+static bool pair_begin_known(pair *p, const pair_vertices *known) {
+  simplex s = {0};
+  for (int i = 0; i < known->n && i < 3; i++) {
+    simplex_vertex x = {.id = known->a[i], .id_b = known->b[i]};
+    if (!vertex_of(p->a, x.id, &x.a) || !vertex_of(p->b, x.id_b, &x.b)) return false;
+    x.w = pair_difference(p, x.a, x.b);
+    if (!simplex_has(&s, x.w)) s.vertex[s.n++] = x;
+  }
+  if (s.n == 0) return false;
+  simplex_reduce(&s, &p->nearest);
+  if (p->nearest.inside || p->nearest.distance <= p->contact_tolerance || !(vec_norm2(p->nearest.normal) > 0.0))
+    return false;
+  p->s = s;
+  p->least = p->nearest.distance;
+  p->u = p->nearest.normal;
+  p->lower = -INFINITY;
+  pair_support_step(p, p->u, false);
+  return true;
+}
+
 /* From the extreme point along u until the bounds are within what is asked for, or stop moving. */
 static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) {
   const uint32_t most = goal->max_steps < PAIR_MAX_STEPS ? goal->max_steps : PAIR_MAX_STEPS;
@@ -281,13 +344,15 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
   int stalled = 0, failures = 0, plain = p->met ? PAIR_NEWTON_FROM_MET : PAIR_NEWTON_FROM;
   bool restarted = false;
 
-  p->s.n = 1;
-  p->s.vertex[0] = pair_extreme(p, u);
-  p->u = u;
-  p->lower = vec_dot(u, p->s.vertex[0].w) - p->s.vertex[0].behind;
   p->idle = 0;
-  simplex_reduce(&p->s, &p->nearest);
-  p->least = p->nearest.distance;
+  if (!goal->known || !pair_begin_known(p, goal->known)) {
+    p->s.n = 1;
+    p->s.vertex[0] = pair_extreme(p, u);
+    p->u = u;
+    p->lower = vec_dot(u, p->s.vertex[0].w) - p->s.vertex[0].behind;
+    simplex_reduce(&p->s, &p->nearest);
+    p->least = p->nearest.distance;
+  }
 
   for (p->steps++; p->steps < most && !p->support_failed && !p->nearest.inside; p->steps++) {
     const double gap = p->nearest.distance - p->lower;
@@ -643,6 +708,7 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   const double apart = pair_points(&p, margin_a, margin_b, answer);
   pair_go_inside(&p, margin_a, margin_b, size, goal, answer);
 
+  if (goal->wants_vertices && !p.curved) pair_keep_vertices(&p, &answer->vertices);
   answer->support_failed = p.support_failed;
   answer->steps = p.steps;
   answer->supports = p.supports;

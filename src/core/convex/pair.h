@@ -12,6 +12,11 @@ typedef struct pair_placement {
   double error; /* every point of b is within this of where it stands exactly */
 } pair_placement;
 
+/* Vertices of boxes and polytopes between which the nearest points lie, by their numbers. */
+typedef struct pair_vertices {
+  int32_t n, a[3], b[3]; /* n 0 … 3 */
+} pair_vertices;
+
 /* How far to go: the interval, rounding included, may be epsilon wide, or the fraction relative_epsilon of its upper
  * end. */
 typedef struct pair_goal {
@@ -22,8 +27,11 @@ typedef struct pair_goal {
   uint32_t max_steps;
   bool (*stop)(void *user); /* searches through many elements ask it now and then; NULL: never */
   void *stop_user;
-  vec3 start; /* a's frame, unit: near the normal of the answer; (0,0,0): nothing is known */
-  bool wants_feature;
+  vec3 start;  /* a's frame, unit: near the normal of the answer; (0,0,0): nothing is known */
+  bool placed; /* `place`, a's frame, is near the point of b that is nearest to a */
+  vec3 place;
+  const pair_vertices *known; /* those of a former answer are tried first; NULL: none */
+  bool wants_vertices, wants_feature;
   bool wants_depth; /* how deep the cores overlap, not only that they do */
   bool plain;       /* the bounds need not hold: what is likely to be rounding and not what may be at worst */
   int32_t room;     /* wants_depth: memory may be allocated for so many vertices of M; 0: none */
@@ -39,19 +47,20 @@ typedef struct pair_feature {
 } pair_feature;
 
 typedef struct pair_answer {
-  bool support_failed;  /* a support callback misbehaved: nothing else is set */
-  bool exhausted;       /* max_steps were not enough */
-  bool stopped;         /* the caller's stop function ended a search through elements or parts */
-  bool overlap;         /* the cores overlap, proven */
-  bool measured;        /* then: lower and upper are those of minus the depth; else upper is 0 */
-  double lower, upper;  /* of the signed distance, margins and rounding included */
-  double rounding;      /* how much the ends may be off by rounding */
-  double above;         /* how much of upper is rounding, where the cores are apart */
-  vec3 on_a, on_b;      /* a's frame, margins included: the points that attain upper */
-  vec3 common;          /* a's frame: where they overlap or touch, a point of both but for rounding */
-  vec3 normal;          /* a's frame, unit, from b to a; (0,0,0) where there is none */
-  double depth;         /* overlap: the cores' own depth is proven to be at least this */
-  pair_feature feature; /* only where the goal asks for it, and the cores are apart or their depth is measured */
+  bool support_failed;    /* a support callback misbehaved: nothing else is set */
+  bool exhausted;         /* max_steps were not enough */
+  bool stopped;           /* the caller's stop function ended a search through elements or parts */
+  bool overlap;           /* the cores overlap, proven */
+  bool measured;          /* then: lower and upper are those of minus the depth; else upper is 0 */
+  double lower, upper;    /* of the signed distance, margins and rounding included */
+  double rounding;        /* how much the ends may be off by rounding */
+  double above;           /* how much of upper is rounding, where the cores are apart */
+  vec3 on_a, on_b;        /* a's frame, margins included: the points that attain upper */
+  vec3 common;            /* a's frame: where they overlap or touch, a point of both but for rounding */
+  vec3 normal;            /* a's frame, unit, from b to a; (0,0,0) where there is none */
+  double depth;           /* overlap: the cores' own depth is proven to be at least this */
+  pair_feature feature;   /* only where the goal asks for it, and the cores are apart or their depth is measured */
+  pair_vertices vertices; /* only where the goal asks for them, and the cores are apart */
   uint32_t steps, supports;
 } pair_answer;
 

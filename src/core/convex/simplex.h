@@ -9,9 +9,10 @@
 #include "base/vec.h"
 
 typedef struct simplex_vertex {
-  vec3 w;    /* the vertex */
-  vec3 a, b; /* the points of the two shapes whose difference it is */
-  int32_t id;
+  vec3 w;        /* the vertex */
+  vec3 a, b;     /* the points of the two shapes whose difference it is */
+  int32_t id;    /* the number of a vertex of polytopes, */
+  int32_t id_b;  /* and of pairs that of the second's; -1: none */
   double behind; /* what w fails to reach of the support value along the direction it was looked for; 0 but for implicit
                     shapes */
 } simplex_vertex;

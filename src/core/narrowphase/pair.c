@@ -27,6 +27,7 @@ typedef struct pair_reply {
 typedef struct pair_known {
   vec3 on_a, on_b, normal;
   double distance;
+  pair_vertices vertices;
 } pair_known;
 
 /* ---- arguments ---- */
@@ -229,7 +230,13 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
   const pair_placement place = pair_place(first, second);
   pair_goal goal = *asked;
-  if (known) goal.start = frame_turn_to_local(&first->f, swapped ? vec_neg(known->normal) : known->normal);
+  if (known) {
+    double error = 0.0;
+    goal.start = frame_turn_to_local(&first->f, swapped ? vec_neg(known->normal) : known->normal);
+    goal.placed = true;
+    goal.place = frame_to_local(&first->f, swapped ? known->on_a : known->on_b, &error);
+    if (!swapped && known->vertices.n > 0) goal.known = &known->vertices;
+  }
 
   if (first->shape->ops->kind == CPROX_BODY_HALFSPACE)
     pair_halfspace(first, second, &place, answer);
@@ -402,19 +409,38 @@ static bool pair_has_start(const cprox_options *options) {
   return isfinite(sizes) && fabs(vec_norm(start->normal) - 1.0) < 1e-6;
 }
 
+/* Where both bodies stand, about their own origins. */
+typedef struct pair_frames {
+  frame a, b;
+} pair_frames;
+
+static pair_known pair_known_of(const pair_frames *f, const cprox_pair_start *start) {
+  pair_known known = {.on_a = frame_to_world(&f->a, start->point_a),
+                      .on_b = frame_to_world(&f->b, start->point_b),
+                      .normal = frame_turn_to_world(&f->a, start->normal),
+                      .distance = start->distance};
+  const int32_t n = start->n_vertices;
+  known.vertices.n = n > 0 && n <= 3 ? n : 0;
+  for (int i = 0; i < known.vertices.n; i++)
+    known.vertices.a[i] = start->vertices_a[i], known.vertices.b[i] = start->vertices_b[i];
+  return known;
+}
+
 /* Leaves behind where the search ended. */
-static void pair_leave(const cprox_obstacle *a, const cprox_obstacle *b, const pair_answer *answer,
-                       cprox_pair_start *start) {
-  const frame fa = frame_create(&a->pose, vec(0, 0, 0)), fb = frame_create(&b->pose, vec(0, 0, 0));
+static void pair_leave(const cprox_obstacle *a, const cprox_obstacle *b, const pair_frames *f,
+                       const pair_answer *answer, cprox_pair_start *start) {
   const vec3 n = answer->normal;
-  double error;
+  double error = 0.0;
   *start = (cprox_pair_start){.usable = vec_norm2(n) > 0.0};
   if (!start->usable) return;
-  start->normal = frame_turn_to_local(&fa, n);
-  start->point_a = frame_to_local(&fa, vec_axpy(answer->on_a, a->margin, n), &error);
-  start->point_b = frame_to_local(&fb, vec_axpy(answer->on_b, -b->margin, n), &error);
+  start->normal = frame_turn_to_local(&f->a, n);
+  start->point_a = frame_to_local(&f->a, vec_axpy(answer->on_a, a->margin, n), &error);
+  start->point_b = frame_to_local(&f->b, vec_axpy(answer->on_b, -b->margin, n), &error);
   const double distance = vec_dot(vec_sub(answer->on_a, answer->on_b), n) + a->margin + b->margin;
   start->distance = answer->overlap ? 0.0 : fmax(distance, 0.0);
+  start->n_vertices = answer->vertices.n;
+  for (int i = 0; i < answer->vertices.n; i++)
+    start->vertices_a[i] = answer->vertices.a[i], start->vertices_b[i] = answer->vertices.b[i];
 }
 
 /* ---- the verdict ---- */
@@ -537,21 +563,19 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
                           .max_steps = asked.max_nodes,
                           .stop = asked.stop,
                           .stop_user = asked.stop_user,
-                          .wants_depth = true};
+                          .wants_depth = true,
+                          .wants_vertices = asked.start != NULL};
   pair_reply best;
   const cprox_lod finest = asked.max_lod == CPROX_LOD_NONE ? CPROX_LOD_MESH : asked.max_lod;
+  pair_frames frames;
   pair_known known;
-  if (pair_has_start(&asked)) {
-    const frame fa = frame_create(&a.pose, vec(0, 0, 0)), fb = frame_create(&b.pose, vec(0, 0, 0));
-    known = (pair_known){.on_a = frame_to_world(&fa, asked.start->point_a),
-                         .on_b = frame_to_world(&fb, asked.start->point_b),
-                         .normal = frame_turn_to_world(&fa, asked.start->normal),
-                         .distance = asked.start->distance};
-  }
+  if (asked.start) frames = (pair_frames){frame_create(&a.pose, vec(0, 0, 0)), frame_create(&b.pose, vec(0, 0, 0))};
+  const bool warm = pair_has_start(&asked);
+  if (warm) known = pair_known_of(&frames, asked.start);
   pair_task task = {.a = &a,
                     .b = &b,
                     .goal = &goal,
-                    .known = pair_has_start(&asked) ? &known : NULL,
+                    .known = warm ? &known : NULL,
                     .finest = finest,
                     .options = &asked,
                     .workspace = workspace};
@@ -559,7 +583,7 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
 
   const pair_answer *answer = &best.answer;
   status = pair_status(answer, &asked);
-  if (asked.start) pair_leave(&a, &b, answer, asked.start);
+  if (asked.start) pair_leave(&a, &b, &frames, answer, asked.start);
   *result = (cprox_result){.status = status,
                            .verdict = CPROX_VERDICT_UNDECIDED,
                            .lower = answer->lower,
