@@ -1,4 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+/* Branch and bound over a parameter interval (A. Land, A. Doig, Econometrica 28, 1960).
+ *
+ *   1. Take the open node with the least lower bound (or the first in time, or the last one entered).
+ *   2. Drop it if its bound says that it cannot matter; else the oracle improves the bound from known normals.
+ *   3. The oracle measures the distance somewhere in the node: this improves the best point and the node's bound.
+ *   4. End if the best point answers the question; drop the node if its bound now says so.
+ *   5. Else split it into 2 to 8 nodes.
+ *
+ * Departure: the bound of each node that leaves is kept in a running minimum, so the interval is true whenever the
+ * search ends. A node whose gap is below its rounding leaves as unresolved: then the status says that precision ends
+ * here. */
 #include "branch_and_bound/search.h"
 
 #include "base/vec.h"

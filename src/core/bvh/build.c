@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+/* Builds a bounding-volume hierarchy: eight boxes a node, elements in packs of eight. One of two builders decides how
+ * elements are grouped: by surface area (build_area.c) or along Morton's curve (build_morton.c). Triangles then get the
+ * slabs of their nodes (slabs.c). */
 #include "bvh/build.h"
 
 #include <stdlib.h>

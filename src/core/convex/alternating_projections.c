@@ -1,6 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Letters as in doc/convex-pairs.md: v = a - b between two points of the cores, the columns m of the pieces' tangents
- * (of b's with the sign turned), x how far to go along each. All in a's frame but where it says otherwise. */
+/* Alternating projections between two convex cores (W. Cheney, A. Goldstein, Proc. AMS 10, 1959), made fast by
+ * Newton's method, for cores whose nearest points are known in closed form.
+ *
+ *   1. Project a point of b onto a, and the result onto b: v joins the two points, and |v| is an upper bound.
+ *   2. The direction u of v gives the lower bound phi(u) by both support functions.
+ *   3. End when the bounds have met. If they touch, GJK and EPA take over.
+ *   4. Take the smooth pieces of the surfaces at both points by their tangents and curvatures, solve for the
+ *      nearest points of the two pieces (2 to 4 unknowns), and go on from there with 1.
+ *
+ * Departure: plain projections converge linearly. Step 4 is a Newton step, and where it does not shorten v the next
+ * round goes on from the last projection. approach_smooth() does without projections: Newton's method on phi(u)
+ * alone.
+ *
+ * Letters as in doc/convex-pairs.md: v = a - b between two points of the cores, the columns m of the pieces'
+ * tangents (of b's with the sign turned), x how far to go along each. All in a's frame but where it says otherwise. */
 #include "convex/alternating_projections.h"
 
 #include "base/rotation.h"

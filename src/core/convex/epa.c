@@ -1,7 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Expanding polytope algorithm (van den Bergen 2001) with a proven depth: the facets of a closed surface round 0 whose
- * vertices belong to the set. Along any unit n every point p of a facet has n·p >= min n·w over its vertices, so the
- * least of these offsets is a lower bound of the depth, whatever the normals' accuracy. */
+/* EPA: the depth of 0 inside a convex set (expanding polytope algorithm, G. van den Bergen, Game Developers
+ * Conference 2001).
+ *
+ * The facets of a closed surface round 0 are kept, whose vertices belong to the set.
+ *   1. Begin with the tetrahedron, triangle or edge that GJK ends with, completed by support points.
+ *   2. Take the facet with the least offset: this offset is a lower bound of the depth.
+ *   3. The support point along its normal gives an upper bound of the depth.
+ *   4. End when the bounds have met, or when the support point is no farther out than the facet.
+ *   5. Replace the facets that the support point sees by facets from their horizon to it.
+ *
+ * Departures: the depth is an interval. Along any unit n every point p of a facet has n·p >= min n·w over its
+ * vertices, so step 2 is proven whatever the accuracy of the normals. Where the horizon is no simple loop, because
+ * of rounding, the nearest facet alone is replaced. If 0 lies on planes through vertices, a place beside it is
+ * enclosed first (expand_beside()). Coaxial bodies of revolution have a plane problem (epa_ring.c). */
 #include "convex/epa.h"
 
 #include <stdlib.h>

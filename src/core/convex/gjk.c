@@ -1,4 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+/* GJK: the distance of a point y to a convex core (Gilbert, Johnson, Keerthi, IEEE J. Robotics and Automation 4(2),
+ * 1988).
+ *
+ * A simplex of support points of the core is kept, as seen from y.
+ *   1. Begin with the vertices of the hint, or with one support point.
+ *   2. Find the point of the simplex that is nearest to y, and drop the vertices that it does not need.
+ *   3. Look along its direction u: the support point gives the lower bound u·w of the distance, and a new vertex.
+ *   4. End when lower bound and simplex have met, when y is inside the simplex, or when no vertex brings it
+ *      nearer.
+ *
+ * Departures: the result is the interval of both bounds, not the simplex alone. Two directions are tried at each
+ * place (gjk_step()). Some steps without a gain are allowed, as at a flat corner all are short. If y lies on a
+ * feature of the simplex, the search begins once more from all sides. A depth that simplices cannot prove is left to
+ * depth_proven(). */
 #include "convex/gjk.h"
 
 #include "base/rounding.h"

@@ -1,7 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Two bounds that meet (doc/convex-pairs.md). Above: the distance from 0 of a simplex in the Minkowski difference
- * M = A - B, which shrinks as in Gilbert, Johnson and Keerthi's search. Below: phi(u) = min of u·m over M, for
- * directions u that the simplex suggests, or, where the shapes are curved, Newton's method on phi. */
+/* Distance or depth of two convex cores: GJK with a Newton method on the dual (doc/convex-pairs.md).
+ *
+ * Two bounds meet. Above: the distance from 0 of a simplex in the Minkowski difference M = A - B, as in GJK (gjk.c).
+ * Below: phi(u) = min of u·m over M, concave, whose greatest value over unit u is the distance.
+ *   1. Alternating projections (alternating_projections.c), where both cores allow them.
+ *   2. Else GJK: look along u for phi(u) and for a new vertex of the simplex; reduce the simplex.
+ *   3. Where the shapes are curved, u comes from Newton's method on phi: the vertices of the simplex follow u on
+ *      their smooth pieces, whose curvatures give the second derivative. A step that keeps more than 0.7 of the
+ *      gap has failed, and GJK's direction comes next.
+ *   4. If 0 lies inside, EPA measures the depth (epa.c).
+ *
+ * Departure: GJK ends at its own accuracy. Here the search ends when both bounds, rounding included, are as close as
+ * the goal asks, and the interval is what is returned. */
 #include "convex/pair.h"
 
 #include "base/rotation.h"

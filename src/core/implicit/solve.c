@@ -1,6 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The feasible primal-dual interior point method over one or two bodies (doc/implicit.md), until the certificate is as
- * narrow as asked; what one set of settings cannot finish, the next one tries. */
+/* Primal-dual interior point method for implicit bodies (Chakraborty, Peng, Akella, Mitchell, IEEE Trans. Robotics
+ * 24(1), 2008; LOQO: R. Vanderbei, D. Shanno, 1999).
+ *
+ *   1. Begin at a strictly feasible point between the centre and the surface of each body.
+ *   2. Solve the Newton system of the optimality conditions for the present barrier parameter.
+ *   3. Go along the step until the next constraint is close, and lower the barrier parameter.
+ *   4. Now and then turn the multipliers into a separating plane: it proves a lower bound (certificate.c).
+ *   5. End when this bound and the distance of the points are as close as asked.
+ *
+ * Departures: all points stay feasible, so each gives an upper bound. The search ends with a proven interval, not
+ * with small residuals. What one set of settings cannot finish, the next one tries (doc/implicit.md). */
 #include "base/rotation.h"
 #include "base/rounding.h"
 #include "implicit/barrier.h"
