@@ -72,7 +72,8 @@ struct SceneChange {
   bool clear_objects = false;          /**< First removes all objects of the scene but those in `kept`. */
   std::vector<std::string> kept;       /**< ids that clear_objects leaves */
   bool clear_attached = false;         /**< First removes all attached objects; they do not return into the scene. */
-  bool clear_allowed = false;          /**< First removes all allowed pairs, also those that the scene began with. */
+  /** First removes all allowed pairs, also those that the scene began with: see Snapshot::replacesSrdf(). */
+  bool clear_allowed = false;
   std::vector<Operation> operations;   /**< applied in order */
   std::vector<Attachment> attachments; /**< after the operations, in order */
   bool attachments_first = false;      /**< the attachments come before the operations */
@@ -210,6 +211,12 @@ class Snapshot {
     return *allowed_;
   }
 
+  /** True if allowed() says it all: SceneChange::clear_allowed has replaced the pairs that the scene began with, so those
+   *  that an SRDF disables do not count apart. */
+  bool replacesSrdf() const {
+    return replaces_srdf_;
+  }
+
   /** True if the allowed collision matrix lets two objects or links touch. The rules are those of
    *  moveit_msgs/AllowedCollisionMatrix: the entry of the pair wins. Without an entry the default of either name
    *  counts; if both names have a default, both must be true. Otherwise false. Cost: a search in allowed(). */
@@ -241,6 +248,7 @@ class Snapshot {
   std::map<std::string, std::shared_ptr<const std::vector<LinkGeometry>>> scaled_; /* of the links in link_scale_ */
   double default_link_padding_ = 0.0;
   std::shared_ptr<const std::vector<AllowedPair>> allowed_; /* shared by the snapshots that do not change it */
+  bool replaces_srdf_ = false;
   std::shared_ptr<const World> world_;                      /* shared by the variants */
 };
 

@@ -344,7 +344,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType
 }
 
 /** Objects come in any frame; what is wrong with one is told, and the others are applied. */
-std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &request) {
+std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &request, bool replaces_srdf) {
   NameLimits(parameters_.max_name_length).check(request);
   FrameLookup lookup(frames_);
   std::vector<std::string> faults;
@@ -357,6 +357,7 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
   };
   SceneChange change = toSceneChange(request, to_fixed, faults);
   addAttachments(request, to_fixed, link_to_fixed, *before, change, faults);
+  change.clear_allowed = replaces_srdf;
   for (std::string &fault : applyChange(change, *before)) faults.push_back(std::move(fault));
   if (faults.empty()) live_.unknowns.forget(LOST_SCENE);
   return faults;
@@ -369,7 +370,6 @@ std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const
                                              std::chrono::duration<double, std::milli>(parameters_.scene_budget_ms));
   change.stop = [&] { return stop_ || std::chrono::steady_clock::now() >= deadline; };
   std::vector<std::string> faults = live_.scene.apply(change);
-  if (change.clear) live_.matrix_has_srdf = false; // the allowed pairs are those of the beginning
 
   // What somebody has set or removed by name is no sensor's until its next message.
   const SnapshotPtr after = live_.scene.snapshot();
@@ -458,7 +458,7 @@ void ProximityServer::loadScene() {
 void ProximityServer::restoreScene() {
   const std::optional<KeptScene> kept = state_file_.read();
   if (!kept) return;
-  const std::vector<std::string> faults = apply(kept->request);
+  const std::vector<std::string> faults = apply(kept->request, kept->replaces_srdf);
   for (const std::string &fault : faults) ROS_WARN("of the scene before the restart: %s", fault.c_str());
   if (kept->behind || !faults.empty()) state_file_.lose();
   for (const std::string &id : kept->sensors) live_.sensors.awaits(id);

@@ -76,7 +76,7 @@ class ProximityServer {
   void takeAttached(const AttachedCollisionObjectConstPtr &object);
   template <class Fill>
   void changeScene(const char *topic, Fill &&fill);
-  std::vector<std::string> apply(const ApplyScene::Request &request);
+  std::vector<std::string> apply(const ApplyScene::Request &request, bool replaces_srdf = false);
   std::vector<std::string> applyChange(SceneChange &change, const Snapshot &before);
   void loadScene();
   void restoreScene();

@@ -290,17 +290,17 @@ Coverage coverageOf(const Query &query, const Coverage &given, const std::string
 
 Coverage coverageOf(const Snapshot &snapshot) {
   Coverage out = snapshot.coverage();
-  const auto note = [&](const char *what, const std::string &id, bool is_open) {
-    if (is_open)
-      out.add(Gap::PARTIAL, what + (" '" + id) + "' is to be solid, but its mesh is not closed: it has no inside",
-              Missing::GEOMETRY);
+  const auto note = [&](const char *what, const std::string &id) {
+    out.add(Gap::PARTIAL, what + (" '" + id) + "' is to be solid, but its mesh is not closed: it has no inside",
+            Missing::GEOMETRY);
   };
-  for (const auto &[id, object] : snapshot.objects())
-    for (const ObjectShape &shape : object->shapes) note("object", id, shape.geometry.is_open);
+  for (const std::string &id : snapshot.world().open()) note("object", id);
   for (const auto &[id, object] : snapshot.moving())
-    for (const Geometry &geometry : object->geometries) note("object", id, geometry.is_open);
+    for (const Geometry &geometry : object->geometries)
+      if (geometry.is_open) note("object", id);
   for (const auto &[id, object] : snapshot.attached())
-    for (const LinkGeometry &shape : object->shapes) note("attached object", id, shape.geometry.is_open);
+    for (const LinkGeometry &shape : object->shapes)
+      if (shape.geometry.is_open) note("attached object", id);
   return out;
 }
 

@@ -285,22 +285,27 @@ const AllowedPair *findAllowed(const std::vector<AllowedPair> &matrix, const Nam
 /* ---- World ---- */
 
 World::World(const Objects &objects) {
-  std::vector<Eigen::AlignedBox3d> boxes;
+  items_.reserve(objects.size());
   for (const auto &[id, object] : objects) {
     for (std::size_t i = 0; i < object->shapes.size(); ++i) {
       const PlacedShape &shape = object->shapes[i].placed;
+      if (object->shapes[i].geometry.is_open) open_.push_back(id);
       if (object->shapes[i].geometry.isEmpty()) continue;
       const auto index = static_cast<std::uint32_t>(items_.size());
       items_.push_back({&shape, &object->description.id, false, static_cast<int>(i)});
-      if (curve_proximity::unbounded(shape)) {
-        unbounded_.push_back(index);
-      } else {
-        bounded_.push_back(index);
-        boxes.push_back(shape.box);
-      }
+      (curve_proximity::unbounded(shape) ? unbounded_ : bounded_).push_back(index);
     }
   }
-  tree_ = std::make_unique<const Broadphase>(boxes);
+}
+
+const Broadphase &World::tree() const {
+  std::call_once(tree_made_, [this] {
+    std::vector<Eigen::AlignedBox3d> boxes;
+    boxes.reserve(bounded_.size());
+    for (const std::uint32_t index : bounded_) boxes.push_back(items_[index].shape->box);
+    tree_ = std::make_unique<const Broadphase>(boxes);
+  });
+  return *tree_;
 }
 
 /* ---- Snapshot ---- */
@@ -319,7 +324,8 @@ Snapshot::Snapshot(const Snapshot &other)
       link_scale_(other.link_scale_),
       scaled_(other.scaled_),
       default_link_padding_(other.default_link_padding_),
-      allowed_(other.allowed_) {}
+      allowed_(other.allowed_),
+      replaces_srdf_(other.replaces_srdf_) {}
 
 double Snapshot::linkPadding(const std::string &link) const {
   const auto it = link_padding_.find(link);
@@ -411,6 +417,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
     next->objects_.clear();
     next->moving_.clear();
     next->allowed_ = first_allowed_;
+    next->replaces_srdf_ = false;
     next->attached_.clear();
     next->link_padding_.clear();
     next->default_link_padding_ = 0.0;
@@ -429,7 +436,10 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
     clear(next->moving_);
   }
   if (change.clear_attached) next->attached_.clear();
-  if (change.clear_allowed) next->allowed_ = std::make_shared<const std::vector<AllowedPair>>();
+  if (change.clear_allowed) {
+    next->allowed_ = std::make_shared<const std::vector<AllowedPair>>();
+    next->replaces_srdf_ = true;
+  }
 
   const auto apply_operations = [&] {
     for (std::size_t i = 0; i < change.operations.size(); ++i) {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* All shapes of a snapshot's objects in one row, with the tree over those that have a finite box. */
+/* All shapes of a snapshot's objects in one row, and a tree over those that have a finite box. The tree is made when it
+ * is first asked for: curves need it, robots do not, and a scene may change often in between. */
 #ifndef CURVE_PROXIMITY_SCENE_WORLD_H
 #define CURVE_PROXIMITY_SCENE_WORLD_H
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -32,11 +34,14 @@ class World {
   }
 
   /* Over the items with a finite box: bounded()[id of the tree] is the item's index. */
-  const Broadphase &tree() const {
-    return *tree_;
-  }
+  const Broadphase &tree() const;
   const std::vector<std::uint32_t> &bounded() const {
     return bounded_;
+  }
+
+  /* The objects with a mesh that is to be solid and is not closed, a name for each such mesh. */
+  const std::vector<std::string> &open() const {
+    return open_;
   }
 
   /* The items without one. */
@@ -47,7 +52,9 @@ class World {
  private:
   std::vector<Item> items_;
   std::vector<std::uint32_t> bounded_, unbounded_;
-  std::unique_ptr<const Broadphase> tree_;
+  std::vector<std::string> open_;
+  mutable std::once_flag tree_made_;
+  mutable std::unique_ptr<const Broadphase> tree_;
 };
 
 } // namespace curve_proximity

@@ -385,7 +385,6 @@ class SceneReader {
     if (!full_ && matrix.entry_names.empty()) return;
     try {
       out_.state.allowed = toMatrix(matrix);
-      out_.has_matrix = true;
       out_.change.clear_allowed = true;
     } catch (const Error &error) {
       complain(std::string("allowed_collision_matrix: ") + error.what() + "; the one before stays");
@@ -614,7 +613,7 @@ std::vector<std::string> differences(const PlanningScene &message, const Plannin
 
   for (const auto &padding : theirs.change.link_padding) tell("link '" + padding.first + "' has another padding");
   for (const auto &scale : theirs.change.link_scale) tell("link '" + scale.first + "' has another scale");
-  if (theirs.has_matrix && theirs.state.allowed != context.state.allowed)
+  if (theirs.change.clear_allowed && theirs.state.allowed != context.state.allowed)
     tell("the allowed collision matrix is another one");
   for (const std::string &what : theirs.wrong) tell(what);
   return out;

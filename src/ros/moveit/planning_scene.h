@@ -37,7 +37,6 @@ struct PlanningSceneState {
 struct PlanningSceneChange {
   SceneChange change;             /**< in the fixed frame */
   PlanningSceneState state;       /**< after the message */
-  bool has_matrix = false;        /**< the message says who may touch whom: the SRDF's pairs are among these */
   std::vector<std::string> wrong; /**< what is not used, a sentence each */
 };
 

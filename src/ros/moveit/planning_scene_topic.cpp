@@ -148,7 +148,6 @@ void PlanningSceneTopic::use(const moveit::PlanningScene &message) {
   FrameLookup lookup(frames_);
   const SnapshotPtr before = live_.scene.snapshot();
   PlanningSceneChange change = toSceneChange(message, context(*before, lookup));
-  if (change.has_matrix) live_.matrix_has_srdf = true; // before the change: in between more pairs are asked about
   std::vector<std::string> wrong = std::move(change.wrong);
   for (std::string &fault : apply_(change.change, *before)) wrong.push_back(std::move(fault));
   state_ = std::move(change.state);

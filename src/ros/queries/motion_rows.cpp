@@ -294,7 +294,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
                                        : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
     demandTime(work.query);
-    out.motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions, live_.disabled(),
+    out.motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions, live_.disabled(*work.snapshot),
                                                      base, work.query.links);
     out.trajectory = std::move(trajectory);
 

@@ -37,9 +37,9 @@ SceneState LiveScene::state() const {
   return state(*scene.snapshot(), std::move(seen));
 }
 
-const std::vector<std::array<std::string, 2>> &LiveScene::disabled() const {
+const std::vector<std::array<std::string, 2>> &LiveScene::disabled(const Snapshot &snapshot) const {
   static const std::vector<std::array<std::string, 2>> none;
-  return matrix_has_srdf ? none : srdf.disabled;
+  return snapshot.replacesSrdf() ? none : srdf.disabled;
 }
 
 void LiveScene::demand(const Snapshot &snapshot, const ros::Time &epoch_wanted, std::uint64_t version_wanted) const {

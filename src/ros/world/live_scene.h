@@ -7,7 +7,6 @@
 #include <ros/time.h>
 
 #include <array>
-#include <atomic>
 #include <curve_proximity/scene.hpp>
 #include <curve_proximity/srdf.hpp>
 #include <string>
@@ -33,14 +32,10 @@ struct LiveScene {
   SensorBoard sensors;
   JointBoard joints;
   ros::Time epoch; /**< when the server started */
-  /** The allowed collision matrix is one of MoveIt's: the SRDF's pairs are among its entries, so they do not count
-   * apart. */
-  std::atomic<bool> matrix_has_srdf{false};
-
   Unknowns unknowns;
 
-  /** The pairs of links that are not checked against each other, beside the allowed pairs of the scene. */
-  const std::vector<std::array<std::string, 2>> &disabled() const;
+  /** The pairs of links that are not checked against each other, beside the allowed pairs of the snapshot. */
+  const std::vector<std::array<std::string, 2>> &disabled(const Snapshot &snapshot) const;
 
   /** The scene of a snapshot, with sensors as they were before it was taken; what was measured and the ages of joints
    * and transforms are left open. */

@@ -21,7 +21,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr const char *MAGIC = "curve_proximity scene 2";
+constexpr const char *MAGIC = "curve_proximity scene 3";
 constexpr std::chrono::seconds WRITING_PERIOD{1}; /* between two writings at least */
 constexpr std::size_t MOST_BYTES = std::size_t{64} << 20;
 
@@ -83,7 +83,9 @@ KeptScene keptOf(const LiveScene &live, const std::string &fixed_frame) {
   KeptScene out;
   for (const SensorState &sensor : live.sensors.states()) out.sensors.push_back(sensor.id);
   GetSceneResponse scene;
-  toMessage(*live.scene.snapshot(), {}, scene);
+  const SnapshotPtr snapshot = live.scene.snapshot();
+  toMessage(*snapshot, {}, scene);
+  out.replaces_srdf = snapshot->replacesSrdf();
   std::size_t bytes = 0;
   out.request.clear = true;
   for (CollisionObject &object : scene.objects) {
@@ -164,6 +166,9 @@ std::optional<KeptScene> StateFile::read() {
         ros::serialization::IStream stream(reinterpret_cast<std::uint8_t *>(const_cast<char *>(bytes.data())),
                                            static_cast<std::uint32_t>(bytes.size()));
         ros::serialization::deserialize(stream, kept.sensors);
+        std::uint8_t replaces_srdf = 0;
+        ros::serialization::deserialize(stream, replaces_srdf);
+        kept.replaces_srdf = replaces_srdf != 0;
         ros::serialization::deserialize(stream, kept.request);
         kept.behind = is_behind;
         out = std::move(kept);
@@ -243,7 +248,7 @@ void StateFile::run() {
 void StateFile::write() {
   if (!isKept()) return;
   const KeptScene kept = keptOf(live_, fixed_frame_);
-  const std::string bytes = serialised(kept.sensors) + serialised(kept.request);
+  const std::string bytes = serialised(kept.sensors) + serialised(std::uint8_t{kept.replaces_srdf}) + serialised(kept.request);
   std::ostringstream text;
   text << MAGIC << '\n'
        << run_ << '\n'
