@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include <curve_proximity/nearest_name.hpp>
 
@@ -77,10 +78,8 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
   const Named named(data, query.links);
   Asked asked{data, RobotPairs::ENVIRONMENT, std::move(wanted), {}, {}, {}, mostExcess(data.kinematics->geometries)};
   const std::vector<Item> &items = data.snapshot->world().items();
-  std::vector<std::int32_t> number(items.size(), -1);
   double rounding = 0.0;
   for (const std::size_t k : asked.items) {
-    number[k] = static_cast<std::int32_t>(asked.targets.size());
     const PlacedShape &shape = *items[k].shape;
     requireBody(items[k]);
     const cprox_body_kind kind = cprox_body_get_info(shape.target.body).kind;
@@ -93,10 +92,23 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
     asked.targets.push_back(shape.target);
     rounding = std::max(rounding, shape.rounding);
   }
-  for (const cprox_robot_pair &pair : data.environment) {
-    const std::int32_t k = number[static_cast<std::size_t>(pair.other)];
-    if (query.moving_only && !data.moves[static_cast<std::size_t>(pair.geometry)]) continue;
-    if (k >= 0 && named(pair.geometry)) asked.pairs.push_back({pair.geometry, k});
+  /* both ascend; what is not among a geometry's pairs is allowed to touch it */
+  const auto before = [](const cprox_robot_pair &pair, std::size_t item) {
+    return static_cast<std::size_t>(pair.other) < item;
+  };
+  for (std::size_t i = 0; i < data.wanted.size(); ++i) {
+    const auto geometry = static_cast<std::int32_t>(i);
+    if (!data.wanted[i] || (query.moving_only && !data.moves[i]) || !named(geometry)) continue;
+    const std::vector<cprox_robot_pair> &pairs = data.prepared->environment[i];
+    auto next = pairs.begin();
+    for (std::size_t k = 0; k < asked.items.size(); ++k) {
+      if (next == pairs.end() || static_cast<std::size_t>(next->other) != asked.items[k])
+        next = std::lower_bound(next, pairs.end(), asked.items[k], before);
+      if (next == pairs.end()) break;
+      if (static_cast<std::size_t>(next->other) != asked.items[k]) continue;
+      asked.pairs.push_back({geometry, static_cast<std::int32_t>(k)});
+      ++next;
+    }
   }
   asked.rounding += rounding;
   return asked;
@@ -119,10 +131,11 @@ std::vector<std::size_t> namedItems(const RobotMotion::Data &data, const std::ve
   for (const std::string &name : names) {
     if (data.snapshot->objects().count(name) == 0) throw Error("there is no object '" + name + "' in the scene");
   }
+  const std::set<std::string_view> wanted(names.begin(), names.end());
   std::vector<std::size_t> out;
   const std::vector<Item> &items = data.snapshot->world().items();
   for (std::size_t k = 0; k < items.size(); ++k) {
-    if (names.empty() || std::find(names.begin(), names.end(), *items[k].owner) != names.end()) out.push_back(k);
+    if (names.empty() || wanted.count(*items[k].owner) > 0) out.push_back(k);
   }
   return out;
 }

@@ -53,6 +53,7 @@ class Builder {
   std::size_t addLink(int parent, cprox_joint_type type, const Eigen::Isometry3d &origin, const Eigen::Vector3d &axis,
                       int variable, double multiplier, double offset) {
     links_.push_back({parent, type, toPose(origin), toVec3(axis), variable, multiplier, offset});
+    out_.parents.push_back(parent);
     return links_.size() - 1;
   }
 

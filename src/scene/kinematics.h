@@ -34,6 +34,7 @@ struct Kinematics {
   std::shared_ptr<const Robot> robot;
   std::unique_ptr<cprox_robot, void (*)(cprox_robot *)> core{nullptr, cprox_robot_free};
   std::map<std::string, std::size_t> links;   /* by name: number in the core */
+  std::vector<int> parents;                   /* of each link of the core, its parent's number; -1: the fixed frame */
   std::map<std::string, int> variables;       /* joint values by name; mimic joints have none */
   std::map<std::string, std::string> leaders; /* mimic and fixed joints: who decides ("" for fixed) */
   std::vector<double> rest;                   /* of all variables */

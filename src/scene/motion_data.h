@@ -21,7 +21,7 @@ namespace curve_proximity {
 struct SelfPair {
   cprox_robot_pair pair;
   bool carried;          /* one of them is an object that a link carries */
-  std::string exemption; /* why they are not measured, whatever moves; "": they are */
+  const char *exemption; /* why they are not measured, whatever moves; "": they are */
 };
 
 /* What all motions of a robot in a snapshot share. */

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include "motion_data.h"
 
@@ -11,11 +13,12 @@ namespace curve_proximity {
 namespace {
 
 using Links = std::array<std::string, 2>;
+using LinkNames = std::pair<std::string_view, std::string_view>;
 
 /* ---- the pairs ---- */
 
-Links ordered(const std::string &a, const std::string &b) {
-  return a < b ? Links{a, b} : Links{b, a};
+LinkNames ordered(std::string_view a, std::string_view b) {
+  return a < b ? LinkNames{a, b} : LinkNames{b, a};
 }
 
 std::string nameOf(const MovingGeometry &geometry) {
@@ -35,8 +38,8 @@ bool mayTouch(const MovingGeometry &a, const MovingGeometry &b) {
 }
 
 /* Why two geometries of the robot are never measured; "" where the motion decides. */
-std::string exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const Snapshot &snapshot,
-                        const std::set<Links> &off) {
+const char *exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const Snapshot &snapshot,
+                        const std::set<LinkNames> &off) {
   const bool carried = a.attached || b.attached;
   if (mayTouch(a, b) || mayTouch(b, a)) return "it is one of its touch_links";
   if (!carried && off.count(ordered(*a.link, *b.link)) > 0) return "the SRDF disables them";
@@ -48,11 +51,51 @@ bool moves(const RobotMotion::Data &data, std::size_t geometry) {
   return data.stands || cprox_motion_get_link_info(data.core.get(), data.prepared->link[geometry], -1).n_moved > 0;
 }
 
-cprox_link_info between(const RobotMotion::Data &data, const SelfPair &pair) {
-  const std::vector<std::int32_t> &link = data.prepared->link;
-  return cprox_motion_get_link_info(data.core.get(), link[static_cast<std::size_t>(pair.pair.geometry)],
-                                    link[static_cast<std::size_t>(pair.pair.other)]);
-}
+/* The joints between pairs of links, in a time that does not grow with their number: of one first link after the other,
+ * and of each all second ones. */
+class JointsBetween {
+ public:
+  explicit JointsBetween(const RobotMotion::Data &data) : data_(data), parents_(data.kinematics->parents) {
+    for (std::size_t i = 0; i < parents_.size(); ++i)
+      own_.push_back(cprox_motion_get_link_info(data.core.get(), static_cast<std::int32_t>(i), parents_[i]));
+  }
+
+  cprox_link_info operator()(const SelfPair &pair) {
+    const std::vector<std::int32_t> &link = data_.prepared->link;
+    const std::int32_t first = link[static_cast<std::size_t>(pair.pair.geometry)];
+    if (first != first_) count(first);
+    return from_first_[static_cast<std::size_t>(link[static_cast<std::size_t>(pair.pair.other)])];
+  }
+
+ private:
+  /* Up from the first link to the fixed frame; every other link adds its own joints to those of its parent. */
+  void count(std::int32_t first) {
+    first_ = first;
+    from_first_.assign(parents_.size(), {});
+    std::vector<bool> is_above(parents_.size(), false);
+    cprox_link_info sum{};
+    for (int i = first; i >= 0; i = parents_[static_cast<std::size_t>(i)]) {
+      const auto at = static_cast<std::size_t>(i);
+      is_above[at] = true;
+      from_first_[at] = sum;
+      add(own_[at], sum);
+    }
+    for (std::size_t i = 0; i < parents_.size(); ++i) { // parents come first
+      if (is_above[i]) continue;
+      from_first_[i] = parents_[i] < 0 ? sum : from_first_[static_cast<std::size_t>(parents_[i])];
+      add(own_[i], from_first_[i]);
+    }
+  }
+  static void add(const cprox_link_info &own, cprox_link_info &sum) {
+    sum.n_joints += own.n_joints;
+    sum.n_moved += own.n_moved;
+  }
+
+  const RobotMotion::Data &data_;
+  const std::vector<int> &parents_;
+  std::vector<cprox_link_info> own_, from_first_; /* of each link: to its parent; to the first link */
+  std::int32_t first_ = -1;
+};
 
 /* Why a pair is left out; "" where it is not. Neighbours in the chain overlap by design; what is carried does not, and
  * is measured where a joint can move it against the other. */
@@ -71,9 +114,10 @@ bool isWanted(const RobotMotion::Data &data, const SelfPair &pair) {
 void preparePairs(const std::vector<Links> &disabled, PreparedRobot::Data &data) {
   const std::vector<MovingGeometry> &geometries = data.kinematics->geometries;
   const std::vector<Item> &items = data.snapshot->world().items();
-  std::set<Links> off;
+  std::set<LinkNames> off;
   for (const Links &pair : disabled) off.insert(ordered(pair[0], pair[1]));
 
+  data.self.reserve(geometries.size() * geometries.size() / 2);
   data.environment.resize(geometries.size());
   data.allowed.resize(geometries.size());
   for (const MovingGeometry &geometry : geometries)
@@ -115,9 +159,10 @@ void choosePairs(const std::vector<std::string> &links, RobotMotion::Data &data)
     const std::vector<cprox_robot_pair> &pairs = prepared.environment[i];
     data.environment.insert(data.environment.end(), pairs.begin(), pairs.end());
   }
+  JointsBetween between(data);
   for (const SelfPair &pair : prepared.self) {
-    if (!pair.exemption.empty() || !isWanted(data, pair)) continue;
-    const cprox_link_info info = between(data, pair);
+    if (*pair.exemption != '\0' || !isWanted(data, pair)) continue;
+    const cprox_link_info info = between(pair);
     if (*leftOut(pair, info.n_joints) != '\0') continue;
     data.self.push_back(pair.pair);
     data.self_moves.push_back(data.stands || info.n_moved > 0);
@@ -129,6 +174,7 @@ std::vector<std::string> skippedPairs(const RobotMotion::Data &data) {
   const std::vector<MovingGeometry> &geometries = prepared.kinematics->geometries;
   std::vector<std::string> out;
   std::set<std::string> told;
+  JointsBetween between(data);
   const auto tell = [&](const std::string &message) {
     if (told.insert(message).second) out.push_back(message);
   };
@@ -142,7 +188,7 @@ std::vector<std::string> skippedPairs(const RobotMotion::Data &data) {
     for (; next < prepared.self.size(); ++next) {
       const SelfPair &pair = prepared.self[next];
       if (static_cast<std::size_t>(pair.pair.geometry) != i) break;
-      const char *left_out = leftOut(pair, between(data, pair).n_joints);
+      const char *left_out = leftOut(pair, between(pair).n_joints);
       const std::string why = *left_out != '\0' ? left_out : pair.exemption;
       if (isWanted(data, pair) && !why.empty())
         tell(nameOf(geometries[i], geometries[static_cast<std::size_t>(pair.pair.other)]) + ": " + why);

@@ -189,6 +189,7 @@ class Answering {
     return std::visit([&](const auto &subject) { return searched(subject, query_, workspace_); }, subject_);
   }
   void add(std::vector<Answer> answers) {
+    rows_.reserve(rows_.size() + answers.size());
     for (Answer &answer : answers) rows_.push_back({part_, std::move(answer), {}});
   }
   template <class Call>
@@ -246,7 +247,9 @@ Row stoppedSearch(const std::string &curve, const Query &query) {
 
 std::vector<Row> answerParts(const Subject &subject, const std::vector<Part> &parts, const Question &question,
                              const Query &query, Beside beside, Workspace &workspace) {
+  if (parts.size() == 1) return answer(subject, parts.front(), question, query, beside, workspace);
   std::vector<Row> out;
+  out.reserve(parts.size());
   for (const Part &part : parts) {
     const bool ended = !out.empty() && query.options.stop && query.options.stop(query.options.stop_user);
     if (ended && asksFor<question::Search, question::Profile>(question)) {

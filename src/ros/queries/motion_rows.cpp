@@ -2,6 +2,7 @@
 /* What a request asks of motions: trajectories of the robot, the robot where it stands, and all that moves. */
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "messages/scene_message.h"
 #include "messages/topics.h"
@@ -129,11 +130,15 @@ struct Queries::Moving {
   /** Adds the rows of all parts of a subject. */
   void ask(const Subject &subject, const Query &query, const QueryRequest &request, Workspace &workspace) {
     const std::vector<Part> parts = partsOf(subject, request.question, query, request.per_link);
-    for (Row &row : answerParts(subject, parts, request.question, query, Beside::SEARCH, workspace)) {
+    std::vector<Row> answered = answerParts(subject, parts, request.question, query, Beside::SEARCH, workspace);
+    for (Row &row : answered) {
       if (row.answer.a.empty()) row.answer.a = row.part.link; // nothing is near it
       if (row.answer.b.empty()) row.answer.b = row.part.object;
-      rows.push_back(std::move(row));
     }
+    if (rows.empty())
+      rows = std::move(answered);
+    else
+      rows.insert(rows.end(), std::make_move_iterator(answered.begin()), std::make_move_iterator(answered.end()));
   }
 };
 
@@ -147,8 +152,10 @@ void Queries::answerMoving(const std::string &id, const std::vector<std::string>
     const WorkspacePool::Lease workspace(workspaces_);
     ask(*workspace, moving);
     std::vector<DetailMessage> details;
+    details.reserve(moving.rows.size());
     for (const Row &row : moving.rows) details.push_back(toMessage(row, &moving.trajectory));
     std::vector<Answer> answers;
+    answers.reserve(details.size());
     for (std::size_t i = 0; i < details.size(); ++i) {
       Answer &answer = answers.emplace_back(std::move(moving.rows[i].answer));
       answer.id = id;
@@ -294,8 +301,8 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
                                        : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
     demandTime(work.query);
-    out.motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions, live_.disabled(*work.snapshot),
-                                                     base, work.query.links);
+    out.motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions,
+                                                     live_.disabled(*work.snapshot), base, work.query.links);
     out.trajectory = std::move(trajectory);
 
     Query environment = work.query;
