@@ -69,14 +69,14 @@ struct SceneChange {
   /** First removes all objects (attached too), link paddings and scales, and all allowed pairs but those that the scene
    *  began with. */
   bool clear = false;
-  bool clear_objects = false;          /**< First removes all objects of the scene but those in `kept`. */
-  std::vector<std::string> kept;       /**< ids that clear_objects leaves */
-  bool clear_attached = false;         /**< First removes all attached objects; they do not return into the scene. */
+  bool clear_objects = false;    /**< First removes all objects of the scene but those in `kept`. */
+  std::vector<std::string> kept; /**< ids that clear_objects leaves */
+  bool clear_attached = false;   /**< First removes all attached objects; they do not return into the scene. */
   /** First removes all allowed pairs, also those that the scene began with: see Snapshot::replacesSrdf(). */
   bool clear_allowed = false;
-  std::vector<Operation> operations;   /**< applied in order */
-  std::vector<Attachment> attachments; /**< after the operations, in order */
-  bool attachments_first = false;      /**< the attachments come before the operations */
+  std::vector<Operation> operations;          /**< applied in order */
+  std::vector<Attachment> attachments;        /**< after the operations, in order */
+  bool attachments_first = false;             /**< the attachments come before the operations */
   std::map<std::string, double> link_padding; /**< [m] >= 0, by link */
   std::optional<double> default_link_padding; /**< [m] >= 0, of the links not named */
   std::map<std::string, double> link_scale;   /**< > 0, by link: see Snapshot::linkGeometry() */
@@ -211,8 +211,8 @@ class Snapshot {
     return *allowed_;
   }
 
-  /** True if allowed() says it all: SceneChange::clear_allowed has replaced the pairs that the scene began with, so those
-   *  that an SRDF disables do not count apart. */
+  /** True if allowed() says it all: SceneChange::clear_allowed has replaced the pairs that the scene began with, so
+   *  those that an SRDF disables do not count apart. */
   bool replacesSrdf() const {
     return replaces_srdf_;
   }
@@ -249,7 +249,7 @@ class Snapshot {
   double default_link_padding_ = 0.0;
   std::shared_ptr<const std::vector<AllowedPair>> allowed_; /* shared by the snapshots that do not change it */
   bool replaces_srdf_ = false;
-  std::shared_ptr<const World> world_;                      /* shared by the variants */
+  std::shared_ptr<const World> world_; /* shared by the variants */
 };
 
 /** A shared snapshot. */

@@ -10,6 +10,7 @@ import tempfile
 import time
 import unittest
 
+import moveit_types as moveit
 import rospy
 from curve_proximity.msg import CollisionObject, ConstraintQuery, ProximityResults
 from curve_proximity.srv import EvaluateConstraints
@@ -217,6 +218,37 @@ class Known(unittest.TestCase):
     @staticmethod
     def written(path):
         return os.path.exists(path) and not os.path.exists(path + '.behind')
+
+    def test_a_matrix_that_replaces_the_srdfs_pairs_does_so_after_a_crash(self):
+        ball = '<collision><geometry><sphere radius="0.2"/></geometry></collision>'
+        slide = '<joint name="%s" type="prismatic"><parent link="%s"/><child link="%s"/><axis xyz="%s"/>' \
+                '<limit lower="-2" upper="2" effort="1" velocity="1"/></joint>'
+        rospy.set_param('/two_balls', '<robot name="two"><link name="base">%s</link><link name="slide"/><link name="tip">%s</link>%s%s</robot>' %
+                        (ball, ball, slide % ('x', 'base', 'slide', '1 0 0'), slide % ('y', 'slide', 'tip', '0 1 0')))
+        rospy.set_param('/two_balls_semantic', '<robot name="two"><disable_collisions link1="base" link2="tip" reason="Never"/></robot>')
+        self.addCleanup(rospy.delete_param, '/two_balls')
+        self.addCleanup(rospy.delete_param, '/two_balls_semantic')
+        with_robot = dict(state_file=tempfile.mkdtemp() + '/kept.scene', robot_description='/two_balls',
+                          robot_description_semantic='/two_balls_semantic', fixed_frame='base')
+        node, server = self.begin('matrix', **with_robot)
+        server.replace(sphere('far', 0.1, (9, 9, 9)))
+        away = joint_trajectory(['x', 'y'], (0.1, 0.1), (0.2, 0.1))
+
+        def violated(of):
+            return [row.verdict for row in of.collision([], trajectory=away, self_collision=True).results].count('violated')
+
+        self.assertEqual(violated(server), 0)
+        scenes = self.publisher('/matrix/planning_scene', moveit.PlanningScene)
+        scene = moveit.PlanningScene(is_diff=True)
+        scene.robot_state.is_diff = True
+        scene.allowed_collision_matrix = moveit.PARTS['AllowedCollisionMatrix'](
+            entry_names=['base', 'tip'], entry_values=[moveit.AllowedCollisionEntry(enabled=[False, False])] * 2)
+        scenes.publish(scene)
+        self.assertTrue(until(lambda: violated(server) == 1, 5))
+        self.assertTrue(until(lambda: self.written(with_robot['state_file']), 5))
+        _, server = self.crash(node, 'matrix', **with_robot)
+        self.assertEqual([o.id for o in server.scene().objects], ['far'])
+        self.assertEqual(violated(server), 1)
 
     def test_a_scene_that_began_with_another_robot_is_not_taken_over(self):
         path = tempfile.mkdtemp() + '/kept.scene'

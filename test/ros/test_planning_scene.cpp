@@ -147,7 +147,7 @@ TEST_F(Planning, a_recorded_full_scene_is_all_there) {
   EXPECT_FALSE(now->mayTouch("slider", "table")); // the entry, against slider's default
   EXPECT_TRUE(now->mayTouch("slider", "cup"));    // by default
   EXPECT_FALSE(now->mayTouch("table", "cup"));
-  EXPECT_TRUE(change.has_matrix);
+  EXPECT_TRUE(change.change.clear_allowed);
   EXPECT_EQ(now->linkPadding("arm"), 0.01);
   EXPECT_EQ(now->linkScales().at("arm"), 1.5);
   EXPECT_EQ(state.joints.at("turn"), 0.25);

@@ -246,8 +246,8 @@ MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work)
   const Eigen::Isometry3d base = on_joint ? work.lookup.toFixed(out.trajectory.base.front().parent_frame, stamp)
                                           : rootPose(*work.snapshot->robot(), live_.srdf, stamp, work.lookup);
   if (on_joint || !work.robot || work.base.matrix() != base.matrix()) {
-    out.robot = std::make_shared<const PreparedRobot>(work.snapshot, live_.disabled(*work.snapshot), out.trajectory.base,
-                                                      out.trajectory.base_joints, base);
+    out.robot = std::make_shared<const PreparedRobot>(work.snapshot, live_.disabled(*work.snapshot),
+                                                      out.trajectory.base, out.trajectory.base_joints, base);
     work.base = base;
     work.robot = on_joint ? nullptr : out.robot;
   } else {

@@ -248,7 +248,8 @@ void StateFile::run() {
 void StateFile::write() {
   if (!isKept()) return;
   const KeptScene kept = keptOf(live_, fixed_frame_);
-  const std::string bytes = serialised(kept.sensors) + serialised(std::uint8_t{kept.replaces_srdf}) + serialised(kept.request);
+  const std::string bytes =
+      serialised(kept.sensors) + serialised(std::uint8_t{kept.replaces_srdf}) + serialised(kept.request);
   std::ostringstream text;
   text << MAGIC << '\n'
        << run_ << '\n'
