@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Bodies that move and turn: first contacts in the scenes of DART's comparative benchmark of continuous collision, with
  * Bullet and FCL beside ours where they are installed, a
- * box that turns along a cubic Bézier curve beside the same box that does not, a sphere that slides beside a box, two
+ * bodies carried along lines and cubics, a box that turns along a cubic Bézier curve beside the same box that does not, a sphere that slides beside a box, two
  * arms in one cell, and many movers on one clock. */
 #include <math.h>
 #include <stdio.h>
@@ -226,6 +226,49 @@ static void contacts(const bench_size *size, cprox_workspace *ws) {
       {"box box spline", CONTACT_BOX, CONTACT_BOX, CONTACT_BEZIER, HERE, HERE, CURVE, below}};
   static const double TRUTH[] = {0.4, 0.4, 0.42, 0.4, 0.38, 0.4, 0.600565822321, 0.5, 0.326351822333};
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) contact_in(&scenes[i], TRUTH[i], size, ws);
+}
+
+/* ---- bodies that are carried without turning ---- */
+
+enum { MOST_CARRIED = 100 };
+
+/* A box, a capsule or a ball along a random line or cubic into a box that stands as it likes: contacts that begin
+ * outside, to the epsilon of 1e-6 that is the default. */
+static void carried_contacts(const bench_size *size, cprox_workspace *ws, const char *name, size_t points,
+                             const char *path) {
+  rng r = rng_seed(44);
+  scene *s = calloc(MOST_CARRIED, sizeof *s);
+  const size_t most = size->problems < MOST_CARRIED ? size->problems : MOST_CARRIED;
+  size_t n = 0;
+  while (s && n < most) {
+    scene *at = &s[n];
+    cprox_body *body = NULL, *other = NULL;
+    cprox_vec3 p[4];
+    for (size_t k = 0; k < points; k++) p[k] = rng_in_cube(&r, 1.5);
+    const double a = rng_uniform(&r, 0.1, 0.4), b = rng_uniform(&r, 0.05, 0.3), c = rng_uniform(&r, 0.1, 0.4);
+    cprox_body_create_box((cprox_vec3){c, a, b}, NULL, &other);
+    if (strcmp(name, "box") == 0) cprox_body_create_box((cprox_vec3){a, b, c}, NULL, &body);
+    if (strcmp(name, "capsule") == 0) cprox_body_create_capsule(a, b, NULL, &body);
+    if (strcmp(name, "ball") == 0) cprox_body_create_sphere(b, NULL, &body);
+    begin(at, name, body, other, rng_pose(&r, 0.3));
+    const cprox_curve_description d = {.kind = CPROX_CURVE_BEZIER, .points = p, .n = points, .t1 = 1.0};
+    cprox_result found = {0};
+    if (cprox_curve_create(&d, NULL, &at->curve) == CPROX_OK) {
+      at->mover = cprox_body_along(body, at->curve);
+      cprox_time_of_contact(at->mover, at->target, NULL, ws, &found);
+    }
+    if (found.verdict == CPROX_VERDICT_VIOLATED && found.t_contact_lower > 0.0)
+      n++;
+    else
+      end(at);
+  }
+  char parameter[32];
+  snprintf(parameter, sizeof parameter, "%s %s", name, path);
+  const bench_workload w = {"moving", "carried contact", parameter, s, n, NULL, 0.0};
+  const bench_method ours = {"curve_proximity", contact, ws};
+  bench_measure(&w, size, &ours, 1);
+  for (size_t i = 0; i < n; i++) end(&s[i]);
+  free(s);
 }
 
 /* ---- other workloads ---- */
@@ -454,6 +497,11 @@ int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
   cprox_workspace *ws = cprox_workspace_create();
   if (bench_wanted(&size, "contact")) contacts(&size, ws);
+  static const char *const CARRIED[3] = {"box", "capsule", "ball"};
+  for (int i = 0; i < 3 && bench_wanted(&size, "carried contact"); i++) {
+    carried_contacts(&size, ws, CARRIED[i], 2, "line");
+    carried_contacts(&size, ws, CARRIED[i], 4, "cubic");
+  }
   if (bench_wanted(&size, "turning box")) turning_box(&size, ws);
   if (bench_wanted(&size, "quadrotors")) quadrotors(&size, ws);
   if (bench_wanted(&size, "sphere beside box")) {

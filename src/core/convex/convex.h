@@ -20,6 +20,9 @@ typedef struct convex_hint {
   int32_t n;
   int32_t vertex[4];
   double near_enough; /* a point of the core that is as near as this will do, though another is nearer */
+  vec3 towards;       /* of a difference, unit: near the normal of the answer; (0,0,0): nothing is known */
+  double fraction;    /* likewise: the width that the distance may have, as a fraction of what it is above `floor`; */
+  double floor;       /* 0: it is as exact as can be */
 } convex_hint;
 
 /* The answer of a nearest-point query for a point y: the surface point, and how the distance behaves near y.
@@ -41,7 +44,8 @@ typedef struct convex_near {
   double hessian[6];
   bool height_known; /* height is the core's support function at `normal`, from above: no need to ask again */
   double height;
-  bool parts_known; /* Minkowski differences: the points of both that make `point`, in the frame of what stands */
+  bool parts_known; /* Minkowski differences: the points of both that make `point`, in the frame of what stands; twice
+                       the same, a point of both, where they overlap */
   vec3 on_standing, on_carried;
 } convex_near;
 

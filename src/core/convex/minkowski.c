@@ -57,8 +57,20 @@ static void nearest_of_ball(const convex *shape, vec3 y, convex_near *near) {
   if (!seen.flat) turn_hessian(r, seen.hessian, near->hessian);
 }
 
+/* Whether x is a point of both but for rounding: of the carried one put at y, too. */
+static bool both_hold(const convex *shape, vec3 y, vec3 x) {
+  const convex *body[2] = {shape->standing, shape->carried};
+  const vec3 at[2] = {x, rotate_back(shape->r, vec_sub(x, y))};
+  for (int k = 0; k < 2; k++) {
+    convex_hint hint = {0};
+    convex_near near;
+    body[k]->ops->nearest(body[k], at[k], &hint, &near);
+    if (!(near.distance <= 64.0 * ROUND_U * (vec_norm(x) + vec_norm(y) + body[k]->scale))) return false;
+  }
+  return true;
+}
+
 static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, convex_near *near) {
-  (void)hint;
   const convex *standing = shape->standing, *carried = shape->carried;
   const bool ball = standing->ops->kind == CPROX_BODY_POINT || standing->ops->kind == CPROX_BODY_SPHERE;
   if (ball && has_closed_form(carried)) {
@@ -67,7 +79,10 @@ static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, c
   }
   pair_placement place = {.t = y};
   for (int i = 0; i < 9; i++) place.r[i] = shape->r[i];
-  const pair_goal goal = {.relative_epsilon = RELATIVE_WIDTH, .max_steps = MOST_STEPS, .wants_feature = true};
+  const bool rough = hint && hint->fraction > 0.0;
+  pair_goal goal = {.relative_epsilon = RELATIVE_WIDTH, .max_steps = MOST_STEPS, .wants_feature = !rough};
+  if (rough) goal.fraction = hint->fraction, goal.floor = hint->floor;
+  if (hint) goal.start = vec_neg(hint->towards);
   pair_answer answer;
   pair_separate(standing, standing->margin, carried, carried->margin, &place, &goal, &answer);
   *near = (convex_near){0};
@@ -78,9 +93,10 @@ static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, c
   near->normal = vec_neg(answer.normal);
   near->distance = answer.overlap ? -(answer.depth + shape->margin) : answer.upper - answer.above;
   near->point = vec_axpy(y, -near->distance, near->normal);
-  near->parts_known = answer.upper > 0.0;
-  near->on_standing = answer.on_a, near->on_carried = answer.on_b;
-  if (!answer.overlap) depth_describe(&answer.feature, shape->margin, y, near);
+  near->parts_known = answer.upper > 0.0 || both_hold(shape, y, answer.common);
+  near->on_standing = answer.upper > 0.0 ? answer.on_a : answer.common;
+  near->on_carried = answer.upper > 0.0 ? answer.on_b : answer.common;
+  if (!answer.overlap && !rough) depth_describe(&answer.feature, shape->margin, y, near);
 }
 
 /* near_rounding: that of pair_separate, 32, and the steps to and from it; no closed form of a carried shape needs more.

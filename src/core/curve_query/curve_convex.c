@@ -201,7 +201,7 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
   /* any direction near the normal will do for the lower bounds, as long as its length is 1 */
   sample->normal = sample->near.normal;
   const bool touching =
-      fabs(d) <= rounding && bound->upper > greater(o->effort.good_enough, 0.0) && !piece_is_planar(o);
+      fabs(d) <= rounding && bound->upper > greater(o->effort.good_enough, o->settled) && !piece_is_planar(o);
   if (touching) sample->normal = touching_normal(o, y, sample->normal, rounding);
   const double length2 = vec_norm2(sample->normal);
   if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0)

@@ -50,7 +50,8 @@ typedef struct curve_convex {
   bool refined; /* the best point was worth Newton's steps */
   convex_cover cover;
   convex_hint hint, support_hint;
-  double goal; /* what settles a node, as of the last one that was looked at */
+  double settled; /* an upper bound at or below this needs no plane any more, though it touches */
+  double goal;    /* what settles a node, as of the last one that was looked at */
   uint32_t distance_queries, nodes;
 
   /* memory */

@@ -125,6 +125,7 @@ static cprox_status prove_contact_convex(curve_search *s, curve_finding *proven)
   curve_convex_finding(&c->base, proven);
   proven->bound = c->proven_bound;
   proven->is_contact = true;
+  if (vec_norm2(proven->normal) == 0.0) proven->normal = frame_turn_to_world(&c->base.side.frame, c->proven.normal);
   if (c->proven_within) proven->t_contact = c->proven_t;
   return CPROX_OK;
 }

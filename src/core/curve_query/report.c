@@ -33,13 +33,19 @@ static void report_points(const query *q, double margin, const curve_finding *se
   }
 }
 
-/* A carried body that the search has seen apart from what stands: it has kept the two points. False where it has not,
- * as of boxes with the same axes. */
+/* A carried body that the search has seen apart from what stands, or in contact with it: it has kept the two points, or
+ * the one. False where it has not, as of boxes with the same axes. */
 static bool report_parts(const query *q, const placed_pair *p, const curve_finding *seen, vec3 position,
                          cprox_result *r) {
   if (!p->shape || !p->carried || !q->mover.body) return false;
   const bool ball = p->carried->kind == CPROX_BODY_POINT || p->carried->kind == CPROX_BODY_SPHERE;
   const double radius = p->offset - p->margin + (ball ? p->carried->shape.margin : 0.0);
+  if (seen->is_contact && seen->parts_known && seen->distance <= 0.0) {
+    r->normal = seen->normal;
+    r->mover_part = p->which.mover_part;
+    r->witness_mover = r->witness_obstacle = vec_add(frame_to_world(&p->frame, seen->on_standing), position);
+    return true;
+  }
   if (!(ball || seen->parts_known) || !(seen->distance > p->margin + radius)) return false;
   const vec3 on_standing = frame_to_world(&p->frame, seen->on_standing),
              on_carried = frame_to_world(&p->frame, seen->on_carried);

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/check.h"
+#include "base/rounding.h"
 #include "curve_query/report.h"
 #include "curve_query/search_pair.h"
 #include "solve/solve.h"
@@ -26,14 +27,14 @@ static cprox_status meet_placed(const query *q, const placed_pair *p, search_goa
   if (status < 0) return status;
   curve_finding near, touch;
   s.kernel->best_found(&s, &near);
-  cprox_status reported = report_finding(q, p, &near, &met->near);
-  if (reported < 0) return reported;
-  met->near.upper = near.bound.upper;
-  met->near_at = near.bound.at;
   const cprox_status proved = s.kernel->prove_contact(&s, &touch);
   if (proved < 0) return proved;
   met->distance_queries = touch.distance_queries;
-  if (!(touch.bound.at < goal->time_cutoff)) return status;
+  met->near_at = near.bound.at;
+  const bool touches = touch.bound.at < goal->time_cutoff;
+  cprox_status reported = touches ? CPROX_OK : report_finding(q, p, &near, &met->near);
+  met->near.t = near.t, met->near.upper = near.bound.upper;
+  if (!touches || reported < 0) return reported < 0 ? reported : status;
   reported = report_finding(q, p, &touch, &met->touch);
   if (reported < 0) return reported;
   met->touch.upper = touch.bound.upper;
@@ -41,13 +42,18 @@ static cprox_status meet_placed(const query *q, const placed_pair *p, search_goa
   return status;
 }
 
-/* Contact is proven nowhere near the first place within epsilon; perhaps farther along. */
+/* Contact is proven nowhere near the first place within epsilon; perhaps farther along, or the two are apart. */
 static cprox_status prove_farther(const query *q, const candidate *c, time_of_contact *met) {
   cprox_result r;
   const cprox_status status = candidate_search(q, c, INFINITY, &r);
   if (status < 0) return status;
   met->nodes += r.nodes, met->distance_queries += r.distance_queries;
   if (r.upper <= 0.0 && r.t >= met->free_until) met->touch = r;
+  if (r.lower > 0.0) {
+    met->free_until = INFINITY, met->lower = fmax(met->lower, r.lower);
+    met->near.upper = fmax(met->near.upper, (1.0 + 4.0 * ROUND_U) * q->options.epsilon); /* no place of contact */
+    met->status = CPROX_OK;
+  }
   return CPROX_OK;
 }
 
