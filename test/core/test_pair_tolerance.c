@@ -93,6 +93,33 @@ CASE(a_verdict_of_a_pair_never_contradicts_its_distance) {
   assert_true(all.verdicts < all.distances);
 }
 
+/* 10,000 pairs of convex bodies (seed 425) moved along their normal to between 1e-17 and 1e-2 before and beyond contact. */
+CASE(a_verdict_near_contact_never_contradicts_the_distance) {
+  rng r = rng_seed(425);
+  size_t clear = 0, violated = 0;
+  const size_t cases = test_cases(10000);
+  for (size_t i = 0; i < cases; i++) {
+    cprox_body *x = any_body(&r, rng_index(&r, 9)), *y = any_body(&r, rng_index(&r, 9));
+    const cprox_obstacle a = cprox_obstacle_at(x, rng_pose(&r, 0.6));
+    cprox_obstacle b = cprox_obstacle_at(y, rng_pose(&r, 0.6));
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.epsilon = 0.0;
+    cprox_result d, t;
+    assert_true(cprox_pair(a, b, &options, ws, &d) >= 0);
+    const double beyond = (rng_index(&r, 2) ? 1.0 : -1.0) * rng_log_uniform(&r, 1e-17, 1e-2);
+    b.pose.position = vec_axpy(b.pose.position, d.upper - beyond, d.normal);
+    assert_true(cprox_pair(a, b, &options, ws, &d) >= 0);
+    assert_true(cprox_pair_tolerance(a, b, 0.0, &options, ws, &t) >= 0);
+    if ((t.verdict == CPROX_VERDICT_CLEAR && d.upper <= 0.0) || (t.verdict == CPROX_VERDICT_VIOLATED && d.lower > 0.0))
+      fail_msg("case %zu: %s, but [%.17g, %.17g]", i, cprox_verdict_name(t.verdict), d.lower, d.upper);
+    assert_true(t.lower <= d.upper && d.lower <= t.upper);
+    clear += t.verdict == CPROX_VERDICT_CLEAR, violated += t.verdict == CPROX_VERDICT_VIOLATED;
+    cprox_body_free(x);
+    cprox_body_free(y);
+  }
+  assert_true(clear > cases / 4 && violated > cases / 4);
+}
+
 CASE(bodies_far_apart_take_one_look_at_their_balls) {
   rng r = rng_seed(422);
   for (size_t i = 0; i < KINDS; i++) {

@@ -177,7 +177,11 @@ void approach_search(const approach_task *task, approach_answer *answer) {
     approach_pair p;
     approach_project(task, y, &p);
     answer->met = p.distance <= task->contact_tolerance;
-    if (answer->met) return;
+    if (answer->met) {
+      answer->pair.a = p.a.point;
+      answer->pair.b = p.b.point;
+      return;
+    }
     if (!(p.distance < answer->distance)) {
       if (!newton) return;
       newton = false;

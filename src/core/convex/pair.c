@@ -648,11 +648,32 @@ static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 s
   return true;
 }
 
+/* A verdict needs no more than a point of both cores, and how far it is inside: a ball of the sum of both depths about 0
+ * lies in M. */
+static bool pair_meets_at(pair *p, const simplex_vertex *common) {
+  if (!p->a->ops->closed_form || !p->b->ops->closed_form) return false;
+  const vec3 y = rotate_back(p->r, vec_sub(common->a, p->t));
+  convex_near in_a, in_b;
+  p->a->ops->nearest(p->a, common->a, NULL, &in_a);
+  p->b->ops->nearest(p->b, y, NULL, &in_b);
+  const double off = ROUND_UP * ROUND_U *
+                         (p->a->ops->near_rounding * (vec_norm(common->a) + p->a->scale) +
+                          p->b->ops->near_rounding * (vec_norm(y) + p->b->scale)) +
+                     p->rounding;
+  const double of_a = greater(-in_a.distance - p->a->margin, 0.0), of_b = greater(-in_b.distance - p->b->margin, 0.0);
+  if (!(of_a + of_b > 2.0 * off)) return false;
+  p->s = (simplex){.n = 1, .vertex = {*common}, .weight = {1.0}};
+  p->nearest = (simplex_nearest){.inside = true, .depth = of_a + of_b - off};
+  p->lower = -ROUND_UP * (p->a->scale + p->b->scale); /* the line of the centres leads out of M */
+  return true;
+}
+
 /* Whatever is quickest, from the direction u on; and the feature, if the goal asks for it and the cores are apart. */
 static void pair_find(pair *p, vec3 u, double margins, const pair_goal *goal, pair_feature *feature) {
   approach_answer found;
   if (!pair_approach(p, margins, goal, u, feature, &found)) {
     p->met = found.met;
+    if (found.met && goal->verdict && goal->limit >= 0.0 && pair_meets_at(p, &found.pair)) return;
     pair_search(p, found.lower > 0.0 ? found.u : u, margins, goal);
   }
   if (goal->wants_feature && !found.described && !p->nearest.inside && !p->support_failed) pair_describe(p, feature);
