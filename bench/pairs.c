@@ -196,7 +196,7 @@ static void measure(const bench_size *size, const char *workload, const kinds *k
 
 /* Whether they touch, and no more. */
 static void measure_verdict(const bench_size *size, const char *apart, const kinds *k, const pair *pairs, asked *q) {
-  char workload[64], parameter[64];
+  char workload[96], parameter[64];
   snprintf(workload, sizeof workload, "verdict %s", apart);
   snprintf(parameter, sizeof parameter, "%s %zu cases", k->name, size->problems);
   const bench_workload w = {"pairs", workload, parameter, pairs, size->problems, NULL, 0.0};
