@@ -53,7 +53,7 @@ CASE(unusable_calls_are_refused_with_a_sentence) {
   const cprox_obstacle nothing = {0};
   assert_int_equal(cprox_obstacles_create(&nothing, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_INVALID);
   assert_null(batch);
-  assert_non_null(strstr(cprox_workspace_error(workspace), "target 0"));
+  assert_non_null(strstr(cprox_workspace_error(workspace), "obstacle 0"));
   assert_int_equal(cprox_obstacles_create(NULL, 3, CPROX_INDEX_BATCH, workspace, &batch), CPROX_INVALID);
   assert_int_equal(cprox_obstacles_create(NULL, 0, CPROX_INDEX_BATCH, NULL, &batch), CPROX_INVALID);
 

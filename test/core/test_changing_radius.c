@@ -293,9 +293,9 @@ CASE(what_has_no_answer_is_refused_in_a_line) {
   assert_refused(cprox_time_of_contact(mover, target, NULL, ws, &found), "does not apply to");
   assert_refused(cprox_distance_gradient(mover, target, NULL, &found, ws, &gradient), "does not apply to");
   assert_refused(cprox_distance(mover, cprox_obstacle_at(mesh, CPROX_POSE_IDENTITY), NULL, ws, &found),
-                 "target 0 is a curve, a mesh");
+                 "obstacle 0 is a curve, a mesh");
   assert_refused(cprox_distance(mover, cprox_obstacle_curve(t.curve, 0.1), NULL, ws, &found),
-                 "target 0 is a curve, a mesh");
+                 "obstacle 0 is a curve, a mesh");
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.signed_distance = true;
   assert_refused(cprox_distance(mover, target, &options, ws, &found), "no signed distance");

@@ -216,8 +216,9 @@ CASE(different_domains_are_refused) {
       cprox_distance(cprox_point_along(first), cprox_synchronized(cprox_point_along(second)), NULL, ws, &result),
       CPROX_INVALID);
   assert_true(result.lower == -7.0);
-  assert_string_equal(cprox_workspace_error(ws),
-                      "target 0 is on the mover's clock, but its curve runs over [0, 1.5] and the mover's over [0, 1]");
+  assert_string_equal(
+      cprox_workspace_error(ws),
+      "obstacle 0 is on the mover's clock, but its curve runs over [0, 1.5] and the mover's over [0, 1]");
   const cprox_obstacle nothing = {.synchronized = true, .pose = CPROX_POSE_IDENTITY};
   assert_int_equal(cprox_distance(cprox_point_along(first), nothing, NULL, ws, &result), CPROX_INVALID);
   cprox_curve_free(first);

@@ -437,7 +437,7 @@ static void walk_option(walk *all, size_t q, mover_kind mover, target_kind targe
   if (without_depth && base >= 0) { /* robots know the depth of hulls, and these have none */
     all->refused++;
     assert_int_equal(status, CPROX_INVALID);
-    assert_non_null(strstr(cprox_workspace_error(ws), "signed_distance: target 0 is a mesh without a hull"));
+    assert_non_null(strstr(cprox_workspace_error(ws), "signed_distance: obstacle 0 is a mesh without a hull"));
     return;
   }
   if (base < 0) {

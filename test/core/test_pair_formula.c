@@ -127,8 +127,8 @@ static cprox_obstacle placed(const part *p) {
 /* What the search says of the same pair. */
 static pair_answer searched(const part *a, const part *b) {
   const cprox_obstacle oa = placed(a), ob = placed(b);
-  const pair_side sa = pair_place_side(&oa, 0), sb = pair_place_side(&ob, 0);
-  const pair_placement place = pair_place(&sa, &sb);
+  const pair_side sa = relative_pose_of_side(&oa, 0), sb = relative_pose_of_side(&ob, 0);
+  const pair_placement place = relative_pose_make(&sa, &sb);
   const pair_goal goal = {.max_steps = 400, .wants_depth = true};
   pair_answer answer;
   pair_separate(sa.shape, sa.margin, sb.shape, sb.margin, &place, &goal, &answer);

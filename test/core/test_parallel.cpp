@@ -162,7 +162,7 @@ CASE(unusable_targets_and_options_are_told) {
   try {
     const Batch batch(bad);
   } catch (const curve_proximity::Error &error) {
-    told = std::string(error.what()).find("target 3") != std::string::npos;
+    told = std::string(error.what()).find("obstacle 3") != std::string::npos;
   }
   assert_true(told);
 

@@ -491,7 +491,7 @@ CASE(unusable_arguments_are_refused_by_name) {
   bad.pose.orientation = (cprox_quat){0, 0, 0, 0};
   expect_refusal(cprox_distance(mover, bad, NULL, ws, &r), "norm is 0", &r);
   bad = target, bad.pose.position.y = NAN;
-  expect_refusal(distance_of_list(mover, (cprox_obstacle[]){target, bad}, 2, NULL, ws, &r, NULL), "target 1", &r);
+  expect_refusal(distance_of_list(mover, (cprox_obstacle[]){target, bad}, 2, NULL, ws, &r, NULL), "obstacle 1", &r);
   cprox_body_free(body);
   cprox_curve_free(curve);
 }

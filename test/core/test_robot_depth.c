@@ -305,7 +305,7 @@ CASE(meshes_are_at_most_as_deep_as_their_hulls) {
       both[1] = cprox_obstacle_at(flat[k], pose);
       assert_int_equal(cprox_obstacles_create(both, 2, k ? CPROX_INDEX_BVH : CPROX_INDEX_NONE, ws, &all), CPROX_OK);
       assert_int_equal(cprox_obstacles_distance(all, mover, &options, ws, &no, NULL), CPROX_INVALID);
-      assert_non_null(strstr(cprox_workspace_error(ws), "target 1 is a mesh without a hull"));
+      assert_non_null(strstr(cprox_workspace_error(ws), "obstacle 1 is a mesh without a hull"));
       cprox_obstacles_free(all);
     }
     robot_free(&t);

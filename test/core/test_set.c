@@ -220,7 +220,7 @@ CASE(bad_input_is_refused_and_nothing_is_far) {
   cprox_curve *curve = way(&r, 4, 1.0);
   cprox_obstacle nothing = {.pose = CPROX_POSE_IDENTITY};
   assert_int_equal(cprox_obstacles_create(&nothing, 1, CPROX_INDEX_BVH, ws, &set), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_error(ws), "target 0"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "obstacle 0"));
   assert_int_equal(cprox_obstacles_create(NULL, 3, CPROX_INDEX_BVH, ws, &set), CPROX_INVALID);
   assert_null(set);
   cprox_result a;

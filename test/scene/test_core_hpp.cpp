@@ -190,7 +190,7 @@ TEST(CoreHpp, a_set_answers_as_its_targets_do) {
   ASSERT_EQ(nearest.size(), 3u);
   EXPECT_LE(nearest[0].upper, nearest[2].upper);
   EXPECT_EQ(nearest[0].obstacle_index, all.obstacle_index);
-  expectContains(errorOf([&] { Obstacles({cprox_obstacle{}}); }), "target 0");
+  expectContains(errorOf([&] { Obstacles({cprox_obstacle{}}); }), "obstacle 0");
 }
 
 TEST(CoreHpp, sets_by_their_distance_are_asked_like_bodies) {

@@ -115,7 +115,7 @@ CPROX_API size_t cprox_workspace_bytes(const cprox_workspace *workspace);
 
 /** One line, for a person, that says why the last call with this workspace did not end with CPROX_OK
  *  ("knot 7 is 0.3, below knot 6 at 0.5"). "" where it did, with one exception: a query that was to leave a certificate
- *  and could not says why ("no certificate: target 0 ..."), after its own reason where there is one; its status and
+ *  and could not says why ("no certificate: obstacle 0 ..."), after its own reason where there is one; its status and
  *  result are those of the same query without a certificate. Valid until the next call with this workspace. */
 CPROX_API const char *cprox_workspace_error(const cprox_workspace *workspace);
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Certificates: what a query leaves behind so that others can check its answer without trusting the search.
  *
- *  A certificate says one of two things about a mover and targets: "the distance is greater than delta everywhere",
+ *  A certificate says one of two things about a mover and obstacles: "the distance is greater than delta everywhere",
  *  proven by a cover of the parameter range with a separating direction for each part; or "at this parameter the
- *  distance is at most delta", proven by a point of the target. The program cprox_check reads it together with the
+ *  distance is at most delta", proven by a point of the obstacle. The program cprox_check reads it together with the
  *  query and decides in arithmetic that does not round, or rounds outwards; it shares no line with this library.
  *  doc/certificates.md has the format.
  */
@@ -19,7 +19,7 @@ extern "C" {
 typedef enum cprox_claim {
   /** nothing is proven: the certificate is empty */
   CPROX_CLAIM_NONE,
-  /** mover and targets are farther apart than delta everywhere */
+  /** mover and obstacles are farther apart than delta everywhere */
   CPROX_CLAIM_APART,
   /** somewhere they are no farther apart than delta */
   CPROX_CLAIM_NEAR
@@ -56,7 +56,7 @@ CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certific
  *  answer      of a query with these arguments; its witness is used, its bounds are not trusted. delta <= its upper
  *              bound.
  *  delta       [m] >= 0. Claimed is `near` where answer->upper <= delta, else `apart`.
- *  options     max_nodes bounds the parts of the cover that are tried, for each target; NULL: the default.
+ *  options     max_nodes bounds the parts of the cover that are tried, for each obstacle; NULL: the default.
  *  certificate receives the proof. It is empty (CPROX_CLAIM_NONE) where none was found, and where the call failed.
  *
  *  A mesh is known by the convex hull that it was made with (cprox_body_create_lod), which contains it. `apart` is
@@ -64,16 +64,16 @@ CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certific
  *  to the hulls, where that is above 0.
  *
  *  A claim that is as tight as double arithmetic allows may be proven for a delta that is weaker by a few roundings;
- *  that of a distance (delta == answer->lower) by epsilon, where the curve bends round a target at a constant distance
- *  and planes cannot follow as closely as the search did. cprox_certificate_info.delta tells. Touching a flat target
- *  without radius or margin cannot be proven.
+ *  that of a distance (delta == answer->lower) by epsilon, where the curve bends round an obstacle at a constant
+ *  distance and planes cannot follow as closely as the search did. cprox_certificate_info.delta tells. Touching a flat
+ *  obstacle without radius or margin cannot be proven.
  *
  *  Returns CPROX_OK        there is a proof
  *          CPROX_BUDGET    max_nodes were not enough
  *          CPROX_PRECISION the distance is too close to delta
  *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks,
  *                          superquadrics and other implicit bodies, points, octrees, meshes without a hull, carried
- *                          bodies, movers synchronized; or the nearest target is a mesh, and `near` was to be claimed
+ *                          bodies, movers synchronized; or the nearest obstacle is a mesh, and `near` was to be claimed
  *          CPROX_MEMORY    an allocation failed
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.
@@ -82,16 +82,16 @@ CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *o
                                      const cprox_result *answer, const cprox_options *options,
                                      cprox_workspace *workspace, cprox_certificate *certificate);
 
-/** The target as the checker reads it: lines of text, numbers in hexadecimal without rounding, bodies as the library
+/** The obstacle as the checker reads it: lines of text, numbers in hexadecimal without rounding, bodies as the library
  *  holds them.
  *
  *  text   receives the lines, cut to size - 1 characters and ended by 0; NULL with size 0: only their length is asked.
  *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, and for curves. Of meshes
  *  the hulls stand for them (`hull`), of which the checker accepts no `near`.
  */
-CPROX_API size_t cprox_obstacle_describe(const cprox_obstacle *target, char *text, size_t size);
+CPROX_API size_t cprox_obstacle_describe(const cprox_obstacle *obstacle, char *text, size_t size);
 
-/** A robot along a motion as the checker reads it, with the pairs that the query is about: its targets are described
+/** A robot along a motion as the checker reads it, with the pairs that the query is about: its obstacles are described
  *  before, by cprox_obstacle_describe(). Of meshes the hulls stand for them: of those "near" is never claimed.
  *
  *  id          one word.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** How a distance changes when the curve, the target or the radii change: for optimisers. */
+/** How a distance changes when the curve, the obstacle or the radii change: for optimisers. */
 #ifndef CURVE_PROXIMITY_CPROX_GRADIENT_H
 #define CURVE_PROXIMITY_CPROX_GRADIENT_H
 
@@ -17,20 +17,21 @@ typedef struct cprox_gradient {
   bool valid;
   /** the minimiser, as exactly as double arithmetic finds it */
   double t;
-  /** the minimiser on a target that is a curve; NaN for bodies */
+  /** the minimiser on an obstacle that is a curve; NaN for bodies */
   double t_obstacle;
   /** by the mover's point at t. By a coefficient of the mover's curve: its weight at t (cprox_curve_weights())
    *  times this */
   cprox_vec3 mover;
-  /** the same of a target that is a curve: by its point at t_obstacle, in the target's frame; else 0 */
+  /** the same of an obstacle that is a curve: by its point at t_obstacle, in the obstacle's frame; else 0 */
   cprox_vec3 obstacle_point;
-  /** by the target's position, world axes */
+  /** by the obstacle's position, world axes */
   cprox_vec3 position;
-  /** [m/rad] by a small rotation vector w that turns the target about its position, world axes: R becomes exp([w]) R */
+  /** [m/rad] by a small rotation vector w that turns the obstacle about its position, world axes:
+   *  R becomes exp([w]) R */
   cprox_vec3 rotation;
   /** by the radius of the mover: -1 */
   double radius;
-  /** by the margin of the target: -1 */
+  /** by the margin of the obstacle: -1 */
   double margin;
   /** by the start of the range, the curve itself going on as it is: 0 unless the minimiser is there */
   double t0;
@@ -40,27 +41,27 @@ typedef struct cprox_gradient {
   uint64_t reserved[4];
 } cprox_gradient;
 
-/** The gradient of cprox_distance(mover, target, options), given its result.
+/** The gradient of cprox_distance(mover, obstacle, options), given its result.
  *
  *  options   of that very call, less its certificate, which is refused here.
- *  result    of that very call; of a call with many targets, `target` is the one that result->obstacle_index names.
+ *  result    of that very call; of a call with many obstacles, `obstacle` is the one that result->obstacle_index names.
  *
  *  By Danskin's theorem the derivatives are those of the distance at the minimiser alone, if there is only one. So the
  *  whole curve is searched once more. valid is false
  *    where the distance elsewhere comes within min(epsilon, 1e-9 curve lengths) of the least, or is as small on a
  *    interval of more than 1e-3 of the range about the minimiser (of 1e-6 where the distance grows like a square),
- *    where two parts or two points of a target curve are equally near, or two elements of a mesh, of points or boxes,
- *    where the nearest points are not the only ones (face on face, edge along a face, a cone's base): a turn of 1e-6
- *    rad to either side moves them by as much as one of 1e-4 rad,
+ *    where two parts or two points of an obstacle curve are equally near, or two elements of a mesh, of points or
+ *    boxes, where the nearest points are not the only ones (face on face, edge along a face, a cone's base): a turn of
+ *    1e-6 rad to either side moves them by as much as one of 1e-4 rad,
  *    where the way out of an overlap is not unique, found likewise by shifts of 1e-6 and 1e-4 sizes,
  *    and where the distance is 0 and not signed.
  *
  *  Returns CPROX_OK also where valid is false. CPROX_INVALID for unusable arguments, for a result without a witness,
- *  and for movers and targets of which no gradient is known (robots; sets known by their distance). *gradient is
+ *  and for movers and obstacles of which no gradient is known (robots; sets known by their distance). *gradient is
  *  untouched then.
  *  Cost: about five distance queries, and for carried bodies four static pairs. Source: J. M. Danskin, The theory of
  *  max-min, 1967; doc/curve-bound.md. */
-CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                                                const cprox_result *result, cprox_workspace *workspace,
                                                cprox_gradient *gradient);
 

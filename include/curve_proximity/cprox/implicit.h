@@ -2,7 +2,7 @@
 /** Implicit bodies: superquadrics, hyperquadrics, quadrics, planes and their intersections, under any invertible affine
  *  map.
  *
- *  They are bodies like any other (movers, targets, compounds, pairs).
+ *  They are bodies like any other (movers, obstacles, compounds, pairs).
  *  Source: Chakraborty, Peng, Akella and Mitchell 2008, as doc/implicit.md carries it out. */
 #ifndef CURVE_PROXIMITY_CPROX_IMPLICIT_H
 #define CURVE_PROXIMITY_CPROX_IMPLICIT_H

@@ -37,10 +37,10 @@ typedef struct cprox_obstacle {
 /** A body at a pose, without margin. */
 CPROX_API cprox_obstacle cprox_obstacle_at(const cprox_body *body, cprox_pose pose);
 /** The same obstacle with a margin >= 0 [m]. */
-CPROX_API cprox_obstacle cprox_with_margin(cprox_obstacle target, double margin);
+CPROX_API cprox_obstacle cprox_with_margin(cprox_obstacle obstacle, double margin);
 
 /** A curve that stands where it was made, as thick as a ball of the radius that rides it: [m] >= 0, 0 for a line. The
- *  mover and the target are each at any parameter of their own. Its pose may be changed like that of a body. Curves
+ *  mover and the obstacle are each at any parameter of their own. Its pose may be changed like that of a body. Curves
  *  have no inside, so that two without radius that cross or touch are answered [0, upper] and undecided. */
 CPROX_API cprox_obstacle cprox_obstacle_curve(const cprox_curve *curve, double radius);
 
@@ -98,12 +98,12 @@ CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);
 CPROX_API cprox_mover cprox_tube_along(const cprox_curve *curve, double radius);
 
 /** A body that is carried along the curve without turning. Every query answers for it: the curve of its origin is held
- *  against the Minkowski difference of the target and the body, doc/curve-bound.md. */
+ *  against the Minkowski difference of the obstacle and the body, doc/curve-bound.md. */
 CPROX_API cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve);
 
 /** Another mover on the clock of the mover asked about: both are at the same parameter, so that they may cross each
  *  other's way at different times. Both curves must have the same domain, else CPROX_INVALID. Either may carry a ball
- *  or a body. The pose that the target is given, identity at first, moves the other's curve and turns its body with
+ *  or a body. The pose that the obstacle is given, identity at first, moves the other's curve and turns its body with
  *  it. */
 CPROX_API cprox_obstacle cprox_synchronized(cprox_mover other);
 
@@ -181,25 +181,25 @@ typedef struct cprox_options {
    *  (a narrowphase call) costs, 1 to 2 microseconds. Each of these counts as one: a parameter interval examined, a
    *  distance query, of robots a plane or 16 balls tested over an interval, of cprox_pair() an iteration or a node of a
    *  BVH. So nodes and distance_queries of the result add up to at most max_nodes, but for what the last interval
-   *  needed. The first interval is always examined. A result is the union over all targets, or where a query answers
-   *  for each target, pair or interval the answer for one of them; violations are one result */
+   *  needed. The first interval is always examined. A result is the union over all obstacles, or where a query answers
+   *  for each obstacle, pair or interval the answer for one of them; violations are one result */
   uint32_t max_nodes;
   /** polled at least once in 64 units of max_nodes (0.1 ms); true ends the query with CPROX_STOPPED. NULL: never */
   bool (*stop)(void *user);
   /** handed to stop */
   void *stop_user;
-  /** receives the proof of the answer, against all targets at once; NULL: none. For a distance the claim is that of
+  /** receives the proof of the answer, against all obstacles at once; NULL: none. For a distance the claim is that of
    *  lower, or where lower is 0 that of upper. It changes nothing in the answer; it is empty where there is no proof,
    *  and the reason in the workspace says why */
   cprox_certificate *certificate;
   /** distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve: the shortest
-   *  way by which the mover, there, could leave the target (a part of it, for compounds). Curves have no inside
+   *  way by which the mover, there, could leave the obstacle (a part of it, for compounds). Curves have no inside
    *  beyond their radius. Meshes, points and octrees have no depth: the status is CPROX_OVERLAP and lower is a bound. A
    *  hull raises lower to its own depth; where both agree to epsilon the status is CPROX_OK. Robots: meshes that are
    *  apart are measured; of those that overlap lower, witness points and gradient are those of the hulls, and lod says
    *  so; points, octrees and meshes without a hull are refused. Default false: distances are 0 at least */
   bool signed_distance;
-  /** the finest model of targets that may answer, CPROX_LOD_MESH (or NONE): any. HULL: convex hulls
+  /** the finest model of obstacles that may answer, CPROX_LOD_MESH (or NONE): any. HULL: convex hulls
    *  replace level-of-detail bodies. SPHERE: bounding balls replace all bodies except points, octrees and halfspaces.
    *  A coarser model contains the body: lower and clear hold for the body itself as well, but upper, the witness
    *  points and violated are the model's */
@@ -241,18 +241,18 @@ typedef struct cprox_result {
    *  infinite. It is a double: the distance at t itself may be above upper by what moves within a rounding of t (at
    *  times of 1.7e9 s 2.4e-7 s), so measure times from the beginning of a fast motion */
   double t;
-  /** where on a target that is a curve; NaN for bodies */
+  /** where on an obstacle that is a curve; NaN for bodies */
   double t_obstacle;
   /** [m] world frame, the two points that attain upper (surfaces, radius and margin included); equal where they
    *  overlap, and either end of the way out for signed distances */
   cprox_vec3 witness_mover;
   /** [m] the witness point on the obstacle, world frame. */
   cprox_vec3 witness_obstacle;
-  /** unit, world frame, from target to mover; (0,0,0) where there is none */
+  /** unit, world frame, from obstacle to mover; (0,0,0) where there is none */
   cprox_vec3 normal;
-  /** which target (of a list also one that was not measured, upper is infinite then); which other geometry, where a
-   * robot is asked about itself; of CPROX_MOVER_ROBOT_WHOLE the number of targets and that of the other geometry added
-   * up; -1 for none */
+  /** which obstacle (of a list also one that was not measured, upper is infinite then); which other geometry, where a
+   * robot is asked about itself; of CPROX_MOVER_ROBOT_WHOLE the number of obstacles and that of the other geometry
+   * added up; -1 for none */
   int32_t obstacle_index;
   /** which part of a compound; 0 otherwise */
   int32_t obstacle_part;
@@ -272,7 +272,7 @@ typedef struct cprox_result {
 
 /** Distance between what moves and what stands, over the mover's whole parameter range.
  *
- *  result->lower <= min over t of dist(mover(t), target) <= result->upper, in metres; 0 where they touch or overlap.
+ *  result->lower <= min over t of dist(mover(t), obstacle) <= result->upper, in metres; 0 where they touch or overlap.
  *  Rounding is inside the interval.
  *
  *  Returns CPROX_OK        upper - lower <= max(epsilon, relative_epsilon * upper)
@@ -286,26 +286,26 @@ typedef struct cprox_result {
  *  workspace has grown.
  *  Source: Lakshmanan et al. 2019, Algorithms 1 and 2, with the bounds of doc/curve-bound.md.
  */
-CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                                       cprox_workspace *workspace, cprox_result *result);
 
-/** Is the mover farther than delta from the target everywhere? delta >= 0 [m].
+/** Is the mover farther than delta from the obstacle everywhere? delta >= 0 [m].
  *
  *  verdict clear: lower > delta. violated: upper <= delta. undecided: the distance is within epsilon of delta, or the
  *  budget was too small. The interval is true, but only as narrow as the verdict needed. Returns as cprox_distance().
  *  Source: Lakshmanan et al. 2019, Algorithm 3. */
-CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle target, double delta,
+CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle obstacle, double delta,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result);
 
-/** Do mover and target touch or overlap anywhere?
+/** Do mover and obstacle touch or overlap anywhere?
  *
  *  verdict clear: lower > 0. violated: a common point is proven. undecided: closer than epsilon, neither is proven.
  *  Returns as cprox_distance().
  *  Source: Lakshmanan et al. 2019, Algorithm 4. */
-CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                                        cprox_workspace *workspace, cprox_result *result);
 
-/** Where, along its parameter, does the mover first touch the target? Never late.
+/** Where, along its parameter, does the mover first touch the obstacle? Never late.
  *
  *  t_contact_lower  no contact at any t < t_contact_lower, certified and rounded down. The distance there is at most
  *                   epsilon, or it is the end of the range.
@@ -318,10 +318,10 @@ CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target,
  *  lower, upper     of the distance over the whole range, as in cprox_collision(). upper is the distance of the two
  *                   witness points at t: 0 for violated, at most epsilon for undecided.
  *
- *  A ball round the target that is not to be entered is its margin. Returns as cprox_distance(); after CPROX_BUDGET,
+ *  A ball round the obstacle that is not to be entered is its margin. Returns as cprox_distance(); after CPROX_BUDGET,
  *  CPROX_STOPPED and CPROX_PRECISION t_contact_lower is true, but may lie before the place where the distance is
  *  epsilon. relative_epsilon is refused. Source: doc/time-of-contact.md. */
-CPROX_API cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+CPROX_API cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                                              cprox_workspace *workspace, cprox_result *result);
 
 /** Signed distance of two standing bodies.

@@ -2,10 +2,10 @@
 /** Robots: kinematic trees with bodies on their links, and motions of all their joints at once.
  *
  *  A motion becomes a mover (cprox_robot_along, cprox_robot_self), and every query of query.h answers for it: t is the
- *  time of the motion [s], mover_part a geometry of the robot, obstacle_index a target, or in a query about the robot
- *  itself the other geometry. Robots and motions are immutable once made, shared by any number of threads. Constructors
- *  copy what they are given, but keep bodies by reference; they return CPROX_INVALID with a message in the workspace,
- *  or CPROX_MEMORY, and leave the handle untouched on failure. */
+ *  time of the motion [s], mover_part a geometry of the robot, obstacle_index an obstacle, or in a query about the
+ *  robot itself the other geometry. Robots and motions are immutable once made, shared by any number of threads.
+ *  Constructors copy what they are given, but keep bodies by reference; they return CPROX_INVALID with a message in the
+ *  workspace, or CPROX_MEMORY, and leave the handle untouched on failure. */
 #ifndef CURVE_PROXIMITY_CPROX_ROBOT_H
 #define CURVE_PROXIMITY_CPROX_ROBOT_H
 
@@ -266,7 +266,7 @@ CPROX_API cprox_link_info cprox_motion_get_link_info(const cprox_motion *motion,
 /** The values of all the robot's variables at a time (clamped to the domain). A plain evaluation. */
 CPROX_API void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables);
 
-/** A pair that is asked about: a geometry of the robot, and the number of a target or of another geometry. */
+/** A pair that is asked about: a geometry of the robot, and the number of an obstacle or of another geometry. */
 typedef struct cprox_robot_pair {
   /** A geometry of the robot. */
   int32_t geometry;
@@ -274,11 +274,11 @@ typedef struct cprox_robot_pair {
   int32_t other;
 } cprox_robot_pair;
 
-/** The robot along a motion. Targets are bodies. Of solid meshes, on links and as targets, the inside counts: what is
- *  wholly inside is in contact. Of level-of-detail bodies, on links and as targets, the mesh is asked where the hull
- * cannot decide; result.lod says whether. pairs: those that are asked about, kept by reference, `other` being targets;
- *  NULL: all geometries against all targets, whether or not the motion moves them. Pairs whose sides it does not move
- *  against each other are measured once.
+/** The robot along a motion. Obstacles are bodies. Of solid meshes, on links and as obstacles, the inside counts: what
+ *  is wholly inside is in contact. Of level-of-detail bodies, on links and as obstacles, the mesh is asked where the
+ * hull cannot decide; result.lod says whether. pairs: those that are asked about, kept by reference, `other` being
+ *  obstacles; NULL: all geometries against all obstacles, whether or not the motion moves them. Pairs whose sides it
+ *  does not move against each other are measured once.
  *
  *  Against obstacles and itself at once: set the kind CPROX_MOVER_ROBOT_WHOLE, and self_pairs where not all pairs with
  *  itself are asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/** A body that starts at the target's pose and moves on at the velocity [m/s], world frame. */
+/** A body that starts at the obstacle's pose and moves on at the velocity [m/s], world frame. */
 typedef struct cprox_translating {
   /** The body at time 0. */
   cprox_obstacle from;

@@ -27,7 +27,7 @@ cprox_status bvh_begin(const obstacle_bvh *set, query *q, arguments_query asked)
   const bool by_hulls = q->mover.body || (q->mover.motion && q->options.signed_distance);
   const bool all = set->has_clock || (by_hulls && set->has_elements) || robot;
   const cprox_status checked =
-      arguments_check_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, asked, workspace);
+      validate_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   q->targets = set->targets;
   q->n = set->n;
@@ -37,16 +37,16 @@ cprox_status bvh_begin(const obstacle_bvh *set, query *q, arguments_query asked)
 }
 
 static cprox_status out_of_memory(const query *q) {
-  return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
+  return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of obstacles");
 }
 
 static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, cprox_result *result) {
   const unsigned others = ARGUMENTS_INTERVAL | (query_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED | ARGUMENTS_SHARE);
   const cprox_status begun = bvh_begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | others});
   if (begun != CPROX_OK) return begun;
-  if (q->mover.motion || !boxes_hold(q)) return query_answer(q, 0, q->n, INFINITY, result);
-  set_walk walk;
-  if (!set_walk_begin(&walk, set, q)) return out_of_memory(q);
+  if (q->mover.motion || !boxes_hold(q)) return solve_query(q, 0, q->n, INFINITY, result);
+  set_traversal walk;
+  if (!traversal_begin(&walk, set, q)) return out_of_memory(q);
   cprox_result all = query_nothing();
   cprox_status failure = CPROX_OK;
   double rest = INFINITY;
@@ -54,10 +54,10 @@ static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, 
     const bool answered = (!q->is_signed && all.upper <= fmax(q->limit, 0.0)) || failure == CPROX_STOPPED;
     const double most = answered ? -INFINITY : query_wants_verdict(q) ? q->limit : all.upper;
     uint32_t target;
-    if (!set_walk_next(&walk, most, &target, &rest)) return out_of_memory(q);
+    if (!traversal_next(&walk, most, &target, &rest)) return out_of_memory(q);
     if (target == UINT32_MAX || answered) break;
     cprox_result one = {0};
-    const cprox_status status = query_answer(q, target, (size_t)target + 1, all.upper, &one);
+    const cprox_status status = solve_query(q, target, (size_t)target + 1, all.upper, &one);
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
     query_join(&all, &one);
@@ -78,7 +78,7 @@ cprox_status bvh_distance(const obstacle_bvh *set, cprox_mover mover, const cpro
 
 cprox_status bvh_tolerance(const obstacle_bvh *set, cprox_mover mover, double delta, const cprox_options *options,
                            cprox_workspace *workspace, cprox_result *result) {
-  const cprox_status checked = arguments_check_delta(delta, workspace);
+  const cprox_status checked = validate_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
   query q = query_create(mover, NULL, 0, delta, true, options, workspace);
   return answer(set, &q, "tolerance of a set", result);
@@ -101,13 +101,13 @@ cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, con
   if (q.set) return robot_time_of_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))
     return list_time_of_contact(mover, set->targets, set->n, &q.options, workspace, result);
-  set_walk walk;
-  if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
+  set_traversal walk;
+  if (!traversal_begin(&walk, set, &q)) return out_of_memory(&q);
   time_of_contact met = time_of_contact_begin();
   double rest;
   for (;;) {
     uint32_t target;
-    if (!set_walk_next(&walk, 0.0, &target, &rest)) return out_of_memory(&q);
+    if (!traversal_next(&walk, 0.0, &target, &rest)) return out_of_memory(&q);
     if (target == UINT32_MAX) break;
     const cprox_status status = time_of_contact_with(&met, &q, target, (size_t)target + 1);
     if (status < 0) return status;
@@ -120,27 +120,27 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
                          cprox_workspace *workspace, cprox_result *nearest, cprox_listed *listed) {
   query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  const arguments_query asked = {"the nearest targets of a set", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
+  const arguments_query asked = {"the nearest obstacles of a set", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
   const cprox_status begun = bvh_begin(set, &q, asked);
   if (begun != CPROX_OK) return begun;
-  if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
+  if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one obstacle");
   if (q.mover.motion || !boxes_hold(&q))
     return list_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, listed);
-  set_walk walk;
+  set_traversal walk;
   cprox_result *kept = query_reserve_results(&q, set->n);
   if (!kept) return CPROX_MEMORY;
-  if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
+  if (!traversal_begin(&walk, set, &q)) return out_of_memory(&q);
   size_t found = 0;
   double others = INFINITY, rest = INFINITY;
   cprox_status failure = CPROX_OK;
   for (;;) {
     const double cutoff = failure == CPROX_STOPPED ? -INFINITY : found == k ? kept[k - 1].upper : INFINITY;
     uint32_t target;
-    if (!set_walk_next(&walk, cutoff, &target, &rest)) return out_of_memory(&q);
+    if (!traversal_next(&walk, cutoff, &target, &rest)) return out_of_memory(&q);
     if (target == UINT32_MAX || failure == CPROX_STOPPED) break;
     cprox_result r;
     workspace_forget_work(workspace);
-    const cprox_status status = query_answer(&q, target, (size_t)target + 1, cutoff, &r);
+    const cprox_status status = solve_query(&q, target, (size_t)target + 1, cutoff, &r);
     if (status < 0) return status;
     if (failure == CPROX_OK) failure = status;
     if (r.obstacle_index < 0) r.obstacle_index = (int32_t)target; /* stopped before anything was measured */

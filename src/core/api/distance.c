@@ -19,7 +19,7 @@ static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
   cprox_certificate_clear(q->options.certificate);
   cprox_status status = query_begin(q, asked);
   if (status != CPROX_OK) return status;
-  status = each ? query_answer_each(q, nearest, each) : query_answer(q, 0, q->n, INFINITY, nearest);
+  status = each ? solve_each(q, nearest, each) : solve_query(q, 0, q->n, INFINITY, nearest);
   if (status >= 0 && q->options.certificate) q->options.certificate->prove(q, nearest);
   return status;
 }
@@ -37,7 +37,7 @@ cprox_status list_tolerance(cprox_mover mover, const cprox_obstacle *targets, si
                             const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                             cprox_result *each) {
   cprox_certificate_clear(arguments_options(options).certificate);
-  const cprox_status checked = arguments_check_delta(delta, workspace);
+  const cprox_status checked = validate_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
   query q = query_create(mover, targets, n, delta, true, options, workspace);
   return ask(&q, nearest, each);

@@ -36,11 +36,11 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   const cprox_status begun =
-      query_begin(&q, (arguments_query){"the nearest targets", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
+      query_begin(&q, (arguments_query){"the nearest obstacles", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
   if (begun != CPROX_OK) return begun;
-  if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
+  if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one obstacle");
   const candidate *rank = rank_targets(&q);
-  if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of targets");
+  if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of obstacles");
   cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
 
@@ -53,7 +53,7 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
     cprox_result r;
     const size_t target = (size_t)rank[i].target;
     workspace_forget_work(workspace);
-    const cprox_status status = query_answer(&q, target, target + 1, cutoff, &r);
+    const cprox_status status = solve_query(&q, target, target + 1, cutoff, &r);
     if (status < 0) return status;
     failure = worse(failure, status);
     if (r.obstacle_index < 0) r.obstacle_index = rank[i].target; /* stopped before anything was measured */
@@ -69,12 +69,12 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
 cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                          const cprox_options *options, cprox_workspace *workspace, cprox_result *near,
                          cprox_listed *listed) {
-  const cprox_status usable = arguments_check_delta(delta, workspace);
+  const cprox_status usable = validate_delta(delta, workspace);
   if (usable != CPROX_OK) return usable;
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   const cprox_status begun =
-      query_begin(&q, (arguments_query){"the targets within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
+      query_begin(&q, (arguments_query){"the obstacles within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
   if (begun != CPROX_OK) return begun;
   cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
@@ -86,7 +86,7 @@ cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_
   for (; i < n && failure != CPROX_STOPPED; i++) {
     cprox_result r;
     workspace_forget_work(workspace);
-    const cprox_status status = query_answer(&q, i, i + 1, cutoff, &r);
+    const cprox_status status = solve_query(&q, i, i + 1, cutoff, &r);
     if (status < 0) return status;
     if (r.lower > delta) {
       others = fmin(r.lower, others);

@@ -20,14 +20,14 @@ cprox_status cprox_obstacles_create(const cprox_obstacle *list, size_t n, cprox_
     return workspace_fail(workspace, CPROX_INVALID, "obstacles is NULL: there is no place for the handle");
   if ((unsigned)index > CPROX_INDEX_BATCH)
     return workspace_fail(workspace, CPROX_INVALID, "%d is no kind of index", (int)index);
-  cprox_status status = arguments_check_targets(list, n, workspace);
+  cprox_status status = validate_targets(list, n, workspace);
   if (status != CPROX_OK) return status;
   cprox_obstacles *made = calloc(1, sizeof *made);
   cprox_obstacle *copy = n > 0 ? malloc(n * sizeof *copy) : NULL;
   if (!made || (n > 0 && !copy)) {
     free(made);
     free(copy);
-    return workspace_fail(workspace, CPROX_MEMORY, "no memory for %zu targets", n);
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for %zu obstacles", n);
   }
   if (n > 0) memcpy(copy, list, n * sizeof *copy);
   made->targets = copy;

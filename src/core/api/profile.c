@@ -40,7 +40,7 @@ static cprox_status measure(query *q, double t0, double t1, double cutoff, size_
     const double outward = section_outward(curve, i);
     cprox_result r;
     q->options.epsilon = greater(0.0, epsilon - outward);
-    const cprox_status status = query_answer(q, 0, q->n, lesser(interval->upper, cutoff), &r);
+    const cprox_status status = solve_query(q, 0, q->n, lesser(interval->upper, cutoff), &r);
     q->options.epsilon = epsilon;
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
@@ -92,7 +92,7 @@ static cprox_status measure_motion(query *q, double t0, double t1, double cutoff
                                    cprox_profile_interval *interval) {
   q->t0 = t0, q->t1 = t1;
   cprox_result r;
-  const cprox_status status = query_answer(q, 0, q->n, lesser(standing->upper, cutoff), &r);
+  const cprox_status status = solve_query(q, 0, q->n, lesser(standing->upper, cutoff), &r);
   if (status < 0) return status;
   if (standing->upper < r.upper) {
     cprox_result there = *standing;
@@ -144,7 +144,7 @@ cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size
   /* of one clock; of several, each interval asks about all pairs */
   if (mover.motion && !mover.motion->is_state && mover.motion->n_tracks == 1) {
     q.choice = PAIRS_STANDING;
-    failure = query_answer(&q, 0, q.n, cutoff, &standing);
+    failure = solve_query(&q, 0, q.n, cutoff, &standing);
     if (failure < 0) return failure;
     q.choice = PAIRS_MOVING;
   }

@@ -115,7 +115,7 @@ static cprox_status ask(violation_search *s, const piece *p, double limit, cprox
   }
   query_ask_section(q, p->section, p->from, p->to);
   *travel = travel_of_section(q);
-  const cprox_status status = query_answer(q, 0, q->n, INFINITY, r);
+  const cprox_status status = solve_query(q, 0, q->n, INFINITY, r);
   if (status >= 0) r->upper += section_outward(q->mover.curve, p->section);
   return status;
 }

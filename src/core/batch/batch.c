@@ -111,7 +111,7 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
   if (first < last && !movers) return workspace_fail(workspace, CPROX_INVALID, "movers is NULL");
   if (first < last && !results) return workspace_fail(workspace, CPROX_INVALID, "results is NULL");
   const unsigned depths = query_wants_verdict(&run->q) ? 0 : ARGUMENTS_SIGNED;
-  return arguments_check_options(&run->q.options, (arguments_query){"a batch", ARGUMENTS_SEARCH | depths}, workspace);
+  return validate_options(&run->q.options, (arguments_query){"a batch", ARGUMENTS_SEARCH | depths}, workspace);
 }
 
 static bool reserve(batch_run *run) {
@@ -132,7 +132,7 @@ static cprox_status answer_range(query q, const obstacle_batch *batch, const cpr
   run.q.targets = batch->targets;
   run.q.n = batch->n;
   if (!reserve(&run))
-    return workspace_fail(q.workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", batch->n);
+    return workspace_fail(q.workspace, CPROX_MEMORY, "no memory for a batch of %zu obstacles", batch->n);
 
   cprox_status worst = CPROX_OK;
   char reason[320] = "";
@@ -162,7 +162,7 @@ cprox_status batch_tolerance(const obstacle_batch *batch, const cprox_mover *mov
                              double delta, const cprox_options *options, cprox_workspace *workspace,
                              cprox_result *results) {
   if (!workspace) return CPROX_INVALID;
-  const cprox_status checked = arguments_check_delta(delta, workspace);
+  const cprox_status checked = validate_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
   const query q = query_create((cprox_mover){0}, NULL, 0, delta, true, options, workspace);
   return answer_range(q, batch, movers, first, last, results);

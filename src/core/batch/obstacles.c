@@ -186,13 +186,13 @@ cprox_status obstacle_batch_create(const cprox_obstacle *targets, size_t n, cpro
   size_t n_parts = 0;
   for (size_t i = 0; i < n; i++) n_parts += body_n_parts(targets[i].body);
   obstacle_batch *made = allocate(n, n_parts);
-  if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
+  if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu obstacles", n);
   made->targets = targets;
   for (size_t i = 0; i < n; i++) made->synchronized = made->synchronized || targets[i].synchronized;
   const query q = {.targets = made->targets, .n = n};
   if (!list_parts(made, &q)) {
     obstacle_batch_free(made);
-    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu obstacles", n);
   }
   for (size_t k = 0; k < n_parts; k++) describe(made, &q, k);
   batch_blocks_surround(made);

@@ -84,9 +84,9 @@ static obstacle_bvh *allocate(size_t n) {
 cprox_status obstacle_bvh_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
                                  obstacle_bvh **set) {
   if (n > TREE_MOST_ELEMENTS)
-    return workspace_fail(workspace, CPROX_INVALID, "%zu targets, at most %zu are possible", n, TREE_MOST_ELEMENTS);
+    return workspace_fail(workspace, CPROX_INVALID, "%zu obstacles, at most %zu are possible", n, TREE_MOST_ELEMENTS);
   obstacle_bvh *made = allocate(n);
-  if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a set of %zu targets", n);
+  if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a set of %zu obstacles", n);
   made->targets = targets;
   sort_targets(made);
   if (made->n_boxes > 0) {
@@ -95,7 +95,7 @@ cprox_status obstacle_bvh_create(const cprox_obstacle *targets, size_t n, cprox_
     made->boxes = tree_create(&source, TREE_BY_AREA);
     if (!made->boxes) {
       obstacle_bvh_free(made);
-      return workspace_fail(workspace, CPROX_MEMORY, "no memory for a set of %zu targets", n);
+      return workspace_fail(workspace, CPROX_MEMORY, "no memory for a set of %zu obstacles", n);
     }
     for (size_t i = 0; i < made->n_boxes; i++) {
       made->low[i] = vec_sub(made->low[i], made->centre);

@@ -32,20 +32,20 @@ typedef struct set_entry {
   enum { SET_NODE, SET_BOX, SET_TARGET } is;
 } set_entry;
 
-typedef struct set_walk {
+typedef struct set_traversal {
   const obstacle_bvh *set;
   const query *q;
   tree_segment segment;
   double offset, slack;
   size_t unbounded; /* how many of those were given out */
   size_t count;     /* of the heap in the workspace */
-} set_walk;
+} set_traversal;
 
 /* False where memory is out, here as there. q has been asked about its whole curve. */
-bool set_walk_begin(set_walk *w, const obstacle_bvh *set, const query *q);
+bool traversal_begin(set_traversal *w, const obstacle_bvh *set, const query *q);
 
 /* The next target, if its lower bound is at most `most`; else *target is UINT32_MAX and *lower a bound of all that are
  * left. */
-bool set_walk_next(set_walk *w, double most, uint32_t *target, double *lower);
+bool traversal_next(set_traversal *w, double most, uint32_t *target, double *lower);
 
 #endif

@@ -7,11 +7,11 @@
 
 /* ---- the heap ---- */
 
-static set_entry *heap_of(const set_walk *w, size_t n) {
+static set_entry *heap_of(const set_traversal *w, size_t n) {
   return workspace_reserve(w->q->workspace, WORKSPACE_SET, n * sizeof(set_entry));
 }
 
-static bool push(set_walk *w, set_entry entry) {
+static bool push(set_traversal *w, set_entry entry) {
   set_entry *heap = heap_of(w, w->count + 1);
   if (!heap) return false;
   size_t i = w->count++;
@@ -20,7 +20,7 @@ static bool push(set_walk *w, set_entry entry) {
   return true;
 }
 
-static set_entry pop(set_walk *w) {
+static set_entry pop(set_traversal *w) {
   set_entry *heap = heap_of(w, w->count);
   const set_entry top = heap[0];
   const set_entry moved = heap[--w->count];
@@ -37,7 +37,7 @@ static set_entry pop(set_walk *w) {
 
 /* ---- bounds ---- */
 
-static double bound_of(const set_walk *w, double distance) {
+static double bound_of(const set_traversal *w, double distance) {
   const double lower = distance - w->offset - w->slack;
   return w->q->is_signed && lower <= 0.0 ? -INFINITY : lower; /* boxes do not know how deep */
 }
@@ -70,8 +70,8 @@ static double carried_reach(const query *q) {
   return q->mover.radius + (body ? vec_norm(body->ball_centre) + body->ball_radius : 0.0);
 }
 
-bool set_walk_begin(set_walk *w, const obstacle_bvh *set, const query *q) {
-  *w = (set_walk){.set = set, .q = q, .offset = carried_reach(q)};
+bool traversal_begin(set_traversal *w, const obstacle_bvh *set, const query *q) {
+  *w = (set_traversal){.set = set, .q = q, .offset = carried_reach(q)};
   if (!set->boxes) return true;
   const cprox_curve *curve = q->mover.curve;
   const curve_capsule *all = &q->reach;
@@ -96,7 +96,7 @@ bool set_walk_begin(set_walk *w, const obstacle_bvh *set, const query *q) {
 
 /* ---- walking ---- */
 
-static bool open_node(set_walk *w, const set_entry *entry) {
+static bool open_node(set_traversal *w, const set_entry *entry) {
   const tree *t = w->set->boxes;
   tree_lanes lanes;
   tree_measure(t, entry->at, TREE_ALL_LANES, &w->segment, &lanes);
@@ -113,7 +113,7 @@ static bool open_node(set_walk *w, const set_entry *entry) {
   return true;
 }
 
-static bool refine(set_walk *w, set_entry *entry) {
+static bool refine(set_traversal *w, set_entry *entry) {
   const obstacle_bvh *set = w->set;
   const cprox_curve *curve = w->q->mover.curve;
   entry->is = SET_TARGET;
@@ -124,7 +124,7 @@ static bool refine(set_walk *w, set_entry *entry) {
   return push(w, *entry);
 }
 
-bool set_walk_next(set_walk *w, double most, uint32_t *target, double *lower) {
+bool traversal_next(set_traversal *w, double most, uint32_t *target, double *lower) {
   *target = UINT32_MAX;
   *lower = -INFINITY;
   if (w->unbounded < w->set->n_unbounded) {

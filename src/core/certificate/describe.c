@@ -17,20 +17,21 @@ void say(text *t, const char *format, ...) {
   if (n > 0) t->length += (size_t)n;
 }
 
-void say_vector(text *t, vec3 v) {
+void describe_vector(text *t, vec3 v) {
   say(t, " %a %a %a", v.x, v.y, v.z);
 }
 
-void say_pose(text *t, const cprox_pose *pose) {
+void describe_pose(text *t, const cprox_pose *pose) {
   const cprox_quat q = pose->orientation;
-  say_vector(t, pose->position);
+  describe_vector(t, pose->position);
   say(t, " %a %a %a %a", q.w, q.x, q.y, q.z);
 }
 
-static void say_vertices(text *t, const cprox_body *body) {
-  say_vector(t, body->centre);
+static void describe_vertices(text *t, const cprox_body *body) {
+  describe_vector(t, body->centre);
   say(t, " %d", (int)body->shape.n);
-  for (int32_t i = 0; i < body->shape.n; i++) say_vector(t, vec(body->shape.x[i], body->shape.y[i], body->shape.z[i]));
+  for (int32_t i = 0; i < body->shape.n; i++)
+    describe_vector(t, vec(body->shape.x[i], body->shape.y[i], body->shape.z[i]));
 }
 
 static bool is_known(const cprox_body *body) {
@@ -38,56 +39,56 @@ static bool is_known(const cprox_body *body) {
   return body->hull->kind == CPROX_BODY_POLYTOPE || body->hull->kind == CPROX_BODY_POLYGON;
 }
 
-const cprox_body *say_unknown(const cprox_body *body) {
+const cprox_body *describe_unknown_kind(const cprox_body *body) {
   if (body->kind != CPROX_BODY_COMPOUND) return is_known(body) ? NULL : body;
   for (size_t i = 0; i < body->n_parts; i++)
     if (!is_known(body->parts[i].body)) return body->parts[i].body;
   return NULL;
 }
 
-bool say_has_mesh(const cprox_body *body) {
+bool describe_has_mesh(const cprox_body *body) {
   bool found = body->mesh != NULL;
   for (size_t i = 0; i < body->n_parts; i++) found = found || body->parts[i].body->mesh;
   return found;
 }
 
-void say_body(text *t, const cprox_body *body) {
+void describe_body(text *t, const cprox_body *body) {
   const double *size = body->shape.size;
   if (body->mesh) {
     say(t, " hull %a", body->excess);
-    say_vertices(t, body->hull);
+    describe_vertices(t, body->hull);
     return;
   }
   if (body->shape.n > 0) { /* a polygon, too, is the hull of its vertices */
     say(t, " polytope");
-    say_vertices(t, body);
+    describe_vertices(t, body);
     return;
   }
   const body_kind *kind = body_kind_of(body->kind);
   say(t, " %s", kind->name);
-  if (body->kind == CPROX_BODY_POINT) say_vector(t, body->centre);
+  if (body->kind == CPROX_BODY_POINT) describe_vector(t, body->centre);
   for (int i = 0; i < kind->n_sizes; i++) say(t, " %a", size[kind->sizes[i]]);
 }
 
-static void say_part(text *t, const cprox_obstacle *target, const cprox_body *body, const cprox_pose *inner) {
+static void describe_one(text *t, const cprox_obstacle *target, const cprox_body *body, const cprox_pose *inner) {
   say(t, "target %a %d", target->margin, inner ? 2 : 1);
-  say_pose(t, &target->pose);
-  if (inner) say_pose(t, inner);
-  say_body(t, body);
+  describe_pose(t, &target->pose);
+  if (inner) describe_pose(t, inner);
+  describe_body(t, body);
   say(t, "\n");
 }
 
 size_t cprox_obstacle_describe(const cprox_obstacle *target, char *out, size_t size) {
   const cprox_body *body = target->body;
-  if (!body || target->synchronized || say_unknown(body)) return 0;
+  if (!body || target->synchronized || describe_unknown_kind(body)) return 0;
   text t = {.at = out, .size = out ? size : 0};
   if (body->kind != CPROX_BODY_COMPOUND) {
-    say_part(&t, target, body, NULL);
+    describe_one(&t, target, body, NULL);
     return t.length;
   }
   for (size_t i = 0; i < body->n_parts; i++) {
     const body_part *part = &body->parts[i];
-    say_part(&t, target, part->body, &part->pose);
+    describe_one(&t, target, part->body, &part->pose);
   }
   return t.length;
 }

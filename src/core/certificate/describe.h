@@ -14,16 +14,16 @@ typedef struct text {
 } text;
 
 void say(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void say_vector(text *t, vec3 v);
-void say_pose(text *t, const cprox_pose *pose);
+void describe_vector(text *t, vec3 v);
+void describe_pose(text *t, const cprox_pose *pose);
 
 /* A convex body, or of a mesh with its hull the hull. */
-void say_body(text *t, const cprox_body *body);
+void describe_body(text *t, const cprox_body *body);
 
 /* The part of a body, or the body itself, that certificates do not know; NULL: they know all of it. */
-const cprox_body *say_unknown(const cprox_body *body);
+const cprox_body *describe_unknown_kind(const cprox_body *body);
 
 /* Whether a part of it is a mesh, of which its hull stands in the text. */
-bool say_has_mesh(const cprox_body *body);
+bool describe_has_mesh(const cprox_body *body);
 
 #endif

@@ -11,71 +11,71 @@
 
 /* ---- the robot ---- */
 
-static void say_link(text *t, const cprox_link *link) {
+static void describe_link(text *t, const cprox_link *link) {
   static const char *const NAMES[] = {"fixed", "revolute", "prismatic", "planar", "floating"};
   const bool moves = link->type != CPROX_JOINT_FIXED;
   const bool turns = link->type == CPROX_JOINT_REVOLUTE || link->type == CPROX_JOINT_PRISMATIC;
   say(t, "link %d %s", (int)link->parent, NAMES[link->type]);
-  say_pose(t, &link->origin);
-  say_vector(t, turns ? link->axis : vec(0, 0, 1));
+  describe_pose(t, &link->origin);
+  describe_vector(t, turns ? link->axis : vec(0, 0, 1));
   say(t, " %d %a %a\n", moves ? (int)link->variable : 0, turns ? link->multiplier : 1.0, turns ? link->offset : 0.0);
 }
 
-static void say_part(text *t, const cprox_link_geometry *g, const cprox_body *body, const cprox_pose *inner) {
+static void describe_one(text *t, const cprox_link_geometry *g, const cprox_body *body, const cprox_pose *inner) {
   say(t, "part %d %a %d", (int)g->link, g->margin, inner ? 2 : 1);
-  say_pose(t, &g->pose);
-  if (inner) say_pose(t, inner);
-  say_body(t, body);
+  describe_pose(t, &g->pose);
+  if (inner) describe_pose(t, inner);
+  describe_body(t, body);
   say(t, "\n");
 }
 
-static void say_geometry(text *t, const cprox_link_geometry *g) {
+static void describe_geometry(text *t, const cprox_link_geometry *g) {
   if (g->body->kind != CPROX_BODY_COMPOUND) {
-    say_part(t, g, g->body, NULL);
+    describe_one(t, g, g->body, NULL);
     return;
   }
-  for (size_t i = 0; i < g->body->n_parts; i++) say_part(t, g, g->body->parts[i].body, &g->body->parts[i].pose);
+  for (size_t i = 0; i < g->body->n_parts; i++) describe_one(t, g, g->body->parts[i].body, &g->body->parts[i].pose);
 }
 
-size_t certify_unknown_geometry(const cprox_robot *robot) {
+size_t describe_unknown_geometry(const cprox_robot *robot) {
   size_t i = 0;
-  while (i < robot->n_geometries && !say_unknown(robot->given_geometries[i].body)) i++;
+  while (i < robot->n_geometries && !describe_unknown_kind(robot->given_geometries[i].body)) i++;
   return i;
 }
 
 /* ---- its motion ---- */
 
-static void say_values(text *t, const double *values, size_t n) {
+static void describe_values(text *t, const double *values, size_t n) {
   for (size_t i = 0; i < n; i++) say(t, " %a", values[i]);
   say(t, "\n");
 }
 
-static void say_variables(text *t, const motion_given *g) {
+static void describe_variables(text *t, const motion_given *g) {
   say(t, " %zu", g->n);
   for (size_t i = 0; i < g->n; i++) say(t, " %d", (int)g->variables[i]);
   say(t, " %zu\n", g->n_points);
 }
 
-static void say_motion(text *t, const cprox_motion *motion) {
+static void describe_motion(text *t, const cprox_motion *motion) {
   const motion_given *g = &motion->given;
   say(t, "rest");
-  say_values(t, motion->rest, motion->robot->n_variables);
+  describe_values(t, motion->rest, motion->robot->n_variables);
   if (g->degree > 0) {
     say(t, "motion bspline %zu", g->degree);
-    say_variables(t, g);
+    describe_variables(t, g);
     say(t, "knots");
-    say_values(t, g->times, g->n_times);
+    describe_values(t, g->times, g->n_times);
     for (size_t i = 0; i < g->n_points; i++) {
       say(t, "control");
-      say_values(t, g->values + i * g->n, g->n);
+      describe_values(t, g->values + i * g->n, g->n);
     }
     return;
   }
   say(t, "motion waypoints %d", (int)g->interpolation);
-  say_variables(t, g);
+  describe_variables(t, g);
   for (size_t i = 0; i < g->n_points; i++) {
     say(t, "at %a %d", g->times[i], (int)g->orders[i]);
-    say_values(t, g->values + 3 * i * g->n, g->orders[i] * g->n);
+    describe_values(t, g->values + 3 * i * g->n, g->orders[i] * g->n);
   }
 }
 
@@ -88,22 +88,21 @@ size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obs
   const size_t n = obstacles_count(obstacles);
   query q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
   if (!mover->motion || !motion_is_described(mover->motion) ||
-      certify_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
-      arguments_check_query(mover, targets, n, &q.options, (arguments_query){"a description", 0}, workspace) !=
-          CPROX_OK)
+      describe_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
+      validate_query(mover, targets, n, &q.options, (arguments_query){"a description", 0}, workspace) != CPROX_OK)
     return 0;
   robot_scene scene;
   if (!robot_scene_begin(&scene, &q, NULL, 0, n, SIZE_MAX, INFINITY)) return 0;
   const cprox_robot *robot = mover->motion->robot;
   text t = {.at = out, .size = out ? size : 0};
   say(&t, "robot %s %zu %zu %zu\n", id, robot->n_links, robot->n_parts, robot->n_variables);
-  for (size_t i = 0; i < robot->n_links; i++) say_link(&t, &robot->given_links[i]);
-  for (size_t i = 0; i < robot->n_geometries; i++) say_geometry(&t, &robot->given_geometries[i]);
+  for (size_t i = 0; i < robot->n_links; i++) describe_link(&t, &robot->given_links[i]);
+  for (size_t i = 0; i < robot->n_geometries; i++) describe_geometry(&t, &robot->given_geometries[i]);
   say(&t, "pairs %zu", scene.n_pairs);
   for (size_t i = 0; i < scene.n_pairs; i++)
     say(&t, " %d %zu", (int)scene.pairs[i].moving,
         (size_t)scene.pairs[i].standing + (mover_is_self(mover) ? 0 : robot->n_parts));
   say(&t, "\n");
-  say_motion(&t, mover->motion);
+  describe_motion(&t, mover->motion);
   return t.length;
 }

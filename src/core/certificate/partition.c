@@ -17,7 +17,7 @@ typedef struct leaf {
   vec3 n;
 } leaf;
 
-vec3 cover_point(const cprox_curve *curve, double sigma) {
+vec3 partition_point(const cprox_curve *curve, double sigma) {
   const double last = (double)(curve->n_pieces - 1), piece = fmin(floor(sigma), last);
   const vec3 *p = curve_piece(curve, (size_t)piece);
   vec3 point;
@@ -25,7 +25,7 @@ vec3 cover_point(const cprox_curve *curve, double sigma) {
   return point;
 }
 
-double cover_cut(const cover *c, reach_part part, double witness) {
+double partition_cut(const cover *c, reach_part part, double witness) {
   const double length = part.to - part.from, middle = part.from + 0.5 * length;
   if (witness > part.from + 1e-9 * length && witness < part.to - 1e-9 * length) return witness;
   const double joint = floor(middle + 0.5);
@@ -58,7 +58,7 @@ static vec3 normal_at(const cover *c, const frame *f, double sigma, convex_hint 
   const convex *shape = &c->set.body->shape;
   double error = 0.0;
   convex_near near;
-  shape->ops->nearest(shape, frame_to_local(f, cover_point(c->curve, sigma), &error), hint, &near);
+  shape->ops->nearest(shape, frame_to_local(f, partition_point(c->curve, sigma), &error), hint, &near);
   return near.distance > 0.0 ? frame_turn_to_world(f, near.normal) : vec(0, 0, 0);
 }
 
@@ -90,7 +90,7 @@ static cprox_status lay(cover *c, const frame *f, size_t *n) {
       if (vec_norm2(normal) == 0.0) return CPROX_PRECISION;
       used = try_normal(c, normal);
       if (!separates(c, &used, part)) {
-        const double cut = cover_cut(c, part, c->witness);
+        const double cut = partition_cut(c, part, c->witness);
         if (isnan(cut) || n_open + 2 > MAX_OPEN) return CPROX_PRECISION;
         open[n_open++] = (reach_part){cut, part.to};
         open[n_open++] = (reach_part){part.from, cut};
@@ -134,7 +134,7 @@ static void join_neighbours(const cover *c, const frame *f, size_t *n) {
   }
 }
 
-cprox_status cover_convex(cover *c) {
+cprox_status partition_convex(cover *c) {
   const frame f = frame_create(&c->pose, c->set.body->centre);
   size_t n;
   const cprox_status status = lay(c, &f, &n);

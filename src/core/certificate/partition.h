@@ -27,15 +27,15 @@ typedef struct cover {
 } cover;
 
 /* The world point of a curve at its counting parameter. */
-vec3 cover_point(const cprox_curve *curve, double sigma);
+vec3 partition_point(const cprox_curve *curve, double sigma);
 
 /* Where to cut a part: at the witness where it lies inside, at a joint of pieces, or in the middle. NaN where it is too
  * short. */
-double cover_cut(const cover *c, reach_part part, double witness);
+double partition_cut(const cover *c, reach_part part, double witness);
 
 /* Writes the section: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
-cprox_status cover_convex(cover *c);
-cprox_status cover_curves(cover *c);
+cprox_status partition_convex(cover *c);
+cprox_status partition_curves(cover *c);
 
 /* The surface point of the convex body next to a point, drawn in so that rounding does not leave it outside; false
  * where it cannot be. */
@@ -43,7 +43,7 @@ bool cover_draw_in(const cprox_body *body, const convex_near *near, double by, v
 
 /* Writes how a body's point is found that is near y, a point of the frame about its centre that is within error of the
  * exact one; returns how far y is from it: 0 inside, infinity for none. */
-double cover_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error);
+double partition_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error);
 
 /* Writes that at the witness of the answer the distance is at most delta. */
 cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer);

@@ -31,8 +31,8 @@ static void write_leaf(cover *c, vec3 n) {
 
 /* The chord of a part, in the world. */
 static void chord(const cprox_curve *curve, const frame *placed, reach_part part, vec3 ends[2]) {
-  ends[0] = cover_point(curve, part.from);
-  ends[1] = cover_point(curve, part.to);
+  ends[0] = partition_point(curve, part.from);
+  ends[1] = partition_point(curve, part.to);
   for (int k = 0; placed && k < 2; k++) ends[k] = frame_to_world(placed, ends[k]);
 }
 
@@ -46,15 +46,15 @@ static double choose_cut(const cover *c, const pair *p, const vec3 first[2], con
   const bool inside = holds(p->part[0], witness[0]) && holds(p->part[1], witness[1]);
   for (int k = 0; inside && k < 2; k++) {
     *side = k;
-    const double cut = cover_cut(c, p->part[k], witness[k]);
+    const double cut = partition_cut(c, p->part[k], witness[k]);
     if (cut == witness[k]) return cut;
   }
   const double lengths[2] = {vec_norm2(vec_sub(first[1], first[0])), vec_norm2(vec_sub(second[1], second[0]))};
   *side = lengths[0] >= lengths[1] ? 0 : 1;
-  const double cut = cover_cut(c, p->part[*side], -1.0);
+  const double cut = partition_cut(c, p->part[*side], -1.0);
   if (!isnan(cut)) return cut;
   *side = 1 - *side;
-  return cover_cut(c, p->part[*side], -1.0);
+  return partition_cut(c, p->part[*side], -1.0);
 }
 
 static proven prove(cover *c, const frame *placed, const pair *p, vec3 inherited, int depth) {
@@ -66,7 +66,7 @@ static proven prove(cover *c, const frame *placed, const pair *p, vec3 inherited
   double unused[2];
   chord(c->curve, NULL, p->part[0], first);
   chord(c->set.curve, placed, p->part[1], second);
-  const vec3 of_chords = certificate_round(c->certificate, meeting_of_chords(first, second, unused));
+  const vec3 of_chords = certificate_round(c->certificate, newton_curves_of_chords(first, second, unused));
   const vec3 trials[3] = {inherited, c->normal, of_chords};
   for (int i = 0; i < 3; i++) {
     if (!separates(c, p, trials[i])) continue;
@@ -99,7 +99,7 @@ static proven prove(cover *c, const frame *placed, const pair *p, vec3 inherited
   return (proven){.status = CPROX_OK};
 }
 
-cprox_status cover_curves(cover *c) {
+cprox_status partition_curves(cover *c) {
   const frame placed = frame_create(&c->pose, vec(0, 0, 0));
   const cprox_curve *target = c->set.curve;
   certificate_byte(c->certificate, SECTION_CURVE);

@@ -117,7 +117,7 @@ static cprox_status lay(robot_cover *c, size_t segment, double a, double b, size
   return status == CPROX_OK ? lay(c, segment, middle, b, to, to + kept) : status;
 }
 
-cprox_status cover_robot(robot_cover *c) {
+cprox_status partition_robot(robot_cover *c) {
   const size_t n = c->scene->n_pairs;
   cprox_status status = CPROX_OK;
   int32_t *open = reserve(c, n);

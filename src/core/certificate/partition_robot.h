@@ -17,9 +17,9 @@ typedef struct robot_cover {
 
 /* Writes the trees of all segments: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY.
  */
-cprox_status cover_robot(robot_cover *c);
+cprox_status partition_robot(robot_cover *c);
 
 /* Writes that at the witness of the answer the distance is at most delta. */
-cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer);
+cprox_status partition_robot_near(const robot_cover *c, const cprox_result *answer);
 
 #endif

@@ -107,7 +107,7 @@ static cprox_status attempt(const task *t, uint32_t width, double delta) {
     for (size_t part = 0; part < body_n_parts(t->targets[i].body); part++) {
       cover c = cover_of(t, i, part, width);
       c.delta = delta;
-      const cprox_status status = c.set.curve ? cover_curves(&c) : cover_convex(&c);
+      const cprox_status status = c.set.curve ? partition_curves(&c) : partition_convex(&c);
       if (status != CPROX_OK) return status;
     }
   }
@@ -142,7 +142,8 @@ static cprox_status certify_near(const task *t) {
   cover c = cover_of(t, (size_t)r->obstacle_index, (size_t)r->obstacle_part, 8);
   if (c.is_mesh)
     return workspace_fail(t->workspace, CPROX_INVALID,
-                          "target %d is a mesh: its convex hull cannot prove that it is near", (int)r->obstacle_index);
+                          "obstacle %d is a mesh: its convex hull cannot prove that it is near",
+                          (int)r->obstacle_index);
   c.delta = t->delta;
   certificate_begin(t->certificate, 8, CPROX_CLAIM_NEAR, t->delta, 1);
   return cover_near(&c, (uint32_t)section, r);
@@ -157,14 +158,14 @@ static cprox_status certify_curve(const task *t) {
   for (size_t i = 0; i < t->n; i++) {
     const cprox_obstacle *target = &t->targets[i];
     if (target->synchronized)
-      return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is on the mover's clock: it has no certificates",
+      return workspace_fail(t->workspace, CPROX_INVALID, "obstacle %zu is on the mover's clock: it has no certificates",
                             i);
     if (!target->body && target->curve->arcs)
       return workspace_fail(t->workspace, CPROX_INVALID,
-                            "target %zu is known by its arc length alone: it has no certificates", i);
-    if (target->body && say_unknown(target->body))
-      return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates: %s", i,
-                            cprox_body_kind_name(say_unknown(target->body)->kind));
+                            "obstacle %zu is known by its arc length alone: it has no certificates", i);
+    if (target->body && describe_unknown_kind(target->body))
+      return workspace_fail(t->workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
+                            cprox_body_kind_name(describe_unknown_kind(target->body)->kind));
   }
   if (!t->answer || t->answer->upper > t->delta) return certify_clear(t);
   const cprox_status status = certify_near(t);
@@ -181,10 +182,10 @@ static cprox_status prove(const task *t) {
 
 static bool has_mesh(const task *t) {
   bool found = false;
-  for (size_t i = 0; i < t->n && !found; i++) found = t->targets[i].body && say_has_mesh(t->targets[i].body);
+  for (size_t i = 0; i < t->n && !found; i++) found = t->targets[i].body && describe_has_mesh(t->targets[i].body);
   const cprox_robot *robot = t->mover->motion ? t->mover->motion->robot : NULL;
   for (size_t i = 0; robot && i < robot->n_geometries && !found; i++)
-    found = say_has_mesh(robot->given_geometries[i].body);
+    found = describe_has_mesh(robot->given_geometries[i].body);
   return found;
 }
 
@@ -196,7 +197,7 @@ static cprox_status prove_of_hulls(const task *t) {
   query q = query_create(*t->mover, t->targets, t->n, -1.0, false, &options, t->workspace);
   query_ask_whole(&q);
   cprox_result hulls;
-  const cprox_status status = query_answer(&q, 0, q.n, INFINITY, &hulls);
+  const cprox_status status = solve_query(&q, 0, q.n, INFINITY, &hulls);
   if (status < 0) return status;
   if (!(hulls.lower > 0.0) || !isfinite(hulls.lower)) return CPROX_PRECISION;
   task coarse = *t;
@@ -269,8 +270,8 @@ cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, 
   workspace_clear(workspace);
   cprox_certificate_clear(certificate);
   const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_LOD};
-  cprox_status status = arguments_check_query(&mover, targets, n, &chosen, asked, workspace);
-  if (status == CPROX_OK) status = arguments_check_delta(delta, workspace);
+  cprox_status status = validate_query(&mover, targets, n, &chosen, asked, workspace);
+  if (status == CPROX_OK) status = validate_delta(delta, workspace);
   if (status != CPROX_OK) return status;
   if (!certificate) return workspace_fail(workspace, CPROX_INVALID, "certificate is NULL: nowhere to put the proof");
   return certify(&mover, targets, n, delta, answer, &chosen, workspace, certificate);

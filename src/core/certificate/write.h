@@ -13,6 +13,6 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
                            cprox_certificate *certificate);
 
 /* The first geometry of the robot's links that certificates do not know; their number, where they know all. */
-size_t certify_unknown_geometry(const cprox_robot *robot);
+size_t describe_unknown_geometry(const cprox_robot *robot);
 
 #endif

@@ -32,7 +32,7 @@ static void write_vertex(cprox_certificate *c, const simplex *s, int i, bool ins
   certificate_number(c, used && !inside ? s->weight[i] : 0.0);
 }
 
-double cover_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error) {
+double partition_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error) {
   const convex *shape = &body->shape;
   const cprox_body_kind kind = body->kind;
   convex_hint hint = {0};
@@ -65,7 +65,7 @@ double cover_near_point(const cprox_body *body, cprox_certificate *certificate, 
 /* The point of a curve at its counting parameter; where two pieces meet that do not join, the one that is nearer to
  * `by`. */
 static vec3 point_by(const cprox_curve *curve, double sigma, vec3 by) {
-  const vec3 right = cover_point(curve, sigma);
+  const vec3 right = partition_point(curve, sigma);
   if (sigma != floor(sigma) || sigma < 1.0) return right;
   const vec3 left = curve_piece(curve, (size_t)sigma - 1)[curve->degree];
   return vec_norm2(vec_sub(left, by)) < vec_norm2(vec_sub(right, by)) ? left : right;
@@ -90,7 +90,7 @@ cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *an
   } else {
     const frame f = frame_create(&c->pose, c->set.body->centre);
     const vec3 y = local_point(c, &f, world, &error);
-    apart = cover_near_point(c->set.body, c->certificate, y, error);
+    apart = partition_near_point(c->set.body, c->certificate, y, error);
     size = vec_norm(y) + c->set.body->shape.scale;
   }
 

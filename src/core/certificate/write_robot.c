@@ -17,14 +17,14 @@ static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle
     return workspace_fail(workspace, CPROX_INVALID,
                           "no certificates: joined motions, and joints that turn by slerp, screws or rotation vectors");
   const cprox_robot *robot = motion->robot;
-  const size_t geometry = certify_unknown_geometry(robot);
+  const size_t geometry = describe_unknown_geometry(robot);
   if (geometry < robot->n_geometries)
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu is of a kind that has no certificates: %s", geometry,
-                          cprox_body_kind_name(say_unknown(robot->given_geometries[geometry].body)->kind));
+                          cprox_body_kind_name(describe_unknown_kind(robot->given_geometries[geometry].body)->kind));
   for (size_t i = 0; i < n; i++)
-    if (say_unknown(targets[i].body))
-      return workspace_fail(workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates: %s", i,
-                            cprox_body_kind_name(say_unknown(targets[i].body)->kind));
+    if (describe_unknown_kind(targets[i].body))
+      return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
+                            cprox_body_kind_name(describe_unknown_kind(targets[i].body)->kind));
   return CPROX_OK;
 }
 
@@ -32,7 +32,7 @@ static cprox_status attempt(robot_scene *scene, uint32_t width, double delta, ui
   robot_cover cover = {.scene = scene, .delta = delta, .budget = budget, .certificate = c};
   cover.shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE;
   certificate_begin(c, width, CPROX_CLAIM_APART, delta, (uint32_t)scene->n_pairs);
-  const cprox_status status = cover_robot(&cover);
+  const cprox_status status = partition_robot(&cover);
   return status == CPROX_OK && c->failed ? CPROX_MEMORY : status;
 }
 
@@ -63,7 +63,7 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
   const robot_cover near = {.scene = &scene, .delta = delta, .certificate = certificate};
   const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower && delta > 0.0;
   if (answer && answer->upper <= delta) {
-    const cprox_status status = cover_robot_near(&near, answer);
+    const cprox_status status = partition_robot_near(&near, answer);
     if (status == CPROX_OK || status == CPROX_MEMORY || !distance) return status;
   }
   return certify_clear(&scene, delta, answer, epsilon, options->max_nodes, certificate);

@@ -87,7 +87,7 @@ static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y)
 
 /* ---- the claim ---- */
 
-cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) {
+cprox_status partition_robot_near(const robot_cover *c, const cprox_result *answer) {
   robot_scene *s = c->scene;
   const cprox_motion *m = s->motion;
   if (answer->obstacle_index < 0 || !isfinite(answer->t)) return CPROX_PRECISION;
@@ -108,7 +108,7 @@ cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) 
   if (!part || !other)
     return workspace_fail(
         s->q->workspace, CPROX_INVALID, "%s %d is a mesh: its convex hull cannot prove that it is near",
-        !part || pair->self ? "geometry" : "target", (int)(part ? answer->obstacle_index : answer->mover_part));
+        !part || pair->self ? "geometry" : "obstacle", (int)(part ? answer->obstacle_index : answer->mover_part));
 
   cprox_certificate *to = c->certificate;
   certificate_begin(to, 8, CPROX_CLAIM_NEAR, c->delta, (uint32_t)s->n_pairs);
@@ -120,8 +120,8 @@ cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) 
   const vec3 world = placement_apply(&moving->side.at, x);
   const double sizes = vec_norm(vec_sub(world, standing->side.at.p)) + moving->radius + standing->side.shape->scale;
   const double error = ERRORS * (moving->side.error + standing->side.error) + ROOM * ROUND_U * sizes;
-  const double apart =
-      cover_near_point(other, to, placement_turn_back(&standing->side.at, vec_sub(world, standing->side.at.p)), error);
+  const double apart = partition_near_point(
+      other, to, placement_turn_back(&standing->side.at, vec_sub(world, standing->side.at.p)), error);
 
   /* a claim that is too tight is lifted by what rounding may have cost */
   const double margins = moving->side.margin - part->shape.margin + standing->side.margin - other->shape.margin;

@@ -9,7 +9,7 @@
  *      nearest points of the two pieces (2 to 4 unknowns), and go on from there with 1.
  *
  * Departure: plain projections converge linearly. Step 4 is a Newton step, and where it does not shorten v the next
- * round goes on from the last projection. approach_smooth() does without projections: Newton's method on phi(u)
+ * round goes on from the last projection. alternating_smooth() does without projections: Newton's method on phi(u)
  * alone.
  *
  * Letters as in doc/convex-pairs.md: v = a - b between two points of the cores, the columns m of the pieces'
@@ -19,28 +19,28 @@
 #include "base/rotation.h"
 #include "convex/feature.h"
 
-enum { APPROACH_ROUNDS = 10, APPROACH_MOST = 4 };
+enum { ALTERNATING_ROUNDS = 10, ALTERNATING_MOST = 4 };
 
 /* Tangents less than this apart, in radians, are parallel: their product would be no direction to trust. */
-static const double APPROACH_PARALLEL = 1e-3;
+static const double ALTERNATING_PARALLEL = 1e-3;
 
 /* Of a pivot: what is left of a unit vector that depends on the others. */
-static const double APPROACH_DEPENDENT = 1e-12;
+static const double ALTERNATING_DEPENDENT = 1e-12;
 
 /* Of a step of the direction, in radians or nearly so. */
 static const double SMOOTH_FARTHEST = 0.5;
 
-typedef struct approach_pair {
+typedef struct alternating_pair {
   convex_foot a, b; /* b's in its own frame */
   vec3 v;
   double distance;
   int n; /* tangents of both pieces together, and those that are a's */
   int of_a;
-  vec3 m[APPROACH_MOST];
-  double bent[APPROACH_MOST]; /* curvature of the piece times the distance: 1/along - 1 */
-} approach_pair;
+  vec3 m[ALTERNATING_MOST];
+  double bent[ALTERNATING_MOST]; /* curvature of the piece times the distance: 1/along - 1 */
+} alternating_pair;
 
-static void approach_add_tangents(const convex_foot *foot, const double *r, approach_pair *p) {
+static void alternating_add_tangents(const convex_foot *foot, const double *r, alternating_pair *p) {
   for (int i = 0; i < foot->tangents && i < 2; i++) {
     p->m[p->n] = r ? vec_neg(rotate(r, foot->e[i])) : foot->e[i];
     p->bent[p->n++] = 1.0 / foot->along[i] - 1.0;
@@ -48,7 +48,7 @@ static void approach_add_tangents(const convex_foot *foot, const double *r, appr
 }
 
 /* y onto a, and what it becomes there onto b. */
-static void approach_project(const approach_task *task, vec3 y, approach_pair *p) {
+static void alternating_project(const alternating_task *task, vec3 y, alternating_pair *p) {
   const double *r = task->r;
   const vec3 t = task->t;
   task->a->ops->project(task->a, y, &p->a);
@@ -56,15 +56,15 @@ static void approach_project(const approach_task *task, vec3 y, approach_pair *p
   p->v = vec_sub(p->a.point, vec_add(rotate(r, p->b.point), t));
   p->distance = vec_norm(p->v);
   p->n = 0;
-  approach_add_tangents(&p->a, NULL, p);
+  alternating_add_tangents(&p->a, NULL, p);
   p->of_a = p->n;
-  approach_add_tangents(&p->b, r, p);
+  alternating_add_tangents(&p->b, r, p);
 }
 
 /* Where the two pieces, continued and v apart, are nearest to each other: min over x of |v + sum x_k m_k|²/2 + sum
  * bent_k x_k²/2, by Cholesky's method; of tangents that depend on those before them none is gone along. */
-static void approach_newton(const approach_pair *p, vec3 v, double x[APPROACH_MOST]) {
-  double l[APPROACH_MOST][APPROACH_MOST], z[APPROACH_MOST];
+static void alternating_newton(const alternating_pair *p, vec3 v, double x[ALTERNATING_MOST]) {
+  double l[ALTERNATING_MOST][ALTERNATING_MOST], z[ALTERNATING_MOST];
   for (int i = 0; i < p->n; i++) {
     z[i] = -vec_dot(p->m[i], v);
     double pivot = 1.0 + p->bent[i];
@@ -75,7 +75,7 @@ static void approach_newton(const approach_pair *p, vec3 v, double x[APPROACH_MO
       pivot -= l[i][k] * l[i][k];
       z[i] -= l[i][k] * z[k];
     }
-    l[i][i] = pivot > APPROACH_DEPENDENT ? sqrt(pivot) : 0.0;
+    l[i][i] = pivot > ALTERNATING_DEPENDENT ? sqrt(pivot) : 0.0;
     z[i] = l[i][i] > 0.0 ? z[i] / l[i][i] : 0.0;
   }
   for (int i = p->n - 1; i >= 0; i--) {
@@ -87,15 +87,15 @@ static void approach_newton(const approach_pair *p, vec3 v, double x[APPROACH_MO
 
 /* The direction from b to a across both pieces. Near contact v itself is all rounding, and along an edge or a face a
  * direction that is off by a little costs its length: so what is along a tangent is taken out of it. */
-static vec3 approach_direction(const approach_pair *p) {
+static vec3 alternating_direction(const alternating_pair *p) {
   vec3 along, u;
   feature_unit(p->v, &along);
   if (p->n == 0) return along;
   int other = 1;
   vec3 normal = vec(0, 0, 0);
-  while (other < p->n && vec_norm2(normal) < APPROACH_PARALLEL * APPROACH_PARALLEL)
+  while (other < p->n && vec_norm2(normal) < ALTERNATING_PARALLEL * ALTERNATING_PARALLEL)
     normal = vec_cross(p->m[0], p->m[other++]);
-  if (vec_norm2(normal) < APPROACH_PARALLEL * APPROACH_PARALLEL) {
+  if (vec_norm2(normal) < ALTERNATING_PARALLEL * ALTERNATING_PARALLEL) {
     const vec3 once = vec_axpy(p->v, -vec_dot(p->v, p->m[0]), p->m[0]);
     feature_unit(once, &u);
     feature_unit(vec_axpy(u, -vec_dot(u, p->m[0]), p->m[0]), &u);
@@ -106,18 +106,18 @@ static vec3 approach_direction(const approach_pair *p) {
 }
 
 /* The part of t that no step along the pieces takes up. */
-static vec3 approach_rest(const approach_pair *p, vec3 t) {
-  double x[APPROACH_MOST];
-  approach_newton(p, t, x);
+static vec3 alternating_rest(const alternating_pair *p, vec3 t) {
+  double x[ALTERNATING_MOST];
+  alternating_newton(p, t, x);
   for (int k = 0; k < p->n; k++) t = vec_axpy(t, x[k], p->m[k]);
   return t;
 }
 
 /* The distance is that of the pieces: it has no second derivative along what they take up, and 1/distance across. */
-static void approach_describe_curved(const approach_pair *p, vec3 u, pair_feature *feature) {
+static void alternating_describe_curved(const alternating_pair *p, vec3 u, pair_feature *feature) {
   vec3 e, f;
   feature_tangents(u, &e, &f);
-  const vec3 re = approach_rest(p, e), rf = approach_rest(p, f);
+  const vec3 re = alternating_rest(p, e), rf = alternating_rest(p, f);
   const double ee = vec_dot(e, re) / p->distance, ef = vec_dot(e, rf) / p->distance, ff = vec_dot(f, rf) / p->distance;
   const double x[3] = {e.x, e.y, e.z}, y[3] = {f.x, f.y, f.z};
   for (int i = 0, k = 0; i < 3; i++)
@@ -127,7 +127,7 @@ static void approach_describe_curved(const approach_pair *p, vec3 u, pair_featur
 
 /* Points of the pieces continued, as far along tangents that are not parallel as the shapes are large, take the place
  * of vertices. */
-static void approach_describe_flat(const approach_task *task, const approach_pair *p, pair_feature *feature) {
+static void alternating_describe_flat(const alternating_task *task, const alternating_pair *p, pair_feature *feature) {
   feature->n = 1;
   feature->w[0] = p->v, feature->b[0] = p->b.point;
   for (int k = 0; k < p->n && feature->n < 3; k++) {
@@ -137,24 +137,24 @@ static void approach_describe_flat(const approach_task *task, const approach_pai
     if (feature->n == 2) {
       vec3 first;
       feature_unit(vec_sub(feature->w[1], p->v), &first);
-      if (vec_norm2(vec_cross(first, p->m[k])) < APPROACH_PARALLEL * APPROACH_PARALLEL) continue;
+      if (vec_norm2(vec_cross(first, p->m[k])) < ALTERNATING_PARALLEL * ALTERNATING_PARALLEL) continue;
     }
     feature->w[feature->n] = w;
     feature->b[feature->n++] = of_b ? vec_axpy(p->b.point, far, p->b.e[k - p->of_a]) : p->b.point;
   }
 }
 
-static void approach_describe(const approach_task *task, const approach_pair *p, approach_answer *answer) {
+static void alternating_describe(const alternating_task *task, const alternating_pair *p, alternating_answer *answer) {
   answer->described = true;
   task->feature->flat = !task->a->ops->curvature && !task->b->ops->curvature;
   if (task->feature->flat)
-    approach_describe_flat(task, p, task->feature);
+    alternating_describe_flat(task, p, task->feature);
   else
-    approach_describe_curved(p, answer->u, task->feature);
+    alternating_describe_curved(p, answer->u, task->feature);
 }
 
 /* The points of the cores that are nearest to each other along u, phi(u), and u if it is the best. */
-static simplex_vertex approach_support_step(const approach_task *task, vec3 u, approach_answer *answer) {
+static simplex_vertex alternating_support_step(const alternating_task *task, vec3 u, alternating_answer *answer) {
   simplex_vertex x = {.id = -1};
   task->a->ops->support(task->a, vec_neg(u), NULL, &x.a);
   task->b->ops->support(task->b, rotate_back(task->r, u), NULL, &x.b);
@@ -168,14 +168,14 @@ static simplex_vertex approach_support_step(const approach_task *task, vec3 u, a
   return x;
 }
 
-void approach_search(const approach_task *task, approach_answer *answer) {
-  *answer = (approach_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
+void alternating_search(const alternating_task *task, alternating_answer *answer) {
+  *answer = (alternating_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
   vec3 y = task->goal->placed ? task->goal->place : task->t;
   bool newton = false;
   vec3 back = y; /* the last place on b, for when Newton's step was too long */
-  for (int round = 0; round < APPROACH_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
-    approach_pair p;
-    approach_project(task, y, &p);
+  for (int round = 0; round < ALTERNATING_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
+    alternating_pair p;
+    alternating_project(task, y, &p);
     answer->met = p.distance <= task->contact_tolerance;
     if (answer->met) {
       answer->pair.a = p.a.point;
@@ -193,16 +193,16 @@ void approach_search(const approach_task *task, approach_answer *answer) {
     answer->pair.a = p.a.point;
     answer->pair.b = p.b.point;
 
-    const vec3 u = approach_direction(&p);
-    if (vec_norm2(u) > 0.0) approach_support_step(task, u, answer);
+    const vec3 u = alternating_direction(&p);
+    if (vec_norm2(u) > 0.0) alternating_support_step(task, u, answer);
     answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
     if (answer->reached) {
-      if (task->feature) approach_describe(task, &p, answer);
+      if (task->feature) alternating_describe(task, &p, answer);
       return;
     }
 
-    double x[APPROACH_MOST];
-    approach_newton(&p, p.v, x);
+    double x[ALTERNATING_MOST];
+    alternating_newton(&p, p.v, x);
     y = back = vec_sub(p.a.point, p.v);
     newton = true;
     for (int i = p.of_a; i < p.n; i++) y = vec_axpy(y, -x[i], p.m[i]);
@@ -213,8 +213,8 @@ void approach_search(const approach_task *task, approach_answer *answer) {
 
 /* Newton's step for phi at u, whose point is x: (K + d) delta = x_tangential. False where the surfaces are flatter than
  * doubles tell. */
-static bool smooth_step(const approach_task *task, const simplex_vertex *x, vec3 u, double d, double delta[2], vec3 *e,
-                        vec3 *f) {
+static bool smooth_step(const alternating_task *task, const simplex_vertex *x, vec3 u, double d, double delta[2],
+                        vec3 *e, vec3 *f) {
   const double *r = task->r;
   double ha[6], hb[6];
   feature_tangents(u, e, f);
@@ -230,10 +230,10 @@ static bool smooth_step(const approach_task *task, const simplex_vertex *x, vec3
   return det > 0.0;
 }
 
-void approach_smooth(const approach_task *task, vec3 u, approach_answer *answer) {
-  *answer = (approach_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
-  for (int round = 0; round < APPROACH_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
-    const simplex_vertex x = approach_support_step(task, u, answer);
+void alternating_smooth(const alternating_task *task, vec3 u, alternating_answer *answer) {
+  *answer = (alternating_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
+  for (int round = 0; round < ALTERNATING_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
+    const simplex_vertex x = alternating_support_step(task, u, answer);
     const double distance = vec_norm(x.w), phi = vec_dot(u, x.w);
     if (distance < answer->distance) {
       answer->distance = distance;

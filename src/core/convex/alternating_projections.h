@@ -7,7 +7,7 @@
 #include "convex/pair.h"
 #include "convex/simplex.h"
 
-typedef struct approach_task {
+typedef struct alternating_task {
   const convex *a, *b;
   const double *r; /* b stands at r x_b + t in a's frame */
   vec3 t;
@@ -15,9 +15,9 @@ typedef struct approach_task {
   double margins, rounding;
   double contact_tolerance; /* cores nearer than this are left to others */
   pair_feature *feature;    /* set where the projections get as close as the goal asks; NULL: not wanted */
-} approach_task;
+} alternating_task;
 
-typedef struct approach_answer {
+typedef struct alternating_answer {
   bool reached;        /* the bounds are as close as the goal asks */
   bool met;            /* the projections found a point of both cores within the contact tolerance */
   simplex_vertex pair; /* w = a - b the shortest so far, of a point of each core */
@@ -26,12 +26,12 @@ typedef struct approach_answer {
   double lower;
   uint32_t looks; /* directions that were tried */
   bool described; /* the feature is set */
-} approach_answer;
+} alternating_answer;
 
 /* By projections: both cores have ops->project. */
-void approach_search(const approach_task *task, approach_answer *answer);
+void alternating_search(const alternating_task *task, alternating_answer *answer);
 
 /* By Newton's method on phi alone, from u on: both cores are smooth. */
-void approach_smooth(const approach_task *task, vec3 u, approach_answer *answer);
+void alternating_smooth(const alternating_task *task, vec3 u, alternating_answer *answer);
 
 #endif

@@ -12,7 +12,7 @@
  * Departures: the depth is an interval. Along any unit n every point p of a facet has n·p >= min n·w over its
  * vertices, so step 2 is proven whatever the accuracy of the normals. Where the horizon is no simple loop, because
  * of rounding, the nearest facet alone is replaced. If 0 lies on planes through vertices, a place beside it is
- * enclosed first (expand_beside()). Coaxial bodies of revolution have a plane problem (epa_ring.c). */
+ * enclosed first (epa_beside()). Coaxial bodies of revolution have a plane problem (epa_ring.c). */
 #include "convex/epa.h"
 
 #include <stdlib.h>
@@ -252,7 +252,7 @@ static bool surface_grow(surface *s, const simplex_vertex *x, const view *v) {
 /* ---- the search ---- */
 
 /* The set's point farthest along n, seen from the middle that the surface is round. */
-static simplex_vertex farthest_from(const expand_set *set, vec3 shift, vec3 n) {
+static simplex_vertex farthest_from(const epa_set *set, vec3 shift, vec3 n) {
   simplex_vertex x = set->farthest(set->self, n);
   x.w = vec_sub(x.w, shift);
   return x;
@@ -308,7 +308,7 @@ static bool begin_tetrahedron(surface *s, const simplex *start, double rounding)
 }
 
 /* From a triangle that has 0 on it: farther points on both sides. */
-static bool begin_triangle(surface *s, const expand_set *set, const simplex *start, double rounding) {
+static bool begin_triangle(surface *s, const epa_set *set, const simplex *start, double rounding) {
   simplex_vertex vertex[5];
   vec3 n;
   const vec3 a = start->vertex[0].w;
@@ -322,7 +322,7 @@ static bool begin_triangle(surface *s, const expand_set *set, const simplex *sta
 
 /* From the farthest points both ways along n, and farther points all round, tried from a few angles: some may fall
  * together. */
-static bool begin_line(surface *s, const expand_set *set, vec3 n, double rounding) {
+static bool begin_line(surface *s, const epa_set *set, vec3 n, double rounding) {
   enum { ANGLES = 7 };
   simplex_vertex vertex[5];
   vec3 e, f;
@@ -351,7 +351,7 @@ static simplex face_nearest(const simplex *start) {
   return face;
 }
 
-static bool begin_from(surface *s, const expand_set *set, const simplex *start, double rounding) {
+static bool begin_from(surface *s, const epa_set *set, const simplex *start, double rounding) {
   if (start->n == 4 && begin_tetrahedron(s, start, rounding)) return true;
   const simplex face = start->n == 4 ? face_nearest(start) : *start;
   if (face.n == 3 && begin_triangle(s, set, &face, rounding)) return true;
@@ -365,7 +365,7 @@ static bool begin_from(surface *s, const expand_set *set, const simplex *start, 
 
 /* Of the facets on the nearest plane, the one that has its foot: coplanar ones share the offset. They are used up.
  * Facets that are nearer than what is proven were turned round by rounding in the last step: they are none of M's. */
-static void find_touch(surface *s, double room, double rounding, expand_depth *depth) {
+static void find_touch(surface *s, double room, double rounding, epa_depth *depth) {
   enum { MOST_TRIED = 16 };
   double nearest = INFINITY;
   for (int tried = 0; tried < MOST_TRIED && nearest > depth->least + rounding;) {
@@ -385,14 +385,13 @@ static void find_touch(surface *s, double room, double rounding, expand_depth *d
   }
 }
 
-static bool is_enough(const expand_depth *depth, const expand_goal *goal) {
+static bool is_enough(const epa_depth *depth, const epa_goal *goal) {
   if (goal->rough && depth->least > goal->rounding && depth->most <= 4.0 * depth->least) return true;
   return depth->most - depth->least <= goal->width;
 }
 
 /* Until the bounds are as close as is asked for, or `least` passes what is enough. False where the set is at fault. */
-static bool surface_expand(surface *s, const expand_set *set, const expand_goal *goal, double enough,
-                           expand_depth *depth) {
+static bool surface_expand(surface *s, const epa_set *set, const epa_goal *goal, double enough, epa_depth *depth) {
   view v;
   const uint32_t room = (uint32_t)s->most_vertices - (MOST_VERTICES - MOST_STEPS);
   const uint32_t most = goal->max_steps < room ? goal->max_steps : room;
@@ -424,16 +423,16 @@ static bool surface_expand(surface *s, const expand_set *set, const expand_goal 
   return true;
 }
 
-static const expand_depth UNKNOWN = {.least = -INFINITY, .most = INFINITY, .exhausted = true};
+static const epa_depth UNKNOWN = {.least = -INFINITY, .most = INFINITY, .exhausted = true};
 
 /* From a surface that encloses 0. */
-static bool surface_finish(surface *s, const expand_set *set, const expand_goal *goal, expand_depth *depth) {
+static bool surface_finish(surface *s, const epa_set *set, const epa_goal *goal, epa_depth *depth) {
   if (!surface_expand(s, set, goal, INFINITY, depth)) return false;
   find_touch(s, greater(goal->width, goal->rounding), goal->rounding, depth);
   return true;
 }
 
-bool expand_from(const expand_set *set, const simplex *start, const expand_goal *goal, expand_depth *depth) {
+bool epa_from(const epa_set *set, const simplex *start, const epa_goal *goal, epa_depth *depth) {
   surface_room room;
   surface s;
   surface_place(&s, &room, goal->room);
@@ -463,15 +462,15 @@ static void surface_return(surface *s) {
 }
 
 /* From a surface round its shift. */
-static bool surface_expand_beside(surface *s, const expand_set *set, const simplex *start, const expand_goal *goal,
-                                  expand_depth *depth) {
+static bool surface_expand_beside(surface *s, const epa_set *set, const simplex *start, const epa_goal *goal,
+                                  epa_depth *depth) {
   if (!begin_from(s, set, start, goal->rounding)) return false;
 
   /* until a ball about the shift is free that holds 0 and more than the rounding */
   const double needed = vec_norm(s->shift) + 2.0 * goal->rounding;
-  expand_goal inner = *goal;
+  epa_goal inner = *goal;
   inner.width = 0.0, inner.rough = false;
-  expand_depth free = UNKNOWN;
+  epa_depth free = UNKNOWN;
   if (!surface_expand(s, set, &inner, needed, &free) || !(free.least > needed)) return false;
   surface_return(s);
   *depth = UNKNOWN;
@@ -479,8 +478,7 @@ static bool surface_expand_beside(surface *s, const expand_set *set, const simpl
   return s->offset[surface_nearest(s)] > goal->rounding && surface_finish(s, set, goal, depth);
 }
 
-bool expand_beside(const expand_set *set, const simplex *start, vec3 shift, const expand_goal *goal,
-                   expand_depth *depth) {
+bool epa_beside(const epa_set *set, const simplex *start, vec3 shift, const epa_goal *goal, epa_depth *depth) {
   surface_room room;
   surface s;
   surface_place(&s, &room, goal->room);

@@ -7,39 +7,38 @@
 #include "convex/simplex.h"
 
 /* The set: its point farthest along the unit vector n; NaN in w ends the search. */
-typedef struct expand_set {
+typedef struct epa_set {
   void *self;
   simplex_vertex (*farthest)(void *self, vec3 n);
-} expand_set;
+} epa_set;
 
-typedef struct expand_goal {
+typedef struct epa_goal {
   double rounding; /* every w is within this of a point of the set, and every n·w of the set's maximum */
   double width;    /* how wide [least, most] may be, rounding not counted */
   bool rough;      /* or `most` may be four times `least` */
   uint32_t max_steps;
   int32_t room; /* for so many vertices, where that is more than a query needs: allocated, and none if memory is out */
-} expand_goal;
+} epa_goal;
 
 /* least <= depth <= most, but for rounding. */
-typedef struct expand_depth {
+typedef struct epa_depth {
   double least, most;
   vec3 normal;   /* unit, outwards: the set reaches no farther than `most` along it */
   simplex touch; /* the facet that `least` was measured to, and the weights of its point nearest to 0 */
   bool exhausted;
   uint32_t steps;
-} expand_depth;
+} epa_depth;
 
 /* From a tetrahedron that encloses 0, or a triangle or an edge that 0 lies on. False where rounding hides that 0 is
  * enclosed: then nothing is set. */
-bool expand_from(const expand_set *set, const simplex *start, const expand_goal *goal, expand_depth *depth);
+bool epa_from(const epa_set *set, const simplex *start, const epa_goal *goal, epa_depth *depth);
 
 /* The same from a simplex that encloses `shift` instead, whose w are relative to it: where 0 lies on faces that any
  * vertices span, a place beside it does not. False where the set does not reach farther than `shift` all round. */
-bool expand_beside(const expand_set *set, const simplex *start, vec3 shift, const expand_goal *goal,
-                   expand_depth *depth);
+bool epa_beside(const epa_set *set, const simplex *start, vec3 shift, const epa_goal *goal, epa_depth *depth);
 
 /* For a set of two shapes of revolution about their own z, the second one's points at most `off` from where they would
  * be if its axis were the first one's: from scratch. */
-bool expand_ring(const expand_set *set, double off, const expand_goal *goal, expand_depth *depth);
+bool epa_ring(const epa_set *set, double off, const epa_goal *goal, epa_depth *depth);
 
 #endif

@@ -31,7 +31,7 @@ typedef struct profile {
   int32_t n_corners, n_edges;
 } profile;
 
-static int32_t profile_add_corner(profile *p, const expand_set *set, double x, double z) {
+static int32_t profile_add_corner(profile *p, const epa_set *set, double x, double z) {
   const simplex_vertex v = set->farthest(set->self, vec(x, 0.0, z));
   const double reach = x * v.w.x + z * v.w.z;
   p->corner[p->n_corners] = (corner){.vertex = v, .rho = feature_hypot(v.w.x, v.w.y), .z = v.w.z, .reach = reach};
@@ -67,7 +67,7 @@ static int32_t profile_nearest(const profile *p) {
 static const double TILT = 1e-8;
 
 /* The lowest, the widest and the highest point. */
-static bool profile_begin(profile *p, const expand_set *set, double rounding) {
+static bool profile_begin(profile *p, const epa_set *set, double rounding) {
   p->n_corners = 0;
   profile_add_corner(p, set, TILT, -1.0);
   profile_add_corner(p, set, 1.0, 0.0);
@@ -81,7 +81,7 @@ static bool profile_begin(profile *p, const expand_set *set, double rounding) {
 
 /* The foot of 0: on one of the nearest edges, or in the middle of an end, between a corner and its image across the
  * axis. */
-static void find_touch(const profile *p, double room, expand_depth *depth) {
+static void find_touch(const profile *p, double room, epa_depth *depth) {
   simplex_nearest found;
   const corner *end = &p->corner[-p->corner[0].z <= p->corner[2].z ? 0 : 2];
   double nearest = INFINITY;
@@ -106,17 +106,17 @@ static void find_touch(const profile *p, double room, expand_depth *depth) {
   }
 }
 
-static void lower_most(expand_depth *depth, double reach, double x, double z) {
+static void lower_most(epa_depth *depth, double reach, double x, double z) {
   if (!(reach < depth->most)) return;
   depth->most = reach;
   depth->normal = vec(x, 0.0, z);
 }
 
-bool expand_ring(const expand_set *set, double off, const expand_goal *goal, expand_depth *depth) {
+bool epa_ring(const epa_set *set, double off, const epa_goal *goal, epa_depth *depth) {
   profile p;
   const double rounding = goal->rounding + off, width = goal->width - 2.0 * off;
   if (!profile_begin(&p, set, rounding)) return false;
-  *depth = (expand_depth){.least = -INFINITY, .most = INFINITY, .exhausted = true, .steps = 5};
+  *depth = (epa_depth){.least = -INFINITY, .most = INFINITY, .exhausted = true, .steps = 5};
   lower_most(depth, -set->farthest(set->self, vec(0, 0, -1)).w.z, 0.0, -1.0);
   lower_most(depth, set->farthest(set->self, vec(0, 0, 1)).w.z, 0.0, 1.0);
   lower_most(depth, p.corner[1].reach, 1.0, 0.0);

@@ -53,7 +53,7 @@ void feature_axial(convex_near *near, double x, double y, double radial, double 
 }
 
 /* The part of v orthogonal to the cover's axis, if it has one. */
-static vec3 cover_across(const convex_cover *cover, vec3 v) {
+static vec3 partition_across(const convex_cover *cover, vec3 v) {
   return cover->cylinder ? vec_axpy(v, -vec_dot(cover->axis, v), cover->axis) : v;
 }
 
@@ -69,7 +69,7 @@ bool feature_cover(const convex_near *near, int32_t n, const double *x, const do
   const double same = 64.0 * ROUND_U * scale;
   double radius = 0.0;
   for (int32_t i = 0; i < n; i++) {
-    const vec3 w = cover_across(cover, vec_sub(b, vec(x[i], y[i], z[i])));
+    const vec3 w = partition_across(cover, vec_sub(b, vec(x[i], y[i], z[i])));
     const double w2 = vec_norm2(w), along = vec_dot(normal, w);
     if (w2 <= same * same) continue;
     if (w2 > 2e6 * scale * along) return false; /* so flat that the ball says no more than the plane */
@@ -80,7 +80,7 @@ bool feature_cover(const convex_near *near, int32_t n, const double *x, const do
   cover->centre = vec_axpy(b, -radius, normal);
   double measured = 0.0;
   for (int32_t i = 0; i < n; i++) {
-    const vec3 w = cover_across(cover, vec_sub(vec(x[i], y[i], z[i]), cover->centre));
+    const vec3 w = partition_across(cover, vec_sub(vec(x[i], y[i], z[i]), cover->centre));
     measured = greater(vec_norm2(w), measured);
   }
   cover->radius = sqrt(measured) * (1.0 + 8.0 * ROUND_U) + 16.0 * ROUND_U * (radius + 2.0 * scale);

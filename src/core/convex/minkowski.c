@@ -131,8 +131,7 @@ static void make_box(const convex *standing, const convex *carried, convex *diff
   difference->slack = difference->outside = ROUND_UP * ROUND_U * difference->scale;
 }
 
-bool difference_make(const convex *standing, const convex *carried, const double r[9], bool turned,
-                     convex *difference) {
+bool minkowski_make(const convex *standing, const convex *carried, const double r[9], bool turned, convex *difference) {
   /* r, computed from two poses, and its product with a point or a direction; doc/rounding.md, T3 */
   const double turning = turned ? 2.0 * ROUND_ROTATION * ROUND_U : 0.0;
   if (standing->ops->kind == CPROX_BODY_HALFSPACE) return make_halfspace(standing, carried, r, turning, difference);

@@ -9,6 +9,6 @@
 /* Makes the difference in the standing shape's frame, where r turns the carried one, each about its own origin. It
  * keeps both by reference. `turned`: r is not exactly the identity. `carried` is no halfspace and no ball; false where
  * its support callback misbehaved. */
-bool difference_make(const convex *standing, const convex *carried, const double r[9], bool turned, convex *difference);
+bool minkowski_make(const convex *standing, const convex *carried, const double r[9], bool turned, convex *difference);
 
 #endif

@@ -498,10 +498,10 @@ static double pair_misalignment(const pair *p) {
 /* Where 0 lies on a plane through vertices of M, no simplex of theirs may have it inside. A place beside 0 lies on none
  * by chance: it is enclosed, and the surface round it grows until it holds 0 as well. The farther the place the clearer
  * it is of all planes; what is less deep is missed. */
-static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *depth) {
+static bool pair_expand_beside(pair *p, const epa_goal *goal, epa_depth *depth) {
   static const double beside[] = {1024.0, 64.0, 16.0, 8.0};
-  const expand_set set = {.self = p, .farthest = pair_farthest};
-  expand_goal left = *goal;
+  const epa_set set = {.self = p, .farthest = pair_farthest};
+  epa_goal left = *goal;
   for (int round = 0; round < 8 && left.max_steps > 1; round++) { /* twice each, not in the same direction */
     const double far = beside[round / 2] * p->rounding;
     if (!(p->lower < -2.0 * far)) continue;
@@ -520,7 +520,7 @@ static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *d
     p->support_failed = q.support_failed;
     if (p->support_failed) return false;
     left.max_steps -= q.steps < left.max_steps ? q.steps : left.max_steps;
-    if (!expand_beside(&set, &q.s, shift, &left, depth)) continue;
+    if (!epa_beside(&set, &q.s, shift, &left, depth)) continue;
     if (far < p->nearest.distance) p->s = q.s;
     return true;
   }
@@ -529,12 +529,12 @@ static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *d
 
 /* Coaxial bodies may be as deep all round a ring: their profile is a problem of the plane. What are nearly coaxial are
  * so but for `off`. */
-static bool pair_expand(pair *p, const expand_goal *goal, expand_depth *depth) {
-  const expand_set set = {.self = p, .farthest = pair_farthest};
+static bool pair_expand(pair *p, const epa_goal *goal, epa_depth *depth) {
+  const epa_set set = {.self = p, .farthest = pair_farthest};
   const double off = pair_misalignment(p);
-  if (off <= 0.25 * goal->width && expand_ring(&set, off, goal, depth)) return true;
-  if (!expand_from(&set, &p->s, goal, depth)) return false;
-  expand_depth ring, other;
+  if (off <= 0.25 * goal->width && epa_ring(&set, off, goal, depth)) return true;
+  if (!epa_from(&set, &p->s, goal, depth)) return false;
+  epa_depth ring, other;
   double width = depth->most - depth->least;
 
   /* where rounding has ended it early, a facet passes too near to 0 */
@@ -543,12 +543,12 @@ static bool pair_expand(pair *p, const expand_goal *goal, expand_depth *depth) {
     *depth = other;
     width = depth->most - depth->least;
   }
-  if (depth->exhausted && 2.0 * off < width && expand_ring(&set, off, goal, &ring) && ring.most - ring.least < width)
+  if (depth->exhausted && 2.0 * off < width && epa_ring(&set, off, goal, &ring) && ring.most - ring.least < width)
     *depth = ring;
   return true;
 }
 
-typedef bool (*pair_expander)(pair *p, const expand_goal *goal, expand_depth *depth);
+typedef bool (*pair_expander)(pair *p, const epa_goal *goal, epa_depth *depth);
 
 static uint32_t pair_steps_left(const pair *p, const pair_goal *goal) {
   return goal->max_steps > p->steps ? goal->max_steps - p->steps : 0;
@@ -556,8 +556,8 @@ static uint32_t pair_steps_left(const pair *p, const pair_goal *goal) {
 
 /* That they overlap, and no more. */
 static void pair_prove_overlap(pair *p, const pair_goal *goal, pair_expander expand, pair_answer *answer) {
-  const expand_goal inner = {.rounding = p->rounding, .rough = true, .max_steps = pair_steps_left(p, goal)};
-  expand_depth depth;
+  const epa_goal inner = {.rounding = p->rounding, .rough = true, .max_steps = pair_steps_left(p, goal)};
+  epa_depth depth;
   if (!expand(p, &inner, &depth) || !(depth.least > p->rounding)) return;
   p->steps += depth.steps;
   p->nearest.depth = p->nearest.inside ? fmax(depth.least, p->nearest.depth) : depth.least;
@@ -567,7 +567,7 @@ static void pair_prove_overlap(pair *p, const pair_goal *goal, pair_expander exp
 
 /* A depth that is known within e tells the way out of curved pieces within about the root of e; Newton's method tells
  * it as exactly as rounding allows. */
-static void pair_sharpen_way_out(pair *p, expand_depth *depth) {
+static void pair_sharpen_way_out(pair *p, epa_depth *depth) {
   enum { MOST_STEPS = 8 };
   static const double still = 1e-12;
   pair q = *p;
@@ -599,11 +599,11 @@ static void pair_sharpen_way_out(pair *p, expand_depth *depth) {
 static void pair_measure_depth(pair *p, double margin_a, double margin_b, const pair_goal *goal, pair_expander expand,
                                pair_answer *answer) {
   const double relative = goal->relative_epsilon * (p->nearest.depth + margin_a + margin_b);
-  const expand_goal inner = {.rounding = p->rounding,
-                             .width = fmax(fmax(goal->epsilon, relative) - 2.0 * p->rounding, 0.25 * p->rounding),
-                             .max_steps = pair_steps_left(p, goal),
-                             .room = goal->room};
-  expand_depth depth;
+  const epa_goal inner = {.rounding = p->rounding,
+                          .width = fmax(fmax(goal->epsilon, relative) - 2.0 * p->rounding, 0.25 * p->rounding),
+                          .max_steps = pair_steps_left(p, goal),
+                          .room = goal->room};
+  epa_depth depth;
   if (!expand(p, &inner, &depth) || !(depth.most < INFINITY)) return;
   p->steps += depth.steps;
   p->nearest.inside = true;
@@ -628,16 +628,16 @@ static void pair_measure_depth(pair *p, double margin_a, double margin_b, const 
 
 /* By projections or by Newton's method alone, where both cores allow it; one step is left to the search. */
 static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 start, pair_feature *feature,
-                          approach_answer *found) {
+                          alternating_answer *found) {
   const bool smooth = p->a->ops->smooth && p->b->ops->smooth;
-  *found = (approach_answer){.reached = false};
+  *found = (alternating_answer){.reached = false};
   if (!smooth && (!p->a->ops->project || !p->b->ops->project)) return false;
-  const approach_task task = {
+  const alternating_task task = {
       p->a, p->b, p->r, p->t, goal, margins, p->rounding, p->contact_tolerance, goal->wants_feature ? feature : NULL};
   if (smooth)
-    approach_smooth(&task, start, found);
+    alternating_smooth(&task, start, found);
   else
-    approach_search(&task, found);
+    alternating_search(&task, found);
   p->steps += found->looks;
   p->supports += found->looks;
   if (!found->reached) return false;
@@ -670,7 +670,7 @@ static bool pair_meets_at(pair *p, const simplex_vertex *common) {
 
 /* Whatever is quickest, from the direction u on; and the feature, if the goal asks for it and the cores are apart. */
 static void pair_find(pair *p, vec3 u, double margins, const pair_goal *goal, pair_feature *feature) {
-  approach_answer found;
+  alternating_answer found;
   if (!pair_approach(p, margins, goal, u, feature, &found)) {
     p->met = found.met;
     if (found.met && goal->verdict && goal->limit >= 0.0 && pair_meets_at(p, &found.pair)) return;

@@ -211,7 +211,7 @@ static double point_near(curve_side *side, const curve_interval *at, double f, v
 /* The better of the best meeting and the one that Newton finds from it. */
 static void refine_meeting(curve_curve *o, double step) {
   curve_meeting m = o->best;
-  if (!meeting_descend(o->side, o->carries ? &o->shift : NULL, &m, step)) return;
+  if (!newton_curves_descend(o->side, o->carries ? &o->shift : NULL, &m, step)) return;
   consider(o, &m, curve_side_point_error(&o->side[0]) + curve_side_point_error(&o->side[1]));
 }
 
@@ -233,7 +233,7 @@ vec3 curve_curve_suggest(curve_curve *o, const search_node *node, double fractio
   vec3 first[2], second[2];
   chord_of(&o->side[0], &payload->side[0], first);
   chord_of(&o->side[1], &payload->side[1], second);
-  return meeting_of_chords(first, second, fraction);
+  return newton_curves_of_chords(first, second, fraction);
 }
 
 curve_meeting curve_curve_meeting_near(curve_curve *o, const search_node *node, const double fraction[2],
@@ -444,7 +444,7 @@ bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_cur
 bool curve_curve_carry(curve_curve *o, const cprox_pose *placed, const cprox_body *carried, const cprox_pose *pose) {
   carried_shape joined;
   const cprox_pose turn = {.orientation = placed->orientation};
-  if (!carried_join(&carried_point, &turn, carried, pose, &joined)) return false;
+  if (!minkowski_join(&carried_point, &turn, carried, pose, &joined)) return false;
   o->carries = true;
   o->joined = joined.shape;
   o->shift = vec_neg(joined.placed.centre);

@@ -7,7 +7,7 @@ static double clamp(double x, double least, double most) {
   return x < least ? least : x > most ? most : x;
 }
 
-vec3 meeting_of_chords(const vec3 first[2], const vec3 second[2], double fraction[2]) {
+vec3 newton_curves_of_chords(const vec3 first[2], const vec3 second[2], double fraction[2]) {
   const vec3 d = vec_sub(first[1], first[0]), e = vec_sub(second[1], second[0]), r = vec_sub(first[0], second[0]);
   const double dd = vec_norm2(d), ee = vec_norm2(e), de = vec_dot(d, e), dr = vec_dot(d, r), er = vec_dot(e, r);
 
@@ -129,7 +129,7 @@ static vec3 gap_of(const jet *x, const jet *y, const vec3 *shift) {
   return shift ? vec_add(w, *shift) : w;
 }
 
-bool meeting_descend(const curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step) {
+bool newton_curves_descend(const curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step) {
   if (side[0].curve->arcs || side[1].curve->arcs) return false; /* no derivatives to go by */
   double s[2] = {meeting->s[0], meeting->s[1]};
   jet x = jet_at(&side[0], s[0]), y = jet_at(&side[1], s[1]);

@@ -7,11 +7,11 @@
 
 /* The nearest points of two segments as fractions of them, and the unit direction from the second to the first; where
  * the segments meet, one that is orthogonal to both, or (0,0,0). */
-vec3 meeting_of_chords(const vec3 first[2], const vec3 second[2], double fraction[2]);
+vec3 newton_curves_of_chords(const vec3 first[2], const vec3 second[2], double fraction[2]);
 
 /* Newton on |x(s) - y(t)|²/2 over the pieces of the meeting, which must be the loaded ones, in steps of at most `step`.
  * Moves the meeting's points and parameters; false where they did not move. Where a body is carried, `shift` is not
  * NULL, and it is the distance of x(s) - y(t) + shift from the feature of meeting->near. */
-bool meeting_descend(const curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step);
+bool newton_curves_descend(const curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step);
 
 #endif

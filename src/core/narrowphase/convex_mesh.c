@@ -45,7 +45,7 @@ static void overlap(const search *s, vec3 common, pair_answer *answer) {
 
 /* ---- one element ---- */
 
-vec3 pair_element_shape(const tree *t, tree_place at, double vertices[3][TREE_LANES], convex *shape) {
+vec3 convex_mesh_element_shape(const tree *t, tree_place at, double vertices[3][TREE_LANES], convex *shape) {
   vec3 v[3], centre;
   const int n = tree_corners(t, at, v);
   *shape = (convex){.ops = &convex_point, .scale = 1e-100};
@@ -73,7 +73,7 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   (void)element;
   convex shape;
   double vertices[3][TREE_LANES];
-  const vec3 centre = pair_element_shape(s->elements->body->tree, at, vertices, &shape);
+  const vec3 centre = convex_mesh_element_shape(s->elements->body->tree, at, vertices, &shape);
   pair_placement place = *s->place;
   place.t = vec_sub(place.t, centre);
   place.error += ROUND_UP * ROUND_U * (vec_norm(place.t) + 2.0 * vec_norm(centre) + 2.0 * shape.scale);
@@ -164,9 +164,9 @@ static void any_convex(search *s, pair_answer *answer) {
   if (winding_is_inside(body->winding, body->tree, inner)) overlap(s, inner, answer);
 }
 
-void pair_elements(const pair_side *elements, const pair_side *convex_side, const pair_goal *goal,
-                   pair_answer *answer) {
-  const pair_placement place = pair_place(elements, convex_side);
+void convex_mesh_measure(const pair_side *elements, const pair_side *convex_side, const pair_goal *goal,
+                         pair_answer *answer) {
+  const pair_placement place = relative_pose_make(elements, convex_side);
   search s = {.elements = elements, .convex_side = convex_side, .place = &place, .goal = *goal};
   s.goal.wants_depth = false;
   /* what is left over pays for the tree's own rounding */

@@ -7,9 +7,10 @@
 #include "narrowphase/relative_pose.h"
 
 /* The answer is in the frame of the elements, which are its a. The convex shape is bounded. */
-void pair_elements(const pair_side *elements, const pair_side *convex_side, const pair_goal *goal, pair_answer *answer);
+void convex_mesh_measure(const pair_side *elements, const pair_side *convex_side, const pair_goal *goal,
+                         pair_answer *answer);
 
 /* An element as a convex shape about a centre of its own, which is returned. */
-vec3 pair_element_shape(const tree *t, tree_place at, double vertices[3][TREE_LANES], convex *shape);
+vec3 convex_mesh_element_shape(const tree *t, tree_place at, double vertices[3][TREE_LANES], convex *shape);
 
 #endif

@@ -93,8 +93,8 @@ static dual_entry pop(dual *d) {
 static void measure(dual *d, tree_place at, tree_place there) {
   convex shape[2];
   double vertices[2][3][TREE_LANES];
-  const vec3 own = pair_element_shape(tree_of(d, 0), at, vertices[0], &shape[0]);
-  const vec3 other = pair_element_shape(tree_of(d, 1), there, vertices[1], &shape[1]);
+  const vec3 own = convex_mesh_element_shape(tree_of(d, 0), at, vertices[0], &shape[0]);
+  const vec3 other = convex_mesh_element_shape(tree_of(d, 1), there, vertices[1], &shape[1]);
   pair_placement place = *d->place;
   const vec3 turned = rotate(place.r, other);
   place.t = vec_sub(vec_add(place.t, turned), own);
@@ -471,9 +471,9 @@ static void try_vertex(dual *d) {
   }
 }
 
-bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, cprox_workspace *workspace,
-                pair_answer *answer) {
-  const pair_placement place = pair_place(a, b);
+bool mesh_mesh_measure(const pair_side *a, const pair_side *b, const pair_goal *goal, cprox_workspace *workspace,
+                       pair_answer *answer) {
+  const pair_placement place = relative_pose_make(a, b);
   const tree *x = a->body->tree, *y = b->body->tree;
   dual d = {.side = {a, b}, .place = &place, .goal = *goal, .margins = a->margin + b->margin, .workspace = workspace};
   d.rounding = ROUND_UP * (place.error + (2.0 * ROUND_ROTATION + 2.0 * TREE_ROUND) * ROUND_U *

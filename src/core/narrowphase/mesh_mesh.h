@@ -7,7 +7,7 @@
 #include "narrowphase/relative_pose.h"
 
 /* The answer is in the frame of a. False where memory is out. */
-bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, cprox_workspace *workspace,
-                pair_answer *answer);
+bool mesh_mesh_measure(const pair_side *a, const pair_side *b, const pair_goal *goal, cprox_workspace *workspace,
+                       pair_answer *answer);
 
 #endif

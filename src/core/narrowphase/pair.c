@@ -206,7 +206,7 @@ static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, c
   const bool swapped = many ? pair_trees_swap(a, b) : !a->body->tree;
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
   if (many) {
-    if (!pair_trees(first, second, goal, workspace, answer))
+    if (!mesh_mesh_measure(first, second, goal, workspace, answer))
       return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of meshes");
     if (swapped) pair_swap(answer);
     pair_answer_to_world(first, answer);
@@ -214,7 +214,7 @@ static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, c
   }
   if (second->shape->ops->kind == CPROX_BODY_HALFSPACE)
     return workspace_fail(workspace, CPROX_INVALID, "a halfspace has no distance to a mesh, points or boxes here");
-  pair_elements(first, second, goal, answer);
+  convex_mesh_measure(first, second, goal, answer);
   if (swapped) pair_swap(answer);
   pair_answer_to_world(first, answer);
   return CPROX_OK;
@@ -228,7 +228,7 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
   const bool ball = is_ball(a->shape) && b->shape->ops->closed_form && !is_ball(b->shape);
   const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_BODY_HALFSPACE);
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
-  const pair_placement place = pair_place(first, second);
+  const pair_placement place = relative_pose_make(first, second);
   pair_goal goal = *asked;
   if (known) {
     double error = 0.0;
@@ -255,7 +255,8 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
 
 cprox_status pair_witness_of(const cprox_obstacle *a, size_t part_a, const cprox_obstacle *b, size_t part_b,
                              cprox_lod finest, bool depth, cprox_workspace *workspace, pair_witness *witness) {
-  const pair_side side_a = pair_place_model(a, part_a, finest), side_b = pair_place_model(b, part_b, finest);
+  const pair_side side_a = relative_pose_of_model(a, part_a, finest),
+                  side_b = relative_pose_of_model(b, part_b, finest);
   const pair_goal goal = {.relative_epsilon = depth ? 1e-10 : 1e-13, .max_steps = 400, .wants_depth = depth};
   pair_answer answer = {.upper = INFINITY};
   const cprox_status status = pair_solve(&side_a, &side_b, &goal, NULL, workspace, &answer);
@@ -280,7 +281,7 @@ typedef struct pair_task {
 
 /* Parts i of a and j of b, by their finest models up to the level of detail. */
 static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cprox_lod finest, pair_reply *reply) {
-  const pair_side a = pair_place_model(task->a, i, finest), b = pair_place_model(task->b, j, finest);
+  const pair_side a = relative_pose_of_model(task->a, i, finest), b = relative_pose_of_model(task->b, j, finest);
   if (!a.body->tree && !b.body->tree && a.shape->ops->kind == CPROX_BODY_HALFSPACE &&
       b.shape->ops->kind == CPROX_BODY_HALFSPACE)
     return workspace_fail(task->workspace, CPROX_INVALID, "two halfspaces have no distance");
@@ -509,8 +510,8 @@ cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double del
   const cprox_options asked = arguments_options(options);
   cprox_status status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
-  if ((status = arguments_check_options(&asked, (arguments_query){"a pair's verdict", ARGUMENTS_SEARCH}, workspace)) ||
-      (status = arguments_check_delta(delta, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
+  if ((status = validate_options(&asked, (arguments_query){"a pair's verdict", ARGUMENTS_SEARCH}, workspace)) ||
+      (status = validate_delta(delta, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
       (status = pair_check_target("b", &b, workspace)))
     return status;
 
@@ -554,7 +555,7 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
   const arguments_query kind = {"a pair",
                                 ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_START}; /* depths are always measured */
-  if ((status = arguments_check_options(&asked, kind, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
+  if ((status = validate_options(&asked, kind, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
       (status = pair_check_target("b", &b, workspace)))
     return status;
 

@@ -3,7 +3,7 @@
 
 #include "base/rounding.h"
 
-pair_side pair_place_model(const cprox_obstacle *target, size_t part, cprox_lod finest) {
+pair_side relative_pose_of_model(const cprox_obstacle *target, size_t part, cprox_lod finest) {
   cprox_pose inner, pose = target->pose;
   bool moved;
   const model m = model_of_part(target->body, part, finest, &inner, &moved);
@@ -18,11 +18,11 @@ pair_side pair_place_model(const cprox_obstacle *target, size_t part, cprox_lod 
   return side;
 }
 
-pair_side pair_place_side(const cprox_obstacle *target, size_t part) {
-  return pair_place_model(target, part, CPROX_LOD_MESH);
+pair_side relative_pose_of_side(const cprox_obstacle *target, size_t part) {
+  return relative_pose_of_model(target, part, CPROX_LOD_MESH);
 }
 
-pair_placement pair_place(const pair_side *a, const pair_side *b) {
+pair_placement relative_pose_make(const pair_side *a, const pair_side *b) {
   pair_placement place = {.error = a->error + b->error};
   for (int i = 0; i < 3; i++) {
     const vec3 column = frame_turn_to_local(&a->f, vec(b->f.r[i], b->f.r[3 + i], b->f.r[6 + i]));

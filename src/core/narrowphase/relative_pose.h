@@ -19,10 +19,10 @@ typedef struct pair_side {
 } pair_side;
 
 /* Part of a target, by the finest model up to the level of detail; of its finest one. */
-pair_side pair_place_model(const cprox_obstacle *target, size_t part, cprox_lod finest);
-pair_side pair_place_side(const cprox_obstacle *target, size_t part);
+pair_side relative_pose_of_model(const cprox_obstacle *target, size_t part, cprox_lod finest);
+pair_side relative_pose_of_side(const cprox_obstacle *target, size_t part);
 
 /* b in a's frame. Positions are subtracted first: what they share does not enter the rounding. */
-pair_placement pair_place(const pair_side *a, const pair_side *b);
+pair_placement relative_pose_make(const pair_side *a, const pair_side *b);
 
 #endif

@@ -31,9 +31,8 @@ static cprox_status check_motion(const cprox_translating *a, const cprox_transla
                                  const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   cprox_status status;
   if (!workspace) return CPROX_INVALID;
-  if ((status = arguments_check_options(options, asked, workspace)) ||
-      (status = arguments_check_target(&a->from, 0, workspace)) ||
-      (status = arguments_check_target(&b->from, 1, workspace)) || (status = check_body("a", &a->from, workspace)) ||
+  if ((status = validate_options(options, asked, workspace)) || (status = validate_target(&a->from, 0, workspace)) ||
+      (status = validate_target(&b->from, 1, workspace)) || (status = check_body("a", &a->from, workspace)) ||
       (status = check_body("b", &b->from, workspace)))
     return status;
   if (!vec_finite(a->velocity) || !vec_finite(b->velocity))
@@ -61,8 +60,8 @@ static cprox_status distance_of_implicit(const cprox_translating *first, const c
                                          cprox_result *result) {
   const cprox_translating a = *first, b = *second;
   const cprox_options asked = *options;
-  const pair_side x = pair_place_side(&a.from, 0), y = pair_place_side(&b.from, 0);
-  const pair_placement place = pair_place(&x, &y);
+  const pair_side x = relative_pose_of_side(&a.from, 0), y = relative_pose_of_side(&b.from, 0);
+  const pair_placement place = relative_pose_make(&x, &y);
   implicit_query query = {
       .a = x.shape->implicit, .b = y.shape->implicit, .moving = true, .t = place.t, .duration = duration};
   for (int i = 0; i < 9; i++) query.m[i] = place.r[i];

@@ -10,8 +10,8 @@ static bool is_ball(const cprox_body *body) {
   return body->kind == CPROX_BODY_POINT || body->kind == CPROX_BODY_SPHERE;
 }
 
-bool carried_join(const cprox_body *standing, const cprox_pose *pose, const cprox_body *carried,
-                  const cprox_pose *carried_pose, carried_shape *joined) {
+bool minkowski_join(const cprox_body *standing, const cprox_pose *pose, const cprox_body *carried,
+                    const cprox_pose *carried_pose, carried_shape *joined) {
   /* the carried shape's own origin, seen from the curve's point along the standing body's axes */
   const frame own = frame_create(carried_pose, carried->centre);
   frame placed = frame_create(pose, standing->centre);
@@ -32,7 +32,7 @@ bool carried_join(const cprox_body *standing, const cprox_pose *pose, const cpro
       const vec3 column = frame_turn_to_local(&placed, vec(own.r[i], own.r[3 + i], own.r[6 + i]));
       r[i] = column.x, r[3 + i] = column.y, r[6 + i] = column.z;
     }
-    if (!difference_make(&standing->shape, &carried->shape, r, turned, &joined->shape)) return false;
+    if (!minkowski_make(&standing->shape, &carried->shape, r, turned, &joined->shape)) return false;
   }
   joined->shape.slack += ROUND_UP * ROUND_U * moved, joined->shape.outside += ROUND_UP * ROUND_U * moved;
   return true;

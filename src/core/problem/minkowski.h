@@ -14,8 +14,8 @@ typedef struct carried_shape {
 
 /* `standing` is convex and stands at the pose; `carried` is convex and bounded, its pose that at the curve's origin.
  * False where its support callback misbehaved. */
-bool carried_join(const cprox_body *standing, const cprox_pose *pose, const cprox_body *carried,
-                  const cprox_pose *carried_pose, carried_shape *joined);
+bool minkowski_join(const cprox_body *standing, const cprox_pose *pose, const cprox_body *carried,
+                    const cprox_pose *carried_pose, carried_shape *joined);
 
 /* One point, at the origin of its frame: what stands where a carried body meets a curve. */
 extern const cprox_body carried_point;

@@ -34,7 +34,7 @@ void query_ask_whole(query *q) {
 
 cprox_status query_begin(query *q, arguments_query asked) {
   workspace_clear(q->workspace);
-  const cprox_status checked = arguments_check_query(&q->mover, q->targets, q->n, &q->options, asked, q->workspace);
+  const cprox_status checked = validate_query(&q->mover, q->targets, q->n, &q->options, asked, q->workspace);
   if (checked == CPROX_OK) query_ask_whole(q);
   return checked;
 }

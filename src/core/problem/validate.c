@@ -14,7 +14,7 @@
 #include "problem/radius.h"
 #include "shape/body.h"
 
-cprox_status arguments_check_length(const char *name, double value, cprox_workspace *workspace) {
+cprox_status validate_length(const char *name, double value, cprox_workspace *workspace) {
   if (!(value >= 0.0 && isfinite(value)))
     return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be finite and 0 or more", name, value);
   if (value > LENGTH_MOST)
@@ -60,14 +60,14 @@ cprox_options arguments_options(const cprox_options *options) {
   return copy;
 }
 
-cprox_status arguments_check_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
+cprox_status validate_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (options->size != sizeof *options)
     return workspace_fail(workspace, CPROX_INVALID,
                           "options.size is %zu, this library knows %zu: start from CPROX_OPTIONS_DEFAULT, and compile "
                           "with the headers of libcprox %s",
                           options->size, sizeof *options, cprox_version());
-  cprox_status status = arguments_check_length("epsilon", options->epsilon, workspace);
-  if (status == CPROX_OK) status = arguments_check_length("relative_epsilon", options->relative_epsilon, workspace);
+  cprox_status status = validate_length("epsilon", options->epsilon, workspace);
+  if (status == CPROX_OK) status = validate_length("relative_epsilon", options->relative_epsilon, workspace);
   if (status != CPROX_OK) return status;
   if (options->max_nodes == 0)
     return workspace_fail(workspace, CPROX_INVALID, "max_nodes is 0: a query needs a budget of at least 1 node");
@@ -77,42 +77,42 @@ cprox_status arguments_check_options(const cprox_options *options, arguments_que
   return check_applies(options, asked, workspace);
 }
 
-cprox_status arguments_check_delta(double delta, cprox_workspace *workspace) {
-  return arguments_check_length("delta", delta, workspace);
+cprox_status validate_delta(double delta, cprox_workspace *workspace) {
+  return validate_length("delta", delta, workspace);
 }
 
-cprox_status arguments_check_target(const cprox_obstacle *target, size_t index, cprox_workspace *workspace) {
+cprox_status validate_target(const cprox_obstacle *target, size_t index, cprox_workspace *workspace) {
   if (!target->body && !target->curve)
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu has neither a body nor a curve", index);
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu has neither a body nor a curve", index);
   if (target->synchronized && !target->curve)
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu is on the mover's clock, but has no curve", index);
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is on the mover's clock, but has no curve", index);
   if (target->body && target->curve && !target->synchronized)
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu has both a body and a curve", index);
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu has both a body and a curve", index);
   if (target->radius_curve && !target->synchronized)
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu has a radius that changes, but is not synchronized",
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu has a radius that changes, but is not synchronized",
                           index);
   const char *support_failed = frame_pose_error(&target->pose);
-  if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, support_failed);
+  if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: %s", index, support_failed);
   if (!(target->margin >= 0.0 && isfinite(target->margin)))
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu: margin is %g, must be finite and 0 or more", index,
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: margin is %g, must be finite and 0 or more", index,
                           target->margin);
   if (target->margin > LENGTH_MOST)
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu: margin is %g, must be at most %g", index,
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: margin is %g, must be at most %g", index,
                           target->margin, LENGTH_MOST);
   if (target->body && !body_is_in_reach(target->body))
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu: the body reaches farther than %g m", index,
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: the body reaches farther than %g m", index,
                           LENGTH_MOST);
   if (target->curve && !curve_is_in_reach(target->curve))
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu: the curve reaches farther than %g m", index,
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: the curve reaches farther than %g m", index,
                           LENGTH_MOST);
   return CPROX_OK;
 }
 
-cprox_status arguments_check_targets(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace) {
-  if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "targets is NULL, but %zu are announced", n);
-  if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu targets are more than 2147483647", n);
+cprox_status validate_targets(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace) {
+  if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "obstacles is NULL, but %zu are announced", n);
+  if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu obstacles are more than 2147483647", n);
   for (size_t i = 0; i < n; i++) {
-    const cprox_status target = arguments_check_target(&targets[i], i, workspace);
+    const cprox_status target = validate_target(&targets[i], i, workspace);
     if (target != CPROX_OK) return target;
   }
   return CPROX_OK;
@@ -125,14 +125,14 @@ static cprox_status check_clock(const cprox_curve *curve, const cprox_obstacle *
   if (curve->arcs || target->curve->arcs)
     return workspace_fail(
         workspace, CPROX_INVALID,
-        "target %zu is on the mover's clock, but of one of the two curves only the arc length is known", index);
+        "obstacle %zu is on the mover's clock, but of one of the two curves only the arc length is known", index);
   double t0, t1, u0, u1;
   curve_domain(curve, &t0, &t1);
   curve_domain(target->curve, &u0, &u1);
   if (t0 == u0 && t1 == u1) return CPROX_OK;
   return workspace_fail(
       workspace, CPROX_INVALID,
-      "target %zu is on the mover's clock, but its curve runs over [%.17g, %.17g] and the mover's over "
+      "obstacle %zu is on the mover's clock, but its curve runs over [%.17g, %.17g] and the mover's over "
       "[%.17g, %.17g]",
       index, u0, u1, t0, t1);
 }
@@ -167,7 +167,7 @@ static cprox_status check_pairs(const cprox_mover *mover, const cprox_robot_pair
       return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no geometry %d, the robot has %zu", i,
                             (int)pair->geometry, geometries);
     if (pair->other < 0 || (size_t)pair->other >= others)
-      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no %s %d", i, self ? "geometry" : "target",
+      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no %s %d", i, self ? "geometry" : "obstacle",
                             (int)pair->other);
     if (self && pair->geometry == pair->other)
       return workspace_fail(workspace, CPROX_INVALID, "pair %zu: geometry %d against itself", i, (int)pair->geometry);
@@ -181,7 +181,7 @@ static cprox_status check_robot(const cprox_mover *mover, size_t n, cprox_worksp
     return workspace_fail(workspace, CPROX_INVALID,
                           "a mover is a robot's motion, or a curve and what rides it: not both; pad the robot's links");
   if (mover->kind == CPROX_MOVER_ROBOT_SELF && n > 0)
-    return workspace_fail(workspace, CPROX_INVALID, "a robot against itself has no targets, got %zu", n);
+    return workspace_fail(workspace, CPROX_INVALID, "a robot against itself has no obstacles, got %zu", n);
   const bool self = mover->kind == CPROX_MOVER_ROBOT_SELF, whole = mover->kind == CPROX_MOVER_ROBOT_WHOLE;
   const cprox_status status = check_pairs(mover, mover->pairs, mover->n_pairs, self, n, workspace);
   if (status != CPROX_OK) return status;
@@ -193,19 +193,19 @@ static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle
                                   cprox_lod finest, cprox_workspace *workspace) {
   if (target->body && target->body->field && (mover->motion || mover->body))
     return workspace_fail(workspace, CPROX_INVALID,
-                          "target %zu is known by its distance alone: balls on curves are held against it, not %s",
+                          "obstacle %zu is known by its distance alone: balls on curves are held against it, not %s",
                           index, mover->motion ? "robots" : "bodies");
   if (!mover->motion) {
     const cprox_status clock = check_clock(mover->curve, target, index, workspace);
     if (clock == CPROX_OK && mover->body && model_has_tree(target->body, finest))
       return workspace_fail(workspace, CPROX_INVALID,
-                            "target %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
+                            "obstacle %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
                             "it, balls are (radius)",
                             index);
     return clock;
   }
   if (!target->body || target->curve)
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu is a curve: a robot is asked about bodies", index);
+    return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is a curve: a robot is asked about bodies", index);
   return CPROX_OK;
 }
 
@@ -241,11 +241,11 @@ static cprox_status check_radius_against(const cprox_mover *mover, const cprox_o
       (target->body && (target->body->field || model_has_tree(target->body, options->max_lod))))
     return workspace_fail(
         workspace, CPROX_INVALID,
-        "a radius that changes: target %zu is a curve, a mesh, points, boxes or known by its distance "
+        "a radius that changes: obstacle %zu is a curve, a mesh, points, boxes or known by its distance "
         "alone, must be convex or have convex parts",
         index);
   char whose[48];
-  snprintf(whose, sizeof whose, "the radius of target %zu", index);
+  snprintf(whose, sizeof whose, "the radius of obstacle %zu", index);
   return radius_check(whose, target->radius_curve, target->margin, mover->curve, workspace);
 }
 
@@ -296,16 +296,16 @@ static cprox_status check_depths(const cprox_mover *mover, const cprox_obstacle 
       return workspace_fail(workspace, CPROX_INVALID, WHY, "geometry", (size_t)robot->parts[i].geometry);
   for (size_t i = 0; i < n; i++)
     if (model_has_tree(targets[i].body, CPROX_LOD_HULL))
-      return workspace_fail(workspace, CPROX_INVALID, WHY, "target", i);
+      return workspace_fail(workspace, CPROX_INVALID, WHY, "obstacle", i);
   return CPROX_OK;
 }
 
-cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
-                                   const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
+cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
+                            const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
   cprox_status checked = check_kind(mover, workspace);
-  if (checked == CPROX_OK) checked = arguments_check_length("radius", mover->radius, workspace);
-  if (checked == CPROX_OK) checked = arguments_check_options(options, asked, workspace);
+  if (checked == CPROX_OK) checked = validate_length("radius", mover->radius, workspace);
+  if (checked == CPROX_OK) checked = validate_options(options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (mover->kind == CPROX_MOVER_ROBOT_WHOLE && (!(asked.has & ARGUMENTS_WHOLE) || options->certificate))
     return workspace_fail(workspace, CPROX_INVALID,
@@ -320,7 +320,7 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacl
   if (checked == CPROX_OK) checked = check_part(mover, options, workspace);
   if (checked == CPROX_OK) checked = check_ride(mover, options->max_lod, workspace);
   if (checked == CPROX_OK) checked = check_own_radius(mover, options, asked, workspace);
-  if (checked == CPROX_OK) checked = arguments_check_targets(targets, n, workspace);
+  if (checked == CPROX_OK) checked = validate_targets(targets, n, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)
     checked = check_against(mover, &targets[i], i, options->max_lod, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)

@@ -28,16 +28,16 @@ typedef struct arguments_query {
 
 /* CPROX_OK, or CPROX_INVALID with a sentence that names the argument. */
 /* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default
- * with their size, which arguments_check_options() refuses. */
+ * with their size, which validate_options() refuses. */
 cprox_options arguments_options(const cprox_options *options);
 
-cprox_status arguments_check_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
+cprox_status validate_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
 /* Finite, 0 or more, and no longer than powers can hold. */
-cprox_status arguments_check_length(const char *name, double value, cprox_workspace *workspace);
-cprox_status arguments_check_delta(double delta, cprox_workspace *workspace);
-cprox_status arguments_check_target(const cprox_obstacle *target, size_t index, cprox_workspace *workspace);
-cprox_status arguments_check_targets(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace);
-cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
-                                   const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
+cprox_status validate_length(const char *name, double value, cprox_workspace *workspace);
+cprox_status validate_delta(double delta, cprox_workspace *workspace);
+cprox_status validate_target(const cprox_obstacle *target, size_t index, cprox_workspace *workspace);
+cprox_status validate_targets(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace);
+cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
+                            const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
 
 #endif

@@ -6,7 +6,7 @@
 #include "problem/candidates.h"
 #include "robot_query/oracle.h"
 
-/* Distance and verdicts over [q->t0, q->t1], as query_answer() has them. In a query about the robot itself there are no
+/* Distance and verdicts over [q->t0, q->t1], as solve_query() has them. In a query about the robot itself there are no
  * targets. */
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result);
 

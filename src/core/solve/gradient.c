@@ -478,7 +478,7 @@ static cprox_status gradient_of_curve(const query *q, const placed_pair *c, cons
   const cprox_mover moved = cprox_tube_along(target->curve, target->margin);
   status = is_alone(moved, &other, &q->options, g->t_obstacle, distance, q->workspace, &alone);
   if (status < 0) return status;
-  if (!alone) return invalid(q->workspace, g, "another point of the target's curve is as near");
+  if (!alone) return invalid(q->workspace, g, "another point of the obstacle's curve is as near");
   g->valid = true;
   return CPROX_OK;
 }
@@ -490,7 +490,7 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, c
   workspace_clear(workspace);
   if (mover.motion) return workspace_fail(workspace, CPROX_INVALID, "no gradient is known along a robot's motion");
   const arguments_query asked = {"a gradient", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
-  const cprox_status checked = arguments_check_query(&mover, &target, 1, &q.options, asked, workspace);
+  const cprox_status checked = validate_query(&mover, &target, 1, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
@@ -506,7 +506,7 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, c
     return workspace_fail(workspace, CPROX_INVALID, "the result's t = %.17g is not on the mover's curve", result->t);
   if (target.body && target.body->kind == CPROX_BODY_COMPOUND &&
       !(result->obstacle_part >= 0 && (size_t)result->obstacle_part < target.body->n_parts))
-    return workspace_fail(workspace, CPROX_INVALID, "the result's obstacle_part %d is no part of the target",
+    return workspace_fail(workspace, CPROX_INVALID, "the result's obstacle_part %d is no part of the obstacle",
                           result->obstacle_part);
 
   /* the whole curve is searched as narrowly as other minimisers are to be told

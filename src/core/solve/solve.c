@@ -6,14 +6,14 @@
 #include "curve_query/search_pair.h"
 #include "solve/robot_verdict.h"
 
-cprox_status query_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
+cprox_status solve_query(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
   if (q->mover.motion) return robot_verdict(q, first, last, cutoff, result);
   size_t n = 0;
   candidate *list = NULL;
   if (last > first) {
     /* a distance from one thing alone is searched whatever its ball says */
     list = candidates_list(q, first, last, query_wants_verdict(q) || isfinite(cutoff), &n);
-    if (!list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
+    if (!list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of obstacles");
   }
 
   cprox_result all = query_nothing();
@@ -48,13 +48,13 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double cuto
   return all.status;
 }
 
-cprox_status query_answer_each(const query *q, cprox_result *nearest, cprox_result *each) {
+cprox_status solve_each(const query *q, cprox_result *nearest, cprox_result *each) {
   cprox_result all = query_nothing();
   cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < q->n; i++) {
     cprox_result one = query_nothing();
     workspace_forget_work(q->workspace);
-    const cprox_status status = query_answer(q, i, i + 1, INFINITY, &one);
+    const cprox_status status = solve_query(q, i, i + 1, INFINITY, &one);
     if (status < 0) return status;
     /* where the union falls short, it is for the one that is not known to be farther */
     if (!(one.lower >= all.lower)) failure = status;

@@ -7,9 +7,9 @@
 
 /* The answer against the union of targets first … last - 1. Distances beyond `cutoff` are of no interest: the search
  * ends when lower has come that far, and upper is then infinity or any distance measured on the way. */
-cprox_status query_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result);
+cprox_status solve_query(const query *q, size_t first, size_t last, double cutoff, cprox_result *result);
 
 /* The same against each target by itself, into each[0 … q->n - 1], and the union of these. */
-cprox_status query_answer_each(const query *q, cprox_result *nearest, cprox_result *each);
+cprox_status solve_each(const query *q, cprox_result *nearest, cprox_result *each);
 
 #endif

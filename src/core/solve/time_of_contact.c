@@ -147,7 +147,7 @@ time_of_contact time_of_contact_begin(void) {
 cprox_status time_of_contact_with(time_of_contact *all, const query *q, size_t first, size_t last) {
   size_t count = 0;
   const candidate *list = last > first ? candidates_list(q, first, last, true, &count) : NULL;
-  if (last > first && !list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
+  if (last > first && !list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of obstacles");
   size_t i = 0;
   for (; i < count && list[i].lower <= 0.0 && all->status != CPROX_STOPPED; i++) {
     time_of_contact one;
