@@ -409,8 +409,7 @@ static bool make_cell(cell *p, cprox_workspace *ws) {
 /* Both arms against the scenes, themselves and each other. */
 static void two_arms(const void *problems, size_t i, void *state, bench_answer *answer) {
   const cell *p = (const cell *)problems + i;
-  cprox_mover mover = cprox_robot_along(p->motion, NULL, 0);
-  mover.kind = CPROX_MOVER_ROBOT_WHOLE, mover.self_pairs = p->pairs, mover.n_self_pairs = p->n_pairs;
+  const cprox_mover mover = cprox_robot_whole(cprox_robot_along(p->motion, NULL, 0), p->pairs, p->n_pairs);
   cprox_result r;
   const cprox_status status = list_distance(mover, p->targets, 2 * p->c.n_targets, NULL, state, &r, NULL);
   answer_with(status, &r, r.lower, r.upper, answer);

@@ -68,9 +68,7 @@ static void as_motion(const void *problems, size_t i, void *state, bench_answer 
   *answer = (bench_answer){.lower = NAN, .upper = NAN, .failed = true};
   cprox_motion *along = NULL;
   if (cprox_motion_create(p->robot, &edge, s->workspace, &along) < 0) return;
-  cprox_mover mover = cprox_robot_along(along, NULL, 0);
-  mover.kind = CPROX_MOVER_ROBOT_WHOLE;
-  mover.self_pairs = p->self_pairs, mover.n_self_pairs = p->n_self_pairs;
+  const cprox_mover mover = cprox_robot_whole(cprox_robot_along(along, NULL, 0), p->self_pairs, p->n_self_pairs);
   cprox_result r = {0};
   const cprox_status status = cprox_obstacles_collision(p->obstacles, mover, NULL, s->workspace, &r, NULL);
   answer->nodes = r.nodes, answer->distance_queries = r.distance_queries;

@@ -66,12 +66,9 @@ void finish(const RobotMotion::Data &data, const Query &query, Answer &answer, C
 
 cprox_mover Asked::mover() const {
   if (against == RobotPairs::SELF) return cprox_robot_self(data.core.get(), pairs.data(), pairs.size());
-  cprox_mover mover = cprox_robot_along(data.core.get(), pairs.data(), pairs.size());
-  if (against == RobotPairs::ENVIRONMENT) return mover;
-  mover.kind = CPROX_MOVER_ROBOT_WHOLE;
-  mover.self_pairs = self_pairs.data();
-  mover.n_self_pairs = self_pairs.size();
-  return mover;
+  const cprox_mover along = cprox_robot_along(data.core.get(), pairs.data(), pairs.size());
+  if (against == RobotPairs::ENVIRONMENT) return along;
+  return cprox_robot_whole(along, self_pairs.data(), self_pairs.size());
 }
 
 Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted, const Query &query) {

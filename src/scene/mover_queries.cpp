@@ -106,15 +106,10 @@ Pairs pairsOf(const Movers::Data &data, Against against, const Query &query) {
 }
 
 cprox_mover joinedMover(const Movers::Data &data, const Pairs &pairs) {
-  cprox_mover mover = pairs.against == Against::MOVERS
-                          ? cprox_robot_self(data.motion.get(), pairs.among.data(), pairs.among.size())
-                          : cprox_robot_along(data.motion.get(), pairs.environment.data(), pairs.environment.size());
-  if (pairs.against == Against::BOTH) {
-    mover.kind = CPROX_MOVER_ROBOT_WHOLE;
-    mover.self_pairs = pairs.among.data();
-    mover.n_self_pairs = pairs.among.size();
-  }
-  return mover;
+  if (pairs.against == Against::MOVERS)
+    return cprox_robot_self(data.motion.get(), pairs.among.data(), pairs.among.size());
+  const cprox_mover along = cprox_robot_along(data.motion.get(), pairs.environment.data(), pairs.environment.size());
+  return pairs.against == Against::BOTH ? cprox_robot_whole(along, pairs.among.data(), pairs.among.size()) : along;
 }
 
 /* Those that stand, where pairs have one of them. */

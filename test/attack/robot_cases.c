@@ -443,9 +443,8 @@ static cprox_mover mover_of(world *w) {
   const size_t n = w->across ? pairs_across(w) : 0;
   const cprox_robot_pair *pairs = w->across ? w->pairs : NULL;
   if (!w->obstacles) return cprox_robot_self(w->motion, pairs, n);
-  cprox_mover mover = cprox_robot_along(w->motion, NULL, 0);
-  if (w->self) mover.kind = CPROX_MOVER_ROBOT_WHOLE, mover.self_pairs = pairs, mover.n_self_pairs = n;
-  return mover;
+  const cprox_mover along = cprox_robot_along(w->motion, NULL, 0);
+  return w->self ? cprox_robot_whole(along, pairs, n) : along;
 }
 
 static cprox_options some_options(rng *r) {

@@ -455,8 +455,7 @@ CASE(obstacles_and_the_other_robot_are_asked_about_at_once) {
     assert_int_equal(cprox_body_create_box(vec(0.2, 0.3, 0.4), NULL, &box), CPROX_OK);
     const cprox_obstacle target = cprox_obstacle_at(box, rng_pose(&r, 1.0));
     const cprox_robot_pair pair = {0, 1};
-    cprox_mover whole = cprox_robot_along(p.motion, NULL, 0);
-    whole.kind = CPROX_MOVER_ROBOT_WHOLE, whole.self_pairs = &pair, whole.n_self_pairs = 1;
+    const cprox_mover whole = cprox_robot_whole(cprox_robot_along(p.motion, NULL, 0), &pair, 1);
     cprox_result all = {0}, standing = {0}, between = {0};
     assert_int_equal(distance_of_list(whole, &target, 1, NULL, ws, &all, NULL), CPROX_OK);
     assert_int_equal(distance_of_list(cprox_robot_along(p.motion, NULL, 0), &target, 1, NULL, ws, &standing, NULL),

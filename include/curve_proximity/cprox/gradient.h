@@ -111,7 +111,7 @@ typedef struct cprox_motion_gradient {
 /** The least distance of a robot along a motion, and its gradient, by one search.
  *
  *  obstacles  NULL: none, for a robot against itself.
- *  mover      cprox_robot_along(), cprox_robot_self(), or the kind CPROX_MOVER_ROBOT_WHOLE.
+ *  mover      cprox_robot_along(), cprox_robot_self() or cprox_robot_whole().
  *  options    NULL: the default. A certificate is refused.
  *  result     receives what cprox_obstacles_distance() answers: the same guarantees, not the same digits.
  *  gradient   see cprox_motion_gradient. Its arrays are the caller's.

@@ -60,7 +60,7 @@ typedef enum cprox_mover_kind {
   /** A robot along a joint motion, against itself: motion, pairs, n_pairs. cprox_robot_self(), robot.h. */
   CPROX_MOVER_ROBOT_SELF,
   /** A robot along a joint motion, against obstacles and itself at once: motion, pairs, n_pairs, self_pairs,
-   *  n_self_pairs. cprox_robot_along(), with this kind set instead. */
+   *  n_self_pairs. cprox_robot_whole(), robot.h. */
   CPROX_MOVER_ROBOT_WHOLE
 } cprox_mover_kind;
 

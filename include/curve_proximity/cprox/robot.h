@@ -278,12 +278,7 @@ typedef struct cprox_robot_pair {
  *  is wholly inside is in contact. Of level-of-detail bodies, on links and as obstacles, the mesh is asked where the
  * hull cannot decide; result.lod says whether. pairs: those that are asked about, kept by reference, `other` being
  *  obstacles; NULL: all geometries against all obstacles, whether or not the motion moves them. Pairs whose sides it
- *  does not move against each other are measured once.
- *
- *  Against obstacles and itself at once: set the kind CPROX_MOVER_ROBOT_WHOLE, and self_pairs where not all pairs with
- *  itself are asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of
- *  both kinds. It answers distance, tolerance, collision and time of contact, without `each` and without certificate.
- *  obstacle_index is then that of an obstacle, or the number of obstacles plus that of the other geometry. */
+ *  does not move against each other are measured once. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 /** The robot along a motion against itself: its queries have no obstacles (cprox_obstacles_distance(NULL, mover, …)).
@@ -291,6 +286,15 @@ CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_
  *  links with at least two joints between them that can move (cprox_motion_get_link_info()), whether or not this motion
  *  moves them. */
 CPROX_API cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
+
+/** The robot against obstacles and itself at once: one search begins with the nearest pair of both kinds. It answers
+ *  distance, tolerance, collision and time of contact, without `each` and without certificate. obstacle_index is that of
+ *  an obstacle, or the number of obstacles plus that of the other geometry.
+ *
+ *  along         the robot against obstacles, by cprox_robot_along()
+ *  self_pairs    the pairs with itself, as those of cprox_robot_self(), kept by reference; NULL: all
+ *  n_self_pairs  their number */
+CPROX_API cprox_mover cprox_robot_whole(cprox_mover along, const cprox_robot_pair *self_pairs, size_t n_self_pairs);
 
 struct cprox_obstacles;
 

@@ -91,11 +91,8 @@ static edge_rest open_of(const edges_call *call) {
 
 static cprox_mover mover_of(const cprox_motion *motion, const edge_rest *rest) {
   if (rest->n_pairs == 0) return cprox_robot_self(motion, rest->self_pairs, rest->n_self_pairs);
-  cprox_mover mover = cprox_robot_along(motion, rest->pairs, rest->n_pairs);
-  if (rest->n_self_pairs == 0) return mover;
-  mover.kind = CPROX_MOVER_ROBOT_WHOLE;
-  mover.self_pairs = rest->self_pairs, mover.n_self_pairs = rest->n_self_pairs;
-  return mover;
+  const cprox_mover along = cprox_robot_along(motion, rest->pairs, rest->n_pairs);
+  return rest->n_self_pairs == 0 ? along : cprox_robot_whole(along, rest->self_pairs, rest->n_self_pairs);
 }
 
 static cprox_status create_motion(const edges_call *call, const double *from, const double *to, cprox_motion **motion) {

@@ -62,3 +62,10 @@ cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair
 cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs) {
   return (cprox_mover){.kind = CPROX_MOVER_ROBOT_SELF, .motion = motion, .pairs = pairs, .n_pairs = n_pairs};
 }
+
+cprox_mover cprox_robot_whole(cprox_mover along, const cprox_robot_pair *self_pairs, size_t n_self_pairs) {
+  along.kind = CPROX_MOVER_ROBOT_WHOLE;
+  along.self_pairs = self_pairs;
+  along.n_self_pairs = n_self_pairs;
+  return along;
+}

@@ -13,7 +13,7 @@ typedef struct start_class {
   int32_t other; /* another clock, at a time of its own; CLOCK_NONE: both sides are on `lead`, or one of them stands */
 } start_class;
 
-enum { CLOCK_KNOWN = -1, CLOCK_NONE = -1, CLOCK_STANDS = -2 };
+enum { CLOCK_KNOWN = -1, CLOCK_STANDS = -2, CLOCK_NONE = -3 };
 
 /* The class of all pairs without a tolerance, which comes first; the others by this: false after the last one. */
 static inline start_class start_class_first(void) {
