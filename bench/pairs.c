@@ -248,7 +248,9 @@ static void one_kind(const bench_size *size, const kinds *k, asked *q) {
   if (!pairs) exit(1);
   static const char *const workloads[] = {"apart", "apart at all sizes", "overlapping"};
   for (int w = 0; w < 3; w++) {
-    if (!bench_wanted(size, workloads[w]) || (w == 1 && k->a == CPROX_BODY_POLYTOPE))
+    char workload[64];
+    snprintf(workload, sizeof workload, "%s%s", k->prefix, workloads[w]);
+    if (!bench_wanted(size, workload) || (w == 1 && k->a == CPROX_BODY_POLYTOPE))
       continue; /* polytopes have one size here */
     rng r = rng_seed(601 + (uint64_t)w);
     for (size_t i = 0; i < many; i++) {
@@ -256,8 +258,6 @@ static void one_kind(const bench_size *size, const kinds *k, asked *q) {
       const double gap = w == 2 ? -rng_log_uniform(&r, 1e-6, 0.1) : rng_log_uniform(&r, 1e-6, 1.0);
       pairs[i] = pair_make(&r, k, a, b, gap, q);
     }
-    char workload[64];
-    snprintf(workload, sizeof workload, "%s%s", k->prefix, workloads[w]);
     if (w == 1) {
       const bench_size once = {.problems = many, .rounds = 1};
       measure(&once, workload, k, pairs, many, q);
