@@ -267,7 +267,7 @@ CASE(what_a_budget_leaves_open_is_bounded_by_what_is_meant) {
     mesh_free(&a);
     mesh_free(&b);
   }
-  assert_true(ended > 20);
+  assert_true(ended > test_cases(300) / 15);
 }
 
 /* Meshes whose hulls are apart (seed 152) are clear at once, few nodes and supports for any number of triangles; one
