@@ -310,7 +310,7 @@ CASE(unusable_arguments_are_named) {
   cprox_profile_interval interval[2];
   size_t count = 7;
   assert_int_equal(nearest_of_list(w.mover, w.target, w.n, 0, NULL, ws, result, &count), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_error(ws), "k is 0: ask for at least one target");
+  assert_string_equal(cprox_workspace_error(ws), "k is 0: ask for at least one obstacle");
   assert_int_equal(within_of_list(w.mover, w.target, w.n, -1.0, NULL, ws, result, &count), CPROX_INVALID);
   assert_int_equal(count, 7);
   assert_int_equal(profile_of_list(w.mover, w.target, w.n, (double[]){0, 0.5, 0.5}, 2, NULL, ws, interval),

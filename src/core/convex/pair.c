@@ -76,9 +76,14 @@ static double missed(const convex *shape, double value, vec3 d, vec3 at) {
   return shape->implicit ? fmax(value - vec_dot(d, at), 0.0) : 0.0;
 }
 
+/* A polytope that is given by its vertices; the hull of a mesh is known by its support function alone. */
+static bool has_vertices(const convex *shape) {
+  return shape->ops->kind == CPROX_BODY_POLYTOPE && shape->n > 0;
+}
+
 /* The support function, and the number of the vertex where the shape is a polytope. */
 static double support_of(const convex *shape, vec3 d, vec3 *at, int32_t *id) {
-  if (shape->ops != &convex_polytope) return shape->ops->support(shape, d, NULL, at);
+  if (!has_vertices(shape)) return shape->ops->support(shape, d, NULL, at);
   double h;
   *id = vertices_extreme(shape, d, &h);
   *at = vertices_at(shape, *id);
@@ -297,7 +302,7 @@ static void pair_restart(pair *p) {
 /* ---- vertices of a former answer ---- */
 
 static bool vertex_of(const convex *shape, int32_t id, vec3 *at) {
-  if (shape->ops == &convex_polytope && id >= 0 && id < shape->n) {
+  if (has_vertices(shape) && id >= 0 && id < shape->n) {
     *at = vertices_at(shape, id);
     return true;
   }

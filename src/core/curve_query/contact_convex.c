@@ -65,8 +65,9 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
 /* ---- cutting ---- */
 
-/* Above 0, and no more: what an interval that is known to be free is known to keep. */
-static const double BARELY = 1e-300;
+/* How near a plane is followed, as a fraction of epsilon: contact is measured there, and what is before is known to keep
+ * nearly as much. */
+static const double FOLLOWED = 0.5, KEPT = 0.49;
 
 /* Where the line through c_0 > 0 that lies below all other points (k / degree, c_k) comes down to 0, as a fraction of
  * the interval; infinity: nowhere. The polynomial with these Bernstein coefficients is above 0 before. */
@@ -127,8 +128,8 @@ static double first_root(double *c, size_t degree) {
   return from;
 }
 
-/* How far along the interval, as a fraction of it, the distance is above 0 by the normal of its left end: as far as the
- * polynomial n·psi - h is. 1: all the way. */
+/* How far along the interval, as a fraction of it, the distance is above FOLLOWED epsilon by the normal of its left
+ * end: as far as the polynomial n·psi - h is. 1: all the way. */
 static double free_fraction(const contact_convex *c, const search_node *node) {
   const curve_convex *o = &c->base;
   const size_t degree = o->side.curve->degree;
@@ -137,7 +138,7 @@ static double free_fraction(const contact_convex *c, const search_node *node) {
   const vec3 n = o->last.normal;
   double rest[CPROX_MAX_DEGREE + 1];
   for (size_t k = 0; k <= degree; k++)
-    rest[k] = vec_dot(n, vec(x[k], y[k], z[k])) - o->last.support - 4.0 * node->slack;
+    rest[k] = vec_dot(n, vec(x[k], y[k], z[k])) - o->last.support - 4.0 * node->slack - FOLLOWED * c->epsilon;
   if (!isfinite(rest[0])) return 0.0;
   const double root = first_root(rest, degree);
   return root < 1.0 ? (1.0 - 1e-12) * root : 1.0; /* ends of windows are rounded */
@@ -171,7 +172,9 @@ static int split_free(contact_convex *c, search_node *node, double fraction, sea
   if (!(at->a < cut && cut < at->b)) return 0;
   if (!curve_side_cut_piece(side, at, cut, fraction, half)) return curve_side_failure(side);
   begin_child(c, &child[0], node, half[0]);
-  if (!side->curve->arcs) child[0].lower = greater(child[0].lower, BARELY); /* arcs leave the hull of their points */
+  if (!side->curve->arcs)
+    child[0].lower =
+        greater(child[0].lower, greater(KEPT * c->epsilon, 1e-300)); /* arcs leave the hull of their points */
   const double s = 4.0 * fraction, middle = half[1].a + s * (half[1].b - half[1].a);
   make_exact(c, &half[1]);
   if (fraction > SHORT || half[1].slot < 0 || !(half[1].a < middle && middle < half[1].b)) {

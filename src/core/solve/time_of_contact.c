@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "base/check.h"
-#include "base/rounding.h"
 #include "curve_query/report.h"
 #include "curve_query/search_pair.h"
 #include "solve/solve.h"
@@ -51,7 +50,7 @@ static cprox_status prove_farther(const query *q, const candidate *c, time_of_co
   if (r.upper <= 0.0 && r.t >= met->free_until) met->touch = r;
   if (r.lower > 0.0) {
     met->free_until = INFINITY, met->lower = fmax(met->lower, r.lower);
-    met->near.upper = fmax(met->near.upper, (1.0 + 4.0 * ROUND_U) * q->options.epsilon); /* no place of contact */
+    met->near = r;
     met->status = CPROX_OK;
   }
   return CPROX_OK;
