@@ -139,6 +139,27 @@ static void stop_some(rng *r, test_robot *t) {
   robot_rebuild(t);
 }
 
+/* A robot that stands in part, among balls; false: it moves along a spline, which cannot. */
+static bool make_scene(rng *r, test_robot *t, cprox_obstacle targets[TARGETS]) {
+  robot_make(r, 1.0, t);
+  if (t->spline) {
+    robot_free(t);
+    return false;
+  }
+  stop_some(r, t);
+  for (int k = 0; k < TARGETS; k++) {
+    cprox_body *ball;
+    assert_int_equal(cprox_body_create_sphere(rng_uniform(r, 0.01, 0.2), ws, &ball), CPROX_OK);
+    targets[k] = cprox_obstacle_at(ball, (cprox_pose){rng_in_cube(r, 2.0), {.w = 1.0}});
+  }
+  return true;
+}
+
+static void free_scene(test_robot *t, const cprox_obstacle targets[TARGETS]) {
+  for (int k = 0; k < TARGETS; k++) cprox_body_free((cprox_body *)targets[k].body);
+  robot_free(t);
+}
+
 static double least_of_pairs(const test_robot *t, bool self, const cprox_obstacle *targets, const cprox_options *o,
                              size_t *standing) {
   double least = INFINITY;
@@ -161,18 +182,8 @@ CASE(all_pairs_at_once_are_as_far_as_the_nearest_alone) {
   size_t standing = 0, answered = 0;
   for (size_t i = 0; i < test_cases(150); i++) {
     test_robot t;
-    robot_make(&r, 1.0, &t);
-    if (t.spline) {
-      robot_free(&t);
-      continue;
-    }
-    stop_some(&r, &t);
     cprox_obstacle targets[TARGETS];
-    for (int k = 0; k < TARGETS; k++) {
-      cprox_body *ball;
-      assert_int_equal(cprox_body_create_sphere(rng_uniform(&r, 0.01, 0.2), ws, &ball), CPROX_OK);
-      targets[k] = cprox_obstacle_at(ball, (cprox_pose){rng_in_cube(&r, 2.0), {.w = 1.0}});
-    }
+    if (!make_scene(&r, &t, targets)) continue;
     const cprox_options o = accurate(1e-6);
     for (int self = 0; self < 2; self++) {
       const double least = least_of_pairs(&t, self, targets, &o, &standing);
@@ -208,8 +219,7 @@ CASE(all_pairs_at_once_are_as_far_as_the_nearest_alone) {
         if (self) break;
       }
     }
-    for (int k = 0; k < TARGETS; k++) cprox_body_free((cprox_body *)targets[k].body);
-    robot_free(&t);
+    free_scene(&t, targets);
   }
   print_message("%zu answers, %zu pairs stand\n", answered, standing);
   assert_true(answered > test_cases(150) / 2 && standing > test_cases(150) / 2);
@@ -241,18 +251,8 @@ CASE(a_list_of_pairs_is_violated_when_one_of_its_pairs_is) {
   size_t lists[3] = {0}, violated = 0;
   for (size_t i = 0; i < test_cases(400); i++) {
     test_robot t;
-    robot_make(&r, 1.0, &t);
-    if (t.spline) {
-      robot_free(&t);
-      continue;
-    }
-    stop_some(&r, &t);
     cprox_obstacle targets[TARGETS];
-    for (int k = 0; k < TARGETS; k++) {
-      cprox_body *ball;
-      assert_int_equal(cprox_body_create_sphere(rng_uniform(&r, 0.01, 0.2), ws, &ball), CPROX_OK);
-      targets[k] = cprox_obstacle_at(ball, (cprox_pose){rng_in_cube(&r, 2.0), {.w = 1.0}});
-    }
+    if (!make_scene(&r, &t, targets)) continue;
     cprox_robot_pair pairs[MOST_PAIRS];
     size_t n = 0, moving = 0;
     const size_t wanted = rng_index(&r, 3); /* what moves, what stands, any */
@@ -301,8 +301,7 @@ CASE(a_list_of_pairs_is_violated_when_one_of_its_pairs_is) {
         for (size_t v = 0; v < all.count; v++) assert_true(met[v] || listed[v].verdict != CPROX_VERDICT_VIOLATED);
       }
     }
-    for (int k = 0; k < TARGETS; k++) cprox_body_free((cprox_body *)targets[k].body);
-    robot_free(&t);
+    free_scene(&t, targets);
   }
   print_message("lists that move, stand, both: %zu, %zu, %zu; %zu violated\n", lists[0], lists[1], lists[2], violated);
   for (int k = 0; k < 3; k++) assert_true(lists[k] > test_cases(400) / 40);

@@ -13,7 +13,6 @@ namespace {
 using test::add;
 using test::change;
 using test::dataRobot;
-using test::operation;
 using test::Random;
 using test::shape;
 using test::translation;
