@@ -210,18 +210,23 @@ class Clouds(TestCase):
 
         asking = threading.Thread(target=ask)
         asking.start()
-        rate = rospy.Rate(30)
-        for i in range(90):
-            self.clouds.publish(both[i % 2])
-            rate.sleep()
+
+        def changes():
+            return sum(abs(a - b) > 0.1 for a, b in zip(answers, answers[1:]))
+
+        rate, sent, end = rospy.Rate(30), 0, time.monotonic() + 60
+        while sent < 90 or (changes() <= 10 and time.monotonic() < end):  # a slow machine sees fewer of them
+            for one in both:
+                self.clouds.publish(one)
+                rate.sleep()
+                sent += 1
         stop.set()
         asking.join()
         self.assertNearest('cloud', 1.5 - RADIUS)
         for value in answers:
             self.assertTrue(min(abs(value - (1 - RADIUS)), abs(value - (1.5 - RADIUS))) < 1e-6, value)
-        changes = sum(abs(a - b) > 0.1 for a, b in zip(answers, answers[1:]))
-        print('%d answers, %d changes seen of 90 clouds' % (len(answers), changes))
-        self.assertGreater(changes, 10)
+        print('%d answers, %d changes seen of %d clouds' % (len(answers), changes(), sent))
+        self.assertGreater(changes(), 10)
 
 
 class Octrees(TestCase):
