@@ -379,6 +379,11 @@ CASE(a_carried_body_is_met_in_few_steps_and_never_late) {
     assert_true(status >= 0);
     assert_free_before(mover, target, found.t_contact_lower, i);
     nodes += found.nodes;
+    if (found.verdict == CPROX_VERDICT_CLEAR) { /* by how much, and between which points */
+      assert_true(found.lower >= 0.49 * options.epsilon || found.upper <= options.epsilon);
+      const double apart = vec_norm(vec_sub(found.witness_mover, found.witness_obstacle));
+      assert_true(isinf(found.upper) || fabs(apart - found.upper) <= NOISE);
+    }
     if (found.verdict == CPROX_VERDICT_VIOLATED) {
       hits++, of_hits += found.nodes;
       assert_true(found.t >= found.t_contact_lower && found.lower == 0.0 && found.upper == 0.0);
