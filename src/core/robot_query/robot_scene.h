@@ -165,7 +165,7 @@ static inline const robot_body *robot_scene_part(robot_scene *scene, int32_t par
 }
 double robot_scene_part_displacement(robot_scene *scene, int32_t part);
 
-/* Of a motion of several tracks: over all of the node the sides of a pair are never nearer than this; told without a
+/* Of a motion of several tracks: over all of the node the sides of a pair are never nearer than this; known without a
  * look at how they move. -infinity where that leaves open whether they touch. */
 double robot_scene_swept_apart(robot_scene *scene, const robot_pair *pair);
 
