@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Pairs of convex bodies whose distance is known by construction: at one size, and over twelve decades of size and of
- * size ratio, to a relative 1e-9, beside FCL; depths of overlap; whether they touch. A method that says how far it may be off is wrong
- * where its interval misses the distance; FCL, which does not, where it is off by more than a thousandth of the
+ * size ratio, to a relative 1e-9, beside FCL and coal; depths of overlap; whether they touch. A method that says how far it may be off is wrong
+ * where its interval misses the distance; FCL and coal, which do not, where they are off by more than a thousandth of the
  * distance and 1e-9 of the sizes. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
@@ -11,19 +11,17 @@
 
 #include "base/frame.h"
 #include "pairs_meshes.h"
+#include "peers/pair_peers.h"
 #include "support/measure.h"
 #include "support/problems.h"
-#ifdef CPROX_BENCH_FCL
-#include "peers/pair_fcl.h"
-#endif
 
-enum { POLYTOPES = 6, CORNERS = 200 };
+enum { POLYTOPES = 6, CORNERS = 200, POSES = 100 };
 
-/* A body with its copy in FCL's terms. */
+/* A body with its copies in the peers' terms. */
 typedef struct convex {
   cprox_body *body;
   double size; /* at least its circumradius */
-  void *fcl;
+  void *copy[PAIR_PEERS_MOST];
   bool shared; /* a polytope: one of a few */
 } convex;
 
@@ -51,20 +49,21 @@ static const kinds KINDS[] = {{"ellipsoids", CPROX_BODY_ELLIPSOID, CPROX_BODY_EL
 typedef struct asked {
   cprox_workspace *workspace;
   convex polytope[POLYTOPES];
+  const pair_peer *peer[PAIR_PEERS_MOST];
+  size_t peers;
 } asked;
 
 /* ---- bodies and pairs ---- */
 
-static convex polytope_make(rng *r) {
+static convex polytope_make(rng *r, const asked *q) {
   static obstacle o;
   o = (obstacle){.n = CORNERS};
   for (size_t i = 0; i < o.n; i++) o.vertex[i] = vec_scale(0.5, rng_unit(r));
   obstacle_find_faces(&o);
   convex c = {.size = 0.5, .shared = true};
   if (cprox_body_create_polytope(o.vertex, o.n, NULL, &c.body) != CPROX_OK) exit(1);
-#ifdef CPROX_BENCH_FCL
-  c.fcl = pair_fcl_make_polytope(o.vertex, o.n, (const int(*)[3])o.triangle, o.triangles);
-#endif
+  for (size_t k = 0; k < q->peers; k++)
+    c.copy[q->peer[k]->number] = q->peer[k]->make_polytope(o.vertex, o.n, (const int(*)[3])o.triangle, o.triangles);
   free(o.triangle);
   return c;
 }
@@ -83,16 +82,12 @@ static convex convex_make(rng *r, cprox_body_kind kind, double scale, const aske
     default: status = cprox_body_create_ellipsoid(vec(s[0], s[1], s[2]), NULL, &c.body);
   }
   if (status != CPROX_OK) exit(1);
-#ifdef CPROX_BENCH_FCL
-  c.fcl = pair_fcl_make(kind, s);
-#endif
+  for (size_t k = 0; k < q->peers; k++) c.copy[q->peer[k]->number] = q->peer[k]->make(kind, s);
   return c;
 }
 
-static void convex_free(const convex *c) {
-#ifdef CPROX_BENCH_FCL
-  pair_fcl_free(c->fcl);
-#endif
+static void convex_free(const convex *c, const asked *q) {
+  for (size_t k = 0; k < q->peers; k++) q->peer[k]->free(c->copy[q->peer[k]->number]);
   cprox_body_free(c->body);
 }
 
@@ -122,9 +117,9 @@ static pair pair_make(rng *r, const kinds *k, double scale_a, double scale_b, do
   return p;
 }
 
-static void pair_free(const pair *p) {
-  if (!p->a.shared) convex_free(&p->a);
-  if (!p->b.shared) convex_free(&p->b);
+static void pair_free(const pair *p, const asked *q) {
+  if (!p->a.shared) convex_free(&p->a, q);
+  if (!p->b.shared) convex_free(&p->b, q);
 }
 
 /* ---- the methods ---- */
@@ -161,37 +156,42 @@ static void our_verdict(const void *problems, size_t i, void *state, bench_answe
   a->wrong = p->distance < 0.0 ? r.verdict == CPROX_VERDICT_CLEAR : r.verdict == CPROX_VERDICT_VIOLATED;
 }
 
-#ifdef CPROX_BENCH_FCL
-static void fcl_verdict(const void *problems, size_t i, void *state, bench_answer *a) {
+static void peer_verdict(const void *problems, size_t i, void *state, bench_answer *a) {
   const pair *p = (const pair *)problems + i;
-  (void)state;
-  const int touch = pair_fcl_collides(p->a.fcl, &p->at, p->b.fcl, &p->bt);
+  const pair_peer *peer = state;
+  const size_t k = peer->number;
+  const int touch = peer->collides(p->a.copy[k], &p->at, p->b.copy[k], &p->bt);
   *a = (bench_answer){.lower = NAN, .upper = NAN, .failed = touch < 0};
   a->wrong = touch >= 0 && touch != (p->distance < 0.0);
 }
 
-static void fcl(const void *problems, size_t i, void *state, bench_answer *a) {
+static void peer_distance(const void *problems, size_t i, void *state, bench_answer *a) {
   const pair *p = (const pair *)problems + i;
-  (void)state;
-  const double d = pair_fcl_distance(p->a.fcl, &p->at, p->b.fcl, &p->bt);
+  const pair_peer *peer = state;
+  const size_t k = peer->number;
+  const double d = peer->distance(p->a.copy[k], &p->at, p->b.copy[k], &p->bt);
   *a = (bench_answer){.lower = NAN, .upper = NAN, .failed = isnan(d)};
   a->wrong = !a->failed && fabs(d - p->distance) > 1e-3 * p->distance + 1e-9 * p->size;
 }
-#endif
 
 /* ---- the workloads ---- */
+
+/* Ours first, then the peers, each by `run`. How many. */
+static size_t methods_of(const asked *q, bench_run our_run, bench_run peer_run,
+                         bench_method methods[1 + PAIR_PEERS_MOST]) {
+  methods[0] = (bench_method){"curve_proximity", our_run, (void *)q};
+  for (size_t k = 0; k < q->peers; k++) methods[1 + k] = (bench_method){q->peer[k]->name, peer_run, (void *)q->peer[k]};
+  return 1 + q->peers;
+}
 
 static void measure(const bench_size *size, const char *workload, const kinds *k, const pair *pairs, size_t n,
                     asked *q) {
   char parameter[64];
   snprintf(parameter, sizeof parameter, "%s %zu cases", k->name, n);
   const bench_workload w = {"pairs", workload, parameter, pairs, n, NULL, 0.0};
-  const bench_method methods[] = {{"curve_proximity", ours, q},
-#ifdef CPROX_BENCH_FCL
-                                  {"FCL", fcl, q}
-#endif
-  };
-  bench_measure(&w, size, methods, pairs[0].distance < 0.0 ? 1 : sizeof methods / sizeof *methods);
+  bench_method methods[1 + PAIR_PEERS_MOST];
+  const size_t many = methods_of(q, ours, peer_distance, methods);
+  bench_measure(&w, size, methods, pairs[0].distance < 0.0 ? 1 : many);
 }
 
 /* Whether they touch, and no more. */
@@ -200,12 +200,9 @@ static void measure_verdict(const bench_size *size, const char *apart, const kin
   snprintf(workload, sizeof workload, "verdict %s", apart);
   snprintf(parameter, sizeof parameter, "%s %zu cases", k->name, size->problems);
   const bench_workload w = {"pairs", workload, parameter, pairs, size->problems, NULL, 0.0};
-  const bench_method methods[] = {{"curve_proximity", our_verdict, q},
-#ifdef CPROX_BENCH_FCL
-                                  {"FCL", fcl_verdict, q}
-#endif
-  };
-  bench_measure(&w, size, methods, sizeof methods / sizeof *methods);
+  bench_method methods[1 + PAIR_PEERS_MOST];
+  const size_t many = methods_of(q, our_verdict, peer_verdict, methods);
+  bench_measure(&w, size, methods, many);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -266,19 +263,134 @@ static void one_kind(const bench_size *size, const kinds *k, asked *q) {
       measure_tail(workload, k, pairs, many, q);
       measure_verdict(size, workload, k, pairs, q);
     }
-    for (size_t i = 0; i < many; i++) pair_free(&pairs[i]);
+    for (size_t i = 0; i < many; i++) pair_free(&pairs[i], q);
   }
   free(pairs);
+}
+
+/* ---- sequences of poses ---- */
+
+/* Two bodies, one of which moves in small steps. The distances come from searches that begin from scratch. */
+typedef struct sequence {
+  convex a, b;
+  cprox_pose at, bt[POSES];
+  double lower[POSES], upper[POSES];
+} sequence;
+
+static cprox_result ask_pose(const sequence *s, size_t pose, cprox_pair_start *start, cprox_workspace *workspace) {
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = 0.0;
+  options.relative_epsilon = 1e-9;
+  options.start = start;
+  cprox_result r = {.status = CPROX_INVALID};
+  cprox_pair(cprox_obstacle_at(s->a.body, s->at), cprox_obstacle_at(s->b.body, s->bt[pose]), &options, workspace, &r);
+  return r;
+}
+
+/* Each pose is `step` of the size farther along a line away from a, and turned by `step` more. */
+static sequence sequence_make(rng *r, const kinds *k, double step, const asked *q) {
+  const pair p = pair_make(r, k, 1.0, 1.0, rng_uniform(r, 0.1, 0.5), q);
+  sequence s = {.a = p.a, .b = p.b, .at = p.at};
+  vec3 way = rng_unit(r);
+  if (vec_dot(way, vec_sub(p.at.position, p.bt.position)) > 0.0) way = vec_scale(-1.0, way);
+  const vec3 axis = rng_unit(r);
+  for (size_t i = 0; i < POSES; i++) {
+    const double turn = 0.5 * step * (double)i, c = cos(turn), h = sin(turn);
+    const cprox_quat o = p.bt.orientation;
+    const vec3 v = vec_scale(h, axis), u = vec(o.x, o.y, o.z);
+    const vec3 uv = vec_add(vec_add(vec_scale(c, u), vec_scale(o.w, v)), vec_cross(v, u));
+    s.bt[i] = (cprox_pose){vec_axpy(p.bt.position, step * p.size * (double)i, way),
+                           {uv.x, uv.y, uv.z, c * o.w - vec_dot(v, u)}};
+    const cprox_result found = ask_pose(&s, i, NULL, q->workspace);
+    s.lower[i] = found.lower, s.upper[i] = found.upper;
+  }
+  return s;
+}
+
+static void answer_sequence(const sequence *s, cprox_pair_start *start, const asked *q, bench_answer *a) {
+  *a = (bench_answer){.lower = NAN, .upper = NAN};
+  for (size_t i = 0; i < POSES; i++) {
+    const cprox_result r = ask_pose(s, i, start, q->workspace);
+    a->nodes += r.nodes;
+    a->distance_queries += r.distance_queries;
+    a->failed |= r.status < 0;
+    a->wrong += r.lower > s->upper[i] || r.upper < s->lower[i];
+  }
+}
+
+static void ours_followed(const void *problems, size_t i, void *state, bench_answer *a) {
+  cprox_pair_start start = {.usable = false};
+  answer_sequence((const sequence *)problems + i, &start, state, a);
+}
+
+static void ours_from_scratch(const void *problems, size_t i, void *state, bench_answer *a) {
+  answer_sequence((const sequence *)problems + i, NULL, state, a);
+}
+
+static void judge_sequence(const sequence *s, const double *found, bench_answer *a) {
+  *a = (bench_answer){.lower = NAN, .upper = NAN};
+  for (size_t i = 0; i < POSES; i++) {
+    a->failed |= isnan(found[i]);
+    a->wrong += fabs(found[i] - s->upper[i]) > 1e-3 * s->upper[i];
+  }
+}
+
+static void peer_followed(const void *problems, size_t i, void *state, bench_answer *a) {
+  const sequence *s = (const sequence *)problems + i;
+  const pair_peer *peer = state;
+  double found[POSES];
+  peer->follow(s->a.copy[peer->number], &s->at, s->b.copy[peer->number], s->bt, POSES, found);
+  judge_sequence(s, found, a);
+}
+
+static void peer_from_scratch(const void *problems, size_t i, void *state, bench_answer *a) {
+  const sequence *s = (const sequence *)problems + i;
+  const pair_peer *peer = state;
+  double found[POSES];
+  for (size_t j = 0; j < POSES; j++)
+    found[j] = peer->distance(s->a.copy[peer->number], &s->at, s->b.copy[peer->number], &s->bt[j]);
+  judge_sequence(s, found, a);
+}
+
+static void measure_sequences(const bench_size *size, asked *q) {
+  static const double steps[] = {1e-4, 1e-3, 1e-2};
+  const size_t n = (size->problems + 4) / 5;
+  sequence *sequences = calloc(n, sizeof *sequences);
+  if (!sequences) exit(1);
+  for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
+    if (*KINDS[k].prefix && KINDS[k].a != CPROX_BODY_BOX) continue; /* formulas need no start */
+    for (size_t j = 0; j < sizeof steps / sizeof *steps; j++) {
+      rng r = rng_seed(640);
+      for (size_t i = 0; i < n; i++) sequences[i] = sequence_make(&r, &KINDS[k], steps[j], q);
+      char parameter[64];
+      snprintf(parameter, sizeof parameter, "%s step %g", KINDS[k].name, steps[j]);
+      const bench_workload w = {"pairs", "sequence of 100 poses", parameter, sequences, n, NULL, 0.0};
+      bench_method methods[2 + 2 * PAIR_PEERS_MOST] = {{"curve_proximity", ours_followed, q},
+                                                       {"curve_proximity from scratch", ours_from_scratch, q}};
+      size_t many = 2;
+      for (size_t m = 0; m < q->peers; m++) {
+        methods[many++] = (bench_method){q->peer[m]->name, q->peer[m]->follow ? peer_followed : peer_from_scratch,
+                                         (void *)q->peer[m]};
+        if (q->peer[m]->follow)
+          methods[many++] = (bench_method){"coal from scratch", peer_from_scratch, (void *)q->peer[m]};
+      }
+      bench_measure(&w, size, methods, many);
+      for (size_t i = 0; i < n; i++) pair_free(&(pair){.a = sequences[i].a, .b = sequences[i].b}, q);
+    }
+  }
+  free(sequences);
 }
 
 int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
   asked q = {.workspace = cprox_workspace_create()};
+  q.peers = pair_peers(q.peer);
   rng r = rng_seed(600);
-  for (int i = 0; i < POLYTOPES; i++) q.polytope[i] = polytope_make(&r);
+  for (int i = 0; i < POLYTOPES; i++) q.polytope[i] = polytope_make(&r, &q);
   for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) one_kind(&size, &KINDS[k], &q);
+  if (bench_wanted(&size, "sequence of 100 poses")) measure_sequences(&size, &q);
   if (bench_wanted(&size, "meshes")) pairs_meshes(&size, q.workspace);
-  for (int i = 0; i < POLYTOPES; i++) convex_free(&q.polytope[i]);
+  for (int i = 0; i < POLYTOPES; i++) convex_free(&q.polytope[i], &q);
   cprox_workspace_free(q.workspace);
   return 0;
 }

@@ -1,27 +1,26 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Two bumpy closed meshes of 960 to 80,088 triangles each, apart, hulls apart too or not, and crossing: their distance
- * and whether they touch, beside FCL. */
+ * and whether they touch, beside FCL and coal. */
 #include "pairs_meshes.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "peers/pair_peers.h"
 #include "support/problems.h"
-#ifdef CPROX_BENCH_FCL
-#include "peers/mesh_fcl.h"
-#endif
 
 enum { BUMPS = 8 };
 
 typedef struct mesh_pair {
   cprox_body *body[2];
-  void *fcl[2];
+  void *copy[2][PAIR_PEERS_MOST];
   cprox_pose pose[2];
 } mesh_pair;
 
 /* A ball of radius 0.5 with bumps, n rows of 2n corners. */
-static size_t mesh_make(rng *r, uint32_t n, cprox_body **body, void **fcl) {
+static size_t mesh_make(rng *r, uint32_t n, cprox_body **body, void *copy[PAIR_PEERS_MOST]) {
   const uint32_t m = 2 * n, corners = (n - 1) * m + 2;
   const size_t triangles = (size_t)2 * m * (n - 1);
   vec3 *v = calloc(corners, sizeof *v);
@@ -56,11 +55,10 @@ static size_t mesh_make(rng *r, uint32_t n, cprox_body **body, void **fcl) {
   if (cprox_body_create_mesh(v, corners, (const uint32_t(*)[3])t, made, CPROX_MESH_FILL_SURFACE, SIZE_MAX, NULL, body) <
       0)
     exit(1);
-#ifdef CPROX_BENCH_FCL
-  *fcl = mesh_fcl_make(v, corners, (const uint32_t(*)[3])t, made);
-#else
-  *fcl = NULL;
-#endif
+  const pair_peer *peers[PAIR_PEERS_MOST];
+  const size_t many = pair_peers(peers);
+  for (size_t k = 0; k < many; k++)
+    copy[peers[k]->number] = peers[k]->make_mesh(v, corners, (const uint32_t(*)[3])t, made);
   free(v);
   free(t);
   return made;
@@ -89,21 +87,21 @@ static void our_verdict(const void *problems, size_t i, void *workspace, bench_a
                       .failed = r.verdict == CPROX_VERDICT_UNDECIDED};
 }
 
-#ifdef CPROX_BENCH_FCL
-static void fcl_distance(const void *problems, size_t i, void *state, bench_answer *a) {
+static void peer_distance(const void *problems, size_t i, void *state, bench_answer *a) {
   const mesh_pair *p = (const mesh_pair *)problems + i;
-  (void)state;
+  const pair_peer *peer = state;
+  const size_t k = peer->number;
   *a = (bench_answer){.lower = NAN, .upper = NAN};
-  a->failed = isnan(mesh_fcl_distance(p->fcl[0], &p->pose[0], p->fcl[1], &p->pose[1]));
+  a->failed = isnan(peer->distance(p->copy[0][k], &p->pose[0], p->copy[1][k], &p->pose[1]));
 }
 
-static void fcl_verdict(const void *problems, size_t i, void *state, bench_answer *a) {
+static void peer_verdict(const void *problems, size_t i, void *state, bench_answer *a) {
   const mesh_pair *p = (const mesh_pair *)problems + i;
-  (void)state;
+  const pair_peer *peer = state;
+  const size_t k = peer->number;
   *a = (bench_answer){.lower = NAN, .upper = NAN};
-  a->failed = mesh_fcl_collides(p->fcl[0], &p->pose[0], p->fcl[1], &p->pose[1]) < 0;
+  a->failed = peer->collides(p->copy[0][k], &p->pose[0], p->copy[1][k], &p->pose[1]) < 0;
 }
-#endif
 
 /* The middles between `least` and `most` apart: of meshes of radius 0.4 to 0.6. */
 static void measure(const bench_size *size, const char *name, const char *parameter, double least, double most,
@@ -118,43 +116,43 @@ static void measure(const bench_size *size, const char *name, const char *parame
   snprintf(verdict, sizeof verdict, "verdict %s", name);
   const bench_workload distances = {"pairs", name, parameter, pairs, n, NULL, 0.0};
   const bench_workload verdicts = {"pairs", verdict, parameter, pairs, n, NULL, 0.0};
-  const bench_method methods[2][2] = {{{"curve_proximity", our_distance, workspace},
-#ifdef CPROX_BENCH_FCL
-                                       {"FCL", fcl_distance, workspace}
-#endif
-                                      },
-                                      {{"curve_proximity", our_verdict, workspace},
-#ifdef CPROX_BENCH_FCL
-                                       {"FCL", fcl_verdict, workspace}
-#endif
-                                      }};
-  const size_t many = methods[0][1].run ? 2 : 1;
-  bench_measure(&distances, size, methods[0], many);
-  bench_measure(&verdicts, size, methods[1], many);
+  const pair_peer *peers[PAIR_PEERS_MOST];
+  const size_t many = pair_peers(peers);
+  bench_method asked[1 + PAIR_PEERS_MOST] = {{"curve_proximity", our_distance, workspace}},
+                         told[1 + PAIR_PEERS_MOST] = {{"curve_proximity", our_verdict, workspace}};
+  for (size_t k = 0; k < many; k++) {
+    asked[1 + k] = (bench_method){peers[k]->name, peer_distance, (void *)peers[k]};
+    told[1 + k] = (bench_method){peers[k]->name, peer_verdict, (void *)peers[k]};
+  }
+  bench_measure(&distances, size, asked, 1 + many);
+  bench_measure(&verdicts, size, told, 1 + many);
 }
 
 void pairs_meshes(const bench_size *size, cprox_workspace *workspace) {
   static const uint32_t rows[] = {16, 36, 71, 142};
   const size_t n = size->problems;
+  const pair_peer *peers[PAIR_PEERS_MOST];
+  const size_t many = pair_peers(peers);
   mesh_pair *pairs = calloc(n, sizeof *pairs);
   if (!pairs) exit(1);
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
     rng r = rng_seed(660);
     cprox_body *body[2];
-    void *fcl[2];
+    void *copy[2][PAIR_PEERS_MOST] = {{NULL}};
     char parameter[32];
     for (int j = 0; j < 2; j++)
-      snprintf(parameter, sizeof parameter, "%zu triangles", mesh_make(&r, rows[k], &body[j], &fcl[j]));
+      snprintf(parameter, sizeof parameter, "%zu triangles", mesh_make(&r, rows[k], &body[j], copy[j]));
     for (size_t i = 0; i < n; i++)
-      for (int j = 0; j < 2; j++) pairs[i].body[j] = body[j], pairs[i].fcl[j] = fcl[j];
+      for (int j = 0; j < 2; j++) {
+        pairs[i].body[j] = body[j];
+        memcpy(pairs[i].copy[j], copy[j], sizeof copy[j]);
+      }
     measure(size, "meshes apart", parameter, 1.2, 2.0, pairs, n, workspace);
     measure(size, "meshes close", parameter, 1.0, 1.2, pairs, n, workspace);
     measure(size, "meshes crossing", parameter, 0.7, 1.0, pairs, n, workspace);
     for (int j = 0; j < 2; j++) {
       cprox_body_free(body[j]);
-#ifdef CPROX_BENCH_FCL
-      mesh_fcl_free(fcl[j]);
-#endif
+      for (size_t m = 0; m < many; m++) peers[m]->free(copy[j][peers[m]->number]);
     }
   }
   free(pairs);
