@@ -74,10 +74,11 @@ struct SceneChange {
   bool clear_attached = false;   /**< First removes all attached objects; they do not return into the scene. */
   /** First removes all allowed pairs, also those that the scene began with: see Snapshot::replacesSrdf(). */
   bool clear_allowed = false;
-  std::vector<Operation> operations;          /**< applied in order */
-  std::vector<Attachment> attachments;        /**< after the operations, in order */
-  bool attachments_first = false;             /**< the attachments come before the operations */
-  std::map<std::string, double> link_padding; /**< [m] >= 0, by link */
+  std::vector<Operation> operations;   /**< applied in order */
+  std::vector<Attachment> attachments; /**< after the operations, in order */
+  bool attachments_first = false;      /**< the attachments come before the operations */
+  /** [m] >= 0, by link. Counts against everything but the robot itself and what it carries, as in MoveIt. */
+  std::map<std::string, double> link_padding;
   std::optional<double> default_link_padding; /**< [m] >= 0, of the links not named */
   std::map<std::string, double> link_scale;   /**< > 0, by link: see Snapshot::linkGeometry() */
   std::vector<AllowedPair> allowed;           /**< each replaces the entry of the same two names, in either order */

@@ -20,11 +20,10 @@ class Builder {
              const Eigen::Isometry3d &place) {
     addRoot(base, base_joints, place);
     for (const Robot::Joint &joint : robot_.joints()) addJoint(joint);
-    for (const auto &[name, geometries] : robot_.links())
-      addGeometries(name, snapshot_.linkGeometry(name), nullptr, snapshot_.linkPadding(name));
+    for (const auto &[name, geometries] : robot_.links()) addGeometries(name, snapshot_.linkGeometry(name), nullptr);
     for (const auto &[id, object] : snapshot_.attached()) {
       const std::string &link = robot_.links().find(object->link)->first;
-      addGeometries(link, object->shapes, object.get(), snapshot_.attachedPadding(*object));
+      addGeometries(link, object->shapes, object.get());
     }
 
     cprox_robot *made = nullptr;
@@ -129,14 +128,24 @@ class Builder {
   }
 
   void addGeometries(const std::string &name, const std::vector<LinkGeometry> &geometries,
-                     const AttachedObject *attached, double padding) {
+                     const AttachedObject *attached) {
     const int link = static_cast<int>(out_.links.at(name));
+    const double own = attached ? attached->description.padding : 0.0;
+    const double of_link = snapshot_.linkPadding(name);
     for (std::size_t i = 0; i < geometries.size(); ++i) {
       const Geometry &geometry = geometries[i].geometry;
       const cprox_body *body = geometry.body.get();
-      geometries_.push_back({body, toPose(geometries[i].pose), link, padding + geometry.margin});
-      out_.geometries.push_back(
-          {&name, attached, static_cast<int>(i), geometry.excess, geometry.is_mesh, geometry.is_open, body});
+      MovingGeometry made{&name, attached, static_cast<int>(i), geometry.excess, geometry.is_mesh, geometry.is_open,
+                          body};
+      const auto add = [&](double padding) {
+        geometries_.push_back({body, toPose(geometries[i].pose), link, padding + geometry.margin});
+        out_.geometries.push_back(made);
+      };
+      const bool twice = of_link > 0.0;
+      made.unpadded = static_cast<std::int32_t>(geometries_.size() + (twice ? 1 : 0));
+      add(own + of_link);
+      made.within = twice;
+      if (twice) add(own);
     }
   }
 

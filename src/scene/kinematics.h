@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_KINEMATICS_H
 #define CURVE_PROXIMITY_SCENE_KINEMATICS_H
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -23,6 +24,8 @@ struct MovingGeometry {
   bool is_mesh = false;
   bool is_open = false; /* a mesh that is to be solid and is not closed */
   const cprox_body *body = nullptr;
+  bool within = false; /* for pairs within the robot alone: the geometry before it, without the padding of the link */
+  std::int32_t unpadded = 0; /* the number of the one that stands for it in such pairs: its own, or the next */
 
   const std::string &owner() const {
     return attached ? attached->description.id : *link;
@@ -38,7 +41,7 @@ struct Kinematics {
   std::map<std::string, int> variables;       /* joint values by name; mimic joints have none */
   std::map<std::string, std::string> leaders; /* mimic and fixed joints: who decides ("" for fixed) */
   std::vector<double> rest;                   /* of all variables */
-  std::vector<MovingGeometry> geometries;
+  std::vector<MovingGeometry> geometries;     /* those of padded links twice */
 };
 
 /* The robot of the snapshot, its root link at `place` in the fixed frame or on a joint of its own there. Throws Error.

@@ -123,6 +123,7 @@ void preparePairs(const std::vector<Links> &disabled, PreparedRobot::Data &data)
   for (const MovingGeometry &geometry : geometries)
     data.link.push_back(static_cast<std::int32_t>(data.kinematics->links.at(*geometry.link)));
   for (std::size_t i = 0; i < geometries.size(); ++i) {
+    if (geometries[i].within) continue;
     const std::string *object = nullptr; /* the items of an object are neighbours */
     bool may_touch = false;
     for (std::size_t k = 0; k < items.size(); ++k) {
@@ -134,8 +135,8 @@ void preparePairs(const std::vector<Links> &disabled, PreparedRobot::Data &data)
       if (!may_touch) data.environment[i].push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
     for (std::size_t k = i + 1; k < geometries.size(); ++k) {
-      if (geometries[i].link == geometries[k].link) continue;
-      data.self.push_back({{static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)},
+      if (geometries[k].within || geometries[i].link == geometries[k].link) continue;
+      data.self.push_back({{geometries[i].unpadded, geometries[k].unpadded},
                            geometries[i].attached || geometries[k].attached,
                            exemptionOf(geometries[i], geometries[k], *data.snapshot, off)});
     }

@@ -168,7 +168,7 @@ std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const 
     if (!sentence.empty()) sentences.push_back(sentence);
   };
   for (const MovingGeometry &geometry : asked.data.kinematics->geometries)
-    look((geometry.attached ? "object '" : "link '") + geometry.owner() + "'", geometry.body);
+    if (!geometry.within) look((geometry.attached ? "object '" : "link '") + geometry.owner() + "'", geometry.body);
   for (std::size_t i = 0; i < asked.items.size(); ++i)
     look("object '" + *asked.data.snapshot->world().items()[asked.items[i]].owner + "'", asked.targets[i].body);
   return sentences;

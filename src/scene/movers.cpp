@@ -124,7 +124,7 @@ class Joiner {
     for (const MovingGeometry &geometry : data.kinematics->geometries) {
       const bool moves = data.moves[out_.geometries.size() - static_cast<std::size_t>(first)];
       out_.geometries.push_back({cores_.size(), robot.name + "/" + geometry.owner(), geometry.part, geometry.excess,
-                                 moves, false, geometry.is_mesh});
+                                 moves, false, geometry.is_mesh, geometry.within});
     }
     for (const cprox_robot_pair &pair : data.self) out_.among.push_back({pair.geometry + first, pair.other + first});
     out_.among_moves.insert(out_.among_moves.end(), data.self_moves.begin(), data.self_moves.end());
@@ -221,6 +221,7 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
   for (std::size_t i = 0; i < geometries.size(); ++i) {
     if (stop && stop()) throw Error("stopped while the pairs of the movers were being listed");
     most = std::max(most, geometries[i].excess);
+    if (geometries[i].within) continue;
     const std::size_t mover = geometries[i].mover;
     const std::string &name = geometries[i].name;
     for (std::size_t k = 0; k < items.size(); ++k) {
@@ -230,7 +231,7 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
         data.environment.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
     for (std::size_t k = i + 1; k < geometries.size(); ++k) {
-      if (geometries[k].mover == mover) continue;
+      if (geometries[k].mover == mover || geometries[k].within) continue;
       if ((named[i] || named[k]) &&
           (allowed.has(name, geometries[k].name) ||
            (mayTouchInScene(data, geometries[i], geometries[k].name) && mayTouchInScene(data, geometries[k], name)) ||

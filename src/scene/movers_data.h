@@ -23,6 +23,7 @@ struct MoverGeometry {
   bool moves = true; /* along its own motion; of a state true */
   bool is_object = false;
   bool is_mesh = false;
+  bool within = false; /* as of MovingGeometry: for pairs within its own robot alone */
 };
 
 /* Whose link or object that is: "robot/link" is of "robot". */

@@ -27,6 +27,7 @@ struct Element {
   int part;
   const LinkGeometry *geometry;
   double margin;
+  double own;                   /* [m] of the margin, what does not belong to the link */
   double reach;                 /* [m] the largest distance of its points from its own origin, without the margin */
   Eigen::Vector3d centre, half; /* its box in its own frame, without the margin */
   double radius;                /* of a ball about the centre of cprox_body_get_info() */
@@ -34,8 +35,20 @@ struct Element {
 };
 
 Element makeElement(const std::string *owner, const AttachedObject *attached, std::size_t link, int part,
-                    const LinkGeometry &geometry, double margin) {
-  Element out{owner, attached, link, part, &geometry, margin + geometry.geometry.margin, 0.0, {}, {}, 0.0, {}};
+                    const LinkGeometry &geometry, double link_padding) {
+  const double own = attached ? attached->description.padding : 0.0;
+  Element out{owner,
+              attached,
+              link,
+              part,
+              &geometry,
+              own + link_padding + geometry.geometry.margin,
+              own + geometry.geometry.margin,
+              0.0,
+              {},
+              {},
+              0.0,
+              {}};
   const cprox_body *body = geometry.geometry.body.get();
   const cprox_body_info info = cprox_body_get_info(body);
   out.ball = toEigen(info.centre);
@@ -59,6 +72,7 @@ struct Body {
   bool wanted;           /* the query is about its link */
   cprox_obstacle placed; /* padding included */
   cprox_obstacle hull;   /* a mesh by its hull */
+  double own;            /* [m] of the robot: the margin in pairs within it, without the padding of the link */
   double rounding;       /* [m] how far rounding can have moved a point of it, and for its hull further … */
   double hull_excess;
   Eigen::AlignedBox3d box; /* with margin and rounding */
@@ -73,6 +87,7 @@ Body placeElement(const Element &element, const Eigen::Isometry3d &link, bool wa
            wanted,
            at(geometry.body, pose, element.margin),
            at(geometry.hull, pose, element.margin),
+           element.own,
            geometry.excess + placingError(link, element.geometry->pose, element.reach),
            geometry.hull_excess,
            {}};
@@ -95,9 +110,16 @@ Body bodyOf(const Item &item) {
           false,
           shape.target,
           shape.hull,
+          0.0,
           shape.rounding,
           shape.hull_excess,
           shape.box};
+}
+
+/* As it is in pairs within the robot. */
+Body withoutLinkPadding(Body body) {
+  body.placed.margin = body.hull.margin = body.own;
+  return body;
 }
 
 bool isHalfspace(const cprox_obstacle &body) {
@@ -248,10 +270,9 @@ class Visit {
   }
 
   void visit(const Candidate &candidate) {
-    const Body &a = bodies_[candidate.a];
     const Item *item = candidate.is_self ? nullptr : &snapshot_.world().items()[candidate.b];
-    const Body object = item ? bodyOf(*item) : Body();
-    const Body &b = item ? object : bodies_[candidate.b];
+    const Body a = item ? bodies_[candidate.a] : withoutLinkPadding(bodies_[candidate.a]);
+    const Body b = item ? bodyOf(*item) : withoutLinkPadding(bodies_[candidate.b]);
     if (!item && isExempt(a, b, query_.carriers)) return;
     if (query_.may_touch ? query_.may_touch(*a.side.name, *b.side.name)
                          : snapshot_.mayTouch(*a.side.name, *b.side.name))
@@ -320,7 +341,7 @@ void StandingRobot::visit(const RobotPlacement &placement, const NearPairsQuery 
                   object->link + "'");
     for (std::size_t i = 0; i < object->shapes.size(); ++i)
       add(makeElement(&object->description.id, object.get(), static_cast<std::size_t>(link - links.begin()),
-                      static_cast<int>(i), object->shapes[i], snapshot_->attachedPadding(*object)));
+                      static_cast<int>(i), object->shapes[i], snapshot_->linkPadding(object->link)));
   }
   Visit(*snapshot_, std::move(bodies), query, workspace, visitor).run();
 }

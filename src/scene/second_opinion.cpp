@@ -337,13 +337,15 @@ struct RobotShape {
   bool of_link;
 };
 
-RobotShape shapeOf(const Snapshot &snapshot, const std::string &owner, bool is_link, std::size_t part) {
+/* within: a pair of the robot with itself, in which the padding of links does not count. */
+RobotShape shapeOf(const Snapshot &snapshot, const std::string &owner, bool is_link, std::size_t part, bool within) {
   if (is_link) {
     const std::string &link = snapshot.robot()->links().find(owner)->first;
-    return {&snapshot.linkGeometry(owner).at(part), &link, snapshot.linkPadding(owner), true};
+    return {&snapshot.linkGeometry(owner).at(part), &link, within ? 0.0 : snapshot.linkPadding(owner), true};
   }
   const AttachedObject &object = *snapshot.attached().at(owner);
-  return {&object.shapes.at(part), &object.link, snapshot.attachedPadding(object), false};
+  const double padding = within ? object.description.padding : snapshot.attachedPadding(object);
+  return {&object.shapes.at(part), &object.link, padding, false};
 }
 
 } // namespace
@@ -433,8 +435,9 @@ void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, 
   if (item == targets.items.end()) return refuseSecondOpinion(query, "the pair is not known", answer);
   const auto object = snapshot.objects().find(answer.b);
   const bool stands = !answer.b_is_link && object != snapshot.objects().end();
-  const ShapeDescription &shape = stands ? object->second->description.shapes.at(part)
-                                         : shapeOf(snapshot, answer.b, answer.b_is_link, part).geometry->description;
+  const ShapeDescription &shape =
+      stands ? object->second->description.shapes.at(part)
+             : shapeOf(snapshot, answer.b, answer.b_is_link, part, false).geometry->description;
   const ResourceOptions &resources = answer.b_is_link ? snapshot.robot()->resources() : data.objects;
 
   const cprox_obstacle &placed = item->shape->target;
@@ -460,8 +463,9 @@ void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answe
   const SecondOpinions::Data &data = query.second_opinion->data();
   const Snapshot &snapshot = *motion.snapshot;
   const auto part = static_cast<std::size_t>(answer.result.obstacle_index);
+  const bool self = answer.kind == "self";
   const RobotShape mover = shapeOf(snapshot, answer.a, snapshot.attached().count(answer.a) == 0,
-                                   static_cast<std::size_t>(answer.result.mover_part));
+                                   static_cast<std::size_t>(answer.result.mover_part), self);
   const bool by_hull = answer.by_hull;
   const auto sideOfRobot = [&](const RobotShape &shape, const LinkPoses &poses) {
     return sideOf(shape.geometry->description, poses.at(*shape.link) * shape.geometry->pose, shape.padding, by_hull,
@@ -470,9 +474,9 @@ void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answe
   const cprox_motion_info info = cprox_motion_get_info(motion.core.get());
   const auto sidesAt = [&](double t) {
     const LinkPoses poses = linkPosesOf(motion, t);
-    if (answer.kind == "self")
+    if (self)
       return std::make_pair(sideOfRobot(mover, poses),
-                            sideOfRobot(shapeOf(snapshot, answer.b, answer.b_is_link, part), poses));
+                            sideOfRobot(shapeOf(snapshot, answer.b, answer.b_is_link, part, true), poses));
     const SceneObject &object = *snapshot.objects().at(answer.b);
     const cprox_obstacle &placed = object.shapes.at(part).placed.target;
     const ShapeDescription &shape = object.description.shapes.at(part);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What links carry, and links at another size. Distances are computed by hand. */
 #include <curve_proximity/motion.hpp>
+#include <curve_proximity/movers.hpp>
+#include <curve_proximity/near_pairs.hpp>
 
 #include "scaling.h"
 #include "support.h"
@@ -70,6 +72,71 @@ TEST_F(Slider, what_a_link_carries_rides_along_and_is_padded_with_it) {
   padding.link_padding["cart"] = 0.05;
   ASSERT_TRUE(scene.apply(padding).empty());
   expectNearest("held", 0.45);
+}
+
+/* Two balls of 0.1 on rails along x, 2 m apart in y; a wall at x = 3. The right one carries a ball of 0.1 with a padding of
+ * its own, 0.5 ahead of it in y. */
+TEST(LinkPadding, counts_against_everything_but_the_robot_itself) {
+  const auto ball = [](const std::string &name, const std::string &y) {
+    return "<link name='" + name +
+           "'><collision><geometry><sphere radius='0.1'/></geometry></collision></link><joint name='" + name +
+           "_slides' type='prismatic'><parent link='rails'/><child link='" + name + "'/><origin xyz='0 " + y +
+           " 0'/><axis xyz='1 0 0'/><limit lower='-9' upper='9' effort='1' velocity='1'/></joint>";
+  };
+  const std::string urdf =
+      "<robot name='pair'><link name='rails'/>" + ball("left", "2") + ball("right", "0") + "</robot>";
+  Workspace workspace;
+  const auto check = [&](double padding, double among, bool carries) {
+    Scene scene(Robot::fromUrdf(urdf));
+    SceneChange c = change({add("wall", {shape(ShapeType::BOX, {1, 9, 4})}, translation(3.5, 0, 0))});
+    c.default_link_padding = padding;
+    if (carries) {
+      Attachment held;
+      held.link = "right";
+      held.object = add("held", {shape(ShapeType::SPHERE, {0.1})}, translation(0, 0.5, 0)).object;
+      held.object.padding = 0.25;
+      c.attachments.push_back(held);
+    }
+    ASSERT_TRUE(scene.apply(c).empty());
+    TrajectoryDescription t;
+    t.joints = {"left_slides", "right_slides"};
+    t.points = {{{-1, 1}, {}, {}, 0.0}, {{1, -1}, {}, {}, 1.0}};
+    const auto motion = std::make_shared<const RobotMotion>(scene.snapshot(), t, JointPositions{});
+    Query query;
+    query.second_opinion = std::make_shared<const SecondOpinions>(Peer::FCL);
+    const Answer self = askSelf(*motion, query, workspace);
+    EXPECT_EQ(self.status, "ok") << self.message;
+    EXPECT_NEAR(self.result.upper, among, 1e-6);
+    EXPECT_NEAR(self.second_opinion.distance, among, 1e-4);
+    const Answer world = askEnvironment(*motion, query, workspace).front();
+    const double ahead = carries ? 0.35 : 0.1;
+    EXPECT_NEAR(world.result.upper, 2.0 - ahead - padding, 1e-6);
+    const Movers movers(Scene().snapshot(), {{"one", motion}}, {});
+    EXPECT_NEAR(ask(movers, Against::MOVERS, Query(), workspace).result.upper, among, 1e-6);
+    const auto other = std::make_shared<const RobotMotion>(
+        scene.snapshot(), t, JointPositions{}, std::vector<std::array<std::string, 2>>{}, translation(0, 3, 0));
+    /* the right one of the other robot and the left one of this robot pass each other 1 m apart */
+    const Movers two(Scene().snapshot(), {{"one", motion}, {"two", other}}, {});
+    EXPECT_NEAR(ask(two, Against::MOVERS, Query(), workspace).result.upper, std::min(among, 0.8 - 2.0 * padding), 1e-6);
+
+    const StandingRobot standing(scene.snapshot());
+    const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
+    RobotPlacement placement;
+    for (const auto &[name, link] : scene.snapshot()->robot()->links()) placement.links.push_back(poses.at(name));
+    for (const auto &[id, object] : scene.snapshot()->attached()) placement.attached[id] = object;
+    NearPairsQuery near;
+    near.pairs = RobotPairs::SELF;
+    double least = INFINITY;
+    standing.visit(placement, near, workspace, [&](const NearPair &pair) {
+      least = std::min(least, pair.result.upper);
+      return near.reach;
+    });
+    EXPECT_NEAR(least, among, 1e-6);
+  };
+  for (const double padding : {0.0, 0.05, 0.3}) {
+    check(padding, 1.8, false);
+    check(padding, 1.05, true);
+  }
 }
 
 TEST_F(Slider, options_that_do_not_apply_to_a_robot_are_refused_and_named) {

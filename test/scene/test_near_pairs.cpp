@@ -44,6 +44,7 @@ SnapshotPtr randomScene(Random &random) {
                                                shape(ShapeType::CONE, {0.2, 0.1})};
   for (std::size_t i = 0; i < 12; ++i)
     out.operations.push_back(add("object" + std::to_string(i), {kinds[i % 4]}, random.pose(0.9)));
+  out.default_link_padding = 0.02;
   out.link_padding["panda_hand"] = 0.01;
   EXPECT_TRUE(scene.apply(out).empty());
   return scene.snapshot();
@@ -58,12 +59,14 @@ std::map<Name, cprox_result> everyPair(const Snapshot &scene, const LinkPoses &p
     int part;
     cprox_obstacle body;
   };
-  std::vector<One> robot, objects;
+  std::vector<One> robot, objects, unpadded; /* among themselves links have no padding */
   for (const auto &[link, geometries] : scene.robot()->links())
-    for (std::size_t i = 0; i < geometries.size(); ++i)
-      robot.push_back(
-          {link, static_cast<int>(i),
-           at(geometries[i].geometry.surface, poses.at(link) * geometries[i].pose, scene.linkPadding(link))});
+    for (std::size_t i = 0; i < geometries.size(); ++i) {
+      const Eigen::Isometry3d pose = poses.at(link) * geometries[i].pose;
+      const auto part = static_cast<int>(i);
+      robot.push_back({link, part, at(geometries[i].geometry.surface, pose, scene.linkPadding(link))});
+      unpadded.push_back({link, part, at(geometries[i].geometry.surface, pose, 0.0)});
+    }
   for (const auto &[id, object] : scene.objects())
     for (std::size_t i = 0; i < object->shapes.size(); ++i)
       objects.push_back({id, static_cast<int>(i), object->shapes[i].placed.target});
@@ -74,7 +77,7 @@ std::map<Name, cprox_result> everyPair(const Snapshot &scene, const LinkPoses &p
   for (std::size_t i = 0; i < robot.size(); ++i) {
     for (const One &object : objects) measure(robot[i], object);
     for (std::size_t k = i + 1; k < robot.size(); ++k)
-      if (robot[i].name != robot[k].name) measure(robot[i], robot[k]);
+      if (robot[i].name != robot[k].name) measure(unpadded[i], unpadded[k]);
   }
   return out;
 }
