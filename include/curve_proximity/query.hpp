@@ -113,6 +113,11 @@ enum class CurveBoxes {
  *  Where a radius that changes is below 0, queries say so. */
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes = CurveBoxes::MANY);
 
+/** The same of a curve that is there already, with a ball of the radius [m]. Throws Error for a radius that is negative
+ *  or not finite. */
+CompiledCurve compile(const std::string &id, const CurveHandle &curve, double radius,
+                      CurveBoxes boxes = CurveBoxes::MANY);
+
 /** What moves along a compiled curve, which must outlive it. */
 cprox_mover moverOf(const CompiledCurve &curve);
 cprox_mover moverOf(CompiledCurve &&curve) = delete;

@@ -427,7 +427,9 @@ void addRobots(py::module &module) {
           },
           py::arg("positions"), "Forward kinematics: the pose (4, 4) of each link for joint values by name.");
 
-  py::class_<PythonScene, std::shared_ptr<PythonScene>>(module, "Scene", "Objects by name, and a robot.")
+  SceneClass scene(module, "Scene", "Objects by name, and a robot.");
+  addCurveQueries(scene);
+  scene
       .def(py::init<std::shared_ptr<LoadedRobot>, const Packages &>(), py::arg("robot") = nullptr,
            py::arg("packages") = Packages{})
       .def(

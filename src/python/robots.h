@@ -125,5 +125,10 @@ py::list toList(const Violations &found);
 /** Answers one by one. */
 py::list toList(const std::vector<Answer> &answers);
 
+using SceneClass = py::class_<PythonScene, std::shared_ptr<PythonScene>>;
+
+/** Its methods that ask about curves. */
+void addCurveQueries(SceneClass &scene);
+
 } // namespace curve_proximity::python
 #endif

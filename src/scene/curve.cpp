@@ -32,8 +32,7 @@ void halve(cprox_vec3 *left, cprox_vec3 *right, std::size_t n) {
   }
 }
 
-/* Cuts each of the intervals between the breaks into `parts`, a power of two; empty where the intervals are too short
- * to cut. */
+/* Cuts each of the intervals between the breaks into `parts`, a power of two; one box where they are too short to cut. */
 std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::vector<double> &breaks,
                                           std::size_t parts) {
   const cprox_curve_info info = cprox_curve_get_info(curve);
@@ -48,7 +47,7 @@ std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::v
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     if (!(breaks[i] < breaks[i + 1]) ||
         cprox_curve_control_points(curve, breaks[i], breaks[i + 1], nullptr, points.data()) != CPROX_OK)
-      return {};
+      return {boxOf(curve)};
     for (std::size_t step = parts; step > 1; step /= 2) {
       for (std::size_t part = 0; part < parts; part += step)
         halve(&points[part * n], &points[(part + step / 2) * n], n);
@@ -271,6 +270,10 @@ CurveHandle makeRadius(const std::vector<double> &coefficients, const CurveHandl
   return makePolynomial(points, info.t0, info.t1);
 }
 
+void checkRadius(double radius) {
+  if (!std::isfinite(radius) || radius < 0.0) throw Error("the radius must be finite and not below 0");
+}
+
 } // namespace
 
 cprox_mover moverOf(const CompiledCurve &curve) {
@@ -290,20 +293,23 @@ CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes) {
   return compile(curve, boxes, workspace);
 }
 
-CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes, Workspace &workspace) {
-  if (!std::isfinite(curve.radius) || curve.radius < 0.0) throw Error("the radius must be finite and not below 0");
+CompiledCurve compile(const std::string &id, const CurveHandle &curve, double radius, CurveBoxes boxes) {
+  checkRadius(radius);
   CompiledCurve out;
-  out.id = curve.id;
-  out.radius = curve.radius;
-  out.curve = makeWithPlace(curve, workspace);
-  out.radius_curve = makeRadius(curve.radius_polynomial, out.curve);
+  out.id = id, out.curve = curve, out.radius = out.reach = radius;
+  if (boxes == CurveBoxes::MANY) out.boxes = pieceBoxes(curve.get());
+  return out;
+}
+
+CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes, Workspace &workspace) {
+  checkRadius(curve.radius);
+  const CurveHandle handle = makeWithPlace(curve, workspace);
+  const bool is_spline = cprox_curve_get_info(handle.get()).kind == CPROX_CURVE_BSPLINE;
+  CompiledCurve out = compile(curve.id, handle, curve.radius, is_spline ? CurveBoxes::NONE : boxes);
+  if (is_spline && boxes == CurveBoxes::MANY) out.boxes = splineBoxes(curve, handle.get());
+  out.radius_curve = makeRadius(curve.radius_polynomial, handle);
   const double more = out.radius_curve ? cprox_curve_get_info(out.radius_curve.get()).highest.x : 0.0;
-  out.reach = more > 0.0 ? (out.radius + more) * (1.0 + 1e-15) : out.radius;
-  if (boxes == CurveBoxes::MANY) {
-    const bool whole = cprox_curve_get_info(out.curve.get()).kind == CPROX_CURVE_BSPLINE;
-    out.boxes = whole ? splineBoxes(curve, out.curve.get()) : pieceBoxes(out.curve.get());
-    if (out.boxes.empty()) out.boxes.push_back(boxOf(out.curve.get()));
-  }
+  if (more > 0.0) out.reach = (out.radius + more) * (1.0 + 1e-15);
   return out;
 }
 

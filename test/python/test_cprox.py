@@ -411,6 +411,101 @@ class Curves(unittest.TestCase):
                     self.assertAlmostEqual((high - low) / (2 * step), weights[i] * gradient['mover'][k], places=6)
 
 
+class SceneCurves(unittest.TestCase):
+    """Curves against a scene: the same as the core says of its objects one by one."""
+
+    def setUp(self):
+        self.random = numpy.random.default_rng(12)
+        self.scene, self.obstacles = cprox.Scene(), {}
+        for i in range(30):
+            place = cprox.transform(self.random.uniform(-3, 3, 3))
+            kind, dimensions, shape = [('box', [.3, .4, .5], cprox.box([.3, .4, .5])), ('sphere', [.2], cprox.sphere(.2)),
+                                       ('cylinder', [.5, .1], cprox.cylinder(.5, .1))][i % 3]
+            self.scene.add(f'o{i:02}', kind, dimensions, place, padding=.01 * (i % 2))
+            self.obstacles[f'o{i:02}'] = cprox.Obstacle(shape, place, .01 * (i % 2))
+
+    def curves(self):
+        for seed in range(40):
+            points = self.random.uniform(-2, 2, (6, 3))
+            yield (cprox.bezier(points), cprox.bspline(points, 3, [0, 0, 0, 0, 1, 2, 3, 3, 3, 3]), cprox.legendre(points / 3),
+                   cprox.rational_bezier(points, [1, 2, 1, .5, 1, 1]))[seed % 4]
+
+    def test_distances_and_verdicts_are_those_of_its_objects(self):
+        seen = set()
+        for curve in self.curves():
+            tube = cprox.tube(curve, .05)
+            each = {name: cprox.distance(tube, one).upper for name, one in self.obstacles.items()}
+            nearest = min(each, key=each.get)
+            got = self.scene.distance(curve, radius=.05)
+            self.assertAlmostEqual(got['result'].upper, each[nearest], delta=2e-6)
+            self.assertLessEqual(got['result'].lower, each[nearest])
+            self.assertEqual((got['a'], got['status']), ('curve', 'ok'))
+            if each[nearest] > 0:
+                self.assertEqual(got['b'], nearest)
+            seen.add(each[nearest] > 0)
+            delta = self.random.uniform(0, .5)
+            for answer, limit in ((self.scene.tolerance(curve, delta, radius=.05), delta), (self.scene.collision(curve, radius=.05), 0)):
+                if abs(each[nearest] - limit) > 2e-6 or limit == 0:
+                    self.assertEqual(answer['result'].verdict, 'clear' if each[nearest] > limit else 'violated')
+            wanted = cprox.time_of_contact(tube, list(self.obstacles.values()))
+            contact = self.scene.time_of_contact(curve, radius=.05)
+            self.assertEqual(contact['result'].verdict, wanted.verdict)
+            if wanted.verdict == 'violated':
+                self.assertAlmostEqual(contact['result'].t, wanted.t, delta=1e-4)
+            rows = self.scene.nearest_pairs(curve, 3, radius=.05)
+            numpy.testing.assert_allclose([row['result'].upper for row in rows], sorted(each.values())[:3], atol=2e-6)
+            some = self.scene.distance(curve, radius=.05, objects=['o03', 'o04'])
+            self.assertAlmostEqual(some['result'].upper, min(each['o03'], each['o04']), delta=2e-6)
+        self.assertEqual(seen, {True, False})
+
+    def test_profiles_and_violations_are_where_the_distance_is(self):
+        for curve in list(self.curves())[:8]:
+            breaks = numpy.linspace(curve.t0, curve.t1, 9)
+            profile = self.scene.profile(curve, breaks)
+            for i, (lower, upper) in enumerate(zip(profile['lower'], profile['upper'])):
+                part = self.scene.distance(curve.restrict(breaks[i], breaks[i + 1]))['result']
+                self.assertLessEqual(lower, part.upper + 1e-12)
+                self.assertGreaterEqual(upper, part.lower - 1e-12)
+            delta = .3
+            inside = [(v['enter_upper'], v['leave_lower']) for v in self.scene.violations(curve, delta)]
+            outside = [(v['enter_lower'], v['leave_upper']) for v in self.scene.violations(curve, delta)]
+            for t in numpy.linspace(curve.t0, curve.t1, 200):
+                at = min(cprox.pair(cprox.Obstacle(cprox.point(), cprox.transform(curve(t))), one).upper for one in self.obstacles.values())
+                if any(a <= t <= b for a, b in inside):
+                    self.assertLessEqual(at, delta + 1e-9)
+                if not any(a <= t <= b for a, b in outside):
+                    self.assertGreater(at, delta)
+
+    def test_the_robot_of_the_scene_stands_in_the_way(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'rail.urdf')
+            with open(path, 'w') as out:
+                out.write('<robot name="r"><link name="rail"/><link name="cart"><collision><geometry><sphere radius="0.1"/></geometry>'
+                          '</collision></link><joint name="slide" type="prismatic"><parent link="rail"/><child link="cart"/>'
+                          '<origin xyz="0 1.1 0"/><axis xyz="1 0 0"/><limit lower="-20" upper="20"/></joint></robot>')
+            scene = cprox.Scene(cprox.Robot.from_urdf(path))
+        line = cprox.bezier([[-9, 0, 0], [9, 0, 0]])
+        for x, distance in ((0, 1), (-3, 1), (12, math.hypot(1.1, 3) - .1)):
+            got = scene.distance(line, positions={'slide': x})
+            self.assertAlmostEqual(got['result'].upper, distance, delta=1e-6)
+            self.assertEqual((got['b'], got['kind']), ('cart', 'curve'))
+        self.assertEqual(scene.tolerance(line, .9)['result'].verdict, 'clear')
+        self.assertEqual(scene.tolerance(line, 1.1)['result'].verdict, 'violated')
+        for words, ask in (('slyde', lambda: scene.distance(line, positions={'slyde': 1})), ("'wheel'", lambda: scene.distance(line, links=['wheel'])),
+                           ('has no robot', lambda: self.scene.distance(line, positions={'slide': 1})),
+                           ('radius', lambda: scene.distance(line, radius=-1)), ("'nothing'", lambda: self.scene.distance(line, objects=['nothing']))):
+            with self.assertRaisesRegex(ValueError, words):
+                ask()
+        with self.assertRaises(TypeError):
+            scene.distance([[0, 0, 0], [1, 1, 1]])
+
+    def test_nothing_to_measure_is_not_clear(self):
+        line = cprox.bezier([[-9, 0, 0], [9, 0, 0]])
+        for got in (cprox.Scene().collision(line), cprox.Scene().tolerance(line, .1)):
+            self.assertEqual((got['result'].verdict, got['status']), ('undecided', 'empty'))
+        self.assertEqual(cprox.Scene().collision(line, allow_empty=True)['result'].verdict, 'clear')
+
+
 class Errors(unittest.TestCase):
     def refused(self, error, part, call, *arguments, **options):
         with self.assertRaises(error) as caught:

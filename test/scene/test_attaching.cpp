@@ -125,7 +125,7 @@ TEST(LinkPadding, counts_against_everything_but_the_robot_itself) {
     for (const auto &[name, link] : scene.snapshot()->robot()->links()) placement.links.push_back(poses.at(name));
     for (const auto &[id, object] : scene.snapshot()->attached()) placement.attached[id] = object;
     NearPairsQuery near;
-    near.pairs = RobotPairs::SELF;
+    near.pairs = RobotPairs::SELF, near.reach = 9.0;
     double least = INFINITY;
     standing.visit(placement, near, workspace, [&](const NearPair &pair) {
       least = std::min(least, pair.result.upper);
