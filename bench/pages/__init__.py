@@ -27,11 +27,11 @@ def write_all(rows, drawn, out, made):
     """The pages for which all groups were run; their names."""
     figures = Figures(rows)
     groups = {row['group'] for row in rows}
-    pages = {'README.md': lambda: readme.page(figures, drawn, made, out), 'seeds.md': lambda: seeds.page(figures),
+    pages = {'README.md': lambda: readme.page(figures, drawn, made, out), 'seeds.md': lambda: seeds.page(figures, out),
              'stability.md': lambda: stability.page(figures),
-             'optimise.md': lambda: optimise.page(figures),
-             'contacts.md': lambda: contacts.page(figures),
-             'choosing.md': lambda: choosing.page(figures)}
+             'optimise.md': lambda: optimise.page(figures, out),
+             'contacts.md': lambda: contacts.page(figures, out),
+             'choosing.md': lambda: choosing.page(figures, out)}
     if hulls.read(out):
         pages['hulls.md'] = lambda: hulls.page(out)
     written = []

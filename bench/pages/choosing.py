@@ -3,7 +3,7 @@
 import statistics
 
 import targets
-from pages.figures import OURS, microseconds, short, table
+from pages.figures import OURS, microseconds, picture, short, table
 
 ENTRIES = [
     ['a planner in C or C++', '`curve_proximity/cprox.h`, `core.hpp`, `motion.hpp`', 'no copy, no lock; [c-api.md](../c-api.md)'],
@@ -13,6 +13,12 @@ ENTRIES = [
     ['MoveIt', "the node on move_group's scene", '[moveit.md](../moveit.md)'],
     ['an optimiser', 'a constraint provider', 'value and gradient; [constraint-providers.md](../constraint-providers.md)'],
 ]
+
+
+# How many verdicts a row of results.csv sums up: bench/batches.c has 3 scenes of 1000 curves, bench/robots.c the answers of
+# test/data/motion/cases.txt above 0.
+BATCH_VERDICTS = 3000
+ROBOT_PROBLEMS = 39
 
 
 def superquadric_pairs(figures):
@@ -25,11 +31,11 @@ def superquadric_pairs(figures):
         return said
     failures = sum(int(row['failures']) for row in rows if row['method'] == 'ipopt')
     return (f'{said}\n  Ipopt, a general interior-point solver, takes {short(statistics.median(ratios))} times as long '
-            f'(median over the same pairs; the least is {short(min(ratios))}). It fails in {failures} of the cases, ours in '
+            f'(median over the same pairs; the least is {short(min(ratios))}). It fails in {failures} of the cases (200 a pair in a full run), ours in '
             f"{sum(int(row['failures']) for row in rows if row['method'] == targets.OURS)}.")
 
 
-def page(figures):
+def page(figures, out):
     polytope, order = 'polytope 3-D distance', 'order 15 eps '
     loose, tight = (figures.time('curves', polytope, order + e) for e in ('1e-02', '1e-10'))
     growth = short(figures.number('curves', polytope, order + '1e-14') / figures.number('curves', polytope, order + '1e-02'))
@@ -49,7 +55,7 @@ def page(figures):
               for name, workload in (('curve and polytope', 'Bezier and polytope'), ('robot along a trajectory', 'robot trajectory'))]
     return f'''# Choosing
 
-Five minutes for whoever plans motions. All times are medians over the problems of a group, of one run ([README.md](README.md) says of which), on one core; what
+A guide of five minutes for motion planning. All times are medians over the problems of a group, of one run ([README.md](README.md) says of which), on one core; what
 counts is how they relate.
 
 ## Which entry
@@ -65,13 +71,17 @@ counts is how they relate.
   between bodies, by Fourier gaps where bodies may overlap and must be pushed apart.
 
 ## Which epsilon
-An answer to 1e-2 m takes {loose}, to 1e-10 m {tight}; to 1e-14 it takes {growth} times what 1e-2 takes. So do not save on ε for curves: the default, 1e-6 m, is already
-below what a robot can be controlled to.
+An answer to 1e-2 m takes {loose}, to 1e-10 m {tight}; to 1e-14 it takes {growth} times what 1e-2 takes. A smaller ε costs almost nothing for
+curves. Keep the default of 1e-6 m.
+
+{picture(out, 'work_precision_polytope', 'Time against accuracy: curves of order 15 against polytopes')}
 
 ## Robots
 Arms along joint splines against a scene take {robot_loose} for the distance to 1e-3, {robot} to 1e-6 (medians over the reference cases). The verdict "farther than Δ"
-takes {robot_clear} where Δ is half of the distance, {robot_near} where it is 99 % of it. States every .05 rad gave {sampled} wrong verdicts where Δ is 1 % above the
-distance. Ask for the distance only if you need the number.
+takes {robot_clear} where Δ is half of the distance, {robot_near} where it is 99 % of it. States every .05 rad gave {sampled} wrong verdicts of {ROBOT_PROBLEMS} where Δ is
+1 % above the distance. Ask for the distance only if you need the number.
+
+{picture(out, 'robots_verdicts', 'Verdicts of arms along joint splines over delta')}
 
 ## Which model
 - Boxes, spheres, capsules, cylinders, cones, polytopes: give them as they are; they are closed forms or support functions.
@@ -82,7 +92,9 @@ distance. Ask for the distance only if you need the number.
 
 ## One or many
 A batch of a thousand quintics against a hundred boxes takes {tolerance_batch} for all tolerances, {distance_batch} for all distances. Sampling a hundred points of each
-curve gave {missed} wrong verdicts about the same collisions; no ε makes up for that.
+curve gave {missed} wrong verdicts of {BATCH_VERDICTS} about the same collisions: three scenes of a thousand curves. No ε makes up for that.
+
+{picture(out, 'batches_rate_collision', 'Collision verdicts a second over the number of obstacles')}
 
 ## A certificate?
 Take one where somebody else must believe the answer: `cprox_check` proves it again by arithmetic of its own. It costs, at Δ = 90 % of the distance (medians):

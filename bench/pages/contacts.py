@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """contacts.md: first contacts of moving bodies, ours beside Bullet and FCL; every number from results.csv."""
 import targets
-from pages.figures import microseconds, short, table
+from pages.figures import microseconds, picture, short, table
 
 # What is said of a method below the table, where it was measured.
 NOTES = {
@@ -32,7 +32,7 @@ def short_power(value):
     return f'{value:.0e}'.replace('e-0', 'e-') if 0 < value < 1e-3 else short(value)
 
 
-def page(figures):
+def page(figures, out):
     rows = [row for row in figures.rows if (row['group'], row['workload']) == ('moving', 'contact')]
     methods = list(dict.fromkeys(row['method'] for row in rows))
     found = {(row['parameter'], row['method']): row for row in rows}
@@ -60,4 +60,8 @@ Bullet takes two poses and moves at constant speed and rate of turning between t
 slerp, and the screw here, whose axis passes through the body's origin. The spline is 100 chords for Bullet. FCL takes
 each motion by a class of its own: `TranslationMotion`, `InterpMotion`, `ScrewMotion`, and `SplineMotion` with the de Boor
 points of the same curve. A hull of Bullet has no margin here; by default it is 4 cm larger than its points.
+
+Points and balls along curves, beside Bullet on chords:
+
+{picture(out, 'peers_time_of_contact', 'Time of contact along curves, beside Bullet')}
 '''

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the pages say of results.csv: one figure at a time, as text."""
+import os
+
 import targets
 
 OURS = targets.OURS
@@ -31,6 +33,11 @@ class Figures:
 
     def count(self, *key, column, method=OURS):
         return short(self.number(*key, method=method, column=column))
+
+
+def picture(out, name, text):
+    """The chart as a picture of the page, or its name where this run has not drawn it."""
+    return f'![{text}]({name}.png)' if os.path.exists(os.path.join(out, f'{name}.png')) else f'(`{name}` is not drawn here.)'
 
 
 def short(value):

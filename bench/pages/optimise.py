@@ -4,7 +4,7 @@ import re
 import statistics
 
 import targets
-from pages.figures import microseconds, short, table
+from pages.figures import microseconds, picture, short, table
 
 CLEAR, FREE = 'clear by 10 mm', 'free of contact'
 
@@ -37,7 +37,7 @@ def family_lines(rows, methods):
                *(said([of[method]]) for method in methods)]
 
 
-def page(figures):
+def page(figures, out):
     rows = [row for row in figures.rows if row['group'] == 'optimise']
     methods = list(dict.fromkeys(row['method'] for row in rows))
     return f'''# Motions made smooth and clear
@@ -60,6 +60,8 @@ states, is less than was said. Deepest: the depth of the worst motion that was s
 
 Time and evaluations: medians over the motions of a family, then over the families. An evaluation asks for all clearances
 of one motion; the time is that of the processor, the proof of `curve_proximity` included.
+
+{picture(out, 'optimise', 'Time of a motion by method and family; the table above has how many are wrong')}
 
 ## By family
 Time of `curve_proximity`, and how many motions each method says to be 10 mm clear.

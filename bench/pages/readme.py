@@ -19,11 +19,9 @@ CHARTS = [
     ('splines_*', 'long B-splines: time against the number of segments'),
     ('trigonometric', 'series that are compiled once, distance and tolerance'),
     ('peers_*', 'curves and paths beside OpenCASCADE, SISL, FCL and Bullet, those that are installed'),
-    ('seeds_*', 'figures of the first two papers, drawn again'),
     ('batches*', 'a thousand quintics against 2, 50 and 100 obstacles, beside sampling by FCL, and over threads'),
     ('robots_*', 'arms along joint splines, against the scene and themselves, beside the bound by both ends of an interval and samples; verdicts; '
                  "checks of states by FCL, and MoveIt's own figures for reference"),
-    ('optimise', 'motions of an arm made smooth and clear by rows of whole motions, and by samples of FCL'),
     ('worlds_*', 'meshes, point clouds, octree leaves, sets of bodies, beside FCL'),
     ('implicit_*', 'pairs of implicit bodies: interior point, support functions, both together, a general solver'),
     ('fourier_*', 'over-reach of gap functions by kernel and n, what verdicts are worth in space, and what it costs; gradients; an SE(2) obstacle, '
@@ -125,9 +123,15 @@ def second_run(out):
     return f'[{repeat.PAGE}]({repeat.PAGE}) holds a second run against this one.' if os.path.exists(os.path.join(out, repeat.PAGE)) else ''
 
 
+def gallery(drawn):
+    """What charts show, and the charts; those of the papers and of motions made smooth have pages of their own."""
+    for pattern, text in CHARTS:
+        names = [name for name in drawn if fnmatch.fnmatchcase(name, pattern)]
+        if names:
+            yield '\n\n'.join([f'**{text[0].upper()}{text[1:]}**', *(f'![{name.replace("_", " ")}]({name}.png)' for name in names)])
+
+
 def page(figures, drawn, made, out):
-    chart_lines = [[', '.join(f'[{name}]({name}.png)' for name in drawn if fnmatch.fnmatchcase(name, pattern)), text]
-                   for pattern, text in CHARTS if any(fnmatch.fnmatchcase(name, pattern) for name in drawn)]
     of_passes = passes.read_spread(out)
     return f'''# Charts
 
@@ -138,7 +142,7 @@ Trust ratios and counts, not microseconds. `results.csv` has every row. [choosin
 [hulls.md](hulls.md) robots' meshes beside their hulls, [optimise.md](optimise.md) motions of an arm made smooth and clear,
 [contacts.md](contacts.md) first contacts beside Bullet and FCL.
 
-{table(['chart', 'shows'], chart_lines)}
+[All charts](#all-charts), [targets](#targets), [growth](#growth), [where we lose](#where-we-lose).
 
 ## Targets
 `bench/targets.csv`, held against this run, whose figures are the medians of {len(next(iter(of_passes.values()), [0]))} passes in fresh processes. The spread is what two runs
@@ -154,4 +158,7 @@ Time or memory against size: the exponent of a power, fitted by least squares to
 {lods(figures.rows)}
 ## Where we lose
 {chr(10).join(loss_lines(figures.rows)) or 'Nowhere in this run.'}
-'''
+
+## All charts
+
+{chr(10).join(f'{part}{chr(10)}' for part in gallery(drawn))}'''

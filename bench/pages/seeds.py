@@ -3,7 +3,7 @@
 import csv
 import os
 
-from pages.figures import microseconds, table
+from pages.figures import microseconds, picture, table
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'test', 'data', 'reference')
 
@@ -103,7 +103,7 @@ def motions(figures):
     return table(['objects', 'step [m, rad]', 'from scratch', 'from the former answer'], lines)
 
 
-def page(figures):
+def page(figures, out):
     return f'''# The papers' own tables, measured again
 
 Printed values come from other machines and, where inputs are not published (where the curves of Fig. 11 stand, the polygons, the vehicle's
@@ -123,19 +123,43 @@ A. Lakshmanan, A. Patterson, V. Cichella, N. Hovakimyan, RSS 2019
 
 {proximity(figures)}
 
-**Fig. 7**, the width of the interval against intervals examined: `seeds_figure_7`.
+{picture(out, 'seeds_table_2', 'Table II: time of the published method and of ours')}
 
-**Fig. 6**, stages of a search: `papers_figure_6`. **Fig. 8**, glyphs: `papers_figure_8`. Both by `bench/pictures.py`.
+**Fig. 6**, stages of a search, by `bench/pictures.py`:
 
-**Fig. 11**, intervals by the ellipsoids of Theorem 1; how far they reach: `seeds_figure_11_reach`.
+{picture(out, 'papers_figure_6', 'Fig. 6: stages of a search')}
+
+**Fig. 7**, the width of the interval against intervals examined:
+
+{picture(out, 'seeds_figure_7', 'Fig. 7: convergence')}
+
+**Fig. 8**, glyphs, by `bench/pictures.py`:
+
+{picture(out, 'papers_figure_8', 'Fig. 8: glyphs')}
+
+**Fig. 11**, intervals by the ellipsoids of Theorem 1, and how far they reach:
 
 {ellipsoids(figures)}
 
-**§V-D**, confidence regions: `papers_section_5d`, by `bench/pictures.py`. **Fig. 10 b**, memory: `seeds_figure_10_memory`.
+{picture(out, 'seeds_figure_11_reach', 'Fig. 11: how far ellipsoids and control points reach')}
+
+**§V-D**, confidence regions, by `bench/pictures.py`:
+
+{picture(out, 'papers_section_5d', 'Section V-D: confidence regions')}
 
 **Fig. 10**, ten random Bézier curves of each order and a point, medians:
 
 {orders(figures)}
+
+{picture(out, 'seeds_figure_10_distance', 'Fig. 10 a: distance over the order')}
+
+{picture(out, 'seeds_figure_10_tolerance', 'Fig. 10 a: tolerance over the order')}
+
+{picture(out, 'seeds_figure_10_collision', 'Fig. 10 a: collision over the order')}
+
+**Fig. 10 b**, memory:
+
+{picture(out, 'seeds_figure_10_memory', 'Fig. 10 b: memory over the order')}
 
 **Fig. 12**, replanning. {replanning(figures)}
 
@@ -156,13 +180,19 @@ N. Chakraborty, J. Peng, S. Akella, J. Mitchell, 2008
 
 {motions(figures)}
 
-**Accuracy**: time against the accuracy asked for, beside support functions and Ipopt: `implicit_accuracy`. **As meshes** of 19,000
-triangles, which the paper gave to PQP, FCL's mesh distance beside ours: `implicit_meshes`.
+**Accuracy**, time against the accuracy asked for, beside support functions and Ipopt, and **as meshes** of 19,000 triangles, which the paper
+gave to PQP, FCL's mesh distance beside ours: the implicit charts of [README.md](README.md#all-charts).
 
-**Fig. 2**, time against the number of constraints: `seeds_figure_2_planes`, `_quadrics`, `_superquadrics`; exponents in [growth](README.md#growth).
+**Fig. 2**, time against the number of constraints; exponents in [growth](README.md#growth):
+
+{picture(out, 'seeds_figure_2_planes', 'Fig. 2: time over the number of planes')}
+
+{picture(out, 'seeds_figure_2_quadrics', 'Fig. 2: time over the number of quadrics')}
+
+{picture(out, 'seeds_figure_2_superquadrics', 'Fig. 2: time over the number of superquadrics')}
 
 ## Fourier Collision Detection
 
-M. Lysenko, 2011
-It prints no figures, only pictures: Fig. 3 is `fourier_over_reach`, Fig. 5 `fourier_convergence`, Fig. 6 `fourier_obstacle`.
+M. Lysenko, 2011. It prints no figures, only pictures: Fig. 3 is `fourier_over_reach`, Fig. 5 `fourier_convergence`, Fig. 6
+`fourier_obstacle`, among the Fourier charts of [README.md](README.md#all-charts).
 '''
