@@ -749,6 +749,14 @@ inline cprox_growth growthDistance(const cprox_obstacle &a, const cprox_obstacle
   return growth;
 }
 
+/** A growth distance with its derivatives by the poses of both bodies, as cprox_growth_gradient(). */
+inline cprox_growth growthGradient(const cprox_obstacle &a, const cprox_obstacle &b, const cprox_options &options,
+                                   Workspace &workspace, cprox_growth_derivatives &derivatives) {
+  cprox_growth growth{};
+  require(cprox_growth_gradient(a, b, &options, workspace.get(), &growth, &derivatives), workspace);
+  return growth;
+}
+
 namespace detail {
 struct FreeObstacles {
   void operator()(cprox_obstacles *handle) const {

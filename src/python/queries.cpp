@@ -462,6 +462,31 @@ void addQueries(py::module &module) {
       "The least factor by which two convex shapes, each scaled about its centre, touch: a dict of status, lower, "
       "upper,\nnormal. Below 1 they overlap.");
   module.def(
+      "growth_gradient",
+      [](const Obstacle &a, const Obstacle &b, const py::kwargs &given) {
+        const cprox_options options = optionsOf(given);
+        Workspace &workspace = threadWorkspace();
+        cprox_growth_derivatives d{};
+        const cprox_growth growth = growthGradient(a.obstacle, b.obstacle, options, workspace, d);
+        py::dict out;
+        out["status"] = cprox_status_name(growth.status);
+        out["lower"] = growth.lower;
+        out["upper"] = growth.upper;
+        out["normal"] = fromVector(growth.normal);
+        out["valid"] = d.valid;
+        out["valid_position"] = d.valid_position;
+        out["reason"] = d.valid ? "" : cprox_workspace_error(workspace.get());
+        out["a_position"] = fromVector(d.a_position);
+        out["a_rotation"] = fromVector(d.a_rotation);
+        out["b_position"] = fromVector(d.b_position);
+        out["b_rotation"] = fromVector(d.b_rotation);
+        out["touch"] = fromVector(d.touch);
+        return out;
+      },
+      py::arg("a"), py::arg("b"),
+      "growth_distance with its derivatives: also valid, valid_position, reason, a_position, a_rotation, b_position,\n"
+      "b_rotation, touch (where the scaled shapes touch).");
+  module.def(
       "distance_gradient",
       [](const py::object &mover, const Obstacle &obstacle, const py::kwargs &given) {
         return gradientOf(*moverOf(mover), obstacle, optionsOf(given));

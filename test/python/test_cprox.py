@@ -108,6 +108,12 @@ class Curves(unittest.TestCase):
         self.assertLessEqual(growth['lower'], 4)
         self.assertGreaterEqual(growth['upper'], 4 - 1e-12)
         self.assertLess(growth['upper'], 4 + 1e-5)
+        slopes = cprox.growth_gradient(box, other)  # faces are parallel: by positions alone
+        self.assertEqual((slopes['valid'], slopes['valid_position']), (False, True))
+        self.assertIn('more than one point', slopes['reason'])
+        numpy.testing.assert_allclose(slopes['b_position'], [1, 0, 0], atol=1e-12)
+        turned = cprox.Obstacle(cprox.box([1, 1, 1]), cprox.transform([4, 3, 0], [.2, .4, .4, .8]))
+        self.assertTrue(cprox.growth_gradient(box, turned)['valid'])
 
         # Table III: both bodies scaled by .5, 3, .67 are the superquadrics of the scaled semi-axes
         scale = numpy.array([.5, 3, .67])

@@ -67,6 +67,59 @@ typedef struct cprox_growth {
 CPROX_API cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                              cprox_workspace *workspace, cprox_growth *growth);
 
+/** The derivatives of a growth distance by the poses of both bodies. Those by rotations are by a small rotation vector
+ *  w that turns the body about its position, world axes: R becomes exp([w]) R. */
+typedef struct cprox_growth_derivatives {
+  /** the growth distance is differentiable here; false: it is not, or cannot be told to be. The reason is in the
+   *  workspace; the numbers are those of one of the optima, or 0 */
+  bool valid;
+  /** it is differentiable by positions, at least: the bodies may touch in more than one point, as with faces that are
+   *  parallel */
+  bool valid_position;
+  /** hessian is known */
+  bool bends;
+  /** [1/m] by the position of a, world axes */
+  cprox_vec3 a_position;
+  /** [1/rad] */
+  cprox_vec3 a_rotation;
+  /** [1/m] by the position of b: minus a_position */
+  cprox_vec3 b_position;
+  /** [1/rad] */
+  cprox_vec3 b_rotation;
+  /** where the scaled bodies touch, world frame; NaN where that is not known */
+  cprox_vec3 touch;
+  /** [1/m²] the second derivative by the position of a, or of b, world axes: xx, xy, xz, yy, yz, zz; minus that by one
+   *  of each. Else NaN */
+  double hessian[6];
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[2];
+} cprox_growth_derivatives;
+
+/** The growth distance and its derivatives, by one search. They are as smooth in contact and deep inside as apart.
+ *
+ *  growth       receives what cprox_growth_distance() answers.
+ *  derivatives  by the envelope theorem: with the plane between the scaled bodies, and the point where they touch.
+ *
+ *  valid is false
+ *    where the bodies touch in more than one point: both are flat there along one direction (faces that are parallel,
+ *    an edge along a face). Flat is what moves its extreme point by more than 1e-3 sizes as the normal turns by
+ *    1e-5 rad,
+ *    where more than one plane fits between them (an edge on an edge that is parallel, a corner on a corner, and where
+ *    the nearest of two faces changes): turned by 1e-5 rad a plane bounds the growth as well within 2e-14,
+ *    where the centres coincide, and where the optimum was not found narrowly enough.
+ *  The derivatives are exact but for rounding. Faces of superquadrics that are all but flat leave an error of 1e-5.
+ *  The support functions of implicit bodies of more than one constraint come from a solver, which leaves 1e-4; those
+ *  and callbacks have no hessian, and count as flat by 0.1 sizes and 1e-3 rad.
+ *
+ *  Along a motion the derivative by time is a_position·v + a_rotation·w for the velocity v and the angular velocity w
+ *  of a, and likewise for b.
+ *
+ *  Returns as cprox_growth_distance(), also where valid is false. Cost: 1.2 to 1.8 growth distances
+ *  (doc/implicit.md, Growth distance). */
+CPROX_API cprox_status cprox_growth_gradient(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
+                                             cprox_workspace *workspace, cprox_growth *growth,
+                                             cprox_growth_derivatives *derivatives);
+
 #ifdef __cplusplus
 }
 #endif

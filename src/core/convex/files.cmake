@@ -19,6 +19,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/point.c
   ${CMAKE_CURRENT_LIST_DIR}/polygon.c
   ${CMAKE_CURRENT_LIST_DIR}/polytope.c
+  ${CMAKE_CURRENT_LIST_DIR}/ray.c
   ${CMAKE_CURRENT_LIST_DIR}/simplex.c
   ${CMAKE_CURRENT_LIST_DIR}/sphere.c
   ${CMAKE_CURRENT_LIST_DIR}/support_callback.c

@@ -9,6 +9,7 @@
 #include "base/workspace.h"
 #include "implicit/implicit.h"
 #include "narrowphase/relative_pose.h"
+#include "narrowphase/translation.h"
 #include "problem/validate.h"
 
 enum { TRANSLATION_STEPS = 200 };
@@ -19,7 +20,7 @@ static bool is_implicit(const cprox_body *body) {
   return body->kind == CPROX_BODY_SUPERQUADRIC || body->kind == CPROX_BODY_IMPLICIT;
 }
 
-static cprox_status check_body(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
+cprox_status translation_check_body(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
   if (target->curve || !target->body) return workspace_fail(workspace, CPROX_INVALID, "%s is not a body", name);
   if (!target->body->shape.ops)
     return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be convex", name,
@@ -32,8 +33,9 @@ static cprox_status check_motion(const cprox_translating *a, const cprox_transla
   cprox_status status;
   if (!workspace) return CPROX_INVALID;
   if ((status = validate_options(options, asked, workspace)) || (status = validate_target(&a->from, 0, workspace)) ||
-      (status = validate_target(&b->from, 1, workspace)) || (status = check_body("a", &a->from, workspace)) ||
-      (status = check_body("b", &b->from, workspace)))
+      (status = validate_target(&b->from, 1, workspace)) ||
+      (status = translation_check_body("a", &a->from, workspace)) ||
+      (status = translation_check_body("b", &b->from, workspace)))
     return status;
   if (!vec_finite(a->velocity) || !vec_finite(b->velocity))
     return workspace_fail(workspace, CPROX_INVALID, "a velocity is not finite");
@@ -310,53 +312,20 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
   return finish(status, workspace);
 }
 
-/* ---- growth ---- */
+/* ---- growth, by an approach ---- */
 
-/* The radius of a ball about the centre that lies in the body; 0: none is known. */
-static double inner_radius(const cprox_body *body) {
-  if (is_implicit(body)) return body->shape.implicit->inner;
-  return isfinite(body->ball_radius) ? fmax(-0.999 * cprox_body_nearest(body, body->centre, NULL), 0.0) : 0.0;
-}
-
-static cprox_status check_growing(const char *name, const cprox_body *body, cprox_workspace *workspace) {
-  if (inner_radius(body) > 1e-12 * body->ball_radius) return CPROX_OK;
-  return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be bounded and have its centre inside", name,
-                        cprox_body_kind_name(body->kind));
-}
-
-/* Both scaled by g about their centres touch where, unscaled, they would touch with the centres 1/g times as far apart:
- * b approaches along the line of the centres from where it is free for certain. */
-cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
-                                   cprox_workspace *workspace, cprox_growth *growth) {
-  WORKSPACE_USE(workspace);
-  workspace_clear(workspace);
-  const cprox_options asked = arguments_options(options);
-  const cprox_translating still_a = {.from = a}, still_b = {.from = b};
-  const arguments_query kind = {"the growth distance", ARGUMENTS_STOP};
-  cprox_status status = check_motion(&still_a, &still_b, 1.0, &asked, kind, workspace);
-  if (status) return status;
-  if (!growth) return workspace_fail(workspace, CPROX_INVALID, "growth is NULL: nowhere to put the answer");
-  if (a.margin > 0.0 || b.margin > 0.0)
-    return workspace_fail(workspace, CPROX_INVALID, "margin is not scaled: it must be 0");
-  if ((status = check_growing("a", a.body, workspace)) || (status = check_growing("b", b.body, workspace)))
-    return status;
-
-  const frame fa = frame_create(&a.pose, a.body->centre), fb = frame_create(&b.pose, b.body->centre);
-  const vec3 apart = vec_sub(frame_to_world(&fb, vec(0, 0, 0)), frame_to_world(&fa, vec(0, 0, 0)));
+cprox_status translation_growth(cprox_obstacle a, cprox_obstacle b, vec3 apart, double inner,
+                                const cprox_options *asked, cprox_workspace *workspace, cprox_growth *growth) {
   const double reach = a.body->ball_radius + b.body->ball_radius, far = vec_norm(apart);
   *growth = (cprox_growth){.status = CPROX_OK};
-  if (far <= 1e-12 * reach) {
-    growth->upper = far / fmin(inner_radius(a.body), inner_radius(b.body));
-    return CPROX_OK;
-  }
 
   /* time runs from `most` centre distances down to 0; an error of the distance costs its part of the time */
-  const double most = 1.01 * reach / far + 1e-6, inner = inner_radius(a.body) + inner_radius(b.body);
+  const double most = 1.01 * reach / far + 1e-6;
   approach p = {.a = a, .b = b, .velocity = vec_neg(apart), .duration = most};
   p.b.pose.position = vec_axpy(b.pose.position, most - 1.0, apart);
-  cprox_options fine = asked;
-  fine.epsilon = fmax(0.1 * fmin(asked.epsilon, 0.1) * inner, 1e-13 * (reach + far));
-  status = approach_run(&p, &fine, workspace);
+  cprox_options fine = *asked;
+  fine.epsilon = fmax(0.1 * fmin(asked->epsilon, 0.1) * inner, 1e-13 * (reach + far));
+  const cprox_status status = approach_run(&p, &fine, workspace);
   if (status < 0) return status;
   const double rounding = 16.0 * ROUND_U * most;
   growth->lower = 1.0 / (most - p.free_until + rounding);
@@ -376,7 +345,7 @@ cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cpr
     if (r.upper <= 0.0) growth->upper = 1.0 / (s - rounding);
   }
   growth->pairs = p.pairs + 1;
-  const bool narrow = growth->upper - growth->lower <= asked.epsilon * fmax(growth->upper, 1e-300);
+  const bool narrow = growth->upper - growth->lower <= asked->epsilon * fmax(growth->upper, 1e-300);
   growth->status = narrow ? CPROX_OK : status == CPROX_STOPPED ? CPROX_STOPPED : CPROX_PRECISION;
-  return finish(growth->status, workspace);
+  return CPROX_OK;
 }

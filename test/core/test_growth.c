@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Growth distances of all convex kinds, and their derivatives. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/frame.h"
+#include "curve_proximity/cprox.h"
+#include "support/cases.h"
+#include "support/implicits.h"
+#include "support/random.h"
+#include "support/shapes.h"
+
+/* The kinds with an inside, and a superquadric, a body of one constraint, and one of three. */
+enum { N_SHAPES = 8, N_KINDS = N_SHAPES + 3 };
+static const cprox_body_kind SHAPES[N_SHAPES] = {CPROX_BODY_SPHERE,   CPROX_BODY_BOX,    CPROX_BODY_CAPSULE,
+                                                 CPROX_BODY_CYLINDER, CPROX_BODY_CONE,   CPROX_BODY_ELLIPSOID,
+                                                 CPROX_BODY_POLYTOPE, CPROX_BODY_SUPPORT};
+
+static int make_workspace(void **state) {
+  *state = cprox_workspace_create();
+  return 0;
+}
+
+static int free_workspace(void **state) {
+  cprox_workspace_free(*state);
+  return 0;
+}
+
+static cprox_growth growth_of(cprox_obstacle a, cprox_obstacle b, cprox_workspace *workspace) {
+  cprox_growth growth;
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = 1e-9;
+  assert_true(cprox_growth_distance(a, b, &options, workspace, &growth) >= 0);
+  return growth;
+}
+
+/* A body with its centre inside: polytopes of few corners may not have it there. */
+static void make_body(rng *r, size_t kind, cprox_workspace *workspace, test_shape *shape) {
+  *shape = (test_shape){.body = NULL};
+  if (kind == N_SHAPES) {
+    const vec3 axes = vec(rng_uniform(r, 0.3, 1.0), rng_uniform(r, 0.3, 1.0), rng_uniform(r, 0.3, 1.0));
+    const vec3 exponents = vec(rng_uniform(r, 1.5, 6.0), rng_uniform(r, 1.5, 6.0), rng_uniform(r, 1.5, 6.0));
+    assert_int_equal(cprox_body_create_superquadric(axes, exponents, workspace, &shape->body), CPROX_OK);
+    return;
+  }
+  if (kind > N_SHAPES) {
+    implicit_case c;
+    implicit_case_paper(kind == N_SHAPES + 1 ? 3 : 5, &c);
+    shape->body = implicit_case_body(&c, NULL);
+    return;
+  }
+  for (;;) {
+    shape_make(r, SHAPES[kind], 1.0, 3.0, shape);
+    const cprox_obstacle x = cprox_obstacle_at(shape->body, CPROX_POSE_IDENTITY);
+    cprox_obstacle y = x;
+    cprox_growth growth;
+    y.pose.position.x = 1.0;
+    if (cprox_growth_distance(x, y, NULL, workspace, &growth) >= 0) return;
+    cprox_body_free(shape->body);
+  }
+}
+
+/* A rigid step: by v, and by the rotation vector w about the pose's position. */
+static cprox_pose stepped(cprox_pose pose, vec3 v, vec3 w) {
+  const double angle = vec_norm(w);
+  const vec3 u = angle > 0.0 ? vec_scale(sin(0.5 * angle) / angle, w) : w;
+  const cprox_quat q = pose.orientation, by = {cos(0.5 * angle), u.x, u.y, u.z};
+  pose.position = vec_add(pose.position, v);
+  pose.orientation = (cprox_quat){
+      by.w * q.w - by.x * q.x - by.y * q.y - by.z * q.z, by.w * q.x + by.x * q.w + by.y * q.z - by.z * q.y,
+      by.w * q.y - by.x * q.z + by.y * q.w + by.z * q.x, by.w * q.z + by.x * q.y - by.y * q.x + by.z * q.w};
+  return pose;
+}
+
+typedef struct motion {
+  vec3 v[2], w[2];
+} motion;
+
+static void moved(cprox_obstacle x[2], const motion *m, double h) {
+  for (int k = 0; k < 2; k++) x[k].pose = stepped(x[k].pose, vec_scale(h, m->v[k]), vec_scale(h, m->w[k]));
+}
+
+/* Central differences of the value along a motion. */
+static double difference(const cprox_obstacle x[2], const motion *m, double h, cprox_workspace *workspace) {
+  double g[2];
+  for (int k = 0; k < 2; k++) {
+    cprox_obstacle y[2] = {x[0], x[1]};
+    moved(y, m, k ? h : -h);
+    const cprox_growth growth = growth_of(y[0], y[1], workspace);
+    g[k] = 0.5 * (growth.lower + growth.upper);
+  }
+  return (g[1] - g[0]) / (2.0 * h);
+}
+
+static double along(const cprox_growth_derivatives *d, const motion *m) {
+  return vec_dot(d->a_position, m->v[0]) + vec_dot(d->a_rotation, m->w[0]) + vec_dot(d->b_position, m->v[1]) +
+         vec_dot(d->b_rotation, m->w[1]);
+}
+
+/* Two random bodies of the kinds, scaled apart or together until their growth distance is about `goal`. */
+static void place(rng *r, const size_t kind[2], double goal, vec3 offset, cprox_workspace *workspace,
+                  test_shape shape[2], cprox_obstacle x[2]) {
+  vec3 centre[2];
+  for (int k = 0; k < 2; k++) {
+    make_body(r, kind[k], workspace, &shape[k]);
+    x[k] = cprox_obstacle_at(shape[k].body, rng_pose(r, 1.5));
+    x[k].pose.position = vec_add(x[k].pose.position, offset);
+    const frame f = frame_create(&x[k].pose, vec(0, 0, 0));
+    centre[k] = frame_to_world(&f, cprox_body_get_info(shape[k].body).centre);
+  }
+  const double by = goal / growth_of(x[0], x[1], workspace).upper - 1.0;
+  x[1].pose.position = vec_axpy(x[1].pose.position, by, vec_sub(centre[1], centre[0]));
+}
+
+/* The last kind's support comes from a solver. */
+static bool is_open(const size_t kind[2]) {
+  return kind[0] == N_KINDS - 1 || kind[1] == N_KINDS - 1;
+}
+
+/* Seed 31, 6 places for each pair of eleven kinds, deep, touching and apart, near the origin and, every third, at 1e5 m:
+ * the derivative along a random motion of both bodies is the central difference at the best of four steps; one step
+ * alone may pass a kink. Tolerances: 1e-5, for faces of exponent 14
+ * that are all but flat; 3e-4 where supports come from a solver, and at 1e5 m, where the value is
+ * known within 1e-10. At random places all have a gradient. */
+CASE(gradients_are_central_differences_deep_touching_and_apart) {
+  cprox_workspace *workspace = *state;
+  rng r = rng_seed(31);
+  size_t asked = 0, valid = 0;
+  double most[2] = {0, 0};
+  for (size_t i = 0; i < test_cases(6) * N_KINDS * N_KINDS; i++) {
+    const size_t pair = i % (N_KINDS * N_KINDS), turn = i / (N_KINDS * N_KINDS),
+                 kind[2] = {pair % N_KINDS, pair / N_KINDS};
+    test_shape shape[2];
+    cprox_obstacle x[2];
+    const bool far = turn % 3 == 2;
+    const double goal = turn % 3 == 0 ? rng_uniform(&r, 0.05, 0.5) : turn % 3 == 1 ? 1.0 : rng_uniform(&r, 0.5, 3.0);
+    place(&r, kind, goal, far ? rng_in_cube(&r, 1e5) : vec(0, 0, 0), workspace, shape, x);
+    motion m;
+    for (int k = 0; k < 2; k++) m.v[k] = rng_in_cube(&r, 1.0), m.w[k] = rng_in_cube(&r, 1.0);
+    cprox_growth growth;
+    cprox_growth_derivatives d;
+    assert_true(cprox_growth_gradient(x[0], x[1], NULL, workspace, &growth, &d) >= 0);
+    assert_true(growth.lower <= growth.upper && fabs(growth.upper / goal - 1.0) < 1e-5);
+    asked++, valid += d.valid;
+    if (d.valid) {
+      const double told = along(&d, &m);
+      double least = INFINITY;
+      for (int digits = 3; digits <= 6; digits++)
+        least = fmin(least, fabs(difference(x, &m, pow(10.0, -digits), workspace) - told) / (1.0 + fabs(told)));
+      const bool rough = far || is_open(kind);
+      most[rough] = fmax(most[rough], least);
+      assert_true(d.valid_position && least <= (rough ? 3e-4 : 1e-5));
+      assert_true(fabs(vec_norm(growth.normal) - 1.0) < 1e-12);
+    }
+    for (int k = 0; k < 2; k++) cprox_body_free(shape[k].body);
+  }
+  printf("%zu of %zu valid; differences within %.1e, %.1e\n", valid, asked, most[0], most[1]);
+  assert_true((double)valid >= 0.99 * (double)asked);
+}
+
+/* Seed 32, 4 places for each pair of eleven kinds: with the centres drawn together until bodies grown to the lower end
+ * would touch they do not overlap, and until those grown to the upper end would, they are not apart. Tolerance: 1e-8 of
+ * pairs; polytopes do not state their signed distance nearer. */
+CASE(values_of_all_kinds_are_those_at_which_pairs_touch) {
+  cprox_workspace *workspace = *state;
+  rng r = rng_seed(32);
+  double widest = 0.0;
+  for (size_t i = 0; i < test_cases(4) * N_KINDS * N_KINDS; i++) {
+    const size_t pair = i % (N_KINDS * N_KINDS), kind[2] = {pair % N_KINDS, pair / N_KINDS};
+    test_shape shape[2];
+    cprox_obstacle x[2];
+    place(&r, kind, rng_log_uniform(&r, 1e-3, 10.0), vec(0, 0, 0), workspace, shape, x);
+    const cprox_growth growth = growth_of(x[0], x[1], workspace);
+    if (!is_open(kind)) widest = fmax(widest, growth.upper / growth.lower - 1.0);
+    for (int end = 0; end < 2; end++) {
+      const frame fa = frame_create(&x[0].pose, vec(0, 0, 0)), fb = frame_create(&x[1].pose, vec(0, 0, 0));
+      const vec3 apart = vec_sub(frame_to_world(&fb, cprox_body_get_info(shape[1].body).centre),
+                                 frame_to_world(&fa, cprox_body_get_info(shape[0].body).centre));
+      cprox_obstacle y = x[1];
+      const double by = 1.0 / (end ? growth.upper : growth.lower) - 1.0;
+      y.pose.position = vec_axpy(y.pose.position, by, apart);
+      cprox_result seen;
+      assert_true(cprox_pair(x[0], y, NULL, workspace, &seen) >= 0);
+      assert_true(end ? seen.lower <= 1e-8 : seen.upper >= -1e-8);
+    }
+    for (int k = 0; k < 2; k++) cprox_body_free(shape[k].body);
+  }
+  printf("widest: %.1e of the value\n", widest);
+}
+
+/* Seed 33, 10 places for each pair of eight kinds: the second derivative by a's position, along a random direction, is
+ * the central difference of the first, at the best of three steps. Tolerance: 1e-4. */
+CASE(hessians_are_differences_of_gradients) {
+  cprox_workspace *workspace = *state;
+  rng r = rng_seed(33);
+  size_t asked = 0, known = 0;
+  for (size_t i = 0; i < test_cases(10) * N_SHAPES * N_SHAPES; i++) {
+    const size_t pair = i % (N_SHAPES * N_SHAPES), kind[2] = {pair % N_SHAPES, pair / N_SHAPES};
+    test_shape shape[2];
+    cprox_obstacle x[2];
+    place(&r, kind, rng_uniform(&r, 0.2, 2.0), vec(0, 0, 0), workspace, shape, x);
+    cprox_growth growth;
+    cprox_growth_derivatives d, side[2];
+    assert_true(cprox_growth_gradient(x[0], x[1], NULL, workspace, &growth, &d) >= 0);
+    asked++, known += d.bends;
+    if (d.bends) {
+      const vec3 v = rng_unit(&r);
+      const double *h = d.hessian;
+      const vec3 told = vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
+                            h[2] * v.x + h[4] * v.y + h[5] * v.z);
+      double least = INFINITY;
+      for (int digits = 3; digits <= 5; digits++) {
+        const double step = pow(10.0, -digits);
+        for (int k = 0; k < 2; k++) {
+          cprox_obstacle y = x[k]; /* of b: with the sign changed */
+          y.pose.position = vec_axpy(y.pose.position, step, v);
+          assert_true(cprox_growth_gradient(k ? x[0] : y, k ? y : x[1], NULL, workspace, &growth, &side[k]) >= 0);
+        }
+        const vec3 seen = vec_scale(0.5 / step, vec_sub(side[0].a_position, side[1].a_position));
+        least = fmin(least, vec_norm(vec_sub(seen, told)) / (1.0 + vec_norm(told)));
+      }
+      assert_true(least <= 1e-4);
+    } else {
+      assert_true(isnan(d.hessian[0]));
+    }
+    for (int k = 0; k < 2; k++) cprox_body_free(shape[k].body);
+  }
+  /* callbacks (15 of 64 pairs) have none */
+  assert_true((double)known >= 0.7 * (double)asked && (double)known <= 0.8 * (double)asked);
+}
+
+static cprox_growth_derivatives derivatives_of(cprox_obstacle a, cprox_obstacle b, const char *why,
+                                               cprox_workspace *workspace) {
+  cprox_growth growth;
+  cprox_growth_derivatives d;
+  assert_true(cprox_growth_gradient(a, b, NULL, workspace, &growth, &d) >= 0);
+  if (d.valid != !why || (why && !strstr(cprox_workspace_error(workspace), why)))
+    fail_msg("valid %d: %s", d.valid, cprox_workspace_error(workspace));
+  return d;
+}
+
+/* Boxes of 2 m. Face to face they may turn either way: no gradient by rotations, the one by positions is 1/2 along the
+ * axis, apart, touching and deep. Edges that cross, a corner in the middle of a face and balls have one. Where two faces
+ * tie, an edge lies along an edge, or a corner meets a corner, there is none. */
+CASE(ties_have_no_gradient_and_what_looks_like_one_does) {
+  cprox_workspace *workspace = *state;
+  static const char *const faces = "touch in more than one point", *const planes = "more than one plane fits";
+  cprox_body *box = NULL, *ball = NULL, *cylinder = NULL, *spike = NULL;
+  const vec3 corners[5] = {{0, 0, -1}, {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
+  assert_int_equal(cprox_body_create_box(vec(2, 2, 2), workspace, &box), CPROX_OK);
+  assert_int_equal(cprox_body_create_sphere(1.0, workspace, &ball), CPROX_OK);
+  assert_int_equal(cprox_body_create_cylinder(2.0, 1.0, workspace, &cylinder), CPROX_OK);
+  assert_int_equal(cprox_body_create_polytope(corners, 5, workspace, &spike), CPROX_OK);
+  const double half = 0.70710678118654752;
+  const cprox_quat about_z = {0.92387953251128674, 0, 0, 0.38268343236508977},
+                   about_x = {0.92387953251128674, 0.38268343236508977, 0, 0},
+                   about_y = {0.92387953251128674, 0, 0.38268343236508977, 0}, to_x = {half, 0, half, 0};
+  cprox_obstacle a = cprox_obstacle_at(box, CPROX_POSE_IDENTITY), b = a;
+
+  for (int i = 0; i < 7; i++) {
+    const double far = 0.1 * ldexp(1.0, i);
+    b.pose.position = vec(far, 0.3 * far, -0.2 * far);
+    const cprox_growth_derivatives d = derivatives_of(a, b, faces, workspace);
+    assert_true(d.valid_position && fabs(d.b_position.x - 0.5) < 1e-14 && fabs(d.b_position.y) < 1e-14 &&
+                fabs(d.a_position.x + 0.5) < 1e-14 && fabs(d.a_position.z) < 1e-14);
+    assert_true(d.bends && fabs(d.hessian[0]) + fabs(d.hessian[1]) + fabs(d.hessian[3]) + fabs(d.hessian[5]) < 1e-12);
+  }
+  b.pose.position = vec(1, 1, 0.2); /* two faces tie */
+  assert_false(derivatives_of(a, b, planes, workspace).valid_position);
+  b.pose.position = vec(1, 1, 1);
+  assert_false(derivatives_of(a, b, planes, workspace).valid_position);
+  b.pose.position = vec(0, 0, 0);
+  (void)derivatives_of(a, b, "the centres coincide", workspace);
+
+  b.pose = (cprox_pose){{2.5, 0, 0}, about_z}; /* an edge along a face */
+  assert_true(derivatives_of(a, b, faces, workspace).valid_position);
+  a.pose.orientation = about_z, b.pose.orientation = about_x; /* an edge across a face's plane: the face is b's */
+  assert_true(derivatives_of(a, b, faces, workspace).valid_position);
+  a.pose.orientation = about_z, b.pose = (cprox_pose){{2.5, 0.1, 0.2}, about_y}; /* edges cross */
+  (void)derivatives_of(a, b, NULL, workspace);
+
+  a.pose = CPROX_POSE_IDENTITY;
+  b = cprox_obstacle_at(spike, a.pose); /* a corner in the middle of a face, on the diagonal of its triangles */
+  b.pose.position = vec(0, 0, 1.7);
+  const cprox_growth_derivatives corner = derivatives_of(a, b, NULL, workspace);
+  assert_true(fabs(corner.b_position.z - 0.5) < 1e-14 && vec_norm(corner.b_rotation) < 1e-12);
+  b = cprox_obstacle_at(ball, a.pose);
+  for (int i = 0; i < 5; i++) { /* a ball on a face's middle, on an edge, on a corner */
+    const double far = 0.2 * ldexp(1.0, i);
+    b.pose.position = vec(far, 0, 0);
+    (void)derivatives_of(a, b, NULL, workspace);
+    b.pose.position = vec(far, far, 0.1 * far);
+    (void)derivatives_of(a, b, NULL, workspace);
+    b.pose.position = vec(far, -far, far);
+    (void)derivatives_of(a, b, NULL, workspace);
+  }
+  a = cprox_obstacle_at(cylinder, a.pose), b = a; /* parallel axes: along a line; across: in a point; end to end */
+  b.pose.position = vec(1.5, 0.4, 0.1);
+  assert_true(derivatives_of(a, b, faces, workspace).valid_position);
+  b.pose.position = vec(0.2, 0.1, 1.4);
+  assert_true(derivatives_of(a, b, faces, workspace).valid_position);
+  b.pose.orientation = to_x;
+  b.pose.position = vec(0.2, 1.9, 0.1);
+  (void)derivatives_of(a, b, NULL, workspace);
+  cprox_body_free(box);
+  cprox_body_free(ball);
+  cprox_body_free(cylinder);
+  cprox_body_free(spike);
+}
+
+/* Two balls: g = |c|/(r + s), by hand. And what is refused is refused as the value is. */
+CASE(balls_have_their_formula_and_bad_arguments_are_refused) {
+  cprox_workspace *workspace = *state;
+  rng r = rng_seed(34);
+  cprox_body *ball[2] = {NULL, NULL};
+  assert_int_equal(cprox_body_create_sphere(0.7, workspace, &ball[0]), CPROX_OK);
+  assert_int_equal(cprox_body_create_sphere(0.5, workspace, &ball[1]), CPROX_OK);
+  cprox_obstacle a = cprox_obstacle_at(ball[0], CPROX_POSE_IDENTITY), b = cprox_obstacle_at(ball[1], a.pose);
+  cprox_growth growth;
+  cprox_growth_derivatives d;
+  for (size_t i = 0; i < test_cases(500); i++) {
+    a.pose = rng_pose(&r, 2.0), b.pose = rng_pose(&r, 2.0);
+    const vec3 c = vec_sub(b.pose.position, a.pose.position), n = vec_scale(1.0 / vec_norm(c), c);
+    assert_int_equal(cprox_growth_gradient(a, b, NULL, workspace, &growth, &d), CPROX_OK);
+    const double g = vec_norm(c) / 1.2;
+    assert_true(d.valid && d.bends && growth.lower <= g * (1 + 1e-15) && g <= growth.upper * (1 + 1e-15));
+    assert_true(growth.upper - growth.lower <= 1e-12 * fmax(g, 1.0));
+    assert_true(vec_norm(vec_sub(d.b_position, vec_scale(1.0 / 1.2, n))) < 1e-13);
+    assert_true(vec_norm(d.a_rotation) < 1e-12 && vec_norm(d.b_rotation) < 1e-12);
+    assert_true(fabs(d.hessian[0] - (1.0 - n.x * n.x) / (1.2 * vec_norm(c))) < 1e-8 / vec_norm(c));
+  }
+  assert_int_equal(cprox_growth_gradient(a, b, NULL, workspace, &growth, NULL), CPROX_INVALID);
+  assert_int_equal(cprox_growth_gradient(a, b, NULL, workspace, NULL, &d), CPROX_INVALID);
+  assert_int_equal(cprox_growth_gradient(cprox_with_margin(a, 0.1), b, NULL, workspace, &growth, &d), CPROX_INVALID);
+  for (int k = 0; k < 2; k++) cprox_body_free(ball[k]);
+}
+
+int main(void) {
+  return cases_run(make_workspace, free_workspace);
+}
