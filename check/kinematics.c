@@ -76,7 +76,7 @@ static vec twice_ratio(const num p[4], const num q[4], num square) {
 }
 
 /* omega = 2 vec(p' p*) / |p|², alpha = 2 vec(p'' p*) / |p|² - 2 omega (p·p') / |p|²; the bounds are those of
- * doc/robot-bounds.md. */
+ * doc/robot-motion-bounds.md. */
 static void quaternion_state(const robot *r, const axis *a, size_t degree, const num *points, const place *before,
                              axis_state *s) {
   num p[ORDERS][4], square = num_of(0.0), along = num_of(0.0), c[4][ROOM];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* How the bodies of a robot move over an interval of a segment of its motion. doc/robot-bounds.md proves what is
+/* How the bodies of a robot move over an interval of a segment of its motion. doc/robot-motion-bounds.md proves what is
  * computed here; u in [0, 1] is the interval's own parameter, and all derivatives are by it. */
 #ifndef CHECK_KINEMATICS_H
 #define CHECK_KINEMATICS_H

@@ -130,7 +130,7 @@ typedef struct cprox_motion_gradient {
  *
  *  Returns as cprox_obstacles_distance(), also where valid is false. CPROX_INVALID also where the mover is no robot,
  * and where rows are wanted that are not known. Cost: 1.52 distances (instructions, the sum over 46 queries about real
- * robots). Source: J. M. Danskin, The theory of max-min, 1967; doc/robot-bounds.md. */
+ * robots). Source: J. M. Danskin, The theory of max-min, 1967; doc/robot-depth.md. */
 CPROX_API cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cprox_mover mover,
                                                      const cprox_options *options, cprox_workspace *workspace,
                                                      cprox_result *result, cprox_motion_gradient *gradient);
@@ -181,7 +181,7 @@ typedef struct cprox_motion_row {
  *
  *  Returns as cprox_obstacles_distance(). *count is untouched on a negative status. Cost: a search for each pair, which
  *  ends as soon as the pair is farther than the horizon; one more for each interval of those that are not; a gradient
- *  for each row. Source: doc/robot-bounds.md. */
+ *  for each row. Source: doc/robot-depth.md. */
 CPROX_API cprox_status cprox_robot_rows(const cprox_obstacles *obstacles, cprox_mover mover,
                                         const cprox_rows_query *asked, const cprox_options *options,
                                         cprox_workspace *workspace, cprox_motion_row *rows, size_t room, size_t *count);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Poses of a floating joint between two waypoints that no polynomial gives: slerp, and screws (turns about a line at a
- * constant rate, with a shift along it). doc/robot-bounds.md, Poses */
+ * constant rate, with a shift along it). doc/robot-poses.md, Poses */
 #ifndef CPROX_KINEMATICS_ARCS_H
 #define CPROX_KINEMATICS_ARCS_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The letters are those of doc/robot-bounds.md. */
+/* The letters are those of doc/robot-motion-bounds.md. */
 #include "kinematics/bound.h"
 
 #include <math.h>

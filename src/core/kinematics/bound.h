@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Lower bounds on the distance of a part of a robot over an interval of its motion; doc/robot-bounds.md proves them. */
+/* Lower bounds on the distance of a part of a robot over an interval of its motion; doc/robot-motion-bounds.md proves them. */
 #ifndef CPROX_KINEMATICS_BOUND_H
 #define CPROX_KINEMATICS_BOUND_H
 

@@ -8,7 +8,7 @@
 
 /* ---- points by variables ---- */
 
-/* A quaternion p of any norm turns by 2 vec(dp p*) / |p|² in the frame that its axis stands in; doc/robot-bounds.md. */
+/* A quaternion p of any norm turns by 2 vec(dp p*) / |p|² in the frame that its axis stands in; doc/robot-depth.md. */
 static void add_quaternion(const double *p, vec3 moment, double *by) {
   const vec3 v = vec(p[0], p[1], p[2]);
   const vec3 across = vec_sub(vec_scale(p[3], moment), vec_cross(v, moment));

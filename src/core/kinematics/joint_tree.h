@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A robot as the searches see it: single axes, each a rotation about a line, a shift along a line or a rotation about a
  * point, and convex parts that hang on them. Planar and floating joints are several axes, fixed ones none: their
- * transforms are folded into what follows. doc/robot-bounds.md derives what is computed with them. */
+ * transforms are folded into what follows. doc/robot-motion-bounds.md derives what is computed with them. */
 #ifndef CPROX_KINEMATICS_JOINT_TREE_H
 #define CPROX_KINEMATICS_JOINT_TREE_H
 
@@ -74,7 +74,7 @@ struct cprox_robot {
   cprox_link_geometry *given_geometries;
 };
 
-/* The error of one transform of a chain: the rotation's, per unit of length behind it (doc/robot-bounds.md). */
+/* The error of one transform of a chain: the rotation's, per unit of length behind it (doc/robot-motion-bounds.md). */
 #define ROUND_JOINT 104.0
 /* That of a place along the chain, per unit of the whole length. */
 #define ROUND_PLACE 7.0

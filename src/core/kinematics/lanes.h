@@ -33,7 +33,7 @@ static inline void lanes_blend(double r, double s, const double *d, double *c) {
 }
 
 /* The coefficients of [a, b], by two cuts. Both cuts of neighbours need not be the same point to the last bit: the
- * error of a segment covers that (doc/robot-bounds.md). */
+ * error of a segment covers that (doc/robot-motion-bounds.md). */
 static inline void lanes_cut(size_t degree, double a, double b, lane_row *c) {
   if (a > 0.0)
     for (size_t r = 1; r <= degree; r++)

@@ -93,7 +93,7 @@ static size_t segment_of(const double *times, size_t n_segments, double t) {
 }
 
 /* A segment of the motion is a part of one of the track. Places are off by 6 u at most; the errors of a joined motion's
- * tracks have room for that (doc/robot-bounds.md). */
+ * tracks have room for that (doc/robot-clocks.md). */
 size_t motion_track_place(const cprox_motion *m, const motion_track *t, size_t segment, double *u) {
   if (m->n_tracks == 1) return segment;
   const double from = m->times[segment], to = m->times[segment + 1];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What an interval of a motion says of each axis: its frame in the middle, its velocities, and bounds on both. The
- * letters are those of doc/robot-bounds.md. */
+ * letters are those of doc/robot-motion-bounds.md. */
 #include "kinematics/motion.h"
 
 #include <math.h>

@@ -26,7 +26,7 @@ bool motion_allocate_track_arcs(motion_track *track, size_t n_arcs);
  * variables that move are found; of several they are known. */
 cprox_status motion_finish(cprox_motion *m, const motion_source *source, cprox_motion **motion);
 
-/* What cutting and evaluating adds to the error of coefficients of this size; doc/robot-bounds.md. */
+/* What cutting and evaluating adds to the error of coefficients of this size; doc/robot-motion-bounds.md. */
 double motion_cutting_error(size_t degree, double largest);
 
 /* Room for which joints turn by arcs; false where memory is out. */

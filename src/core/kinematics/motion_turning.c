@@ -10,7 +10,7 @@
 /* Orientations nearer than this to half a turn apart [half of it in rad] turn either way. */
 static const double NEAREST_HALF_TURN = 1e-9;
 
-/* Of what is computed of a quaternion, and of a position per unit of length (doc/robot-bounds.md, Poses). */
+/* Of what is computed of a quaternion, and of a position per unit of length (doc/robot-poses.md, Poses). */
 #define ARC_ERROR (64.0 * ROUND_U)
 
 bool motion_allocate_arcs(cprox_motion *m) {

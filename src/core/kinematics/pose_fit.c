@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The letters are those of doc/robot-bounds.md, Control poses. */
+/* The letters are those of doc/robot-poses.md, Control poses. */
 #include "kinematics/pose_fit.h"
 
 #include <math.h>

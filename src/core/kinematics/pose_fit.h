@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pose of a part over an interval of its motion as a polynomial matrix in Bernstein form, with a proven remainder:
- * a body that turns then has control poses as a curve has control points. doc/robot-bounds.md, Control poses. */
+ * a body that turns then has control poses as a curve has control points. doc/robot-poses.md, Control poses. */
 #ifndef CPROX_KINEMATICS_POSE_FIT_H
 #define CPROX_KINEMATICS_POSE_FIT_H
 

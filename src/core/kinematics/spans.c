@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The letters are those of doc/robot-bounds.md, Spans. */
+/* The letters are those of doc/robot-clocks.md, Spans. */
 #include "kinematics/spans.h"
 
 #include <math.h>

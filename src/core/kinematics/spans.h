@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A motion over spans of many segments: for each span and variable how far it strays from the chord, the straight line
  * in joint space between the span's ends. A binary tree over the segments, made once a motion, has this for blocks of
- * 4, 8, 16 … segments; any other span is a row of blocks. doc/robot-bounds.md, Spans */
+ * 4, 8, 16 … segments; any other span is a row of blocks. doc/robot-clocks.md, Spans */
 #ifndef CPROX_KINEMATICS_SPANS_H
 #define CPROX_KINEMATICS_SPANS_H
 

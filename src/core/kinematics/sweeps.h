@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Where the parts of a joined motion are, whenever or over a while: what is far apart need not be searched.
- * doc/robot-bounds.md, Several robots on one clock */
+ * doc/robot-clocks.md, Several robots on one clock */
 #ifndef CPROX_KINEMATICS_SWEEPS_H
 #define CPROX_KINEMATICS_SWEEPS_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Lower bounds of a node of a robot's search: of each pair on its list, by planes that turn with the motion and by
- * distances in its middle (doc/robot-bounds.md). */
+ * distances in its middle (doc/robot-motion-bounds.md). */
 #ifndef CPROX_ROBOT_QUERY_BOUND_NODE_H
 #define CPROX_ROBOT_QUERY_BOUND_NODE_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Signed distances of a robot where there are meshes. A mesh tells whether it is apart, and how far; its hull tells how
- * deep it overlaps at most. doc/robot-bounds.md, Depth */
+ * deep it overlaps at most. doc/robot-depth.md, Depth */
 #ifndef CPROX_ROBOT_QUERY_DEPTH_H
 #define CPROX_ROBOT_QUERY_DEPTH_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A pair of convex bodies that ride pose splines, or one that does and what stands, over an interval of one segment:
- * bounds by control poses. doc/robot-bounds.md, Control poses. */
+ * bounds by control poses. doc/robot-poses.md, Control poses. */
 #ifndef CPROX_ROBOT_QUERY_FLIGHT_H
 #define CPROX_ROBOT_QUERY_FLIGHT_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pairs of a robot with itself as its parts come near each other, by groups of parts: two groups are one entry of a
- * list until they come near, and only then pairs. doc/robot-bounds.md, Many links */
+ * list until they come near, and only then pairs. doc/robot-search.md, Many links */
 #ifndef CPROX_ROBOT_QUERY_GROUPS_H
 #define CPROX_ROBOT_QUERY_GROUPS_H
 

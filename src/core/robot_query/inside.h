@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Solid meshes: what is inside of one where the motion begins stays inside, or comes out through its surface, which the
- * search finds. So one look is enough. doc/robot-bounds.md, Solid meshes */
+ * search finds. So one look is enough. doc/robot-search.md, Solid meshes */
 #ifndef CPROX_ROBOT_QUERY_INSIDE_H
 #define CPROX_ROBOT_QUERY_INSIDE_H
 

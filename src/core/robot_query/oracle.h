@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The oracle of a robot along a motion: nodes are segments of the motion, each with the list of pairs that could still
- * matter. doc/robot-bounds.md derives its bounds. */
+ * matter. doc/robot-motion-bounds.md derives its bounds. */
 #ifndef CPROX_ROBOT_QUERY_ORACLE_H
 #define CPROX_ROBOT_QUERY_ORACLE_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* From the hulls of a pair down to the elements that they are made of, in the middle of the node. doc/robot-bounds.md,
+/* From the hulls of a pair down to the elements that they are made of, in the middle of the node. doc/robot-search.md,
  * Meshes */
 #ifndef CPROX_ROBOT_QUERY_REFINE_H
 #define CPROX_ROBOT_QUERY_REFINE_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The search of one pair by control poses: doc/robot-bounds.md, Control poses. */
+/* The search of one pair by control poses: doc/robot-poses.md, Control poses. */
 #ifndef CPROX_ROBOT_QUERY_SETTLE_FLIGHT_H
 #define CPROX_ROBOT_QUERY_SETTLE_FLIGHT_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Motions on one clock whose starts have tolerances: their pairs are searched class by class. A pair depends on the
- * starts of its own two sides alone. doc/robot-bounds.md, Starts with a tolerance */
+ * starts of its own two sides alone. doc/robot-clocks.md, Starts with a tolerance */
 #ifndef CPROX_ROBOT_QUERY_STARTS_H
 #define CPROX_ROBOT_QUERY_STARTS_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Levels of detail between a mesh's hull and its triangles: the convex hull of the triangles under each lane of the
- * mesh's tree. A hull is kept as its vertices, the inner ones among them. doc/robot-bounds.md, Meshes */
+ * mesh's tree. A hull is kept as its vertices, the inner ones among them. doc/robot-search.md, Meshes */
 #ifndef CPROX_SHAPE_CLUSTER_HULLS_H
 #define CPROX_SHAPE_CLUSTER_HULLS_H
 

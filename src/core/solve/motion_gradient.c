@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Danskin along a motion: where the minimiser is one alone, the derivatives of the least distance are those of the
- * distance there. doc/robot-bounds.md, Gradients.
+ * distance there. doc/robot-depth.md, Gradients.
  *
  * The search for the distance goes on where it would end: to the nodes that come within `apart` of the least distance.
  * What is left of them in the end is near the minimiser, and of its pair. */
