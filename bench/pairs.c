@@ -10,6 +10,7 @@
 #include <time.h>
 
 #include "base/frame.h"
+#include "pairs_ccd.h"
 #include "pairs_meshes.h"
 #include "peers/pair_peers.h"
 #include "support/measure.h"
@@ -389,6 +390,7 @@ int main(int argc, char **argv) {
   for (int i = 0; i < POLYTOPES; i++) q.polytope[i] = polytope_make(&r, &q);
   for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) one_kind(&size, &KINDS[k], &q);
   if (bench_wanted(&size, "sequence of 100 poses")) measure_sequences(&size, &q);
+  if (bench_wanted(&size, "CCD")) pairs_ccd(&size, q.workspace);
   if (bench_wanted(&size, "meshes")) pairs_meshes(&size, q.workspace);
   for (int i = 0; i < POLYTOPES; i++) convex_free(&q.polytope[i], &q);
   cprox_workspace_free(q.workspace);

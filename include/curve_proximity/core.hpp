@@ -720,6 +720,26 @@ inline cprox_result pairTolerance(const cprox_obstacle &a, const cprox_obstacle 
   return result;
 }
 
+/** When a moving vertex (the first point) touches a moving triangle, as cprox_ccd_vertex_face(); margin [m]. */
+inline cprox_ccd ccdVertexFace(const std::array<Eigen::Vector3d, 4> &start, const std::array<Eigen::Vector3d, 4> &end,
+                               double margin, const cprox_options &options, Workspace &workspace) {
+  cprox_ccd ccd{};
+  const std::array<cprox_vec3, 4> from{toVec3(start[0]), toVec3(start[1]), toVec3(start[2]), toVec3(start[3])};
+  const std::array<cprox_vec3, 4> to{toVec3(end[0]), toVec3(end[1]), toVec3(end[2]), toVec3(end[3])};
+  require(cprox_ccd_vertex_face(from.data(), to.data(), margin, &options, workspace.get(), &ccd), workspace);
+  return ccd;
+}
+
+/** When two moving edges (two points each) touch, as cprox_ccd_edge_edge(); margin [m]. */
+inline cprox_ccd ccdEdgeEdge(const std::array<Eigen::Vector3d, 4> &start, const std::array<Eigen::Vector3d, 4> &end,
+                             double margin, const cprox_options &options, Workspace &workspace) {
+  cprox_ccd ccd{};
+  const std::array<cprox_vec3, 4> from{toVec3(start[0]), toVec3(start[1]), toVec3(start[2]), toVec3(start[3])};
+  const std::array<cprox_vec3, 4> to{toVec3(end[0]), toVec3(end[1]), toVec3(end[2]), toVec3(end[3])};
+  require(cprox_ccd_edge_edge(from.data(), to.data(), margin, &options, workspace.get(), &ccd), workspace);
+  return ccd;
+}
+
 /** A body that moves on from where it stands, without turning; velocity [m/s], world frame. */
 inline cprox_translating translating(const cprox_obstacle &from, const Eigen::Vector3d &velocity) {
   return {from, toVec3(velocity)};

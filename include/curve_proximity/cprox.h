@@ -9,6 +9,7 @@
 
 #include <curve_proximity/cprox/base.h>
 #include <curve_proximity/cprox/body.h>
+#include <curve_proximity/cprox/ccd.h>
 #include <curve_proximity/cprox/certificate.h>
 #include <curve_proximity/cprox/curve.h>
 #include <curve_proximity/cprox/edges.h>
