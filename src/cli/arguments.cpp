@@ -603,8 +603,8 @@ cprox merge     FOLDER                  all shards as one table; refuses gaps an
   --in FILE         a list of {id, a: BODY, b: BODY}; of 'constraints' the request of ~evaluate_constraints:
                     cases: [{id, a: {pose, bodies: [BODY], ...} or {id: an object of --scene}, b, curve}]
                     Each FILE that is read may be -, standard input. doc/formats.md shows all formats
-  --provider NAME   curve_proximity/CurveDistance, .../SuperquadricDistance, .../FourierGap, .../RobotDistance
-                    (of trajectories), or another package's
+  --provider NAME   curve_proximity/CurveDistance, .../SuperquadricDistance, .../FourierGap, .../GrowthDistance,
+                    .../RobotDistance (of trajectories), or another package's
   --certificate FILE  writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near or none.
                     The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that
                     it is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs

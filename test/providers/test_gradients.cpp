@@ -247,6 +247,80 @@ TEST(Gradients, of_SuperquadricDistance_are_those_of_finite_differences_where_bo
   EXPECT_GT(inside.valid, 40);
 }
 
+/* Growth distances apart, about contact and deep inside; the sides stand at poses of their own, and two of them have two
+ * parts. */
+TEST(Gradients, of_GrowthDistance_are_those_of_finite_differences_apart_touching_and_deep) {
+  const Loaded provider("curve_proximity/GrowthDistance", {{"epsilon", 1e-10}});
+  Random random(818);
+  Workspace workspace;
+  Tally apart, inside;
+  Eigen::Matrix3Xd corners(3, 6); /* a polytope is scaled about the middle of its box, which must be inside */
+  corners << 0.5, -0.4, 0, 0.1, 0.1, -0.1, 0, 0.1, 0.5, -0.5, 0.1, -0.1, -0.1, 0.1, 0, 0.1, 0.4, -0.5;
+  std::vector<ShapeDescription> shapes = {shape(ShapeType::BOX, {0.6, 0.8, 0.5}),
+                                          shape(ShapeType::CYLINDER, {0.7, 0.3}),
+                                          shape(ShapeType::CONE, {0.7, 0.4}),
+                                          shape(ShapeType::CAPSULE, {0.5, 0.2}),
+                                          polytope(corners),
+                                          shape(ShapeType::ELLIPSOID, {0.3, 0.5, 0.4}),
+                                          shape(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0})};
+  for (ShapeDescription &s : shapes) {
+    s.pose.translation() = random.inCube(0.3);
+    s.pose.linear() = random.rotation().toRotationMatrix();
+  }
+  std::vector<std::unique_ptr<const Constraint>> constraints;
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    for (std::size_t j = i; j < shapes.size(); ++j) {
+      ConstraintPair pair;
+      pair.a = i == j ? side({shapes[i], shapes[(i + 1) % shapes.size()]}) : side({shapes[i]});
+      pair.b = side({shapes[j]});
+      constraints.push_back(provider->prepare(pair));
+    }
+  for (std::size_t i = 0; i < 420; ++i) {
+    const Constraint &constraint = *constraints[i % constraints.size()];
+    Case c;
+    const bool overlapping = i % 2 == 1;
+    c.a = random.pose(0.2);
+    c.b = random.pose(0.2);
+    if (!overlapping) c.b.position = toVec3(toEigen(c.b.position) + random.uniform(0.5, 3.0) * random.direction());
+    check(constraint, c, random, workspace, false, overlapping ? inside : apart);
+  }
+  std::printf("GrowthDistance: apart %d of %d valid, worst %.1e; near or inside %d of %d, worst %.1e\n", apart.valid,
+              apart.asked, apart.worst, inside.valid, inside.asked, inside.worst);
+  EXPECT_GT(apart.valid, 205);
+  EXPECT_GT(inside.valid, 205);
+}
+
+/* Boxes of 1 m, 3 m apart: by positions 1 per metre; faces that are parallel have no gradient. Scaled by 2, they would
+ * touch: with the level 2 the value is 1 less. */
+TEST(Gradients, of_GrowthDistance_are_refused_between_parallel_faces_and_what_has_no_growth_is_refused) {
+  const Loaded provider("curve_proximity/GrowthDistance", {}), larger("curve_proximity/GrowthDistance", {{"level", 2}});
+  Workspace workspace;
+  ConstraintPair pair;
+  pair.a = pair.b = side({shape(ShapeType::BOX, {1, 1, 1})});
+  ConstraintPlace place;
+  place.b.position = {3, 0.2, 0.1};
+  ConstraintValue value;
+  provider->prepare(pair)->evaluate(place, workspace, value);
+  EXPECT_FALSE(value.valid);
+  EXPECT_NE(value.reason.find("more than one point"), std::string::npos) << value.reason;
+  EXPECT_LE(value.lower, 2.0);
+  EXPECT_GE(value.upper, 2.0 - 1e-12);
+  EXPECT_NEAR(value.value, 2.0, 1e-9);
+  EXPECT_NEAR(value.b.linear.x(), 1.0, 1e-12);
+  larger->prepare(pair)->evaluate(place, workspace, value);
+  EXPECT_NEAR(value.value, 1.0, 1e-9);
+
+  pair.along_curve = true;
+  EXPECT_THROW(provider->prepare(pair), DoesNotApply);
+  pair.along_curve = false;
+  pair.b = side({shape(ShapeType::BOX, {1, 1, 1})}, 0.1);
+  EXPECT_THROW(provider->prepare(pair), Error);
+  for (const ShapeDescription &refused : {shape(ShapeType::HALFSPACE, {0, 0, 1, 0}), shape(ShapeType::POINT, {})}) {
+    pair.b = side({refused});
+    EXPECT_THROW(provider->prepare(pair), Error);
+  }
+}
+
 cprox_pose planar(cprox_pose pose, Random &random) {
   const double angle = random.uniform(-M_PI, M_PI);
   pose.position.z = 0.0;
