@@ -5,6 +5,9 @@
 #include <stdio.h>
 
 #include "curve_proximity/cprox/ccd.h"
+#ifdef CPROX_BENCH_TIGHT_INCLUSION
+#include "peers/ccd_tight_inclusion.h"
+#endif
 #include "support/problems.h"
 
 enum { STEPS = 200 };
@@ -18,6 +21,7 @@ typedef cprox_status (*asked_step)(const cprox_vec3 start[4], const cprox_vec3 e
                                    const cprox_options *options, cprox_workspace *workspace, cprox_ccd *ccd);
 
 typedef struct asked {
+  bool edges;
   asked_step ask;
   cprox_workspace *workspace;
 } asked;
@@ -30,6 +34,17 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = c.nodes, .failed = c.status < 0};
   a->wrong = s->hits && (c.verdict == CPROX_VERDICT_CLEAR || c.t_contact_lower > 0.5 + 1e-12);
 }
+
+#ifdef CPROX_BENCH_TIGHT_INCLUSION
+static void tight_inclusion(const void *problems, size_t i, void *state, bench_answer *a) {
+  const step *s = (const step *)problems + i;
+  const asked *q = state;
+  double t = INFINITY;
+  const bool met = (q->edges ? tight_inclusion_edge_edge : tight_inclusion_vertex_face)(s->start, s->end, &t);
+  *a = (bench_answer){.lower = NAN, .upper = NAN};
+  a->wrong = s->hits && (!met || t > 0.5 + 1e-12);
+}
+#endif
 
 /* Points in a unit cube that move by up to .1 each; what moves, a vertex or an edge, goes 1 m besides. A hit is shifted
  * so that its middle and that of the other are in one place half way. */
@@ -55,7 +70,7 @@ void pairs_ccd(const bench_size *size, cprox_workspace *workspace) {
   for (int edges = 0; edges < 2; edges++) {
     for (int hits = 0; hits < 2; hits++) {
       rng r = rng_seed(640);
-      asked q = {edges ? cprox_ccd_edge_edge : cprox_ccd_vertex_face, workspace};
+      asked q = {edges, edges ? cprox_ccd_edge_edge : cprox_ccd_vertex_face, workspace};
       for (size_t n = 0; n < STEPS; n++) {
         cprox_ccd c = {.verdict = CPROX_VERDICT_CLEAR};
         do {
@@ -66,8 +81,12 @@ void pairs_ccd(const bench_size *size, cprox_workspace *workspace) {
       char workload[64];
       snprintf(workload, sizeof workload, "CCD %s", hits ? "hit" : "miss");
       const bench_workload w = {"pairs", workload, edges ? "two edges" : "vertex and face", steps, STEPS, NULL, 0.0};
-      const bench_method methods[] = {{"curve_proximity", ours, &q}};
-      bench_measure(&w, size, methods, 1);
+      const bench_method methods[] = {{"curve_proximity", ours, &q},
+#ifdef CPROX_BENCH_TIGHT_INCLUSION
+                                      {"Tight-Inclusion", tight_inclusion, &q}
+#endif
+      };
+      bench_measure(&w, size, methods, sizeof methods / sizeof *methods);
     }
   }
 }
