@@ -367,11 +367,44 @@ def memory(rows, save):
     return save(figure, 'seeds_figure_10_memory') if found else plt.close(figure)
 
 
+HARD = (('curves', lambda row: row['group'] == 'stability' and not row['workload'].startswith(('plate', 'graze'))),
+        ('thin plates and grazes', lambda row: row['group'] == 'stability' and row['workload'].startswith(('plate', 'graze'))),
+        ('implicit bodies', lambda row: (row['group'], row['workload']) == ('implicit', 'hard families')))
+
+
+def stability(rows, save):
+    """What each method says of the hard inputs that it was asked about: the shares of right, wrong and given up, over all families."""
+    bars = []
+    for title, of in HARD:
+        counted = {}
+        for row in filter(of, rows):
+            cases = int(re.search(r'(\d+) cases', row['parameter'])[1])
+            before = counted.get(row['method'], (0, 0, 0))
+            counted[row['method']] = tuple(a + b for a, b in zip(before, (cases, int(row['unsound']), int(row['failures']))))
+        bars += [(f'{title}: {LABELS.get(method, method)}', *counted[method]) for method in sorted(counted, key=lambda name: name != OURS)]
+    if not any(cases for _, cases, _, _ in bars):
+        return
+    figure, axes = plt.subplots(figsize=(7.2, 0.8 + 0.27 * len(bars)))
+    places = range(len(bars), 0, -1)
+    shares = [(100 * (cases - wrong - open_) / cases, 100 * wrong / cases, 100 * open_ / cases) for _, cases, wrong, open_ in bars]
+    left = [0.0] * len(bars)
+    for k, (name, colour) in enumerate((('right', COLOURS[OURS]), ('wrong', '#c22020'), ('given up', '#bbbbbb'))):
+        axes.barh(places, [share[k] for share in shares], left=left, height=0.7, color=colour, label=name)
+        left = [before + share[k] for before, share in zip(left, shares)]
+    axes.set_yticks(list(places))
+    axes.set_yticklabels([f'{name} ({cases})' for name, cases, _, _ in bars], fontsize=8)
+    axes.set_xlim(0, 100)
+    axes.set_xlabel('percent of the cases that the method was asked about (their number)')
+    axes.set_title('Hard inputs: right, wrong, given up')
+    legend_below(axes)
+    yield save(figure, 'stability')
+
+
 def draw_all(rows, out, made):
     """All charts for which there are rows; their names. made: how the rows were made."""
     save = Saver(out, made)
     style()
     drawn = []
-    for draw in (curves, splines, peers, seeds, batches, worlds, robots, optimise, implicit, fourier):
+    for draw in (curves, splines, peers, seeds, batches, worlds, robots, optimise, implicit, stability, fourier):
         drawn += [name for name in draw(rows, save) if name]
     return drawn

@@ -28,7 +28,7 @@ def write_all(rows, drawn, out, made):
     figures = Figures(rows)
     groups = {row['group'] for row in rows}
     pages = {'README.md': lambda: readme.page(figures, drawn, made, out), 'seeds.md': lambda: seeds.page(figures, out),
-             'stability.md': lambda: stability.page(figures),
+             'stability.md': lambda: stability.page(figures, out),
              'optimise.md': lambda: optimise.page(figures, out),
              'contacts.md': lambda: contacts.page(figures, out),
              'choosing.md': lambda: choosing.page(figures, out)}

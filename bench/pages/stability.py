@@ -3,7 +3,7 @@
 import re
 
 import targets
-from pages.figures import table
+from pages.figures import picture, table
 
 
 def family_of(row):
@@ -45,7 +45,7 @@ def section(title, text, rows, family_of, peers=()):
     return f'## {title}\n{text}\n\n{grid(rows, family_of)}{said}\n'
 
 
-def page(figures):
+def page(figures, out):
     def of(group, workload=None):
         return [row for row in figures.rows if row['group'] == group and workload in (None, row['workload'])]
     hard = of('stability')
@@ -53,6 +53,7 @@ def page(figures):
     return '\n'.join(filter(None, [
         '# Stability\n\nHard inputs whose answers are known, and what each method says of them. Wrong: an interval that misses the truth, or a value that '
         'is off by more than was asked, without saying so. Given up: out of its budget, or no answer. `results.csv` names the seeds.\n',
+        f"{picture(out, 'stability', 'Hard inputs: right, wrong and given up, by method')}\n",
         section('Curves', 'Distances to 1e-9; the truth is known by construction. Samples and libraries never say how far they may be off: more than 1e-9 is '
                 'counted as wrong. SISL is asked about points and curves only.',
                 [row for row in hard if row not in missed], lambda row: row['workload'], ('OpenCASCADE', 'SISL')),
