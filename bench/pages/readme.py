@@ -3,6 +3,7 @@
 import csv
 import fnmatch
 import os
+import re
 
 import passes
 import repeat
@@ -56,7 +57,9 @@ GROWTH = [('implicit', 'figure 2*', 'time'), ('splines', 'B-spline * distance', 
 
 
 def sized(row, what):
-    """The row with what is to be fitted in the place of its time; None where it has nothing of it."""
+    """The row with what is to be fitted in the place of its time; None where it has nothing of it, or counts nothing (growth distances)."""
+    if not re.search(r'\d', row['parameter']):
+        return None
     value = float((row['median_us'] if what == 'time' else row['nodes']) or 'nan')
     if what == 'memory each':
         value *= targets.size_of(row)

@@ -196,6 +196,7 @@ class Pages(unittest.TestCase):
         rows = [row(workload='growth links', parameter=f'links {n}', median_us=n * n) for n in (2, 4, 8)]
         rows += [row(workload='memory mesh', parameter=f'triangles {n}', median_us='nan', nodes=100 * n) for n in (2, 4, 8)]
         rows += [row(workload='growth few', parameter='1')]
+        rows += [row(workload='growth distance', parameter=name) for name in ('box, box', 'box, cylinder', 'box, cone')]
         self.assertEqual([(line[1], line[-1]) for line in readme.growth_lines(rows)], [('growth links', '2.00'), ('memory mesh', '1.00')])
 
     def test_how_made_names_command_and_commit(self):
