@@ -78,7 +78,7 @@ def spread_of(target, *runs):
     """How far a figure may be off, or those of two runs apart: what the passes of each run differ by, together, and never
     less than the target's slack, even where three passes happen to agree. A factor of 1 + spread for ratios, the spread itself for
     exponents, nothing for counts; None where figures say as much about the machine as about us."""
-    if target['kind'] in ('microseconds', 'error'):
+    if target['kind'] in ('microseconds', 'p95 microseconds', 'error'):
         return None
     if target['kind'] not in targets.SLACK:
         return 0.0

@@ -101,6 +101,14 @@ Take one where somebody else must believe the answer: `cprox_check` proves it ag
 
 {table(['', 'the verdict', 'with its certificate', 'the check'], proofs)}
 
+## Where others are faster
+[speed.md](speed.md) goes through the queries one by one.
+
+- Whether two boxes or cylinders that overlap by little touch, and whether meshes of 20,000 triangles cross: FCL, which bounds no rounding.
+- The same pair of boxes or capsules again and again, a little moved: coal with its cached guess, to 1e-6 and without a bound.
+- First contacts of two convex bodies at constant speed: the casts of Bullet and FCL, some of which are late or miss ([contacts.md](contacts.md)).
+- The nearest point of a cubic to a point: SISL, without a bound.
+
 ## When an answer is not `ok`
 `undecided` means within ε of the limit: count it as unsafe, or ask for a smaller ε. `budget` means that the interval is true but wide: a continuum of nearest points (an
 arc about a point at its centre) does that; raise `max_nodes` only if you need the width. `precision` means that double arithmetic ends there.
