@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Uniform cubic B-splines of 10 to 1000 segments, and trigonometric series (which we compile to quintic pieces):
  * distance and tolerance against a polygon or a polytope, ours beside the paper's method, which knows both exactly. */
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -263,6 +264,33 @@ static void measure(const bench_size *size, const char *name, const char *parame
   free(problems);
 }
 
+static size_t bytes_in_use(void) {
+#if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
+  return mallinfo2().uordblks + mallinfo2().hblkhd;
+#else
+  return (size_t)(unsigned)mallinfo().uordblks + (size_t)(unsigned)mallinfo().hblkhd;
+#endif
+}
+
+/* Column nodes: the bytes of a segment of a quintic spline. */
+static void measure_bytes(size_t segments, asked *q) {
+  enum { DEGREE = 5 };
+  static vec3 points[MOST_SEGMENTS + DEGREE];
+  static double knots[MOST_SEGMENTS + 2 * DEGREE + 1];
+  rng r = rng_seed(950);
+  walk(&r, false, points, segments + DEGREE);
+  for (size_t i = 0; i < segments + 2 * DEGREE + 1; i++) knots[i] = (double)i - DEGREE;
+  cprox_curve *curve = NULL;
+  const size_t before = bytes_in_use();
+  check(curve_from(describe_bspline(points, segments + DEGREE, DEGREE, knots, segments + 2 * DEGREE + 1, 0.0,
+                                    (double)segments),
+                   q->workspace, &curve),
+        q->workspace);
+  printf("splines,bytes a segment,curve_proximity,%zu segments,,,%.4g,,,0,0\n", segments,
+         (double)(bytes_in_use() - before) / (double)segments);
+  cprox_curve_free(curve);
+}
+
 int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
   asked q = {.workspace = cprox_workspace_create(), .heap = calloc(PAPER_MAX_NODES, sizeof(paper_node))};
@@ -276,6 +304,7 @@ int main(int argc, char **argv) {
     }
     measure(&size, "trigonometric", "3 harmonics", planar, 0, &q);
   }
+  for (size_t k = 1; k < 5 && bench_wanted(&size, "bytes a segment"); k++) measure_bytes(segments[k], &q);
   free(q.heap);
   cprox_workspace_free(q.workspace);
   return 0;

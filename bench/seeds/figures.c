@@ -116,6 +116,7 @@ void figure_ten_memory(size_t order) {
 
   const size_t before = bytes_in_use();
   cprox_workspace *w = cprox_workspace_create();
+  const size_t of_workspace = bytes_in_use();
   const cprox_curve_description d = {.kind = CPROX_CURVE_BEZIER, .points = points, .n = order + 1, .t1 = 1.0};
   cprox_curve *curve = NULL;
   cprox_options options = CPROX_OPTIONS_DEFAULT;
@@ -125,7 +126,7 @@ void figure_ten_memory(size_t order) {
   const size_t of_curve = bytes_in_use();
   if (cprox_distance(cprox_point_along(curve), p->target, &options, w, &r) < 0) exit(1);
   print_row("figure 10 memory", "curve_proximity", parameter, r.nodes, (double)(bytes_in_use() - before));
-  print_row("figure 10 memory", "the curve alone", parameter, 0, (double)(of_curve - before));
+  print_row("figure 10 memory", "the curve alone", parameter, 0, (double)(of_curve - of_workspace));
   cprox_curve_free(curve);
   cprox_workspace_free(w);
 

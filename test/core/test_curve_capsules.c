@@ -83,23 +83,28 @@ CASE(every_capsule_contains_its_part_of_the_curve) {
  * difference. */
 static void check_packs(const cprox_curve *c, rng *r) {
   const vec3 n = rng_unit(r), from = rng_in_cube(r, 2.0);
-  for (size_t pack = 0; pack < curve_packs(c->n_leaves); pack++) {
+  for (size_t begin = 1, count = 0; begin < 2 * c->n_leaves; begin += count) {
+    count = 1;
+    if (curve_is_empty_at(c, begin)) continue;
+    while (count < CURVE_PACK && ((begin + count) & (begin + count - 1)) && !curve_is_empty_at(c, begin + count))
+      count++;
     double least[CURVE_PACK], distance[CURVE_PACK], s[CURVE_PACK];
-    curve_pack_distance(&c->packs[pack], from, n, distance, s);
-    curve_pack_reach(&c->packs[pack], n, from, least);
-    for (size_t lane = 0; lane < CURVE_PACK; lane++) {
-      const size_t node = CURVE_PACK * pack + lane;
+    curve_pack pack;
+    curve_pack_fill(c, begin, count, &pack);
+    curve_pack_distance(&pack, from, n, distance, s);
+    curve_pack_reach(&pack, n, from, least);
+    for (size_t lane = 0; lane < count; lane++) {
+      const size_t node = begin + lane;
       size_t first, end;
-      if (node == 0 || node >= 2 * c->n_leaves) continue;
       pieces_below(c, node, &first, &end);
-      if (first >= end) continue;
+      assert_true(first < end);
       long double exact = INFINITY;
       for (size_t i = first * (c->degree + 1); i < end * (c->degree + 1); i++) {
         const vec3l p = ref_sub(ref_vec(c->points[i]), ref_vec(from));
         exact = fminl(exact, ref_dot(ref_vec(n), p));
       }
       const long double slack = 9.0L * 0x1p-53L * (long double)(c->largest + vec_norm(from));
-      const long double radius = (long double)c->packs[pack].radius[lane];
+      const long double radius = (long double)pack.radius[lane];
       assert_true((long double)least[lane] <= exact + slack);
       assert_true((long double)least[lane] >= exact - 2.0L * radius - slack);
 

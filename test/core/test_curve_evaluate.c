@@ -15,6 +15,23 @@ static cprox_curve *bezier(const vec3 *p, size_t degree, double t0, double t1) {
   return c;
 }
 
+/* The constants of low degrees are the numbers that are computed for others. */
+CASE(low_degrees_share_their_tables) {
+  for (size_t degree = 1; degree <= CURVE_LOW_DEGREE; degree++) {
+    double tables[64];
+    assert_true(curve_tables_size(degree) <= 64);
+    curve_fill_tables(degree, tables);
+    for (size_t k = 0; k < curve_tables_size(degree); k++) assert_true(curve_low_tables[degree][k] == tables[k]);
+  }
+}
+
+/* What each takes beside the block's head of the allocator. */
+CASE(curves_take_few_bytes) {
+  assert_true(sizeof(cprox_curve) + curve_arrays_size(5, 1) <= 232);
+  for (size_t n = 100; n <= 1100; n += 100)
+    assert_true((double)(sizeof(cprox_curve) + curve_arrays_size(5, n)) <= 180.0 * (double)n);
+}
+
 /* seed 101, 100,000 cases. Value: (3n + 8) u M, derived beside the function. The derivatives are n(d1 - d0) and so on
  * of points that are off by 3n u M each: n (6n + 8) u M and n(n-1)(12n + 12) u M. */
 CASE(a_bezier_point_and_its_derivatives_stay_within_their_bounds) {
@@ -27,7 +44,7 @@ CASE(a_bezier_point_and_its_derivatives_stay_within_their_bounds) {
     random_points(&r, degree + 1, p);
     const double s = random_parameter(&r), size = U * ref_largest(p, degree + 1);
     cprox_curve *c = bezier(p, degree, 0.0, 1.0);
-    curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, degree, c->binomial, s, &value, &first, &second);
+    curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, degree, curve_binomial(c), s, &value, &first, &second);
     cprox_curve_free(c);
 
     const double error = (double)ref_error(ref_bezier(p, degree, s, 0), value);
@@ -51,8 +68,8 @@ CASE(ends_are_exact_and_a_stride_changes_nothing) {
     for (size_t k = 0; k <= degree; k++) x[k] = p[k].x, y[k] = p[k].y, z[k] = p[k].z;
     cprox_curve *c = bezier(p, degree, -1.0, 3.0);
     const double s = random_parameter(&r);
-    curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, degree, c->binomial, s, &a, &da, &dda);
-    curve_bezier_evaluate(x, y, z, 1, degree, c->binomial, s, &b, &db, &ddb);
+    curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, degree, curve_binomial(c), s, &a, &da, &dda);
+    curve_bezier_evaluate(x, y, z, 1, degree, curve_binomial(c), s, &b, &db, &ddb);
     assert_true(vec_equal(a, b) && vec_equal(da, db) && vec_equal(dda, ddb));
 
     assert_int_equal(cprox_curve_evaluate(c, -1.0, NULL, &a, NULL, NULL), CPROX_OK);
@@ -70,7 +87,7 @@ CASE(powers_that_underflow_do_no_harm) {
     random_points(&r, 61, p);
     cprox_curve *c = bezier(p, 60, 0.0, 1.0);
     const double s = ldexp(1.0, exponent);
-    curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, 60, c->binomial, s, &value, NULL, NULL);
+    curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, 60, curve_binomial(c), s, &value, NULL, NULL);
     assert_true(ref_error(ref_bezier(p, 60, s, 0), value) <= 188 * U * ref_largest(p, 61));
     cprox_curve_free(c);
   }

@@ -222,7 +222,7 @@ CASE(weights_make_the_point) {
       size = fmax(size, vec_norm(s.points[k]));
     }
     assert_int_equal(cprox_curve_evaluate(curve, t, NULL, &point, NULL, NULL), CPROX_OK);
-    assert_true(vec_norm(vec_sub(sum, point)) <= 1e-12 * size + curve->worst);
+    assert_true(vec_norm(vec_sub(sum, point)) <= 1e-12 * size + curve_error(curve));
     cprox_curve_free(curve);
   }
 }

@@ -107,7 +107,7 @@ CASE(pieces_are_as_long_as_the_bound_allows_where_they_are) {
   cprox_curve *c = NULL;
   assert_int_equal(curve_from(describe_smooth(&given, 1e-3, 1.0), NULL, &c), CPROX_OK);
   const double first = c->breaks[1] - c->breaks[0], last = c->breaks[c->n_pieces] - c->breaks[c->n_pieces - 1];
-  print_message("%zu pieces from %g to %g long\n", c->n_pieces, first, last);
+  print_message("%u pieces from %g to %g long\n", c->n_pieces, first, last);
   assert_true(last > 300.0 * first);
   /* ln(1000) in pieces of h/t = (46080e-12/120)^(1/6) = 0.027 are 256 */
   assert_true(c->n_pieces < 300);

@@ -97,7 +97,7 @@ CASE(a_circle_takes_about_a_hundred_pieces) {
   const vec3 c[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   cprox_curve *curve = NULL;
   assert_int_equal(curve_from(describe_trigonometric(c, 3, 0, 6.283185307179586), NULL, &curve), CPROX_OK);
-  print_message("a circle takes %zu pieces, error %g of its radius\n", curve->n_pieces,
+  print_message("a circle takes %u pieces, error %g of its radius\n", curve->n_pieces,
                 0.5 * cprox_curve_get_info(curve).error);
   assert_true(cprox_curve_get_info(curve).error < 2.0 * 1.1e-13);
   assert_in_range(curve->n_pieces, 100, 160);

@@ -34,7 +34,8 @@ static void open_block(batch_run *run, size_t block) {
   double *lower = run->lower + block * BLOCK;
   const double radius = run->q.mover.radius;
   if (run->n_boxes == 0) {
-    lanes_ball_bounds(&balls, &run->q.mover.curve->whole, radius, lower);
+    const curve_capsule whole = curve_whole(run->q.mover.curve);
+    lanes_ball_bounds(&balls, &whole, radius, lower);
     return;
   }
   for (size_t k = 0; k < BLOCK; k++) lower[k] = run->block_lower[block];

@@ -40,7 +40,8 @@ static bool hits_at(const look *l, uint32_t piece, double s, batch_hit *hit) {
   const cprox_curve *curve = l->run->q.mover.curve;
   const vec3 *points = curve_piece(curve, piece);
   vec3 at;
-  curve_bezier_evaluate(&points->x, &points->y, &points->z, 3, curve->degree, curve->binomial, s, &at, NULL, NULL);
+  curve_bezier_evaluate(&points->x, &points->y, &points->z, 3, curve->degree, curve_binomial(curve), s, &at, NULL,
+                        NULL);
   vec3 surface;
   const double distance = from_obb(&l->core->obb, at, &surface);
   const double upper = distance - l->margin + l->slack;

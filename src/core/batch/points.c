@@ -15,8 +15,8 @@ bool batch_points_ready(batch_run *run) {
   }
   if (!run->basis) return false;
   const double n = (double)curve->degree;
-  run->slack =
-      ROUND_UP * (curve->worst + (10.0 * n + 40.0 + n * n * (1.0 / (CHORDS * CHORDS))) * ROUND_U * curve->largest);
+  run->slack = ROUND_UP *
+               (curve_error(curve) + (10.0 * n + 40.0 + n * n * (1.0 / (CHORDS * CHORDS))) * ROUND_U * curve->largest);
   run->measured = true;
   return true;
 }

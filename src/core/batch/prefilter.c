@@ -60,8 +60,8 @@ static uint32_t promising_half(const curve_capsule *whole, vec3 per_chord, vec3 
 
 /* The halves that are promising first, then the others. */
 static bool find_hit(batch_run *run, double limit, batch_hit *hit) {
-  const curve_capsule *whole = &run->q.mover.curve->whole;
-  const vec3 chord = vec_sub(whole->b, whole->a);
+  const curve_capsule whole = curve_whole(run->q.mover.curve);
+  const vec3 chord = vec_sub(whole.b, whole.a);
   const double length2 = vec_norm2(chord);
   const vec3 per_chord = vec_scale(length2 > 0.0 ? 1.0 / length2 : 0.0, chord);
   const uint32_t halves = 2 * (uint32_t)run->q.mover.curve->n_pieces;
@@ -69,12 +69,12 @@ static bool find_hit(batch_run *run, double limit, batch_hit *hit) {
     const uint32_t k = run->open[i];
     if (!may_hit(run, k, limit)) continue;
     if (!run->measured && !batch_points_ready(run)) return false;
-    if (hits(run, k, promising_half(whole, per_chord, run->batch->cores[k].centre, halves), limit, hit)) return true;
+    if (hits(run, k, promising_half(&whole, per_chord, run->batch->cores[k].centre, halves), limit, hit)) return true;
   }
   for (size_t i = 0; i < run->n_open && run->measured; i++) {
     const uint32_t k = run->open[i];
     if (!may_hit(run, k, limit)) continue;
-    const uint32_t first = promising_half(whole, per_chord, run->batch->cores[k].centre, halves);
+    const uint32_t first = promising_half(&whole, per_chord, run->batch->cores[k].centre, halves);
     for (uint32_t half = 0; half < halves; half++)
       if (half != first && hits(run, k, half, limit, hit)) return true;
   }

@@ -21,7 +21,8 @@ vec3 partition_point(const cprox_curve *curve, double sigma) {
   const double last = (double)(curve->n_pieces - 1), piece = fmin(floor(sigma), last);
   const vec3 *p = curve_piece(curve, (size_t)piece);
   vec3 point;
-  curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, curve->degree, curve->binomial, sigma - piece, &point, NULL, NULL);
+  curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, curve->degree, curve_binomial(curve), sigma - piece, &point, NULL,
+                        NULL);
   return point;
 }
 

@@ -196,7 +196,7 @@ cprox_status compile_finish(compile *c, cprox_curve **curve) {
     release_memory(c);
     return workspace_fail(c->workspace, CPROX_INVALID, "the curve has no pieces");
   }
-  cprox_curve *made = curve_allocate(5, c->n);
+  cprox_curve *made = curve_allocate_with(5, c->n, c->beside);
   if (made) {
     made->breaks[0] = c->from;
     memcpy(made->breaks + 1, c->breaks, c->n * sizeof *c->breaks);

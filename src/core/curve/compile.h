@@ -40,6 +40,7 @@ typedef struct compile {
   double from;
   vec3 *points; /* 6 a piece */
   double *error;
+  size_t beside; /* bytes that the caller wants at curve_room() of the curve */
 } compile;
 
 /* Appends the source on [t0, t1]; t0 is where the last one ended. On failure, with the reason set, all memory is given

@@ -45,7 +45,7 @@ cprox_status cprox_curve_create(const cprox_curve_description *description, cpro
   cprox_curve *made = NULL;
   const cprox_status status = maker->create(description, workspace, &made);
   if (status != CPROX_OK) return status;
-  made->kind = made->arcs ? CPROX_CURVE_RECTIFIABLE : description->kind;
+  made->kind = (uint8_t)(made->arcs ? CPROX_CURVE_RECTIFIABLE : description->kind);
   *curve = made;
   return CPROX_OK;
 }

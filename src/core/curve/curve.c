@@ -23,27 +23,46 @@ static char *allocate_zeros(size_t bytes) {
   return memory;
 }
 
-/* One block: short curves are made and freed by the thousand. Packs first, which are the largest; all is aligned as
- * doubles are. */
-cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
-  if (n_pieces > SIZE_MAX / 1024 / (degree + 1)) return NULL; /* the sums below would overflow */
+static size_t leaves_for(size_t n_pieces) {
   size_t n_leaves = 1;
   while (n_leaves < n_pieces) n_leaves *= 2;
-  const size_t packs = curve_packs(n_leaves), points = n_pieces * (degree + 1), tables = curve_tables_size(degree);
-  const size_t numbers = 3 * points + (n_pieces + 1) + n_pieces + tables;
-  const size_t bytes = sizeof(cprox_curve) + packs * sizeof(curve_pack) + numbers * sizeof(double);
-  char *memory = allocate_zeros(bytes);
+  return n_leaves;
+}
+
+static size_t own_tables_size(size_t degree) {
+  return degree > CURVE_LOW_DEGREE ? curve_tables_size(degree) : 0;
+}
+
+size_t curve_arrays_size(size_t degree, size_t n_pieces) {
+  const size_t numbers = 3 * n_pieces * (degree + 1) + (n_pieces + 1) + n_pieces + own_tables_size(degree);
+  return numbers * sizeof(double) + curve_radii_size(leaves_for(n_pieces)) * sizeof(float);
+}
+
+void curve_lay_out(cprox_curve *c, size_t degree, size_t n_pieces, void *memory) {
+  c->degree = (uint32_t)degree;
+  c->n_pieces = (uint32_t)n_pieces;
+  c->n_leaves = (uint32_t)leaves_for(n_pieces);
+  c->points = memory;
+  c->breaks = (double *)(void *)(c->points + n_pieces * (degree + 1));
+  c->error = c->breaks + n_pieces + 1;
+}
+
+/* One block: short curves are made and freed by the thousand. All is aligned as doubles are. */
+cprox_curve *curve_allocate_with(size_t degree, size_t n_pieces, size_t room) {
+  if (n_pieces > INT32_MAX / 2 || n_pieces > SIZE_MAX / 1024 / (degree + 1)) return NULL; /* sums would overflow */
+  char *memory = allocate_zeros(sizeof(cprox_curve) + curve_arrays_size(degree, n_pieces) + room);
   if (!memory) return NULL;
   cprox_curve *c = (cprox_curve *)(void *)memory;
-  c->degree = degree;
-  c->n_pieces = n_pieces;
-  c->n_leaves = n_leaves;
-  c->packs = packs > 0 ? (curve_pack *)(void *)(memory + sizeof(cprox_curve)) : NULL;
-  c->points = (vec3 *)(void *)(memory + sizeof(cprox_curve) + packs * sizeof(curve_pack));
-  c->breaks = (double *)(void *)(c->points + points);
-  c->error = c->breaks + n_pieces + 1;
-  c->tables = c->error + n_pieces;
+  curve_lay_out(c, degree, n_pieces, c + 1);
   return c;
+}
+
+cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
+  return curve_allocate_with(degree, n_pieces, 0);
+}
+
+void *curve_room(const cprox_curve *c) {
+  return (char *)c->points + curve_arrays_size(c->degree, c->n_pieces);
 }
 
 void cprox_curve_free(cprox_curve *curve) {
@@ -108,56 +127,47 @@ static double distance_bound(vec3 p, vec3 a, vec3 b) {
 }
 
 /* Around one piece: its hull is that of its control points, and the exact curve is within the piece's error of it. */
-static curve_capsule piece_capsule(const cprox_curve *c, size_t i) {
+static double piece_radius(const cprox_curve *c, size_t i) {
   const vec3 *p = curve_piece(c, i);
-  curve_capsule capsule = {.a = p[0], .b = p[c->degree], .radius = 0.0};
-  for (size_t k = 1; k < c->degree; k++) {
-    const double distance = distance_bound(p[k], capsule.a, capsule.b);
-    if (distance > capsule.radius) capsule.radius = distance;
-  }
-  capsule.radius = ROUND_UP * (capsule.radius + c->error[i]);
-  return capsule;
+  double radius = 0.0;
+  for (size_t k = 1; k < c->degree; k++) radius = greater(distance_bound(p[k], p[0], p[c->degree]), radius);
+  return ROUND_UP * (radius + c->error[i]);
 }
 
-static void set_capsule(cprox_curve *c, size_t node, curve_capsule capsule) {
-  if (node == 1) c->whole = capsule;
+/* Rounded up to a float of the unit; one that is too large for that bounds nothing. */
+static void set_radius(cprox_curve *c, size_t node, double radius) {
+  if (node == 1) c->radius = radius;
   if (c->n_leaves == 1) return;
-  curve_pack *p = &c->packs[node / CURVE_PACK];
-  const size_t l = node % CURVE_PACK;
-  p->ax[l] = capsule.a.x, p->ay[l] = capsule.a.y, p->az[l] = capsule.a.z;
-  p->bx[l] = capsule.b.x, p->by[l] = capsule.b.y, p->bz[l] = capsule.b.z;
-  p->radius[l] = capsule.radius;
+  float *kept = curve_radii(c) + node;
+  *kept = (float)(radius / curve_unit(c));
+  while (curve_unit(c) * (double)*kept < radius) *kept = nextafterf(*kept, INFINITY);
 }
 
-/* Round the nodes so many levels below, of which the first has pieces: the distance to a segment is convex, so along a
- * segment it is largest at an end. */
-static curve_capsule join_capsules(const cprox_curve *c, size_t node, size_t levels) {
-  const size_t first = node << levels, end = (node + 1) << levels;
-  size_t last = first;
-  while (last + 1 < end && curve_capsule_at(c, last + 1).radius >= 0.0) last++;
-  curve_capsule capsule = {.a = curve_capsule_at(c, first).a, .b = curve_capsule_at(c, last).b, .radius = 0.0};
-  for (size_t k = first; k <= last; k++) {
-    const curve_capsule part = curve_capsule_at(c, k);
-    const double at_a = k > first ? distance_bound(part.a, capsule.a, capsule.b) : 0.0;
-    const double at_b = k < last ? distance_bound(part.b, capsule.a, capsule.b) : 0.0;
-    capsule.radius = greater(ROUND_UP * (part.radius + greater(at_a, at_b)), capsule.radius);
+/* Round the nodes so many levels below: the distance to a segment is convex, so along a segment it is largest at an
+ * end. */
+static double join_capsules(const cprox_curve *c, size_t node, size_t levels) {
+  const curve_ends whole = curve_ends_at(c, node);
+  double joined = 0.0;
+  for (size_t k = node << levels; k < (node + 1) << levels && !curve_is_empty_at(c, k); k++) {
+    const curve_ends part = curve_ends_at(c, k);
+    const double at_a = k > node << levels ? distance_bound(*part.a, *whole.a, *whole.b) : 0.0;
+    const double at_b = part.b != whole.b ? distance_bound(*part.b, *whole.a, *whole.b) : 0.0;
+    joined = greater(ROUND_UP * (curve_radius_at(c, k) + greater(at_a, at_b)), joined);
   }
-  return capsule;
+  return joined;
 }
 
 /* From three levels below where there are so many: a radius that is made of fewer others is smaller. */
 static bool build_tree(cprox_curve *c, cprox_workspace *workspace) {
-  const curve_capsule none = {.radius = -1.0};
-  for (size_t k = 0; k < CURVE_PACK * curve_packs(c->n_leaves); k++) set_capsule(c, k, none);
   for (size_t i = 0; i < c->n_pieces; i++) {
     if (curve_stops(i, workspace)) return false;
-    set_capsule(c, c->n_leaves + i, piece_capsule(c, i));
+    set_radius(c, c->n_leaves + i, piece_radius(c, i));
   }
   for (size_t k = c->n_leaves; k-- > 1;) {
     if (curve_stops(k, workspace)) return false;
     size_t levels = 1;
     while (levels < 3 && k << levels < c->n_leaves) levels++;
-    if (curve_capsule_at(c, k << levels).radius >= 0.0) set_capsule(c, k, join_capsules(c, k, levels));
+    if (!curve_is_empty_at(c, k)) set_radius(c, k, join_capsules(c, k, levels));
   }
   return true;
 }
@@ -175,11 +185,7 @@ static void measure_points(cprox_curve *c) {
 
 static bool build(cprox_curve *c, cprox_workspace *workspace) {
   measure_points(c);
-  curve_fill_tables(c->degree, c->tables);
-  c->binomial = c->tables;
-  c->square = c->tables + (c->degree < 2 ? 0 : c->degree - 1);
-  c->worst = 0.0;
-  for (size_t i = 0; i < c->n_pieces; i++) c->worst = greater(c->error[i], c->worst);
+  if (c->degree > CURVE_LOW_DEGREE) curve_fill_tables(c->degree, (double *)curve_own_tables(c));
   return build_tree(c, workspace);
 }
 
@@ -191,6 +197,13 @@ cprox_status curve_finish(cprox_curve *c, cprox_workspace *workspace, cprox_curv
   if (!build(c, workspace)) return curve_stopped(c, workspace);
   *curve = c;
   return CPROX_OK;
+}
+
+double curve_error(const cprox_curve *c) {
+  if (c->arcs) return c->arcs->error;
+  double worst = 0.0;
+  for (size_t i = 0; i < c->n_pieces; i++) worst = greater(c->error[i], worst);
+  return worst;
 }
 
 bool curve_stops(size_t n_pieces, cprox_workspace *workspace) {
@@ -310,7 +323,7 @@ cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_work
   const double left = curve->breaks[i], right = curve->breaks[i + 1], length = right - left;
   const double s = local_parameter(left, t, right);
   const vec3 *p = curve_piece(curve, i);
-  curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, curve->degree, curve->binomial, s, point, derivative,
+  curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, curve->degree, curve_binomial(curve), s, point, derivative,
                         second_derivative);
 
   /* from ds to dt */
@@ -379,11 +392,12 @@ cprox_curve_piece_info cprox_curve_get_piece_info(const cprox_curve *curve, size
 }
 
 cprox_curve_info cprox_curve_get_info(const cprox_curve *curve) {
-  cprox_curve_info info = {.kind = curve->kind,
+  cprox_curve_info info = {.kind = (cprox_curve_kind)curve->kind,
                            .degree = curve->arcs ? 0 : curve->degree,
                            .n_pieces = curve->n_pieces,
                            .error = curve_error(curve),
-                           .dubins = curve->dubins};
+                           .dubins = {0}};
+  if (curve->kind == CPROX_CURVE_DUBINS) info.dubins = *(const cprox_dubins_path *)curve_room(curve);
   curve_domain(curve, &info.t0, &info.t1);
   find_piece_bounds(curve, 0, &info.lowest, &info.highest);
   for (size_t i = 1; i < curve->n_pieces; i++) {

@@ -3,6 +3,7 @@
 #ifndef CPROX_CURVE_CURVE_H
 #define CPROX_CURVE_CURVE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/rounding.h"
@@ -16,65 +17,119 @@ typedef struct curve_capsule {
   double radius;
 } curve_capsule;
 
-/* Eight capsules, one array a number: what lies three levels below a node of the tree is bounded in vector registers.
- */
+/* Nodes of the tree that are bounded at once lie side by side: what is three levels below a node. */
 enum { CURVE_PACK = 8 };
-typedef struct curve_pack {
-  double ax[CURVE_PACK], ay[CURVE_PACK], az[CURVE_PACK], bx[CURVE_PACK], by[CURVE_PACK], bz[CURVE_PACK];
-  double radius[CURVE_PACK];
-} curve_pack;
+
+/* The largest magnitude of a coordinate, a knot or a parameter. */
+#define CURVE_LARGEST 1e150
+
+/* Lengths below this may lose their squares to underflow; it is added where a length must not come out too small. */
+#define CURVE_LEAST 1e-150
 
 struct cprox_curve {
-  cprox_curve_kind kind;
-  cprox_dubins_path dubins; /* zeros for other kinds */
-  size_t degree;
-  size_t n_pieces;
-  double *breaks; /* n_pieces + 1 parameters, ascending; piece i covers [breaks[i], breaks[i+1]] */
+  uint32_t n_pieces, n_leaves, degree;
+  uint8_t kind;   /* cprox_curve_kind */
+  bool flat;      /* all control points have the z of the first, exactly */
   vec3 *points;   /* n_pieces * (degree + 1) control points */
+  double *breaks; /* n_pieces + 1 parameters, ascending; piece i covers [breaks[i], breaks[i+1]] */
   double *error;  /* a piece's: each exact point of the curve is within this of the computed piece's (rounding of the
                      conversion; for compiled bases their remainder) */
-  /* Heap order: node 1 is the root, node k has children 2k and 2k+1; the n_leaves leaves (a power of two >= n_pieces)
-   * stand at n_leaves + i for piece i; a node without pieces has radius < 0. Node k is lane k % CURVE_PACK of pack
-   * k / CURVE_PACK, of which there are curve_packs(); lanes that are no nodes have radius < 0. */
-  curve_pack *packs;
-  size_t n_leaves;
-  curve_capsule whole;           /* node 1: it is asked for by every query, and often nothing else is */
   cprox_rectifiable_curve *arcs; /* NULL, or what a curve is known by that has no control points: then its pieces are
                                     chords of degree 1, their errors how far the curve is from them, and intervals are
                                     those of rectifiable.h */
-  double worst;                  /* the largest of the pieces' errors */
-  double largest;                /* at least |P| of every control point, */
-  bool flat;                     /* all have the z of the first, exactly */
-  double *tables;                /* numbers of the degree, curve_tables_size() of them, which curve_finish() fills: */
-  const double *binomial; /* C(degree - 2, k), for evaluation by the last three de Casteljau points; none below 2, */
-  const double *square;   /* and for control_distance_from(): C(degree, k), then 1 / C(2 degree, k) */
+  double radius;                 /* of node 1: it is asked for by every query, and often nothing else is */
+  double largest;                /* at least |P| of every control point */
 };
 
+/* Behind the errors stand the radii of the nodes, where there is more than one, then the tables of a high degree, then
+ * what the constructor wanted room for.
+ *
+ * Heap order: node 1 is the root, node k has children 2k and 2k+1; the n_leaves leaves (a power of two >= n_pieces)
+ * stand at n_leaves + i for piece i. A node's capsule runs from the first to the last point of its pieces, so that only
+ * its radius is kept, in units of curve_unit(). */
+static inline float *curve_radii(const cprox_curve *c) {
+  return (float *)(void *)(c->error + c->n_pieces);
+}
+
+static inline size_t curve_radii_size(size_t n_leaves) {
+  return n_leaves > 1 ? 2 * n_leaves : 0;
+}
+
+static inline double curve_unit(const cprox_curve *c) {
+  return c->largest + CURVE_LEAST;
+}
+
 static inline const vec3 *curve_piece(const cprox_curve *c, size_t i) {
-  return c->points + i * (c->degree + 1);
+  return c->points + i * ((size_t)c->degree + 1);
 }
 
 /* The last piece that begins at or before t, for t inside the domain; at its end the last one. */
 size_t curve_piece_at(const cprox_curve *c, double t);
 
-static inline curve_capsule curve_capsule_at(const cprox_curve *c, size_t node) {
-  if (node == 1) return c->whole;
-  const curve_pack *p = &c->packs[node / CURVE_PACK];
-  const size_t l = node % CURVE_PACK;
-  return (curve_capsule){{p->ax[l], p->ay[l], p->az[l]}, {p->bx[l], p->by[l], p->bz[l]}, p->radius[l]};
+static inline double curve_radius_at(const cprox_curve *c, size_t node) {
+  return node == 1 ? c->radius : curve_unit(c) * (double)curve_radii(c)[node];
 }
 
-/* How many packs a tree of so many leaves takes: none where there is nothing below node 1. */
-static inline size_t curve_packs(size_t n_leaves) {
-  return n_leaves > 1 ? (2 * n_leaves + CURVE_PACK - 1) / CURVE_PACK : 0;
+/* Levels from a node down to the leaves. */
+static inline int curve_levels_below(const cprox_curve *c, size_t node) {
+  return __builtin_clzll(node) - __builtin_clzll(c->n_leaves);
+}
+
+/* A node below which there are no pieces. */
+static inline bool curve_is_empty_at(const cprox_curve *c, size_t node) {
+  return (node << curve_levels_below(c, node)) - c->n_leaves >= c->n_pieces;
+}
+
+/* The first and the last point of a node that is not empty. */
+typedef struct curve_ends {
+  const vec3 *a, *b;
+} curve_ends;
+
+static inline curve_ends curve_ends_at(const cprox_curve *c, size_t node) {
+  const int levels = curve_levels_below(c, node);
+  const size_t first = (node << levels) - c->n_leaves, end = ((node + 1) << levels) - c->n_leaves;
+  return (curve_ends){curve_piece(c, first), curve_piece(c, end < c->n_pieces ? end : c->n_pieces) - 1};
+}
+
+/* radius < 0: no pieces. */
+static inline curve_capsule curve_capsule_at(const cprox_curve *c, size_t node) {
+  if (curve_is_empty_at(c, node)) return (curve_capsule){.radius = -1.0};
+  const curve_ends ends = curve_ends_at(c, node);
+  return (curve_capsule){*ends.a, *ends.b, curve_radius_at(c, node)};
+}
+
+static inline curve_capsule curve_whole(const cprox_curve *c) {
+  return (curve_capsule){c->points[0], *(curve_piece(c, c->n_pieces) - 1), c->radius};
 }
 
 /* A curve with room for the pieces; breaks, points and error are the caller's to fill, then curve_finish(). NULL where
- * memory is out (cprox_curve_free() frees). */
+ * memory is out (cprox_curve_free() frees). `room`: bytes that the caller wants besides, at curve_room(). */
 cprox_curve *curve_allocate(size_t degree, size_t n_pieces);
+cprox_curve *curve_allocate_with(size_t degree, size_t n_pieces, size_t room);
+void *curve_room(const cprox_curve *c);
 
+/* The same in memory of the caller's, curve_arrays_size() bytes. */
+size_t curve_arrays_size(size_t degree, size_t n_pieces);
+void curve_lay_out(cprox_curve *c, size_t degree, size_t n_pieces, void *memory);
+
+/* Numbers of a degree: C(degree - 2, k), for evaluation by the last three de Casteljau points, none below 2; and for
+ * control_distance_from(): C(degree, k), then 1 / C(2 degree, k). Of low degrees they are constants. */
+enum { CURVE_LOW_DEGREE = 5 };
+extern const double *const curve_low_tables[CURVE_LOW_DEGREE + 1];
 size_t curve_tables_size(size_t degree);
 void curve_fill_tables(size_t degree, double *tables);
+
+static inline const double *curve_own_tables(const cprox_curve *c) {
+  return (const double *)(const void *)(curve_radii(c) + curve_radii_size(c->n_leaves));
+}
+
+static inline const double *curve_binomial(const cprox_curve *c) {
+  return c->degree <= CURVE_LOW_DEGREE ? curve_low_tables[c->degree] : curve_own_tables(c);
+}
+
+static inline const double *curve_square(const cprox_curve *c) {
+  return curve_binomial(c) + (c->degree < 2 ? 0 : c->degree - 1);
+}
 
 /* Builds the capsules and tables over pieces that are filled in. */
 void curve_build(cprox_curve *c);
@@ -115,12 +170,6 @@ cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace)
 /* All of it for a sum of coefficients times functions of t. */
 cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, double t1, cprox_workspace *workspace);
 
-/* The largest magnitude of a coordinate, a knot or a parameter. */
-#define CURVE_LARGEST 1e150
-
-/* Lengths below this may lose their squares to underflow; it is added where a length must not come out too small. */
-#define CURVE_LEAST 1e-150
-
 /* The Bézier points b_j = f(lo^(p-j), hi^j) of the polynomial whose blossom f has the p + 1 de Boor points d over the
  * 2p knots u, for u[p-1] <= lo < hi <= u[p]. Convex combinations only: each b_j is within 5 p u max|d| of the exact
  * one. */
@@ -144,15 +193,14 @@ static inline void curve_domain(const cprox_curve *c, double *t0, double *t1) {
 
 /* How far the curve as it was given may be from its computed pieces; of one known by its arc length: from its points.
  */
-static inline double curve_error(const cprox_curve *c) {
-  return c->arcs ? c->arcs->error : c->worst;
-}
+double curve_error(const cprox_curve *c);
 
 /* Whether it keeps within what queries can hold. */
 static inline bool curve_is_in_reach(const cprox_curve *c) {
-  const vec3 a = c->whole.a, b = c->whole.b;
+  const curve_capsule all = curve_whole(c);
+  const vec3 a = all.a, b = all.b;
   const double ends = fmax(fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))), fmax(fabs(b.x), fmax(fabs(b.y), fabs(b.z))));
-  return fmax(ends, c->whole.radius) <= LENGTH_MOST;
+  return fmax(ends, all.radius) <= LENGTH_MOST;
 }
 
 #endif

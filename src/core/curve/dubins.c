@@ -108,7 +108,7 @@ static cprox_status compile_path(vec3 start, double heading, double radius, cons
                                  cprox_workspace *workspace, cprox_curve **curve) {
   const dd one_turn = dd_divide(dd_from(1.0), dd_from(radius));
   heading_curve c = {.heading = dd_from(heading)};
-  compile pieces = {.workspace = workspace};
+  compile pieces = {.workspace = workspace, .beside = sizeof *path};
   double from = 0.0;
   for (int i = 0; i < 3; i++) {
     if (!(path->ends[i] > from)) continue;
@@ -155,6 +155,6 @@ cprox_status curve_create_dubins(const cprox_curve_description *d, cprox_workspa
     return workspace_fail(workspace, CPROX_INVALID, "start and end pose are the same: the path has no length");
 
   const cprox_status made = compile_path(start, start_heading, radius, &found, workspace, curve);
-  if (made == CPROX_OK) (*curve)->dubins = found;
+  if (made == CPROX_OK) *(cprox_dubins_path *)curve_room(*curve) = found;
   return made;
 }

@@ -31,6 +31,15 @@ void curve_fill_tables(size_t degree, double *tables) {
   }
 }
 
+static const double low_1[] = {1, 1, 1, 1.0 / 2, 1}, low_2[] = {1, 1, 2, 1, 1, 1.0 / 4, 1.0 / 6, 1.0 / 4, 1},
+                    low_3[] = {1, 1, 1, 3, 3, 1, 1, 1.0 / 6, 1.0 / 15, 1.0 / 20, 1.0 / 15, 1.0 / 6, 1},
+                    low_4[] = {1,       2,        1,        1,        4,        6,        4,       1, 1,
+                               1.0 / 8, 1.0 / 28, 1.0 / 56, 1.0 / 70, 1.0 / 56, 1.0 / 28, 1.0 / 8, 1},
+                    low_5[] = {1,         3,         3,         1,         1,        5,        10,
+                               10,        5,         1,         1,         1.0 / 10, 1.0 / 45, 1.0 / 120,
+                               1.0 / 210, 1.0 / 252, 1.0 / 210, 1.0 / 120, 1.0 / 45, 1.0 / 10, 1};
+const double *const curve_low_tables[CURVE_LOW_DEGREE + 1] = {NULL, low_1, low_2, low_3, low_4, low_5};
+
 /* With m = n - 2, the last three de Casteljau points are Q_j = sum_k B_k^m(s) P_(k+j), j = 0, 1, 2: nine sums of m + 1
  * products, four terms at a time. */
 SIMD_CLONES

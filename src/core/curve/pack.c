@@ -3,6 +3,16 @@
 
 #include "simd/dispatch.h"
 
+void curve_pack_fill(const cprox_curve *c, size_t first, size_t n, curve_pack *pack) {
+  for (size_t k = 0; k < CURVE_PACK; k++) {
+    const size_t node = first + (k < n ? k : n - 1);
+    const curve_ends ends = curve_ends_at(c, node);
+    pack->ax[k] = ends.a->x, pack->ay[k] = ends.a->y, pack->az[k] = ends.a->z;
+    pack->bx[k] = ends.b->x, pack->by[k] = ends.b->y, pack->bz[k] = ends.b->z;
+    pack->radius[k] = curve_radius_at(c, node);
+  }
+}
+
 SIMD_CLONES
 void curve_pack_reach(const curve_pack *pack, vec3 n, vec3 from, double least[CURVE_PACK]) {
   const double *restrict ax = pack->ax, *restrict ay = pack->ay, *restrict az = pack->az;

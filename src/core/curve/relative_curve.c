@@ -81,19 +81,11 @@ static void section_of_second(const cprox_curve *c, size_t piece, const frame *f
 /* Lays out the arrays of a curve in a buffer of the workspace. */
 static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, workspace_buffer buffer,
                     cprox_curve *c) {
-  size_t leaves = 1;
-  while (leaves < n_pieces) leaves *= 2;
-  const size_t points = n_pieces * (degree + 1);
-  const size_t bytes = curve_packs(leaves) * sizeof *c->packs + points * sizeof *c->points +
-                       (n_pieces + 1 + n_pieces + curve_tables_size(degree)) * sizeof(double);
-  char *memory = workspace_reserve(workspace, buffer, bytes);
+  void *memory =
+      n_pieces <= INT32_MAX / 2 ? workspace_reserve(workspace, buffer, curve_arrays_size(degree, n_pieces)) : NULL;
   if (!memory) return false;
-  *c = (cprox_curve){.degree = degree, .n_pieces = n_pieces, .n_leaves = leaves};
-  c->packs = (curve_pack *)(void *)memory;
-  c->points = (vec3 *)(void *)(c->packs + curve_packs(leaves));
-  c->breaks = (double *)(void *)(c->points + points);
-  c->error = c->breaks + n_pieces + 1;
-  c->tables = c->error + n_pieces;
+  *c = (cprox_curve){.arcs = NULL};
+  curve_lay_out(c, degree, n_pieces, memory);
   return true;
 }
 

@@ -75,7 +75,7 @@ static vec3 local_of(const frame *f, vec3 world) {
  * where the frame is turned, u to subtract the position, 3u for each product of three, 2u for the sums; of sizes that
  * are at most the curve's reach and the centre's distance from the position. */
 static void measure_ranges(curve_side *side) {
-  const curve_capsule *all = &side->curve->whole;
+  const curve_capsule whole = curve_whole(side->curve), *all = &whole;
   const vec3 a = local_of(&side->frame, all->a), b = local_of(&side->frame, all->b);
   const double computed = sqrt(greater(vec_norm2(a), vec_norm2(b)));
   const double most = ROUND_UP * (computed + all->radius + side->turned_slope * computed + side->turned_offset);
@@ -114,7 +114,7 @@ size_t curve_side_piece(const curve_side *side, const curve_interval *at) {
 }
 
 bool curve_side_is_empty(const curve_side *side, const curve_interval *at) {
-  return curve_capsule_at(side->curve, at->part).radius < 0.0;
+  return curve_is_empty_at(side->curve, at->part);
 }
 
 double curve_side_parameter(const curve_side *side, size_t piece, double s) {
@@ -142,14 +142,23 @@ vec3 curve_side_chord_from_origin(const curve_side *side, const curve_interval *
 
 /* How many levels at a time a range falls: three, which is a pack, but so that the last step is no small one. */
 static int child_levels(const cprox_curve *c, size_t node) {
-  const int left = __builtin_clzll(node) - __builtin_clzll(c->n_leaves);
+  const int left = curve_levels_below(c, node);
   return left == 4 ? 2 : left < 3 ? left : 3;
 }
 
-/* Of the pack that a node lies in, from the frame's origin. */
-static void distances_of_pack(const curve_side *side, size_t node, double distance[CURVE_PACK], double s[CURVE_PACK]) {
-  curve_pack_distance(&side->curve->packs[node / CURVE_PACK], side->frame.position,
-                      frame_turn_to_world(&side->frame, side->frame.centre), distance, s);
+/* From the frame's origin. */
+static void distances_of_pack(const curve_side *side, const curve_pack *pack, double distance[CURVE_PACK],
+                              double s[CURVE_PACK]) {
+  curve_pack_distance(pack, side->frame.position, frame_turn_to_world(&side->frame, side->frame.centre), distance, s);
+}
+
+/* The first of the nodes that a node falls into, and how many of them have pieces. */
+static size_t first_child(const cprox_curve *c, size_t node, size_t *n) {
+  const int levels = child_levels(c, node);
+  const size_t first = node << levels;
+  *n = 1;
+  while (*n < (size_t)1 << levels && !curve_is_empty_at(c, first + *n)) ++*n;
+  return first;
 }
 
 size_t curve_side_nearest_piece(const curve_side *side, const curve_interval *range, double *s) {
@@ -157,18 +166,13 @@ size_t curve_side_nearest_piece(const curve_side *side, const curve_interval *ra
   size_t node = range->part;
   while (node < c->n_leaves) {
     double distance[CURVE_PACK], along[CURVE_PACK];
-    const int levels = child_levels(c, node);
-    node <<= levels;
-    distances_of_pack(side, node, distance, along);
-    size_t nearest = node % CURVE_PACK;
-    const size_t end = nearest + ((size_t)1 << levels);
-    const double *radius = c->packs[node / CURVE_PACK].radius;
-    double least = distance[nearest];
-    for (size_t k = nearest + 1; k < end && radius[k] >= 0.0; k++) {
-      nearest = distance[k] < least ? k : nearest;
-      least = lesser(distance[k], least);
-    }
-    node += nearest - node % CURVE_PACK;
+    curve_pack pack;
+    size_t n, nearest = 0;
+    node = first_child(c, node, &n);
+    curve_pack_fill(c, node, n, &pack);
+    distances_of_pack(side, &pack, distance, along);
+    for (size_t k = 1; k < n; k++) nearest = distance[k] < distance[nearest] ? k : nearest;
+    node += nearest;
     *s = along[nearest];
   }
   return node - c->n_leaves;
@@ -335,27 +339,23 @@ static curve_reach range_reach(const curve_side *side, const curve_interval *at,
                        .magnitude = side->range_magnitude};
 }
 
-size_t curve_side_children(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]) {
-  const cprox_curve *c = side->curve;
-  const int levels = child_levels(c, range->part);
-  const size_t first = (size_t)range->part << levels, lane = first % CURVE_PACK;
-  const double *radius = c->packs[first / CURVE_PACK].radius + lane;
-  size_t n = 0;
-  for (; n < (size_t)1 << levels && radius[n] >= 0.0; n++) {
-    part[n] = *range;
-    part[n].part = (uint32_t)(first + n);
+size_t curve_side_children(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK],
+                           curve_pack *pack) {
+  size_t n;
+  const size_t first = first_child(side->curve, range->part, &n);
+  curve_pack_fill(side->curve, first, n, pack);
+  for (size_t k = 0; k < n; k++) {
+    part[k] = *range;
+    part[k].part = (uint32_t)(first + k);
   }
   return n;
 }
 
-curve_reach curve_side_children_reach(const curve_side *side, const curve_interval *first, vec3 n,
+curve_reach curve_side_children_reach(const curve_side *side, const curve_pack *pack, vec3 n,
                                       double least[CURVE_PACK]) {
-  const size_t lane = first->part % CURVE_PACK;
-  double all[CURVE_PACK];
-  curve_pack_reach(&side->curve->packs[first->part / CURVE_PACK], frame_turn_to_world(&side->frame, n),
-                   side->frame.position, all);
+  curve_pack_reach(pack, frame_turn_to_world(&side->frame, n), side->frame.position, least);
   const double centre = vec_dot(n, side->frame.centre);
-  for (size_t k = 0; k + lane < CURVE_PACK; k++) least[k] = all[k + lane] - centre;
+  for (size_t k = 0; k < CURVE_PACK; k++) least[k] -= centre;
   return (curve_reach){.least = -INFINITY, .error = side->range_error, .magnitude = side->range_magnitude};
 }
 
@@ -363,7 +363,7 @@ double curve_side_distance_from(const curve_side *side, const curve_interval *at
                                 double *scratch) {
   const double *points = points_pool_at(side->pool, (size_t)at->slot);
   const double distance =
-      control_distance_from(points, side->curve->degree, side->curve->square, centre, axis, scratch);
+      control_distance_from(points, side->curve->degree, curve_square(side->curve), centre, axis, scratch);
   /* an ellipsoid lies in the capsule round its chord */
   return side->curve->arcs ? fmax(distance - ROUND_UP * arc_hull(side, at).radius, 0.0) : distance;
 }
@@ -377,13 +377,10 @@ curve_reach curve_side_reach(const curve_side *side, const curve_interval *at, v
   return range_reach(side, at, n);
 }
 
-curve_reach curve_side_children_distance(const curve_side *side, const curve_interval *first,
-                                         double least[CURVE_PACK]) {
-  const size_t lane = first->part % CURVE_PACK;
-  const double *radius = side->curve->packs[first->part / CURVE_PACK].radius;
+curve_reach curve_side_children_distance(const curve_side *side, const curve_pack *pack, double least[CURVE_PACK]) {
   double distance[CURVE_PACK], unused[CURVE_PACK];
-  distances_of_pack(side, first->part, distance, unused);
-  for (size_t k = 0; k + lane < CURVE_PACK; k++) least[k] = distance[k + lane] - radius[k + lane];
+  distances_of_pack(side, pack, distance, unused);
+  for (size_t k = 0; k < CURVE_PACK; k++) least[k] = distance[k] - pack->radius[k];
   return (curve_reach){
       .least = -INFINITY, .error = side->range_error + CURVE_LEAST, .magnitude = side->range_magnitude};
 }
@@ -421,7 +418,7 @@ vec3 curve_side_point(const curve_side *side, double s) {
   const size_t degree = side->curve->degree;
   const double *x = points_pool_at(side->pool, side->root_slot), *y = x + degree + 1, *z = y + degree + 1;
   vec3 point;
-  curve_bezier_evaluate(x, y, z, 1, degree, side->curve->binomial, s, &point, NULL, NULL);
+  curve_bezier_evaluate(x, y, z, 1, degree, curve_binomial(side->curve), s, &point, NULL, NULL);
   return point;
 }
 

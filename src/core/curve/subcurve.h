@@ -7,6 +7,7 @@
 #include "base/frame.h"
 #include "base/workspace.h"
 #include "curve/curve.h"
+#include "curve/pack.h"
 
 /* A sub-interval of a piece of a curve, or a range of pieces. */
 typedef struct curve_interval {
@@ -86,16 +87,16 @@ typedef struct curve_reach {
   double magnitude; /* of the points that entered, for the rounding of the products */
 } curve_reach;
 
-/* A range falls into 2, 4 or 8 ranges or pieces that lie in one pack of the tree, fewer where there are no pieces:
- * their number, and where they are. */
-size_t curve_side_children(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]);
+/* A range falls into 2, 4 or 8 ranges or pieces, fewer where there are no pieces: their number, where they are, and
+ * their capsules. */
+size_t curve_side_children(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK],
+                           curve_pack *pack);
 
-/* What each of them reaches, the first being given: least[k] of part k, the rest of the answer being that of all. */
-curve_reach curve_side_children_reach(const curve_side *side, const curve_interval *first, vec3 n,
-                                      double least[CURVE_PACK]);
+/* What each of them reaches: least[k] of part k, the rest of the answer being that of all. */
+curve_reach curve_side_children_reach(const curve_side *side, const curve_pack *pack, vec3 n, double least[CURVE_PACK]);
 
 /* How far each of them is from the frame's origin, likewise; the products lose 64 u of the magnitude. */
-curve_reach curve_side_children_distance(const curve_side *side, const curve_interval *first, double least[CURVE_PACK]);
+curve_reach curve_side_children_distance(const curve_side *side, const curve_pack *pack, double least[CURVE_PACK]);
 
 /* n: unit within 4 u. A piece with points of its own must be the loaded one. */
 curve_reach curve_side_reach(const curve_side *side, const curve_interval *at, vec3 n);

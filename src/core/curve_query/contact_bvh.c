@@ -186,7 +186,7 @@ static double approach(curve_tree *o, const tree_sample *sample) {
   const size_t degree = o->side.curve->degree;
   const double *x = points_pool_at(&o->pool, o->side.root_slot), *y = x + degree + 1, *z = y + degree + 1;
   vec3 velocity;
-  curve_bezier_evaluate(x, y, z, 1, degree, o->side.curve->binomial, sample->s, NULL, &velocity, NULL);
+  curve_bezier_evaluate(x, y, z, 1, degree, curve_binomial(o->side.curve), sample->s, NULL, &velocity, NULL);
   return -vec_dot(sample->near.normal, velocity);
 }
 

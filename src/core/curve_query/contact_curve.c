@@ -30,7 +30,7 @@ static vec3 jet_at(const curve_side *side, double s, vec3 *first, vec3 *second) 
   const size_t degree = side->curve->degree;
   const double *x = points_pool_at(side->pool, side->root_slot), *y = x + degree + 1, *z = y + degree + 1;
   vec3 value;
-  curve_bezier_evaluate(x, y, z, 1, degree, side->curve->binomial, s, &value, first, second);
+  curve_bezier_evaluate(x, y, z, 1, degree, curve_binomial(side->curve), s, &value, first, second);
   return value;
 }
 

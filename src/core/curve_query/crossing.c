@@ -79,8 +79,8 @@ static double meet_plane(const crossing *o, double s) {
   const double *points = points_pool_at(o->side->pool, o->side->root_slot);
   for (int i = 0; i < MOST_STEPS; i++) {
     vec3 at, velocity;
-    curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, o->side->curve->binomial,
-                          s, &at, &velocity, NULL);
+    curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree,
+                          curve_binomial(o->side->curve), s, &at, &velocity, NULL);
     const double height = height_of(o, at);
     const double speed = vec_dot(o->flat->normal, velocity);
     const double next = lesser(greater(s - height / speed, 0.0), 1.0);

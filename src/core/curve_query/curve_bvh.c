@@ -71,7 +71,7 @@ static double newton_step(const tree_sample *sample, vec3 d1, vec3 d2) {
 static void refine_on_element(curve_tree *o) {
   const size_t degree = o->side.curve->degree;
   const double *x = points_pool_at(&o->pool, SLOT_ROOT), *y = x + degree + 1, *z = y + degree + 1;
-  const double error = curve_side_point_error(&o->side), *binomial = o->side.curve->binomial;
+  const double error = curve_side_point_error(&o->side), *binomial = curve_binomial(o->side.curve);
   tree_sample sample = o->best;
   vec3 at, d1, d2;
   curve_bezier_evaluate(x, y, z, 1, degree, binomial, sample.s, &at, &d1, &d2);

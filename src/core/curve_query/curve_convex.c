@@ -385,11 +385,11 @@ static int add_child(curve_convex *o, const search_node *node, const curve_inter
 }
 
 /* Raises all of them by the normal of a sample. */
-static void bound_range_children(const curve_convex *o, search_node *child, size_t n, const curve_sample *sample) {
+static void bound_range_children(const curve_convex *o, const curve_pack *pack, search_node *child, size_t n,
+                                 const curve_sample *sample) {
   if (!isfinite(sample->support)) return;
   double least[CURVE_PACK];
-  const curve_reach reach =
-      curve_side_children_reach(&o->side, &curve_convex_own(&child[0])->at, sample->normal, least);
+  const curve_reach reach = curve_side_children_reach(&o->side, pack, sample->normal, least);
   for (size_t k = 0; k < n; k++) {
     const double bound = least[k] - sample->support;
     const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
@@ -399,11 +399,11 @@ static void bound_range_children(const curve_convex *o, search_node *child, size
 }
 
 /* And by the ball about the frame's origin that the body lies in: each from its own side, as no one plane sees them. */
-static void bound_range_children_by_ball(const curve_convex *o, search_node *child, size_t n) {
+static void bound_range_children_by_ball(const curve_convex *o, const curve_pack *pack, search_node *child, size_t n) {
   const convex *shape = o->shape;
   if (shape->ops->kind == CPROX_BODY_HALFSPACE) return;
   double least[CURVE_PACK];
-  const curve_reach reach = curve_side_children_distance(&o->side, &curve_convex_own(&child[0])->at, least);
+  const curve_reach reach = curve_side_children_distance(&o->side, pack, least);
   const double radius = shape->scale + o->offset;
   const double slack = ROUND_UP * (reach.error + 64.0 * ROUND_U * (reach.magnitude + radius) + shape->slack);
   for (size_t k = 0; k < n; k++) child[k].lower = greater(least[k] - radius - slack, child[k].lower);
@@ -420,16 +420,17 @@ static bool is_open(const curve_convex *o, const search_node *child, size_t n) {
  * ball leaves open the best normal may settle, and what that leaves the one from the body's middle. */
 static int split_range(curve_convex *o, const search_node *node, search_node *child) {
   curve_interval part[CURVE_PACK];
-  const size_t n = curve_side_children(&o->side, &curve_convex_known(node)->at, part);
+  curve_pack pack;
+  const size_t n = curve_side_children(&o->side, &curve_convex_known(node)->at, part, &pack);
   for (size_t k = 0; k < n; k++) {
     child[k] = *node;
     curve_convex_own(&child[k])->at = part[k];
     curve_convex_own(&child[k])->seen_ball = 0;
     curve_convex_own(&child[k])->seen = o->incumbent;
   }
-  bound_range_children_by_ball(o, child, n);
-  if (is_open(o, child, n)) bound_range_children(o, child, n, &o->best);
-  if (is_open(o, child, n) && normal_from_origin(o, node)) bound_range_children(o, child, n, &o->last);
+  bound_range_children_by_ball(o, &pack, child, n);
+  if (is_open(o, child, n)) bound_range_children(o, &pack, child, n, &o->best);
+  if (is_open(o, child, n) && normal_from_origin(o, node)) bound_range_children(o, &pack, child, n, &o->last);
   return (int)n;
 }
 

@@ -85,8 +85,8 @@ static cprox_status measure(curve_radius *o, size_t piece, double s, double *slo
   const double *radii = points_pool_at(&base->pool, RADIUS_ROOT);
   const curve_jet at = newton_jet(base, points_pool_at(&base->pool, CURVE_CONVEX_ROOT), s);
   curve_jet radius;
-  curve_bezier_evaluate(radii, radii + degree + 1, radii + 2 * (degree + 1), 1, degree, base->side.curve->binomial, s,
-                        &radius.x, &radius.d1, &radius.d2);
+  curve_bezier_evaluate(radii, radii + degree + 1, radii + 2 * (degree + 1), 1, degree,
+                        curve_binomial(base->side.curve), s, &radius.x, &radius.d1, &radius.d2);
   const double error = curve_side_point_error(&base->side) + curve_side_point_error(&o->radius);
   search_best found = {.upper = INFINITY};
   base->offset = o->offset + radius.x.x;

@@ -6,8 +6,8 @@ enum { MAX_ROUNDS = 6, MAX_STEPS = 8 };
 curve_jet newton_jet(const curve_convex *o, const double *points, double s) {
   const size_t degree = o->side.curve->degree;
   curve_jet j;
-  curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, o->side.curve->binomial, s,
-                        &j.x, &j.d1, &j.d2);
+  curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree,
+                        curve_binomial(o->side.curve), s, &j.x, &j.d1, &j.d2);
   return j;
 }
 

@@ -38,8 +38,8 @@ static jet jet_at(const curve_side *side, double s) {
   const size_t degree = side->curve->degree;
   const double *points = points_pool_at(side->pool, side->root_slot);
   jet j;
-  curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, side->curve->binomial, s,
-                        &j.x, &j.d1, &j.d2);
+  curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, curve_binomial(side->curve),
+                        s, &j.x, &j.d1, &j.d2);
   return j;
 }
 

@@ -21,7 +21,7 @@ static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
 
 /* Round a whole curve, in its frame. */
 static candidate_ball ball_of_curve(const cprox_curve *curve) {
-  const curve_capsule *capsule = &curve->whole;
+  const curve_capsule whole = curve_whole(curve), *capsule = &whole;
   const double length = vec_norm(vec_sub(capsule->b, capsule->a));
   return (candidate_ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
 }

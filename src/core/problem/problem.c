@@ -28,7 +28,7 @@ void query_ask_whole(query *q) {
     return;
   }
   q->part = curve_side_whole();
-  q->reach = q->mover.curve->whole;
+  q->reach = curve_whole(q->mover.curve);
   curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 

@@ -60,7 +60,7 @@ cprox_status radius_check(const char *whose, const cprox_curve *radius, double c
 
 double radius_most(const cprox_curve *radius) {
   if (!radius) return 0.0;
-  const curve_capsule *all = &radius->whole;
+  const curve_capsule whole = curve_whole(radius), *all = &whole;
   return ROUND_UP * (fmax(fabs(all->a.x), fabs(all->b.x)) + all->radius);
 }
 

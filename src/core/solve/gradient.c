@@ -115,7 +115,7 @@ static cprox_status look_at(beside *o, double t, bool from_left, look *seen) {
   const double *x = points_pool_at(o->is_tree ? &o->of.tree.pool : &o->of.convex.pool, side->root_slot),
                *y = x + c->degree + 1, *z = y + c->degree + 1;
   vec3 at, velocity;
-  curve_bezier_evaluate(x, y, z, 1, c->degree, c->binomial, s, &at, &velocity, NULL);
+  curve_bezier_evaluate(x, y, z, 1, c->degree, curve_binomial(c), s, &at, &velocity, NULL);
   const cprox_status status = look_from(o, piece, s, at, curve_side_point_error(side), seen);
   seen->slope = vec_dot(seen->normal, velocity) / length;
   return status;
@@ -275,7 +275,7 @@ static cprox_status is_alone(cprox_mover mover, const cprox_obstacle *target, co
   if (!*alone) return CPROX_OK;
 
   cprox_options fine = *options;
-  const curve_capsule *all = &mover.curve->whole;
+  const curve_capsule whole = curve_whole(mover.curve), *all = &whole;
   fine.epsilon = HARDLY * (vec_norm(vec_sub(all->b, all->a)) + 2.0 * all->radius + fabs(distance));
   *alone = false;
   for (size_t k = 0; k < sizeof NEARBY / sizeof *NEARBY && !*alone; k++) {
@@ -512,7 +512,7 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, c
   /* the whole curve is searched as narrowly as other minimisers are to be told
    * apart */
   q.is_signed = q.options.signed_distance;
-  const curve_capsule *all = &mover.curve->whole;
+  const curve_capsule whole = curve_whole(mover.curve), *all = &whole;
   const double length = vec_norm(vec_sub(all->b, all->a)) + 2.0 * all->radius;
   q.options.epsilon = fmin(q.options.epsilon, APART * length);
   q.options.relative_epsilon = 0.0;
