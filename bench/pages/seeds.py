@@ -50,9 +50,12 @@ def ellipsoids(figures):
     """Intervals of a search to 1e-10 by the ellipsoids of Theorem 1, by control points, and by the published method."""
     lines = []
     for curve in ('a heart', 'b epicycloid', 'c Euler spiral'):
-        key = ('seeds', 'figure 11 intervals', curve)
-        lines.append([curve] + [figures.count(*key, method=name, column='nodes') for name in (PAPER, 'ellipsoids', 'control points')])
-    return table(['curve', 'its method', 'our search, ellipsoids', 'our search, control points'], lines)
+        key = ('seeds', 'figure 11 ellipsoids', curve)
+        lines.append([curve] + [figures.count(*key, method=PAPER, column='nodes'), figures.count(*key, column='nodes')] +
+                     [figures.count('seeds', 'figure 11 intervals', curve, method='control points', column='nodes')] +
+                     [figures.time(*key, method=PAPER), figures.time(*key)])
+    return table(['curve', 'intervals, its method', 'our search, ellipsoids', 'our search, control points', 'time, its method',
+                  'our search, ellipsoids'], lines)
 
 
 def sorted_curves():

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "support/measure.h"
 #include "support/problems.h"
 
 static const double EPSILON = 1e-10;
@@ -35,23 +36,24 @@ static double hull_reach(const cprox_curve *curve, double a, double b, cprox_wor
   return reach;
 }
 
-/* The same curve, known by its points and the bound u_psi of the lengths of its parts. */
+/* The same curve, known by its points and the bound u_psi of the lengths of its parts, no nearer than rounding allows:
+ * the products and the root have 4u. */
 static void known_point(void *user, double t, vec3 *point) {
-  const paper_curve *c = user;
-  *point = c->point(c->self, t);
+  const named_curve *c = user;
+  *point = c->paper.point(c, t);
 }
 
 static double known_length(void *user, double a, double b) {
-  const paper_curve *c = user;
-  const double energy = c->energy(c->self, b) - c->energy(c->self, a);
-  return sqrt((b - a) * fmax(energy, 0.0)) * (1.0 + 1e-12) + 1e-13;
+  double error;
+  const double energy = named_energy(user, a, b, &error);
+  return sqrt((b - a) * fmax(energy + error, 0.0)) * (1.0 + 1e-15);
 }
 
-static cprox_curve *by_length(const paper_curve *curve) {
+static cprox_curve *by_length(const named_curve *curve) {
   const cprox_rectifiable_curve functions = {
       .point = known_point, .length = known_length, .user = (void *)(uintptr_t)curve, .error = 1e-14};
   const cprox_curve_description d = {
-      .kind = CPROX_CURVE_RECTIFIABLE, .t0 = curve->t0, .t1 = curve->t1, .rectifiable = &functions};
+      .kind = CPROX_CURVE_RECTIFIABLE, .t0 = curve->paper.t0, .t1 = curve->paper.t1, .rectifiable = &functions};
   cprox_curve *made = NULL;
   if (cprox_curve_create(&d, NULL, &made) < 0) exit(1);
   return made;
@@ -77,22 +79,51 @@ static void print_reaches(const char *name, const named_curve *curve, const cpro
   }
 }
 
-void figure_eleven(const char *name, const named_curve *curve, const cprox_obstacle *polygon,
+/* A distance by Theorem 1 alone. */
+typedef struct known_problem {
+  const cprox_curve *known;
+  const paper_curve *paper;
+  const cprox_obstacle *polygon;
+  const paper_obstacle *vertices;
+  paper_node *heap;
+  cprox_workspace *workspace;
+} known_problem;
+
+static void by_ellipsoids(const void *problems, size_t i, void *state, bench_answer *a) {
+  (void)state;
+  const known_problem *p = (const known_problem *)problems + i;
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = EPSILON;
+  cprox_result r;
+  const cprox_status status = cprox_distance(cprox_point_along(p->known), *p->polygon, &options, p->workspace, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
+  a->failed = status != CPROX_OK;
+}
+
+static void by_paper(const void *problems, size_t i, void *state, bench_answer *a) {
+  (void)state;
+  const known_problem *p = (const known_problem *)problems + i;
+  const paper_query q = {.query_type = PAPER_DISTANCE, .epsilon = EPSILON, .max_nodes = PAPER_MAX_NODES};
+  paper_answer answer;
+  paper_search(p->paper, p->vertices, &q, p->heap, &answer);
+  *a = (bench_answer){.lower = answer.lower, .upper = answer.upper, .nodes = answer.nodes};
+}
+
+void figure_eleven(const bench_size *size, const char *name, const named_curve *curve, const cprox_obstacle *polygon,
                    const paper_obstacle *vertices, paper_node *heap) {
   cprox_workspace *w = cprox_workspace_create();
-  cprox_curve *known = by_length(&curve->paper);
+  cprox_curve *known = by_length(curve);
   print_reaches(name, curve, known, w);
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = EPSILON;
   cprox_result r;
   if (cprox_distance(cprox_point_along(curve->curve), *polygon, &options, w, &r) < 0) exit(1);
   print_row("figure 11 intervals", "control points", name, r.nodes, r.upper - r.lower);
-  if (cprox_distance(cprox_point_along(known), *polygon, &options, w, &r) < 0) exit(1);
-  print_row("figure 11 intervals", "ellipsoids", name, r.nodes, r.upper - r.lower);
-  const paper_query q = {.query_type = PAPER_DISTANCE, .epsilon = EPSILON, .max_nodes = PAPER_MAX_NODES};
-  paper_answer answer;
-  paper_search(&curve->paper, vertices, &q, heap, &answer);
-  print_row("figure 11 intervals", "paper", name, answer.nodes, answer.upper - answer.lower);
+  const known_problem problem = {known, &curve->paper, polygon, vertices, heap, w};
+  const bench_method methods[2] = {{"curve_proximity", by_ellipsoids, NULL}, {"paper", by_paper, NULL}};
+  const bench_workload workload = {
+      .group = "seeds", .name = "figure 11 ellipsoids", .parameter = name, .problems = &problem, .n = 1};
+  bench_measure(&workload, size, methods, 2);
   cprox_curve_free(known);
   cprox_workspace_free(w);
 }

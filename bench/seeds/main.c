@@ -235,26 +235,26 @@ static void table_two_polygon(const bench_size *size, const tools *t, const char
 
 /* ---- Fig. 11 b: what ellipsoids are worth ---- */
 
-static void figure_eleven_polygon(const tools *t, const char *name, const named_curve *curve, const vec3 *vertex,
-                                  size_t n) {
+static void figure_eleven_polygon(const bench_size *size, const tools *t, const char *name, const named_curve *curve,
+                                  const vec3 *vertex, size_t n) {
   cprox_body *body = NULL;
   if (cprox_body_create_polytope(vertex, n, t->workspace, &body) < 0) exit(1);
   const cprox_obstacle target = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
   const paper_obstacle polygon = {.vertex = vertex, .n = n};
-  figure_eleven(name, curve, &target, &polygon, t->heap);
+  figure_eleven(size, name, curve, &target, &polygon, t->heap);
   cprox_body_free(body);
 }
 
-static void figures_eleven(const tools *t) {
+static void figures_eleven(const bench_size *size, const tools *t) {
   named_curve c;
   named_heart(vec(0.0, 0.0, 0.0), 1.2, &c);
-  figure_eleven_polygon(t, "a heart", &c, PENTAGON, 5);
+  figure_eleven_polygon(size, t, "a heart", &c, PENTAGON, 5);
   cprox_curve_free(c.curve);
   named_epicycloid(vec(0.0, 0.0, 0.0), 1.2, &c);
-  figure_eleven_polygon(t, "b epicycloid", &c, PENTAGON, 5);
+  figure_eleven_polygon(size, t, "b epicycloid", &c, PENTAGON, 5);
   cprox_curve_free(c.curve);
   named_spiral(vec(0.0, 0.0, 0.0), &c);
-  figure_eleven_polygon(t, "c Euler spiral", &c, PENTAGON, 5);
+  figure_eleven_polygon(size, t, "c Euler spiral", &c, PENTAGON, 5);
   cprox_curve_free(c.curve);
 }
 
@@ -311,7 +311,7 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "figure 7")) figure_seven(&t);
   if (bench_wanted(&size, "figure 10")) figure_ten(&size, &t);
   if (bench_wanted(&size, "table II")) table_two(&size, &t);
-  if (bench_wanted(&size, "figure 11")) figures_eleven(&t);
+  if (bench_wanted(&size, "figure 11")) figures_eleven(&size, &t);
   for (size_t order = 5; bench_wanted(&size, "figure 10 memory") && order <= 45; order += 5) figure_ten_memory(order);
   free(t.heap);
   cprox_workspace_free(t.workspace);
