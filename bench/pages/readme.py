@@ -143,7 +143,8 @@ def page(figures, drawn, made, out):
 Trust ratios and counts, not microseconds. `results.csv` has every row. [choosing.md](choosing.md) says what follows from them for a planner,
 [seeds.md](seeds.md) has the papers' own tables, [stability.md](stability.md) hard inputs: right, wrong, given up,
 [hulls.md](hulls.md) robots' meshes beside their hulls, [optimise.md](optimise.md) motions of an arm made smooth and clear,
-[contacts.md](contacts.md) first contacts beside Bullet and FCL.
+[contacts.md](contacts.md) first contacts beside Bullet and FCL, [pairs.md](pairs.md) and [peers.md](peers.md) standing pairs beside FCL and coal,
+[speed.md](speed.md) goes through the queries beside the fastest.
 
 [All charts](#all-charts), [targets](#targets), [growth](#growth), [where we lose](#where-we-lose).
 
