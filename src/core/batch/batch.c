@@ -97,6 +97,7 @@ static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_r
     run->q.mover = *mover;
     return answer_fast(run, r);
   }
+  run->degree = SIZE_MAX; /* a search has bases of its own */
   if (!query_wants_verdict(q)) return list_distance(*mover, targets, n, &q->options, q->workspace, r, NULL);
   return list_tolerance(*mover, targets, n, q->limit, &q->options, q->workspace, r, NULL);
 }
