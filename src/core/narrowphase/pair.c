@@ -32,7 +32,18 @@ typedef struct pair_known {
 
 /* ---- arguments ---- */
 
+/* Whether a target is usable, without the reason. Numbers that are none fail each comparison. */
+static bool pair_takes(const cprox_obstacle *target) {
+  const vec3 p = target->pose.position;
+  const cprox_quat q = target->pose.orientation;
+  const double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  return !target->curve && target->body && !target->body->field && fabs(p.x) <= LENGTH_MOST &&
+         fabs(p.y) <= LENGTH_MOST && fabs(p.z) <= LENGTH_MOST && norm2 >= 1e-200 && norm2 <= 1e200 &&
+         target->margin >= 0.0 && target->margin <= LENGTH_MOST && body_is_in_reach(target->body);
+}
+
 static cprox_status pair_check_target(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
+  if (pair_takes(target)) return CPROX_OK;
   if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
   if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
   if (target->body->field)
@@ -510,7 +521,8 @@ cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double del
   const cprox_options asked = arguments_options(options);
   cprox_status status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
-  if ((status = validate_options(&asked, (arguments_query){"a pair's verdict", ARGUMENTS_SEARCH}, workspace)) ||
+  const arguments_query kind = {"a pair's verdict", ARGUMENTS_SEARCH};
+  if ((options && (status = validate_options(&asked, kind, workspace))) ||
       (status = validate_delta(delta, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
       (status = pair_check_target("b", &b, workspace)))
     return status;
@@ -546,6 +558,64 @@ cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double del
 
 /* ---- the signed distance ---- */
 
+static void pair_write(const pair_answer *answer, int32_t part, cprox_lod lod, const cprox_options *asked,
+                       cprox_result *result) {
+  *result = (cprox_result){.status = pair_status(answer, asked),
+                           .verdict = CPROX_VERDICT_UNDECIDED,
+                           .lower = answer->lower,
+                           .upper = answer->upper,
+                           .t_obstacle = NAN,
+                           .witness_mover = answer->on_a,
+                           .witness_obstacle = answer->on_b,
+                           .normal = answer->normal,
+                           .obstacle_part = part,
+                           .lod = lod,
+                           .nodes = answer->steps,
+                           .distance_queries = answer->supports};
+}
+
+/* By a search, which may begin where a former one ended and leaves where it has ended. */
+static cprox_status pair_search(const cprox_obstacle *a, const cprox_obstacle *b, const cprox_options *asked,
+                                cprox_lod finest, cprox_workspace *workspace, cprox_result *result) {
+  const pair_goal goal = {.epsilon = asked->epsilon,
+                          .relative_epsilon = asked->relative_epsilon,
+                          .max_steps = asked->max_nodes,
+                          .stop = asked->stop,
+                          .stop_user = asked->stop_user,
+                          .wants_depth = true,
+                          .wants_vertices = asked->start != NULL};
+  pair_reply best;
+  pair_frames frames;
+  pair_known known;
+  if (asked->start) frames = (pair_frames){frame_create(&a->pose, vec(0, 0, 0)), frame_create(&b->pose, vec(0, 0, 0))};
+  const bool warm = pair_has_start(asked);
+  if (warm) known = pair_known_of(&frames, asked->start);
+  pair_task task = {.a = a,
+                    .b = b,
+                    .goal = &goal,
+                    .known = warm ? &known : NULL,
+                    .finest = finest,
+                    .options = asked,
+                    .workspace = workspace};
+  /* with a start the formula has not been tried */
+  const cprox_status status = asked->start ? pair_of_bodies(&task, &best) : pair_over_parts(&task, &best);
+  if (status) return status;
+  if (asked->start) pair_leave(a, b, &frames, &best.answer, asked->start);
+  pair_write(&best.answer, best.part, best.lod, asked, result);
+  return result->status;
+}
+
+/* Arguments have been checked. A formula needs neither goal nor start. */
+static cprox_status pair_measure(const cprox_obstacle *a, const cprox_obstacle *b, const cprox_options *asked,
+                                 cprox_workspace *workspace, cprox_result *result) {
+  const cprox_lod finest = asked->max_lod == CPROX_LOD_NONE ? CPROX_LOD_MESH : asked->max_lod;
+  pair_answer answer;
+  if (asked->start || finest == CPROX_LOD_SPHERE || !pair_by_formula(a, b, &answer))
+    return pair_search(a, b, asked, finest, workspace, result);
+  pair_write(&answer, 0, CPROX_LOD_HULL, asked, result);
+  return result->status;
+}
+
 cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options *options, cprox_workspace *workspace,
                         cprox_result *result) {
   WORKSPACE_USE(workspace);
@@ -555,48 +625,10 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
   const arguments_query kind = {"a pair",
                                 ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_START}; /* depths are always measured */
-  if ((status = validate_options(&asked, kind, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
-      (status = pair_check_target("b", &b, workspace)))
+  if ((options && (status = validate_options(&asked, kind, workspace))) ||
+      (status = pair_check_target("a", &a, workspace)) || (status = pair_check_target("b", &b, workspace)) ||
+      (status = pair_measure(&a, &b, &asked, workspace, result)) < 0)
     return status;
-
-  const pair_goal goal = {.epsilon = asked.epsilon,
-                          .relative_epsilon = asked.relative_epsilon,
-                          .max_steps = asked.max_nodes,
-                          .stop = asked.stop,
-                          .stop_user = asked.stop_user,
-                          .wants_depth = true,
-                          .wants_vertices = asked.start != NULL};
-  pair_reply best;
-  const cprox_lod finest = asked.max_lod == CPROX_LOD_NONE ? CPROX_LOD_MESH : asked.max_lod;
-  pair_frames frames;
-  pair_known known;
-  if (asked.start) frames = (pair_frames){frame_create(&a.pose, vec(0, 0, 0)), frame_create(&b.pose, vec(0, 0, 0))};
-  const bool warm = pair_has_start(&asked);
-  if (warm) known = pair_known_of(&frames, asked.start);
-  pair_task task = {.a = &a,
-                    .b = &b,
-                    .goal = &goal,
-                    .known = warm ? &known : NULL,
-                    .finest = finest,
-                    .options = &asked,
-                    .workspace = workspace};
-  if ((status = pair_of_bodies(&task, &best))) return status;
-
-  const pair_answer *answer = &best.answer;
-  status = pair_status(answer, &asked);
-  if (asked.start) pair_leave(&a, &b, &frames, answer, asked.start);
-  *result = (cprox_result){.status = status,
-                           .verdict = CPROX_VERDICT_UNDECIDED,
-                           .lower = answer->lower,
-                           .upper = answer->upper,
-                           .t_obstacle = NAN,
-                           .witness_mover = answer->on_a,
-                           .witness_obstacle = answer->on_b,
-                           .normal = answer->normal,
-                           .obstacle_part = best.part,
-                           .lod = best.lod,
-                           .nodes = answer->steps,
-                           .distance_queries = answer->supports};
   if (status != CPROX_OK) workspace_fail(workspace, status, "%s", cprox_status_text(status));
   return status;
 }
