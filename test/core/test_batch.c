@@ -185,6 +185,31 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
   cprox_workspace_free(workspace);
 }
 
+/* A large ball, deep in the box of a triangle and off the triangle. */
+CASE(a_box_about_a_shape_is_not_the_shape) {
+  static const double corners[3][2] = {{0, 0}, {10, 0}, {0, 10}};
+  static const vec3 points[3] = {{9, 10.5, 0.5}, {10, 9.5, 1}, {10.5, 9, 0.5}};
+  cprox_workspace *workspace = cprox_workspace_create();
+  cprox_body *body = NULL;
+  cprox_curve *curve = NULL;
+  assert_int_equal(cprox_body_create_polygon(corners, 3, workspace, &body), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(points, 3, 0, 1), workspace, &curve), CPROX_OK);
+  const cprox_obstacle target = cprox_obstacle_at(body, (cprox_pose){{0, 0, 0}, {1, 0, 0, 0}});
+  const cprox_mover mover = cprox_tube_along(curve, 3.0);
+  cprox_obstacles *batch = NULL;
+  assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+  cprox_result one, alone;
+  assert_int_equal(cprox_obstacles_distance_batch(batch, &mover, 0, 1, NULL, workspace, &one), CPROX_OK);
+  assert_int_equal(cprox_distance(mover, target, NULL, workspace, &alone), CPROX_OK);
+  assert_true(alone.lower > 3.0 && one.lower <= alone.upper && alone.lower <= one.upper);
+  assert_int_equal(cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, 0.0, NULL, workspace, &one), CPROX_OK);
+  assert_int_equal(one.verdict, CPROX_VERDICT_CLEAR);
+  cprox_obstacles_free(batch);
+  cprox_curve_free(curve);
+  cprox_body_free(body);
+  cprox_workspace_free(workspace);
+}
+
 /* Seed 22: 300 quintics, some of them tubes, through 80 small boxes: the verdicts of the queries of one mover, in
  * intervals that share a point with theirs; what is called a hit has a point of the tube within a box, or within the
  * limit of it. Bricks leave next to no verdict and next to no contact to search. */

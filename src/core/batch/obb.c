@@ -89,7 +89,7 @@ bool batch_bound_by_obb(batch_run *run, size_t part, double most, candidate *c, 
   enum { MOST_CUT = 6 }; /* a search is faster than more of these */
   const batch_core *core = &run->batch->cores[part];
   const uint32_t pieces = (uint32_t)run->q.mover.curve->n_pieces;
-  look l = {.run = run, .core = core, .margin = core->margin + run->q.mover.radius, .limit = -1.0};
+  look l = {.run = run, .core = core, .margin = core->margin + run->q.mover.radius, .limit = -INFINITY};
   l.slack = slack_of(run, core, l.margin);
   if (core->is_obb) l.limit = greater(run->q.limit, 0.0);
 
