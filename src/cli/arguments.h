@@ -17,6 +17,7 @@ namespace curve_proximity::cli {
 enum class Action {
   HELP,
   VERSION,
+  COMPLETION,
   CURVES,
   AGAINST,
   TRAJECTORY,
@@ -32,6 +33,7 @@ enum class Action {
 
 struct Arguments {
   Action action = Action::HELP;
+  std::string topic; /**< HELP: the command that it is about; empty: all */
   Query query;       /**< CURVES, AGAINST, PAIRS and REPORT: the command, and how it is to be answered */
   Question question; /**< of CURVES, TRAJECTORY and MOVERS */
 
@@ -80,9 +82,6 @@ Arguments parseArguments(const std::vector<std::string> &words);
 
 /** The files that are read. */
 std::vector<std::string> inputsOf(const Arguments &arguments);
-
-/** What --help prints. */
-std::string helpText();
 
 } // namespace curve_proximity::cli
 #endif

@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
+#include "help.h"
 
 namespace {
 
@@ -20,7 +21,8 @@ using namespace curve_proximity::cli;
 int run(const std::vector<std::string> &words, Console &console) {
   const Arguments arguments = parseArguments(words);
   switch (arguments.action) {
-    case Action::HELP: std::fputs(helpText().c_str(), stdout); return kAllAnswered;
+    case Action::HELP: std::fputs(helpText(arguments.topic).c_str(), stdout); return kAllAnswered;
+    case Action::COMPLETION: std::fputs(bashCompletion().c_str(), stdout); return kAllAnswered;
     case Action::VERSION: std::puts("cprox " CPROX_VERSION); return kAllAnswered;
     case Action::CURVES: return answerCurves(arguments, console);
     case Action::AGAINST: return answerAgainst(arguments, console);

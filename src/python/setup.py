@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python package cprox without ROS: CMake builds the extension module with the library inside, the program that reads
-meshes for it, and where MPFR is found the checker of certificates. In the environment, CPROX_BUILD names a build folder that
+"""The Python package cprox without ROS: CMake builds the extension module with the library inside, the command line, the
+program that reads meshes for both, and where MPFR is found the checker of certificates. In the environment, CPROX_BUILD names a build folder that
 is kept, and CMAKE_ARGS has further options of CMake."""
 import os
 import re
@@ -22,7 +22,7 @@ class CMakeBuild(build_ext):
         build = os.environ.get('CPROX_BUILD') or os.path.abspath(self.build_temp)
         subprocess.check_call(['cmake', '-S', ROOT, '-B', build, '-DCPROX_ROS=OFF', '-DCPROX_SCENE=ON', '-DBUILD_SHARED_LIBS=OFF',
                                '-DPython3_EXECUTABLE=' + sys.executable, *shlex.split(os.environ.get('CMAKE_ARGS', ''))])
-        subprocess.check_call(['cmake', '--build', build, '--target', 'cprox_python', 'curve_proximity_mesh_reader',
+        subprocess.check_call(['cmake', '--build', build, '--target', 'cprox_python', 'curve_proximity_mesh_reader', 'cprox_cli',
                                '--', '-j%d' % (os.cpu_count() or 1)])
         with open(os.path.join(build, 'python_files.txt')) as text:
             built, *beside = text.read().splitlines()
@@ -40,4 +40,4 @@ def version():
 
 setup(name='cprox', version=version(), license='BSD-3-Clause', packages=['cprox', 'cprox_dask'], package_data={'cprox': ['*.pyi', 'py.typed']},
       description='Certified proximity queries of continuous motions', install_requires=['numpy'], python_requires='>=3.8',
-      ext_modules=[Extension('cprox._cprox', [])], cmdclass={'build_ext': CMakeBuild})
+      entry_points={'console_scripts': ['cprox = cprox.command:main']}, ext_modules=[Extension('cprox._cprox', [])], cmdclass={'build_ext': CMakeBuild})

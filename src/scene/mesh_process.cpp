@@ -298,7 +298,9 @@ std::string meshReaderProgram() {
   std::error_code error;
   if (dladdr(reinterpret_cast<const void *>(&meshReaderProgram), &library) == 0 || !library.dli_fname) return "";
   const std::filesystem::path path = std::filesystem::canonical(library.dli_fname, error);
-  return (path.parent_path() / CURVE_PROXIMITY_MESH_READER).lexically_normal().string();
+  const std::filesystem::path apart = (path.parent_path() / CURVE_PROXIMITY_MESH_READER).lexically_normal();
+  const std::filesystem::path beside = path.parent_path() / apart.filename(); // of a program with the library inside
+  return std::filesystem::exists(beside, error) ? beside.string() : apart.string();
 }
 
 MeshData hearMesh(int from, pid_t id, const mesh_reader::Limits &limits) {

@@ -44,10 +44,10 @@ class Answer:
         return [{k: v for k, v in row.items() if k != 'microseconds'} for row in self.rows]
 
 
-def cprox(*words, env=None):
+def cprox(*words, env=None, cwd=None):
     """Runs cprox to its end."""
     done = subprocess.run([os.environ['CPROX'], *map(str, words)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, timeout=LIMIT, env=dict(os.environ, **(env or {})))
+                          stderr=subprocess.PIPE, timeout=LIMIT, cwd=cwd, env=dict(os.environ, **(env or {})))
     return Answer(done.returncode, done.stdout.decode(errors='replace'), done.stderr.decode(errors='replace'))
 
 

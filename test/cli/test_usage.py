@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What may be typed, and what is said of the rest."""
-from support import BOX_SCENE, HEADER, PASSING, Case, cprox
+import os
+import re
+import shlex
+import subprocess
+
+from support import BOX_SCENE, HEADER, HERE, PASSING, Case, cprox
 
 
 class Usage(Case):
@@ -12,6 +17,45 @@ class Usage(Case):
                      '--out', '--node', '--version', 'constraints', '--provider', '--parameters', 'profile', 'nearest', 'time-of-contact',
                      '--per-link', '--intervals', '--breaks', '--horizon', '--pairs', '--within', '--movers', '--second-opinion', '--allow-empty'):
             self.assertIn(word, answer.out)
+
+    COMMANDS = ('distance', 'tolerance', 'collision', 'time-of-contact', 'profile', 'violations', 'nearest', 'pairs', 'constraints',
+                'report', 'send', 'check', 'certify', 'merge')
+
+    def each_command_has_a_page_whose_examples_run(self):
+        os.symlink(os.path.join(os.path.dirname(os.path.dirname(HERE)), 'examples'), os.path.join(self.folder, 'examples'))
+        seen = set()
+        for command in self.COMMANDS:
+            answer = cprox(command, '--help')
+            self.assertEqual((answer.code, answer.err), (0, ''))
+            self.assertTrue(answer.out.startswith(f'cprox {command} '))
+            self.assertLessEqual(max(len(line) for line in answer.out.splitlines() if not line.startswith('  cprox ')), 120)
+            examples = re.findall('^  cprox (.*)$', answer.out.partition('\nExamples\n')[2].partition('\n\n')[0], re.M)
+            self.assertGreaterEqual(len(examples), 2)
+            for example in [] if command == 'send' else examples:
+                with self.subTest(example=example):
+                    done = cprox(*shlex.split(example), cwd=self.folder)
+                    self.assertIn(done.code, (0, 1, 3), done.err)
+            seen.update(re.findall('^  (--[a-z-]+)', answer.out.partition('\nOptions\n')[2], re.M))
+        self.assertEqual(seen, set(re.findall('^  (--[a-z-]+)', cprox('--help').out.partition(' is one of\n')[2].partition('\n\n')[2], re.M)) - {'--help'})
+
+    def the_page_of_a_command_has_its_options_alone(self):
+        page = cprox('profile', '--help').out
+        self.assertIn('--horizon', page)
+        self.assertIn('id,kind,status,t0,t1', page)
+        for word in ('--within', '--provider', '--dataset', '--certificate'):
+            self.assertNotIn(word, page.partition('\nOptions\n')[2])
+
+    def a_shell_completes_commands_options_and_files(self):
+        script = self.file('complete.bash', cprox('completion', 'bash').out + """
+ask() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _cprox; echo "${COMPREPLY[*]}"; }
+ask cprox ti
+ask cprox nearest --wi
+ask cprox distance --wi
+ask cprox distance --curves a.c
+""")
+        done = subprocess.run(['bash', '--norc', script], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=True)
+        self.assertEqual(done.stdout.decode(), 'time-of-contact\n--within\n\n\n')
+        self.assertRefused(cprox('completion', 'fish'), 'bash')
 
     def help_wins_over_everything_else(self):
         self.assertEqual(cprox('distance', '--nonsense', '--help').code, 0)

@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "options.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace curve_proximity::cli {
+namespace {
+
+/* Columns of results. */
+#define CPROX_ROW                                                                                                 \
+  "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,t_b,lod," \
+  "message. With --second-opinion also second_opinion,second_distance"
+constexpr const char *ROW = CPROX_ROW;
+constexpr const char *CONTACT = CPROX_ROW ". Also t_contact_lower: there is no contact at any smaller parameter";
+#undef CPROX_ROW
+constexpr const char *PROFILE =
+    "id,kind,status,t0,t1,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,message: a row an interval";
+constexpr const char *VIOLATIONS =
+    "id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message, a row each: farther "
+    "than D before enter_lower and after leave_upper, within D from enter_upper to leave_lower; or one row 'clear' "
+    "without numbers";
+constexpr const char *CONSTRAINTS =
+    "id,provider,status,value,lower,upper,valid,t, gradients ga_ and gb_ by a step of side a and b (v: position, w: "
+    "turning), a_, b_ and n_ (nearest points, normal), g_radius,microseconds,message,n,g0x,g0y,g0z,... by the curve's "
+    "points. Of trajectories: t0,t1,kind,a,b (as of distance), g_duration, g_start, and a column for each number of "
+    "each "
+    "point: q0_JOINT, v0_JOINT, a0_JOINT by its position, velocity and acceleration; ga_ is by a step of the robot's "
+    "base, gb_ by one of the object b. With --check-gradient: id,provider,status,verdict,derivatives (how many were "
+    "compared),derivative (the one that fits least),gradient,difference,misfit,doubt,message; verdict: clear (all "
+    "agree "
+    "within 1e-3 of 1 + the difference), violated (one does not, by more than four times what a smaller step changes: "
+    "doubt) or undecided";
+constexpr const char *CERTIFIED = "shards, files that 'merge' joins";
+constexpr const char *MERGED = "the rows of the dataset: doc/datasets.md has the columns";
+
+constexpr const char *QUERIES = "distance tolerance collision profile nearest time-of-contact violations";
+
+} // namespace
+
+const std::vector<Command> &commands() {
+  static const std::vector<Command> table = {
+      {"distance",
+       Action::CURVES,
+       QueryType::DISTANCE,
+       {},
+       "INPUTS",
+       "the least distance",
+       "distance --curves examples/tool.csv --scene examples/formats/scene.yaml\n"
+       "distance --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml --self",
+       ROW},
+      {"tolerance",
+       Action::CURVES,
+       QueryType::TOLERANCE,
+       {},
+       "--delta D INPUTS",
+       "verdict: clear (farther than D everywhere), violated or undecided",
+       "tolerance --delta 0.05 --curves examples/tool.csv --scene examples/formats/scene.yaml\n"
+       "tolerance --delta 0.01 --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml "
+       "--scene examples/formats/scene.yaml",
+       ROW},
+      {"collision",
+       Action::CURVES,
+       QueryType::COLLISION,
+       {},
+       "INPUTS",
+       "verdict: clear (no common point), violated (a common point) or undecided",
+       "collision --curves examples/tool.csv --scene examples/formats/scene.yaml\n"
+       "collision --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml --self",
+       ROW},
+      {"time-of-contact", Action::CURVES, QueryType::COLLISION, question::Contact{}, "INPUTS",
+       "where along the curve or trajectory the first contact is; never late. Without --against",
+       "time-of-contact --curves examples/tool.csv --scene examples/formats/scene.yaml\n"
+       "time-of-contact --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml "
+       "--scene examples/formats/scene.yaml",
+       CONTACT},
+      {"profile", Action::CURVES, QueryType::DISTANCE, question::Profile{}, "INPUTS",
+       "the clearance on each interval of the parameter. Without --against",
+       "profile --intervals 20 --curves examples/tool.csv --scene examples/formats/scene.yaml\n"
+       "profile --per-link --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml "
+       "--scene examples/formats/scene.yaml --out profile.csv",
+       PROFILE},
+      {"violations", Action::CURVES, QueryType::TOLERANCE, question::Violations{}, "--delta D INPUTS",
+       "all intervals of the parameter within D of something. Without --against",
+       "violations --delta 0.2 --curves examples/tool.csv --scene examples/formats/scene.yaml\n"
+       "violations --delta 0.2 --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml "
+       "--scene examples/formats/scene.yaml",
+       VIOLATIONS},
+      {"nearest", Action::CURVES, QueryType::DISTANCE, question::Nearest{}, "INPUTS",
+       "the pairs that come closest, nearest first. Without --against",
+       "nearest --pairs 3 --curves examples/tool.csv --scene examples/formats/scene.yaml\n"
+       "nearest --within 0.5 --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml --self",
+       ROW},
+      {"pairs",
+       Action::PAIRS,
+       QueryType::DISTANCE,
+       {},
+       "--in PAIRS.yaml",
+       "signed distance of static pairs of bodies",
+       "pairs --in examples/formats/pairs.yaml\n"
+       "pairs --in examples/formats/pairs.yaml --second-opinion fcl",
+       ROW},
+      {"constraints",
+       Action::CONSTRAINTS,
+       QueryType::DISTANCE,
+       {},
+       "--provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parameters \"name: value, ...\"]\n"
+       "--provider NAME --trajectory T.yaml --robot URDF [--srdf SRDF --state TEXT] [--scene SCENE.yaml]",
+       "value and gradient of clearance constraints by a plugin",
+       "constraints --provider curve_proximity/CurveDistance --in examples/formats/cases.yaml --scene "
+       "examples/formats/scene.yaml --robot examples/formats/arm.urdf\n"
+       "constraints --provider curve_proximity/RobotDistance --robot examples/formats/arm.urdf --trajectory "
+       "examples/formats/trajectory.yaml --scene examples/formats/scene.yaml --check-gradient",
+       CONSTRAINTS},
+      {"report",
+       Action::REPORT,
+       QueryType::DISTANCE,
+       {},
+       "INPUTS [--delta D] --out REPORT.html",
+       "one page to look at: verdict, clearance over time per link, closest pairs, 3-D view. Without --against",
+       "report --curves examples/tool.csv --scene examples/formats/scene.yaml --out report.html\n"
+       "report --delta 0.05 --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml --scene "
+       "examples/formats/scene.yaml --out report.html",
+       ""},
+      {"send",
+       Action::SEND,
+       QueryType::DISTANCE,
+       {},
+       "SCENE.yaml [--replace | --add] [--node NAME]",
+       "hands a scene file to a running node",
+       "send examples/formats/scene.yaml\n"
+       "send examples/formats/scene.yaml --add --node /curve_proximity",
+       ""},
+      {"check",
+       Action::CHECK,
+       QueryType::DISTANCE,
+       {},
+       "FILE (the inputs of the query)",
+       "what the certificates in FILE prove",
+       "distance --curves examples/tool.csv --scene examples/formats/scene.yaml --certificate proofs.txt\n"
+       "check proofs.txt --curves examples/tool.csv --scene examples/formats/scene.yaml",
+       ""},
+      {"certify",
+       Action::CERTIFY,
+       QueryType::DISTANCE,
+       {},
+       "--dataset MANIFEST --out FOLDER [--shards N [--shard I]]",
+       "answers the rows of a dataset, shard by shard",
+       "certify --dataset examples/formats/dataset.jsonl --out results\n"
+       "certify --dataset examples/formats/dataset.jsonl --out parts --shards 2 --shard 0",
+       CERTIFIED},
+      {"merge",
+       Action::MERGE,
+       QueryType::DISTANCE,
+       {},
+       "FOLDER",
+       "all shards as one table; refuses gaps and shards of different runs",
+       "merge results\n"
+       "merge results --out results.csv",
+       MERGED},
+  };
+  return table;
+}
+
+const std::vector<Option> &options() {
+  static const std::vector<Option> table = {
+      {"--curves", "FILE", "queries report check",
+       "one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots][,parameters] [,restrict_t0,restrict_t1]; "
+       "basis bezier, bspline, polynomial, legendre, lagrange (nodes for knots), trigonometric, rational_bezier, nurbs "
+       "(weights for parameters), clothoid, dubins, involute, pythagorean_hodograph or piecewise (the next n rows); "
+       "doc/formats.md has them all. A radius that changes has the coefficients of 1, t, t², ..., separated by blanks. "
+       "Lines that begin with # and a header row are skipped"},
+      {"--against", "FILE", "distance tolerance collision check", "curves, too: instead of a scene"},
+      {"--synchronized", "", "distance tolerance collision",
+       "with --against: both curves are at the same parameter, so that they may cross each other's way"},
+      {"--scene", "FILE", "queries report constraints check",
+       "moveit_msgs/PlanningScene as YAML; may be left out where there is a robot"},
+      {"--robot", "FILE", "queries report constraints check",
+       "a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)"},
+      {"--trajectory", "FILE", "queries report constraints check",
+       "a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint"},
+      {"--movers", "", "queries",
+       "what moves in the scene, instead of curves or a robot: against what stands there, and against each other"},
+      {"--path", "FILE", "queries",
+       "nav_msgs/Path, as rostopic prints it: straight from pose to pose, turning at a constant rate, at the times of "
+       "the stamps; where these do not ascend, t counts poses"},
+      {"--body", "FILE", "queries",
+       "with --path: {id, pose, padding, primitives, meshes, bodies, ...} as an object of a scene; with an id alone: "
+       "the object of that id that a link of --robot carries, along poses of the link"},
+      {"--radius", "R", "queries", "with --path, instead of --body: a ball of R metres (default 0, a point)"},
+      {"--self", "", "queries report check", "how close the robot comes to itself, too"},
+      {"--shortest-way", "", "queries report check certify constraints",
+       "continuous joints turn the shorter way between two waypoints, from 3.1 to -3.1 by 0.083 rad"},
+      {"--signed", "", "distance nearest",
+       "distances inside a body are negative: minus the deepest penetration (of meshes a bound, by their hulls)"},
+      {"--srdf", "FILE", "queries report constraints check",
+       "links that are not checked against each other, and the frame in which the robot stands (its virtual joint's "
+       "parent_frame)"},
+      {"--state", "TEXT", "queries report constraints check",
+       "joint values in radians or metres; others as in the scene's robot_state, else 0 (mid-range where 0 is beyond "
+       "the limits)"},
+      {"--in", "FILE", "pairs constraints",
+       "a list of {id, a: BODY, b: BODY}; of 'constraints' the request of ~evaluate_constraints: cases: [{id, a: "
+       "{pose, bodies: [BODY], ...} or {id: an object of --scene}, b, curve}] Each FILE that is read may be -, "
+       "standard input. doc/formats.md shows all formats"},
+      {"--provider", "NAME", "constraints",
+       "curve_proximity/CurveDistance, .../SuperquadricDistance, .../FourierGap, .../GrowthDistance, .../RobotDistance "
+       "(of trajectories), or another package's"},
+      {"--parameters", "LIST", "constraints", "\"name: value, ...\": what the provider is set to"},
+      {"--check-gradient", "", "constraints", "holds the gradients against central differences"},
+      {"--certificate", "FILE", "distance tolerance collision report",
+       "writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near or none. "
+       "The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that it "
+       "is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs"},
+      {"--epsilon", "E", "queries report pairs certify",
+       "width of the intervals asked for, metres, above 0 (default 1e-06)"},
+      {"--delta", "D", "tolerance violations report",
+       "the clearance asked of 'tolerance' and 'violations', and of 'report' if its verdict is wanted, metres"},
+      {"--max-nodes", "N", "queries report pairs certify",
+       "budget for each result, in distance queries (default 500000: about 1 s)"},
+      {"--threads", "N", "queries pairs constraints certify check",
+       "how many rows are worked on at once (default: the machine's cores); the answers do not depend on it"},
+      {"--per-object", "", "queries", "rows for each curve and object or link, not for the nearest alone"},
+      {"--per-link", "", "queries", "with --trajectory: rows for each link and each object that a link carries"},
+      {"--allow-empty", "", "queries report certify",
+       "nothing to measure is an answer: clear, at an infinite distance. Without it such a row has the status 'empty', "
+       "and its verdict is undecided"},
+      {"--objects", "LIST", "queries report",
+       "these objects alone, \"shelf, table\"; with --curves and --links also those links"},
+      {"--links", "LIST", "queries report",
+       "with --curves: these links of --robot alone. With --trajectory: what these links do, or objects that they "
+       "carry; with --self pairs of which they are one"},
+      {"--moving-links-only", "", "queries report",
+       "with --trajectory, --movers: links that the motion does not move are left out, with --self pairs that it does "
+       "not move against each other; else all count. The rows' messages say so"},
+      {"--intervals", "N", "profile report", "N intervals of equal length (default 100)"},
+      {"--breaks", "LIST", "profile report", "where intervals begin and end instead, \"0, 0.5, 2\""},
+      {"--horizon", "H", "profile", "clearance beyond H metres is only bounded: lower > H, which is less work"},
+      {"--pairs", "K", "nearest report", "at most K pairs for each curve or trajectory (default 10)"},
+      {"--resolution", "R", "violations",
+       "how finely the ends are searched, in units of the parameter (default: a thousandth of all of it)"},
+      {"--within", "D", "nearest", "only pairs that come within D metres"},
+      {"--second-opinion", "PEER", "distance tolerance collision nearest time-of-contact pairs",
+       "fcl or libccd: the pair of each row is measured again by this library, at the row's t and at both ends; the "
+       "columns second_opinion (agrees, disagrees or unknown) and second_distance are added"},
+      {"--max-lod", "R", "queries report pairs certify",
+       "the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies by "
+       "their bounding spheres); a coarser one is never farther away"},
+      {"--dataset", "FILE", "certify",
+       "JSON Lines, or CSV with a header: id, robot, srdf, scene, trajectory, query, delta, self a row"},
+      {"--shards", "N", "certify", "the dataset is cut into N parts of equal length (default 1)"},
+      {"--shard", "I", "certify",
+       "part I alone, from 0 to N-1 (default: all of them). A part that is whole is skipped"},
+      {"--failed", "WHY", "certify",
+       "of --shard I: answers no row; each becomes a row 'failed' with this message. For whoever drives shards and has "
+       "seen one crash: 'merge' then has no gap"},
+      {"--progress", "P", "certify", "line (default, on a terminal) or json, a line a second on standard error"},
+      {"--skipped", "", "queries pairs", "tell on standard error what takes no part, and why"},
+      {"--timings", "", "queries",
+       "tell on standard error how long loading the robot and the scene takes, mesh by mesh"},
+      {"--mesh-tolerance", "M", "queries report",
+       "replace meshes by ones with fewer triangles that contain them: nothing is clear that the mesh would hit; what "
+       "is closer than 2 M metres may read as a hit"},
+      {"--out", "FILE", "queries report pairs constraints certify merge",
+       "the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page"},
+      {"--replace", "", "send",
+       "the file takes the place of the node's scene (default, unless the file says is_diff: true)"},
+      {"--add", "", "send", "the file is added to the node's scene"},
+      {"--node", "NAME", "send", "the node that 'send' talks to (default /curve_proximity)"},
+  };
+  return table;
+}
+
+const Command *findCommand(const std::string &word) {
+  const auto found =
+      std::find_if(commands().begin(), commands().end(), [&](const Command &command) { return word == command.word; });
+  return found == commands().end() ? nullptr : &*found;
+}
+
+const Option *findOption(const std::string &name) {
+  const auto found =
+      std::find_if(options().begin(), options().end(), [&](const Option &option) { return name == option.name; });
+  return found == options().end() ? nullptr : &*found;
+}
+
+std::vector<std::string> commandsOf(const Option &option) {
+  std::vector<std::string> out;
+  std::istringstream text(option.commands);
+  for (std::string word; text >> word;) {
+    std::istringstream all(word == "queries" ? QUERIES : word);
+    while (all >> word) out.push_back(word);
+  }
+  return out;
+}
+
+bool takes(const Command &command, const Option &option) {
+  const std::vector<std::string> words = commandsOf(option);
+  return std::find(words.begin(), words.end(), command.word) != words.end();
+}
+
+} // namespace curve_proximity::cli
