@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Straight edges of a planner, as RRT-Connect meets them in the scenes of the saved trajectories: certified, beside
- * samples by the same lanes. The robot is the Panda by 59 balls, against the scene and itself. */
+ * samples by the same lanes. The Panda by 59 balls; the Panda, a UR5 and a Fanuc by their own meshes under their hulls;
+ * each against the scene and itself. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,11 +12,46 @@
 #include "robots.h"
 #include "support/random.h"
 
-enum { EDGES = 4096, JOINTS = 7, TREE = 128, MOST_WORLDS = 64, MEMORY = 1 << 16 };
+enum { EDGES = 4096, MOST_JOINTS = 7, TREE = 128, MOST_WORLDS = 64, MEMORY = 1 << 18 };
 
-/* Of the Panda [rad], the longest edge, the share of edges towards the goal, and samples to each radian. */
-static const double LOW[JOINTS] = {-2.9671, -1.8326, -2.9671, -3.1416, -2.9671, -0.0873, -2.9671};
-static const double HIGH[JOINTS] = {2.9671, 1.8326, 2.9671, 0.0873, 2.9671, 3.8223, 2.9671};
+/* A robot, what it turns [rad], and in whose scenes it stands. */
+typedef struct edge_robot {
+  const char *parameter, *name, *scenes;
+  bool by_meshes;
+  int joints;
+  double low[MOST_JOINTS], high[MOST_JOINTS];
+} edge_robot;
+
+static const edge_robot ROBOTS[] = {{"panda_spheres scene and self",
+                                     "panda_spheres",
+                                     "panda",
+                                     false,
+                                     7,
+                                     {-2.9671, -1.8326, -2.9671, -3.1416, -2.9671, -0.0873, -2.9671},
+                                     {2.9671, 1.8326, 2.9671, 0.0873, 2.9671, 3.8223, 2.9671}},
+                                    {"panda meshes scene and self",
+                                     "panda",
+                                     "panda",
+                                     true,
+                                     7,
+                                     {-2.9671, -1.8326, -2.9671, -3.1416, -2.9671, -0.0873, -2.9671},
+                                     {2.9671, 1.8326, 2.9671, 0.0873, 2.9671, 3.8223, 2.9671}},
+                                    {"ur5 meshes scene and self",
+                                     "ur5",
+                                     "panda",
+                                     true,
+                                     6,
+                                     {-3.1416, -3.1416, -3.1416, -3.1416, -3.1416, -3.1416},
+                                     {3.1416, 3.1416, 3.1416, 3.1416, 3.1416, 3.1416}},
+                                    {"fanuc_m10ia meshes scene and self",
+                                     "fanuc_m10ia",
+                                     "fanuc_m10ia",
+                                     true,
+                                     6,
+                                     {-2.97, -1.57, -2.8, -3.31, -2.27, -4.71},
+                                     {2.97, 2.79, 3.2, 3.31, 2.27, 4.71}}};
+
+/* The longest edge [rad], the share of edges towards the goal, and samples to each radian. */
 static const double LONGEST = 2.0, TO_GOAL = 0.2, PER_RADIAN = 32.0;
 
 typedef struct edge_problem {
@@ -24,7 +60,8 @@ typedef struct edge_problem {
   const cprox_obstacles *obstacles;
   const cprox_robot_pair *self_pairs;
   size_t n_self_pairs;
-  double from[JOINTS], to[JOINTS];
+  const edge_robot *moves;
+  double from[CASE_MAX_VARIABLES], to[CASE_MAX_VARIABLES];
   bool valid;
 } edge_problem;
 
@@ -57,14 +94,15 @@ static void by_samples(const void *problems, size_t i, void *state, bench_answer
 static void as_motion(const void *problems, size_t i, void *state, bench_answer *answer) {
   const edge_problem *p = (const edge_problem *)problems + i;
   const edge_state *s = state;
-  static const int32_t VARIABLES[JOINTS] = {0, 1, 2, 3, 4, 5, 6};
+  static const int32_t VARIABLES[MOST_JOINTS] = {0, 1, 2, 3, 4, 5, 6};
   const cprox_waypoint ends[2] = {{.time = 0.0, .positions = p->from}, {.time = 1.0, .positions = p->to}};
   const cprox_motion_description edge = {.kind = CPROX_MOTION_WAYPOINTS,
                                          .variables = VARIABLES,
-                                         .n_variables = JOINTS,
+                                         .n_variables = (size_t)p->moves->joints,
                                          .waypoints = ends,
                                          .n_waypoints = 2,
-                                         .interpolation = CPROX_INTERPOLATION_LINEAR};
+                                         .interpolation = CPROX_INTERPOLATION_LINEAR,
+                                         .rest = p->from};
   *answer = (bench_answer){.lower = NAN, .upper = NAN, .failed = true};
   cprox_motion *along = NULL;
   if (cprox_motion_create(p->robot, &edge, s->workspace, &along) < 0) return;
@@ -77,9 +115,9 @@ static void as_motion(const void *problems, size_t i, void *state, bench_answer 
   cprox_motion_free(along);
 }
 
-static double apart2(const double *a, const double *b) {
+static double apart2(const double *a, const double *b, int joints) {
   double d = 0.0;
-  for (int k = 0; k < JOINTS; k++) d += (a[k] - b[k]) * (a[k] - b[k]);
+  for (int k = 0; k < joints; k++) d += (a[k] - b[k]) * (a[k] - b[k]);
   return d;
 }
 
@@ -90,30 +128,39 @@ static cprox_verdict verdict_of(const cprox_edge_checker *c, const double *from,
   return (cprox_verdict)verdict;
 }
 
-/* The edges that a tree from a motion's beginning and end tries. */
-static size_t grow(const edge_problem *in, const double ends[2][JOINTS], size_t wanted, rng *r, edge_problem *out,
-                   cprox_workspace *ws) {
+/* A clear state. False: none was found. */
+static bool draw_state(const edge_problem *in, rng *r, double *state, cprox_workspace *ws) {
+  for (int tries = 0; tries < 1000; tries++) {
+    for (int k = 0; k < in->moves->joints; k++) state[k] = rng_uniform(r, in->moves->low[k], in->moves->high[k]);
+    if (verdict_of(in->checker, state, state, ws) == CPROX_VERDICT_CLEAR) return true;
+  }
+  return false;
+}
+
+/* The edges that a tree from a beginning and an end tries. */
+static size_t grow(const edge_problem *in, const double ends[2][CASE_MAX_VARIABLES], size_t wanted, rng *r,
+                   edge_problem *out, cprox_workspace *ws) {
   const cprox_edge_checker *c = in->checker;
-  double grown[TREE][JOINTS];
+  const int joints = in->moves->joints;
+  static double grown[TREE][CASE_MAX_VARIABLES];
   size_t n_grown = 2, n = 0;
   memcpy(grown, ends, 2 * sizeof grown[0]);
   for (size_t tries = 0; tries < 4 * wanted && n < wanted; tries++) {
-    double towards[JOINTS];
+    edge_problem p = *in;
+    double towards[CASE_MAX_VARIABLES];
     const bool to_goal = rng_uniform(r, 0, 1) < TO_GOAL;
-    for (int k = 0; k < JOINTS; k++) towards[k] = to_goal ? ends[1][k] : rng_uniform(r, LOW[k], HIGH[k]);
+    for (int k = 0; k < joints; k++)
+      towards[k] = to_goal ? ends[1][k] : rng_uniform(r, in->moves->low[k], in->moves->high[k]);
     size_t nearest = 0;
     double least = INFINITY;
     for (size_t k = 0; k < n_grown; k++) {
-      const double d = apart2(grown[k], towards);
+      const double d = apart2(grown[k], towards, joints);
       if (d < least && d > 1e-6) least = d, nearest = k;
     }
     if (isinf(least)) continue;
-    edge_problem p = *in;
     const double share = fmin(1.0, LONGEST / sqrt(least));
-    for (int k = 0; k < JOINTS; k++) {
-      p.from[k] = grown[nearest][k];
-      p.to[k] = p.from[k] + share * (towards[k] - p.from[k]);
-    }
+    memcpy(p.from, grown[nearest], sizeof p.from), memcpy(p.to, p.from, sizeof p.to);
+    for (int k = 0; k < joints; k++) p.to[k] = p.from[k] + share * (towards[k] - p.from[k]);
     if (verdict_of(c, p.from, p.from, ws) != CPROX_VERDICT_CLEAR) continue;
     const cprox_verdict verdict = verdict_of(c, p.from, p.to, ws);
     if (verdict == CPROX_VERDICT_UNDECIDED) fprintf(stderr, "edges: one is undecided\n");
@@ -124,7 +171,29 @@ static size_t grow(const edge_problem *in, const double ends[2][JOINTS], size_t 
   return n;
 }
 
-static void rows(const char *parameter, const edge_problem *all, size_t n, bool valid, const bench_size *size,
+/* How many edges are left to the search (distance queries) of all (nodes), their share (error), and the mean time of
+ * all edges. */
+static void row_of_levels(const edge_robot *robot, const edge_problem *all, size_t n, bool valid,
+                          const bench_size *size, cprox_workspace *ws) {
+  const char *name = valid ? "valid edges left to the search" : "invalid edges left to the search";
+  if (!bench_wanted(size, name)) return;
+  size_t count = 0, searched = 0;
+  const double began = bench_thread_seconds();
+  for (size_t i = 0; i < n; i++) {
+    if (all[i].valid != valid) continue;
+    uint8_t verdict;
+    cprox_edge_result r;
+    cprox_robot_edges(all[i].checker, all[i].from, all[i].to, 1, ws, &verdict, &r);
+    count++, searched += r.level == CPROX_EDGE_SEARCH;
+  }
+  if (count == 0) return;
+  const double mean = 1e6 * (bench_thread_seconds() - began) / (double)count;
+  printf("robots,%s,curve_proximity,%s,%.4g,nan,%zu,%zu,%.4g,0,0\n", name, robot->parameter, mean, count, searched,
+         (double)searched / (double)count);
+  fflush(stdout);
+}
+
+static void rows(const edge_robot *robot, const edge_problem *all, size_t n, bool valid, const bench_size *size,
                  cprox_workspace *ws) {
   static edge_problem some[EDGES];
   size_t count = 0;
@@ -134,51 +203,66 @@ static void rows(const char *parameter, const edge_problem *all, size_t n, bool 
   const bench_method methods[] = {{"curve_proximity", certified, &state},
                                   {"each as a motion", as_motion, &state},
                                   {"the same lanes at 32 a radian", by_samples, &state}};
-  const bench_workload w = {"robots", valid ? "valid edges" : "invalid edges", parameter, some, count, NULL, 0.0};
-  if (count > 0 && bench_wanted(size, w.name)) bench_measure(&w, size, methods, lane_sampling_exists() ? 3 : 2);
+  const bench_workload w = {"robots", valid ? "valid edges" : "invalid edges", robot->parameter, some, count, NULL,
+                            0.0};
+  if (count > 0 && bench_wanted(size, w.name))
+    bench_measure(&w, size, methods, lane_sampling_exists() && !robot->by_meshes ? 3 : 2);
+  row_of_levels(robot, all, n, valid, size, ws);
 }
 
-void bench_robot_edges(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *ws) {
-  if (!bench_wanted(size, "valid edges") && !bench_wanted(size, "invalid edges")) return;
-  static robot_case balls;
+/* The ends of the motion of a case, if it is one of this robot. */
+static bool ends_of(const robot_case *c, const edge_robot *robot, double ends[2][CASE_MAX_VARIABLES]) {
+  if (strcmp(c->robot_name, robot->scenes) != 0 || strcmp(robot->name, "ur5") == 0) return false;
+  const cprox_motion_info info = cprox_motion_get_info(c->motion);
+  for (int k = 0; k < 2; k++) cprox_motion_evaluate(c->motion, k ? info.t1 : info.t0, ends[k]);
+  return true;
+}
+
+static void bench_robot(const edge_robot *moves, const robot_case *cases, size_t n, const bench_size *size,
+                        cprox_workspace *ws) {
+  static robot_case model;
   static edge_problem all[EDGES];
-  if (!robot_case_read_robot(BENCH_DATA_DIR "/motion", "panda_spheres", &balls)) return;
+  if (!robot_case_read_robot(BENCH_DATA_DIR "/motion", moves->name, &model)) return;
+  const cprox_robot *robot = moves->by_meshes ? model.mesh_robot : model.robot;
   cprox_obstacles *sets[MOST_WORLDS];
   cprox_edge_checker *checkers[MOST_WORLDS];
   size_t n_worlds = 0, worlds = 0, n_all = 0;
-  for (size_t i = 0; i < n; i++) worlds += strcmp(cases[i].robot_name, "panda") == 0 && worlds < MOST_WORLDS;
+  for (size_t i = 0; i < n; i++) worlds += strcmp(cases[i].robot_name, moves->scenes) == 0 && worlds < MOST_WORLDS;
+  const size_t wanted = worlds > 1 ? EDGES / worlds : EDGES / 8;
   rng r = rng_seed(94);
   for (size_t i = 0; i < n && n_worlds < worlds; i++) {
-    if (strcmp(cases[i].robot_name, "panda") != 0) continue;
-    const cprox_robot_pair *self = balls.self_pairs;
+    if (strcmp(cases[i].robot_name, moves->scenes) != 0) continue;
     if (cprox_obstacles_create(cases[i].targets, cases[i].n_targets, CPROX_INDEX_NONE, ws, &sets[n_worlds]) != CPROX_OK)
       continue;
     const cprox_edge_query asked = {
-        .obstacles = sets[n_worlds], .self_pairs = self, .n_self_pairs = balls.n_self_pairs};
-    if (cprox_edge_checker_create(balls.robot, &asked, ws, &checkers[n_worlds]) != CPROX_OK) {
+        .obstacles = sets[n_worlds], .self_pairs = model.self_pairs, .n_self_pairs = model.n_self_pairs};
+    if (cprox_edge_checker_create(robot, &asked, ws, &checkers[n_worlds]) != CPROX_OK) {
       cprox_obstacles_free(sets[n_worlds]);
       continue;
     }
-    double ends[2][CASE_MAX_VARIABLES], arm[2][JOINTS];
-    const cprox_motion_info info = cprox_motion_get_info(cases[i].motion);
-    for (int k = 0; k < 2; k++) {
-      cprox_motion_evaluate(cases[i].motion, k ? info.t1 : info.t0, ends[k]);
-      memcpy(arm[k], ends[k], sizeof arm[k]);
-    }
     const edge_problem in = {.checker = checkers[n_worlds],
-                             .robot = balls.robot,
+                             .robot = robot,
                              .obstacles = sets[n_worlds],
-                             .self_pairs = self,
-                             .n_self_pairs = balls.n_self_pairs};
+                             .self_pairs = model.self_pairs,
+                             .n_self_pairs = model.n_self_pairs,
+                             .moves = moves};
     n_worlds++;
-    n_all += grow(&in, (const double(*)[JOINTS])arm, EDGES / worlds, &r, all + n_all, ws);
+    double ends[2][CASE_MAX_VARIABLES] = {{0.0}};
+    if (!ends_of(&cases[i], moves, ends) && !(draw_state(&in, &r, ends[0], ws) && draw_state(&in, &r, ends[1], ws)))
+      continue;
+    n_all += grow(&in, (const double(*)[CASE_MAX_VARIABLES])ends, wanted, &r, all + n_all, ws);
   }
-  rows("panda_spheres scene and self", all, n_all, true, size, ws);
-  rows("panda_spheres scene and self", all, n_all, false, size, ws);
+  rows(moves, all, n_all, true, size, ws);
+  rows(moves, all, n_all, false, size, ws);
   for (size_t i = 0; i < n_worlds; i++) {
     cprox_edge_checker_free(checkers[i]);
     cprox_obstacles_free(sets[i]);
   }
-  balls.n_targets = 0;
-  robot_case_free(&balls);
+  robot_case_free(&model);
+}
+
+void bench_robot_edges(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *ws) {
+  if (!bench_wanted(size, "valid edges left to the search") && !bench_wanted(size, "invalid edges left to the search"))
+    return;
+  for (size_t i = 0; i < sizeof ROBOTS / sizeof *ROBOTS; i++) bench_robot(&ROBOTS[i], cases, n, size, ws);
 }

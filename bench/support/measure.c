@@ -17,7 +17,7 @@ static const double SHORTEST_SAMPLE = 2e-5;
  * and its time is most of the run's. */
 static const double SLOW = 2e-3;
 
-static double now(void) {
+double bench_thread_seconds(void) {
   struct timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
@@ -69,9 +69,9 @@ typedef struct record {
 
 static double time_of(const bench_workload *w, const bench_method *m, size_t problem, size_t repeats,
                       bench_answer *answer) {
-  const double start = now();
+  const double start = bench_thread_seconds();
   for (size_t k = 0; k < repeats; k++) m->run(w->problems, problem, m->state, answer);
-  return (now() - start) / (double)repeats;
+  return (bench_thread_seconds() - start) / (double)repeats;
 }
 
 /* How often a sample asks, and in how many rounds. */

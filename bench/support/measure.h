@@ -47,6 +47,9 @@ typedef struct bench_size {
 } bench_size;
 
 bench_size bench_arguments(int argc, char **argv);
+
+/* Processor time of this thread [s]. */
+double bench_thread_seconds(void);
 bool bench_wanted(const bench_size *size, const char *workload);
 
 /* Prints a row for each method: group,workload,method,parameter,median_us,p95_us,nodes,distance

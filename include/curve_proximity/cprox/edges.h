@@ -62,8 +62,10 @@ typedef enum cprox_edge_level {
   CPROX_EDGE_BALL = 1,
   /** the balls that cover each geometry, in single precision */
   CPROX_EDGE_COVER = 2,
+  /** hulls of each geometry and of its pieces, along normals, in single precision */
+  CPROX_EDGE_NORMAL = 3,
   /** the search in double precision, for the pairs and the part of the edge that were left open */
-  CPROX_EDGE_SEARCH = 3
+  CPROX_EDGE_SEARCH = 4
 } cprox_edge_level;
 
 /** The answer about one edge. */

@@ -9,6 +9,9 @@
 #define ROUND_PRODUCT 7.0
 #define ROUND_APART 13.0
 
+/* What the part of a velocity along a normal adds. */
+#define ROUND_ALONG 8.0
+
 /* Second order terms, and the rounding of the bounds themselves. */
 #define EDGE_UP (1.0 + 0x1p-10)
 
@@ -187,7 +190,8 @@ static double room_of(const edge_part *part, const edge_motion *m, double reach,
   const double place =
       b->place_error + (b->turn_error + ROUND_PRODUCT * u) * s + ROUND_APART * u * (b->reach + s) + ROUND_WORLD * world;
   const double speed = b->speed_error + b->spin_error * (s + (double)part->core + 2.0 * reach) + spin * place +
-                       16.0 * u * spin * reach + 3.0 * u * b->speed;
+                       16.0 * u * spin * reach + 3.0 * u * b->speed +
+                       ROUND_ALONG * u * (b->speed + spin * (s + (double)part->core + 2.0 * reach));
   return EDGE_UP * (place + 2.0 * (double)EDGE_ROOT_HALF * speed) + EDGE_LEAST;
 }
 

@@ -170,15 +170,53 @@ static bool fill_frames(cprox_edge_checker *c) {
 
 /* ---- parts ---- */
 
+/* Where a part of the robot is in its frame as lanes have it. */
+static placement place_in_frame(const cprox_edge_checker *c, const robot_part *part) {
+  placement at = part->at;
+  if (part->axis >= 0) {
+    const placement turn = turn_of_axis(&c->robot->axes[part->axis]);
+    return turned_back(&turn, &at);
+  }
+  at.p = vec_sub(at.p, c->base);
+  return at;
+}
+
+static void add_point(cprox_edge_checker *c, vec3 p) {
+  float *to = c->points + 3 * c->n_points++;
+  to[0] = (float)p.x, to[1] = (float)p.y, to[2] = (float)p.z;
+}
+
+static vec3 point_at(const cprox_edge_checker *c, size_t i) {
+  const float *p = c->points + 3 * i;
+  return vec((double)p[0], (double)p[1], (double)p[2]);
+}
+
+/* A hull of the points first … n_points - 1. */
+static edge_hull *add_hull(cprox_edge_checker *c, size_t first, double margin, double inner, int32_t geometry) {
+  edge_hull *hull = &c->hulls[c->n_hulls++];
+  *hull = (edge_hull){.first = (uint32_t)first,
+                      .n = (uint32_t)(c->n_points - first),
+                      .margin = float_above(margin),
+                      .inner = float_below(inner),
+                      .end = (uint32_t)c->n_hulls,
+                      .geometry = geometry};
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t i = first; i < c->n_points; i++)
+    for (int k = 0; k < 3; k++) {
+      const float x = c->points[3 * i + (size_t)k];
+      low[k] = x < low[k] ? x : low[k], high[k] = x > high[k] ? x : high[k];
+    }
+  for (int k = 0; k < 3; k++) hull->centre[k] = 0.5f * low[k] + 0.5f * high[k];
+  const vec3 centre = vec((double)hull->centre[0], (double)hull->centre[1], (double)hull->centre[2]);
+  double core = 0.0;
+  for (size_t i = first; i < c->n_points; i++) core = greater(vec_norm(vec_sub(point_at(c, i), centre)), core);
+  hull->core = float_above(core * (1.0 + 0x1p-40));
+  return hull;
+}
+
 static void add_balls(cprox_edge_checker *c, const robot_covers *covers, size_t i) {
   const robot_part *part = &c->robot->parts[i];
-  placement at = part->at;
-  if (part->axis < 0)
-    at.p = vec_sub(at.p, c->base);
-  else {
-    const placement turn = turn_of_axis(&c->robot->axes[part->axis]);
-    at = turned_back(&turn, &at);
-  }
+  const placement at = place_in_frame(c, part);
   for (size_t k = covers->first[i]; k < covers->first[i + 1]; k++) {
     const cover_ball *ball = &covers->balls[k];
     const vec3 p = placement_apply(&at, ball->centre);
@@ -187,14 +225,39 @@ static void add_balls(cprox_edge_checker *c, const robot_covers *covers, size_t 
                                          .inner = float_below(ball->inner),
                                          .reach = float_above(vec_norm(p) * (1.0 + EDGE_U)),
                                          .geometry = part->geometry};
+    if (covers->hulls.n == 0) continue;
+    const size_t first = c->n_points;
+    add_point(c, p);
+    add_hull(c, first, ball->outer, ball->inner, part->geometry);
   }
+}
+
+static void add_hulls(cprox_edge_checker *c, const robot_covers *covers, size_t i) {
+  const robot_part *part = &c->robot->parts[i];
+  const placement at = place_in_frame(c, part);
+  const uint32_t root = (uint32_t)c->n_hulls;
+  for (size_t k = covers->first_hull[i]; k < covers->first_hull[i + 1]; k++) {
+    const cover_hull *hull = &covers->hulls.hull[k];
+    const size_t first = c->n_points;
+    for (uint32_t l = 0; l < hull->n; l++) add_point(c, placement_apply(&at, covers->hulls.point[hull->first + l]));
+    edge_hull *made = add_hull(c, first, hull->margin, hull->inner, part->geometry);
+    made->child = root + hull->child, made->n_children = hull->n_children;
+  }
+  if (c->n_hulls > root) c->hulls[root].end = (uint32_t)c->n_hulls;
 }
 
 static vec3 centre_of(const edge_ball *ball) {
   return vec((double)ball->centre[0], (double)ball->centre[1], (double)ball->centre[2]);
 }
 
-/* A ball round all balls of a part, about the middle of their box. */
+static void take_in(edge_part *part, vec3 centre, vec3 p, double radius, double *outer, double *core) {
+  const double apart = vec_norm(vec_sub(p, centre)), reach = vec_norm(p) * (1.0 + 0x1p-40);
+  *outer = greater(apart + radius, *outer), *core = greater(apart, *core);
+  part->farthest = greater(reach + radius, part->farthest);
+  part->reach_of_centre = greater(reach, part->reach_of_centre);
+}
+
+/* A ball round all balls of a part and all hulls of whole covers, about the middle of their box. */
 static void enclose(const cprox_edge_checker *c, edge_part *part) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (uint32_t i = part->first; i < part->first + part->n; i++)
@@ -202,15 +265,25 @@ static void enclose(const cprox_edge_checker *c, edge_part *part) {
       low[k] = lesser(low[k], (double)(c->balls[i].centre[k] - c->balls[i].outer));
       high[k] = greater(high[k], (double)(c->balls[i].centre[k] + c->balls[i].outer));
     }
+  for (uint32_t h = part->first_hull; h < part->end_hull; h = c->hulls[h].end) {
+    const edge_hull *hull = &c->hulls[h];
+    for (uint32_t i = hull->first; i < hull->first + hull->n; i++)
+      for (size_t k = 0; k < 3; k++) {
+        low[k] = lesser(low[k], (double)(c->points[3 * i + k] - hull->margin));
+        high[k] = greater(high[k], (double)(c->points[3 * i + k] + hull->margin));
+      }
+  }
   for (int k = 0; k < 3; k++) part->centre[k] = (float)(0.5 * (low[k] + high[k]));
   const vec3 centre = vec((double)part->centre[0], (double)part->centre[1], (double)part->centre[2]);
   double outer = 0.0, core = 0.0;
-  for (uint32_t i = part->first; i < part->first + part->n; i++) {
-    const edge_ball *ball = &c->balls[i];
-    const double apart = vec_norm(vec_sub(centre_of(ball), centre));
-    outer = greater(apart + (double)ball->outer, outer), core = greater(apart, core);
-    part->farthest = greater((double)ball->reach + (double)ball->outer, part->farthest);
-    part->reach_of_centre = greater((double)ball->reach, part->reach_of_centre);
+  for (uint32_t i = part->first; i < part->first + part->n; i++)
+    take_in(part, centre, centre_of(&c->balls[i]), (double)c->balls[i].outer, &outer, &core);
+  for (uint32_t h = part->first_hull; h < part->end_hull; h++) {
+    const edge_hull *hull = &c->hulls[h];
+    const vec3 own = vec((double)hull->centre[0], (double)hull->centre[1], (double)hull->centre[2]);
+    part->reach_of_centre = greater(vec_norm(own) * (1.0 + 0x1p-40), part->reach_of_centre);
+    for (uint32_t i = hull->first; i < hull->first + hull->n; i++)
+      take_in(part, centre, point_at(c, i), (double)hull->margin, &outer, &core);
   }
   part->outer = float_above(outer * (1.0 + 0x1p-40)), part->core = float_above(core * (1.0 + 0x1p-40));
   part->reach = float_above(vec_norm(centre) * (1.0 + 0x1p-40));
@@ -220,7 +293,10 @@ static void enclose(const cprox_edge_checker *c, edge_part *part) {
 /* All parts of a geometry, which stand side by side. */
 static void add_geometry(cprox_edge_checker *c, const robot_covers *covers, int32_t geometry) {
   for (size_t i = 0; i < c->robot->n_parts; i++)
-    if (c->robot->parts[i].geometry == geometry) add_balls(c, covers, i);
+    if (c->robot->parts[i].geometry == geometry) {
+      add_balls(c, covers, i);
+      add_hulls(c, covers, i);
+    }
   c->members[c->n_members++] = geometry;
 }
 
@@ -240,10 +316,12 @@ static void fill_parts(cprox_edge_checker *c, const robot_covers *covers) {
     if (taken) continue;
     edge_part part = {.frame = axis < 0 ? 0 : c->frame_of[axis],
                       .first_member = (uint32_t)c->n_members,
-                      .first = (uint32_t)c->n_balls};
+                      .first = (uint32_t)c->n_balls,
+                      .first_hull = (uint32_t)c->n_hulls};
     for (size_t k = i; k < robot->n_geometries; k++)
       if (are_alike(c, i, k)) add_geometry(c, covers, (int32_t)k);
     part.n_members = (uint32_t)c->n_members - part.first_member, part.n = (uint32_t)c->n_balls - part.first;
+    part.end_hull = (uint32_t)c->n_hulls, part.by_hulls = part.end_hull - part.first_hull > part.n;
     enclose(c, &part);
     c->parts[c->n_parts++] = part;
   }
@@ -551,7 +629,10 @@ static void lay_out_robot(cprox_edge_checker *c, const edge_asked *asked, const 
   c->frame_of = take(a, frames, sizeof *c->frame_of);
   c->parts = take(a, robot->n_geometries, sizeof *c->parts);
   c->members = take(a, robot->n_geometries, sizeof *c->members);
-  c->balls = take(a, covers->first[robot->n_parts], sizeof *c->balls);
+  const size_t balls = covers->first[robot->n_parts], hulls = covers->hulls.n, alike = hulls > 0 ? balls : 0;
+  c->balls = take(a, balls, sizeof *c->balls);
+  c->hulls = take(a, hulls + alike, sizeof *c->hulls);
+  c->points = take(a, 3 * (covers->hulls.n_points + alike), sizeof *c->points);
   c->lane_pairs = take(a, pairs, sizeof *c->lane_pairs);
   c->relations = take(a, different, sizeof *c->relations);
   c->steps = take(a, different * 2 * (deepest + 1), sizeof *c->steps);

@@ -34,6 +34,17 @@ typedef struct edge_ball {
   int32_t geometry;
 } edge_ball;
 
+/* A hull of points of its part's frame; in a robot that has hulls a ball is one, too, of its centre. */
+typedef struct edge_hull {
+  uint32_t first, n;          /* numbers of edge points: three each */
+  float centre[3], core;      /* a ball that all its points are in */
+  float margin;               /* what it stands for is within this of the hull */
+  float inner;                /* what it stands for reaches so far about each point; negative: that is not known */
+  uint32_t child, n_children; /* hulls that together contain all that this one stands for */
+  uint32_t end;               /* where those of the next cover begin */
+  int32_t geometry;
+} edge_hull;
+
 /* Geometries on one link that are asked about the same obstacles and the same other geometries. */
 typedef struct edge_part {
   int32_t frame;
@@ -44,6 +55,8 @@ typedef struct edge_part {
   double farthest;        /* the largest reach of any ball, its radius included */
   double reach_of_centre; /* the largest |centre| of any ball */
   uint32_t first, n;      /* balls */
+  uint32_t first_hull, end_hull;
+  bool by_hulls; /* they are looked at instead of balls */
   uint32_t first_near, n_near;
   bool coarse; /* its balls are not looked at: what its own ball comes near is left open */
 } edge_part;
@@ -108,11 +121,14 @@ struct cprox_edge_checker {
   vec3 base;
   edge_rows rows;
   int32_t *frame_of; /* of an axis; -1: it carries nothing that is asked about */
-  size_t n_frames, n_parts, n_members, n_balls, n_obstacles, n_near, n_lane_pairs, n_relations, n_steps;
+  size_t n_frames, n_parts, n_members, n_balls, n_hulls, n_points, n_obstacles, n_near, n_lane_pairs, n_relations,
+      n_steps;
   edge_frame *frames;
   edge_part *parts;
   int32_t *members; /* geometries by part */
   edge_ball *balls;
+  edge_hull *hulls;
+  float *points; /* of hulls */
   edge_obstacle *obstacles;
   uint32_t *near; /* obstacles by part */
   edge_pair *lane_pairs;

@@ -9,7 +9,7 @@
 /* Beyond these the trees and groups of the search find what is near sooner than lanes do. */
 enum { MOST_PAIRS = 4096, MOST_PARTS = 1024, MOST_TARGETS = 512, MOST_NEAR = 4096, MOST_OPEN = 256 };
 
-/* One of so many parts may have a coarse cover. */
+/* One of so many parts may be of something else than balls and capsules. */
 enum { MOST_COARSE = 4 };
 
 /* So many times eight intervals: what they leave open is left to the search. */
@@ -88,7 +88,7 @@ static cprox_edge_checker *model_of(const query *q) {
   const edge_asked asked = asked_of(q);
   if (asked.robot->n_parts > MOST_PARTS || edge_model_count_pairs(&asked) > MOST_PAIRS) return NULL;
   const robot_covers *covers = robot_covers_of(asked.robot);
-  if (!covers || MOST_COARSE * covers->n_coarse > asked.robot->n_parts) return NULL;
+  if (!covers || MOST_COARSE * (covers->n_coarse + covers->n_hulls) > asked.robot->n_parts) return NULL;
   const workspace_buffer buffer = mover_is_self(&q->mover)    ? WORKSPACE_EDGE_SELF
                                   : mover_is_whole(&q->mover) ? WORKSPACE_EDGE_WHOLE
                                                               : WORKSPACE_EDGE_ROBOT;
@@ -292,7 +292,7 @@ static bool look_along(const query *q, const cprox_edge_checker *c, const motion
     edge_found one;
     kernel(c, &run->motion, &run->lanes, &one);
     if (one.too_much) return false;
-    run->batches -= one.batches;
+    run->batches -= one.batches < run->batches ? one.batches : run->batches;
     if (one.verdict == CPROX_VERDICT_VIOLATED) {
       *f = one, *nearest = segment;
       return true;

@@ -38,6 +38,7 @@ typedef struct lane_batch {
   uint32_t all;   /* the lanes that are in use */
   uint32_t split; /* those that are to be halved: nothing more is asked about them */
   bool related;   /* the motion's relations are known: edges that hit an obstacle do without */
+  bool last;      /* nothing is halved any more: what is near is left to the search */
   bool measures;  /* the distances of what is not near are noted: */
   lane least;     /* of each lane the least, and of which pair and where it was found */
   uint32_t nearest[EDGE_LANES];
@@ -111,6 +112,11 @@ EDGE_INLINE lane3 place_point(const lane_frame *f, const float *p, lane3 *speed)
   return lane3_add(f->o, d);
 }
 
+/* The velocity of a point of a as b sees it. */
+EDGE_INLINE lane3 relative_speed(const lane_frame *b, lane3 at, lane3 speed) {
+  return lane3_sub(lane3_sub(speed, b->speed), lane3_cross(b->spin, lane3_sub(at, b->o)));
+}
+
 /* ---- distances ---- */
 
 /* The square of the distance of points from what stands; 0 inside. */
@@ -159,15 +165,19 @@ EDGE_INLINE lane distance2_from(const edge_obstacle *o, lane3 at) {
 
 /* ---- verdicts ---- */
 
-/* What is left of distances beyond the radii r, where that is more than nothing. */
-EDGE_TARGET static void note_least(lane_batch *b, uint32_t pair, lane distance2, lane r) {
-  const lane left = lane_sqrt(distance2) * lane_all(1.0f - (float)EDGE_GROW) - r;
-  const lane_bits less = (lane_bits)(left < b->least) & (lane_bits)(distance2 > r * r);
+/* Notes for a pair how much is left beyond what it needs, in some lanes. */
+EDGE_TARGET static void note_left(lane_batch *b, uint32_t pair, lane left, lane_bits which) {
+  const lane_bits less = (lane_bits)(left < b->least) & which;
   b->least = lane_choose(less, left, b->least);
   for (uint32_t lanes = lane_mask(less); lanes; lanes &= lanes - 1) {
     const int i = __builtin_ctz(lanes);
     b->nearest[i] = pair, b->nearest_at[i] = b->interval[i].middle;
   }
+}
+
+/* What is left of distances beyond the radii r, where that is more than nothing. */
+EDGE_TARGET static void note_least(lane_batch *b, uint32_t pair, lane distance2, lane r) {
+  note_left(b, pair, lane_sqrt(distance2) * lane_all(1.0f - (float)EDGE_GROW) - r, (lane_bits)(distance2 > r * r));
 }
 
 /* The lanes in which the distance of a pair is at most the sum of what moves and a radius. */
@@ -201,6 +211,18 @@ EDGE_TARGET static void leave_open(lane_batch *b, uint32_t pair, uint32_t lanes)
   }
 }
 
+EDGE_INLINE void need(lane_batch *b, cprox_edge_level level) {
+  if (b->found->level < level) b->found->level = level;
+}
+
+/* The lanes in which a pair is near, but would not be if nothing moved. */
+EDGE_INLINE void halve(lane_batch *b, uint32_t pair, uint32_t lanes) {
+  if (!b->last)
+    b->split |= lanes;
+  else if (lanes)
+    leave_open(b, pair, lanes);
+}
+
 /* A ball of the robot comes near something in some lanes. `outer` and `inner` are the radii of both sides together,
  * with delta, and what rounding may cost. Whether contact is proven. */
 EDGE_INLINE bool settle_near(lane_batch *b, uint32_t pair, lane distance2, uint32_t near, float outer, float inner) {
@@ -212,7 +234,7 @@ EDGE_INLINE bool settle_near(lane_batch *b, uint32_t pair, lane distance2, uint3
   }
   const uint32_t still = near & within_still(distance2, outer);
   if (still) leave_open(b, pair, still);
-  b->split |= near & ~still;
+  halve(b, pair, near & ~still);
   return false;
 }
 
@@ -229,13 +251,15 @@ EDGE_INLINE lane moves_of(const lane_batch *b, lane3 speed, edge_half_bound boun
   return b->half * lane_sqrt(lane3_norm2(speed)) + b->half2 * lane_all(bound.acceleration + bound.turn * reach);
 }
 
+#include "edges/normals.h"
+
 /* ---- obstacles ---- */
 
 EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, const edge_obstacle *o) {
   const edge_part *part = &b->c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
   const float delta = (float)b->c->asked.delta, room = b->motion->room[i];
-  b->found->level = CPROX_EDGE_COVER;
+  need(b, CPROX_EDGE_COVER);
   for (uint32_t k = part->first; k < part->first + part->n; k++) {
     const edge_ball *ball = &b->c->balls[k];
     lane3 speed;
@@ -266,7 +290,7 @@ EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
     const uint32_t near = within(b, k, distance2_from(o, at->centre), moves, radius) & b->all & ~b->split;
     if (near && part->coarse)
       leave_open(b, k, near);
-    else if (near && open_part(b, i, k, o))
+    else if (near && (part->by_hulls ? open_hulls(b, i, k, o, near) : open_part(b, i, k, o)))
       return true;
   }
   return false;
@@ -274,18 +298,13 @@ EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
 
 /* ---- pairs of parts ---- */
 
-/* The velocity of a point of a as b sees it. */
-EDGE_INLINE lane3 relative_speed(const lane_frame *b, lane3 at, lane3 speed) {
-  return lane3_sub(lane3_sub(speed, b->speed), lane3_cross(b->spin, lane3_sub(at, b->o)));
-}
-
 EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float costs) {
   const cprox_edge_checker *c = b->c;
   const edge_pair *pair = &c->lane_pairs[i];
   const edge_part *first = &c->parts[pair->a], *second = &c->parts[pair->b];
   const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
   const uint32_t number = (uint32_t)(c->n_near + i);
-  b->found->level = CPROX_EDGE_COVER;
+  need(b, CPROX_EDGE_COVER);
   for (uint32_t k = first->first; k < first->first + first->n; k++) {
     const edge_ball *ball = &c->balls[k];
     lane3 speed;
@@ -323,6 +342,10 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
   const uint32_t near = within(b, number, distance2, moves, first->outer + second->outer + room) & b->all & ~b->split;
   if (near && (first->coarse || second->coarse)) leave_open(b, number, near);
   if (!near || first->coarse || second->coarse) return false;
+  if (first->by_hulls || second->by_hulls) {
+    open_hull_pair(b, i, near);
+    return false;
+  }
   return open_pair(b, i, room, costs);
 }
 
@@ -403,11 +426,12 @@ EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *mot
       const float half = b.interval[__builtin_ctz(left)].half;
       shortest = half < shortest ? half : shortest;
     }
-    if (batches >= most || shortest < EDGE_SHORTEST || n + 2 * EDGE_LANES > EDGE_STACK) {
+    if (n + 2 * EDGE_LANES > EDGE_STACK) {
       found->too_much = true, found->verdict = CPROX_VERDICT_UNDECIDED;
       return;
     }
     split_batch(&b, stack, &n);
+    b.last = b.last || batches >= most || shortest < 2.0f * EDGE_SHORTEST;
   }
   if (lanes->open.n > 0) found->verdict = CPROX_VERDICT_UNDECIDED;
   if (b.measures) tell_least(&b, found);

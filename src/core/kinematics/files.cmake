@@ -12,6 +12,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/motion_join.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_turning.c
   ${CMAKE_CURRENT_LIST_DIR}/part_cover.c
+  ${CMAKE_CURRENT_LIST_DIR}/part_cover_hulls.c
   ${CMAKE_CURRENT_LIST_DIR}/part_groups.c
   ${CMAKE_CURRENT_LIST_DIR}/pose_fit.c
   ${CMAKE_CURRENT_LIST_DIR}/robot.c

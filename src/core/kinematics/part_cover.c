@@ -91,7 +91,9 @@ static void add_bytes(robot_covers *c, const void *from, size_t bytes) {
 }
 
 static bool sign(const cprox_robot *robot, robot_covers *c) {
-  const size_t counts[] = {robot->n_axes, robot->n_parts, robot->n_geometries, robot->n_variables};
+  static _Atomic size_t hulls_made;
+  const size_t number = c->hulls.n > 0 ? atomic_fetch_add_explicit(&hulls_made, 1, memory_order_relaxed) + 1 : 0;
+  const size_t counts[] = {robot->n_axes, robot->n_parts, robot->n_geometries, robot->n_variables, number};
   const size_t axes = robot->n_axes * sizeof *robot->axes, n_balls = c->first[robot->n_parts];
   c->signature = malloc(sizeof counts + axes + robot->n_geometries * 2 * sizeof(int32_t) +
                         robot->n_parts * (sizeof(part_place) + sizeof(size_t)) + n_balls * sizeof *c->balls);
@@ -117,26 +119,33 @@ static bool sign(const cprox_robot *robot, robot_covers *c) {
 static bool cover_all(const cprox_robot *robot, robot_covers *c) {
   size_t room = robot->n_parts + COVER_MOST, n = 0;
   c->first = malloc((robot->n_parts + 1) * sizeof *c->first);
+  c->first_hull = malloc((robot->n_parts + 1) * sizeof *c->first_hull);
   c->balls = calloc(room, sizeof *c->balls);
-  for (size_t i = 0; i < robot->n_parts && c->first && c->balls; i++) {
+  for (size_t i = 0; i < robot->n_parts && c->first && c->first_hull && c->balls; i++) {
+    c->first[i] = n, c->first_hull[i] = c->hulls.n;
+    if (cover_is_by_hulls(&robot->parts[i].model)) {
+      if (!cover_by_hulls(&robot->parts[i].model, &c->hulls)) return false;
+      c->n_hulls++;
+      continue;
+    }
     if (n + COVER_MOST > room) {
       room += room / 2 + COVER_MOST;
       cover_ball *grown = realloc(c->balls, room * sizeof *grown);
       if (!grown) return false;
       c->balls = grown;
     }
-    c->first[i] = n;
     n += cover_of_part(&robot->parts[i].model, c->balls + n);
     c->n_coarse += cover_is_coarse(c->balls[n - 1].outer, c->balls[n - 1].inner);
   }
-  if (!c->first || !c->balls) return false;
-  c->first[robot->n_parts] = n;
+  if (!c->first || !c->first_hull || !c->balls) return false;
+  c->first[robot->n_parts] = n, c->first_hull[robot->n_parts] = c->hulls.n;
   return sign(robot, c);
 }
 
 void robot_covers_free(robot_covers *c) {
   if (!c) return;
   free(c->first), free(c->balls), free(c->signature);
+  free(c->first_hull), free(c->hulls.hull), free(c->hulls.point);
   free(c);
 }
 

@@ -1,0 +1,385 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Directions in which hulls are apart, eight intervals at once; a part of kernel.h. doc/robot-edges.md, Normals */
+
+/* Steps of a search for a normal, hulls that are looked at for one pair of a batch, and hulls that wait. */
+enum { EDGE_NORMALS = 12, EDGE_MOST_HULLS = 96, EDGE_HULL_STACK = 64 };
+
+/* What sizes of obstacles may cost along a normal, of their sum: 16 u. */
+#define EDGE_SIZES 0x1p-20f
+
+/* A hull where its frame is in the middle. */
+typedef struct lane_hull {
+  const edge_hull *hull;
+  const float *points;
+  const lane_frame *frame;
+  lane3 centre; /* from the base */
+} lane_hull;
+
+EDGE_INLINE lane lane3_dot(lane3 a, lane3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+EDGE_INLINE lane3 lane3_scale(lane s, lane3 a) {
+  return (lane3){s * a.x, s * a.y, s * a.z};
+}
+
+EDGE_INLINE lane3 lane3_neg(lane3 a) {
+  return (lane3){-a.x, -a.y, -a.z};
+}
+
+/* a + s b */
+EDGE_INLINE lane3 lane3_axpy(lane3 a, lane s, lane3 b) {
+  return (lane3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+EDGE_INLINE lane3 lane3_choose(lane_bits first, lane3 a, lane3 b) {
+  return (lane3){lane_choose(first, a.x, b.x), lane_choose(first, a.y, b.y), lane_choose(first, a.z, b.z)};
+}
+
+EDGE_INLINE lane3 lane_turn_lanes(const lane *r, lane3 p) {
+  return (lane3){r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
+                 r[6] * p.x + r[7] * p.y + r[8] * p.z};
+}
+
+EDGE_INLINE lane3 lane_turn_back(const lane *r, lane3 p) {
+  return (lane3){r[0] * p.x + r[3] * p.y + r[6] * p.z, r[1] * p.x + r[4] * p.y + r[7] * p.z,
+                 r[2] * p.x + r[5] * p.y + r[8] * p.z};
+}
+
+EDGE_INLINE lane_hull place_hull(const lane_batch *b, const edge_hull *hull, const lane_frame *own) {
+  return (lane_hull){.hull = hull,
+                     .points = b->c->points + 3 * (size_t)hull->first,
+                     .frame = own,
+                     .centre = lane3_add(own->o, lane_turn(own, hull->centre))};
+}
+
+/* The least product of a hull's points with a direction, both seen from the frame's origin; `at`: that point. */
+EDGE_TARGET static lane least_along(const lane_hull *h, lane3 n, lane3 *at) {
+  const lane3 t = lane_turn_back(h->frame->r, n);
+  const float *p = h->points;
+  lane least = t.x * lane_all(p[0]) + t.y * lane_all(p[1]) + t.z * lane_all(p[2]);
+  lane_bits which = {0};
+  for (int32_t i = 1; i < (int32_t)h->hull->n; i++) {
+    p += 3;
+    const lane along = t.x * lane_all(p[0]) + t.y * lane_all(p[1]) + t.z * lane_all(p[2]);
+    const lane_bits less = (lane_bits)(along < least), number = {i, i, i, i, i, i, i, i};
+    least = lane_choose(less, along, least);
+    which = (number & less) | (which & ~less);
+  }
+  lane3 own;
+  for (int l = 0; l < EDGE_LANES; l++) {
+    const float *q = h->points + 3 * which[l];
+    own.x[l] = q[0], own.y[l] = q[1], own.z[l] = q[2];
+  }
+  *at = lane_turn_lanes(h->frame->r, own);
+  return least;
+}
+
+EDGE_INLINE lane lane_with_sign(lane size, lane of) {
+  const lane_bits sign = {INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN};
+  return (lane)((lane_bits)size | ((lane_bits)of & sign));
+}
+
+EDGE_INLINE lane3 obstacle_axes_back(const edge_obstacle *o, lane3 x) {
+  if (o->shape == EDGE_ALIGNED_BOX || o->shape == EDGE_BALL) return x;
+  return (lane3){x.x * lane_all(o->r[0]) + x.y * lane_all(o->r[3]) + x.z * lane_all(o->r[6]),
+                 x.x * lane_all(o->r[1]) + x.y * lane_all(o->r[4]) + x.z * lane_all(o->r[7]),
+                 x.x * lane_all(o->r[2]) + x.y * lane_all(o->r[5]) + x.z * lane_all(o->r[8])};
+}
+
+EDGE_INLINE lane3 obstacle_axes(const edge_obstacle *o, lane3 x) {
+  if (o->shape == EDGE_ALIGNED_BOX || o->shape == EDGE_BALL) return x;
+  return (lane3){lane_row(&x.x, o->r), lane_row(&x.x, o->r + 3), lane_row(&x.x, o->r + 6)};
+}
+
+/* The radius of a ball about each point of an obstacle's core. */
+EDGE_INLINE float round_of(const edge_obstacle *o) {
+  return o->shape == EDGE_BALL || o->shape == EDGE_CAPSULE     ? o->size[0]
+         : o->shape == EDGE_CONE || o->shape == EDGE_HALFSPACE ? o->margin
+                                                               : 0.0f;
+}
+
+/* The most that an obstacle's core reaches along a normal from its place, from above; `at`: the point that does. */
+EDGE_TARGET static lane obstacle_along(const edge_obstacle *o, lane3 n, lane3 *at) {
+  const lane zero = lane_all(0.0f), first = lane_all(o->size[0]), second = lane_all(o->size[1]);
+  const float sizes = EDGE_SIZES * (o->size[0] + o->size[1] + o->size[2]);
+  const lane3 t = obstacle_axes_back(o, n);
+  lane most = zero;
+  lane3 own = {zero, zero, zero};
+  switch (o->shape) {
+    case EDGE_BALL: return zero;
+    case EDGE_HALFSPACE: return zero;
+    case EDGE_ALIGNED_BOX:
+    case EDGE_BOX: {
+      const lane third = lane_all(o->size[2]);
+      own = (lane3){lane_with_sign(first, t.x), lane_with_sign(second, t.y), lane_with_sign(third, t.z)};
+      most = lane_abs(t.x) * first + lane_abs(t.y) * second + lane_abs(t.z) * third + lane_all(sizes);
+      break;
+    }
+    case EDGE_CAPSULE:
+      own.z = lane_with_sign(second, t.z);
+      most = lane_abs(t.z) * second + lane_all(EDGE_SIZES * o->size[1]);
+      break;
+    case EDGE_CYLINDER:
+    case EDGE_CONE: {
+      const lane rho = lane_sqrt(t.x * t.x + t.y * t.y), share = first / lane_max(rho, lane_all(1e-12f));
+      const lane rim = rho * first;
+      own = (lane3){t.x * share, t.y * share, lane_with_sign(second, t.z)};
+      most = rim + lane_abs(t.z) * second;
+      if (o->shape == EDGE_CONE) {
+        const lane apex = t.z * second, base = rim - apex;
+        const lane_bits up = (lane_bits)(apex > base);
+        own = (lane3){lane_choose(up, zero, own.x), lane_choose(up, zero, own.y), lane_choose(up, second, -second)};
+        most = lane_choose(up, apex, base);
+      }
+      most = most + lane_all(EDGE_SIZES * (o->size[0] + o->size[1]));
+      break;
+    }
+  }
+  *at = obstacle_axes(o, own);
+  return most;
+}
+
+/* From a point of an obstacle that is near another point to that; only where a search begins. */
+EDGE_INLINE lane3 from_obstacle(const edge_obstacle *o, lane3 at) {
+  const lane3 x = {at.x - lane_all(o->p[0]), at.y - lane_all(o->p[1]), at.z - lane_all(o->p[2])};
+  const lane3 own = obstacle_axes_back(o, x);
+  lane3 out = own;
+  const lane first = lane_all(o->size[0]), second = lane_all(o->size[1]), third = lane_all(o->size[2]);
+  if (o->shape == EDGE_BOX || o->shape == EDGE_ALIGNED_BOX) {
+    out.x = own.x - lane_max(lane_min(own.x, first), -first);
+    out.y = own.y - lane_max(lane_min(own.y, second), -second);
+    out.z = own.z - lane_max(lane_min(own.z, third), -third);
+  } else if (o->shape == EDGE_CAPSULE || o->shape == EDGE_CYLINDER) {
+    out.z = own.z - lane_max(lane_min(own.z, second), -second);
+  }
+  const lane_bits inside = (lane_bits)(lane3_norm2(out) == lane_all(0.0f));
+  return obstacle_axes(o, lane3_choose(inside, own, out));
+}
+
+/* The point of a triangle's two sides x w and p w, or of its inside, that is nearest to 0. */
+EDGE_INLINE lane3 nearest_of_triangle(lane3 x, lane3 p, lane3 w) {
+  const lane zero = lane_all(0.0f), one = lane_all(1.0f), tiny = lane_all(1e-30f);
+  const lane3 e = lane3_sub(w, x), f = lane3_sub(p, x), g = lane3_sub(w, p);
+  const lane ee = lane3_dot(e, e), ef = lane3_dot(e, f), ff = lane3_dot(f, f);
+  const lane xe = -lane3_dot(x, e), xf = -lane3_dot(x, f);
+  const lane along_e = lane_max(lane_min(xe / lane_max(ee, tiny), one), zero);
+  const lane along_g = lane_max(lane_min(-lane3_dot(p, g) / lane_max(lane3_dot(g, g), tiny), one), zero);
+  lane3 best = lane3_axpy(x, along_e, e);
+  const lane3 beside = lane3_axpy(p, along_g, g);
+  best = lane3_choose((lane_bits)(lane3_norm2(beside) < lane3_norm2(best)), beside, best);
+  const lane det = ee * ff - ef * ef, over = one / lane_max(det, tiny);
+  const lane s = (xe * ff - xf * ef) * over, t = (xf * ee - xe * ef) * over;
+  const lane_bits inside = (lane_bits)(det > lane_all(1e-6f) * ee * ff) & (lane_bits)(s > zero) &
+                           (lane_bits)(t > zero) & (lane_bits)(s + t < one);
+  return lane3_choose(inside, lane3_axpy(lane3_axpy(x, s, e), t, f), best);
+}
+
+/* What is asked about two hulls, or a hull and an obstacle. */
+typedef struct lane_apart {
+  lane_hull a, b;         /* b.hull NULL: */
+  const edge_obstacle *o; /* the obstacle */
+  lane3 speed, spin;      /* of a's centre and a, as the other sees it */
+  edge_half_bound bound;
+  float reach, radius; /* of a's part; of both sides together, with delta and what rounding may cost */
+  uint32_t pair;
+} lane_apart;
+
+/* The lanes in which not even the balls round the two hulls are apart. */
+EDGE_TARGET static uint32_t balls_near(lane_batch *b, const lane_apart *two) {
+  const lane distance2 =
+      two->o ? distance2_from(two->o, two->a.centre) : lane3_norm2(lane3_sub(two->a.centre, two->b.centre));
+  const lane moves = moves_of(b, two->speed, two->bound, two->reach) +
+                     b->half * lane_sqrt(lane3_norm2(two->spin)) * lane_all(two->a.hull->core);
+  const float other = two->o ? -round_of(two->o) : two->b.hull->core;
+  return within(b, two->pair, distance2, moves, two->a.hull->core + other + two->radius);
+}
+
+/* The lanes of `lanes` in which no normal proves the two apart over the interval; *still: nor as they are in its
+ * middle. */
+EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint32_t lanes, uint32_t *still) {
+  const lane zero = lane_all(0.0f), grow = lane_all(1.0f + (float)EDGE_GROW);
+  const lane accelerated = b->half2 * lane_all(two->bound.acceleration + two->bound.turn * two->reach);
+  const lane radius = lane_all(two->radius), stands = radius * grow;
+  const lane3 origins =
+      two->o ? (lane3){two->a.frame->o.x - lane_all(two->o->p[0]), two->a.frame->o.y - lane_all(two->o->p[1]),
+                       two->a.frame->o.z - lane_all(two->o->p[2])}
+             : lane3_sub(two->a.frame->o, two->b.frame->o);
+  const bool plane = two->o && two->o->shape == EDGE_HALFSPACE;
+  lane3 x = two->o ? from_obstacle(two->o, two->a.centre) : lane3_sub(two->a.centre, two->b.centre), last = x;
+  if (plane) x = (lane3){lane_all(two->o->r[0]), lane_all(two->o->r[3]), lane_all(two->o->r[6])};
+  uint32_t open = lanes, asked = lanes, standing = 0;
+  for (int step = 0; step < EDGE_NORMALS && asked; step++) {
+    const lane length = lane_sqrt(lane3_norm2(x)), over = lane_all(1.0f) / lane_max(length, lane_all(1e-18f));
+    const lane3 n = plane ? x : lane3_scale(over, x);
+    lane3 at = {zero, zero, zero}, its = at;
+    const lane least = least_along(&two->a, n, &at);
+    const lane most = two->o ? obstacle_along(two->o, n, &its) : -least_along(&two->b, lane3_neg(n), &its);
+    const lane gap = lane3_dot(n, origins) + (least - most);
+    const lane turns = lane_sqrt(lane3_norm2(lane3_cross(n, two->spin)));
+    const lane moves =
+        b->half * (lane_abs(lane3_dot(n, two->speed)) + turns * lane_all(two->a.hull->core)) + accelerated;
+    const lane needed = (moves + radius) * grow;
+    const lane_bits apart = (lane_bits)(gap > needed);
+    const uint32_t now = lane_mask(apart) & open;
+    if (b->measures && now) {
+      lane_bits which = apart;
+      for (int l = 0; l < EDGE_LANES; l++)
+        if (!(now >> l & 1u)) which[l] = 0;
+      note_left(b, two->pair, gap * lane_all(1.0f - (float)EDGE_GROW) - needed, which);
+    }
+    open &= ~now, asked &= ~now;
+    standing |= lane_mask((lane_bits)(gap > stands));
+    if (plane) break;
+    /* no normal will do better: they are too near each other, or they move too far */
+    asked &= ~(lane_mask((lane_bits)(length <= stands)) | (standing & lane_mask((lane_bits)(length <= needed))));
+    if (!asked) break;
+    const lane3 w = lane3_add(origins, lane3_sub(at, its));
+    x = nearest_of_triangle(x, last, w);
+    last = w;
+  }
+  *still = open & ~standing;
+  return open;
+}
+
+/* Lanes in which a point of a hull is proven to be in an obstacle, or within the radius of it. */
+EDGE_TARGET static uint32_t touches(const lane_hull *h, const edge_obstacle *o, float delta, float costs) {
+  if (!(h->hull->inner >= 0.0f) || !(costs < INFINITY)) return 0;
+  const float within = sure_radius(h->hull->inner, 0.0f, delta, costs);
+  const float deep = costs * (1.0f + 0x1p-20f) - (h->hull->inner + delta) * (1.0f - 0x1p-20f);
+  const lane first = lane_all(o->size[0] - deep), second = lane_all(o->size[1] - deep),
+             third = lane_all(o->size[2] - deep), zero = lane_all(0.0f);
+  uint32_t found = 0;
+  for (uint32_t i = 0; i < h->hull->n; i++) {
+    const lane3 at = lane3_add(h->frame->o, lane_turn(h->frame, h->points + 3 * i));
+    found |= proven_within(distance2_from(o, at), within);
+    if (deep < 0.0f) continue;
+    const lane3 x =
+        obstacle_axes_back(o, (lane3){at.x - lane_all(o->p[0]), at.y - lane_all(o->p[1]), at.z - lane_all(o->p[2])});
+    if (o->shape == EDGE_BOX || o->shape == EDGE_ALIGNED_BOX)
+      found |= lane_mask((lane_bits)(lane_abs(x.x) < first) & (lane_bits)(lane_abs(x.y) < second) &
+                         (lane_bits)(lane_abs(x.z) < third));
+    const lane shrink = lane_all(1.0f - (float)EDGE_GROW);
+    if (o->shape == EDGE_BALL) found |= lane_mask((lane_bits)(lane_sqrt(lane3_norm2(x)) < first * shrink));
+    if (o->shape == EDGE_CYLINDER)
+      found |= lane_mask((lane_bits)(lane_sqrt(x.x * x.x + x.y * x.y) < first * shrink) &
+                         (lane_bits)(lane_abs(x.z) < second));
+    if (o->shape == EDGE_CAPSULE) {
+      const lane half = lane_all(o->size[1]);
+      const lane3 beside = {x.x, x.y, lane_max(lane_abs(x.z) - half, zero)};
+      found |= lane_mask((lane_bits)(lane_sqrt(lane3_norm2(beside)) < first * shrink));
+    }
+    if (o->shape == EDGE_HALFSPACE) found |= lane_mask((lane_bits)(x.x < lane_all(o->margin - deep)));
+  }
+  return found;
+}
+
+/* ---- obstacles ---- */
+
+typedef struct open_hull {
+  uint32_t hull, other, lanes;
+} open_hull;
+
+/* What a pair of hulls leaves open: lanes to halve, lanes that the pair is left to the search in. */
+EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, const edge_obstacle *o, uint32_t near) {
+  const cprox_edge_checker *c = b->c;
+  const edge_part *part = &c->parts[i];
+  const lane_frame *own = &b->frames[part->frame];
+  const float delta = (float)c->asked.delta, room = b->motion->room[i];
+  need(b, CPROX_EDGE_NORMAL);
+  lane_apart two = {.o = o,
+                    .spin = own->spin,
+                    .bound = b->motion->frames[part->frame],
+                    .reach = (float)part->reach_of_centre,
+                    .pair = near_at};
+  uint32_t left = 0;
+  for (uint32_t root = part->first_hull; root < part->end_hull; root = c->hulls[root].end) {
+    open_hull stack[EDGE_HULL_STACK] = {{root, 0, near}};
+    int looked = 0;
+    for (size_t n = 1; n > 0; looked++) {
+      const open_hull at = stack[--n];
+      const edge_hull *hull = &c->hulls[at.hull];
+      uint32_t lanes = at.lanes & ~b->split & ~left, still = lanes;
+      if (!lanes) continue;
+      two.a = place_hull(b, hull, own);
+      two.speed = lane3_add(own->speed, lane3_cross(own->spin, lane3_sub(two.a.centre, own->o)));
+      two.radius = hull->margin + round_of(o) + delta + room;
+      if (at.hull != root) lanes &= balls_near(b, &two);
+      if (!lanes) continue;
+      lanes = not_apart(b, &two, lanes, &still);
+      halve(b, near_at, lanes & ~still);
+      if (!still) continue;
+      if (n == 0 || hull->n_children == 0) {
+        const uint32_t touching = touches(&two.a, o, delta, room + o->grown) & still;
+        if (touching) {
+          b->found->verdict = CPROX_VERDICT_VIOLATED;
+          b->found->at = b->interval[__builtin_ctz(touching)].middle;
+          b->found->geometry = hull->geometry, b->found->other = o->target, b->found->self = false;
+          return true;
+        }
+      }
+      if (hull->n_children == 0 || looked > EDGE_MOST_HULLS || n + hull->n_children > EDGE_HULL_STACK) {
+        left |= still;
+        continue;
+      }
+      for (uint32_t k = 0; k < hull->n_children; k++) stack[n++] = (open_hull){hull->child + k, 0, still};
+    }
+  }
+  left &= ~b->split;
+  if (left) leave_open(b, near_at, left);
+  return false;
+}
+
+/* ---- pairs of parts ---- */
+
+/* Of a pair of which one hull is to be replaced by its pieces: the larger one that has any. */
+EDGE_INLINE bool opens_first(const edge_hull *a, const edge_hull *b) {
+  return a->n_children > 0 && (b->n_children == 0 || a->core >= b->core);
+}
+
+EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
+  const cprox_edge_checker *c = b->c;
+  const edge_pair *pair = &c->lane_pairs[i];
+  const edge_part *first = &c->parts[pair->a], *second = &c->parts[pair->b];
+  const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
+  const uint32_t number = (uint32_t)(c->n_near + i);
+  const float room = b->motion->room[pair->a] + b->motion->room[pair->b] + (float)c->asked.delta;
+  need(b, CPROX_EDGE_NORMAL);
+  lane_apart two = {.spin = lane3_sub(own->spin, other->spin),
+                    .bound = b->motion->relations[pair->relation],
+                    .reach = (float)first->reach_of_centre,
+                    .pair = number};
+  open_hull stack[EDGE_HULL_STACK];
+  uint32_t left = 0;
+  int looked = 0;
+  for (uint32_t one = first->first_hull; one < first->end_hull; one = c->hulls[one].end)
+    for (uint32_t two_at = second->first_hull; two_at < second->end_hull; two_at = c->hulls[two_at].end) {
+      stack[0] = (open_hull){one, two_at, near};
+      for (size_t n = 1; n > 0; looked++) {
+        const open_hull at = stack[--n];
+        const edge_hull *hull = &c->hulls[at.hull], *beside = &c->hulls[at.other];
+        uint32_t lanes = at.lanes & ~b->split & ~left, still = lanes;
+        if (!lanes) continue;
+        two.a = place_hull(b, hull, own), two.b = place_hull(b, beside, other);
+        two.speed = relative_speed(other, two.a.centre,
+                                   lane3_add(own->speed, lane3_cross(own->spin, lane3_sub(two.a.centre, own->o))));
+        two.radius = hull->margin + beside->margin + room;
+        lanes &= balls_near(b, &two);
+        if (!lanes) continue;
+        lanes = not_apart(b, &two, lanes, &still);
+        halve(b, number, lanes & ~still);
+        if (!still) continue;
+        const bool opens = opens_first(hull, beside);
+        const uint32_t child = opens ? hull->child : beside->child;
+        const uint32_t children = opens ? hull->n_children : beside->n_children;
+        if (children == 0 || looked > EDGE_MOST_HULLS || n + children > EDGE_HULL_STACK) {
+          left |= still;
+          continue;
+        }
+        for (uint32_t k = 0; k < children; k++)
+          stack[n++] = opens ? (open_hull){child + k, at.other, still} : (open_hull){at.hull, child + k, still};
+      }
+    }
+  left &= ~b->split;
+  if (left) leave_open(b, number, left);
+}
