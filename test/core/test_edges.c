@@ -550,7 +550,7 @@ enum { EDGES = 8 };
  * refined. Both instruction sets give the same results. */
 CASE(edge_verdicts_are_never_wrong) {
   rng r = rng_seed(404);
-  size_t counts[3] = {0}, levels[4] = {0};
+  size_t counts[3] = {0}, levels[CPROX_EDGE_SEARCH + 1] = {0};
   for (size_t i = 0; i < test_cases(120); i++) {
     const double scale = rng_log_uniform(&r, 1e-2, 1e2);
     const bool self = rng_index(&r, 2);
