@@ -172,12 +172,12 @@ static cprox_edge_result ask(const world *w, double delta, const double *from, c
   return r;
 }
 
-/* 12,000 worlds (seed 421), sizes of 1e-2 to 1e2 m. The delta is drawn beside the certified distance, by 1e-6 to 1e-1 of
+/* 30,000 worlds (seed 421), sizes of 1e-2 to 1e2 m. The delta is drawn beside the certified distance, by 1e-6 to 1e-1 of
  * the size on either side, or is 0: clear is said only below the distance, violated only above it, and there. */
 CASE(hulls_are_never_said_to_be_apart_beyond_their_distance) {
   rng r = rng_seed(421);
   size_t by_normals[3] = {0}, by_search = 0, asked = 0;
-  for (size_t i = 0; i < test_cases(12000); i++) {
+  for (size_t i = 0; i < test_cases(30000); i++) {
     const double scale = rng_log_uniform(&r, 1e-2, 1e2);
     static world w;
     make_world(&r, scale, &w);
