@@ -58,8 +58,8 @@ void takeOption(const std::vector<std::string> &words, std::size_t &i, const Com
   if (!takes(command, *known)) {
     constexpr std::size_t FEW = 3;
     const std::vector<std::string> theirs = commandsOf(*known);
-    throw BadUsage(theirs.size() <= FEW ? name + " is for " + quoted(theirs)
-                                        : "'" + std::string(command.word) + "' takes no " + name);
+    throw BadUsage("'" + std::string(command.word) + "' takes no " + name +
+                   (theirs.size() <= FEW ? ": it is for " + quoted(theirs) : ""));
   }
 
   /* its value */

@@ -8,8 +8,8 @@ namespace curve_proximity::cli {
 namespace {
 
 /* Columns of results. */
-#define CPROX_ROW                                                                                                 \
-  "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,t_b,lod," \
+#define CPROX_ROW                                                                                                  \
+  "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b, nodes,distance_queries,microseconds,t_b,lod," \
   "message. With --second-opinion also second_opinion,second_distance"
 constexpr const char *ROW = CPROX_ROW;
 constexpr const char *CONTACT = CPROX_ROW ". Also t_contact_lower: there is no contact at any smaller parameter";

@@ -104,10 +104,10 @@ EDGE_TARGET static lane obstacle_along(const edge_obstacle *o, lane3 n, lane3 *a
   const lane zero = lane_all(0.0f), first = lane_all(o->size[0]), second = lane_all(o->size[1]);
   const float sizes = EDGE_SIZES * (o->size[0] + o->size[1] + o->size[2]);
   const lane3 t = obstacle_axes_back(o, n);
-  lane most = zero;
+  lane most;
   lane3 own = {zero, zero, zero};
   switch (o->shape) {
-    case EDGE_BALL: return zero;
+    case EDGE_BALL:
     case EDGE_HALFSPACE: return zero;
     case EDGE_ALIGNED_BOX:
     case EDGE_BOX: {
@@ -120,8 +120,7 @@ EDGE_TARGET static lane obstacle_along(const edge_obstacle *o, lane3 n, lane3 *a
       own.z = lane_with_sign(second, t.z);
       most = lane_abs(t.z) * second + lane_all(EDGE_SIZES * o->size[1]);
       break;
-    case EDGE_CYLINDER:
-    case EDGE_CONE: {
+    default: { /* a cylinder, a cone */
       const lane rho = lane_sqrt(t.x * t.x + t.y * t.y), share = first / lane_max(rho, lane_all(1e-12f));
       const lane rim = rho * first;
       own = (lane3){t.x * share, t.y * share, lane_with_sign(second, t.z)};
@@ -177,12 +176,12 @@ EDGE_INLINE lane3 nearest_of_triangle(lane3 x, lane3 p, lane3 w) {
 
 /* What is asked about two hulls, or a hull and an obstacle. */
 typedef struct lane_apart {
+  lane3 speed, spin;      /* of a's centre and a, as the other sees it */
   lane_hull a, b;         /* b.hull NULL: */
   const edge_obstacle *o; /* the obstacle */
-  lane3 speed, spin;      /* of a's centre and a, as the other sees it */
-  edge_half_bound bound;
-  float reach, radius; /* of a's part; of both sides together, with delta and what rounding may cost */
+  float reach, radius;    /* of a's part; of both sides together, with delta and what rounding may cost */
   uint32_t pair;
+  edge_half_bound bound;
 } lane_apart;
 
 /* The lanes in which not even the balls round the two hulls are apart. */

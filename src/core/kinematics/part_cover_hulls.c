@@ -116,7 +116,7 @@ static double choose_points(chosen *c, double enough) {
 static bool add_polyhedron(const convex *shape, vec3 centre, double margin, double inner, cover_hulls *to) {
   enum { NUMBERS = COVER_MOST_POINTS + 8 };
   double numbers[3 * NUMBERS], radius = 0.0;
-  chosen c = {.shape = shape, .apart = malloc(((size_t)shape->n + 1) * sizeof *c.apart)};
+  chosen c = {.shape = shape, .apart = calloc((size_t)shape->n + 1, sizeof *c.apart)};
   cover_hull *made = c.apart ? begin_hull(to, COVER_MOST_POINTS) : NULL;
   if (!made) {
     free(c.apart);
