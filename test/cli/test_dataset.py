@@ -103,10 +103,12 @@ class Dataset(Case):
 
         def write():
             while True:
-                with open(pipe, 'w') as file:  # waits for a reader
-                    if len(reads) == 10:
-                        return
-                    reads.append(file.write('<robot name="broken">'))
+                try:
+                    file = os.open(pipe, os.O_WRONLY)  # waits for a reader, and does not create
+                except FileNotFoundError:
+                    return
+                reads.append(os.write(file, b'<robot name="broken">'))
+                os.close(file)
                 time.sleep(0.1)  # until that reader is done
         writer = threading.Thread(target=write, daemon=True)
         writer.start()
