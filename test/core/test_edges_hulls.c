@@ -202,9 +202,9 @@ CASE(hulls_are_never_said_to_be_apart_beyond_their_distance) {
   }
   print_message("by normals %zu clear, %zu violated; by the search %zu of %zu\n", by_normals[CPROX_VERDICT_CLEAR],
                 by_normals[CPROX_VERDICT_VIOLATED], by_search, asked);
-  /* about half of what this seed gives */
+  /* about half of what this seed gives, and twice what it leaves to the search */
   assert_true(23 * by_normals[CPROX_VERDICT_CLEAR] > asked && 4 * by_normals[CPROX_VERDICT_VIOLATED] > asked);
-  assert_true(3 * by_search < 2 * asked);
+  assert_true(6 * by_search < asked);
 }
 
 /* The plain kernel and that of the machine leave the same open, bit by bit (400 worlds, seed 422). */

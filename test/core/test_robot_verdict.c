@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Verdicts about robots, which lanes look at first: held against the certified distance of the same motion, and against
  * the verdict of the search alone. */
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -24,6 +25,7 @@ typedef struct scene {
   cprox_obstacle targets[OBSTACLES];
   cprox_robot_pair pairs[PAIRS], selves[PAIRS];
   size_t n_pairs, n_selves;
+  bool round;
   cprox_robot *robot;
   cprox_motion *motion;
 } scene;
@@ -34,13 +36,18 @@ static cprox_body *random_body(rng *r, double size, bool round) {
   vec3 points[12];
   for (int k = 0; k < 12; k++) points[k] = rng_in_cube(r, size);
   cprox_status status;
-  switch (round ? 2 * rng_index(r, 2) : rng_index(r, 6)) {
+  uint32_t triangles[4][3];
+  for (int k = 0; k < 12; k++) triangles[k / 3][k % 3] = (uint32_t)k;
+  switch (round ? 2 * rng_index(r, 2) : rng_index(r, 7)) {
     case 0: status = cprox_body_create_sphere(a, ws, &b); break;
     case 1: status = cprox_body_create_box(vec(a, c, size * rng_uniform(r, 0.01, 1.0)), ws, &b); break;
     case 2: status = cprox_body_create_capsule(2.0 * c, 0.5 * a, ws, &b); break;
     case 3: status = cprox_body_create_cylinder(a, 2.0 * c, ws, &b); break;
     case 4: status = cprox_body_create_cone(a, 2.0 * c, ws, &b); break;
-    default: status = cprox_body_create_polytope(points, 12, ws, &b); break;
+    case 5: status = cprox_body_create_polytope(points, 12, ws, &b); break;
+    default:
+      status = cprox_body_create_mesh(points, 12, (const uint32_t(*)[3])triangles, 4, CPROX_MESH_FILL_SURFACE, SIZE_MAX,
+                                      ws, &b);
   }
   if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return b;
@@ -101,7 +108,7 @@ static void make_scene(rng *r, double scale, scene *s) {
   robot_make(r, 0.5, &s->t);
   const double away = rng_index(r, 3) ? 0.0 : scale * rng_log_uniform(r, 1e2, 1e14);
   s->base = vec_scale(away, rng_unit(r));
-  const bool round = rng_index(r, 3); /* links of spheres and capsules, but for a few */
+  const bool round = s->round = rng_index(r, 3); /* links of spheres and capsules, but for a few */
   s->n_geometries = s->n_pairs = s->n_selves = 0;
   for (size_t i = 0; i < s->t.n_links; i++) {
     cprox_link *l = &s->t.links[i];
@@ -161,6 +168,7 @@ static cprox_mover mover_of(rng *r, const scene *s, bool *targets) {
 CASE(verdicts_and_intervals_agree_with_the_certified_distance) {
   rng r = rng_seed(411);
   size_t counts[3] = {0}, lanes[4] = {0};
+  uint64_t nodes[2] = {0}; /* of verdicts of robots of hulls that lanes find clear, and of the search alone */
   for (size_t i = 0; i < test_cases(600); i++) {
     const double scale = rng_log_uniform(&r, 1e-2, 1e2);
     scene s;
@@ -188,12 +196,14 @@ CASE(verdicts_and_intervals_agree_with_the_certified_distance) {
       q.limit = delta;
       edge_first first;
       workspace_forget_work(ws);
-      lanes[edge_first_level(&q, 0, n, &first) ? (size_t)first.verdict : 3]++;
+      const size_t by_lanes = edge_first_level(&q, 0, n, k % 2, &first) ? (size_t)first.verdict : 3;
+      lanes[by_lanes]++;
       workspace_forget_work(ws);
       assert_true(robot_answer(&q, 0, n, INFINITY, &searched) >= 0);
       workspace_forget_work(ws);
       assert_true(robot_verdict(&q, 0, n, INFINITY, &r1) >= 0);
       counts[r1.verdict]++;
+      if (!s.round && by_lanes == CPROX_VERDICT_CLEAR) nodes[0] += r1.nodes, nodes[1] += searched.nodes;
 
       const char *wrong = NULL;
       if (r1.verdict == CPROX_VERDICT_CLEAR && !(exact.upper > delta)) wrong = "clear";
@@ -224,6 +234,9 @@ CASE(verdicts_and_intervals_agree_with_the_certified_distance) {
   print_message("clear, undecided, violated: %zu %zu %zu; lanes %zu %zu %zu, not asked %zu\n",
                 counts[CPROX_VERDICT_CLEAR], counts[CPROX_VERDICT_UNDECIDED], counts[CPROX_VERDICT_VIOLATED],
                 lanes[CPROX_VERDICT_CLEAR], lanes[CPROX_VERDICT_UNDECIDED], lanes[CPROX_VERDICT_VIOLATED], lanes[3]);
+  print_message("hulls that lanes find clear: %" PRIu64 " nodes, by the search alone %" PRIu64 "\n", nodes[0],
+                nodes[1]);
+  assert_true(2 * nodes[0] < nodes[1]);
 }
 
 /* A ball of radius .1 or .4 slides past another one, .4 m away: what the workspace keeps of one robot is not the other's,

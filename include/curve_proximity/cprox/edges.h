@@ -64,8 +64,10 @@ typedef enum cprox_edge_level {
   CPROX_EDGE_COVER = 2,
   /** hulls of each geometry and of its pieces, along normals, in single precision */
   CPROX_EDGE_NORMAL = 3,
+  /** one measurement in double precision of a pair that lanes left open, at one time: it proved contact */
+  CPROX_EDGE_MEASUREMENT = 4,
   /** the search in double precision, for the pairs and the part of the edge that were left open */
-  CPROX_EDGE_SEARCH = 4
+  CPROX_EDGE_SEARCH = 5
 } cprox_edge_level;
 
 /** The answer about one edge. */

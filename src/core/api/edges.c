@@ -53,6 +53,7 @@ typedef struct edge_rest {
   const cprox_robot_pair *pairs, *self_pairs;
   size_t n_pairs, n_self_pairs;
   double from, to;
+  bool at_once; /* at the time `from` alone */
 } edge_rest;
 
 static edge_rest all_of(const cprox_edge_checker *c) {
@@ -130,6 +131,7 @@ static cprox_status search(const edges_call *call, const cprox_motion *motion, c
   query q = query_create(mover, targets, n, asked->delta, asked->delta > 0.0, &options, call->workspace);
   const arguments_query has = {"edges", ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL};
   const cprox_status begun = query_begin(&q, has);
+  if (rest->at_once) q.t0 = q.t1 = rest->from;
   return begun == CPROX_OK ? robot_answer(&q, 0, n, INFINITY, r) : begun;
 }
 
@@ -178,19 +180,52 @@ static cprox_status find_first(const edges_call *call, const double *from, const
   return CPROX_OK;
 }
 
+static void take_contact(const edges_call *call, const edge_found *found, cprox_edge_result *out) {
+  out->verdict = CPROX_VERDICT_VIOLATED, out->t = 0.5 + (double)found->at;
+  out->geometry = found->geometry;
+  out->other = found->other + (found->self ? (int32_t)obstacles_count(call->c->asked.obstacles) : 0);
+}
+
+/* Measures what lanes left open, where and when it is deepest. */
+static cprox_status measure(const edges_call *call, const double *from, const double *to, const edge_found *found,
+                            cprox_edge_result *out) {
+  const cprox_robot_pair pair = {found->geometry, found->other};
+  const edge_rest one = {.pairs = &pair,
+                         .self_pairs = &pair,
+                         .n_pairs = !found->self,
+                         .n_self_pairs = found->self,
+                         .from = 0.5 + (double)found->at,
+                         .to = 1.0,
+                         .at_once = true};
+  cprox_motion *motion = NULL;
+  cprox_status status = create_motion(call, from, to, &motion);
+  if (status < 0) return status;
+  cprox_result r = {0};
+  status = search(call, motion, &one, false, &r);
+  cprox_motion_free(motion);
+  if (status < 0) return status;
+  out->nodes += r.nodes;
+  if (r.verdict != CPROX_VERDICT_VIOLATED) return CPROX_OK;
+  take_contact(call, found, out);
+  out->level = CPROX_EDGE_MEASUREMENT;
+  return status;
+}
+
 static cprox_status ask_lanes(edges_call *call, const double *from, const double *to, cprox_edge_result *out) {
   const cprox_edge_checker *c = call->c;
   const edge_rest all = all_of(c);
   if (!c->in_lanes || !edge_motion_fill(c, from, to, &call->motion)) return ask_search(call, from, to, &all, out);
   edge_found found;
-  call->lanes.open.edge++;
-  call->kernel(c, &call->motion, &call->lanes, &found);
-  out->verdict = found.verdict, out->level = found.level, out->intervals = found.intervals;
-  if (found.verdict == CPROX_VERDICT_VIOLATED) {
-    out->t = 0.5 + (double)found.at;
-    out->geometry = found.geometry;
-    out->other = found.other + (found.self ? (int32_t)obstacles_count(c->asked.obstacles) : 0);
+  for (int with = 1; with >= 0; with--) {
+    call->lanes.open.edge++, call->lanes.suspects = with;
+    call->kernel(c, &call->motion, &call->lanes, &found);
+    out->intervals += found.intervals;
+    if (!found.is_suspect) break;
+    const cprox_status status = measure(call, from, to, &found, out);
+    if (status < 0 || out->verdict == CPROX_VERDICT_VIOLATED) return status;
   }
+  out->verdict = found.verdict, out->level = found.level;
+  if (found.verdict == CPROX_VERDICT_VIOLATED) take_contact(call, &found, out);
   if (found.verdict != CPROX_VERDICT_UNDECIDED) return CPROX_OK;
   if (found.too_much) return ask_search(call, from, to, &all, out);
   const edge_rest open = open_of(call);

@@ -9,7 +9,7 @@
 /* Beyond these the trees and groups of the search find what is near sooner than lanes do. */
 enum { MOST_PAIRS = 4096, MOST_PARTS = 1024, MOST_TARGETS = 512, MOST_NEAR = 4096, MOST_OPEN = 256 };
 
-/* One of so many parts may be of something else than balls and capsules. */
+/* One of so many parts may have a cover that tells little. */
 enum { MOST_COARSE = 4 };
 
 /* So many times eight intervals: what they leave open is left to the search. */
@@ -88,7 +88,7 @@ static cprox_edge_checker *model_of(const query *q) {
   const edge_asked asked = asked_of(q);
   if (asked.robot->n_parts > MOST_PARTS || edge_model_count_pairs(&asked) > MOST_PAIRS) return NULL;
   const robot_covers *covers = robot_covers_of(asked.robot);
-  if (!covers || MOST_COARSE * (covers->n_coarse + covers->n_hulls) > asked.robot->n_parts) return NULL;
+  if (!covers || MOST_COARSE * covers->n_coarse > asked.robot->n_parts) return NULL;
   const workspace_buffer buffer = mover_is_self(&q->mover)    ? WORKSPACE_EDGE_SELF
                                   : mover_is_whole(&q->mover) ? WORKSPACE_EDGE_WHOLE
                                                               : WORKSPACE_EDGE_ROBOT;
@@ -293,7 +293,7 @@ static bool look_along(const query *q, const cprox_edge_checker *c, const motion
     kernel(c, &run->motion, &run->lanes, &one);
     if (one.too_much) return false;
     run->batches -= one.batches < run->batches ? one.batches : run->batches;
-    if (one.verdict == CPROX_VERDICT_VIOLATED) {
+    if (one.verdict == CPROX_VERDICT_VIOLATED || one.is_suspect) {
       *f = one, *nearest = segment;
       return true;
     }
@@ -307,7 +307,7 @@ static bool look_along(const query *q, const cprox_edge_checker *c, const motion
   return run->all.n <= MOST_OPEN;
 }
 
-bool edge_first_level(const query *q, size_t first, size_t last, edge_first *found) {
+bool edge_first_level(const query *q, size_t first, size_t last, bool suspects, edge_first *found) {
   motion_interval over, nearest;
   if (!can_ask(q, first, last, &over)) return false;
   cprox_edge_checker *c = model_of(q);
@@ -320,9 +320,11 @@ bool edge_first_level(const query *q, size_t first, size_t last, edge_first *fou
   edge_found f;
   *found = (edge_first){.verdict = CPROX_VERDICT_UNDECIDED};
   nearest = over;
+  run.lanes.suspects = suspects;
   if (!look_along(q, c, &over, &run, &f, &nearest, &found->rest)) return false;
-  found->verdict = f.verdict;
-  if (f.verdict == CPROX_VERDICT_VIOLATED)
+  found->is_suspect = f.is_suspect;
+  found->verdict = f.is_suspect ? CPROX_VERDICT_VIOLATED : f.verdict;
+  if (found->verdict == CPROX_VERDICT_VIOLATED)
     return take_one(q, f.geometry, f.other, f.self, time_of(q, &nearest, (double)f.at), &found->rest);
   const double least = lesser((double)f.least * (1.0 - 0x1p-20), c->beyond);
   found->lower = greater(q->limit + greater(least, 0.0) * (1.0 - 0x1p-50), nextafter(q->limit, INFINITY));

@@ -18,6 +18,7 @@ typedef struct edge_first {
   /* clear: proven; violated: so lanes say of the one pair of `rest` at the time rest.from, and a measurement can prove
    * it; undecided: only the rest is open */
   cprox_verdict verdict;
+  bool is_suspect; /* violated: lanes only cannot tell that pair apart there, and have not looked at all else */
   /* all that is not open stays farther apart than this [m] */
   double lower;
   edge_rest rest;
@@ -26,8 +27,8 @@ typedef struct edge_first {
   edge_rest nearest;
 } edge_first;
 
-/* Asks lanes about targets first … last - 1 of a verdict about a robot. False: they cannot tell, or memory is out, and
- * all of it is open. */
-bool edge_first_level(const query *q, size_t first, size_t last, edge_first *found);
+/* Asks lanes about targets first … last - 1 of a verdict about a robot. With `suspects` they end where they cannot tell
+ * a pair apart. False: they cannot tell, or memory is out, and all of it is open. */
+bool edge_first_level(const query *q, size_t first, size_t last, bool suspects, edge_first *found);
 
 #endif

@@ -39,6 +39,7 @@ typedef struct lane_batch {
   uint32_t split; /* those that are to be halved: nothing more is asked about them */
   bool related;   /* the motion's relations are known: edges that hit an obstacle do without */
   bool last;      /* nothing is halved any more: what is near is left to the search */
+  bool suspects;  /* pairs that are left open are noted with how deep they are */
   bool measures;  /* the distances of what is not near are noted: */
   lane least;     /* of each lane the least, and of which pair and where it was found */
   uint32_t nearest[EDGE_LANES];
@@ -223,17 +224,42 @@ EDGE_INLINE void halve(lane_batch *b, uint32_t pair, uint32_t lanes) {
     leave_open(b, pair, lanes);
 }
 
+/* What may touch: a geometry, and an obstacle or another geometry. */
+typedef struct lane_two {
+  int32_t geometry, other;
+  bool self;
+} lane_two;
+
+EDGE_TARGET static void note_contact(lane_batch *b, const lane_two *two, uint32_t lanes) {
+  b->found->at = b->interval[__builtin_ctz(lanes)].middle;
+  b->found->geometry = two->geometry, b->found->other = two->other, b->found->self = two->self;
+}
+
+/* Two that are left open in some lanes, if they are deeper in each other than all before. */
+EDGE_TARGET static void suspect(lane_batch *b, const lane_two *two, uint32_t lanes, lane depth) {
+  for (; lanes && b->suspects; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    if (b->found->is_suspect && !(depth[i] > b->found->depth)) continue;
+    note_contact(b, two, 1u << i);
+    b->found->is_suspect = true, b->found->depth = depth[i];
+  }
+}
+
 /* A ball of the robot comes near something in some lanes. `outer` and `inner` are the radii of both sides together,
  * with delta, and what rounding may cost. Whether contact is proven. */
-EDGE_INLINE bool settle_near(lane_batch *b, uint32_t pair, lane distance2, uint32_t near, float outer, float inner) {
+EDGE_INLINE bool settle_near(lane_batch *b, uint32_t pair, const lane_two *two, lane distance2, uint32_t near,
+                             float outer, float inner) {
   const uint32_t touching = proven_within(distance2, inner) & b->all;
   if (touching) {
-    b->found->verdict = CPROX_VERDICT_VIOLATED;
-    b->found->at = b->interval[__builtin_ctz(touching)].middle;
+    b->found->verdict = CPROX_VERDICT_VIOLATED, b->found->is_suspect = false;
+    note_contact(b, two, touching);
     return true;
   }
   const uint32_t still = near & within_still(distance2, outer);
-  if (still) leave_open(b, pair, still);
+  if (still) {
+    leave_open(b, pair, still);
+    suspect(b, two, still, lane_all(outer) - lane_sqrt(distance2));
+  }
   halve(b, pair, near & ~still);
   return false;
 }
@@ -267,11 +293,9 @@ EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, con
     const lane moves = moves_of(b, speed, b->motion->frames[part->frame], ball->reach);
     const float outer = ball->outer + delta + room;
     const uint32_t near = within(b, near_at, distance2, moves, outer) & b->all & ~b->split;
-    if (near &&
-        settle_near(b, near_at, distance2, near, outer, sure_radius(ball->inner, 0.0f, delta, room + o->grown))) {
-      b->found->geometry = ball->geometry, b->found->other = o->target, b->found->self = false;
-      return true;
-    }
+    const lane_two two = {ball->geometry, o->target, false};
+    const float inner = sure_radius(ball->inner, 0.0f, delta, room + o->grown);
+    if (near && settle_near(b, near_at, &two, distance2, near, outer, inner)) return true;
   }
   return false;
 }
@@ -319,10 +343,8 @@ EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float cos
       const float outer = ball->outer + beside->outer + room;
       const uint32_t near = within(b, number, distance2, moves, outer) & b->all & ~b->split;
       const float inner = sure_radius(ball->inner, beside->inner, (float)c->asked.delta, costs);
-      if (near && settle_near(b, number, distance2, near, outer, inner)) {
-        b->found->geometry = ball->geometry, b->found->other = beside->geometry, b->found->self = true;
-        return true;
-      }
+      const lane_two two = {ball->geometry, beside->geometry, true};
+      if (near && settle_near(b, number, &two, distance2, near, outer, inner)) return true;
     }
   }
   return false;
@@ -398,7 +420,8 @@ EDGE_TARGET static void split_batch(const lane_batch *b, lane_interval *stack, s
 
 EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *motion, edge_lanes *lanes,
                              edge_found *found) {
-  lane_batch b = {.c = c, .motion = motion, .open = &lanes->open, .found = found, .measures = lanes->measures};
+  lane_batch b = {.c = c, .motion = motion, .open = &lanes->open, .found = found};
+  b.measures = lanes->measures, b.suspects = lanes->suspects;
   const int most = lanes->most_batches > 0 && lanes->most_batches < EDGE_MOST_BATCHES ? (int)lanes->most_batches - 1
                                                                                       : EDGE_MOST_BATCHES;
   b.least = lane_all(INFINITY);
@@ -420,6 +443,10 @@ EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *mot
     load_batch(&b, stack, &n);
     found->batches++;
     if (look_at_batch(&b)) return;
+    if (found->is_suspect) {
+      found->verdict = CPROX_VERDICT_UNDECIDED;
+      return;
+    }
     if (n == 0 && b.split == 0) break;
     float shortest = 1.0f;
     for (uint32_t left = b.split; left; left &= left - 1) {

@@ -22,6 +22,7 @@ typedef struct edge_lanes {
   edge_open open;
   uint32_t most_batches; /* more are left open; 0: as many as there may be */
   bool measures;         /* edge_found.least is wanted */
+  bool suspects;         /* the first batch that leaves a pair open though nothing moves is the last one */
 } edge_lanes;
 
 typedef struct edge_found {
@@ -32,6 +33,8 @@ typedef struct edge_found {
   float at;                /* violated: there, seen from the middle of the edge, */
   int32_t geometry, other; /* by this geometry and this obstacle, or */
   bool self;               /* this other geometry */
+  bool is_suspect;         /* undecided, and a measurement there may prove contact of these: nothing else is known */
+  float depth;             /* of it */
   /* if it measures: nothing that is not open comes nearer than delta and this; the pair of which that was found, as
    * edge_open has it, or UINT32_MAX, and where */
   float least;

@@ -195,8 +195,9 @@ EDGE_TARGET static uint32_t balls_near(lane_batch *b, const lane_apart *two) {
 }
 
 /* The lanes of `lanes` in which no normal proves the two apart over the interval; *still: nor as they are in its
- * middle. */
-EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint32_t lanes, uint32_t *still) {
+ * middle; *depth: how deep they are in each other there, by the best of these normals. */
+EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint32_t lanes, uint32_t *still,
+                                      lane *depth) {
   const lane zero = lane_all(0.0f), grow = lane_all(1.0f + (float)EDGE_GROW);
   const lane accelerated = b->half2 * lane_all(two->bound.acceleration + two->bound.turn * two->reach);
   const lane radius = lane_all(two->radius), stands = radius * grow;
@@ -208,6 +209,7 @@ EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint
   lane3 x = two->o ? from_obstacle(two->o, two->a.centre) : lane3_sub(two->a.centre, two->b.centre), last = x;
   if (plane) x = (lane3){lane_all(two->o->r[0]), lane_all(two->o->r[3]), lane_all(two->o->r[6])};
   uint32_t open = lanes, asked = lanes, standing = 0;
+  *depth = lane_all(INFINITY);
   for (int step = 0; step < EDGE_NORMALS && asked; step++) {
     const lane length = lane_sqrt(lane3_norm2(x)), over = lane_all(1.0f) / lane_max(length, lane_all(1e-18f));
     const lane3 n = plane ? x : lane3_scale(over, x);
@@ -229,6 +231,7 @@ EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint
     }
     open &= ~now, asked &= ~now;
     standing |= lane_mask((lane_bits)(gap > stands));
+    *depth = lane_min(radius - gap, *depth);
     if (plane) break;
     /* no normal will do better: they are too near each other, or they move too far */
     asked &= ~(lane_mask((lane_bits)(length <= stands)) | (standing & lane_mask((lane_bits)(length <= needed))));
@@ -305,19 +308,21 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
       two.radius = hull->margin + round_of(o) + delta + room;
       if (at.hull != root) lanes &= balls_near(b, &two);
       if (!lanes) continue;
-      lanes = not_apart(b, &two, lanes, &still);
+      lane depth;
+      lanes = not_apart(b, &two, lanes, &still, &depth);
       halve(b, near_at, lanes & ~still);
       if (!still) continue;
+      const lane_two both = {hull->geometry, o->target, false};
       if (n == 0 || hull->n_children == 0) {
         const uint32_t touching = touches(&two.a, o, delta, room + o->grown) & still;
         if (touching) {
-          b->found->verdict = CPROX_VERDICT_VIOLATED;
-          b->found->at = b->interval[__builtin_ctz(touching)].middle;
-          b->found->geometry = hull->geometry, b->found->other = o->target, b->found->self = false;
+          b->found->verdict = CPROX_VERDICT_VIOLATED, b->found->is_suspect = false;
+          note_contact(b, &both, touching);
           return true;
         }
       }
       if (hull->n_children == 0 || looked > EDGE_MOST_HULLS || n + hull->n_children > EDGE_HULL_STACK) {
+        suspect(b, &both, still, depth);
         left |= still;
         continue;
       }
@@ -365,13 +370,16 @@ EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
         two.radius = hull->margin + beside->margin + room;
         lanes &= balls_near(b, &two);
         if (!lanes) continue;
-        lanes = not_apart(b, &two, lanes, &still);
+        lane depth;
+        lanes = not_apart(b, &two, lanes, &still, &depth);
         halve(b, number, lanes & ~still);
         if (!still) continue;
         const bool opens = opens_first(hull, beside);
         const uint32_t child = opens ? hull->child : beside->child;
         const uint32_t children = opens ? hull->n_children : beside->n_children;
         if (children == 0 || looked > EDGE_MOST_HULLS || n + children > EDGE_HULL_STACK) {
+          const lane_two both = {hull->geometry, beside->geometry, true};
+          suspect(b, &both, still, depth);
           left |= still;
           continue;
         }

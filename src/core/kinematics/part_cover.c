@@ -125,7 +125,6 @@ static bool cover_all(const cprox_robot *robot, robot_covers *c) {
     c->first[i] = n, c->first_hull[i] = c->hulls.n;
     if (cover_is_by_hulls(&robot->parts[i].model)) {
       if (!cover_by_hulls(&robot->parts[i].model, &c->hulls)) return false;
-      c->n_hulls++;
       continue;
     }
     if (n + COVER_MOST > room) {

@@ -55,7 +55,6 @@ typedef struct robot_covers {
   size_t n_coarse;    /* parts with a cover by balls that is coarse */
   size_t *first_hull; /* n_parts + 1: of each part its first hull, which is of all of it */
   cover_hulls hulls;
-  size_t n_hulls; /* parts with a cover by hulls */
   /* robots with the same bytes here have the same axes, links of geometries, parts and covers; hulls stand for
    * themselves by a number that is never used again */
   char *signature;

@@ -24,29 +24,33 @@ static cprox_status conclude(const query *q, double cutoff, double lower, cprox_
   return query_conclude(q, cutoff, result->status, result);
 }
 
-cprox_status robot_verdict(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
-  edge_first known;
-  if (!edge_first_level(q, first, last, &known)) return robot_answer(q, first, last, cutoff, result);
-  const uint64_t done = workspace_work(q->workspace);
+/* A measurement is what proves contact; of what is clear it is the witness. */
+static cprox_status measure(const query *q, const edge_first *known, double cutoff, cprox_result *result) {
+  const bool clear = known->verdict == CPROX_VERDICT_CLEAR;
   cprox_result r;
-  cprox_status status;
-  if (known.verdict == CPROX_VERDICT_UNDECIDED) {
-    status = search(q, &known.rest, cutoff, &r);
-    if (status < 0) return status;
-    *result = r;
-    return conclude(q, cutoff, known.lower, result);
-  }
-  const bool clear = known.verdict == CPROX_VERDICT_CLEAR;
-  const edge_rest *one = clear ? &known.nearest : &known.rest;
-  status = search(q, one, cutoff, &r);
+  const cprox_status status = search(q, clear ? &known->nearest : &known->rest, cutoff, &r);
   if (status < 0) return status;
-  /* a measurement is what proves contact; of what is clear it is the witness */
-  if (clear || r.verdict == CPROX_VERDICT_VIOLATED) {
-    r.lower = clear ? INFINITY : r.lower;
-    *result = r;
-    return conclude(q, cutoff, clear ? known.lower : 0.0, result);
+  *result = r;
+  if (clear) result->lower = INFINITY;
+  return clear || r.verdict == CPROX_VERDICT_VIOLATED ? conclude(q, cutoff, clear ? known->lower : 0.0, result)
+                                                      : CPROX_OK;
+}
+
+cprox_status robot_verdict(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
+  const uint64_t done = workspace_work(q->workspace);
+  edge_first known;
+  for (int suspects = 1; edge_first_level(q, first, last, suspects, &known); suspects = 0) {
+    cprox_result r;
+    const bool open = known.verdict == CPROX_VERDICT_UNDECIDED;
+    const cprox_status status = open ? search(q, &known.rest, cutoff, &r) : measure(q, &known, cutoff, &r);
+    if (status < 0) return status;
+    if (open || known.verdict == CPROX_VERDICT_CLEAR || r.verdict == CPROX_VERDICT_VIOLATED) {
+      *result = r;
+      return open ? conclude(q, cutoff, known.lower, result) : status;
+    }
+    workspace_forget_work(q->workspace);
+    workspace_add_work(q->workspace, done);
+    if (!known.is_suspect) break;
   }
-  workspace_forget_work(q->workspace);
-  workspace_add_work(q->workspace, done);
   return robot_answer(q, first, last, cutoff, result);
 }
