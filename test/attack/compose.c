@@ -103,7 +103,9 @@ static void check_upper(query *q, size_t i, const cprox_result *x) {
   if (scene_is_exact(s, i)) {
     long double d = distance_about(q, i, x->t, x->t_obstacle);
     if (!q->options.signed_distance) d = fmaxl(0.0L, d);
-    attack_check(q->a, d <= x->upper + scene_room(s, i),
+    /* that it goes through is proven of the curve, but where of its pieces */
+    const long double pieces = x->upper == 0.0 ? cprox_curve_get_info(s->path.curve).error : 0.0L;
+    attack_check(q->a, d <= x->upper + pieces + scene_room(s, i),
                  "%s: " RESULT ", but there it is %.19Lg, above by %.3Lg (obstacle %zu: %s)", q->query, SHOWN(x), d,
                  d - (long double)x->upper, i, q->s.obstacles[i].body.name);
   }

@@ -114,6 +114,48 @@ CASE(a_curve_through_a_flat_body_is_reported_where_it_goes_through) {
   }
 }
 
+static double off_segment(vec3 half, vec3 place) {
+  const double along = vec_dot(place, half) / vec_norm2(half);
+  return vec_norm(vec_axpy(place, -fmin(1.0, fmax(-1.0, along)), half));
+}
+
+/* The difference of two segments is flat. */
+CASE(segments_carried_through_each_other_share_the_point) {
+  rng r = rng_seed(3903);
+  for (int i = 0; i < 400; i++) {
+    cprox_body *body[2];
+    vec3 half[2];
+    for (int k = 0; k < 2; k++) {
+      half[k] = rng_unit(&r);
+      const vec3 corners[3] = {half[k], vec(0, 0, 0), vec_neg(half[k])};
+      assert_int_equal(cprox_body_create_polytope(corners, 3, ws, &body[k]), CPROX_OK);
+    }
+    /* from one side of their common plane to the other, near the middle */
+    const vec3 n = vec_cross(half[0], half[1]), at = rng_unit(&r);
+    vec3 points[4];
+    for (int k = 0; k < 4; k++) {
+      const double height = k == 0 ? -1.0 : k == 3 ? 1.0 : rng_uniform(&r, -1.0, 1.0);
+      points[k] = vec_axpy(vec_axpy(at, rng_uniform(&r, -0.5, 0.5), half[0]), rng_uniform(&r, -0.5, 0.5), half[1]);
+      points[k] = vec_axpy(points[k], height, n);
+    }
+    cprox_curve *curve = bezier(points, 4);
+    const cprox_options options = accurate(1e-3);
+    const cprox_obstacle obstacle = cprox_obstacle_at(body[1], (cprox_pose){at, {1, 0, 0, 0}});
+    cprox_result result;
+    assert_true(cprox_collision(cprox_body_along(body[0], curve), obstacle, &options, ws, &result) >= CPROX_OK);
+    assert_int_equal(result.verdict, CPROX_VERDICT_VIOLATED);
+    assert_true(apart(result.witness_mover, result.witness_obstacle) == 0.0);
+    vec3 there;
+    assert_int_equal(cprox_curve_evaluate(curve, result.t, ws, &there, NULL, NULL), CPROX_OK);
+    const double off[2] = {off_segment(half[0], vec_sub(result.witness_mover, there)),
+                           off_segment(half[1], vec_sub(result.witness_mover, at))};
+    if (!(off[0] <= 1e-12 && off[1] <= 1e-12))
+      fail_msg("%d: the point is %g and %g off the segments", i, off[0], off[1]);
+    cprox_curve_free(curve);
+    for (int k = 0; k < 2; k++) cprox_body_free(body[k]);
+  }
+}
+
 /* ---- margins ---- */
 
 CASE(the_witness_point_of_overlapping_margins_lies_in_both) {

@@ -239,7 +239,8 @@ typedef struct cprox_result {
   double upper;
   /** where on the mover's curve, or when [s] in a robot's motion, upper was attained; no meaning where upper is
    *  infinite. It is a double: the distance at t itself may be above upper by what moves within a rounding of t (at
-   *  times of 1.7e9 s 2.4e-7 s), so measure times from the beginning of a fast motion */
+   *  times of 1.7e9 s 2.4e-7 s), so measure times from the beginning of a fast motion. Where a curve goes through a
+   *  surface (upper 0) it may be above by the error of cprox_curve_get_info(), too: it meets it near t */
   double t;
   /** where on an obstacle that is a curve; NaN for bodies */
   double t_obstacle;

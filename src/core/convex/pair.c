@@ -665,7 +665,8 @@ static bool pair_meets_at(pair *p, const simplex_vertex *common) {
                          (p->a->ops->near_rounding * (vec_norm(common->a) + p->a->scale) +
                           p->b->ops->near_rounding * (vec_norm(y) + p->b->scale)) +
                      p->rounding;
-  const double of_a = greater(-in_a.distance - p->a->margin, 0.0), of_b = greater(-in_b.distance - p->b->margin, 0.0);
+  /* how deep it is in each core; of one that it misses, minus by how much */
+  const double of_a = -in_a.distance - p->a->margin, of_b = -in_b.distance - p->b->margin;
   if (!(of_a + of_b > 2.0 * off)) return false;
   p->s = (simplex){.n = 1, .vertex = {*common}, .weight = {1.0}};
   p->nearest = (simplex_nearest){.inside = true, .depth = of_a + of_b - off};

@@ -166,5 +166,6 @@ bool crossing_prove_convex(curve_convex *o, curve_sample *sample, crossing_place
   sample->piece = place->piece, sample->s = place->s;
   sample->y = sample->near.point = place->meeting;
   sample->near.distance = 0.0;
+  sample->near.parts_known = false; /* they are those of where the search was */
   return true;
 }
