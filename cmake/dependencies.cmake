@@ -45,7 +45,6 @@ set(CPROX_CCD_INCLUDE_DIRS ${PC_CCD_INCLUDEDIR} ${PC_CCD_INCLUDE_DIRS})
 pkg_check_modules(PC_OCTOMAP REQUIRED octomap)
 pkg_check_modules(PC_URDFDOM REQUIRED urdfdom)
 pkg_check_modules(PC_TINYXML2 REQUIRED tinyxml2)
-pkg_check_modules(PC_JSON REQUIRED nlohmann_json)
 pkg_check_modules(PC_CONSOLE_BRIDGE REQUIRED console_bridge) # with urdfdom
 # RapidJSON is headers alone; not every version brings a pkg-config file.
 find_path(CPROX_RAPIDJSON_INCLUDE_DIR rapidjson/document.h)

@@ -25,8 +25,6 @@ target_include_directories(cprox_qhull SYSTEM INTERFACE ${CPROX_QHULL_INCLUDE_DI
 target_link_libraries(cprox_qhull INTERFACE ${CPROX_QHULL_LIBRARY})
 add_library(cprox_rapidjson INTERFACE)
 target_include_directories(cprox_rapidjson SYSTEM INTERFACE ${CPROX_RAPIDJSON_INCLUDE_DIR})
-add_library(cprox_json INTERFACE)
-target_include_directories(cprox_json SYSTEM INTERFACE ${PC_JSON_INCLUDEDIR} ${PC_JSON_INCLUDE_DIRS})
 add_library(cprox_console_bridge INTERFACE)
 target_include_directories(cprox_console_bridge SYSTEM INTERFACE ${PC_CONSOLE_BRIDGE_INCLUDEDIR} ${PC_CONSOLE_BRIDGE_INCLUDE_DIRS})
 target_link_libraries(cprox_console_bridge INTERFACE ${PC_CONSOLE_BRIDGE_LINK_LIBRARIES})

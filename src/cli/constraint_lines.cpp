@@ -17,12 +17,7 @@ const char *kMotionHeader =
     "gb_wx,gb_wy,gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_duration,g_start,microseconds,message";
 
 void appendVector(std::string &line, const Eigen::Vector3d &v, bool known = true) {
-  for (int i = 0; i < 3; ++i) {
-    if (known)
-      appendField(line, v[i]);
-    else
-      line += ',';
-  }
+  for (int i = 0; i < 3; ++i) appendField(line, v[i], known);
 }
 
 void appendGradient(std::string &line, const ConstraintGradient &gradient) {
@@ -38,12 +33,8 @@ void appendWitness(std::string &line, const ConstraintValue &value) {
 /* Value and bounds, each with the comma before it. */
 void appendValue(std::string &line, double value, bool bounded, double lower, double upper) {
   appendField(line, value);
-  if (bounded) {
-    appendField(line, lower);
-    appendField(line, upper);
-  } else {
-    line += ",,";
-  }
+  appendField(line, lower, bounded);
+  appendField(line, upper, bounded);
 }
 
 std::string microseconds(const ConstraintRow &row) {
@@ -81,12 +72,7 @@ void appendList(std::string &line, const Eigen::MatrixXd &matrix, const Trajecto
              m = static_cast<Eigen::Index>(trajectory.joints.size());
   const bool known = matrix.rows() == n && matrix.cols() == m;
   for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index k = 0; k < m; ++k) {
-      if (known)
-        appendField(line, matrix(i, k));
-      else
-        line += ',';
-    }
+    for (Eigen::Index k = 0; k < m; ++k) appendField(line, known ? matrix(i, k) : 0.0, known);
 }
 
 /* Of lines about trajectories: the columns from value to microseconds, and from t to g_start. */
@@ -137,10 +123,7 @@ std::string constraintsLine(const ConstraintRow &row) {
   appendValue(line, value.value, value.bounded, value.lower, value.upper);
   line += value.valid ? ",true" : ",false";
   const bool along = value.points.cols() > 0;
-  if (along)
-    appendField(line, value.t);
-  else
-    line += ',';
+  appendField(line, value.t, along);
   appendGradient(line, value.a);
   appendGradient(line, value.b);
   appendWitness(line, value);

@@ -221,7 +221,11 @@ std::vector<std::string> splitFields(std::string_view line) {
   }
 }
 
-void appendField(std::string &line, double value) {
+void appendField(std::string &line, double value, bool known) {
+  if (!known) {
+    line += ',';
+    return;
+  }
   char text[40];
   std::snprintf(text, sizeof text, ",%.17g", value);
   line += text;

@@ -50,8 +50,8 @@ std::vector<std::string> splitFields(std::string_view line);
 /** The text as one field: quoted if it needs to be. */
 std::string quotedField(const std::string &text);
 
-/** A comma and the number, with all its digits. */
-void appendField(std::string &line, double value);
+/** A comma, and the number with all its digits where it is known. */
+void appendField(std::string &line, double value, bool known = true);
 
 /** Where a row stands, for a sentence: "curves.csv: row 3 (line 5, id 'a')". */
 std::string placeOf(const CsvRow &row, const std::string &file);

@@ -174,23 +174,18 @@ Json Dataset::toJson(const std::string &text) const {
   if (fields.size() != columns_.size())
     throw BadInput("it has " + std::to_string(fields.size()) + " columns, the header " +
                    std::to_string(columns_.size()));
-  Json row;
-  row.kind = Json::Kind::MAP;
+  Json row = Json::mapOf({});
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string field(yaml::trimmed(fields[i]));
     if (field.empty()) continue;
-    Json value;
-    value.kind = Json::Kind::TEXT;
-    value.text_value = field;
+    Json value = field;
     if (columns_[i] == "delta") {
       const std::optional<double> number = yaml::parseFinite(field);
       if (!number) throw BadInput("delta is '" + field + "', not a finite number");
-      value.kind = Json::Kind::NUMBER;
-      value.number_value = *number;
+      value = *number;
     } else if (columns_[i] == "self") {
       if (field != "true" && field != "false") throw BadInput("self is '" + field + "', not true or false");
-      value.kind = Json::Kind::TRUTH;
-      value.truth_value = field == "true";
+      value = field == "true";
     }
     row.members.emplace_back(columns_[i], std::move(value));
   }

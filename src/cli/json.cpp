@@ -4,6 +4,10 @@
 #include <rapidjson/error/en.h>
 #include <rapidjson/memorystream.h>
 #include <rapidjson/reader.h>
+#include <rapidjson/stringbuffer.h>
+#include <rapidjson/writer.h>
+
+#include <cmath>
 
 namespace curve_proximity::cli {
 namespace {
@@ -17,14 +21,10 @@ class Builder {
   Builder(const rapidjson::MemoryStream &at, bool outline, Json &whole) : at_(at), outline_(outline), next_(&whole) {}
 
   bool Null() {
-    if (!leftOut()) take();
-    return true;
+    return leftOut() || put({});
   }
   bool Bool(bool value) {
-    if (leftOut()) return true;
-    Json &out = take();
-    out.kind = Json::Kind::TRUTH, out.truth_value = value;
-    return true;
+    return leftOut() || put(value);
   }
   bool Int(int value) {
     return Double(value);
@@ -39,19 +39,13 @@ class Builder {
     return Double(static_cast<double>(value));
   }
   bool Double(double value) {
-    if (leftOut()) return true;
-    Json &out = take();
-    out.kind = Json::Kind::NUMBER, out.number_value = value;
-    return true;
+    return leftOut() || put(value);
   }
   bool RawNumber(const char *, rapidjson::SizeType, bool) {
     return false; /* is not asked for */
   }
   bool String(const char *text, rapidjson::SizeType length, bool) {
-    if (leftOut()) return true;
-    Json &out = take();
-    out.kind = Json::Kind::TEXT, out.text_value.assign(text, length);
-    return true;
+    return leftOut() || put(std::string(text, length));
   }
   bool StartObject() {
     return open(Json::Kind::MAP);
@@ -86,6 +80,10 @@ class Builder {
   Json &take() {
     if (open_.empty() || open_.back()->kind == Json::Kind::MAP) return *next_;
     return open_.back()->items.emplace_back();
+  }
+  bool put(Json value) {
+    take() = std::move(value);
+    return true;
   }
   bool open(Json::Kind kind) {
     constexpr std::size_t kUsual = 8; /* joints of an arm */
@@ -127,11 +125,79 @@ Json parse(std::string_view text, bool outline) {
   return out;
 }
 
+using Writer = rapidjson::Writer<rapidjson::StringBuffer>;
+
+void writeNumber(double value, Writer &out) {
+  constexpr double kWhole = 9007199254740992.0; /* 2^53 */
+  if (!std::isfinite(value))
+    out.Null();
+  else if (value == std::floor(value) && std::abs(value) < kWhole)
+    out.Int64(static_cast<std::int64_t>(value));
+  else
+    out.Double(value);
+}
+
+/* What is no UTF-8 becomes U+FFFD. */
+void writeText(const std::string &text, Writer &out) {
+  rapidjson::MemoryStream in(text.data(), text.size());
+  std::string valid;
+  while (in.Tell() < text.size()) {
+    rapidjson::StringBuffer letter;
+    if (rapidjson::UTF8<>::Validate(in, letter))
+      valid.append(letter.GetString(), letter.GetSize());
+    else
+      valid += "\xEF\xBF\xBD";
+  }
+  out.String(valid.data(), static_cast<rapidjson::SizeType>(valid.size()));
+}
+
+void write(const Json &value, Writer &out) {
+  switch (value.kind) {
+    case Json::Kind::NOTHING: out.Null(); return;
+    case Json::Kind::TRUTH: out.Bool(value.truth_value); return;
+    case Json::Kind::NUMBER: return writeNumber(value.number_value, out);
+    case Json::Kind::TEXT: return writeText(value.text_value, out);
+    case Json::Kind::LIST:
+      out.StartArray();
+      for (const Json &item : value.items) write(item, out);
+      out.EndArray();
+      return;
+    case Json::Kind::MAP:
+      out.StartObject();
+      for (const auto &[name, member] : value.members) {
+        writeText(name, out);
+        write(member, out);
+      }
+      out.EndObject();
+  }
+}
+
 [[noreturn]] void failKind(const char *what, const char *wanted) {
   throw BadInput(std::string(what) + " must be " + wanted);
 }
 
 } // namespace
+
+Json Json::listOf(std::vector<Json> items) {
+  Json out;
+  out.kind = Kind::LIST;
+  out.items = std::move(items);
+  return out;
+}
+
+Json Json::mapOf(std::vector<std::pair<std::string, Json>> members) {
+  Json out;
+  out.kind = Kind::MAP;
+  out.members = std::move(members);
+  return out;
+}
+
+Json &Json::operator[](const std::string &name) {
+  kind = Kind::MAP;
+  for (auto &[known, value] : members)
+    if (known == name) return value;
+  return members.emplace_back(name, Json()).second;
+}
 
 const Json *Json::member(std::string_view name) const {
   for (const auto &member : members) {
@@ -181,6 +247,13 @@ Json parseJson(std::string_view text) {
 
 Json outlineOfJson(std::string_view text) {
   return parse(text, true);
+}
+
+std::string textOfJson(const Json &value) {
+  rapidjson::StringBuffer text;
+  Writer out(text);
+  write(value, out);
+  return {text.GetString(), text.GetSize()};
 }
 
 } // namespace curve_proximity::cli

@@ -28,7 +28,7 @@ class Report {
  public:
   Report(const Arguments &arguments, const Warnings &warnings, Console &console)
       : arguments_(arguments), warnings_(warnings), console_(console) {
-    for (const char *list : {"verdicts", "profiles", "pairs", "curves", "notes"}) data_[list] = Value::array();
+    for (const char *list : {"verdicts", "profiles", "pairs", "curves", "notes"}) data_[list] = Json::listOf({});
   }
 
   /** Searches, profiles and pairs of one thing. A part that fails is a note on the page and a complaint. */
@@ -44,11 +44,11 @@ class Report {
   }
 
   void addCurve(const CompiledCurve &curve, Workspace &workspace) {
-    data_["curves"].push_back(drawCurve(curve, workspace));
+    data_["curves"].items.push_back(drawCurve(curve, workspace));
   }
 
   void note(const std::string &sentence) {
-    data_["notes"].push_back(sentence);
+    data_["notes"].items.emplace_back(sentence);
   }
 
   void failed(const std::string &complaint) {
@@ -72,12 +72,12 @@ class Report {
     return {out.lower_bound(domain[0]), out.upper_bound(domain[1])};
   }
 
-  Value &data() {
+  Json &data() {
     return data_;
   }
 
   int exitCode() const {
-    if (failed_ || data_["verdicts"].empty()) return kUnanswered;
+    if (failed_ || data_.member("verdicts")->items.empty()) return kUnanswered;
     if (violated_) return kSomeViolated;
     return undecided_ ? kSomeUndecided : kAllAnswered;
   }
@@ -122,7 +122,7 @@ class Report {
       const bool proves = with_proof && type == types.front();
       if (proves) query.options.certificate = proof.get();
       const Answer found = answer(asked, {}, question::Search{}, query, workspace).at(0).answer;
-      Value row = toValue(toRow(found, type), asked);
+      Json row = toJson(toRow(found, type), asked);
       row["query"] = type == QueryType::TOLERANCE ? "tolerance" : "distance";
       if (proves) {
         const std::string record = recordOf(proof);
@@ -131,11 +131,11 @@ class Report {
         row["certificate"] = toHex(digestOf(record.data(), record.size()));
         if (!found.unproven.empty()) failedProof(asked, found.unproven);
       }
-      violated_ = violated_ || row["verdict"] == "violated";
-      undecided_ = undecided_ || row["verdict"] == "undecided" || found.gap;
+      violated_ = violated_ || row["verdict"].text_value == "violated";
+      undecided_ = undecided_ || row["verdict"].text_value == "undecided" || found.gap;
       if (found.result.status < 0) failed(asked.place + ": " + found.message);
       if (found.gap) note(asked.place + ": " + found.message);
-      data_["verdicts"].push_back(std::move(row));
+      data_["verdicts"].items.push_back(std::move(row));
     }
   }
 
@@ -147,41 +147,42 @@ class Report {
     question::Profile profile = arguments_.profile;
     profile.breaks = breaksOf(profile, domainOf(asked.subject));
     const Row row = answer(asked, part, profile, plainQuery(), workspace).at(0);
-    Value t = Value::array(), lower = Value::array(), upper = Value::array(), against = Value::array();
+    std::vector<double> t, lower, upper;
+    std::vector<Json> against;
     std::string ended;
     for (const ClearanceInterval &interval : std::get<std::vector<ClearanceInterval>>(row.detail)) {
       t.push_back(interval.t0);
-      lower.push_back(numberOrNull(interval.lower));
-      upper.push_back(numberOrNull(interval.upper));
-      against.push_back(interval.b == part.link && !part.link.empty() ? interval.a : interval.b);
+      lower.push_back(interval.lower);
+      upper.push_back(interval.upper);
+      against.emplace_back(interval.b == part.link && !part.link.empty() ? interval.a : interval.b);
       if (interval.status != CPROX_OK) ended = cprox_status_text(interval.status);
     }
     t.push_back(profile.breaks.back());
     const std::string name = part.link.empty() ? asked.id : part.link;
     if (!ended.empty()) note(asked.place + ": " + name + ": the profile is wider than epsilon: " + ended);
-    data_["profiles"].push_back(Value{{"name", name},
-                                      {"kind", asked.kind},
-                                      {"t", std::move(t)},
-                                      {"lower", std::move(lower)},
-                                      {"upper", std::move(upper)},
-                                      {"against", std::move(against)}});
+    data_["profiles"].items.push_back(Json::mapOf({{"name", name},
+                                                   {"kind", asked.kind},
+                                                   {"t", t},
+                                                   {"lower", lower},
+                                                   {"upper", upper},
+                                                   {"against", Json::listOf(std::move(against))}}));
   }
 
   void addPair(const Asked &asked, const Answer &answer) {
-    data_["pairs"].push_back(toValue(toRow(answer, QueryType::DISTANCE), asked));
+    data_["pairs"].items.push_back(toJson(toRow(answer, QueryType::DISTANCE), asked));
   }
 
-  Value toValue(const ResultRow &row, const Asked &asked) {
-    const auto point = [](const cprox_vec3 &p) { return Value{p.x, p.y, p.z}; };
+  Json toJson(const ResultRow &row, const Asked &asked) {
+    const auto point = [](const cprox_vec3 &p) { return Json::listOf({p.x, p.y, p.z}); };
     const bool answered = row.result.status >= 0;
-    Value out{{"id", asked.id}, {"kind", asked.kind}, {"a", row.a}, {"b", row.b}};
+    Json out = Json::mapOf({{"id", asked.id}, {"kind", asked.kind}, {"a", row.a}, {"b", row.b}});
     out["status"] = statusOf(row.result.status, row.gap);
-    out["verdict"] = row.has_verdict && answered ? Value(cprox_verdict_name(row.result.verdict)) : Value(nullptr);
-    out["lower"] = answered ? numberOrNull(row.result.lower) : Value(nullptr);
-    out["upper"] = answered ? numberOrNull(row.result.upper) : Value(nullptr);
-    out["t"] = answered && row.has_t ? numberOrNull(row.result.t) : Value(nullptr);
+    out["verdict"] = row.has_verdict && answered ? Json(cprox_verdict_name(row.result.verdict)) : Json();
+    out["lower"] = answered ? Json(row.result.lower) : Json();
+    out["upper"] = answered ? Json(row.result.upper) : Json();
+    out["t"] = answered && row.has_t ? Json(row.result.t) : Json();
     if (answered && row.has_points) {
-      out["points"] = {point(row.result.witness_mover), point(row.result.witness_obstacle)};
+      out["points"] = Json::listOf({point(row.result.witness_mover), point(row.result.witness_obstacle)});
       if (row.has_t && std::isfinite(row.result.t)) witnesses_.insert(row.result.t);
     }
     out["nodes"] = row.result.nodes;
@@ -193,7 +194,7 @@ class Report {
   const Arguments &arguments_;
   const Warnings &warnings_;
   Console &console_;
-  Value data_ = Value::object();
+  Json data_ = Json::mapOf({});
   std::string certificates_;
   std::set<double> witnesses_;
   bool failed_ = false, violated_ = false, undecided_ = false;
@@ -213,15 +214,15 @@ std::string titleOf(const Arguments &arguments) {
 
 /* What the answers rest on: the files by their content, and what was asked. */
 void addBasis(const Arguments &arguments, const World &world, Report &report) {
-  Value &data = report.data();
+  Json &data = report.data();
   data["title"] = titleOf(arguments);
   data["version"] = CPROX_VERSION;
   data["epsilon"] = arguments.query.options.epsilon;
-  data["delta"] = arguments.has_delta ? Value(arguments.query.delta) : Value(nullptr);
+  data["delta"] = arguments.has_delta ? Json(arguments.query.delta) : Json();
   data["unit"] = arguments.trajectory.empty() ? "" : "s";
   data["self"] = arguments.self;
   data["objects"] = world.snapshot->objects().size() + world.snapshot->moving().size();
-  data["inputs"] = Value::array();
+  data["inputs"] = Json::listOf({});
   const std::pair<const char *, const std::string *> inputs[] = {{"robot", &arguments.robot},
                                                                  {"SRDF", &arguments.srdf},
                                                                  {"trajectory", &arguments.trajectory},
@@ -229,7 +230,8 @@ void addBasis(const Arguments &arguments, const World &world, Report &report) {
                                                                  {"scene", &arguments.scene}};
   for (const auto &[what, path] : inputs) {
     if (path->empty()) continue;
-    data["inputs"].push_back(Value{{"what", what}, {"file", *path}, {"digest", digestOfFile(*path, true)}});
+    data["inputs"].items.push_back(
+        Json::mapOf({{"what", what}, {"file", *path}, {"digest", digestOfFile(*path, true)}}));
   }
   for (const std::string &sentence : world.skipped) report.note(sentence);
 }
@@ -246,8 +248,9 @@ void askTrajectory(const Arguments &arguments, const World &world, Report &repor
   else if (!arguments.scene.empty() || !arguments.self)
     report.ask(askedAlong(*motion, false, arguments), workspace);
   if (arguments.self) report.ask(askedAlong(*motion, true, arguments), workspace);
-  const std::vector<double> moments = report.moments(motion->domain());
-  report.data()["domain"] = motion->domain();
+  const std::array<double, 2> domain = motion->domain();
+  const std::vector<double> moments = report.moments(domain);
+  report.data()["domain"] = Json::listOf({domain[0], domain[1]});
   drawWorld(world, motion.get(), moments, report.data());
   if (moving) drawMovers(world, *moving, moments, report.data());
 }
@@ -279,7 +282,7 @@ void askCurves(const Arguments &arguments, const World &world, Report &report) {
   }
   if (count == 0) throw BadUsage(arguments.curves + ": there is no curve in it");
   if (all[0] > all[1]) all = {0.0, 1.0};
-  report.data()["domain"] = all;
+  report.data()["domain"] = Json::listOf({all[0], all[1]});
   drawWorld(world, nullptr, {all[0]}, report.data());
 }
 
@@ -310,8 +313,7 @@ int writeReport(const Arguments &arguments, Console &console) {
     return kInterrupted;
   }
   if (certificates) certificates->write(report.certificates());
-  const std::string data = report.data().dump(-1, ' ', false, Value::error_handler_t::replace);
-  page.write(reportPage(titleOf(arguments), data));
+  page.write(reportPage(titleOf(arguments), textOfJson(report.data())));
   return report.exitCode();
 }
 

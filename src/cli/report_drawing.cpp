@@ -21,32 +21,29 @@ double rounded(double x) {
   return std::round(x * kSteps) / kSteps;
 }
 
-void addNumbers(const Eigen::Vector3d &p, Value &out) {
+void addNumbers(const Eigen::Vector3d &p, std::vector<double> &out) {
   for (const double x : {p.x(), p.y(), p.z()}) out.push_back(rounded(x));
-}
-
-Value toBody(const Surface &surface, const Eigen::Isometry3d &pose) {
-  Value vertices = Value::array(), triangles = Value::array();
-  for (Eigen::Index i = 0; i < surface.vertices.cols(); ++i) addNumbers(pose * surface.vertices.col(i), vertices);
-  for (Eigen::Index i = 0; i < surface.triangles.size(); ++i) triangles.push_back(surface.triangles(i));
-  return Value{{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}};
 }
 
 /* Adds one body's surface, unless it has none. */
 void addBody(const std::string &name, const std::string &kind, const std::string &on, const Surface &surface,
-             const Eigen::Isometry3d &pose, Value &bodies) {
+             const Eigen::Isometry3d &pose, Json &bodies) {
   if (surface.triangles.cols() == 0 || !surface.vertices.allFinite()) return;
-  Value body{{"name", name}, {"kind", kind}, {"on", on}};
-  body.update(toBody(surface, pose));
-  bodies.push_back(std::move(body));
+  std::vector<double> vertices, triangles;
+  for (Eigen::Index i = 0; i < surface.vertices.cols(); ++i) addNumbers(pose * surface.vertices.col(i), vertices);
+  for (Eigen::Index i = 0; i < surface.triangles.size(); ++i) triangles.push_back(surface.triangles(i));
+  bodies.items.push_back(
+      Json::mapOf({{"name", name}, {"kind", kind}, {"on", on}, {"vertices", vertices}, {"triangles", triangles}}));
 }
 
-Value toPose(const Eigen::Isometry3d &pose) {
+/* As [x, y, z, qx, qy, qz, qw], at the end of a list. */
+void addPose(const Eigen::Isometry3d &pose, Json &poses) {
   const Eigen::Quaterniond q(pose.linear());
-  Value out = Value::array();
+  std::vector<double> out;
   addNumbers(pose.translation(), out);
   for (const double x : {q.x(), q.y(), q.z(), q.w()}) out.push_back(rounded(x));
-  return out;
+  poses.kind = Json::Kind::LIST;
+  poses.items.emplace_back(out);
 }
 
 /* [m] The planes of halfspaces are drawn as far as all else reaches. */
@@ -69,7 +66,7 @@ std::size_t mostOf(std::size_t shapes) {
 
 /* The links of a robot and what they carry, each in its link's frame: prefix + link. */
 void addRobot(const Snapshot &scene, const std::string &kind, const std::string &prefix, std::size_t most,
-              double plane_size, Value &bodies) {
+              double plane_size, Json &bodies) {
   for (const auto &[link, parts] : scene.robot()->links()) {
     for (const LinkGeometry &part : scene.linkGeometry(link))
       addBody(prefix + link, kind, prefix + link,
@@ -85,11 +82,7 @@ void addRobot(const Snapshot &scene, const std::string &kind, const std::string 
 
 } // namespace
 
-Value numberOrNull(double x) {
-  return std::isfinite(x) ? Value(x) : Value(nullptr);
-}
-
-void drawWorld(const World &world, const RobotMotion *motion, const std::vector<double> &times, Value &out) {
+void drawWorld(const World &world, const RobotMotion *motion, const std::vector<double> &times, Json &out) {
   const Snapshot &scene = *world.snapshot;
   const bool with_robot = scene.robot() != nullptr;
   std::size_t count = 0;
@@ -101,7 +94,7 @@ void drawWorld(const World &world, const RobotMotion *motion, const std::vector<
   const double plane_size = sizeOf(world);
 
   // The objects, where they stand.
-  Value bodies = Value::array();
+  Json bodies = Json::listOf({});
   for (const auto &[id, object] : scene.objects()) {
     for (std::size_t i = 0; i < object->shapes.size(); ++i) {
       const ShapeDescription &shape = object->description.shapes[i];
@@ -114,16 +107,16 @@ void drawWorld(const World &world, const RobotMotion *motion, const std::vector<
   out["bodies"] = std::move(bodies);
 
   // Where the links are.
-  Value frames{{"times", times}, {"poses", Value::object()}};
+  Json frames = Json::mapOf({{"times", times}, {"poses", Json::mapOf({})}});
   for (const double t : times) {
     const LinkPoses poses = motion ? motion->linkPoses(t) : world.links;
-    for (const auto &[link, pose] : poses) frames["poses"][link].push_back(toPose(pose));
+    for (const auto &[link, pose] : poses) addPose(pose, frames["poses"][link]);
   }
   out["frames"] = std::move(frames);
 }
 
-void drawMovers(const World &world, const MovingWorld &moving, const std::vector<double> &times, Value &out) {
-  Value &bodies = out["bodies"], &poses = out["frames"]["poses"];
+void drawMovers(const World &world, const MovingWorld &moving, const std::vector<double> &times, Json &out) {
+  Json &bodies = out["bodies"], &poses = out["frames"]["poses"];
   std::size_t count = 0;
   for (const auto &[id, object] : world.snapshot->moving()) count += object->description.shapes.size();
   for (const MovingRobot &robot : moving.others) count += robot.motion->snapshot()->robot()->links().size();
@@ -134,7 +127,7 @@ void drawMovers(const World &world, const MovingWorld &moving, const std::vector
       addBody(id, "mover", id,
               surfaceOf(shape, makeGeometry(shape, world.resources).body, world.resources, most, plane_size),
               shape.pose, bodies);
-    for (const double t : times) poses[id].push_back(toPose(moving.movers.objectPose(id, t)));
+    for (const double t : times) addPose(moving.movers.objectPose(id, t), poses[id]);
   }
   for (const MovingRobot &robot : moving.others) {
     const std::string prefix = robot.name + "/";
@@ -142,13 +135,13 @@ void drawMovers(const World &world, const MovingWorld &moving, const std::vector
     const std::array<double, 2> domain = robot.motion->domain();
     for (const double t : times)
       for (const auto &[link, pose] : robot.motion->linkPoses(std::clamp(t - robot.start, domain[0], domain[1])))
-        poses[prefix + link].push_back(toPose(pose));
+        addPose(pose, poses[prefix + link]);
   }
 }
 
-Value drawCurve(const CompiledCurve &curve, Workspace &workspace) {
+Json drawCurve(const CompiledCurve &curve, Workspace &workspace) {
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
-  Value points = Value::array(), parameters = Value::array();
+  std::vector<double> points, parameters;
   for (int i = 0; i <= kCurveSamples; ++i) {
     const double share = static_cast<double>(i) / kCurveSamples;
     const double t = info.t0 * (1.0 - share) + info.t1 * share;
@@ -157,8 +150,7 @@ Value drawCurve(const CompiledCurve &curve, Workspace &workspace) {
     parameters.push_back(t);
     addNumbers({point.x, point.y, point.z}, points);
   }
-  return Value{
-      {"name", curve.id}, {"radius", curve.radius}, {"t", std::move(parameters)}, {"points", std::move(points)}};
+  return Json::mapOf({{"name", curve.id}, {"radius", curve.radius}, {"t", parameters}, {"points", points}});
 }
 
 } // namespace curve_proximity::cli

@@ -12,26 +12,8 @@
 namespace curve_proximity::cli {
 namespace {
 
-void appendPoint(std::string &line, const cprox_vec3 &v) {
-  for (const double coordinate : {v.x, v.y, v.z}) appendField(line, coordinate);
-}
-
-/* The fields from `lower` to `b_z`. */
-void appendGeometry(std::string &line, const ResultRow &row) {
-  const cprox_result &result = row.result;
-  appendField(line, result.lower);
-  appendField(line, result.upper);
-  if (row.has_t) {
-    appendField(line, result.t);
-  } else {
-    line += ',';
-  }
-  if (row.has_points) {
-    appendPoint(line, result.witness_mover);
-    appendPoint(line, result.witness_obstacle);
-  } else {
-    line += ",,,,,,";
-  }
+void appendPoint(std::string &line, const cprox_vec3 &v, bool known) {
+  for (const double coordinate : {v.x, v.y, v.z}) appendField(line, coordinate, known);
 }
 
 /* What is handed over leaves in one piece, so that a run that is killed leaves no half row. */
@@ -77,11 +59,11 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
   std::string line = quotedField(row.id) + ',' + row.kind + ',' + statusOf(result.status, row.gap) + ',';
   if (answered && row.has_verdict) line += cprox_verdict_name(result.verdict);
 
-  if (answered) {
-    appendGeometry(line, row);
-  } else {
-    line += ",,,,,,,,,";
-  }
+  appendField(line, result.lower, answered);
+  appendField(line, result.upper, answered);
+  appendField(line, result.t, answered && row.has_t);
+  appendPoint(line, result.witness_mover, answered && row.has_points);
+  appendPoint(line, result.witness_obstacle, answered && row.has_points);
   line += ',' + quotedField(row.a) + ',' + quotedField(row.b);
 
   /* what it cost, and the parameter of a second curve */
@@ -89,27 +71,17 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
     char time[40];
     std::snprintf(time, sizeof time, "%.1f", row.microseconds);
     line += ',' + std::to_string(result.nodes) + ',' + std::to_string(result.distance_queries) + ',' + time;
-    if (row.has_t_b) {
-      appendField(line, result.t_obstacle);
-    } else {
-      line += ',';
-    }
+    appendField(line, result.t_obstacle, row.has_t_b);
     line += std::string(",") + cprox_lod_name(result.lod);
   } else {
     line += ",,,,,";
   }
   line += ',' + quotedField(row.message);
   if (columns.proof) line += ',' + row.proof;
-  if (columns.contact && answered && row.has_contact)
-    appendField(line, result.t_contact_lower);
-  else if (columns.contact)
-    line += ',';
+  if (columns.contact) appendField(line, result.t_contact_lower, answered && row.has_contact);
   if (columns.opinion) {
     line += std::string(",") + secondOpinionName(row.second_opinion.verdict);
-    if (std::isfinite(row.second_opinion.distance))
-      appendField(line, row.second_opinion.distance);
-    else
-      line += ',';
+    appendField(line, row.second_opinion.distance, std::isfinite(row.second_opinion.distance));
   }
   return line + '\n';
 }
@@ -121,13 +93,10 @@ std::string profileHeader() {
 std::string profileLine(const std::string &id, const std::string &kind, const ClearanceInterval &interval) {
   std::string line = quotedField(id) + ',' + kind + ',' + statusOf(interval.status, interval.gap);
   for (const double value : {interval.t0, interval.t1, interval.lower, interval.upper}) appendField(line, value);
-  if (std::isfinite(interval.upper)) {
-    appendField(line, interval.t);
-    appendPoint(line, interval.witness_a);
-    appendPoint(line, interval.witness_b);
-  } else {
-    line += ",,,,,,,";
-  }
+  const bool measured = std::isfinite(interval.upper);
+  appendField(line, interval.t, measured);
+  appendPoint(line, interval.witness_a, measured);
+  appendPoint(line, interval.witness_b, measured);
   std::string message = interval.status == CPROX_OK ? "" : cprox_status_text(interval.status);
   if (interval.gap) message = gapText(*interval.gap);
   return line + ',' + quotedField(interval.a) + ',' + quotedField(interval.b) + ',' + quotedField(message) + '\n';

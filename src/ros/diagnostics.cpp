@@ -5,6 +5,7 @@
 #include <ros/console.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <limits>
 
 #include "transport/guard.h"
@@ -125,12 +126,7 @@ void Diagnostics::sensors(Status &status) {
 
 void Diagnostics::planningScene(Status &status) {
   const PlanningSceneReport report = planning_scene_.report();
-  const auto joined = [](const std::vector<std::string> &sentences) {
-    std::string out;
-    for (const std::string &sentence : sentences) out += (out.empty() ? "" : "; ") + sentence;
-    return out;
-  };
-  const std::string differences = joined(report.differences);
+  const std::string differences = boost::algorithm::join(report.differences, "; ");
   if (!differences.empty()) {
     status.summary(DiagnosticStatus::WARN, "the scene differs from that of ~get_planning_scene");
   } else if (!report.unused.empty()) {
@@ -148,7 +144,7 @@ void Diagnostics::planningScene(Status &status) {
   status.add("comparisons with ~get_planning_scene", report.checks);
   status.add("scenes replaced after a comparison", report.replaced);
   if (!differences.empty()) status.add("differences", differences);
-  if (!report.unused.empty()) status.add("not used", joined(report.unused));
+  if (!report.unused.empty()) status.add("not used", boost::algorithm::join(report.unused, "; "));
 }
 
 void Diagnostics::transforms(Status &status) {

@@ -4,6 +4,7 @@
 #include <ros/console.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <chrono>
 #include <curve_proximity/nearest_name.hpp>
 #include <optional>
@@ -122,8 +123,7 @@ void deliver(const QueryRequest &, QueryResponse &answer, ListViolations::Respon
 void warnOfOtherLinks(const LiveScene &live) {
   const std::shared_ptr<const Robot> robot = live.scene.snapshot()->robot();
   if (!robot) return;
-  std::string names;
-  for (const std::string &link : unknownLinks(live.srdf, *robot)) names += (names.empty() ? "" : ", ") + link;
+  const std::string names = boost::algorithm::join(unknownLinks(live.srdf, *robot), ", ");
   if (!names.empty())
     ROS_WARN("the SRDF disables links that robot '%s' does not have: %s", robot->name().c_str(), names.c_str());
 }
@@ -145,12 +145,6 @@ Eigen::Isometry3d linkPose(const std::string &link, const ros::Time &stamp, cons
 /** A source of LiveScene::unknowns: an object that came by topic and could not be used. */
 std::string refusedObject(const std::string &id) {
   return "object " + id;
-}
-
-std::string joinedFaults(const std::vector<std::string> &sentences) {
-  std::string text;
-  for (const std::string &sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
-  return text;
 }
 
 std::shared_ptr<const SecondOpinions> secondOpinions(const Parameters &parameters) {
@@ -401,7 +395,7 @@ void ProximityServer::applyScene(const Call &call, const RequestThreads::AtWork 
   if (call.bytes > LARGE_CHANGE) turn.emplace(scene_turns_, call.client, waitUntil(call, at_work));
   const std::vector<std::string> faults = apply(request);
   response.success = faults.empty();
-  response.message = joinedFaults(faults);
+  response.message = boost::algorithm::join(faults, "; ");
   response.scene = live_.state();
 }
 
@@ -447,7 +441,7 @@ void ProximityServer::loadScene() {
     const yaml::SceneFile file = yaml::readScene(parameters_.scene_file, warnings);
     const std::vector<std::string> faults = apply(toMessage(yaml::toChange(file, parameters_.scene_file, warnings)));
     for (const std::string &warning : warnings.sentences()) ROS_WARN("~scene_file: %s", warning.c_str());
-    why = joinedFaults(faults);
+    why = boost::algorithm::join(faults, "; ");
   } catch (const std::exception &error) {
     why = error.what();
   }

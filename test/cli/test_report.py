@@ -154,6 +154,11 @@ class Report(Case):
         self.assertEqual(text.count('<b>'), 0)
         self.assertIn('<title>a&lt;b&gt;.csv in scene.yaml</title>', text)
 
+    def a_name_that_is_no_utf_8_is_shown_with_a_sign(self):
+        curves = (OVER.replace('over', 'ä€𝄞?') + '\n').encode().replace(b'?', b'\xff')
+        _, data = self.report('--curves', self.file('curves.csv', curves), '--scene', self.file('scene.yaml', TWO))
+        self.assertEqual(data['verdicts'][0]['id'], 'ä€𝄞\ufffd')
+
     def bad_words_are_refused_in_one_line(self):
         words = robot_files(self)
         out = ['--out', os.path.join(self.folder, 'x.html')]

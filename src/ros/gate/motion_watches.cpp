@@ -21,14 +21,6 @@ constexpr std::chrono::seconds AT_LEAST{1};
 constexpr std::uint32_t SCENE_QUEUE = 10;
 constexpr double SERVER_PATIENCE = 0.1; /* [s] with a server that is not there */
 
-Refusal refusalBecause(const std::string &why, const SceneState &scene) {
-  Refusal out;
-  out.header.stamp = ros::Time::now();
-  out.scene = scene;
-  out.message = why;
-  return out;
-}
-
 } // namespace
 
 /* ---- one ---- */
@@ -90,20 +82,14 @@ JointTrajectory MotionWatch::rest() const {
 }
 
 bool MotionWatch::isStillClear(ServerCalls &calls, Refusal &refusal) {
-  bool clear = false;
-  guarded(
-      [&] {
-        const auto now = steady_clock::now();
-        const SceneState scene = calls.scene(SERVER_PATIENCE);
-        clear = scene.epoch == scene_.epoch && scene.version == scene_.version && now - asked_ < AT_LEAST;
-        if (clear) return;
-        asked_ = now;
-        query_.trajectories.front() = rest();
-        clear = calls.isClear(query_, refusal);
-        scene_ = refusal.scene;
-      },
-      [&](const std::string &why) { refusal = refusalBecause(why, scene_); });
-  return clear;
+  const auto now = steady_clock::now();
+  const bool recent = now - asked_ < AT_LEAST;
+  const auto left = [&]() -> const ProximityQuery & {
+    asked_ = now;
+    query_.trajectories.front() = rest();
+    return query_;
+  };
+  return calls.isStillClear(left, recent, SERVER_PATIENCE, scene_, refusal);
 }
 
 void MotionWatch::stop(Refusal refusal) {
@@ -120,24 +106,21 @@ MotionWatches::MotionWatches(const ros::NodeHandle &handle, const GateParameters
   states_ = own.subscribe<sensor_msgs::JointState>(
       "joint_states", SCENE_QUEUE,
       [this](const sensor_msgs::JointStateConstPtr &state) { guarded([&] { tell(*state); }, logGateError); });
-  looking_ = std::thread([this] {
-    while (wait()) look();
-  });
-  supervising_ = std::thread([this] {
-    while (wait()) supervise();
-  });
+  own.setCallbackQueue(&queue_);
+  const ros::WallDuration period(PERIOD);
+  looking_ =
+      own.createWallTimer(period, [this](const ros::WallTimerEvent &) { guarded([&] { look(); }, logGateError); });
+  supervising_ =
+      own.createWallTimer(period, [this](const ros::WallTimerEvent &) { guarded([&] { supervise(); }, logGateError); });
+  spinner_.start();
 }
 
 MotionWatches::~MotionWatches() {
   states_.shutdown();
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ending_ = true;
-  }
-  end_.notify_all();
   calls_.end();
-  looking_.join();
-  supervising_.join();
+  looking_.stop();
+  supervising_.stop();
+  spinner_.stop();
 }
 
 void MotionWatches::add(std::shared_ptr<MotionWatch> watch) {
@@ -201,11 +184,6 @@ JointTrajectory MotionWatches::fromHere(JointTrajectory trajectory) const {
     if (!why.empty()) throw Error(why);
   }
   return trajectory;
-}
-
-bool MotionWatches::wait() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  return !end_.wait_for(lock, std::chrono::duration<double>(PERIOD), [this] { return ending_; });
 }
 
 void MotionWatches::look() {

@@ -6,21 +6,22 @@
 #include <curve_proximity/ProximityQuery.h>
 #include <curve_proximity/Refusal.h>
 #include <curve_proximity/SceneState.h>
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
+#include <ros/spinner.h>
 #include <ros/subscriber.h>
 #include <ros/time.h>
+#include <ros/wall_timer.h>
 #include <sensor_msgs/JointState.h>
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <functional>
 #include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -80,8 +81,8 @@ class MotionWatch {
   std::string elsewhere_; /* why the robot is not on the trajectory */
 };
 
-/** Hears ~joint_states for all of them. Looks at all of them 20 times a second, in a thread of its own: what else the
- * gate asks does not wait for it, nor it for that. A second thread ends the motions where the server has kept the first
+/** Hears ~joint_states for all of them. Looks at all of them 20 times a second, by threads of its own: what else the
+ * gate asks does not wait for it, nor it for that. A second timer ends the motions where the server has kept the first
  * one waiting for ~server_timeout. */
 class MotionWatches {
  public:
@@ -108,7 +109,6 @@ class MotionWatches {
  private:
   std::vector<std::shared_ptr<MotionWatch>> all() const;
   void tell(const sensor_msgs::JointState &state);
-  bool wait();
   void look();
   void supervise();
 
@@ -116,12 +116,12 @@ class MotionWatches {
   ServerCalls calls_;
   ros::Subscriber states_;
   mutable std::mutex mutex_;
-  std::condition_variable end_;
-  bool ending_ = false;
   std::list<std::shared_ptr<MotionWatch>> watches_;
   std::map<std::string, std::pair<double, ros::Time>> joints_; /* of ~joint_states: the latest of each, and when */
   std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
-  std::thread looking_, supervising_;
+  ros::CallbackQueue queue_; /* of the timers */
+  ros::WallTimer looking_, supervising_;
+  ros::AsyncSpinner spinner_{2, &queue_}; /* a thread each */
 };
 
 } // namespace curve_proximity

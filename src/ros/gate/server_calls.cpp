@@ -7,6 +7,8 @@
 #include <curve_proximity/core.hpp>
 #include <sstream>
 
+#include "transport/guard.h"
+
 namespace curve_proximity {
 
 void logGateError(const std::string &why) {
@@ -39,6 +41,14 @@ Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneS
   return out;
 }
 
+Refusal refusalBecause(const std::string &why, const SceneState &scene) {
+  Refusal out;
+  out.header.stamp = ros::Time::now();
+  out.scene = scene;
+  out.message = why;
+  return out;
+}
+
 SceneState ServerCalls::scene(double patience) {
   Tolerance call;
   if (!tolerance_.call(call, patience)) throw Error("the server does not answer");
@@ -63,6 +73,21 @@ bool ServerCalls::isClear(const ProximityQuery &query, Refusal &refusal) {
   refusal = refusalOf(rows, delta_, call.response.scene);
   if (!call.response.success) refusal.message = call.response.message;
   refusal.header.frame_id = call.response.frame_id;
+  return clear;
+}
+
+bool ServerCalls::isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, double patience,
+                               SceneState &scene, Refusal &refusal) {
+  bool clear = false;
+  guarded(
+      [&] {
+        const SceneState now = this->scene(patience);
+        clear = recent && now.epoch == scene.epoch && now.version == scene.version;
+        if (clear) return;
+        clear = isClear(query(), refusal);
+        scene = refusal.scene;
+      },
+      [&](const std::string &why) { refusal = refusalBecause(why, scene); });
   return clear;
 }
 

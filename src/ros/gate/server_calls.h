@@ -11,6 +11,7 @@
 #include <ros/node_handle.h>
 
 #include <curve_proximity/client.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ namespace curve_proximity {
 
 /** A refusal by the first row that is not certified to stay farther than delta: its pair, its time, its distance. */
 Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneState &scene);
+
+/** A refusal without a row. */
+Refusal refusalBecause(const std::string &why, const SceneState &scene);
 
 /** In the log. */
 void logGateError(const std::string &why);
@@ -44,6 +48,11 @@ class ServerCalls {
 
   /** True where all of it is clear; else `refusal` says what is not, or why there is no answer. */
   bool isClear(const ProximityQuery &query, Refusal &refusal);
+
+  /** The same where the scene is another one than `scene`, or `recent` is false; else all of it was clear of that. `scene`
+   *  becomes the one of the answer. */
+  bool isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, double patience,
+                    SceneState &scene, Refusal &refusal);
 
  private:
   const double delta_;

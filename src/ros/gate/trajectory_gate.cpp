@@ -143,28 +143,11 @@ void TrajectoryGate::decide(const Waiting &message, const ProximityResults &resu
   query.self_collision = std::any_of(results.results.begin(), results.results.end(),
                                      [](const Proximity &row) { return row.kind == Proximity::KIND_SELF; });
   SceneState scene = results.scene;
-  if (!isStillClear(query, scene, refusal)) return refuse(std::move(refusal), results);
+  const auto all = [&]() -> const ProximityQuery & { return query; };
+  if (!calls_->isStillClear(all, true, ServerCalls::PATIENCE, scene, refusal)) // it may have changed since the answer
+    return refuse(std::move(refusal), results);
   message.pass();
   if (watches_ && !query.trajectories.empty()) watch(std::move(query), results, std::move(scene));
-}
-
-/** The scene may have changed since the answer. `scene` becomes that which it is clear of. */
-bool TrajectoryGate::isStillClear(const ProximityQuery &query, SceneState &scene, Refusal &refusal) {
-  bool clear = false;
-  guarded(
-      [&] {
-        const SceneState now = calls_->scene();
-        clear = now.epoch == scene.epoch && now.version == scene.version;
-        if (clear) return;
-        clear = calls_->isClear(query, refusal);
-        scene = refusal.scene;
-      },
-      [&](const std::string &why) {
-        refusal.header.stamp = ros::Time::now();
-        refusal.scene = scene;
-        refusal.message = why;
-      });
-  return clear;
 }
 
 void TrajectoryGate::watch(ProximityQuery query, const ProximityResults &results, SceneState scene) {

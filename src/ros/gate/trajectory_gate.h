@@ -59,7 +59,6 @@ class TrajectoryGate {
   void receive(Waiting message);
   void answer(const ProximityResultsConstPtr &results);
   void decide(const Waiting &message, const ProximityResults &results);
-  bool isStillClear(const ProximityQuery &query, SceneState &scene, Refusal &refusal);
   void watch(ProximityQuery query, const ProximityResults &results, SceneState scene);
   void forget(const std::vector<std::string> &joints);
   void refuse(Refusal refusal, const ProximityResults &results);

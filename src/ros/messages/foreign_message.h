@@ -6,16 +6,21 @@
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
 
-/** Outside all namespaces. The further arguments: `stream.next(message.MEMBER);` for each member, in the order of the
- *  message's definition. */
-#define CURVE_PROXIMITY_FOREIGN_SERIALIZER(Type, ...)                                                  \
-  namespace ros::serialization {                                                                       \
-  template <>                                                                                          \
-  struct Serializer<Type> {                                                                            \
-    template <typename Stream, typename Message>                                                       \
-    static void allInOne(Stream &stream, Message message){__VA_ARGS__} ROS_DECLARE_ALLINONE_SERIALIZER \
-  };                                                                                                   \
+#include <boost/preprocessor/seq/for_each.hpp>
+#include <boost/preprocessor/variadic/to_seq.hpp>
+
+/** Outside all namespaces. The further arguments: all members in the order of the message's definition. */
+#define CURVE_PROXIMITY_FOREIGN_SERIALIZER(Type, ...)                                                 \
+  namespace ros::serialization {                                                                      \
+  template <>                                                                                         \
+  struct Serializer<Type> {                                                                           \
+    template <typename Stream, typename Message>                                                      \
+    static void allInOne(Stream &stream, Message message){                                            \
+        BOOST_PP_SEQ_FOR_EACH(CURVE_PROXIMITY_FOREIGN_MEMBER, ,                                       \
+                              BOOST_PP_VARIADIC_TO_SEQ(__VA_ARGS__))} ROS_DECLARE_ALLINONE_SERIALIZER \
+  };                                                                                                  \
   }
+#define CURVE_PROXIMITY_FOREIGN_MEMBER(r, unused, member) stream.next(message.member);
 
 /** Outside all namespaces. Name: "package/Message"; Md5 and Text: of its definition. */
 #define CURVE_PROXIMITY_FOREIGN_TRAITS(Type, Name, Md5, Text) \
@@ -24,33 +29,19 @@
   struct IsMessage<Type> : TrueType {};                       \
   template <>                                                 \
   struct IsMessage<const Type> : TrueType {};                 \
-  template <>                                                 \
-  struct MD5Sum<Type> {                                       \
-    static const char *value() {                              \
-      return Md5;                                             \
-    }                                                         \
-    static const char *value(const Type &) {                  \
-      return Md5;                                             \
-    }                                                         \
-  };                                                          \
-  template <>                                                 \
-  struct DataType<Type> {                                     \
-    static const char *value() {                              \
-      return Name;                                            \
-    }                                                         \
-    static const char *value(const Type &) {                  \
-      return Name;                                            \
-    }                                                         \
-  };                                                          \
-  template <>                                                 \
-  struct Definition<Type> {                                   \
-    static const char *value() {                              \
-      return Text;                                            \
-    }                                                         \
-    static const char *value(const Type &) {                  \
-      return Text;                                            \
-    }                                                         \
-  };                                                          \
+  CURVE_PROXIMITY_FOREIGN_TEXT(MD5Sum, Type, Md5)             \
+  CURVE_PROXIMITY_FOREIGN_TEXT(DataType, Type, Name)          \
+  CURVE_PROXIMITY_FOREIGN_TEXT(Definition, Type, Text)        \
   }
+#define CURVE_PROXIMITY_FOREIGN_TEXT(Trait, Type, Text) \
+  template <>                                           \
+  struct Trait<Type> {                                  \
+    static const char *value() {                        \
+      return Text;                                      \
+    }                                                   \
+    static const char *value(const Type &) {            \
+      return Text;                                      \
+    }                                                   \
+  };
 
 #endif

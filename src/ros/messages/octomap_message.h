@@ -28,9 +28,7 @@ struct OctomapMessage {
 
 } // namespace curve_proximity
 
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::OctomapMessage, stream.next(message.header);
-                                   stream.next(message.binary); stream.next(message.id);
-                                   stream.next(message.resolution); stream.next(message.data);)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::OctomapMessage, header, binary, id, resolution, data)
 CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::OctomapMessage, "octomap_msgs/Octomap",
                                "9a45536b45c5e409cd49f04bb2d9999f",
                                "Header header\nbool binary\nstring id\nfloat64 resolution\nint8[] data\n")

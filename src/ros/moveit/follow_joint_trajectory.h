@@ -76,27 +76,16 @@ struct FollowJointTrajectoryAction {
 } // namespace curve_proximity::control
 
 /* Definitions are left out: tools look them up by name. */
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::JointTolerance, stream.next(message.name);
-                                   stream.next(message.position); stream.next(message.velocity);
-                                   stream.next(message.acceleration);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryGoal, stream.next(message.trajectory);
-                                   stream.next(message.path_tolerance); stream.next(message.goal_tolerance);
-                                   stream.next(message.goal_time_tolerance);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryResult,
-                                   stream.next(message.error_code);
-                                   stream.next(message.error_string);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryFeedback, stream.next(message.header);
-                                   stream.next(message.joint_names); stream.next(message.desired);
-                                   stream.next(message.actual); stream.next(message.error);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionGoal,
-                                   stream.next(message.header);
-                                   stream.next(message.goal_id); stream.next(message.goal);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionResult,
-                                   stream.next(message.header);
-                                   stream.next(message.status); stream.next(message.result);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionFeedback,
-                                   stream.next(message.header);
-                                   stream.next(message.status); stream.next(message.feedback);)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::JointTolerance, name, position, velocity, acceleration)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryGoal, trajectory, path_tolerance,
+                                   goal_tolerance, goal_time_tolerance)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryResult, error_code, error_string)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryFeedback, header, joint_names,
+                                   desired, actual, error)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionGoal, header, goal_id, goal)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionResult, header, status, result)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionFeedback, header, status,
+                                   feedback)
 
 CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::control::FollowJointTrajectoryGoal,
                                "control_msgs/FollowJointTrajectoryGoal", "69636787b6ecbde4d61d711979bc7ecb", "")

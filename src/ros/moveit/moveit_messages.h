@@ -162,52 +162,32 @@ constexpr const char *GET_PLANNING_SCENE_MD5 = "65cf69d3e7a0342e16374024d4eeef65
 
 } // namespace curve_proximity::moveit
 
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::ObjectType, stream.next(message.key);
-                                   stream.next(message.db);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::CollisionObject, stream.next(message.header);
-                                   stream.next(message.pose); stream.next(message.id); stream.next(message.type);
-                                   stream.next(message.primitives); stream.next(message.primitive_poses);
-                                   stream.next(message.meshes); stream.next(message.mesh_poses);
-                                   stream.next(message.planes); stream.next(message.plane_poses);
-                                   stream.next(message.subframe_names); stream.next(message.subframe_poses);
-                                   stream.next(message.operation);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::AttachedCollisionObject, stream.next(message.link_name);
-                                   stream.next(message.object); stream.next(message.touch_links);
-                                   stream.next(message.detach_posture); stream.next(message.weight);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::RobotState, stream.next(message.joint_state);
-                                   stream.next(message.multi_dof_joint_state);
-                                   stream.next(message.attached_collision_objects); stream.next(message.is_diff);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::AllowedCollisionEntry, stream.next(message.enabled);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::AllowedCollisionMatrix, stream.next(message.entry_names);
-                                   stream.next(message.entry_values); stream.next(message.default_entry_names);
-                                   stream.next(message.default_entry_values);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::LinkPadding, stream.next(message.link_name);
-                                   stream.next(message.padding);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::LinkScale, stream.next(message.link_name);
-                                   stream.next(message.scale);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::ObjectColor, stream.next(message.id);
-                                   stream.next(message.color);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::OctomapWithPose, stream.next(message.header);
-                                   stream.next(message.origin); stream.next(message.octomap);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::PlanningSceneWorld, stream.next(message.collision_objects);
-                                   stream.next(message.octomap);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::PlanningScene, stream.next(message.name);
-                                   stream.next(message.robot_state); stream.next(message.robot_model_name);
-                                   stream.next(message.fixed_frame_transforms);
-                                   stream.next(message.allowed_collision_matrix); stream.next(message.link_padding);
-                                   stream.next(message.link_scale); stream.next(message.object_colors);
-                                   stream.next(message.world); stream.next(message.is_diff);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::RobotTrajectory, stream.next(message.joint_trajectory);
-                                   stream.next(message.multi_dof_joint_trajectory);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::DisplayTrajectory, stream.next(message.model_id);
-                                   stream.next(message.trajectory); stream.next(message.trajectory_start);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::ContactInformation, stream.next(message.header);
-                                   stream.next(message.position); stream.next(message.normal);
-                                   stream.next(message.depth); stream.next(message.contact_body_1);
-                                   stream.next(message.body_type_1); stream.next(message.contact_body_2);
-                                   stream.next(message.body_type_2);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::GetPlanningSceneRequest, stream.next(message.components);)
-CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::GetPlanningSceneResponse, stream.next(message.scene);)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::ObjectType, key, db)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::CollisionObject, header, pose, id, type, primitives,
+                                   primitive_poses, meshes, mesh_poses, planes, plane_poses, subframe_names,
+                                   subframe_poses, operation)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::AttachedCollisionObject, link_name, object, touch_links,
+                                   detach_posture, weight)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::RobotState, joint_state, multi_dof_joint_state,
+                                   attached_collision_objects, is_diff)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::AllowedCollisionEntry, enabled)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::AllowedCollisionMatrix, entry_names, entry_values,
+                                   default_entry_names, default_entry_values)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::LinkPadding, link_name, padding)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::LinkScale, link_name, scale)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::ObjectColor, id, color)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::OctomapWithPose, header, origin, octomap)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::PlanningSceneWorld, collision_objects, octomap)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::PlanningScene, name, robot_state, robot_model_name,
+                                   fixed_frame_transforms, allowed_collision_matrix, link_padding, link_scale,
+                                   object_colors, world, is_diff)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::RobotTrajectory, joint_trajectory,
+                                   multi_dof_joint_trajectory)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::DisplayTrajectory, model_id, trajectory, trajectory_start)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::ContactInformation, header, position, normal, depth,
+                                   contact_body_1, body_type_1, contact_body_2, body_type_2)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::GetPlanningSceneRequest, components)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::moveit::GetPlanningSceneResponse, scene)
 
 /* Definitions of what is only received are left out: tools look them up by name. */
 CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::moveit::PlanningScene, "moveit_msgs/PlanningScene",

@@ -57,25 +57,22 @@ std::vector<std::string> chosen(const std::vector<std::string> &sentences, const
 /** Throws Error for a name that is too long. */
 void checkNames(const moveit::PlanningScene &scene, const NameLimits &limits) {
   const auto object = [&](const moveit::CollisionObject &given) {
-    limits.check("an object's id", given.id);
-    limits.check("an object's frame", given.header.frame_id);
-    limits.check("the name of a subframe", given.subframe_names);
+    limits.check(given.id);
+    limits.check(given.header.frame_id);
+    limits.check(given.subframe_names);
   };
   for (const moveit::CollisionObject &given : scene.world.collision_objects) object(given);
   for (const moveit::AttachedCollisionObject &given : scene.robot_state.attached_collision_objects) {
     object(given.object);
-    limits.check("the name of a link", given.link_name);
-    limits.check("the name of a link", given.touch_links);
+    limits.check(given.link_name);
+    limits.check(given.touch_links);
   }
-  limits.check("the name of a joint", scene.robot_state.joint_state.name);
-  limits.check("the name of an allowed pair", scene.allowed_collision_matrix.entry_names);
-  limits.check("the name of an allowed pair", scene.allowed_collision_matrix.default_entry_names);
-  for (const moveit::LinkPadding &given : scene.link_padding) limits.check("the name of a link", given.link_name);
-  for (const moveit::LinkScale &given : scene.link_scale) limits.check("the name of a link", given.link_name);
-  for (const geometry_msgs::TransformStamped &given : scene.fixed_frame_transforms) {
-    limits.check("the name of a frame", given.child_frame_id);
-    limits.check("the name of a frame", given.header.frame_id);
-  }
+  limits.check(scene.robot_state.joint_state.name);
+  limits.check(scene.allowed_collision_matrix.entry_names);
+  limits.check(scene.allowed_collision_matrix.default_entry_names);
+  for (const moveit::LinkPadding &given : scene.link_padding) limits.check(given.link_name);
+  for (const moveit::LinkScale &given : scene.link_scale) limits.check(given.link_name);
+  limits.check(scene.fixed_frame_transforms);
 }
 
 } // namespace

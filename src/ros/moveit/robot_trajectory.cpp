@@ -2,6 +2,7 @@
 #include "moveit/robot_trajectory.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <map>
 #include <set>
@@ -21,9 +22,7 @@ const Robot &robotOf(const Snapshot &snapshot) {
 }
 
 std::string quotedNames(const std::vector<std::string> &names) {
-  std::string out;
-  for (const std::string &name : names) out += (out.empty() ? "'" : ", '") + name + "'";
-  return out;
+  return "'" + boost::algorithm::join(names, "', '") + "'";
 }
 
 /** The entries of the columns that stay; lists that have not as many entries as there are joints stay as they are, for

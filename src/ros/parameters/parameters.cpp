@@ -118,44 +118,35 @@ class NodeParameters {
   explicit NodeParameters(const ros::NodeHandle &handle) : handle_(handle) {}
 
   void operator()(const char *name, std::string &value) {
-    XmlRpc::XmlRpcValue given;
-    if (!get(name, given)) return;
-    if (given.getType() != XmlRpc::XmlRpcValue::TypeString) wrong(name, "a string is expected");
+    Xml given;
+    if (!get(name, given, Xml::TypeString, "a string is expected")) return;
     value = static_cast<std::string>(given);
   }
 
   void operator()(const char *name, bool &value) {
-    XmlRpc::XmlRpcValue given;
-    if (!get(name, given)) return;
-    if (given.getType() != XmlRpc::XmlRpcValue::TypeBoolean) wrong(name, "true or false is expected");
+    Xml given;
+    if (!get(name, given, Xml::TypeBoolean, "true or false is expected")) return;
     value = static_cast<bool>(given);
   }
 
   void operator()(const char *name, int &value, const Range &range) {
-    XmlRpc::XmlRpcValue given;
-    if (!get(name, given)) return;
-    if (given.getType() != XmlRpc::XmlRpcValue::TypeInt) wrong(name, "a whole number is expected");
+    Xml given;
+    if (!get(name, given, Xml::TypeInt, "a whole number is expected")) return;
     value = static_cast<int>(given);
     check(name, value, range);
   }
 
   void operator()(const char *name, double &value, const Range &range) {
-    XmlRpc::XmlRpcValue given;
+    Xml given;
     if (!get(name, given)) return;
-    if (given.getType() == XmlRpc::XmlRpcValue::TypeInt) {
-      value = static_cast<int>(given);
-    } else if (given.getType() == XmlRpc::XmlRpcValue::TypeDouble) {
-      value = static_cast<double>(given);
-    } else {
-      wrong(name, "a number is expected");
-    }
+    if (!isNumber(given)) wrong(name, "a number is expected");
+    value = toNumber(given);
     check(name, value, range);
   }
 
   void operator()(const char *name, std::vector<ProviderSpec> &value) {
     Xml given;
-    if (!get(name, given)) return;
-    if (given.getType() != Xml::TypeArray) wrong(name, "a list is expected");
+    if (!get(name, given, Xml::TypeArray, "a list is expected")) return;
     value.clear();
     for (int i = 0; i < given.size(); ++i) {
       try {
@@ -168,8 +159,7 @@ class NodeParameters {
 
   void operator()(const char *name, std::vector<std::string> &value) {
     Xml given;
-    if (!get(name, given)) return;
-    if (given.getType() != Xml::TypeArray) wrong(name, "a list of names is expected");
+    if (!get(name, given, Xml::TypeArray, "a list of names is expected")) return;
     value.clear();
     for (int i = 0; i < given.size(); ++i) {
       if (given[i].getType() != Xml::TypeString) wrong(name, "a list of names is expected");
@@ -179,8 +169,7 @@ class NodeParameters {
 
   void operator()(const char *name, std::map<std::string, std::string> &value) {
     Xml given;
-    if (!get(name, given)) return;
-    if (given.getType() != Xml::TypeStruct) wrong(name, "names and the parameters that hold their URDFs are expected");
+    if (!get(name, given, Xml::TypeStruct, "names and the parameters that hold their URDFs are expected")) return;
     value.clear();
     for (auto &member : given) {
       if (member.second.getType() != Xml::TypeString)
@@ -191,8 +180,7 @@ class NodeParameters {
 
   void operator()(const char *name, ObjectDescription &value) {
     Xml given;
-    if (!get(name, given)) return;
-    if (given.getType() != Xml::TypeStruct) wrong(name, "an object is expected: {id, primitives, ...}");
+    if (!get(name, given, Xml::TypeStruct, "an object is expected: {id, primitives, ...}")) return;
     if (given.begin() == given.end()) return;
     try {
       value = toBody(given, "parameter ~" + std::string(name));
@@ -221,9 +209,15 @@ class NodeParameters {
   }
 
  private:
-  bool get(const char *name, XmlRpc::XmlRpcValue &given) {
+  bool get(const char *name, Xml &given) {
     known_.insert(name);
     return handle_.getParam(name, given);
+  }
+
+  bool get(const char *name, Xml &given, Xml::Type type, const char *expected) {
+    if (!get(name, given)) return false;
+    if (given.getType() != type) wrong(name, expected);
+    return true;
   }
 
   [[noreturn]] void wrong(const char *name, const std::string &what) const {

@@ -21,24 +21,9 @@ constexpr std::uint32_t RESULTS_KEPT = 100; /* for subscribers in other processe
 /** One thread answers, the other takes in what comes meanwhile. */
 constexpr int PIPELINE_THREADS = 2;
 
-const char *topicOf(const CurveConstPtr &) {
-  return "curve";
-}
-const char *topicOf(const trajectory_msgs::JointTrajectoryConstPtr &) {
-  return "trajectory";
-}
-const char *topicOf(const trajectory_msgs::MultiDOFJointTrajectoryConstPtr &) {
-  return "multi_dof_trajectory";
-}
-const char *topicOf(const nav_msgs::PathConstPtr &) {
-  return "path";
-}
-const char *topicOf(const moveit::RobotTrajectoryConstPtr &) {
-  return "robot_trajectory";
-}
-const char *topicOf(const moveit::DisplayTrajectoryConstPtr &) {
-  return "display_trajectory";
-}
+/** In the order of Pipeline::Job. */
+constexpr const char *TOPICS[] = {"curve", "trajectory",       "multi_dof_trajectory",
+                                  "path",  "robot_trajectory", "display_trajectory"};
 
 template <class Message>
 ros::Time stampOf(const Message &message) {
@@ -168,10 +153,10 @@ void Pipeline::work() {
 void Pipeline::handle(const Job &job) {
   // What is known of the message before anything can go wrong with it.
   const auto results = boost::make_shared<ProximityResults>();
+  results->source = TOPICS[job.index()];
   std::visit(
       [&](const auto &message) {
         results->header.stamp = stampOf(*message);
-        results->source = topicOf(message);
         results->id = idOf(*message);
         results->fingerprint = fingerprint(*message);
       },

@@ -125,7 +125,7 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   limit("max_curves", static_cast<std::size_t>(parameters_.max_curves), curves + request.trajectories.size(), "curves");
   limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), points, "control points");
   for (const auto &trajectory : request.trajectories) {
-    names.check("the name of a joint", trajectory.joint_names);
+    names.check(trajectory);
     values += trajectory.points.size() * trajectory.joint_names.size();
   }
   limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), values, "joint values");
