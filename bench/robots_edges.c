@@ -7,12 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vec.h"
 #include "curve_proximity/cprox.h"
 #include "peers/lane_sampling.h"
 #include "robots.h"
 #include "support/random.h"
 
-enum { EDGES = 4096, MOST_JOINTS = 7, TREE = 128, MOST_WORLDS = 64, MEMORY = 1 << 18 };
+enum { EDGES = 4096, MOST_JOINTS = 7, TREE = 128, MOST_WORLDS = 64, MEMORY = 1 << 18, CLOUD = 100000, CLOUDS = 8 };
 
 /* A robot, what it turns [rad], and in whose scenes it stands. */
 typedef struct edge_robot {
@@ -56,7 +57,8 @@ static const double LONGEST = 2.0, TO_GOAL = 0.2, PER_RADIAN = 32.0;
 
 typedef struct edge_problem {
   const cprox_edge_checker *checker;
-  const cprox_robot *robot; /* what that was made of */
+  const cprox_edge_checker *cloud; /* of the same scene as points, or NULL */
+  const cprox_robot *robot;        /* what that was made of */
   const cprox_obstacles *obstacles;
   const cprox_robot_pair *self_pairs;
   size_t n_self_pairs;
@@ -81,6 +83,12 @@ static void certified(const void *problems, size_t i, void *state, bench_answer 
   *answer = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.intervals, .distance_queries = r.nodes};
   answer->failed = status < 0 || verdict == CPROX_VERDICT_UNDECIDED;
   answer->wrong = verdict != (p->valid ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
+}
+
+static void by_cloud(const void *problems, size_t i, void *state, bench_answer *answer) {
+  edge_problem p = ((const edge_problem *)problems)[i];
+  p.checker = p.cloud;
+  certified(&p, 0, state, answer);
 }
 
 static void by_samples(const void *problems, size_t i, void *state, bench_answer *answer) {
@@ -210,6 +218,64 @@ static void rows(const edge_robot *robot, const edge_problem *all, size_t n, boo
   row_of_levels(robot, all, n, valid, size, ws);
 }
 
+/* ---- clouds ---- */
+
+/* Points of the surfaces of a scene, at random: those nearest to random points beside them. */
+static cprox_body *draw_cloud(const robot_case *scene, rng *r, cprox_workspace *ws) {
+  static cprox_vec3 points[CLOUD];
+  cprox_body *probe = NULL, *cloud = NULL;
+  if (cprox_body_create_sphere(1e-6, ws, &probe) != CPROX_OK) return NULL;
+  size_t n = 0;
+  for (size_t tries = 0; n < CLOUD && tries < 2 * CLOUD; tries++) {
+    const cprox_obstacle *o = &scene->targets[rng_index(r, scene->n_targets)];
+    const cprox_body_info info = cprox_body_get_info(o->body);
+    cprox_pose at = o->pose;
+    const double reach = vec_norm(info.centre) + info.radius;
+    for (int k = 0; k < 3; k++) (&at.position.x)[k] += rng_uniform(r, -reach, reach);
+    cprox_result near;
+    if (cprox_pair(cprox_obstacle_at(probe, at), *o, NULL, ws, &near) == CPROX_OK) points[n++] = near.witness_obstacle;
+  }
+  cprox_body_free(probe);
+  return cprox_body_create_points(points, n, 0.0, SIZE_MAX, ws, &cloud) == CPROX_OK ? cloud : NULL;
+}
+
+typedef struct edge_cloud {
+  cprox_body *points;
+  cprox_obstacles *set;
+  cprox_edge_checker *checker;
+} edge_cloud;
+
+static bool make_cloud(const robot_case *scene, const robot_case *model, edge_cloud *cloud, cprox_workspace *ws) {
+  rng r = rng_seed(95);
+  *cloud = (edge_cloud){.points = scene->n_targets > 0 ? draw_cloud(scene, &r, ws) : NULL};
+  if (!cloud->points) return false;
+  const cprox_obstacle stands = cprox_obstacle_at(cloud->points, CPROX_POSE_IDENTITY);
+  if (cprox_obstacles_create(&stands, 1, CPROX_INDEX_NONE, ws, &cloud->set) != CPROX_OK) return false;
+  const cprox_edge_query asked = {
+      .obstacles = cloud->set, .self_pairs = model->self_pairs, .n_self_pairs = model->n_self_pairs};
+  return cprox_edge_checker_create(model->robot, &asked, ws, &cloud->checker) == CPROX_OK;
+}
+
+static void free_cloud(edge_cloud *cloud) {
+  cprox_edge_checker_free(cloud->checker);
+  cprox_obstacles_free(cloud->set);
+  cprox_body_free(cloud->points);
+}
+
+/* Edges that are clear of a scene, which is a cloud of points of it, too. */
+static void rows_of_clouds(const edge_robot *robot, const edge_problem *all, size_t n, const bench_size *size,
+                           cprox_workspace *ws) {
+  static edge_problem some[EDGES];
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++)
+    if (all[i].valid && all[i].cloud) some[count++] = all[i];
+  edge_state state = {.workspace = ws};
+  const bench_method methods[] = {{"curve_proximity", by_cloud, &state},
+                                  {"the same scene as boxes", certified, &state}};
+  const bench_workload w = {"robots", "clear edges among a cloud", robot->parameter, some, count, NULL, 0.0};
+  if (count > 0 && bench_wanted(size, w.name)) bench_measure(&w, size, methods, 2);
+}
+
 /* The ends of the motion of a case, if it is one of this robot. */
 static bool ends_of(const robot_case *c, const edge_robot *robot, double ends[2][CASE_MAX_VARIABLES]) {
   if (strcmp(c->robot_name, robot->scenes) != 0 || strcmp(robot->name, "ur5") == 0) return false;
@@ -226,6 +292,8 @@ static void bench_robot(const edge_robot *moves, const robot_case *cases, size_t
   const cprox_robot *robot = moves->by_meshes ? model.mesh_robot : model.robot;
   cprox_obstacles *sets[MOST_WORLDS];
   cprox_edge_checker *checkers[MOST_WORLDS];
+  edge_cloud clouds[CLOUDS];
+  size_t n_clouds = 0;
   size_t n_worlds = 0, worlds = 0, n_all = 0;
   for (size_t i = 0; i < n; i++) worlds += strcmp(cases[i].robot_name, moves->scenes) == 0 && worlds < MOST_WORLDS;
   const size_t wanted = worlds > 1 ? EDGES / worlds : EDGES / 8;
@@ -240,13 +308,15 @@ static void bench_robot(const edge_robot *moves, const robot_case *cases, size_t
       cprox_obstacles_free(sets[n_worlds]);
       continue;
     }
+    const bool clouded = !moves->by_meshes && n_clouds < CLOUDS && make_cloud(&cases[i], &model, &clouds[n_clouds], ws);
     const edge_problem in = {.checker = checkers[n_worlds],
+                             .cloud = clouded ? clouds[n_clouds].checker : NULL,
                              .robot = robot,
                              .obstacles = sets[n_worlds],
                              .self_pairs = model.self_pairs,
                              .n_self_pairs = model.n_self_pairs,
                              .moves = moves};
-    n_worlds++;
+    n_worlds++, n_clouds += clouded;
     double ends[2][CASE_MAX_VARIABLES] = {{0.0}};
     if (!ends_of(&cases[i], moves, ends) && !(draw_state(&in, &r, ends[0], ws) && draw_state(&in, &r, ends[1], ws)))
       continue;
@@ -254,6 +324,8 @@ static void bench_robot(const edge_robot *moves, const robot_case *cases, size_t
   }
   rows(moves, all, n_all, true, size, ws);
   rows(moves, all, n_all, false, size, ws);
+  rows_of_clouds(moves, all, n_all, size, ws);
+  while (n_clouds > 0) free_cloud(&clouds[--n_clouds]);
   for (size_t i = 0; i < n_worlds; i++) {
     cprox_edge_checker_free(checkers[i]);
     cprox_obstacles_free(sets[i]);
@@ -262,7 +334,8 @@ static void bench_robot(const edge_robot *moves, const robot_case *cases, size_t
 }
 
 void bench_robot_edges(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *ws) {
-  if (!bench_wanted(size, "valid edges left to the search") && !bench_wanted(size, "invalid edges left to the search"))
+  if (!bench_wanted(size, "valid edges left to the search") &&
+      !bench_wanted(size, "invalid edges left to the search") && !bench_wanted(size, "clear edges among a cloud"))
     return;
   for (size_t i = 0; i < sizeof ROBOTS / sizeof *ROBOTS; i++) bench_robot(&ROBOTS[i], cases, n, size, ws);
 }

@@ -191,6 +191,26 @@ static vec3 point_at(const cprox_edge_checker *c, size_t i) {
   return vec((double)p[0], (double)p[1], (double)p[2]);
 }
 
+/* A ball about the middle of their box that all points of a hull are in. */
+static void enclose_points(edge_hull *hull, const float *points) {
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (uint32_t i = 0; i < 3 * hull->n; i++) {
+    const float x = points[i];
+    low[i % 3] = x < low[i % 3] ? x : low[i % 3], high[i % 3] = x > high[i % 3] ? x : high[i % 3];
+  }
+  for (int k = 0; k < 3; k++) hull->centre[k] = 0.5f * low[k] + 0.5f * high[k];
+  double core2 = 0.0;
+  for (uint32_t i = 0; i < hull->n; i++) {
+    double apart2 = 0.0;
+    for (uint32_t k = 0; k < 3; k++) {
+      const double along = (double)points[3 * i + k] - (double)hull->centre[k];
+      apart2 += along * along;
+    }
+    core2 = greater(apart2, core2);
+  }
+  hull->core = float_above(sqrt(core2) * (1.0 + 0x1p-40));
+}
+
 /* A hull of the points first … n_points - 1. */
 static edge_hull *add_hull(cprox_edge_checker *c, size_t first, double margin, double inner, int32_t geometry) {
   edge_hull *hull = &c->hulls[c->n_hulls++];
@@ -200,17 +220,7 @@ static edge_hull *add_hull(cprox_edge_checker *c, size_t first, double margin, d
                       .inner = float_below(inner),
                       .end = (uint32_t)c->n_hulls,
                       .geometry = geometry};
-  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t i = first; i < c->n_points; i++)
-    for (int k = 0; k < 3; k++) {
-      const float x = c->points[3 * i + (size_t)k];
-      low[k] = x < low[k] ? x : low[k], high[k] = x > high[k] ? x : high[k];
-    }
-  for (int k = 0; k < 3; k++) hull->centre[k] = 0.5f * low[k] + 0.5f * high[k];
-  const vec3 centre = vec((double)hull->centre[0], (double)hull->centre[1], (double)hull->centre[2]);
-  double core = 0.0;
-  for (size_t i = first; i < c->n_points; i++) core = greater(vec_norm(vec_sub(point_at(c, i), centre)), core);
-  hull->core = float_above(core * (1.0 + 0x1p-40));
+  enclose_points(hull, c->points + 3 * first);
   return hull;
 }
 
@@ -335,6 +345,49 @@ static bool exchanges_axes(const float r[9]) {
   return true;
 }
 
+/* Corners that are looked at one by one, at most. */
+enum { MOST_CORNERS = 256 };
+
+static size_t corners_of(const part_model *m) {
+  return m->shape->ops == &convex_polytope && m->shape->n <= MOST_CORNERS ? (size_t)m->shape->n : 0;
+}
+
+/* Whether finer models than hulls may answer. */
+static bool wants_finest(const cprox_edge_checker *c) {
+  const cprox_options *options = c->asked.options;
+  return !options || options->max_lod == CPROX_LOD_NONE || options->max_lod == CPROX_LOD_MESH;
+}
+
+/* What a part of a target is made of, which stands in the frame f. All coordinates are within `extent` of its origin:
+ * of each place lanes round its origin, its axes as any rotation, and what they turn. */
+static void add_content(cprox_edge_checker *c, const part_model *m, const frame *f, double margin, double world,
+                        edge_obstacle *o) {
+  const bool by_tree = m->tree && !m->winding && wants_finest(c);
+  const size_t n = by_tree ? 0 : corners_of(m);
+  if (n == 0 && !by_tree) return;
+  const vec3 at = by_tree ? m->tree_at : vec(0, 0, 0), p = frame_to_world(f, at), seen = vec_sub(p, c->base);
+  const double extent = by_tree ? m->tree->scale : m->shape->scale;
+  const double thick = margin + (by_tree ? m->tree_margin : m->margin + m->shape->slack);
+  const double growth = (1.0 + 1e-6) * EDGE_U * (20.0 * vec_norm(seen) + 32.0 * extent + 4.0 * thick) +
+                        ROUND_WORLD * (world + vec_norm(p) + extent);
+  int32_t from[3] = {0};
+  float sign[3];
+  snap(f->r, o->axes, from, sign);
+  o->origin[0] = (float)seen.x, o->origin[1] = (float)seen.y, o->origin[2] = (float)seen.z;
+  o->around = float_above(thick + growth), o->costs = float_above(4.0 * growth);
+  o->within = by_tree && m->tree->kind == TREE_POINTS ? float_below(thick) : -1.0f;
+  o->tree = by_tree ? m->tree : NULL;
+  if (by_tree) return;
+  float *corners = c->corners + 3 * c->n_corners;
+  o->hull = (edge_hull){.first = (uint32_t)c->n_corners, .n = (uint32_t)n, .inner = -1.0f};
+  for (size_t i = 0; i < n; i++) {
+    corners[3 * i] = (float)m->shape->x[i];
+    corners[3 * i + 1] = (float)m->shape->y[i], corners[3 * i + 2] = (float)m->shape->z[i];
+  }
+  c->n_corners += n;
+  enclose_points(&o->hull, corners);
+}
+
 /* One part of a target. What its own numbers round: its place once, its axes as any rotation (7 u of a vector), its
  * sizes once; the vector from it is at most |p| and the reach of what is tested long, the latter being counted there.
  */
@@ -349,9 +402,10 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
     world += vec_norm(target->body->parts[part].pose.position);
   }
   const frame f = frame_create(&pose, m.centre);
+  edge_obstacle o = {.target = (int32_t)index, .shape = EDGE_BALL};
+  add_content(c, &m, &f, target->margin, world + vec_norm(m.tree_at), &o);
   const cprox_body_kind kind = m.shape->ops->kind;
   const double *size = m.shape->size, margin = m.margin + target->margin;
-  edge_obstacle o = {.target = (int32_t)index, .shape = EDGE_BALL};
   vec3 p = frame_to_world(&f, vec(0, 0, 0));
   double sizes[3] = {margin, 0, 0}, extent = m.radius + target->margin;
   bool exact = !m.tree;
@@ -659,20 +713,32 @@ void edge_model_fill_robot(cprox_edge_checker *c, const edge_asked *asked, const
   fill_lane_pairs(c);
 }
 
-size_t edge_model_scene_size(const cprox_edge_checker *c, size_t n_obstacles) {
-  return (n_obstacles * sizeof *c->obstacles + 15) / 16 * 16 + c->n_parts * n_obstacles * sizeof *c->near + 16;
+static void lay_out_scene(cprox_edge_checker *c, const cprox_obstacle *targets, size_t first, size_t last, arena *a) {
+  size_t n_obstacles = 0, n_corners = 0;
+  for (size_t i = first; i < last; i++)
+    for (size_t k = 0; k < body_n_parts(targets[i].body); k++, n_obstacles++) {
+      const part_model m = part_model_of(body_part_at(targets[i].body, k));
+      n_corners += corners_of(&m);
+    }
+  c->obstacles = take(a, n_obstacles, sizeof *c->obstacles);
+  c->near = take(a, c->n_parts * n_obstacles, sizeof *c->near);
+  c->corners = take(a, 3 * n_corners, sizeof *c->corners);
+}
+
+size_t edge_model_scene_size(const cprox_edge_checker *c, const cprox_obstacle *targets, size_t first, size_t last) {
+  cprox_edge_checker none = {.n_parts = c->n_parts};
+  arena a = {0};
+  lay_out_scene(&none, targets, first, last, &a);
+  return a.bytes + 16;
 }
 
 void edge_model_fill_scene(cprox_edge_checker *c, const cprox_obstacle *targets, size_t first, size_t last,
                            const double *reach, char *memory) {
   arena a = {.at = memory};
-  size_t n_obstacles = 0;
   double farthest = 0.0;
   for (size_t i = 0; i < c->n_parts; i++) farthest = greater(reach ? reach[i] : reach_of(c, &c->parts[i]), farthest);
-  for (size_t i = first; i < last; i++) n_obstacles += body_n_parts(targets[i].body);
-  c->obstacles = take(&a, n_obstacles, sizeof *c->obstacles);
-  c->near = take(&a, c->n_parts * n_obstacles, sizeof *c->near);
-  c->n_obstacles = c->n_near = 0, c->obstacle_reach = 0.0, c->beyond = INFINITY;
+  lay_out_scene(c, targets, first, last, &a);
+  c->n_obstacles = c->n_near = c->n_corners = 0, c->obstacle_reach = 0.0, c->beyond = INFINITY;
   for (size_t i = first; i < last; i++) {
     const double left = target_beyond(c, farthest, &targets[i]);
     if (left > 0.0) c->beyond = lesser(left, c->beyond);
@@ -698,9 +764,7 @@ static cprox_status fill(cprox_edge_checker *c, cprox_workspace *workspace) {
   if (covers) c->memory[0] = malloc(edge_model_robot_size(&asked, covers) + 1);
   if (c->memory[0]) {
     edge_model_fill_robot(c, &asked, covers, c->memory[0]);
-    size_t n_obstacles = 0;
-    for (size_t i = 0; i < n; i++) n_obstacles += body_n_parts(q->obstacles->targets[i].body);
-    c->memory[1] = malloc(edge_model_scene_size(c, n_obstacles) + 1);
+    c->memory[1] = malloc(edge_model_scene_size(c, obstacles_list(q->obstacles), 0, n) + 1);
   }
   if (!c->memory[1])
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for %zu obstacles and %zu pairs", n, c->n_self_pairs);

@@ -81,6 +81,12 @@ typedef struct edge_obstacle {
   float size[3]; /* half extents; radius and half height; a halfspace's offset */
   float margin;  /* a ball about each point, and of a cone the growth; the others have grown sizes */
   float grown;   /* distances may be too small by this; infinity: it only contains what stands */
+  /* what is in it: the hull of some corners, n > 0, or the elements of a tree */
+  edge_hull hull;
+  const struct tree *tree;
+  float origin[3], axes[9]; /* of these */
+  float around, within;     /* they are thicker by less than this, and by more than that; negative: that is not known */
+  float costs;              /* distances from them may be too small by this */
 } edge_obstacle;
 
 /* A pair of parts: `a` as `b` sees it. */
@@ -121,14 +127,15 @@ struct cprox_edge_checker {
   vec3 base;
   edge_rows rows;
   int32_t *frame_of; /* of an axis; -1: it carries nothing that is asked about */
-  size_t n_frames, n_parts, n_members, n_balls, n_hulls, n_points, n_obstacles, n_near, n_lane_pairs, n_relations,
-      n_steps;
+  size_t n_frames, n_parts, n_members, n_balls, n_hulls, n_points, n_corners, n_obstacles, n_near, n_lane_pairs,
+      n_relations, n_steps;
   edge_frame *frames;
   edge_part *parts;
   int32_t *members; /* geometries by part */
   edge_ball *balls;
   edge_hull *hulls;
-  float *points; /* of hulls */
+  float *points;  /* of hulls */
+  float *corners; /* of obstacles */
   edge_obstacle *obstacles;
   uint32_t *near; /* obstacles by part */
   edge_pair *lane_pairs;
@@ -151,13 +158,13 @@ size_t edge_model_count_pairs(const edge_asked *asked);
 
 /* The bytes that the two sides of a model take. */
 size_t edge_model_robot_size(const edge_asked *asked, const robot_covers *covers);
-size_t edge_model_scene_size(const cprox_edge_checker *model, size_t n_obstacles);
+size_t edge_model_scene_size(const cprox_edge_checker *model, const cprox_obstacle *targets, size_t first, size_t last);
 
 /* The robot's side, in such memory; all else must be 0. Afterwards in_lanes says whether the robot can be in lanes. */
 void edge_model_fill_robot(cprox_edge_checker *model, const edge_asked *asked, const robot_covers *covers,
                            char *memory);
 
-/* The scene's side: targets first … last - 1, n_parts of which in all are given to edge_model_scene_size(). `reach`
+/* The scene's side: targets first … last - 1, those given to edge_model_scene_size(). `reach`
  * of each part, from the base; NULL: as far as it can. Obstacles that are out of all reach are left out. */
 void edge_model_fill_scene(cprox_edge_checker *model, const cprox_obstacle *targets, size_t first, size_t last,
                            const double *reach, char *memory);

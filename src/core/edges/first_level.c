@@ -247,7 +247,7 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   size_t n_obstacles = 0;
   for (size_t i = first; i < last; i++) n_obstacles += body_n_parts(q->targets[i].body);
   if (n_obstacles > MOST_TARGETS) return false;
-  const size_t scene = aligned(edge_model_scene_size(c, n_obstacles)), moves = aligned(edge_motion_size(c)),
+  const size_t scene = aligned(edge_model_scene_size(c, q->targets, first, last)), moves = aligned(edge_motion_size(c)),
                rows = aligned(edge_lanes_size(c)), reaches = aligned(c->n_parts * sizeof(double)),
                noted = c->n_parts * n_obstacles + c->n_lane_pairs + 1;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,

@@ -300,6 +300,8 @@ EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, con
   return false;
 }
 
+#include "edges/standing.h"
+
 EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
   const edge_part *part = &b->c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
@@ -312,10 +314,13 @@ EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
   for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
     const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
     const uint32_t near = within(b, k, distance2_from(o, at->centre), moves, radius) & b->all & ~b->split;
-    if (near && part->coarse)
+    if (near && part->coarse) {
       leave_open(b, k, near);
-    else if (near && (part->by_hulls ? open_hulls(b, i, k, o, near) : open_part(b, i, k, o)))
+    } else if (near && (o->tree || o->hull.n > 0)) {
+      if (open_standing(b, i, k, o, near)) return true;
+    } else if (near && (part->by_hulls ? open_hulls(b, i, k, o, near) : open_part(b, i, k, o))) {
       return true;
+    }
   }
   return false;
 }
