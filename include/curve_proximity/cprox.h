@@ -18,6 +18,7 @@
 #include <curve_proximity/cprox/obstacles.h>
 #include <curve_proximity/cprox/query.h>
 #include <curve_proximity/cprox/robot.h>
+#include <curve_proximity/cprox/robust.h>
 #include <curve_proximity/cprox/translation.h>
 
 #endif

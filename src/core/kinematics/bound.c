@@ -211,13 +211,17 @@ static bool has_quick_box(const bound_side *side) {
 static double lowest_of_box(const bound_side *side, vec3 d) {
   const vec3 e = placement_turn_back(&side->at, d), half = side->half;
   return vec_dot(e, side->middle) - fabs(e.x) * half.x - fabs(e.y) * half.y - fabs(e.z) * half.z -
-         vec_norm(d) * 64.0 * ROUND_U * side->shape->scale;
+         vec_norm(d) * 64.0 * ROUND_U * side->shape->scale - side->loss;
 }
 
-/* min over the moving side's core of d·(x - c). */
-static double lowest(const bound_side *side, vec3 d) {
-  const vec3 down = placement_turn_back(&side->at, vec_neg(d));
-  return -side->shape->ops->support(side->shape, down, NULL, NULL);
+double bound_lowest(const bound_side *side, vec3 d) {
+  const vec3 e = placement_turn_back(&side->at, d);
+  if (!side->losses) return -side->shape->ops->support(side->shape, vec_neg(e), NULL, NULL) - side->loss;
+  const convex *shape = side->shape;
+  double least = INFINITY;
+  for (int32_t i = 0; i < shape->n; i++)
+    least = lesser(e.x * shape->x[i] + e.y * shape->y[i] + e.z * shape->z[i] - side->losses[i], least);
+  return least;
 }
 
 /* The support functions do not take 0. */
@@ -264,7 +268,7 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
   double first[2] = {0.0, 0.0}, second = -INFINITY, rounding = 0.0;
   for (int quick = has_quick_box(moving); quick >= 0; quick--) {
     for (int end = 0; end < 2; end++) {
-      const double low = quick ? lowest_of_box(moving, ends[end]) : lowest(moving, ends[end]);
+      const double low = quick ? lowest_of_box(moving, ends[end]) : bound_lowest(moving, ends[end]);
       first[end] = start + (end == 0 ? -0.5 : 0.5) * along + low - margin - heights[end];
       if (turning > 0.0) first[end] -= turning * vec_norm(ends[end]);
     }
@@ -288,7 +292,7 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
     const double tau = end == 0 ? -0.5 : 0.5;
     const vec3 d = vec_add(ends[end], bent);
     if (!usable(d)) return second;
-    const double low = lowest(moving, d) - margin - (turning > 0.0 ? turning * vec_norm(d) : 0.0);
+    const double low = bound_lowest(moving, d) - margin - (turning > 0.0 ? turning * vec_norm(d) : 0.0);
     const double far = start + tau * along + curve + low - heights[end];
     third = fmin(third, least_quotient(first[end] - rest, far - first[end], k));
   }
@@ -311,7 +315,7 @@ double motion_plane_bound_of_two(const chain_motion *m, const two_times *times, 
     if (!usable(d)) return -INFINITY;
     const double margin = moving->margin * (moving->margin_turns ? vec_norm(d) : 1.0);
     const double along = at_standing * vec_dot(n, m->v_standing) + at * vec_dot(n, v);
-    least = lesser(start + along + lowest(moving, d) - margin - height, least);
+    least = lesser(start + along + bound_lowest(moving, d) - margin - height, least);
   }
   *slack = plane_slack(m, moving, standing, apart, 0.0, steps) + 16.0 * ROUND_U * fabs(least);
   return least - 0.125 * m->second - *slack - m->stray;

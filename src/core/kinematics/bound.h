@@ -71,6 +71,10 @@ typedef struct bound_side {
   /* of a box, axes those of the shape, that contains the core; half is infinite for halfspaces, 0 where no box is known
    */
   vec3 middle, half;
+  /* along the plane's normal the core may be lower than it is: each vertex by so much, in the order of the shape's; NULL:
+   * all of it by the largest of that, */
+  const double *losses;
+  double loss; /* which is this */
 } bound_side;
 
 /* Takes off the ends of a chain the axes that turn the side beside them about its own axis of symmetry, or so nearly that
@@ -81,6 +85,9 @@ double motion_leave_out_round(const axis_state *axes, chain_axis *chain, size_t 
 
 /* The support of a side along n, seen from its own origin, its margin included. */
 double bound_height(const bound_side *side, vec3 n);
+
+/* The least d·x over the moving side's core, seen from its own origin, less what it may be lower. */
+double bound_lowest(const bound_side *side, vec3 d);
 
 /* The best of the bounds of second and third order by a plane that turns: at tau in [-1/2, 1/2] of the node its normal
  * is n + tau normal_rate, from the standing side to the moving one. n is unit within 4 u, normal_rate is orthogonal to

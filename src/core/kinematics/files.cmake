@@ -10,6 +10,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/motion_axes.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_create.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_join.c
+  ${CMAKE_CURRENT_LIST_DIR}/motion_rates.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_turning.c
   ${CMAKE_CURRENT_LIST_DIR}/part_cover.c
   ${CMAKE_CURRENT_LIST_DIR}/part_cover_hulls.c

@@ -6,6 +6,7 @@
 #include "base/rounding.h"
 #include "problem/problem.h"
 #include "robot_query/depth.h"
+#include "robot_query/deviation.h"
 #include "robot_query/oracle.h"
 
 /* ---- the search ---- */
@@ -58,7 +59,8 @@ void robot_search_report(const robot_search *o, cprox_result *result) {
 static cprox_status answer_class(const query *q, const start_class *starts, size_t first, size_t last, double cutoff,
                                  cprox_result *result, double *travel) {
   robot_search o;
-  if (!robot_scene_begin(&o.scene, q, starts, first, last, ROBOT_MOST_LISTED, cutoff))
+  const size_t most_listed = q->errors ? SIZE_MAX : ROBOT_MOST_LISTED; /* groups of parts know no errors */
+  if (!robot_scene_begin(&o.scene, q, starts, first, last, most_listed, cutoff))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
   /* verdicts, too: depth first stays with one deep pair, while the distance that they follow from leaves it */
   search_goal goal = query_goal(q, SEARCH_BEST_FIRST, cutoff);
@@ -74,6 +76,7 @@ static cprox_status answer_class(const query *q, const start_class *starts, size
   r.nodes = found.nodes + o.flights;
   if (goal.share) cutoff = lesser(cutoff, goal.share(goal.share_user, r.upper));
   query_conclude(q, cutoff, status, &r);
+  if (q->errors) q->errors->loss = o.best.pair >= 0 ? o.best.gap.loss : 0.0, q->errors->left = o.best.gap.upper;
   const double at = o.best.pair >= 0 ? motion_time(q->mover.motion, o.best.segment, o.best.u) : 0.0;
   if (travel) *travel = o.best.pair >= 0 ? placed_robot_pair_travel(&o.scene, o.best.pair, at, o.best.other) : INFINITY;
   *result = r;

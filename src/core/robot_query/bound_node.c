@@ -7,6 +7,7 @@
 #include "base/workspace.h"
 #include "broadphase/obstacle_set.h"
 #include "robot_query/cull.h"
+#include "robot_query/deviation.h"
 #include "robot_query/groups.h"
 #include "robot_query/measure.h"
 
@@ -66,16 +67,18 @@ static void keep_guess(const robot_search *o, const placed_robot_pair *p) {
 }
 
 /* How far the two are apart along it: only to choose by, its rounding is not counted. */
-static double plane_middle(const robot_search *o, const placed_robot_pair *p) {
+static double plane_middle(robot_search *o, const placed_robot_pair *p) {
   const vec3 n = normal_in_middle(o, p);
+  bound_side side = p->nominal->side;
+  if (o->scene.q->errors && !deviation_losses(&o->scene, p, n, 0.0, false, &side)) return -INFINITY;
   const double along = vec_dot(n, vec_sub(p->moving->side.at.p, p->standing->side.at.p));
-  return along - bound_height(&p->moving->side, vec_neg(n)) - robot_pair_height(p->standing, n);
+  return along + bound_lowest(&side, n) - side.margin * vec_norm(n) - robot_pair_height(p->standing, n);
 }
 
 /* What that normal says of the node. */
 static double bound_by_normal(robot_search *o, const placed_robot_pair *p, double goal, double *slack) {
   const robot_pair *pair = p->pair;
-  const robot_body *moving = p->moving, *standing = p->standing;
+  const robot_body *moving = p->nominal, *standing = p->standing;
   const double here = robot_scene_place(&o->scene, o->scene.centre.segment, o->scene.centre.u);
   const bool turning = here >= pair->from && here <= pair->to;
   const vec3 n = normal_in_middle(o, p);
@@ -91,8 +94,10 @@ static double bound_by_normal(robot_search *o, const placed_robot_pair *p, doubl
   heights[0] = robot_pair_height(standing, vec_axpy(n, -0.5, normal_rate));
   heights[1] = vec_norm2(normal_rate) > 0.0 ? robot_pair_height(standing, vec_axpy(n, 0.5, normal_rate)) : heights[0];
   o->planes++;
-  return motion_plane_bound(p->motion, &moving->side, &standing->side, n, normal_rate, heights,
-                            moving->steps + standing->steps, goal, slack);
+  bound_side side = moving->side;
+  if (o->scene.q->errors && !deviation_losses(&o->scene, p, n, vec_norm(normal_rate), true, &side)) return -INFINITY;
+  return motion_plane_bound(p->motion, &side, &standing->side, n, normal_rate, heights, moving->steps + standing->steps,
+                            goal, slack);
 }
 
 /* What a cut into so many pieces would do for one pair counts for the node. */
@@ -110,7 +115,7 @@ static double pieces_for(const robot_search *o, double middle, double bound) {
 /* The plane of the distance just measured, turning as its feature does. */
 static double bound_by_gap(robot_search *o, const placed_robot_pair *p, const robot_gap *gap, double *slack) {
   if (robot_scene_has_two_times(&o->scene)) return bound_by_normal(o, p, 0.0, slack);
-  const vec3 rate = robot_pair_normal_rate(gap, p->moving, p->standing, p->motion);
+  const vec3 rate = robot_pair_normal_rate(gap, p->nominal, p->standing, p->motion);
   p->pair->normal_rate = placement_turn_back(&p->standing->side.at, vec_scale(1.0 / width_of_node(o), rate));
   ends_of_node(o, true, &p->pair->from, &p->pair->to);
   return bound_by_normal(o, p, robot_pruning_bound(o), slack);
@@ -274,27 +279,30 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   const cprox_status status = robot_measure(o, &p, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - displacement);
-  if (p.pair->normal_known && (gap.upper > 0.0 || o->goal.is_signed))
+  /* in the middle; what errors take off is less along the normal than along any */
+  const double middle = o->scene.q->errors ? gap.upper : gap.lower;
+  if (p.pair->normal_known && (gap.upper + gap.loss > 0.0 || o->goal.is_signed))
     entry->lower = fmax(entry->lower, bound_by_gap(o, &p, &gap, slack));
   if (robot_is_pruned(o, entry->lower)) return CPROX_OK;
-  if (o->scene.motion->is_state && !placed_robot_pair_is_convex(&p)) return bound_posture(o, &p, entry, &gap);
-  const double pieces = pieces_for(o, gap.lower, entry->lower);
-  if (can_open && !robot_is_pruned(o, gap.lower) && o->goal.limit < 0.0 && robot_pair_is_whole(p.pair)) {
+  if (o->scene.motion->is_state && !o->scene.q->errors && !placed_robot_pair_is_convex(&p))
+    return bound_posture(o, &p, entry, &gap);
+  const double pieces = pieces_for(o, middle, entry->lower);
+  if (can_open && !robot_is_pruned(o, middle) && o->goal.limit < 0.0 && robot_pair_is_whole(p.pair)) {
     const cprox_status refined = bound_by_nearest(o, &p, entry, &gap);
     if (refined < 0 || robot_is_pruned(o, entry->lower)) return refined;
   }
   const bool too_many = o->n_next > MOST_OPEN && !robot_is_short(o, node);
-  if (can_open && !too_many && (!robot_is_pruned(o, gap.lower) || robot_is_short(o, node)))
+  if (can_open && !too_many && (!robot_is_pruned(o, middle) || robot_is_short(o, node)))
     return open_pair(o, &p, node, entry);
   want_pieces(o, pieces);
   if (can_open || placed_robot_pair_is_convex(&p) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
-  if (o->goal.limit < 0.0 && gap.lower < o->best_bound.upper) {
+  if (o->goal.limit < 0.0 && middle < o->best_bound.upper) {
     const cprox_status refined = bound_by_nearest(o, &p, entry, &gap);
     if (refined < 0 || robot_is_pruned(o, entry->lower)) return refined;
   }
-  if (robot_is_pruned(o, gap.lower) && !robot_is_short(o, node)) return CPROX_OK;
+  if (robot_is_pruned(o, middle) && !robot_is_short(o, node)) return CPROX_OK;
   return refine_pair_elements(o, &p, node, entry, &gap);
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/rounding.h"
 #include "broadphase/obstacle_set.h"
+#include "robot_query/deviation.h"
 #include "simd/dispatch.h"
 
 static const double LANE_BITS[TREE_LANES] = {1, 2, 4, 8, 16, 32, 64, 128};
@@ -103,15 +104,16 @@ cluster_view cluster_see(robot_scene *s, int32_t part, bool moves) {
   const robot_body *body = robot_scene_part(s, part);
   const double sizes = vec_norm(body->side.at.p) + vec_norm(set->centre) + set->boxes->scale + body->radius;
   const double ball = TREE_ROUND * ROUND_U, box = (3.0 * TREE_ROUND + ROUND_JOINT * (body->steps + 1.0)) * ROUND_U;
+  const deviation off = s->q->errors ? deviation_of_cluster(s, part) : (deviation){0.0, 0.0};
   cluster_view v = {.part = part,
                     .boxes = set->boxes,
                     .centre = vec_sub(body->side.at.p, set->centre),
                     .middle = body->side.middle,
                     .half = body->side.half,
-                    .radius = body->radius,
-                    .displacement = moves ? robot_scene_part_displacement(s, part) : 0.0,
-                    .beyond_ball = body->radius + ROUND_UP * (body->side.error + ball * sizes),
-                    .beyond_box = body->side.margin + ROUND_UP * (body->side.error + box * sizes)};
+                    .radius = body->radius + off.middle,
+                    .displacement = moves ? robot_scene_part_displacement(s, part) + off.growth : 0.0,
+                    .beyond_ball = body->radius + off.middle + ROUND_UP * (body->side.error + ball * sizes),
+                    .beyond_box = body->side.margin + off.middle + ROUND_UP * (body->side.error + box * sizes)};
   for (int i = 0; i < 9; i++) v.r[i] = body->side.at.r[i];
   return v;
 }

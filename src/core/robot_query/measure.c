@@ -6,6 +6,7 @@
 #include "base/workspace.h"
 #include "broadphase/obstacle_set.h"
 #include "robot_query/cull.h"
+#include "robot_query/deviation.h"
 
 /* Of each part with groups of others about so many are tested. */
 enum { MOST_SEEDS = 16, MOST_SEED_TESTS = 40000, GROUP_SEED_TESTS = 16 };
@@ -85,8 +86,27 @@ cprox_status robot_measure_placed(robot_search *o, int32_t index, const robot_bo
   return CPROX_OK;
 }
 
+/* The distance without errors becomes what is left of it, along its normal and, for `lower`, along any. */
+static cprox_status take_errors(robot_search *o, const placed_robot_pair *p, robot_gap *gap) {
+  bound_side side = p->nominal->side;
+  gap->loss = p->errors.middle;
+  if (gap->upper > 0.0 && vec_norm2(gap->normal) > 0.0) {
+    const double without = bound_lowest(&side, gap->normal);
+    if (!deviation_losses(&o->scene, p, gap->normal, 0.0, false, &side)) return robot_no_memory(o);
+    gap->loss = lesser(without - bound_lowest(&side, gap->normal), gap->loss);
+  }
+  gap->lower -= p->errors.middle, gap->upper -= gap->loss;
+  return CPROX_OK;
+}
+
+static cprox_status measure_pair(robot_search *o, const placed_robot_pair *p, robot_accuracy accuracy, robot_gap *gap) {
+  accuracy.floor += p->errors.middle;
+  const cprox_status status = measure_bodies(o, p->nominal, p->standing, accuracy, gap);
+  return status < 0 || !o->scene.q->errors ? status : take_errors(o, p, gap);
+}
+
 cprox_status robot_measure(robot_search *o, const placed_robot_pair *p, robot_accuracy accuracy, robot_gap *gap) {
-  const cprox_status status = measure_bodies(o, p->moving, p->standing, accuracy, gap);
+  const cprox_status status = measure_pair(o, p, accuracy, gap);
   if (status < 0) return status;
   robot_keep_normal(o, p, gap);
   if (placed_robot_pair_is_convex(p)) keep_sample(o, p->index, gap);
@@ -107,13 +127,27 @@ robot_refinement robot_refinement_from(robot_search *o, const placed_robot_pair 
                             .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
 }
 
+/* The nearest elements as they are without errors, and what these leave of their distance. */
+static cprox_status keep_nearest_off(robot_search *o, const robot_refinement *c) {
+  robot_pair near = *c->pair->pair;
+  for (int k = 0; k < 2; k++) near.element[k] = c->nearest.element[k];
+  placed_robot_pair p;
+  placed_robot_pair_of(&o->scene, &near, &p);
+  robot_gap gap;
+  const cprox_status status = measure_pair(o, &p, (robot_accuracy){.epsilon = c->accuracy}, &gap);
+  if (status >= 0) keep_sample(o, c->pair->index, &gap);
+  return status;
+}
+
 cprox_status robot_refine_elements(robot_search *o, robot_refinement *c) {
   robot_refinement_run(c);
   o->gaps += c->gaps;
   o->refined = true;
   if (c->support_failed) return refuse_callback(o);
   if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
-  if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair->index, &c->nearest.gap);
+  if (!(c->nearest.gap.upper < INFINITY)) return CPROX_OK;
+  if (o->scene.q->errors) return keep_nearest_off(o, c);
+  keep_sample(o, c->pair->index, &c->nearest.gap);
   return CPROX_OK;
 }
 

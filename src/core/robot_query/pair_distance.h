@@ -28,6 +28,7 @@ typedef struct robot_gap {
   int n;
   double hessian[6];
   bool support_failed;
+  double loss; /* of upper, by errors of the pair */
 } robot_gap;
 
 /* How exactly: within epsilon, or within `fraction` of what the lower end is above `floor`. And where to begin. */

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/rounding.h"
+#include "robot_query/deviation.h"
 #include "robot_query/groups.h"
 
 /* ---- sides ---- */
@@ -18,14 +19,25 @@ static const robot_body *element_of(const robot_scene *s, const robot_body *owne
   return made;
 }
 
+/* Errors of both sides become a margin of the moving one. */
+static void add_errors(placed_robot_pair *p) {
+  const deviation d = deviation_of_pair(p->scene, p->pair, p->moving, p->standing, &p->places);
+  p->off = *p->moving;
+  p->off.side.margin += d.middle, p->off.tree_margin += d.middle, p->off.radius += d.middle;
+  p->errors = d;
+  p->moving = &p->off;
+}
+
 void placed_robot_pair_of(robot_scene *s, robot_pair *pair, placed_robot_pair *p) {
-  p->scene = s, p->pair = pair, p->index = -1, p->motion = NULL;
+  p->scene = s, p->pair = pair, p->index = -1, p->motion = NULL, p->errors = p->places = (deviation){0.0, 0.0};
   p->moving = robot_scene_part(s, pair->moving);
   p->standing = pair->self ? robot_scene_part(s, pair->standing) : &s->obstacles[pair->standing];
   const int32_t *code = pair->element;
   if (code[0] != ROBOT_WHOLE) p->moving = element_of(s, p->moving, pair->moving, code[0], true, &s->element[0]);
   if (code[1] != ROBOT_WHOLE)
     p->standing = element_of(s, p->standing, pair->standing, code[1], pair->self, &s->element[1]);
+  p->nominal = p->moving;
+  if (s->q->errors) add_errors(p);
 }
 
 void placed_robot_pair_at(robot_scene *s, int32_t index, placed_robot_pair *p) {
@@ -89,7 +101,7 @@ static void find_motion(const placed_robot_pair *p, chain_motion *m) {
   double stray;
   const size_t n = chain_of(p, &stray);
   motion_of_part(s->axes, s->chain, n, centre, robot_core_radius(p->moving), s->scratch, m);
-  m->displacement += stray, m->stray += stray;
+  m->displacement += stray + p->errors.growth, m->stray += stray;
   if (!robot_scene_has_two_times(s) || !p->pair->self) return;
   motion_find_standing_rates(s->axes, s->chain, n, centre, m);
   s->times.standing = start_clock_of(s->motion, p->pair->standing) == s->starts->other;
@@ -99,7 +111,8 @@ static void find_motion(const placed_robot_pair *p, chain_motion *m) {
 const chain_motion *placed_robot_pair_move(placed_robot_pair *p) {
   if (p->motion) return p->motion;
   part_state *part = &p->scene->parts[p->pair->moving];
-  const bool alone = p->pair->self || p->pair->element[0] != ROBOT_WHOLE || round_side(p->standing);
+  const bool alone =
+      p->pair->self || p->pair->element[0] != ROBOT_WHOLE || round_side(p->standing) || p->scene->q->errors;
   chain_motion *to = alone ? &p->own : &part->motion;
   if (alone || part->moved != p->scene->node) find_motion(p, to);
   if (!alone) part->moved = p->scene->node;
@@ -109,20 +122,22 @@ const chain_motion *placed_robot_pair_move(placed_robot_pair *p) {
 double placed_robot_pair_coarse_displacement(const placed_robot_pair *p) {
   robot_scene *s = p->scene;
   const robot_pair *pair = p->pair;
-  if (!pair->self) return robot_scene_part_displacement(s, pair->moving);
+  if (!pair->self) return robot_scene_part_displacement(s, pair->moving) + p->errors.growth;
   if (s->groups) return robot_groups_displacement_of(s, pair);
   const double moving = robot_scene_part_displacement(s, pair->moving),
                standing = robot_scene_part_displacement(s, pair->standing);
-  if (!s->displacements) return moving + standing;
+  if (!s->displacements) return moving + standing + p->errors.growth;
   return s->displacements[(size_t)pair->moving * s->n_displacements + pair->shared] +
-         s->displacements[(size_t)pair->standing * s->n_displacements + pair->shared];
+         s->displacements[(size_t)pair->standing * s->n_displacements + pair->shared] + p->errors.growth;
 }
 
 double placed_robot_pair_displacement(const placed_robot_pair *p) {
   robot_scene *s = p->scene;
-  if (!p->pair->self && p->pair->element[0] == ROBOT_WHOLE) return robot_scene_part_displacement(s, p->pair->moving);
+  if (!p->pair->self && p->pair->element[0] == ROBOT_WHOLE)
+    return robot_scene_part_displacement(s, p->pair->moving) + p->errors.growth;
   return motion_displacement(s->motion, s->axes, seen_from_axis(p), moving_axis(p), p->moving->side.at.p,
-                             robot_core_radius(p->moving));
+                             robot_core_radius(p->moving)) +
+         p->errors.growth;
 }
 
 double placed_robot_pair_round_displacement(placed_robot_pair *p) {

@@ -199,7 +199,8 @@ bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts
                                        : 0;
   const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts + s->motion->n_tracks * sizeof *s->tracks +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
-                       (motion_rows_size(s->motion) + all_displacements) * sizeof *s->rows;
+                       (motion_rows_size(s->motion) + all_displacements) * sizeof *s->rows +
+                       (q->errors ? n_axes * sizeof *s->deviations + robot->n_parts * sizeof *s->part_deviations : 0);
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
   s->parts = (part_state *)(void *)memory;
@@ -209,8 +210,12 @@ bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts
   s->rows = (double *)(void *)(s->chain + n_axes);
   s->scratch = s->rows + motion_rows_size(s->motion);
   s->displacements = all_displacements ? s->scratch + n_axes : NULL;
-  s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes + all_displacements);
+  s->deviations = (axis_deviations *)(void *)(s->scratch + n_axes + all_displacements);
+  s->part_deviations = (part_deviation *)(void *)(s->deviations + (q->errors ? n_axes : 0));
+  s->axis_placed = (uint32_t *)(void *)(s->part_deviations + (q->errors ? robot->n_parts : 0));
   for (size_t i = 0; i < n_axes; i++) s->axis_placed[i] = 0;
+  for (size_t i = 0; i < n_axes && q->errors; i++) s->deviations[i].found = 0;
+  for (size_t i = 0; i < robot->n_parts && q->errors; i++) s->part_deviations[i].found = 0;
   for (size_t i = 0; i < s->motion->n_tracks; i++) s->tracks[i].found = s->tracks[i].filled = 0;
 
   const size_t listed = q->set ? q->set->n_unbounded : last - first;

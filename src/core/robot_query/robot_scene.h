@@ -51,6 +51,24 @@ typedef struct track_state {
   motion_interval own; /* of its own segments */
 } track_state;
 
+/* How much nearer two sides may be than they are in the middle of the node, by errors; elsewhere in the node by so much
+ * more. */
+typedef struct deviation {
+  double middle, growth;
+} deviation;
+
+/* Of an axis: how far it may be from its value; and of a whole part, by the node for which they were found. */
+typedef struct axis_deviations {
+  uint32_t found;
+  deviation of;
+} axis_deviations;
+
+typedef struct part_deviation {
+  uint32_t found;
+  deviation joints, places; /* by joints that are off; by the base, flex, obstacles that are shifted, and sensors */
+  double travel;            /* how far the part moves from the middle to anywhere in the node */
+} part_deviation;
+
 typedef struct robot_scene {
   const query *q;
   const cprox_motion *motion;
@@ -67,6 +85,8 @@ typedef struct robot_scene {
                             where those would be too many */
   size_t n_displacements;
   chain_axis *chain;
+  axis_deviations *deviations; /* where the query has errors (robot_query/deviation.h), of each axis */
+  part_deviation *part_deviations;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
   pair_plan plan;              /* what was listed in the beginning: these come first */

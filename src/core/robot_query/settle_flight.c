@@ -351,7 +351,7 @@ static bool is_one_flight(robot_search *o, const search_node *node, int32_t *pai
   const motion_interval over = robot_interval(node);
   /* among several pairs a node of one segment would be ahead of spans, which have no control poses */
   if (o->scene.n_pairs - o->n_standing != 1 || o->scene.groups || o->scene.q->set ||
-      robot_scene_has_two_times(&o->scene))
+      robot_scene_has_two_times(&o->scene) || o->scene.q->errors) /* their margins change over the node */
     return false;
   if (lists_count(&o->lists, list) != 1 || motion_is_span(&over) || o->scene.motion->is_state) return false;
   *pair = lists_at(&o->lists, list)->pair;

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* How much nearer two sides of a pair may come than a motion and a scene have them, by the bounds of all errors, over
+ * the node at hand. doc/robust.md derives it. */
+#ifndef CPROX_ROBOT_QUERY_DEVIATION_H
+#define CPROX_ROBOT_QUERY_DEVIATION_H
+
+#include "curve_proximity/cprox/robust.h"
+#include "robot_query/placed_robot_pair.h"
+
+/* What a query knows of errors. */
+typedef struct robot_errors {
+  const cprox_error_bounds *bounds;
+  double scale;       /* of all of them */
+  double loss, left;  /* after the search: what errors take off the distance of its nearest pair, where that was found,
+                         and what is left; negative where it is less than what errors take */
+  double object_size; /* [m] no obstacle with a box reaches farther from its pose's position */
+} robot_errors;
+
+/* The largest distance of a point of an obstacle from its pose's position; infinity where it has no end. */
+double deviation_reach(const cprox_obstacle *obstacle);
+
+/* The same against anything under a node of the set's tree. */
+deviation deviation_of_cluster(robot_scene *scene, int32_t part);
+
+/* Both sides of a pair, which are placed. places: what of it is not by joints. */
+deviation deviation_of_pair(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
+                            const robot_body *standing, deviation *places);
+
+/* What errors can take off along a plane's normal n, unit, world, that turns by `normal_rate` over the node, from the
+ * standing side to the moving one: in the losses of `side`, which is the placed pair's moving side without errors; they
+ * stand in the workspace until the next call. over: anywhere in the node; else in its middle. False where memory is out.
+ */
+bool deviation_losses(robot_scene *scene, const placed_robot_pair *placed, vec3 n, double normal_rate, bool over,
+                      bound_side *side);
+
+#endif
