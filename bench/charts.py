@@ -257,7 +257,34 @@ def worlds(rows, save):
         yield growth(rows, save, 'worlds', what, unit + r' (\d+)', title, 'worlds_' + what.replace(' ', '_'), unit)
 
 
+def edges(rows, save, workload, title, name):
+    """The time of an edge over how many verdicts are wrong, of samples from coarse to fine and certified."""
+    rows = [row for row in rows if (row['group'], row['workload']) == ('robots', workload)]
+    if not rows:
+        return None
+    figure, axes = plt.subplots()
+    own, sampled = ([row for row in rows if (row['method'] == OURS) == ours] for ours in (True, False))
+    for chosen, label, marker, colour in ((own, LABELS[OURS], 'o', COLOURS[OURS]),
+                                          (sampled, 'samples by the same lanes (nothing proven)', 's-', OTHERS[0])):
+        axes.plot([float(row['unsound']) for row in chosen], [float(row['median_us']) for row in chosen], marker, color=colour, label=label)
+    for row in sampled:
+        at = (float(row['unsound']), float(row['median_us']))
+        axes.annotate(row['method'].split()[0], at, textcoords='offset points', xytext=(5, 4), fontsize=8)
+    axes.set_xscale('symlog', linthresh=1)
+    axes.set_yscale('log')
+    axes.invert_xaxis()
+    axes.set_xlabel('fewer wrong →\nwrong verdicts; numbers: samples a radian')
+    axes.set_ylabel('median time an edge [µs]')
+    axes.set_title(title)
+    readable(axes.yaxis)
+    legend_below(axes)
+    return save(figure, name)
+
+
 def robots(rows, save):
+    for workload in ('all edges', 'grazing edges'):
+        yield edges(rows, save, workload, f'A Panda by 59 balls, {workload} of a planner: time against wrong verdicts',
+                    'robots_' + workload.replace(' ', '_'))
     for workload in ('environment', 'self'):
         bounded = [row for row in rows if row['method'] != 'sampling .05']  # which knows no epsilon; "sampling" stands at its error
         yield work_precision(bounded, save, 'robots', workload, r'epsilon ([0-9.e-]+)', f'Robots, {workload}: time against accuracy',

@@ -276,6 +276,76 @@ static void rows_of_clouds(const edge_robot *robot, const edge_problem *all, siz
   if (count > 0 && bench_wanted(size, w.name)) bench_measure(&w, size, methods, 2);
 }
 
+/* The beginnings of all edges, each an edge of length 0. They are clear: a tree has them. */
+static void rows_of_states(const edge_robot *robot, const edge_problem *all, size_t n, const bench_size *size,
+                           cprox_workspace *ws) {
+  static edge_problem states[EDGES];
+  for (size_t i = 0; i < n; i++) {
+    states[i] = all[i], states[i].valid = true;
+    memcpy(states[i].to, states[i].from, sizeof states[i].to);
+  }
+  edge_state state = {.workspace = ws};
+  const bench_method methods[] = {{"curve_proximity", certified, &state}};
+  const bench_workload w = {"robots", "clear states as edges", robot->parameter, states, n, NULL, 0.0};
+  if (n > 0 && bench_wanted(size, w.name)) bench_measure(&w, size, methods, 1);
+}
+
+/* Between the ends of a clear edge and of one that is not, which begin at one state, there is an end whose edge grazes
+ * something. This one is near it, on either side, and its ends are clear. */
+static bool draw_grazing(const edge_problem *clear, const edge_problem *not_clear, rng *r, edge_problem *out,
+                         cprox_workspace *ws) {
+  double low = 0.0, high = 1.0;
+  *out = *clear;
+  const double beside = rng_log_uniform(r, 1e-4, 1e-2) * (rng_index(r, 2) ? 1.0 : -1.0);
+  for (int step = 0; step <= 20; step++) {
+    const double at = step < 20 ? 0.5 * (low + high) : low + beside;
+    for (int k = 0; k < out->moves->joints; k++) out->to[k] = clear->to[k] + at * (not_clear->to[k] - clear->to[k]);
+    const cprox_verdict verdict = verdict_of(out->checker, out->from, out->to, ws);
+    out->valid = verdict == CPROX_VERDICT_CLEAR;
+    if (verdict == CPROX_VERDICT_UNDECIDED) return false;
+    if (step < 20 && out->valid) low = at;
+    if (step < 20 && !out->valid) high = at;
+  }
+  return verdict_of(out->checker, out->to, out->to, ws) == CPROX_VERDICT_CLEAR;
+}
+
+static size_t draw_all_grazing(const edge_problem *all, size_t n, edge_problem *out, cprox_workspace *ws) {
+  rng r = rng_seed(96);
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < i && !all[i].valid; k++)
+      if (all[k].valid && all[k].checker == all[i].checker &&
+          memcmp(all[k].from, all[i].from, sizeof all[k].from) == 0) {
+        for (int times = 0; times < 8 && count < EDGES; times++)
+          count += draw_grazing(&all[k], &all[i], &r, &out[count], ws);
+        break;
+      }
+  return count;
+}
+
+/* Edges beside samples from coarse to fine: what these cost, and how many edges they pass that hit. */
+static void rows_of_samples(const edge_robot *robot, const edge_problem *all, size_t n, const bench_size *size,
+                            cprox_workspace *ws) {
+  static const char *const NAMES[] = {"4 samples a radian",   "8 samples a radian",  "16 samples a radian",
+                                      "32 samples a radian",  "64 samples a radian", "128 samples a radian",
+                                      "256 samples a radian", "512 samples a radian"};
+  enum { FINENESS = sizeof NAMES / sizeof *NAMES };
+  static edge_problem grazing[EDGES];
+  if (robot->by_meshes || !lane_sampling_exists()) return;
+  edge_state states[FINENESS], own = {.workspace = ws};
+  bench_method methods[FINENESS + 1] = {{"curve_proximity", certified, &own}};
+  for (int k = 0; k < FINENESS; k++) {
+    states[k] = (edge_state){.workspace = ws, .per_radian = (double)(4 << k)};
+    methods[k + 1] = (bench_method){NAMES[k], by_samples, &states[k]};
+  }
+  const bench_workload w = {"robots", "all edges", robot->parameter, all, n, NULL, 0.0};
+  if (n > 0 && bench_wanted(size, w.name)) bench_measure(&w, size, methods, FINENESS + 1);
+  if (!bench_wanted(size, "grazing edges")) return;
+  const size_t count = draw_all_grazing(all, n, grazing, ws);
+  const bench_workload near = {"robots", "grazing edges", robot->parameter, grazing, count, NULL, 0.0};
+  if (count > 0) bench_measure(&near, size, methods, FINENESS + 1);
+}
+
 /* The ends of the motion of a case, if it is one of this robot. */
 static bool ends_of(const robot_case *c, const edge_robot *robot, double ends[2][CASE_MAX_VARIABLES]) {
   if (strcmp(c->robot_name, robot->scenes) != 0 || strcmp(robot->name, "ur5") == 0) return false;
@@ -324,6 +394,8 @@ static void bench_robot(const edge_robot *moves, const robot_case *cases, size_t
   }
   rows(moves, all, n_all, true, size, ws);
   rows(moves, all, n_all, false, size, ws);
+  rows_of_samples(moves, all, n_all, size, ws);
+  rows_of_states(moves, all, n_all, size, ws);
   rows_of_clouds(moves, all, n_all, size, ws);
   while (n_clouds > 0) free_cloud(&clouds[--n_clouds]);
   for (size_t i = 0; i < n_worlds; i++) {
@@ -334,8 +406,14 @@ static void bench_robot(const edge_robot *moves, const robot_case *cases, size_t
 }
 
 void bench_robot_edges(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *ws) {
-  if (!bench_wanted(size, "valid edges left to the search") &&
-      !bench_wanted(size, "invalid edges left to the search") && !bench_wanted(size, "clear edges among a cloud"))
-    return;
+  static const char *const ROWS[] = {"valid edges left to the search",
+                                     "invalid edges left to the search",
+                                     "clear edges among a cloud",
+                                     "clear states as edges",
+                                     "all edges",
+                                     "grazing edges"};
+  bool wanted = false;
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) wanted = wanted || bench_wanted(size, ROWS[i]);
+  if (!wanted) return;
   for (size_t i = 0; i < sizeof ROBOTS / sizeof *ROBOTS; i++) bench_robot(&ROBOTS[i], cases, n, size, ws);
 }
