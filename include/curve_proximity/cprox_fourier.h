@@ -235,6 +235,15 @@ typedef struct cprox_gap_info {
   size_t bytes;
   /** bound on the error of a value V/t (of V/V_ref in the signal mode) by rounding */
   double rounding;
+  /** [m] a scale: length times -log(V/t), of the signal length times c, has a slope near 1 where the solids touch (of
+   *  the certified mode: where V/t = 1) */
+  double length;
+  /** signal: below this the interiors overlap. -infinity where that is unknown: in space where a solid is covered by
+   *  cells or turned as a table, and where the largest value of neither function is known. 0 in the other modes */
+  double touching_least;
+  /** signal: above this the solids do not meet; infinity where nothing is known. Where they touch, touching_least <= c
+   *  <= touching_most. 0 in the other modes */
+  double touching_most;
 } cprox_gap_info;
 
 typedef enum cprox_gap_verdict {

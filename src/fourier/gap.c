@@ -269,6 +269,11 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
   return !failed;
 }
 
+static double slope_length(const gap_plan *plan) {
+  const double sample = plan->period / (2 * plan->N + 1);
+  return plan->mode == CPROX_GAP_MODE_SIGNAL ? sample * GAP_SIGNAL_BLUR / 1.6 : 0.55 * sample;
+}
+
 cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, size_t memory_limit,
                        cprox_workspace *workspace, cprox_gap **gap) {
   const double bytes = gap_bytes(plan->dimension, plan->N) + plan->bytes, L = plan->period;
@@ -297,6 +302,8 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
                                 .over_reach = plan->mode == CPROX_GAP_MODE_SIGNAL ? INFINITY : plan->over_reach,
                                 .guaranteed = plan->mode == CPROX_GAP_MODE_CERTIFIED,
                                 .turned_first = plan->turned_first};
+  /* -log(value) falls by about 1 in so many metres where it decides (doc/fourier.md, "The value in metres") */
+  made->info.length = slope_length(plan);
   /* the signal's V_ref is its mean over all places */
   const double volume = plan->dimension == 2 ? L * L : L * L * L;
   made->info.threshold = plan->mode == CPROX_GAP_MODE_SIGNAL
@@ -343,6 +350,14 @@ cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const 
   cprox_gap *made = NULL;
   status = gap_build(&plan, p, q, used.memory_limit, workspace, &made);
   if (!made) return status;
+  if (plan.mode == CPROX_GAP_MODE_SIGNAL) {
+    kernel w;
+    kernel_signal(&w, plan.N);
+    if (!gap_bound_touching(&plan, &w, a, b, &made->info)) {
+      cprox_gap_free(made);
+      return solid_out_of_memory(workspace);
+    }
+  }
   made->centre_a = a->centre, made->centre_b = b->centre;
   made->radius_a = a->radius, made->radius_b = b->radius;
   const bool merged =

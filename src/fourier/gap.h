@@ -105,6 +105,14 @@ cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const c
 /* The threshold of a plan (period and offset set): t, or that of a sweep; in units of the measure squared over L^d. */
 double gap_threshold(const kernel *k, const gap_plan *plan, const cprox_solid *a, const cprox_solid *b);
 
+/* The signal's blur sigma, in L/n. */
+#define GAP_SIGNAL_BLUR 2.2
+
+/* Of a signal whose threshold and rounding are known: between what it lies where the bare solids touch. false where
+ * memory is out. */
+bool gap_bound_touching(const gap_plan *plan, const kernel *k, const cprox_solid *a, const cprox_solid *b,
+                        cprox_gap_info *info);
+
 /* How much it costs to turn a solid; 0 for a ball. */
 double gap_cost_of_turning(const cprox_solid *s);
 

@@ -7,9 +7,6 @@
 #include "fourier/grid.h"
 #include "fourier/raster.h"
 
-/* The signal's blur sigma in L/n. */
-#define SIGNAL_BLUR 2.2
-
 /* Images need a period of at least this: both bounding balls' diameters. */
 static double solids_size(const cprox_solid *a, const cprox_solid *b) {
   return 2.0 * (a->radius + b->radius);
@@ -345,14 +342,14 @@ static cprox_status check_options(const cprox_solid *a, const cprox_solid *b, co
 
 /* The signal has no over-reach: its blur sigma = 2.2 L/n is what delta means. */
 static double accuracy(const gap_plan *plan) {
-  return plan->mode == CPROX_GAP_MODE_SIGNAL ? SIGNAL_BLUR * plan->period / (2 * plan->N + 1) : plan->over_reach;
+  return plan->mode == CPROX_GAP_MODE_SIGNAL ? GAP_SIGNAL_BLUR * plan->period / (2 * plan->N + 1) : plan->over_reach;
 }
 
 /* What no period can bring the accuracy of 2N+1 samples below: the period is at least the solids' size, and both
  * offsets are part of a proven over-reach. */
 static double best_accuracy(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N) {
   const int n = 2 * N + 1;
-  const double factor = options->mode == CPROX_GAP_MODE_SIGNAL  ? SIGNAL_BLUR
+  const double factor = options->mode == CPROX_GAP_MODE_SIGNAL  ? GAP_SIGNAL_BLUR
                         : options->mode == CPROX_GAP_MODE_TUNED ? tuned_reach(a->dimension, n)
                                                                 : 2.0 * kernel_offset(a->dimension, n, options->mode);
   return (1.0 - 1e-9) * factor * solids_size(a, b) / n;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What is asked of a gap: gradients, early exit, lanes, memory, symmetry, signals, cascades, regions, sweeps, curves.
  */
+#include <stdlib.h>
 #include <string.h>
 
 #include "fourier/gap.h"
@@ -381,6 +382,172 @@ CASE(the_signal_rises_with_clearance) {
   }
   cprox_gap_free(gap);
   cprox_solid_free(s);
+}
+
+/* An L of two boxes, or a box: as bodies with their poses, and as a solid. */
+typedef struct blocks {
+  int n;
+  cprox_body *part[2];
+  cprox_pose at[2];
+  cprox_solid *solid;
+} blocks;
+
+static blocks make_blocks(int dimension, int n, rng *r) {
+  blocks out = {.n = n};
+  cprox_solid *parts[2];
+  for (int i = 0; i < n; i++) {
+    const cprox_vec3 size = i == 0 ? vec(rng_uniform(r, 0.5, 1.2), rng_uniform(r, 0.2, 0.4), rng_uniform(r, 0.2, 0.9))
+                                   : vec(rng_uniform(r, 0.2, 0.4), rng_uniform(r, 0.4, 1.2), rng_uniform(r, 0.2, 0.6));
+    out.at[i] = planar(i * 0.3, i * 0.5, 0);
+    const cprox_vec3 tall = {size.x, size.y, dimension == 2 ? 20.0 : size.z}; /* never left along z in the plane */
+    MADE(cprox_body_create_box(tall, ws, &out.part[i]));
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = dimension, .size = size},
+                            ws, &parts[i]));
+  }
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const *)parts, .poses = out.at, .n = (size_t)n},
+      ws, &out.solid));
+  for (int i = 0; i < n; i++) cprox_solid_free(parts[i]);
+  return out;
+}
+
+static void free_blocks(blocks *b) {
+  for (int i = 0; i < b->n; i++) cprox_body_free(b->part[i]);
+  cprox_solid_free(b->solid);
+}
+
+/* Signed, of a at the origin and b at the pose: parts are shifted only, never turned. */
+static double exact_distance(const blocks *a, const blocks *b, const cprox_pose *pose) {
+  double least = INFINITY;
+  for (int i = 0; i < a->n; i++)
+    for (int j = 0; j < b->n; j++) {
+      const frame f = frame_create(pose, b->at[j].position);
+      const cprox_pose at = {.position = f.position, .orientation = pose->orientation};
+      cprox_result r;
+      if (cprox_pair(cprox_obstacle_at(a->part[i], a->at[i]), cprox_obstacle_at(b->part[j], at), NULL, ws, &r) < 0)
+        fail_msg("%s", cprox_workspace_error(ws));
+      least = fmin(least, 0.5 * (r.lower + r.upper));
+    }
+  return least;
+}
+
+static int by_size(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* From far away towards a random place, to where the level is met. */
+static cprox_pose fall(const blocks *a, const blocks *b, const cprox_gap *gap, cprox_pose pose, rng *r, int dimension) {
+  const cprox_pose here = planar(0, 0, 0);
+  vec3 way = rng_unit(r);
+  if (dimension == 2) way.z = 0.0, way = vec_scale(1.0 / vec_norm(way), way);
+  const vec3 aim = pose.position;
+  double far = 6.0, near = 0.0;
+  for (int i = 0; i < 60; i++) {
+    const double at = 0.5 * (far + near);
+    pose.position = vec_add(aim, vec_scale(at, way));
+    cprox_gap_result got = {.value = 0.0};
+    if (gap) MADE(cprox_gap_evaluate(gap, &here, &pose, ws, &got));
+    const bool free = gap ? got.value < 1.0 : exact_distance(a, b, &pose) > 0.0;
+    *(free ? &far : &near) = at;
+  }
+  pose.position = vec_add(aim, vec_scale(far, way));
+  return pose;
+}
+
+/* Where solids touch c lies between the bounds; below the lower one they overlap, above the upper one they are apart. */
+CASE(the_signal_of_solids_that_touch_lies_between_its_bounds) {
+  rng r = rng_seed(811);
+  const uint32_t samples[] = {5, 9, 17, 33, 65};
+  size_t proven_deep = 0, touched = 0;
+  for (size_t i = 0; i < test_cases(24); i++) {
+    const int dimension = i % 2 ? 2 : 3;
+    blocks a = make_blocks(dimension, 1 + (int)rng_index(&r, 2), &r), b = make_blocks(dimension, 1, &r);
+    cprox_gap *gap = gap_of(a.solid, b.solid, CPROX_GAP_MODE_SIGNAL,
+                            dimension == 2 ? samples[rng_index(&r, 5)] : samples[rng_index(&r, 4)]);
+    const cprox_gap_info info = cprox_gap_get_info(gap);
+    assert_true(info.touching_least < info.touching_most && isfinite(info.touching_least));
+    const cprox_pose here = planar(0, 0, 0);
+    for (int j = 0; j < 40; j++) {
+      cprox_pose pose = random_pose(&r, dimension, j % 2 ? 0.8 : 0.2);
+      cprox_gap_result got;
+      cprox_status status = cprox_gap_evaluate(gap, &here, &pose, ws, &got);
+      if (status == CPROX_OK && isfinite(got.value)) {
+        const double distance = exact_distance(&a, &b, &pose);
+        if (got.value < info.touching_least) proven_deep++, assert_true(distance < 1e-9);
+        if (got.value > info.touching_most) assert_true(distance > -1e-9);
+      }
+      pose = fall(&a, &b, NULL, pose, &r, dimension);
+      if (fabs(exact_distance(&a, &b, &pose)) > 1e-9) continue; /* it passed by */
+      MADE(cprox_gap_evaluate(gap, &here, &pose, ws, &got));
+      touched++;
+      if (!(got.value >= info.touching_least && got.value <= info.touching_most))
+        fail_msg("case %zu, n = %u: %g is not in [%g, %g]", i, info.samples, got.value, info.touching_least,
+                 info.touching_most);
+    }
+    cprox_gap_free(gap);
+    free_blocks(&a), free_blocks(&b);
+  }
+  assert_true(touched > test_cases(24) * 10 && proven_deep > test_cases(24) / 4);
+}
+
+/* A box that fills a hole on all sides: wherever it moves it overlaps, so V is near the most that touching allows. */
+CASE(a_snug_box_is_not_proven_to_overlap) {
+  cprox_solid *side, *cap, *box, *hole;
+  const cprox_vec3 sizes[3] = {vec(0.4, 1.8, 0), vec(0.96, 0.4, 0), vec(1, 1, 0)};
+  cprox_solid **const made[3] = {&side, &cap, &box};
+  for (int i = 0; i < 3; i++)
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = sizes[i]}, ws,
+                            made[i]));
+  const cprox_solid *const walls[4] = {side, side, cap, cap};
+  const cprox_pose at[4] = {planar(-0.7, 0, 0), planar(0.7, 0, 0), planar(0, -0.7, 0), planar(0, 0.7, 0)};
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_UNION, .parts = walls, .poses = at, .n = 4},
+                          ws, &hole));
+  const cprox_pose here = planar(0, 0, 0);
+  for (uint32_t n = 65; n <= 257; n = 2 * n - 1) {
+    cprox_gap *gap = gap_of(hole, box, CPROX_GAP_MODE_SIGNAL, n);
+    const double least = cprox_gap_get_info(gap).touching_least;
+    cprox_gap_result got;
+    MADE(cprox_gap_evaluate(gap, &here, &here, ws, &got));
+    if (!(got.value >= least && got.value <= least + 0.5)) fail_msg("n = %u: %g, least %g", n, got.value, least);
+    cprox_gap_free(gap);
+  }
+  cprox_solid_free(side), cprox_solid_free(cap), cprox_solid_free(box), cprox_solid_free(hole);
+}
+
+/* Of the signal where solids touch, of the certified gap where V/t = 1. */
+CASE(the_logarithm_times_the_length_has_a_slope_near_one) {
+  for (int mode = CPROX_GAP_MODE_CERTIFIED; mode <= CPROX_GAP_MODE_SIGNAL; mode += 2)
+    for (int dimension = 2; dimension <= 3; dimension++)
+      for (uint32_t n = 9; n <= 33; n = 2 * n - 1) {
+        rng r = rng_seed(813);
+        double slopes[400];
+        size_t count = 0;
+        for (size_t i = 0; i < 10; i++) {
+          blocks a = make_blocks(dimension, 1 + (int)rng_index(&r, 2), &r), b = make_blocks(dimension, 1, &r);
+          cprox_gap *gap = gap_of(a.solid, b.solid, (cprox_gap_mode)mode, n);
+          const cprox_gap_info info = cprox_gap_get_info(gap);
+          const cprox_pose here = planar(0, 0, 0);
+          for (int j = 0; j < 10; j++) {
+            const bool signal = mode == CPROX_GAP_MODE_SIGNAL;
+            const cprox_pose pose = fall(&a, &b, signal ? NULL : gap, random_pose(&r, dimension, 0.4), &r, dimension);
+            cprox_gap_result got;
+            MADE(cprox_gap_evaluate(gap, &here, &pose, ws, &got));
+            if (got.verdict == CPROX_GAP_VERDICT_FAR || (!signal && fabs(got.value - 1.0) > 1e-6)) continue;
+            slopes[count++] = info.length * vec_norm(got.position_b) / (signal ? 1.0 : got.value);
+          }
+          cprox_gap_free(gap);
+          free_blocks(&a), free_blocks(&b);
+        }
+        qsort(slopes, count, sizeof *slopes, by_size);
+        if (mode == CPROX_GAP_MODE_CERTIFIED && n == 9) continue; /* nearly all poses inside the balls may collide */
+        assert_true(count > 5);
+        const double least = slopes[count / 10], middle = slopes[count / 2], most = slopes[9 * count / 10];
+        /* the signal's blur at n = 9 is as wide as the boxes: it is flatter there */
+        if (!(middle > (n == 9 ? 0.45 : 0.75) && middle < 1.25 && least > (n == 9 ? 0.3 : 0.6) && most < 1.5))
+          fail_msg("mode %d, dimension %d, n = %u: %g, %g, %g", mode, dimension, n, least, middle, most);
+      }
 }
 
 CASE(bad_queries_are_refused_in_words) {
