@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "../scene/digest.h"
+#include "../scene/question.h"
+#include "../scene/trajectory_points.h"
 #include "../scene/yaml/numbers.h"
 #include "../scene/yaml/scene_change.h"
 #include "csv.h"
@@ -21,20 +23,6 @@ void requireKnown(const std::string &key) {
   std::string known;
   for (const char *name : kKeys) known += (known.empty() ? "" : ", ") + std::string(name);
   throw BadInput("'" + key + "' is none of " + known);
-}
-
-QueryType queryFromName(const std::string &name) {
-  if (name == "distance") return QueryType::DISTANCE;
-  if (name == "tolerance") return QueryType::TOLERANCE;
-  if (name == "collision") return QueryType::COLLISION;
-  throw BadInput("query is '" + name + "'; it must be distance, tolerance or collision");
-}
-
-Interpolation interpolationFromName(const std::string &name) {
-  if (name == "linear") return Interpolation::LINEAR;
-  if (name == "cubic") return Interpolation::CUBIC;
-  if (name == "quintic") return Interpolation::QUINTIC;
-  throw BadInput("interpolation is '" + name + "'; it must be linear, cubic or quintic");
 }
 
 /* Others are not known here; the reader of YAML says what it makes of them. */
@@ -95,8 +83,12 @@ TrajectoryDescription toTrajectory(const Json &value) {
     requireKeys(*header, {"seq", "stamp", "frame_id"});
   }
   if (const Json *way = value.find("shortest_way")) out.shortest_way = way->truth("shortest_way");
-  if (const Json *interpolation = value.find("interpolation"))
-    out.interpolation = interpolationFromName(interpolation->text("interpolation"));
+  if (const Json *given = value.find("interpolation")) {
+    const std::string name = given->text("interpolation");
+    const std::optional<Interpolation> known = interpolationFromName(name);
+    if (!known) throw BadInput("interpolation is '" + name + "'; it must be linear, cubic or quintic");
+    out.interpolation = *known;
+  }
   if (const Json *fixed = value.find("fixed_joints")) {
     if (fixed->kind != Json::Kind::MAP) throw BadInput("fixed_joints must be a map");
     for (const auto &member : fixed->members) out.fixed_joints[member.first] = member.second.number("fixed_joints");
@@ -227,7 +219,11 @@ DatasetRow Dataset::parse(const ManifestRow &row) const {
 
   /* the query */
   const Json *query = value.find("query"), *delta = value.find("delta"), *self = value.find("self");
-  if (query) out.query_type = queryFromName(query->text("query"));
+  if (query) {
+    const std::optional<QueryType> known = queryTypeFromName(query->text("query"));
+    if (!known) throw BadInput("query is '" + query->text_value + "'; it must be distance, tolerance or collision");
+    out.query_type = *known;
+  }
   if (delta) out.delta = delta->number("delta");
   if (self) out.self = self->truth("self");
   if (!query && delta) out.query_type = QueryType::TOLERANCE;

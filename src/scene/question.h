@@ -6,6 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -44,6 +46,9 @@ struct Violations {
 
 using Question = std::variant<question::Search, question::Gradient, question::Nearest, question::Contact,
                               question::Profile, question::Violations>;
+
+/** distance, tolerance or collision. */
+std::optional<QueryType> queryTypeFromName(const std::string &name);
 
 /** Is it one of these kinds? */
 template <class... Kinds>

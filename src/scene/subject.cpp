@@ -209,6 +209,13 @@ class Answering {
 
 } // namespace
 
+std::optional<QueryType> queryTypeFromName(const std::string &name) {
+  if (name == "distance") return QueryType::DISTANCE;
+  if (name == "tolerance") return QueryType::TOLERANCE;
+  if (name == "collision") return QueryType::COLLISION;
+  return std::nullopt;
+}
+
 std::vector<double> breaksOf(const question::Profile &profile, const std::array<double, 2> &domain) {
   if (!profile.breaks.empty()) return profile.breaks;
   std::vector<double> out;

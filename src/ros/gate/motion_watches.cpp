@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "../../scene/trajectory_points.h"
 #include "transport/guard.h"
 
 namespace curve_proximity {
@@ -152,7 +153,7 @@ void MotionWatches::tell(const sensor_msgs::JointState &state) {
 
 JointTrajectory MotionWatches::fromHere(JointTrajectory trajectory) const {
   const ros::Time now = ros::Time::now();
-  std::vector<double> here;
+  JointPositions here;
   std::string unknown;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -161,26 +162,22 @@ JointTrajectory MotionWatches::fromHere(JointTrajectory trajectory) const {
       if (found == joints_.end() || now - found->second.second > ros::Duration(parameters_.feedback_timeout))
         unknown = joint;
       else
-        here.push_back(found->second.first);
+        here[joint] = found->second.first;
     }
   }
-  trajectory_msgs::JointTrajectoryPoint &first = trajectory.points.front();
-  if (first.time_from_start > ros::Duration(0)) {
-    if (!unknown.empty())
+  if (trajectory.points.front().time_from_start > ros::Duration(0)) {
+    if (!beginAt(here, trajectory.joint_names, trajectory.points))
       throw Error(
           "the first point is not at time 0, and where the robot begins is not known: ~joint_states does not "
           "tell of joint '" +
           unknown + "'");
-    trajectory_msgs::JointTrajectoryPoint begin;
-    begin.positions = here;
-    begin.velocities.resize(first.velocities.size());
-    begin.accelerations.resize(first.accelerations.size());
-    trajectory.points.insert(trajectory.points.begin(), begin);
   } else if (unknown.empty() && trajectory.header.stamp <= now) {
     JointTrajectory start = trajectory;
     start.points.resize(1);
+    std::vector<double> positions;
+    for (const std::string &joint : trajectory.joint_names) positions.push_back(here.at(joint));
     const std::string why =
-        TrajectoryProgress(start, parameters_.path_tolerance).tell(trajectory.joint_names, here, 0.0);
+        TrajectoryProgress(start, parameters_.path_tolerance).tell(trajectory.joint_names, positions, 0.0);
     if (!why.empty()) throw Error(why);
   }
   return trajectory;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../../scene/trajectory_points.h"
 #include "messages/geometry_message.h"
 
 namespace curve_proximity {
@@ -42,18 +43,7 @@ TrajectoryDescription toDescription(const trajectory_msgs::JointTrajectory &traj
     }
     out.points.push_back(std::move(next));
   }
-  if (out.points.empty() || !(out.points.front().time > 0.0)) return out;
-
-  // The way from where the robot is.
-  TrajectoryPoint start;
-  for (const std::string &joint : out.joints) {
-    const auto it = now.find(joint);
-    if (it == now.end()) return out;
-    start.positions.push_back(it->second);
-  }
-  if (!out.points.front().velocities.empty()) start.velocities.assign(out.joints.size(), 0.0);
-  if (!out.points.front().accelerations.empty()) start.accelerations.assign(out.joints.size(), 0.0);
-  out.points.insert(out.points.begin(), start);
+  if (!out.points.empty() && out.points.front().time > 0.0) beginAt(now, out.joints, out.points);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "../../scene/trajectory_points.h"
 #include "messages/topics.h"
 
 namespace curve_proximity {
@@ -124,7 +125,7 @@ JointTrajectory toTrajectory(const moveit::RobotTrajectory &message, const Robot
 }
 
 /** Further joints that stand at these values. */
-void hold(const std::map<std::string, double> &values, JointTrajectory &trajectory) {
+void hold(const JointPositions &values, JointTrajectory &trajectory) {
   const std::set<std::string> moved(trajectory.joint_names.begin(), trajectory.joint_names.end());
   const std::size_t before = trajectory.joint_names.size();
   for (const auto &[name, value] : values) {
@@ -140,14 +141,13 @@ void hold(const std::map<std::string, double> &values, JointTrajectory &trajecto
 }
 
 /** The variables of planar and floating joints in a state. */
-std::map<std::string, double> freeValues(const sensor_msgs::MultiDOFJointState &state, const Robot &robot,
-                                         const Srdf &srdf) {
+JointPositions freeValues(const sensor_msgs::MultiDOFJointState &state, const Robot &robot, const Srdf &srdf) {
   MultiDOFJointTrajectory point;
   point.joint_names = state.joint_names;
   point.points.resize(1);
   point.points[0].transforms = state.transforms;
   keepKnown(robot, srdf, point);
-  std::map<std::string, double> out;
+  JointPositions out;
   if (point.joint_names.empty()) return out;
   const JointTrajectory values = toJointTrajectory(point, robot, srdf);
   for (std::size_t i = 0; i < values.joint_names.size(); ++i)
@@ -201,9 +201,9 @@ RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot 
                             "', and in the scene it does not: '" + id + "' is not measured");
   }
 
-  std::map<std::string, double> stood;
+  JointPositions stood;
   for (std::size_t i = 0; i < out.start.name.size(); ++i) stood[out.start.name[i]] = out.start.position[i];
-  std::map<std::string, double> held = freeValues(start.multi_dof_joint_state, robot, srdf);
+  JointPositions held = freeValues(start.multi_dof_joint_state, robot, srdf);
   for (const moveit::RobotTrajectory &part : message.trajectory) {
     const bool first = out.trajectories.empty();
     JointTrajectory trajectory = toTrajectory(part, robot, srdf, out.remarks);
@@ -211,14 +211,9 @@ RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot 
     auto &points = trajectory.points;
     if (!first && !points.empty() && points.front().time_from_start > ros::Duration(0.0)) {
       // the way from where the part before has ended, as from where the robot stands before the first
-      JointTrajectoryPoint begin;
-      for (const std::string &name : trajectory.joint_names) {
-        const auto it = held.find(name), told = stood.find(name);
-        if (it != held.end() || told != stood.end()) begin.positions.push_back((it != held.end() ? it : told)->second);
-      }
-      if (!points.front().velocities.empty()) begin.velocities.assign(trajectory.joint_names.size(), 0.0);
-      if (!points.front().accelerations.empty()) begin.accelerations.assign(trajectory.joint_names.size(), 0.0);
-      if (begin.positions.size() == trajectory.joint_names.size()) points.insert(points.begin(), begin);
+      JointPositions ended = held;
+      ended.insert(stood.begin(), stood.end());
+      beginAt(ended, trajectory.joint_names, points);
     }
     if (!points.empty() && points.back().positions.size() == trajectory.joint_names.size())
       for (std::size_t i = 0; i < trajectory.joint_names.size(); ++i)

@@ -121,7 +121,9 @@ void BatchAction::answer(Batch &batch) {
   result.frame_id = fixed_frame_;
   guarded(
       [&] {
-        QueryRequest request(queryTypeFromName(goal->query_type), goal->delta, goal->query);
+        const std::optional<QueryType> query_type = queryTypeFromName(goal->query_type);
+        if (!query_type) throw Error("the query '" + goal->query_type + "' is none of distance, tolerance, collision");
+        QueryRequest request(*query_type, goal->delta, goal->query);
         Feedback feedback(request.size());
         const double budget_ms = goal->query.budget_ms;
         request.budget_ms = budget_ms != 0.0 ? budget_ms : std::numeric_limits<double>::infinity();

@@ -26,13 +26,6 @@ std::string Queries::numbered(const std::string &name, std::size_t i, std::size_
   return all == 1 ? name : name + "/" + std::to_string(i);
 }
 
-QueryType queryTypeFromName(const std::string &name) {
-  if (name == "distance") return QueryType::DISTANCE;
-  if (name == "tolerance") return QueryType::TOLERANCE;
-  if (name == "collision") return QueryType::COLLISION;
-  throw Error("the query '" + name + "' is none of distance, tolerance, collision");
-}
-
 std::vector<Profile> takeProfiles(QueryResponse &answer) {
   std::vector<Profile> profiles = answer.takeDetails<Profile>();
   for (std::size_t i = 0; i < profiles.size(); ++i) profiles[i].summary = std::move(answer.results[i]);

@@ -102,9 +102,6 @@ struct QueryRequest {
   }
 };
 
-/** "distance", "tolerance", "collision". Throws Error for any other word. */
-QueryType queryTypeFromName(const std::string &name);
-
 /** The response that they share. */
 struct QueryResponse {
   bool success = true;

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "../../scene/digest.h"
 #include "messages/scene_message.h"
 #include "transport/guard.h"
 #include "world/robot_description.h"
@@ -21,14 +22,12 @@
 namespace curve_proximity {
 namespace {
 
-constexpr const char *MAGIC = "curve_proximity scene 3";
+constexpr const char *MAGIC = "curve_proximity scene 4";
 constexpr std::chrono::seconds WRITING_PERIOD{1}; /* between two writings at least */
 constexpr std::size_t MOST_BYTES = std::size_t{64} << 20;
 
-std::uint64_t hashOf(const std::string &bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
+std::string digestTextOf(const std::string &bytes) {
+  return toHex(digestOf(bytes.data(), bytes.size()));
 }
 
 template <class Message>
@@ -115,11 +114,9 @@ StateFile::StateFile(const ros::NodeHandle &handle, const Parameters &parameters
   handle_.getParam("/run_id", run_);
   std::string name;
   const std::string description = robotText(handle, parameters, name);
-  std::ostringstream beginning;
-  for (const std::string *part : {&parameters.scene_file, &description, &parameters.fixed_frame})
-    beginning << part->size() << ' ' << *part << '\n';
-  beginning << textOf(parameters.scene_file);
-  beginning_ = std::to_string(hashOf(beginning.str()));
+  Hasher beginning;
+  for (const std::string *part : {&parameters.scene_file, &description, &parameters.fixed_frame}) beginning.add(*part);
+  beginning_ = toHex(beginning.add(textOf(parameters.scene_file)).finish());
 }
 
 StateFile::~StateFile() {
@@ -146,8 +143,8 @@ std::optional<KeptScene> StateFile::read() {
         if (!isKept()) return;
         std::ifstream file(path_, std::ios::binary);
         if (!file) return;
-        std::string magic, run, beginning, md5, size, hash;
-        for (std::string *line : {&magic, &run, &beginning, &md5, &size, &hash}) std::getline(file, *line);
+        std::string magic, run, beginning, md5, size, digest;
+        for (std::string *line : {&magic, &run, &beginning, &md5, &size, &digest}) std::getline(file, *line);
         if (magic != MAGIC) throw Error("it is none");
         if (run != run_) return; // another run's
         if (beginning != beginning_) {
@@ -161,7 +158,7 @@ std::optional<KeptScene> StateFile::read() {
         std::ostringstream rest;
         rest << file.rdbuf();
         const std::string bytes = rest.str();
-        if (std::to_string(bytes.size()) != size || std::to_string(hashOf(bytes)) != hash) throw Error("it is damaged");
+        if (std::to_string(bytes.size()) != size || digestTextOf(bytes) != digest) throw Error("it is damaged");
         KeptScene kept;
         ros::serialization::IStream stream(reinterpret_cast<std::uint8_t *>(const_cast<char *>(bytes.data())),
                                            static_cast<std::uint32_t>(bytes.size()));
@@ -256,7 +253,7 @@ void StateFile::write() {
        << beginning_ << '\n'
        << ros::message_traits::md5sum<ApplySceneRequest>() << '\n'
        << bytes.size() << '\n'
-       << hashOf(bytes) << '\n'
+       << digestTextOf(bytes) << '\n'
        << bytes;
   writeAtomically(path_, text.str());
   failed_ = false;

@@ -26,8 +26,8 @@ struct KeptScene {
   bool behind = false;              /**< the last changes are not in it */
 };
 
-/** The file: a line of text ("curve_proximity scene 3"), the run (/run_id), a hash of what the scene began with (the
- * scene file, the robot, the fixed frame), the type's MD5, a count of bytes and their FNV-1a hash, a line each; then
+/** The file: a line of text ("curve_proximity scene 4"), the run (/run_id), a digest of what the scene began with (the
+ * scene file, the robot, the fixed frame), the type's MD5, a count of bytes and their digest, a line each; then
  * the names of sensors' objects, replaces_srdf and the request of ~apply_scene, serialised. Beside it stands a file
  * ".behind" with the run from a change of the scene until it is written. */
 class StateFile {

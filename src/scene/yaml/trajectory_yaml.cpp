@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "../trajectory_points.h"
 #include "failure.h"
 #include "robot_state_yaml.h"
 
@@ -13,11 +14,9 @@ namespace curve_proximity::yaml {
 namespace {
 
 Interpolation readInterpolation(const YamlValue &value) {
-  const std::string text = value.text();
-  if (text == "linear") return Interpolation::LINEAR;
-  if (text == "cubic") return Interpolation::CUBIC;
-  if (text == "quintic") return Interpolation::QUINTIC;
-  value.fail("the interpolation '" + text + "' is none of linear, cubic, quintic");
+  const std::optional<Interpolation> known = interpolationFromName(value.text());
+  if (!known) value.fail("the interpolation '" + value.text() + "' is none of linear, cubic, quintic");
+  return *known;
 }
 
 /* Seconds and nanoseconds, as ROS prints a duration: secs and nsecs, of ROS 2 sec and nanosec. */
@@ -157,22 +156,15 @@ void readStart(const YamlValue &state, TrajectoryDescription &out, Warnings &war
 
   /* the way from there, as the node adds it */
   if (out.points.empty() || !(out.points.front().time > 0.0)) return;
-  TrajectoryPoint begin;
-  for (const std::string &joint : out.joints) {
-    const auto it = start.joints.find(joint);
-    if (it == start.joints.end()) return;
-    begin.positions.push_back(it->second);
-  }
-  if (!out.points.front().velocities.empty()) begin.velocities.assign(out.joints.size(), 0.0);
-  if (!out.points.front().accelerations.empty()) begin.accelerations.assign(out.joints.size(), 0.0);
+  const std::size_t points = out.points.size();
+  if (!beginAt(start.joints, out.joints, out.points)) return;
   for (FreeJointPoses &joint : out.free_joints)
-    if (joint.poses.size() == out.points.size()) {
+    if (joint.poses.size() == points) {
       cprox_pose from = joint.poses.front();
       for (const FreeJointPoses &standing : start.free_joints)
         if (standing.joint == joint.joint) from = standing.poses.front();
       joint.poses.insert(joint.poses.begin(), from);
     }
-  out.points.insert(out.points.begin(), begin);
 }
 
 /* A trajectory under the key `trajectory`: of a DisplayTrajectory a list; of a plan, or of the goal of an action, one.
