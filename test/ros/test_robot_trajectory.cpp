@@ -78,6 +78,8 @@ TEST_F(Cart, both_parts_become_one_trajectory) {
   EXPECT_TRUE(motions.trajectories[0].points[1].velocities.empty());
   ASSERT_EQ(motions.remarks.size(), 1u);
   EXPECT_NE(motions.remarks[0].find("velocities are not used"), std::string::npos);
+  EXPECT_EQ(motions.coverage.status(), "partial"); // the joints go another way than the message says
+  EXPECT_FALSE(motions.coverage.provesContact());
 
   message.joint_trajectory = {};
   EXPECT_EQ(toMotions(message, *snapshot, srdf).trajectories[0].joint_names.size(), 3u);
@@ -135,12 +137,19 @@ TEST_F(Cart, each_trajectory_begins_where_the_one_before_has_ended) {
   EXPECT_EQ(second.points[0].positions, (Values{0.5, 0, 4, 0})); // the way to its first point
   EXPECT_EQ(second.points[1].positions, (Values{2, 0, 4, 0}));
   EXPECT_EQ(motions.remarks.size(), 2u); // the model's name, and the elbow
+  EXPECT_TRUE(motions.coverage.complete());
 
   // the base where the start state has it
   message.trajectory.erase(message.trajectory.begin());
   start.multi_dof_joint_state.joint_names = {"wheels"};
   start.multi_dof_joint_state.transforms = drive({9}).points[0].transforms;
   EXPECT_EQ(toMotions(message, *snapshot, srdf).trajectories[0].points[0].positions, (Values{2, 0, 9, 0}));
+
+  // what is carried there and not in the scene can only be missing
+  start.attached_collision_objects.resize(1);
+  start.attached_collision_objects[0].object.id = "pen";
+  EXPECT_EQ(toMotions(message, *snapshot, srdf).coverage.status(), "partial");
+  EXPECT_TRUE(toMotions(message, *snapshot, srdf).coverage.provesContact());
   start.joint_state.position.pop_back();
   expectRefused(message, "2 joints have 1 positions");
 }

@@ -75,8 +75,18 @@ std::vector<std::string> keepKnown(const Robot &robot, const Srdf &srdf, MultiDO
   return unknown;
 }
 
+void addRemark(const std::string &remark, std::vector<std::string> &remarks) {
+  if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end()) remarks.push_back(remark);
+}
+
+/** What can make an answer wrong. */
+void leaveOut(const std::string &remark, Missing missing, RobotMotions &motions) {
+  addRemark(remark, motions.remarks);
+  motions.coverage.add(Gap::PARTIAL, remark, missing);
+}
+
 /** The columns of both. */
-JointTrajectory merged(const JointTrajectory &joints, const JointTrajectory &free, std::vector<std::string> &remarks) {
+JointTrajectory merged(const JointTrajectory &joints, const JointTrajectory &free, RobotMotions &motions) {
   JointTrajectory out = joints;
   if (joints.points.size() != free.points.size())
     throw Error("joint_trajectory has " + std::to_string(joints.points.size()) +
@@ -98,16 +108,13 @@ JointTrajectory merged(const JointTrajectory &joints, const JointTrajectory &fre
     point.positions.insert(point.positions.end(), other.positions.begin(), other.positions.end());
   }
   if (smooth)
-    remarks.emplace_back("with a multi-DOF part all joints go straight from point to point: velocities are not used");
+    leaveOut("with a multi-DOF part all joints go straight from point to point: velocities are not used",
+             Missing::ANYTHING, motions);
   return out;
 }
 
-void addRemark(const std::string &remark, std::vector<std::string> &remarks) {
-  if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end()) remarks.push_back(remark);
-}
-
 JointTrajectory toTrajectory(const moveit::RobotTrajectory &message, const Robot &robot, const Srdf &srdf,
-                             std::vector<std::string> &remarks) {
+                             RobotMotions &motions) {
   JointTrajectory joints = message.joint_trajectory;
   MultiDOFJointTrajectory free = message.multi_dof_joint_trajectory;
   joints.header.stamp = free.header.stamp = ros::Time(); // when it was planned is no time to look transforms up for
@@ -117,11 +124,12 @@ JointTrajectory toTrajectory(const moveit::RobotTrajectory &message, const Robot
   if (joints.joint_names.empty() && free.joint_names.empty())
     throw Error(unknown.empty() ? "the trajectory names no joints"
                                 : "the robot has none of the trajectory's joints: " + quotedNames(unknown));
-  if (!unknown.empty()) addRemark("joints that the robot does not have are left out: " + quotedNames(unknown), remarks);
+  if (!unknown.empty())
+    addRemark("joints that the robot does not have are left out: " + quotedNames(unknown), motions.remarks);
   if (free.joint_names.empty()) return joints;
   JointTrajectory freely = toJointTrajectory(free, robot, srdf);
   if (joints.joint_names.empty()) return freely;
-  return merged(joints, freely, remarks);
+  return merged(joints, freely, motions);
 }
 
 /** Further joints that stand at these values. */
@@ -165,7 +173,7 @@ std::uint32_t bodyType(const std::string &name, const Snapshot &snapshot) {
 
 RobotMotions toMotions(const moveit::RobotTrajectory &message, const Snapshot &snapshot, const Srdf &srdf) {
   RobotMotions out;
-  out.trajectories.push_back(toTrajectory(message, robotOf(snapshot), srdf, out.remarks));
+  out.trajectories.push_back(toTrajectory(message, robotOf(snapshot), srdf, out));
   return out;
 }
 
@@ -197,8 +205,9 @@ RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot 
   for (const moveit::AttachedCollisionObject &attached : start.attached_collision_objects) {
     const std::string &id = attached.object.id;
     if (snapshot.attached().count(id) == 0)
-      out.remarks.push_back("trajectory_start: link '" + attached.link_name + "' carries '" + id +
-                            "', and in the scene it does not: '" + id + "' is not measured");
+      leaveOut("trajectory_start: link '" + attached.link_name + "' carries '" + id +
+                   "', and in the scene it does not: '" + id + "' is not measured",
+               Missing::GEOMETRY, out);
   }
 
   JointPositions stood;
@@ -206,7 +215,7 @@ RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot 
   JointPositions held = freeValues(start.multi_dof_joint_state, robot, srdf);
   for (const moveit::RobotTrajectory &part : message.trajectory) {
     const bool first = out.trajectories.empty();
-    JointTrajectory trajectory = toTrajectory(part, robot, srdf, out.remarks);
+    JointTrajectory trajectory = toTrajectory(part, robot, srdf, out);
     hold(held, trajectory);
     auto &points = trajectory.points;
     if (!first && !points.empty() && points.front().time_from_start > ros::Duration(0.0)) {

@@ -22,16 +22,18 @@ struct RobotMotions {
   std::vector<trajectory_msgs::JointTrajectory> trajectories;
   sensor_msgs::JointState start;    /**< joints that no trajectory names */
   std::vector<std::string> remarks; /**< what is not used, or is not as the message says */
+  Coverage coverage;                /**< those of them that can make an answer wrong */
 };
 
 /** Both parts as one trajectory of joints: a planar or floating joint by its variables. Joints that the robot does not
  *  have are left out, with a remark. Where both parts move joints, their points must be as many and at the same times,
- *  and all joints go straight from point to point, as those of the multi-DOF part do. Throws Error: a scene without a
+ *  and all joints go straight from point to point, as those of the multi-DOF part do; velocities that are not used are
+ *  missing in the coverage. Throws Error: a scene without a
  *  robot, no joint of the robot, parts that do not fit, and what toJointTrajectory() refuses. */
 RobotMotions toMotions(const moveit::RobotTrajectory &message, const Snapshot &snapshot, const Srdf &srdf);
 
 /** Each trajectory begins with the joints where the one before has left them; before the first they stand as
- *  trajectory_start says. A remark names what that state carries and the scene does not. */
+ *  trajectory_start says. What that state carries and the scene does not is missing in the coverage. */
 RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot &snapshot, const Srdf &srdf);
 
 /** Nothing for a row that is clear, or, where it has no verdict, farther than `epsilon` [m]. A row that is violated, or

@@ -212,6 +212,7 @@ void Pipeline::requestOfMotions(const Message &message, ProximityQuery &more, Pr
   more.joint_state.header.stamp = ros::Time(); // when the trajectory was planned is no time to look transforms up for
   QueryRequest request(query_type_, results.delta, more);
   request.trajectories = List<trajectory_msgs::JointTrajectory>(motions.trajectories);
+  request.coverage = std::move(motions.coverage);
   for (std::string &remark : motions.remarks) {
     const std::string line = "~" + results.source + ": " + remark;
     if (complaints_.isDue(line)) ROS_WARN_STREAM(line);
@@ -240,6 +241,7 @@ void Pipeline::tellClearance(const QueryRequest &request, const ProximityResults
   again.paths = request.paths;
   again.trajectories = request.trajectories;
   again.multi_dof_trajectories = request.multi_dof_trajectories;
+  again.coverage = request.coverage;
   question::Profile asked;
   asked.intervals = static_cast<std::size_t>(parameters_.profile_intervals);
   again.question = asked;

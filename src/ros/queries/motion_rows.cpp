@@ -243,6 +243,7 @@ void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, 
   } catch (const Error &error) {
     why_not = error.what();
   }
+  trajectory.coverage.add(request.coverage);
   const auto &others = request.multi_dof_trajectories;
   const auto moving = std::count_if(others.begin(), others.end(), [&](const auto &other) {
     return movesRobot(other, work.snapshot->robot().get(), live_.srdf);

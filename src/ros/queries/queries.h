@@ -81,6 +81,7 @@ struct QueryRequest {
   Question question;          /**< its query_type is that of the above */
   bool per_link = false;      /**< rows for each link of a motion */
   const ProximityQuery &more; /**< all else; what stands in the four lists above is not looked at */
+  Coverage coverage;          /**< what of the trajectories' source is not in them */
   double budget_ms = 0.0;     /**< 0: the server's */
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
   const std::atomic<bool> *cancelled = nullptr; /**< set, it ends this query; null: nobody can */
