@@ -19,16 +19,6 @@ bool isIdentity(const cprox_pose &pose) {
   return p.x == 0.0 && p.y == 0.0 && p.z == 0.0 && q.w != 0.0 && q.x == 0.0 && q.y == 0.0 && q.z == 0.0;
 }
 
-/* The unit quaternion, on the side of the one before it. */
-Eigen::Quaterniond rotationOf(const cprox_pose &pose, const std::string &where, const Eigen::Quaterniond &before) {
-  Eigen::Quaterniond q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
-  const double norm = q.coeffs().stableNorm();
-  if (!(norm > 0.0 && std::isfinite(norm))) throw Error(where + ": the quaternion's norm is " + std::to_string(norm));
-  q.coeffs() /= norm;
-  if (q.coeffs().dot(before.coeffs()) < 0.0) q.coeffs() = -q.coeffs();
-  return q;
-}
-
 } // namespace
 
 std::optional<FreeJoint> findFreeJoint(const std::string &name, const Robot &robot,
@@ -52,6 +42,15 @@ std::vector<std::string> variablesOf(const FreeJoint &joint) {
   else
     for (const char *part : FLOATING_PARTS) out.push_back(joint.name + part);
   return out;
+}
+
+Eigen::Quaterniond rotationOf(const cprox_pose &pose, const std::string &where, const Eigen::Quaterniond &before) {
+  Eigen::Quaterniond q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
+  const double norm = q.coeffs().stableNorm();
+  if (!(norm > 0.0 && std::isfinite(norm))) throw Error(where + ": the quaternion's norm is " + std::to_string(norm));
+  q.coeffs() /= norm;
+  if (q.coeffs().dot(before.coeffs()) < 0.0) q.coeffs() = -q.coeffs();
+  return q;
 }
 
 std::vector<std::vector<double>> valuesAt(const std::vector<cprox_pose> &poses, const FreeJoint &joint) {

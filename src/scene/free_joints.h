@@ -29,6 +29,10 @@ std::optional<FreeJoint> findFreeJoint(const std::string &name, const Robot &rob
 /** The names of its variables: NAME/x … */
 std::vector<std::string> variablesOf(const FreeJoint &joint);
 
+/** The unit quaternion of a pose, on the side of the one before it. Throws Error, which begins with `where`, for a norm
+ *  that is 0 or not finite. */
+Eigen::Quaterniond rotationOf(const cprox_pose &pose, const std::string &where, const Eigen::Quaterniond &before);
+
 /** The values of its variables at each pose (planar: 3, floating: 7): angles without jumps, quaternions of norm 1 on
  * the side of the one before. Throws Error, which names the pose: not finite, a quaternion of norm 0, a pose out of a
  *  planar joint's plane, or of a joint that is not flat. */

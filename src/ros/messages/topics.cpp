@@ -129,40 +129,24 @@ namespace {
 
 using trajectory_msgs::MultiDOFJointTrajectory;
 
-const geometry_msgs::Transform &transformOf(const MultiDOFJointTrajectory &trajectory, std::size_t point,
-                                            std::size_t joint) {
+cprox_pose poseOf(const MultiDOFJointTrajectory &trajectory, std::size_t point, std::size_t joint) {
   const auto &transforms = trajectory.points[point].transforms;
   if (transforms.size() != trajectory.joint_names.size())
     throw Error("point " + std::to_string(point) + " has " + std::to_string(transforms.size()) +
                 " transforms, there are " + std::to_string(trajectory.joint_names.size()) + " joints");
-  const geometry_msgs::Transform &out = transforms[joint];
-  if (!isFinite(out.translation.x, out.translation.y, out.translation.z))
+  const geometry_msgs::Vector3 &p = transforms[joint].translation;
+  const geometry_msgs::Quaternion &q = transforms[joint].rotation;
+  if (!isFinite(p.x, p.y, p.z))
     throw Error("point " + std::to_string(point) + ", joint '" + trajectory.joint_names[joint] +
                 "': the translation is not finite");
-  return out;
-}
-
-/** The unit quaternion of a transform, on the side of the one before it. */
-Eigen::Quaterniond rotationOf(const geometry_msgs::Transform &transform, const std::string &where,
-                              const Eigen::Quaterniond &before) {
-  Eigen::Quaterniond q(transform.rotation.w, transform.rotation.x, transform.rotation.y, transform.rotation.z);
-  const double norm = q.coeffs().stableNorm();
-  if (!(norm > 0.0 && std::isfinite(norm))) throw Error(where + ": the quaternion's norm is " + std::to_string(norm));
-  q.coeffs() /= norm;
-  if (q.coeffs().dot(before.coeffs()) < 0.0) q.coeffs() = -q.coeffs();
-  return q;
+  return {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}};
 }
 
 /** Appends the columns of one joint to all points. */
 void addColumns(const MultiDOFJointTrajectory &trajectory, std::size_t j, const FreeJoint &joint,
                 trajectory_msgs::JointTrajectory &out) {
   std::vector<cprox_pose> poses;
-  for (std::size_t i = 0; i < trajectory.points.size(); ++i) {
-    const geometry_msgs::Transform &transform = transformOf(trajectory, i, j);
-    const auto &p = transform.translation;
-    const auto &q = transform.rotation;
-    poses.push_back({{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
-  }
+  for (std::size_t i = 0; i < trajectory.points.size(); ++i) poses.push_back(poseOf(trajectory, i, j));
   for (const std::string &name : variablesOf(joint)) out.joint_names.push_back(name);
   const std::vector<std::vector<double>> values = valuesAt(poses, joint);
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -204,13 +188,13 @@ std::vector<TimedPose> toPoses(const MultiDOFJointTrajectory &trajectory, std::s
     const std::string where = "point " + std::to_string(i);
     const double time = trajectory.points[i].time_from_start.toSec();
     if (i > 0 && !(time > poses.back().time)) throw Error(where + ": its time is not after that of the point before");
-    const geometry_msgs::Transform &transform = transformOf(trajectory, i, joint);
+    const cprox_pose given = poseOf(trajectory, i, joint);
     const Eigen::Quaterniond before =
         i > 0 ? Eigen::Quaterniond(poses.back().pose.linear()) : Eigen::Quaterniond::Identity();
     TimedPose pose;
     pose.time = time;
-    pose.pose.linear() = rotationOf(transform, where, before).toRotationMatrix();
-    pose.pose.translation() << transform.translation.x, transform.translation.y, transform.translation.z;
+    pose.pose.linear() = rotationOf(given, where, before).toRotationMatrix();
+    pose.pose.translation() << given.position.x, given.position.y, given.position.z;
     poses.push_back(pose);
   }
   return poses;
@@ -254,7 +238,7 @@ std::vector<Curve> toCurves(const MultiDOFJointTrajectory &trajectory, double ra
   for (std::size_t j = 0; j < trajectory.joint_names.size(); ++j) {
     std::vector<geometry_msgs::Point> points(at.size());
     for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto &p = transformOf(trajectory, i, j).translation;
+      const cprox_vec3 p = poseOf(trajectory, i, j).position;
       points[i].x = p.x;
       points[i].y = p.y;
       points[i].z = p.z;
