@@ -30,7 +30,7 @@ static cprox_body *keep(world *w, cprox_body *body) {
 
 /* Triangles that hang together nowhere, under the hull of their corners. */
 static cprox_body *make_mesh(rng *r, double size, world *w) {
-  vec3 corners[MOST_POINTS];
+  vec3 corners[MOST_POINTS + 1];
   uint32_t triangles[MOST_POINTS / 3][3];
   const size_t n = 8 + rng_index(r, MOST_POINTS / 3 - 8);
   for (size_t i = 0; i < n; i++) {
@@ -43,7 +43,8 @@ static cprox_body *make_mesh(rng *r, double size, world *w) {
   cprox_body *mesh = NULL, *hull = NULL, *both = NULL;
   cprox_body_create_mesh(corners, 3 * n, (const uint32_t(*)[3])triangles, n, CPROX_MESH_FILL_SURFACE, SIZE_MAX, ws,
                          &mesh);
-  cprox_body_create_polytope(corners, 3 * n, ws, &hull);
+  corners[3 * n] = rng_in_cube(r, 1.5 * size); /* the hull may hold more, and has a centre of its own */
+  cprox_body_create_polytope(corners, 3 * n + rng_index(r, 2), ws, &hull);
   cprox_body_create_lod(keep(w, hull), 0.0, keep(w, mesh), ws, &both);
   return keep(w, both);
 }
