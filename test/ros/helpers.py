@@ -292,12 +292,14 @@ def executable(package, name):
 
 
 class Node:
-    """The node as a process of its own, under a name of its own, its output kept."""
+    """The node as a process of its own, under a name of its own, its output kept. cgroup: the folder of one that it begins in."""
 
-    def __init__(self, name, environment=None, **parameters):
+    def __init__(self, name, environment=None, cgroup=None, **parameters):
         self.name = name
         self.forget()
         arguments = [executable('curve_proximity', 'curve_proximity_node'), '__name:=' + name]
+        if cgroup:
+            arguments = ['sh', '-c', 'echo $$ >"$0"/cgroup.procs && exec "$@"', cgroup] + arguments
         for parameter, value in dict({'state_file': ''}, **parameters).items():
             if environment is None:
                 rospy.set_param('/%s/%s' % (name, parameter), value)

@@ -137,13 +137,39 @@ def heavy(seed, end, report, n_clients):
             report(dict(counts), [], [])
 
 
+class Cgroup:
+    """The system's own limit of memory, by the folder of a cgroup of version 1 or 2 that somebody has made for the node alone."""
+    def __init__(self, folder):
+        self.folder = folder
+        self.limit, self.most, self.killed = ('memory.max', 'memory.peak', 'memory.events') if self.has('memory.max') else (
+            'memory.limit_in_bytes', 'memory.max_usage_in_bytes', 'memory.oom_control')
+        with open(os.path.join(folder, self.limit), 'w') as file:
+            file.write(str((LIMIT_MB + ROOM_MB) << 20))
+
+    def has(self, name):
+        return os.path.exists(os.path.join(self.folder, name))
+
+    def read(self, name):
+        with open(os.path.join(self.folder, name)) as file:
+            return file.read()
+
+    def peak_mb(self):
+        """Not a number where the kernel does not tell."""
+        return int(self.read(self.most)) / 2 ** 20 if self.has(self.most) else float('nan')
+
+    def kills(self):
+        return dict(line.split() for line in self.read(self.killed).splitlines()).get('oom_kill')
+
+
 class Soak:
-    def __init__(self, seconds):
+    def __init__(self, seconds, cgroup=None):
         self.seconds, self.end = seconds, 0.0
+        self.cgroup = Cgroup(cgroup) if cgroup else None
         self.lock = threading.Lock()
         self.counts = dict(large=0, lost_frames=0, changes=0, closed=0, ended_badly=0)
         self.waits, self.first_wrong, self.others = [], None, {}
-        self.nodes = [Node(name, memory_limit_mb=LIMIT_MB, budget_ms=300, tf_timeout=0.3) for name in (NODE, TWIN)]
+        limits = dict(memory_limit_mb=LIMIT_MB, budget_ms=300, tf_timeout=0.3)
+        self.nodes = [Node(NODE, cgroup=cgroup, **limits), Node(TWIN, **limits)]
         for name in (NODE, TWIN):
             Server('/' + name).replace(*scene())
 
@@ -319,6 +345,9 @@ class Soak:
                  demand('memory is flat, within %d MB' % GROWTH_MB, 'first quarter %.0f MB, last quarter %.0f MB' % (before, after), after < before + GROWTH_MB),
                  demand('p99 beside heavy clients, at most %g times that alone' % P99_RATIO, '%.2f' % p99, p99 <= P99_RATIO),
                  demand('p50 beside clients with a wrong frame, at most %g times that alone' % P50_RATIO, '%.2f' % p50, p50 <= P50_RATIO)]
+        if self.cgroup:
+            text.append(demand('the system has killed nothing for its memory, within %d MB' % (LIMIT_MB + ROOM_MB),
+                               '%s killed, %.0f MB at most' % (self.cgroup.kills(), self.cgroup.peak_mb()), self.cgroup.kills() == '0'))
         if self.first_wrong:
             text.append('the first wrong answer:\n' + self.first_wrong)
         text.append('passed' if all(verdicts) else 'FAILED')
@@ -331,6 +360,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--minutes', type=float, default=30.0)
     parser.add_argument('--out')
+    parser.add_argument('--cgroup', metavar='FOLDER', help='of a memory cgroup, made for the node alone: the system then holds its memory to the limit')
     parser.add_argument('--part', nargs='+', metavar=('PART', 'SEED'), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.part:
@@ -344,7 +374,7 @@ def main():
         while not rosgraph.Master('/soak').is_online():
             time.sleep(0.1)
         rospy.init_node('soak', disable_signals=True)
-        good, text = Soak(60 * options.minutes).run()
+        good, text = Soak(60 * options.minutes, options.cgroup).run()
     finally:
         master.terminate()
         master.wait()
