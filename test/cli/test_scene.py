@@ -145,6 +145,54 @@ class Shapes(Case):
         self.assertRefused(self.ask('distance', [ORIGIN], octree), 'map.bt', 'no octomap header')
 
 
+class MoveitText(Case):
+    """*.scene: what MoveIt's planning panel writes."""
+    SHAPES = {'box': '2 3 4', 'sphere': '1.5', 'cylinder': '0.5 4', 'cone': '0.5 4', 'plane': '1 0 0 2',
+              'mesh': '4 4\n3 0 0\n5 1 -1\n5 -1 -1\n5 0 1\n0 1 2\n0 1 3\n0 2 3\n1 2 3'}
+    IN_YAML = {'box': 'primitives: [{type: box, dimensions: [2, 3, 4]}], primitive_poses: [%s]',
+               'sphere': 'primitives: [{type: sphere, dimensions: [1.5]}], primitive_poses: [%s]',
+               'cylinder': 'primitives: [{type: cylinder, dimensions: [4, 0.5]}], primitive_poses: [%s]',
+               'cone': 'primitives: [{type: cone, dimensions: [4, 0.5]}], primitive_poses: [%s]',
+               'plane': 'planes: [{coef: [1, 0, 0, 2]}], plane_poses: [%s]',
+               'mesh': 'meshes: [{vertices: [[3, 0, 0], [5, 1, -1], [5, -1, -1], [5, 0, 1]], '
+                       'triangles: [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]}], mesh_poses: [%s]'}
+    TURN = '0.18257418583505536 0.3651483716701107 0.5477225575051661 0.7302967433402214'
+
+    def ask_text(self, text):
+        return cprox('distance', '--curves', self.file('curves.csv', ORIGIN + '\n'), '--scene', self.file('world.scene', text))
+
+    def every_shape_is_where_the_same_scene_in_yaml_puts_it(self):
+        pose = '{position: [7, 1, -2], orientation: [%s]}' % self.TURN.replace(' ', ', ')
+        for kind, sizes in self.SHAPES.items():
+            shape = f'{kind}\n{sizes}\n7 1 -2\n{self.TURN}\n0 0 0 0\n'
+            new = f'a name\n* the thing\n0.5 0 0\n0 0 0 1\n1\n{shape}1\na tip\n1 2 3\n0 0 0 1\n.\n'
+            old = f'(noname)\n* the thing\n1\n{shape}.\n'
+            for text, place in ((new, 'pose: {position: [0.5, 0, 0]}, '), (old, ''), (old.replace('\n', '\r\n'), '')):
+                with self.subTest(kind=kind, old=not place):
+                    expected = self.ask('distance', [ORIGIN], one(place + self.IN_YAML[kind] % pose).replace('thing', 'the thing'))
+                    self.assertEqual((expected.code, expected.err), (0, ''))
+                    answer = self.ask_text(text)
+                    self.assertEqual((answer.code, answer.err), (0, ''))
+                    self.assertEqual(answer.without_times(), expected.without_times())
+
+    def what_is_wrong_is_said_with_its_line(self):
+        box = 'box\n1 1 1\n0 0 0\n0 0 0 1\n0 0 0 0\n'
+        for text, *words in (('', 'line 1', 'empty'), ('name\n', 'line 2', "without the line '.'"),
+                             (f'name\n* a\n1\n{box}', 'line 9', "without the line '.'"),
+                             (f'name\n* a\n1\n{box}1\n.\n', 'line 9', "'1' is neither"),
+                             (f'name\n* a\n1\n{box}.\n* b\n', 'line 10', 'after the end'),
+                             (f'name\n* a\n2\n{box}.\n', 'line 9', "the shape '.'"),
+                             (f'name\n* a\n-1\n{box}.\n', 'line 3', "'-1' is not the number of shapes of 'a'"),
+                             ('name\n* a\n1\nbox\n1 1 nan\n', 'line 5', "'nan'"),
+                             ('name\n* a\n1\nbox\n1 1', 'line 5', 'the file ends before the sizes of a box'),
+                             ('name\n* a\n1\noctree\n', 'line 4', "'octree'"),
+                             ('name\n* a\n0\n.\n', "'a'", 'no shape'), (f'name\n*\n1\n{box}.\n', 'no id'),
+                             (f'name\n* a\n1\n{box.replace("0 0 0 1", "0 0 0 0")}.\n', "'a'", 'norm is 0'),
+                             ('name\n* a\n1\nmesh\n3 1\n0 0 0\n1 0 0\n0 1 0\n0 1 3\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n', "'a'")):
+            with self.subTest(text=text):
+                self.assertRefused(self.ask_text(text), 'world.scene', *words)
+
+
 class Poses(Case):
     def lists_and_maps_mean_the_same(self):
         c, s = math.cos(math.pi / 8), math.sin(math.pi / 8)

@@ -14,6 +14,7 @@
 #include "numbers.h"
 #include "robot_state_yaml.h"
 #include "scene_change.h"
+#include "scene_text.h"
 #include "trajectory_yaml.h"
 
 namespace curve_proximity::yaml {
@@ -341,7 +342,7 @@ ObjectDescription readPlacedShapes(const YamlValue &value, Warnings &warnings) {
 }
 
 SceneFile readScene(const std::string &path, Warnings &told) {
-  const YamlValue root = loadYaml(path);
+  const YamlValue root = isSceneText(path) ? loadSceneText(path) : loadYaml(path);
   SceneFile out;
   Warnings warnings;
   try {
