@@ -141,13 +141,14 @@ class SuperquadricConstraint : public Constraint {
     if (place.curve) throw Error("there is a curve, and the pair is not along one");
 
     // The nearest of all pairs of parts, and the next. Of a single pair the search goes on from where it ended before.
-    cprox_pair_start *start = a_.elements.size() == 1 && b_.elements.size() == 1 ? &out.start : nullptr;
+    const bool single = a_.elements.size() == 1 && b_.elements.size() == 1;
     constexpr double INFINITE = std::numeric_limits<double>::infinity();
     Nearest best;
     double lower = INFINITE, upper = INFINITE, next = INFINITE;
     for (const Element &a : a_.elements) {
       for (const Element &b : b_.elements) {
-        const Nearest found = ask(a, b, place, start, workspace);
+        cprox_pair_start fresh{};
+        const Nearest found = ask(a, b, place, single ? out.start : fresh, workspace);
         lower = std::min(lower, found.result.lower);
         upper = std::min(upper, found.upper);
         next = std::min(next, std::max(found.value(), best.value()));
@@ -167,6 +168,7 @@ class SuperquadricConstraint : public Constraint {
     double upper = std::numeric_limits<double>::infinity();
     bool is_mesh = false; /* not convex: there may be several nearest points */
     bool is_known = true; /* false: the value says nothing of how deep they overlap */
+    double shift = 0.0;   /* [m] by which either body may move without another way out; 0: not known */
     Nearest() {
       result.upper = std::numeric_limits<double>::infinity();
     }
@@ -186,15 +188,16 @@ class SuperquadricConstraint : public Constraint {
   }
 
   /* Apart, meshes have their own distance. Where they overlap, their hulls say how deep at most. */
-  Nearest ask(const Element &a, const Element &b, const ConstraintPlace &place, cprox_pair_start *start,
+  Nearest ask(const Element &a, const Element &b, const ConstraintPlace &place, cprox_pair_start &start,
               Workspace &workspace) const {
     cprox_options options = parameters_.options;
-    options.start = start;
+    options.start = &start;
     const bool meshes = a.isMesh() || b.isMesh();
     Nearest out;
     out.a = a.body.get();
     out.b = b.body.get();
     out.result = measure(out.a, out.b, place, options, workspace);
+    out.shift = start.shift;
     out.is_mesh = meshes && out.result.upper > 0.0;
     out.is_known = out.result.status != CPROX_OVERLAP || out.result.upper < 0.0;
     out.upper = out.result.upper + a_.excess + b_.excess;
@@ -202,6 +205,7 @@ class SuperquadricConstraint : public Constraint {
       out.a = a.hull.get();
       out.b = b.hull.get();
       out.result = measure(out.a, out.b, place, options, workspace);
+      out.shift = start.shift;
       out.result.lower -= a_.missing + b_.missing;
       out.is_known = out.result.status != CPROX_OVERLAP;
       out.result.status = CPROX_OVERLAP;
@@ -271,8 +275,9 @@ class SuperquadricConstraint : public Constraint {
   }
 
   /* Inside, the way out may change from one side to another: then the normal jumps nearby. So it does where a mesh has
-   * two nearest points. */
+   * two nearest points. The search itself mostly tells that no other way out is as near. */
   bool wayOutIsAlone(const Nearest &best, const ConstraintPlace &place, double size, Workspace &workspace) const {
+    if (best.shift > NEAR * size) return true;
     const double near = lean(best, place, NEAR * size, workspace);
     return near <= NORMAL_NOISE || !isJump(near, lean(best, place, FAR * size, workspace), NORMAL_NOISE);
   }

@@ -142,6 +142,10 @@ typedef struct cprox_pair_start {
   cprox_vec3 normal;
   /** [m] between the two points; 0 where they overlapped */
   double distance;
+  /** [m] either body may move by this much, and no way out whose normal is farther than 2e-3 rad from this one becomes
+   *  the nearest; 0: not known, or more than one. Of convex bodies that are apart without margins
+   *  (a sphere's and a capsule's radius is one) it is how far, and the normal turns without a jump. Not read. */
+  double shift;
   /** 0 … 3: of boxes and polytopes, the vertices between which the nearest points lie */
   int32_t n_vertices;
   /** numbers of vertices of a */

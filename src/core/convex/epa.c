@@ -423,11 +423,54 @@ static bool surface_expand(surface *s, const epa_set *set, const epa_goal *goal,
   return true;
 }
 
+/* The facet towards which the least shift of 0 leads out elsewhere, and that shift. The surface lies inside the set: a way
+ * out that crosses a facet is at least as long as the way to the facet's plane. Where that facet is one with the
+ * nearest, its normal within e = EPA_ALIKE, a way out farther than 2e from the normal is longer by 1 / cos e: after a
+ * shift by q it is no shorter while (least - q)(1 - cos e) > e q + (most - least), so up to 0.2 e least if most - least
+ * is at most 0.25 e^2 least. */
+static double surface_least_shift(const surface *s, const epa_depth *depth, int32_t *at) {
+  double least = INFINITY;
+  *at = -1;
+  for (int32_t i = 0; i < s->n_facets; i++) {
+    if (!(s->offset[i] < INFINITY)) continue;
+    const double angle = vec_norm(vec_sub(s->facet[i].normal, depth->normal));
+    if (!(angle > EPA_ALIKE)) continue;
+    const double shift = (s->offset[i] - depth->most) / angle;
+    if (shift < least) least = shift, *at = i;
+  }
+  return least;
+}
+
+/* Facets other than the nearest are as coarse as the search has left them: those that are in the way are made finer
+ * until the shift is as large as asked for, or a plane of the set shows that it is not. */
+static bool surface_part(surface *s, const epa_set *set, const epa_goal *goal, epa_depth *depth) {
+  enum { MOST_MORE = 40 };
+  view v;
+  if (!(depth->most - depth->least <= 0.25 * EPA_ALIKE * EPA_ALIKE * depth->least)) return true;
+  for (int more = 0; more < MOST_MORE; more++) {
+    int32_t at;
+    const double shift = surface_least_shift(s, depth, &at);
+    depth->shift = greater(lesser(shift, 0.2 * EPA_ALIKE * depth->least), 0.0);
+    if (shift >= goal->shift || depth->steps >= goal->max_steps) return true;
+    const facet *f = &s->facet[at];
+    const double angle = vec_norm(vec_sub(f->normal, depth->normal));
+    const simplex_vertex x = farthest_from(set, s->shift, f->normal);
+    depth->steps++;
+    const double reach = vec_dot(f->normal, x.w) + x.behind;
+    if (isnan(reach)) return false;
+    if (reach - depth->most < goal->shift * angle || !is_seen(f, x.w, goal->rounding)) return true;
+    if (!view_from(s, at, x.w, goal->rounding, &v) || !view_close(&v)) view_alone(s, at, &v);
+    if (!surface_grow(s, &x, &v)) return true;
+  }
+  return true;
+}
+
 static const epa_depth UNKNOWN = {.least = -INFINITY, .most = INFINITY, .exhausted = true};
 
 /* From a surface that encloses 0. */
 static bool surface_finish(surface *s, const epa_set *set, const epa_goal *goal, epa_depth *depth) {
   if (!surface_expand(s, set, goal, INFINITY, depth)) return false;
+  if (goal->shift > 0.0 && !depth->exhausted && !surface_part(s, set, goal, depth)) return false;
   find_touch(s, greater(goal->width, goal->rounding), goal->rounding, depth);
   return true;
 }

@@ -18,6 +18,8 @@ typedef struct epa_goal {
   bool rough;      /* or `most` may be four times `least` */
   uint32_t max_steps;
   int32_t room; /* for so many vertices, where that is more than a query needs: allocated, and none if memory is out */
+  double
+      shift; /* or 0: how large `shift` of the answer need be proven; the width is then at most EPA_ALIKE / 20 of it */
 } epa_goal;
 
 /* least <= depth <= most, but for rounding. */
@@ -26,8 +28,13 @@ typedef struct epa_depth {
   vec3 normal;   /* unit, outwards: the set reaches no farther than `most` along it */
   simplex touch; /* the facet that `least` was measured to, and the weights of its point nearest to 0 */
   bool exhausted;
+  double shift; /* 0 may move by this much, and no way out farther than 2 EPA_ALIKE from the normal becomes the nearest;
+                   0 where that was not asked for, or is not known */
   uint32_t steps;
 } epa_depth;
+
+/* Facets whose normals are no farther from that of the nearest are one with it. */
+static const double EPA_ALIKE = 1e-3;
 
 /* From a tetrahedron that encloses 0, or a triangle or an edge that 0 lies on. False where rounding hides that 0 is
  * enclosed: then nothing is set. */

@@ -42,6 +42,9 @@ static const double PAIR_SHALLOW = 8.0;
 /* A simplex that holds 0 so much less deep than M may hold it says too little. */
 static const double PAIR_THIN = 1e-6;
 
+/* A way out is alone where it stays the nearest while the bodies move by this part of the smaller one's size. */
+static const double PAIR_SHIFT = 2e-6;
+
 /* A Newton step has failed if more than this is left of the gap. */
 static const double PAIR_NEWTON_GAIN = 0.7;
 
@@ -604,12 +607,15 @@ static void pair_sharpen_way_out(pair *p, epa_depth *depth) {
 static void pair_measure_depth(pair *p, double margin_a, double margin_b, const pair_goal *goal, pair_expander expand,
                                pair_answer *answer) {
   const double relative = goal->relative_epsilon * (p->nearest.depth + margin_a + margin_b);
-  const epa_goal inner = {.rounding = p->rounding,
-                          .width = fmax(fmax(goal->epsilon, relative) - 2.0 * p->rounding, 0.25 * p->rounding),
-                          .max_steps = pair_steps_left(p, goal),
-                          .room = goal->room};
+  epa_goal inner = {.rounding = p->rounding,
+                    .width = fmax(fmax(goal->epsilon, relative) - 2.0 * p->rounding, 0.25 * p->rounding),
+                    .max_steps = pair_steps_left(p, goal),
+                    .room = goal->room,
+                    .shift = goal->wants_shift ? PAIR_SHIFT * fmin(p->a->scale, p->b->scale) : 0.0};
+  if (inner.shift > 0.0) inner.width = fmax(fmin(inner.width, 0.05 * EPA_ALIKE * inner.shift), 0.25 * p->rounding);
   epa_depth depth;
   if (!expand(p, &inner, &depth) || !(depth.most < INFINITY)) return;
+  answer->shift = depth.shift;
   p->steps += depth.steps;
   p->nearest.inside = true;
   p->nearest.depth = depth.least;
@@ -751,6 +757,7 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   answer->supports = p.supports;
   answer->rounding = p.rounding;
   answer->depth = p.nearest.inside ? p.nearest.depth : 0.0;
+  if (!p.nearest.inside) answer->shift = greater(p.lower - p.rounding, 0.0);
   if (p.nearest.inside) answer->above = p.rounding;
   answer->upper = (p.nearest.inside ? 0.0 : apart) - margins + answer->above;
   if (answer->overlap) answer->upper = answer->measured ? fmin(p.rounding - p.nearest.depth - margins, 0.0) : 0.0;

@@ -35,6 +35,7 @@ typedef struct pair_goal {
   bool wants_depth; /* how deep the cores overlap, not only that they do */
   bool plain;       /* the bounds need not hold: what is likely to be rounding and not what may be at worst */
   int32_t room;     /* wants_depth: memory may be allocated for so many vertices of M; 0: none */
+  bool wants_shift; /* wants_depth: and whether that is the only way out */
 } pair_goal;
 
 /* What the point of M = A - B that is nearest to 0 lies on: how the distance changes when 0 moves. */
@@ -59,6 +60,7 @@ typedef struct pair_answer {
   vec3 common;            /* a's frame: where they overlap or touch, a point of both but for rounding */
   vec3 normal;            /* a's frame, unit, from b to a; (0,0,0) where there is none */
   double depth;           /* overlap: the cores' own depth is proven to be at least this */
+  double shift;           /* either core may move by this much without another way out; 0: not known */
   pair_feature feature;   /* only where the goal asks for it, and the cores are apart or their depth is measured */
   pair_vertices vertices; /* only where the goal asks for them, and the cores are apart */
   uint32_t steps, supports;

@@ -135,6 +135,7 @@ static void pair_take(const implicit_answer *found, const pair_side *a, const pa
                       double rounding, pair_answer *answer) {
   const double margins = a->margin + b->margin;
   answer->overlap = found->overlap;
+  answer->shift = found->overlap ? 0.0 : greater(found->lower, 0.0);
   answer->lower = found->lower - margins - rounding;
   answer->rounding = answer->above = rounding;
   if (found->overlap) {
@@ -219,6 +220,7 @@ static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, c
   if (many) {
     if (!mesh_mesh_measure(first, second, goal, workspace, answer))
       return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of meshes");
+    answer->shift = 0.0;
     if (swapped) pair_swap(answer);
     pair_answer_to_world(first, answer);
     return CPROX_OK;
@@ -226,6 +228,7 @@ static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, c
   if (second->shape->ops->kind == CPROX_BODY_HALFSPACE)
     return workspace_fail(workspace, CPROX_INVALID, "a halfspace has no distance to a mesh, points or boxes here");
   convex_mesh_measure(first, second, goal, answer);
+  answer->shift = 0.0; /* another element may be as near */
   if (swapped) pair_swap(answer);
   pair_answer_to_world(first, answer);
   return CPROX_OK;
@@ -241,7 +244,8 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
   const pair_placement place = relative_pose_make(first, second);
   pair_goal goal = *asked;
-  if (known) {
+  /* the way out of an overlap tells nothing of a simplex that encloses 0 */
+  if (known && (known->distance > 0.0 || known->vertices.n > 0)) {
     double error = 0.0;
     goal.start = frame_turn_to_local(&first->f, swapped ? vec_neg(known->normal) : known->normal);
     goal.placed = true;
@@ -450,6 +454,8 @@ static void pair_leave(const cprox_obstacle *a, const cprox_obstacle *b, const p
   start->point_b = frame_to_local(&f->b, vec_axpy(answer->on_b, -b->margin, n), &error);
   const double distance = vec_dot(vec_sub(answer->on_a, answer->on_b), n) + a->margin + b->margin;
   start->distance = answer->overlap ? 0.0 : fmax(distance, 0.0);
+  const bool single = body_n_parts(a->body) == 1 && body_n_parts(b->body) == 1;
+  start->shift = single ? answer->shift : 0.0;
   start->n_vertices = answer->vertices.n;
   for (int i = 0; i < answer->vertices.n; i++)
     start->vertices_a[i] = answer->vertices.a[i], start->vertices_b[i] = answer->vertices.b[i];
@@ -583,7 +589,8 @@ static cprox_status pair_search(const cprox_obstacle *a, const cprox_obstacle *b
                           .stop = asked->stop,
                           .stop_user = asked->stop_user,
                           .wants_depth = true,
-                          .wants_vertices = asked->start != NULL};
+                          .wants_vertices = asked->start != NULL,
+                          .wants_shift = asked->start != NULL};
   pair_reply best;
   pair_frames frames;
   pair_known known;
