@@ -144,6 +144,9 @@ A. Lakshmanan, A. Patterson, V. Cichella, N. Hovakimyan, RSS 2019
 
 {ellipsoids(figures)}
 
+Our search asks for 30, 25 and 46 arc lengths, the published method for 126, 130 and 142 values of their integral. Its
+bounds take rounding into account; those of the published method do not.
+
 {picture(out, 'seeds_figure_11_reach', 'Fig. 11: how far ellipsoids and control points reach')}
 
 **§V-D**, confidence regions, by `bench/pictures.py`:

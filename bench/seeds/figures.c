@@ -51,7 +51,7 @@ static double known_length(void *user, double a, double b) {
 
 static cprox_curve *by_length(const named_curve *curve) {
   const cprox_rectifiable_curve functions = {
-      .point = known_point, .length = known_length, .user = (void *)(uintptr_t)curve, .error = 1e-14};
+      .point = known_point, .length = known_length, .user = (void *)(uintptr_t)curve, .error = named_error(curve)};
   const cprox_curve_description d = {
       .kind = CPROX_CURVE_RECTIFIABLE, .t0 = curve->paper.t0, .t1 = curve->paper.t1, .rectifiable = &functions};
   cprox_curve *made = NULL;

@@ -129,11 +129,61 @@ static double unit_energy(const void *self, double t) {
   return t + 2.0 * PI;
 }
 
+/* By the Bernstein coefficients of |psi'|² - 1 of each piece. What rounding takes from control points 1e-16 off, 5 of
+ * them over a piece's width, is counted as 1e-12. */
+static double stretch_of(const cprox_curve *curve) {
+  static const double rounding = 1e-12;
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  const size_t n = info.degree - 1;
+  double most = 0.0;
+  for (size_t i = 0; i < info.n_pieces; i++) {
+    vec3 p[CPROX_MAX_DEGREE + 1];
+    double square[2 * CPROX_MAX_DEGREE] = {0}, weight[2 * CPROX_MAX_DEGREE] = {0}, first = 1.0;
+    const cprox_curve_piece_info piece = cprox_curve_get_piece_info(curve, i);
+    check(cprox_curve_control_points(curve, piece.t0, piece.t1, NULL, p));
+    for (size_t k = 0; k <= n; k++)
+      p[k] = vec_scale((double)info.degree / (piece.t1 - piece.t0), vec_sub(p[k + 1], p[k]));
+    for (size_t k = 0; k <= n; first *= (double)(n - k) / (double)(k + 1), k++) {
+      double second = 1.0;
+      for (size_t l = 0; l <= n; second *= (double)(n - l) / (double)(l + 1), l++) {
+        square[k + l] += first * second * (vec_dot(p[k], p[l]) - 1.0);
+        weight[k + l] += first * second;
+      }
+    }
+    for (size_t k = 0; k <= 2 * n; k++) most = fmax(most, square[k] / weight[k]);
+  }
+  return most + rounding;
+}
+
 void named_spiral(vec3 centre, named_curve *c) {
   *c = (named_curve){.centre = centre};
   check(curve_from(describe_clothoid(centre, 0.0, 0.0, 1.0, -2.0 * PI, 2.0 * PI), NULL, &c->curve));
+  c->stretch = stretch_of(c->curve);
   c->paper = (paper_curve){
       .t0 = -2.0 * PI, .t1 = 2.0 * PI, .planar = true, .self = c, .point = compiled_point, .energy = unit_energy};
+}
+
+/* ---- errors ---- */
+
+/* A wave is within 2u of its coefficient, its product with that included, and u |kt| for the angle unless k is a power
+ * of two; a sum adds u of all coefficients a wave. An evaluation of the spiral's pieces has 3 degree + 3 roundings. */
+double named_error(const named_curve *c) {
+  const double u = 1.1102230246251565e-16;
+  if (c->harmonics == 0) {
+    const cprox_curve_info info = cprox_curve_get_info(c->curve);
+    const double size = fmax(vec_norm(info.lowest), vec_norm(info.highest));
+    return (3.0 * (double)info.degree + 3.0) * u * size;
+  }
+  vec3 error = {0}, sum = {0};
+  for (size_t i = 0; i < 2 * c->harmonics + 1; i++) {
+    const size_t k = (i + 1) / 2;
+    const vec3 p = c->coefficient[i], size = vec(fabs(p.x), fabs(p.y), fabs(p.z));
+    sum = vec_add(sum, size);
+    error = vec_axpy(error, (k > 0 ? 2.0 : 0.0) + (k & (k - 1) ? (double)k * c->paper.t1 : 0.0), size);
+    const vec3 added = vec(size.x > 0.0 ? sum.x : 0.0, size.y > 0.0 ? sum.y : 0.0, 0.0); /* a zero is added exactly */
+    error = vec_add(error, added);
+  }
+  return 1.01 * u * vec_norm(error);
 }
 
 /* ---- energies of intervals ---- */
@@ -143,7 +193,7 @@ void named_spiral(vec3 centre, named_curve *c) {
 double named_energy(const named_curve *c, double a, double b, double *error) {
   const double u = 1.1102230246251565e-16;
   if (c->harmonics == 0) {
-    *error = 2.0 * u * (b - a);
+    *error = (2.0 * u + c->stretch) * (b - a);
     return b - a;
   }
   double sum = c->energy[0] * (b - a), sizes = fabs(c->energy[0]), angles = 0.0;

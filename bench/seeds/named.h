@@ -17,11 +17,15 @@ typedef struct named_curve {
   vec3 coefficient[2 * NAMED_MAX_HARMONIC + 1]; /* 1, cos t, sin t, cos 2t, … */
   double energy[4 * NAMED_MAX_HARMONIC + 1];    /* of |psi'|²: 1, cos t, sin t, … */
   vec3 centre;                                  /* of the involute's circle */
+  double stretch;                               /* of the compiled spiral: |psi'|² is at most 1 + this */
 } named_curve;
 
 /* The integral of |psi'|² over [a, b], for short intervals as exact as for long ones: less than it by at most
  * *error, which is in proportion to b - a. Of series and of the spiral. */
 double named_energy(const named_curve *c, double a, double b, double *error);
+
+/* How far a computed point may be from the curve's: the series, or the compiled spiral, which is 2e-13 from a clothoid. */
+double named_error(const named_curve *c);
 
 /* Made in place, since paper.self is the curve itself. */
 void named_heart(vec3 centre, double size, named_curve *c);

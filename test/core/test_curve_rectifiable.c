@@ -255,6 +255,147 @@ CASE(distances_by_arcs_and_by_points_agree) {
   cprox_workspace_free(ws);
 }
 
+/* (a cos t, b sin t, c t): |psi'|² has the integral (a² + b²)h/2 + c² h + (b² - a²)/2 cos(s) sin(h), h the difference
+ * and s the sum of the ends. */
+typedef struct helix {
+  vec3 size, middle;
+  unsigned long points, lengths;
+} helix;
+
+static void helix_point(void *user, double t, vec3 *x) {
+  helix *h = user;
+  h->points++;
+  *x = vec_add(h->middle, vec(h->size.x * cos(t), h->size.y * sin(t), h->size.z * t));
+}
+
+static double helix_length(void *user, double from, double to) {
+  helix *k = user;
+  k->lengths++;
+  const long double h = (long double)to - from, s = (long double)to + from, a = k->size.x, b = k->size.y, c = k->size.z;
+  const long double energy = (0.5L * (a * a + b * b) + c * c) * h + 0.5L * (b * b - a * a) * cosl(s) * sinl(h);
+  return (double)sqrtl(h * energy * (1.0L + 1e-14L));
+}
+
+/* Seed 407: 200 helices past a box, to 1e-10. Least distances are found by parabolas and bounded by parts that grow from
+ * there: bisection at the middles takes 59 lengths, a search without parabolas 62 and 64 points. */
+CASE(a_smooth_curve_takes_a_few_dozen_lengths) {
+  rng r = rng_seed(407);
+  cprox_workspace *w = cprox_workspace_create();
+  unsigned long points = 0, lengths = 0, n = 0;
+  cprox_body *body = NULL;
+  const vec3 half = vec(0.5, 0.4, 0.3);
+  assert_int_equal(cprox_body_create_box(vec_scale(2.0, half), w, &body), CPROX_OK);
+  for (size_t i = 0; i < test_cases(200); i++) {
+    helix h = {.size = vec(rng_uniform(&r, 0.5, 2.0), rng_uniform(&r, 0.5, 2.0), rng_uniform(&r, 0.0, 0.2))};
+    h.middle = vec_scale(rng_uniform(&r, 3.0, 4.0), rng_unit(&r));
+    const cprox_rectifiable_curve f = {.point = helix_point, .length = helix_length, .user = &h, .error = 2e-15};
+    const cprox_curve_description d = {.kind = CPROX_CURVE_RECTIFIABLE, .t1 = 6.0, .rectifiable = &f};
+    cprox_curve *curve = NULL;
+    assert_int_equal(cprox_curve_create(&d, w, &curve), CPROX_OK);
+    h.points = h.lengths = 0;
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.epsilon = 1e-10;
+    cprox_result result;
+    assert_int_equal(
+        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), &options, w, &result),
+        CPROX_OK);
+    points += h.points, lengths += h.lengths, n++;
+    double least = INFINITY;
+    for (int k = 0; k <= 20000; k++) {
+      vec3 x;
+      helix_point(&h, 6.0 * k / 20000, &x);
+      const vec3 out = vec(fmax(fabs(x.x) - half.x, 0.0), fmax(fabs(x.y) - half.y, 0.0), fmax(fabs(x.z) - half.z, 0.0));
+      least = fmin(least, vec_norm(out));
+    }
+    assert_true(result.lower <= least + 1e-14 && least <= result.upper + 1e-6);
+    cprox_curve_free(curve);
+  }
+  print_message("%lu points and %lu lengths on average\n", points / n, lengths / n);
+  assert_true(lengths < 52 * n && points < 58 * n);
+  cprox_body_free(body);
+  cprox_workspace_free(w);
+}
+
+/* A polyline at the speed 1: its parameter is its length, and its kinks are known to nobody. */
+enum { CORNERS = 12 };
+typedef struct polyline {
+  vec3 corner[CORNERS];
+  double at[CORNERS]; /* the length up to a corner */
+} polyline;
+
+static void polyline_point(void *user, double t, vec3 *x) {
+  const polyline *p = user;
+  int i = 0;
+  while (i < CORNERS - 2 && t > p->at[i + 1]) i++;
+  *x = vec_lerp(p->corner[i], p->corner[i + 1], (t - p->at[i]) / (p->at[i + 1] - p->at[i]));
+}
+
+static double polyline_length(void *user, double from, double to) {
+  (void)user;
+  return (to - from) * (1.0 + 8.0 * ROUND_U) + 8.0 * ROUND_U * (double)CORNERS;
+}
+
+/* The least of a convex function on a segment, by thirds, in long double. */
+static long double least_on(vec3 a, vec3 b, vec3 half) {
+  long double from = 0.0L, to = 1.0L, least = INFINITY;
+  for (int i = 0; i < 200; i++) {
+    long double d[2];
+    for (int k = 0; k < 2; k++) {
+      const long double s = from + (to - from) * (1 + k) / 3.0L;
+      const long double x = fmaxl(fabsl(a.x + s * ((long double)b.x - a.x)) - half.x, 0.0L),
+                        y = fmaxl(fabsl(a.y + s * ((long double)b.y - a.y)) - half.y, 0.0L),
+                        z = fmaxl(fabsl(a.z + s * ((long double)b.z - a.z)) - half.z, 0.0L);
+      d[k] = sqrtl(x * x + y * y + z * z);
+      least = fminl(least, d[k]);
+    }
+    if (d[0] < d[1])
+      to = from + 2.0L * (to - from) / 3.0L;
+    else
+      from += (to - from) / 3.0L;
+  }
+  return least;
+}
+
+/* Seed 408: 300 polylines about a box or a point, to 1e-10. */
+CASE(curves_with_kinks_end) {
+  rng r = rng_seed(408);
+  cprox_workspace *w = cprox_workspace_create();
+  unsigned long nodes = 0, most = 0, n = 0;
+  for (size_t i = 0; i < test_cases(300); i++) {
+    polyline p = {.at = {0.0}};
+    for (int k = 0; k < CORNERS; k++) {
+      p.corner[k] = vec_axpy(rng_in_cube(&r, 0.5), rng_uniform(&r, 1.2, 2.0), rng_unit(&r));
+      if (k > 0) p.at[k] = p.at[k - 1] + vec_norm(vec_sub(p.corner[k], p.corner[k - 1]));
+    }
+    const cprox_rectifiable_curve f = {.point = polyline_point, .length = polyline_length, .user = &p, .error = 1e-15};
+    const cprox_curve_description d = {.kind = CPROX_CURVE_RECTIFIABLE, .t1 = p.at[CORNERS - 1], .rectifiable = &f};
+    const vec3 half = i % 2 ? vec(0.3, 0.2, 0.25) : vec(0, 0, 0);
+    cprox_curve *curve = NULL;
+    cprox_body *body = NULL;
+    assert_int_equal(cprox_curve_create(&d, w, &curve), CPROX_OK);
+    assert_int_equal(
+        i % 2 ? cprox_body_create_box(vec_scale(2.0, half), w, &body) : cprox_body_create_point(half, w, &body),
+        CPROX_OK);
+    long double truth = INFINITY;
+    for (int k = 0; k + 1 < CORNERS; k++) truth = fminl(truth, least_on(p.corner[k], p.corner[k + 1], half));
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.epsilon = 1e-10;
+    cprox_result result;
+    assert_true(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), &options, w,
+                               &result) >= 0);
+    if (truth > 0.0L && result.status != CPROX_OK)
+      fail_msg("case %zu: status %s, [%.12g, %.12g] of %.12Lg after %u nodes", i, cprox_status_name(result.status),
+               result.lower, result.upper, truth, result.nodes);
+    if (!(result.lower <= truth + 1e-15L && truth <= result.upper + 1e-15L))
+      fail_msg("case %zu: [%.17g, %.17g] is not about %.17Lg", i, result.lower, result.upper, truth);
+    if (truth > 0.0L) nodes += result.nodes, most = result.nodes > most ? result.nodes : most, n++;
+    cprox_curve_free(curve);
+    cprox_body_free(body);
+  }
+  print_message("%lu nodes a polyline on average, %lu at most\n", nodes / n, most);
+  cprox_workspace_free(w);
+}
+
 /* seed 647, 200 curves: the time of contact by arcs is not after the one by points, nor before the free interval that
  * is proven; and every interval of the profile holds what the interval by points holds. */
 CASE(times_of_contact_and_profiles_agree) {

@@ -263,13 +263,24 @@ static bool arc_materialise(const curve_side *side, curve_interval *at) {
   return true;
 }
 
-/* The right half keeps the slot. */
-static bool arc_cut(const curve_side *side, const curve_interval *whole, curve_interval half[2]) {
-  vec3 a, b, middle;
-  double error = whole->error;
-  arc_ends(side, whole, &a, &b);
-  return arc_point(side, curve_side_piece(side, whole), half[0].b, &middle, &error) &&
-         arc_fill(side, &half[0], a, middle, error) && arc_fill(side, &half[1], middle, b, error);
+bool curve_side_cut_arcs(const curve_side *side, const curve_interval *piece, const double *cut, int n,
+                         curve_interval *part) {
+  vec3 from, to, last;
+  double error = piece->error;
+  arc_ends(side, piece, &from, &last);
+  for (int i = 0; i <= n; i++, from = to) {
+    part[i] = *piece;
+    if (i > 0) part[i].a = cut[i - 1];
+    to = last;
+    if (i < n) {
+      part[i].b = cut[i];
+      part[i].slot = points_pool_take(side->pool);
+      if (part[i].slot < 0) return false;
+      if (!arc_point(side, curve_side_piece(side, piece), cut[i], &to, &error)) return false;
+    }
+    if (!arc_fill(side, &part[i], from, to, error)) return false;
+  }
+  return true;
 }
 
 /* ---- intervals of pieces ---- */
@@ -409,6 +420,12 @@ curve_hull curve_side_hull(const curve_side *side, const curve_interval *at, vec
 
 /* ---- points ---- */
 
+vec3 curve_side_end(const curve_side *side, const curve_interval *at, bool last) {
+  const size_t degree = side->curve->degree, i = last ? degree : 0;
+  const double *x = points_pool_at(side->pool, (size_t)at->slot), *y = x + degree + 1, *z = y + degree + 1;
+  return vec(x[i], y[i], z[i]);
+}
+
 vec3 curve_side_point(const curve_side *side, double s) {
   if (side->curve->arcs) {
     vec3 at;
@@ -462,14 +479,9 @@ void curve_side_cut_range(const curve_interval *range, curve_interval half[2]) {
 }
 
 bool curve_side_cut_piece(curve_side *side, curve_interval *piece, double cut, double s, curve_interval half[2]) {
+  if (side->curve->arcs) return curve_side_cut_arcs(side, piece, &cut, 1, half);
   const int32_t left = points_pool_take(side->pool);
   if (left < 0) return false;
-  if (side->curve->arcs) {
-    half[0] = half[1] = *piece;
-    half[0].slot = left;
-    half[0].b = half[1].a = cut;
-    return arc_cut(side, piece, half);
-  }
   const double added =
       control_split(points_pool_at(side->pool, (size_t)left), points_pool_at(side->pool, (size_t)piece->slot),
                     side->curve->degree, s, side->root_magnitude);

@@ -112,6 +112,14 @@ typedef struct curve_hull {
 curve_hull curve_side_hull(const curve_side *side, const curve_interval *at, vec3 from, double *x, double *y,
                            double *z);
 
+/* Cuts a piece's interval of a curve that is known by its arc length at n places, ascending, into n + 1 parts, of which
+ * the last one takes over its slot. False as by curve_side_cut_piece(). */
+bool curve_side_cut_arcs(const curve_side *side, const curve_interval *piece, const double *cut, int n,
+                         curve_interval *part);
+
+/* The first point of a piece's interval with points of its own, or the last. */
+vec3 curve_side_end(const curve_side *side, const curve_interval *at, bool last);
+
 /* A lower bound of the distance from a centre, or an axis through it (NULL for none), over an interval with points of
  * its own, as control_distance_from() gives it. `scratch` holds a slot's numbers. */
 double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis,

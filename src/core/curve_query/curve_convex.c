@@ -113,6 +113,43 @@ static double best_inside(const curve_convex *o, const search_node *node) {
   return s > 1e-12 && s < 1.0 - 1e-12 ? s : -1.0;
 }
 
+/* Of a curve that is known by its arc length, whether the best point, once refined, is an end of the interval: 1 its
+ * start, 2 its end; 0 neither. */
+static int best_end(const curve_convex *o, const search_node *node) {
+  if (!o->side.curve->arcs || !o->refined || !holds_best(o, node)) return 0;
+  const curve_interval *at = &curve_convex_known(node)->at;
+  return o->best.s == at->a ? 1 : o->best.s == at->b ? 2 : 0;
+}
+
+/* How far the other end of such an interval lies beyond the best point, along the best normal. */
+static double rise(const curve_convex *o, const search_node *node, int end) {
+  const vec3 far = curve_side_end(&o->side, &curve_convex_known(node)->at, end == 1);
+  return vec_dot(o->best.normal, far) - o->best.support - (o->best_bound.upper - o->best_bound.slack);
+}
+
+/* An interval of an ellipsoid reaches below its chord by about c times its length squared, and towards it from the best
+ * point the curve rises by about k times that. So of [f x, x] from the best point on all is settled where k f² >= c (1 -
+ * f)²: the interval's own bound and end tell c and k. The cuts at f, f², … of the interval from the best point on, until
+ * what is left is settled as well; their number. */
+static int uneven_cuts(const curve_convex *o, const search_node *node, int end, double cut[CURVE_PACK]) {
+  static const double MORE = 1.1, LEAST = 1.0 / 32, MOST = 0.75;
+  const curve_interval *at = &curve_convex_known(node)->at;
+  const double k = rise(o, node, end), c = o->best_bound.upper - node->lower, width = at->b - at->a;
+  double f = 0.5, part = 1.0;
+  if (k > 0.0 && c > 0.0) f = lesser(greater(MORE / (1.0 + sqrt(k / c)), LEAST), MOST);
+  int n = 0;
+  do {
+    part *= f;
+    cut[n++] = end == 1 ? at->a + part * width : at->b - part * width;
+  } while (n < CURVE_PACK - 1 && k > 0.0 && c * part * part > o->effort.epsilon);
+  for (int i = 0; end == 1 && 2 * i < n - 1; i++) { /* ascending */
+    const double other = cut[i];
+    cut[i] = cut[n - 1 - i];
+    cut[n - 1 - i] = other;
+  }
+  return n;
+}
+
 static double filter(void *self, search_node *node, double goal) {
   curve_convex_node *payload = curve_convex_own(node);
   curve_convex *o = self;
@@ -235,7 +272,7 @@ static bool is_worth_refining(const curve_convex *o, double upper, const curve_j
 /* Measures at s of the loaded piece, and goes on from there by Newton's steps, the first no longer than `step`. */
 static cprox_status probe_at(curve_convex *o, size_t piece, double s, double step) {
   const double *points = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
-  curve_jet jet;
+  curve_jet jet = {0};
   if (o->side.curve->arcs)
     jet.x = curve_side_point(&o->side, s); /* it has no derivatives */
   else
@@ -347,6 +384,14 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
       o->last = o->best;
       return CPROX_OK;
     }
+    /* beyond the best point the curve rises */
+    const int end = best_end(o, node);
+    if (end && rise(o, node, end) > 0.0) {
+      if (payload->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
+      payload->seen = o->incumbent;
+      o->last = o->best;
+      return CPROX_OK;
+    }
   }
   const uint32_t before = o->incumbent;
   const cprox_status status = piece ? probe_piece(o, node) : probe_range(o, node);
@@ -438,14 +483,19 @@ static int split(void *self, search_node *node, search_node *child) {
   curve_convex *o = self;
   if (!is_piece(o, node)) return split_range(o, node, child);
 
-  /* at the witness point, or in the middle */
-  curve_interval *at = &curve_convex_own(node)->at, half[2];
+  /* at the witness point, from the witness point on, or in the middle */
+  curve_interval *at = &curve_convex_own(node)->at, part[CURVE_PACK];
   const double inside = best_inside(o, node);
-  const double cut = inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s;
-  if (!(at->a < cut && cut < at->b)) return 0;
-  if (!curve_side_cut_piece(&o->side, at, cut, inside < 0.0 ? 0.5 : inside, half)) return curve_side_failure(&o->side);
+  const int end = best_end(o, node);
+  double cut[CURVE_PACK] = {inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s};
+  const int n = inside < 0.0 && end ? uneven_cuts(o, node, end, cut) : 1;
+  for (int k = 0; k <= n; k++)
+    if (!((k > 0 ? cut[k - 1] : at->a) < (k < n ? cut[k] : at->b))) return 0;
+  const bool done = n > 1 ? curve_side_cut_arcs(&o->side, at, cut, n, part)
+                          : curve_side_cut_piece(&o->side, at, cut[0], inside < 0.0 ? 0.5 : inside, part);
+  if (!done) return curve_side_failure(&o->side);
   int children = 0;
-  for (int k = 0; k < 2; k++) children = add_child(o, node, &half[k], child, children);
+  for (int k = 0; k <= n; k++) children = add_child(o, node, &part[k], child, children);
   return children;
 }
 

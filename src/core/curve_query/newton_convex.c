@@ -82,8 +82,64 @@ static double descend(const curve_convex *o, const double *points, const curve_s
   return s;
 }
 
+/* ---- without derivatives ---- */
+
+/* Parameters and distances that were measured there. */
+typedef struct parabola {
+  double s[3], d[3];
+} parabola;
+
+/* Where the parabola through the three is least, and how far below the least of the three; false where it has no
+ * minimum. */
+static bool parabola_least(const parabola *p, double *s, double *gain) {
+  const double x = p->s[1] - p->s[0], y = p->s[2] - p->s[0];
+  const double u = (p->d[1] - p->d[0]) / x, v = (p->d[2] - p->d[0]) / y, bend = (v - u) / (y - x);
+  if (!(bend > 0.0) || !isfinite(u)) return false;
+  const double slope = u - bend * x, at = -0.5 * slope / bend;
+  *s = p->s[0] + at;
+  *gain = 0.25 * slope * slope / bend - (p->d[0] - fmin(fmin(p->d[0], p->d[1]), p->d[2]));
+  return true;
+}
+
+/* Curves that are known by points alone: the least of the parabola through three of them, again and again, and the point
+ * takes the place of the one farthest from it. */
+static cprox_status refine_by_points(curve_convex *o, double step) {
+  enum { MOST_POINTS = 12 };
+  const double least = o->side.part.a, most = o->side.part.b, from = o->best.s;
+  const size_t piece = o->best.piece;
+  const double low = greater(from - step, least), high = lesser(from + step, most);
+  const double third = from > low && from < high ? low : 0.5 * (low + high);
+  parabola p = {.s = {from, from < high ? high : low, third}, .d = {o->best.near.distance}};
+  const double error = curve_side_point_error(&o->side);
+  for (int i = 1; i < MOST_POINTS; i++) {
+    int at = i;
+    if (i >= 3) {
+      double s, gain;
+      if (!parabola_least(&p, &s, &gain)) return CPROX_OK;
+      s = clamp(clamp(s, o->best.s - step, o->best.s + step), least, most);
+      at = 0;
+      for (int k = 1; k < 3; k++)
+        if (fabs(p.s[k] - s) > fabs(p.s[at] - s)) at = k;
+      const bool new = s != p.s[0] && s != p.s[1] && s != p.s[2];
+      if (!new || !(gain > 0.1 * o->effort.epsilon)) return CPROX_OK;
+      p.s[at] = s;
+    }
+    curve_sample sample;
+    search_best bound = {.upper = INFINITY};
+    const vec3 x = curve_side_point(&o->side, p.s[at]);
+    const cprox_status status = curve_convex_measure(o, piece, p.s[at], x, error, &sample, &bound);
+    if (status < 0) return status;
+    p.d[at] = sample.near.distance;
+    if (bound.upper < o->best_bound.upper) curve_convex_adopt(o, &sample, bound);
+    if (o->best_bound.upper <= o->effort.good_enough) return CPROX_OK;
+  }
+  return CPROX_OK;
+}
+
+/* ---- with them ---- */
+
 cprox_status newton_refine(curve_convex *o, const double *points, curve_jet *j, double step) {
-  if (o->side.curve->arcs) return CPROX_OK; /* no derivatives to go by */
+  if (o->side.curve->arcs) return refine_by_points(o, step);
   const double error = curve_side_point_error(&o->side);
   curve_sample samples[2];
   const curve_sample *from = &o->best;
