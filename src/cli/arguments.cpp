@@ -379,6 +379,11 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       for (const char *name : {"--srdf", "--state"})
         if (words.has(name) && out.robot.empty()) throw BadUsage(std::string(name) + " needs --robot URDF");
       break;
+    case Action::ROBUST:
+      out.errors = required("--errors", "ERRORS.yaml, bounds of the errors of an execution");
+      required("--trajectory", "T.yaml");
+      readTrajectoryWords(words, out);
+      break;
     case Action::SEND:
       if (plain.empty()) throw BadUsage("'send' needs a file: cprox send SCENE.yaml");
       out.scene = plain.front();
@@ -396,7 +401,7 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
 void readStandardInput(Arguments &out) {
   bool taken = false;
   for (std::string *path : {&out.curves, &out.against, &out.trajectory, &out.path, &out.body, &out.scene, &out.robot,
-                            &out.srdf, &out.pairs, &out.cases}) {
+                            &out.srdf, &out.pairs, &out.cases, &out.errors}) {
     if (*path != "-") continue;
     if (taken) throw BadUsage("'-', standard input, can be only one of the files");
     taken = true;
@@ -457,8 +462,8 @@ Arguments parseArguments(const std::vector<std::string> &words) {
 }
 
 std::vector<std::string> inputsOf(const Arguments &arguments) {
-  return {arguments.curves, arguments.against, arguments.trajectory, arguments.path,  arguments.body,
-          arguments.scene,  arguments.robot,   arguments.srdf,       arguments.pairs, arguments.cases};
+  return {arguments.curves, arguments.against, arguments.trajectory, arguments.path,  arguments.body,  arguments.scene,
+          arguments.robot,  arguments.srdf,    arguments.pairs,      arguments.cases, arguments.errors};
 }
 
 } // namespace curve_proximity::cli

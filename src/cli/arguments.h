@@ -24,6 +24,7 @@ enum class Action {
   MOVERS,
   PAIRS,
   CONSTRAINTS,
+  ROBUST,
   REPORT,
   SEND,
   CHECK,
@@ -53,6 +54,7 @@ struct Arguments {
   bool shortest_way = false;   /**< with a trajectory: continuous joints turn the shorter way between two waypoints */
   bool self = false;           /**< with a trajectory, or of MOVERS: ask about the robot itself, too */
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
+  std::string errors;          /**< file of ROBUST */
   std::string certificate;     /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
   std::string robot, srdf;     /**< files of the robot; empty: none */
   std::string state;           /**< "joint: value, …" */

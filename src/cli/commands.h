@@ -37,6 +37,9 @@ int certifyDataset(const Arguments &arguments, Console &console);
 /** merge: the shards as one table. */
 int mergeShards(const Arguments &arguments, Console &console);
 
+/** robust: the robot along a trajectory, for every execution within bounds of its errors. */
+int answerRobust(const Arguments &arguments, Console &console);
+
 /** report: a page that shows a trajectory, or curves, and what they come close to. */
 int writeReport(const Arguments &arguments, Console &console);
 

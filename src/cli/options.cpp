@@ -8,12 +8,17 @@ namespace curve_proximity::cli {
 namespace {
 
 /* Columns of results. */
-#define CPROX_ROW                                                                                                  \
+#define CPROX_COLUMNS                                                                                              \
   "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b, nodes,distance_queries,microseconds,t_b,lod," \
-  "message. With --second-opinion also second_opinion,second_distance"
+  "message. "
+#define CPROX_ROW CPROX_COLUMNS "With --second-opinion also second_opinion,second_distance"
 constexpr const char *ROW = CPROX_ROW;
+constexpr const char *ROBUST = CPROX_COLUMNS
+    "Also certified_scale, refused_scale: with all bounds times the first, all executions are clear; times the second, "
+    "they were not";
 constexpr const char *CONTACT = CPROX_ROW ". Also t_contact_lower: there is no contact at any smaller parameter";
 #undef CPROX_ROW
+#undef CPROX_COLUMNS
 constexpr const char *PROFILE =
     "id,kind,status,t0,t1,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,message: a row an interval";
 constexpr const char *VIOLATIONS =
@@ -112,6 +117,17 @@ const std::vector<Command> &commands() {
        "constraints --provider curve_proximity/RobotDistance --robot examples/formats/arm.urdf --trajectory "
        "examples/formats/trajectory.yaml --scene examples/formats/scene.yaml --check-gradient",
        CONSTRAINTS},
+      {"robust",
+       Action::ROBUST,
+       QueryType::TOLERANCE,
+       {},
+       "--errors ERRORS.yaml --trajectory T.yaml --robot URDF [--srdf SRDF] [--scene SCENE.yaml] [--delta D]",
+       "verdict for every execution within bounds of its errors, and by how much these may grow",
+       "robust --errors examples/formats/errors.yaml --robot examples/formats/arm.urdf --trajectory "
+       "examples/formats/trajectory.yaml --scene examples/formats/scene.yaml\n"
+       "robust --errors examples/formats/errors.yaml --delta 0.01 --robot examples/formats/arm.urdf --trajectory "
+       "examples/formats/trajectory.yaml --self",
+       ROBUST},
       {"report",
        Action::REPORT,
        QueryType::DISTANCE,
@@ -173,12 +189,15 @@ const std::vector<Option> &options() {
       {"--against", "FILE", "distance tolerance collision check", "curves, too: instead of a scene"},
       {"--synchronized", "", "distance tolerance collision",
        "with --against: both curves are at the same parameter, so that they may cross each other's way"},
-      {"--scene", "FILE", "queries report constraints check",
+      {"--scene", "FILE", "queries report constraints check robust",
        "moveit_msgs/PlanningScene as YAML; may be left out where there is a robot"},
-      {"--robot", "FILE", "queries report constraints check",
+      {"--robot", "FILE", "queries report constraints check robust",
        "a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)"},
-      {"--trajectory", "FILE", "queries report constraints check",
+      {"--trajectory", "FILE", "queries report constraints check robust",
        "a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint"},
+      {"--errors", "FILE", "robust",
+       "bounds of the errors of an execution: every_joint, joints, timing, base, objects, sensor, flex "
+       "(doc/robust.md)"},
       {"--movers", "", "queries",
        "what moves in the scene, instead of curves or a robot: against what stands there, and against each other"},
       {"--path", "FILE", "queries",
@@ -188,15 +207,15 @@ const std::vector<Option> &options() {
        "with --path: {id, pose, padding, primitives, meshes, bodies, ...} as an object of a scene; with an id alone: "
        "the object of that id that a link of --robot carries, along poses of the link"},
       {"--radius", "R", "queries", "with --path, instead of --body: a ball of R metres (default 0, a point)"},
-      {"--self", "", "queries report check", "how close the robot comes to itself, too"},
-      {"--shortest-way", "", "queries report check certify constraints",
+      {"--self", "", "queries report check robust", "how close the robot comes to itself, too"},
+      {"--shortest-way", "", "queries report check certify constraints robust",
        "continuous joints turn the shorter way between two waypoints, from 3.1 to -3.1 by 0.083 rad"},
       {"--signed", "", "distance nearest",
        "distances inside a body are negative: minus the deepest penetration (of meshes a bound, by their hulls)"},
-      {"--srdf", "FILE", "queries report constraints check",
+      {"--srdf", "FILE", "queries report constraints check robust",
        "links that are not checked against each other, and the frame in which the robot stands (its virtual joint's "
        "parent_frame)"},
-      {"--state", "TEXT", "queries report constraints check",
+      {"--state", "TEXT", "queries report constraints check robust",
        "joint values in radians or metres; others as in the scene's robot_state, else 0 (mid-range where 0 is beyond "
        "the limits)"},
       {"--in", "FILE", "pairs constraints",
@@ -212,22 +231,24 @@ const std::vector<Option> &options() {
        "writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near or none. "
        "The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that it "
        "is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs"},
-      {"--epsilon", "E", "queries report pairs certify",
+      {"--epsilon", "E", "queries report pairs certify robust",
        "width of the intervals asked for, metres, above 0 (default 1e-06)"},
-      {"--delta", "D", "tolerance violations report",
-       "the clearance asked of 'tolerance' and 'violations', and of 'report' if its verdict is wanted, metres"},
-      {"--max-nodes", "N", "queries report pairs certify",
+      {"--delta", "D", "tolerance violations report robust",
+       "the clearance asked of 'tolerance' and 'violations', of 'robust' (default 0), and of 'report' if its verdict "
+       "is wanted, "
+       "metres"},
+      {"--max-nodes", "N", "queries report pairs certify robust",
        "budget for each result, in distance queries (default 500000: about 1 s)"},
       {"--threads", "N", "queries pairs constraints certify check",
        "how many rows are worked on at once (default: the machine's cores); the answers do not depend on it"},
       {"--per-object", "", "queries", "rows for each curve and object or link, not for the nearest alone"},
       {"--per-link", "", "queries", "with --trajectory: rows for each link and each object that a link carries"},
-      {"--allow-empty", "", "queries report certify",
+      {"--allow-empty", "", "queries report certify robust",
        "nothing to measure is an answer: clear, at an infinite distance. Without it such a row has the status 'empty', "
        "and its verdict is undecided"},
-      {"--objects", "LIST", "queries report",
+      {"--objects", "LIST", "queries report robust",
        "these objects alone, \"shelf, table\"; with --curves and --links also those links"},
-      {"--links", "LIST", "queries report",
+      {"--links", "LIST", "queries report robust",
        "with --curves: these links of --robot alone. With --trajectory: what these links do, or objects that they "
        "carry; with --self pairs of which they are one"},
       {"--moving-links-only", "", "queries report",
@@ -243,7 +264,7 @@ const std::vector<Option> &options() {
       {"--second-opinion", "PEER", "distance tolerance collision nearest time-of-contact pairs",
        "fcl or libccd: the pair of each row is measured again by this library, at the row's t and at both ends; the "
        "columns second_opinion (agrees, disagrees or unknown) and second_distance are added"},
-      {"--max-lod", "R", "queries report pairs certify",
+      {"--max-lod", "R", "queries report pairs certify robust",
        "the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies by "
        "their bounding spheres); a coarser one is never farther away"},
       {"--dataset", "FILE", "certify",
@@ -255,13 +276,13 @@ const std::vector<Option> &options() {
        "of --shard I: answers no row; each becomes a row 'failed' with this message. For whoever drives shards and has "
        "seen one crash: 'merge' then has no gap"},
       {"--progress", "P", "certify", "line (default, on a terminal) or json, a line a second on standard error"},
-      {"--skipped", "", "queries pairs", "tell on standard error what takes no part, and why"},
-      {"--timings", "", "queries",
+      {"--skipped", "", "queries pairs robust", "tell on standard error what takes no part, and why"},
+      {"--timings", "", "queries robust",
        "tell on standard error how long loading the robot and the scene takes, mesh by mesh"},
-      {"--mesh-tolerance", "M", "queries report",
+      {"--mesh-tolerance", "M", "queries report robust",
        "replace meshes by ones with fewer triangles that contain them: nothing is clear that the mesh would hit; what "
        "is closer than 2 M metres may read as a hit"},
-      {"--out", "FILE", "queries report pairs constraints certify merge",
+      {"--out", "FILE", "queries report pairs constraints certify merge robust",
        "the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page"},
       {"--replace", "", "send",
        "the file takes the place of the node's scene (default, unless the file says is_diff: true)"},

@@ -50,7 +50,8 @@ std::string resultsHeader(const Columns &columns) {
              "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,t_b,"
              "lod,message") +
          (columns.proof ? ",proof" : "") + (columns.contact ? ",t_contact_lower" : "") +
-         (columns.opinion ? ",second_opinion,second_distance" : "") + "\n";
+         (columns.opinion ? ",second_opinion,second_distance" : "") +
+         (columns.scale ? ",certified_scale,refused_scale" : "") + "\n";
 }
 
 std::string resultsLine(const ResultRow &row, const Columns &columns) {
@@ -82,6 +83,10 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
   if (columns.opinion) {
     line += std::string(",") + secondOpinionName(row.second_opinion.verdict);
     appendField(line, row.second_opinion.distance, std::isfinite(row.second_opinion.distance));
+  }
+  if (columns.scale) {
+    appendField(line, row.certified_scale, answered);
+    appendField(line, row.refused_scale, answered);
   }
   return line + '\n';
 }

@@ -25,7 +25,8 @@ struct ResultRow {
   std::optional<Gap> gap;       /**< what the row does not cover: it names the status */
   std::string proof;            /**< where certificates are asked for: what is proven (proofOf()) */
   SecondOpinion second_opinion; /**< where one is asked for */
-  std::string message;          /**< why there is no answer, or a remark */
+  double certified_scale = 0.0, refused_scale = 0.0; /**< of bounds of errors */
+  std::string message;                               /**< why there is no answer, or a remark */
 };
 
 /** Which columns the results have beyond those that all have. */
@@ -33,6 +34,7 @@ struct Columns {
   bool proof = false;   /**< of certificates */
   bool contact = false; /**< t_contact_lower */
   bool opinion = false; /**< second_opinion, second_distance */
+  bool scale = false;   /**< certified_scale, refused_scale */
 };
 
 /** The column status: the gap, or what the core says. */

@@ -43,6 +43,13 @@ RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings 
   }
 }
 
+void warnOfMotion(const RobotMotion &motion, const Arguments &arguments, const World &world, Warnings &warnings) {
+  if (world.snapshot->robot())
+    for (const std::string &link : unknownLinks(world.srdf, *world.snapshot->robot()))
+      warnings.add("the SRDF disables link '" + link + "', which the robot does not have");
+  for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
+}
+
 std::string stemOf(const std::string &path) {
   return std::filesystem::path(path).stem().string();
 }
@@ -57,10 +64,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   const World world = readWorld(arguments, warnings);
   if (world.moves()) return answerAmongMovers(arguments, world, warnings, console);
   const RobotMotion motion = readMotion(arguments, world, warnings);
-  if (world.snapshot->robot())
-    for (const std::string &link : unknownLinks(world.srdf, *world.snapshot->robot()))
-      warnings.add("the SRDF disables link '" + link + "', which the robot does not have");
-  for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
+  warnOfMotion(motion, arguments, world, warnings);
   const Query query = queryOf(arguments, world, warnings);
   Query around = query; // who asks about the robot itself and gives no scene means that there is none
   around.allow_empty = query.allow_empty || (arguments.self && arguments.scene.empty());

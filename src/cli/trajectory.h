@@ -13,6 +13,9 @@ namespace curve_proximity::cli {
 /** Reads --trajectory. Throws BadUsage with one line. */
 RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings &warnings);
 
+/** Warns of joints beyond their limits, and of links of the SRDF that the robot does not have. */
+void warnOfMotion(const RobotMotion &motion, const Arguments &arguments, const World &world, Warnings &warnings);
+
 /** Reads --trajectory, for the world's robot. Throws BadUsage with one line. */
 TrajectoryDescription readOwnTrajectory(const Arguments &arguments, const World &world, Warnings &warnings);
 

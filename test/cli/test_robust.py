@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""cprox robust: a cart on a slide in front of a wall, whose losses are known in closed form."""
+import math
+
+from support import Case, cprox
+from test_trajectory import SLIDE, SLIDER, WALL
+
+GAP = 0.9  # [m] at t = 4, where the cart is fastest and farthest
+
+
+class Robust(Case):
+    def robust(self, errors, *more, scene=WALL, trajectory=SLIDE, name='errors.yaml'):
+        words = ['robust', '--errors', self.file(name, errors), '--robot', self.file('robot.urdf', SLIDER), '--trajectory',
+                 self.file('go.yaml', trajectory)]
+        return cprox(*words, *(['--scene', self.file('scene.yaml', scene)] if scene else []), *more)
+
+    def each_bound_costs_what_its_formula_says(self):
+        # the cart goes 2 m in 4 s
+        for errors, loss in (('joints: {slide: {tracking: 0.3}}', 0.3), ('joints: {slide: {speed: 0.2}}', 0.1),
+                             ('joints: {slide: {tracking: 0.3, speed: 0.2}}', 0.4), ('sensor: 0.25', 0.25),
+                             ('base: {position: 0.3}', 0.3), ('objects: {position: 0.15}', 0.15), ('flex: 0.2', 0.2),
+                             ('{sensor: 0.1, flex: 0.1, objects: {position: 0.1}}', 0.3)):
+            for delta in (0.0, 0.2):
+                with self.subTest(errors=errors, delta=delta):
+                    answer = self.robust(errors, '--delta', delta)
+                    self.assertEqual((answer.code, answer.err), (0, ''))
+                    row = answer.row('go')
+                    self.assertEqual((row['status'], row['verdict']), ('ok', 'clear'))
+                    self.assertIn(row['b'], ('wall', ''))  # '': bounding balls alone have decided
+                    self.assertGreater(float(row['lower']), delta)
+                    self.assertLessEqual(float(row['lower']), GAP - loss + 1e-9)
+                    certified, refused = float(row['certified_scale']), float(row['refused_scale'])
+                    self.assertLessEqual(certified, (GAP - delta) / loss * (1 + 1e-9))
+                    self.assertGreaterEqual(refused, (GAP - delta) / loss * (1 - 1e-9))
+                    self.assertGreaterEqual(certified, 0.9 * refused)
+
+    def the_verdict_is_that_of_all_executions(self):
+        for tracking, delta, verdict, code in ((0.89, 0, 'clear', 0), (0.91, 0, 'undecided', 3), (0.1, 0.79, 'clear', 0),
+                                               (0.1, 0.81, 'undecided', 3), (0.1, 0.91, 'violated', 1)):
+            answer = self.robust(f'joints: {{slide: {{tracking: {tracking}}}}}', '--delta', delta)
+            self.assertEqual((answer.row('go')['verdict'], answer.code), (verdict, code), (tracking, delta))
+            if verdict == 'violated':
+                self.assertEqual(float(answer.row('go')['certified_scale']), 0.0)
+
+    def a_motion_that_is_late_as_a_whole_costs_nothing(self):
+        row = self.robust('timing: 1').row('go')
+        self.assertEqual((row['verdict'], float(row['certified_scale'])), ('clear', math.inf))
+
+    def the_robot_itself_has_a_row(self):
+        answer = self.robust('every_joint: {tracking: 1e-4}', '--self')
+        self.assertEqual([row['kind'] for row in answer.rows], ['environment', 'self'])
+
+    def what_is_left_out_is_never_certified(self):
+        answer = self.robust('sensor: 0.1', scene=WALL.replace('world:', 'worldd: 1\nworld:'))
+        row = answer.row('go')
+        self.assertEqual((answer.code, row['status'], row['verdict'], float(row['certified_scale'])), (3, 'partial', 'undecided', 0.0))
+
+    def what_is_wrong_is_said_in_one_line(self):
+        for errors, *words in (('', 'errors.yaml', 'empty'), ('sensor: -1', 'errors.yaml', 'sensor (line 1)', 'below 0'),
+                               ('sensor: .inf', 'sensor', '.inf'), ('senser: 1', "'senser'", "'sensor'"),
+                               ('every_joint: {track: 1}', "'track'"), ('every_joint: 1', 'every_joint', 'map'),
+                               ('base: {turn: 1}', "'turn'"), ('[1]', 'map')):
+            with self.subTest(errors=errors):
+                self.assertRefused(self.robust(errors), *words)
+        unknown = self.robust('joints: {slyde: {tracking: 1}}')
+        self.assertEqual((unknown.code, unknown.row('go')['status']), (2, 'invalid'))
+        self.assertIn("no joint 'slyde' that moves by itself (did you mean 'slide'?)", unknown.err)
+        self.assertRefused(cprox('robust', '--robot', 'r', '--trajectory', 't'), '--errors')
+        self.assertRefused(cprox('robust', '--robot', 'r', '--errors', 'e'), '--trajectory')
+        self.assertRefused(self.robust('sensor: 1', '--moving-links-only'), '--moving-links-only')
