@@ -161,6 +161,19 @@ static cprox_mover mover_of(rng *r, const scene *s, bool *targets) {
   return m;
 }
 
+/* Does the result name two geometries of the robot as the list does, if there is one? */
+static bool is_as_listed(const cprox_mover *m, size_t n, const cprox_result *r) {
+  const bool whole = m->kind == CPROX_MOVER_ROBOT_WHOLE;
+  const size_t first = whole ? n : 0;
+  if (r->obstacle_index < 0 || m->kind == CPROX_MOVER_ROBOT || (whole && (size_t)r->obstacle_index < n)) return true;
+  const cprox_robot_pair *list = whole ? m->self_pairs : m->pairs;
+  const int32_t other = r->obstacle_index - (int32_t)first;
+  if (!list) return true;
+  for (size_t i = 0; i < (whole ? m->n_self_pairs : m->n_pairs); i++)
+    if (list[i].geometry == r->mover_part && list[i].other == other) return true;
+  return false;
+}
+
 /* 600 scenes (seed 411; sizes of 1e-2 to 1e2 m, a third of them 1e2 to 1e14 times as far from the origin), 12 verdicts
  * each, all of a distance of 0 or beside the true one by 1e-7 to 1e-1 of the size. The distance that is certified by
  * the search alone never contradicts a verdict or an interval, and what the search alone decides is decided, and is
@@ -224,6 +237,8 @@ CASE(verdicts_and_intervals_agree_with_the_certified_distance) {
         if (!(fabs(apart - r1.upper) <= 1e-6 * scale)) wrong = "witness";
         if (r1.mover_part < 0 || r1.obstacle_index < 0 || !(r1.t >= q.t0 && r1.t <= q.t1)) wrong = "place";
       }
+      if (!is_as_listed(&mover, n, &searched)) wrong = "order of a pair in the search";
+      if (!is_as_listed(&mover, n, &r1)) wrong = "order of a pair";
       if (wrong)
         fail_msg("scene %zu, %d: %s: [%.9g, %.9g] (%d), searched [%.9g, %.9g] (%d), exact [%.9g, %.9g], delta %.9g", i,
                  k, wrong, r1.lower, r1.upper, (int)r1.verdict, searched.lower, searched.upper, (int)searched.verdict,

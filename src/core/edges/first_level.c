@@ -127,8 +127,16 @@ static void add_target(edge_rest *rest, size_t target) {
   if (rest->n_pairs == 0 || target >= rest->last) rest->last = target + 1;
 }
 
+/* Two geometries of the robot, in the order of the caller's list. */
+static cprox_robot_pair as_asked(const query *q, int32_t a, int32_t b) {
+  const edge_asked asked = asked_of(q);
+  for (size_t i = 0; asked.self_pairs && i < asked.n_self_pairs; i++)
+    if (asked.self_pairs[i].geometry == b && asked.self_pairs[i].other == a) return asked.self_pairs[i];
+  return (cprox_robot_pair){a, b};
+}
+
 /* The pairs of geometries of what lanes left open, in an order of their own, to lists that have room for them. */
-static void list_open(const cprox_edge_checker *c, const edge_open *open, cprox_robot_pair *pairs,
+static void list_open(const query *q, const cprox_edge_checker *c, const edge_open *open, cprox_robot_pair *pairs,
                       cprox_robot_pair *selves, edge_rest *rest) {
   for (uint32_t i = 0; i < open->n; i++) {
     const uint32_t number = open->pairs[i];
@@ -144,7 +152,7 @@ static void list_open(const cprox_edge_checker *c, const edge_open *open, cprox_
       if (!self && pairs) pairs[rest->n_pairs] = (cprox_robot_pair){c->members[k], target_of(c, number)};
       rest->n_pairs += !self;
       for (uint32_t l = 0; self && l < other->n_members; l++, rest->n_self_pairs++)
-        if (selves) selves[rest->n_self_pairs] = (cprox_robot_pair){c->members[k], c->members[other->first_member + l]};
+        if (selves) selves[rest->n_self_pairs] = as_asked(q, c->members[k], c->members[other->first_member + l]);
     }
   }
 }
@@ -152,11 +160,11 @@ static void list_open(const cprox_edge_checker *c, const edge_open *open, cprox_
 /* False where memory is out. */
 static bool take_open(const query *q, const cprox_edge_checker *c, const edge_open *open, edge_rest *rest) {
   edge_rest counted = {0};
-  list_open(c, open, NULL, NULL, &counted);
+  list_open(q, c, open, NULL, NULL, &counted);
   cprox_robot_pair *pairs = workspace_reserve(q->workspace, WORKSPACE_EDGE_OPEN,
                                               (counted.n_pairs + counted.n_self_pairs + 2) * sizeof *pairs);
   if (!pairs) return false;
-  list_open(c, open, pairs, pairs + counted.n_pairs + 1, rest);
+  list_open(q, c, open, pairs, pairs + counted.n_pairs + 1, rest);
   rest->pairs = pairs, rest->self_pairs = pairs + counted.n_pairs + 1;
   return true;
 }
@@ -198,7 +206,7 @@ static bool can_ask(const query *q, size_t first, size_t last, motion_interval *
 static bool take_one(const query *q, int32_t geometry, int32_t other, bool self, double at, edge_rest *rest) {
   cprox_robot_pair *pair = workspace_reserve(q->workspace, WORKSPACE_EDGE_OPEN, 2 * sizeof *pair);
   if (!pair) return false;
-  pair[0] = (cprox_robot_pair){geometry, other};
+  pair[0] = self ? as_asked(q, geometry, other) : (cprox_robot_pair){geometry, other};
   *rest = (edge_rest){.pairs = pair, .self_pairs = pair, .n_pairs = !self, .n_self_pairs = self, .from = at, .to = at};
   if (!self) rest->first = (size_t)other, rest->last = (size_t)other + 1;
   return true;
