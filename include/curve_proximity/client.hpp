@@ -38,7 +38,7 @@ class PersistentClient {
     while (true) {
       ros::ServiceClient client = connected();
       if (client.isValid() && client.call(service)) return true;
-      client.shutdown();
+      drop(client);
       if (!ros::ok() || ended_ || std::chrono::steady_clock::now() + pause >= deadline) return false;
       std::this_thread::sleep_for(pause);
       pause = std::min(2 * pause, std::chrono::milliseconds{500});
@@ -66,6 +66,12 @@ class PersistentClient {
       client_ = handle_.template serviceClient<Service>(name_, true);
     }
     return client_;
+  }
+
+  /* ROS frees a connection that two threads drop at once while one of them is still at it: end() may be. */
+  void drop(ros::ServiceClient &client) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    client.shutdown();
   }
 
   ros::NodeHandle handle_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
+#include <atomic>
 #include <chrono>
 #include <curve_proximity/client.hpp>
 #include <thread>
@@ -56,6 +57,33 @@ TEST(PersistentClient, a_server_that_stays_away_is_given_up_in_time) {
   EXPECT_FALSE(client.call(call, 1.0));
   EXPECT_LT(secondsSince(begin), 3.0);
   EXPECT_LE(client.lookups(), 10u);
+}
+
+/* What ends a call and what gives it up drop one connection. */
+TEST(PersistentClient, a_call_that_hangs_is_ended_by_another_thread) {
+  std::atomic<bool> asked{false}, ending{false};
+  ros::NodeHandle handle;
+  const boost::function<bool(GetScene::Request &, GetScene::Response &)> hang = [&](GetScene::Request &,
+                                                                                    GetScene::Response &) {
+    asked = true;
+    while (!ending) std::this_thread::sleep_for(std::chrono::microseconds(100));
+    asked = false;
+    return true;
+  };
+  const ros::ServiceServer server = handle.advertiseService("hanging/get_scene", hang);
+  for (int i = 0; i < 300; ++i) {
+    ending = false;
+    PersistentClient<GetScene> client(handle, "hanging/get_scene");
+    std::thread calling([&] {
+      GetScene call;
+      EXPECT_FALSE(client.call(call, 30.0));
+    });
+    while (!asked) std::this_thread::yield();
+    client.end();
+    calling.join();
+    ending = true;
+    while (asked) std::this_thread::yield();
+  }
 }
 
 } // namespace
