@@ -64,7 +64,7 @@ class Dataset(Case):
         return [dict(zip(lines[0].split(','), line.split(','))) for line in lines[1:]]
 
     def rows_are_answered_as_the_other_commands_answer_them(self):
-        manifest = self.manifest([self.row('d'), self.row('c', slide(4), query='collision'), self.row('t', delta=0.91), self.row('u', delta=0.89),
+        manifest = self.manifest([self.row('d'), self.row('c', slide(4), query='collision'), self.row('t', delta=0.91), self.row('u', delta=0.5),
                                   self.row('f', scene='far.yaml')])
         answer = self.certify(manifest, 'out')
         self.assertEqual(answer.code, 0, answer.err)

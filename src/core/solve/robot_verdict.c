@@ -6,10 +6,9 @@
 #include "edges/first_level.h"
 #include "robot_query/answer.h"
 
-/* Asks the search about these pairs, between these times, with a limit of its own: -1 for their distance. */
-static cprox_status search(const query *q, const edge_rest *rest, double limit, double cutoff, cprox_result *result) {
+/* Asks the search about these pairs, between these times. */
+static cprox_status search(const query *q, const edge_rest *rest, double cutoff, cprox_result *result) {
   query part = *q;
-  part.limit = limit;
   const bool self = mover_is_self(&q->mover);
   part.mover.pairs = self ? rest->self_pairs : rest->pairs;
   part.mover.n_pairs = self ? rest->n_self_pairs : rest->n_pairs;
@@ -29,7 +28,7 @@ static cprox_status conclude(const query *q, double cutoff, double lower, cprox_
 static cprox_status measure(const query *q, const edge_first *known, double cutoff, cprox_result *result) {
   const bool clear = known->verdict == CPROX_VERDICT_CLEAR;
   cprox_result r;
-  const cprox_status status = search(q, clear ? &known->nearest : &known->rest, clear ? -1.0 : q->limit, cutoff, &r);
+  const cprox_status status = search(q, clear ? &known->nearest : &known->rest, cutoff, &r);
   if (status < 0) return status;
   *result = r;
   if (clear) result->lower = INFINITY;
@@ -43,7 +42,7 @@ cprox_status robot_verdict(const query *q, size_t first, size_t last, double cut
   for (int suspects = 1; edge_first_level(q, first, last, suspects, &known); suspects = 0) {
     cprox_result r;
     const bool open = known.verdict == CPROX_VERDICT_UNDECIDED;
-    const cprox_status status = open ? search(q, &known.rest, q->limit, cutoff, &r) : measure(q, &known, cutoff, &r);
+    const cprox_status status = open ? search(q, &known.rest, cutoff, &r) : measure(q, &known, cutoff, &r);
     if (status < 0) return status;
     if (open || known.verdict == CPROX_VERDICT_CLEAR || r.verdict == CPROX_VERDICT_VIOLATED) {
       *result = r;
