@@ -128,11 +128,10 @@ cprox_status cprox_robust_tolerance(const cprox_obstacles *obstacles, cprox_move
                                     const cprox_error_bounds *bounds, const cprox_options *options,
                                     cprox_workspace *workspace, cprox_result *result) {
   WORKSPACE_USE(workspace);
-  cprox_status status = validate_delta(delta, workspace);
-  if (status != CPROX_OK) return status;
   query q = query_of(obstacles, mover, delta, options, workspace);
   robot_errors errors = {.bounds = bounds};
-  status = begin(&q, obstacles, bounds, &errors);
+  cprox_status status = validate_delta(delta, workspace);
+  if (status == CPROX_OK) status = begin(&q, obstacles, bounds, &errors);
   if (status != CPROX_OK) return status;
   cprox_result robust, plain;
   status = ask(&q, &errors, 1.0, &robust);
@@ -214,11 +213,10 @@ cprox_status cprox_robust_find_scale(const cprox_obstacles *obstacles, cprox_mov
                                      const cprox_error_bounds *bounds, const cprox_options *options,
                                      cprox_workspace *workspace, cprox_robust_scale *scale) {
   WORKSPACE_USE(workspace);
-  cprox_status status = validate_delta(delta, workspace);
-  if (status != CPROX_OK) return status;
   query q = query_of(obstacles, mover, delta, options, workspace);
   robot_errors errors = {.bounds = bounds};
-  status = begin(&q, obstacles, bounds, &errors);
+  cprox_status status = validate_delta(delta, workspace);
+  if (status == CPROX_OK) status = begin(&q, obstacles, bounds, &errors);
   if (status != CPROX_OK) return status;
   cprox_robust_scale found = {.refused = INFINITY};
   status = ask_plain(&q, &found.limit);

@@ -18,8 +18,7 @@ typedef struct epa_goal {
   bool rough;      /* or `most` may be four times `least` */
   uint32_t max_steps;
   int32_t room; /* for so many vertices, where that is more than a query needs: allocated, and none if memory is out */
-  double
-      shift; /* or 0: how large `shift` of the answer need be proven; the width is then at most EPA_ALIKE / 20 of it */
+  double shift; /* 0, or how large `shift` of the answer need be proven: the width is EPA_ALIKE / 20 of it at most */
 } epa_goal;
 
 /* least <= depth <= most, but for rounding. */
