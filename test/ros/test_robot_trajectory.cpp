@@ -137,7 +137,9 @@ TEST_F(Cart, each_trajectory_begins_where_the_one_before_has_ended) {
   EXPECT_EQ(second.points[0].positions, (Values{0.5, 0, 4, 0})); // the way to its first point
   EXPECT_EQ(second.points[1].positions, (Values{2, 0, 4, 0}));
   EXPECT_EQ(motions.remarks.size(), 2u); // the model's name, and the elbow
-  EXPECT_TRUE(motions.coverage.complete());
+  EXPECT_EQ(motions.coverage.status(), "unknown");
+  message.model_id = snapshot->robot()->name();
+  EXPECT_TRUE(toMotions(message, *snapshot, srdf).coverage.complete());
 
   // the base where the start state has it
   message.trajectory.erase(message.trajectory.begin());

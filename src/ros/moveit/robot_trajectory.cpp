@@ -182,9 +182,12 @@ RobotMotions toMotions(const moveit::DisplayTrajectory &message, const Snapshot 
   const moveit::RobotState &start = message.trajectory_start;
   RobotMotions out;
   if (message.trajectory.empty()) throw Error("the message has no trajectory");
-  if (!message.model_id.empty() && message.model_id != robot.name())
+  if (!message.model_id.empty() && message.model_id != robot.name()) {
+    // as of a planning scene of another robot: joints of one name may move other links
     out.remarks.push_back("the trajectory is of robot '" + message.model_id + "', and this server's is '" +
                           robot.name() + "'");
+    out.coverage.add(Gap::UNKNOWN, out.remarks.back());
+  }
 
   std::vector<std::string> unknown;
   if (start.joint_state.name.size() != start.joint_state.position.size())
