@@ -286,6 +286,20 @@ class Known(unittest.TestCase):
         objects.publish(sphere('post', 0.1, (0, 0, 5)))
         self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear', 5))
 
+    def test_a_cloud_that_is_refused_is_unknown_also_where_none_was_before(self):
+        _, server = self.begin('frameless', tf_timeout=0.05)
+        clouds = self.publisher('/frameless/cloud', PointCloud2)
+        server.replace(sphere('ball', 0.25))
+        on_line = cloud((0, 0, 1))
+        on_line.header.frame_id = 'nowhere'
+        clouds.publish(on_line)
+        row = until(lambda: (lambda r: r.status == 'unknown' and r)(server.tolerance(LINE, 0.1).results[0]), 5)
+        self.assertEqual(row.verdict, 'undecided')
+        clouds.publish(cloud((0, 0, -3)))
+        self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear', 5))
+        clouds.publish(on_line)
+        self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].status == 'unknown', 5))
+
     def test_a_scene_that_is_emptied_knows_nothing_of_what_sensors_see(self):
         _, server = self.begin('emptied')
         clouds = self.publisher('/emptied/cloud', PointCloud2)

@@ -139,7 +139,7 @@ class Clouds(TestCase):
             self.clouds.publish(nothing)
             self.assertTrue(until(lambda: self.answer().b == '', PATIENCE))
 
-    def test_a_cloud_that_cannot_be_used_is_told_and_leaves_the_object_as_it_was(self):
+    def test_a_cloud_that_cannot_be_used_is_told_and_leaves_the_object_as_it_was_and_unknown(self):
         self.clouds.publish(cloud([(1, 0, 0)]))
         self.assertNearest('cloud', 1 - RADIUS)
         near = [(1, 0, 1), (1, 0, 1)]
@@ -164,8 +164,11 @@ class Clouds(TestCase):
                            (cloud(near, frame='nowhere'), ("'nowhere'", "'world'"))):
             with self.subTest(words=words):
                 self.clouds.publish(bad)
-                self.assertTold('~cloud', 'stays as it was', *words)
+                self.assertTold('~cloud', 'what is there now is unknown', *words)
                 self.assertNearest('cloud', 1 - RADIUS)
+                self.assertEqual(self.answer().status, 'unknown')
+        self.clouds.publish(cloud([(1, 0, 0)]))
+        self.assertTrue(until(lambda: self.answer().status == 'ok', PATIENCE))
 
     def test_a_cloud_beyond_the_limit_is_refused_with_the_bytes_that_it_would_need(self):
         self.clouds.publish(fast_cloud(numpy.zeros((10 ** 7, 3))))
@@ -246,7 +249,7 @@ class Octrees(TestCase):
             self.octomaps.publish(self.octomap(nothing))
             self.assertTrue(until(lambda: self.answer().b == '', PATIENCE))
 
-    def test_an_octomap_that_cannot_be_used_is_told_and_leaves_the_object_as_it_was(self):
+    def test_an_octomap_that_cannot_be_used_is_told_and_leaves_the_object_as_it_was_and_unknown(self):
         self.octomaps.publish(self.octomap(CELL))
         self.assertNearest('<octomap>', 0.5)
         other = self.octomap(CELL)
@@ -258,6 +261,7 @@ class Octrees(TestCase):
                 self.octomaps.publish(bad)
                 self.assertTold('~octomap', *words)
                 self.assertNearest('<octomap>', 0.5)
+                self.assertEqual(self.answer().status, 'unknown')
 
     def test_an_octree_is_a_body_of_the_scene(self):
         def map_of(**fields):

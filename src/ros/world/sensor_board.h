@@ -30,6 +30,17 @@ class SensorBoard {
     set(id, {Age(stamp), true});
   }
 
+  /** A message came that cannot be used: the object is as old as before, and what is there now is not known. */
+  void refused(const std::string &id) {
+    bool is_new = false;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      is_new = sensors_.count(id) == 0;
+      sensors_[id].unknown = true;
+    }
+    if (is_new && appeared) appeared();
+  }
+
   /** A sensor is expected to show the object; no message has come since the server started. */
   void awaits(const std::string &id) {
     set(id, {std::nullopt, true});

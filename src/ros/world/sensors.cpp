@@ -40,11 +40,12 @@ SensorCounts Sensors::octomap() const {
 
 /** Does the work of a message, and counts it. */
 template <class Work>
-void Sensors::take(const char *topic, const std_msgs::Header &header, SensorCounts &counts, std::uint32_t &seq,
-                   Work &&work) {
+void Sensors::take(const char *topic, const std::string &id, const std_msgs::Header &header, SensorCounts &counts,
+                   std::uint32_t &seq, Work &&work) {
   bool used = true;
   guarded(work, [&](const std::string &why) {
     used = false;
+    live_.sensors.refused(id);
     complain(topic, why);
   });
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -55,7 +56,7 @@ void Sensors::take(const char *topic, const std_msgs::Header &header, SensorCoun
 }
 
 void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
-  take("~cloud", message->header, cloud_, cloud_seq_, [&] {
+  take("~cloud", parameters_.cloud_id, message->header, cloud_, cloud_seq_, [&] {
     Cloud cloud = toCloud(*message);
     const auto valid = static_cast<double>(cloud.points.cols());
     const double all = valid + static_cast<double>(cloud.left_out);
@@ -74,7 +75,7 @@ void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
 }
 
 void Sensors::takeOctomap(const OctomapMessage::ConstPtr &message) {
-  take("~octomap", message->header, octomap_, octomap_seq_, [&] {
+  take("~octomap", parameters_.octomap_id, message->header, octomap_, octomap_seq_, [&] {
     ShapeDescription shape;
     shape.type = ShapeType::OCTREE;
     shape.unknown_is_occupied = parameters_.unknown_is_occupied;
@@ -105,7 +106,7 @@ void Sensors::remove(const std::string &id) {
 }
 
 void Sensors::complain(const std::string &topic, const std::string &why) {
-  if (complaints_.isDue(topic + why)) ROS_WARN_STREAM(topic + ": " + why + "; the object stays as it was");
+  if (complaints_.isDue(topic + why)) ROS_WARN_STREAM(topic + ": " + why + "; what is there now is unknown");
 }
 
 } // namespace curve_proximity

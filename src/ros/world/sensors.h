@@ -35,7 +35,8 @@ struct SensorCounts {
  * from the queries, which work on the snapshot before it. Of messages that come too fast the oldest are dropped.
  *
  *  A cloud without a point makes the object unknown, or with ~empty_cloud_clears takes it away; an octree without an
- *  occupied cell is an empty object. A message that cannot be used leaves the object as it was, and a warning says why.
+ *  occupied cell is an empty object. A message that cannot be used leaves the object as it was and
+ *  unknown until the next one, and a warning says why.
  */
 class Sensors {
  public:
@@ -57,7 +58,8 @@ class Sensors {
   void replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape);
   void remove(const std::string &id);
   template <class Work>
-  void take(const char *topic, const std_msgs::Header &header, SensorCounts &counts, std::uint32_t &seq, Work &&work);
+  void take(const char *topic, const std::string &id, const std_msgs::Header &header, SensorCounts &counts,
+            std::uint32_t &seq, Work &&work);
   void complain(const std::string &topic, const std::string &why);
 
   const Parameters &parameters_;
