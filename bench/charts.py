@@ -257,19 +257,28 @@ def worlds(rows, save):
         yield growth(rows, save, 'worlds', what, unit + r' (\d+)', title, 'worlds_' + what.replace(' ', '_'), unit)
 
 
+SAMPLERS = {'the same lanes': 'samples by the same lanes', 'VAMP': 'samples by VAMP', 'FCL': 'samples by FCL'}
+
+
 def edges(rows, save, workload, title, name):
-    """The time of an edge over how many verdicts are wrong, of samples from coarse to fine and certified."""
+    """The time of an edge over how many verdicts are wrong: certified, and by samples from coarse to fine of each sampler."""
     rows = [row for row in rows if (row['group'], row['workload']) == ('robots', workload)]
     if not rows:
         return None
     figure, axes = plt.subplots()
-    own, sampled = ([row for row in rows if (row['method'] == OURS) == ours] for ours in (True, False))
-    for chosen, label, marker, colour in ((own, LABELS[OURS], 'o', COLOURS[OURS]),
-                                          (sampled, 'samples by the same lanes (nothing proven)', 's-', OTHERS[0])):
-        axes.plot([float(row['unsound']) for row in chosen], [float(row['median_us']) for row in chosen], marker, color=colour, label=label)
-    for row in sampled:
-        at = (float(row['unsound']), float(row['median_us']))
-        axes.annotate(row['method'].split()[0], at, textcoords='offset points', xytext=(5, 4), fontsize=8)
+    seen = []
+    own = [row for row in rows if row['method'] == OURS]
+    axes.plot([float(row['unsound']) for row in own], [float(row['median_us']) for row in own], 'o', color=COLOURS[OURS], label=LABELS[OURS])
+    for sampler, label in SAMPLERS.items():
+        found = [(re.fullmatch(sampler + r' at (\d+) a radian', row['method']), row) for row in rows]
+        points = [(int(match[1]), float(row['unsound']), float(row['median_us'])) for match, row in found if match]
+        if not points:
+            continue
+        colour = colour_of(sampler, seen)
+        axes.plot([wrong for _, wrong, _ in points], [time for _, _, time in points], MARKERS[len(seen)] + '-', color=colour,
+                  label=f'{label} (nothing proven)')
+        for fineness, wrong, time in points:
+            axes.annotate(str(fineness), (wrong, time), textcoords='offset points', xytext=(5, 4), fontsize=7, color=colour)
     axes.set_xscale('symlog', linthresh=1)
     axes.set_yscale('log')
     axes.invert_xaxis()
@@ -281,10 +290,41 @@ def edges(rows, save, workload, title, name):
     return save(figure, name)
 
 
+def edge_levels(rows, save):
+    """Which level decided what share of the edges, over how near they come to the scene: a panel for each kind of robot."""
+    rows = [row for row in rows if (row['group'], row['workload']) == ('robots', 'levels of edges')]
+    robots_of = list(dict.fromkeys(row['parameter'].split(':')[0] for row in rows))
+    if not rows:
+        return None
+    figure, panels = plt.subplots(1, len(robots_of), figsize=(3.4 * len(robots_of), 3.2), sharey=True, squeeze=False)
+    levels = list(dict.fromkeys(row['method'] for row in rows))
+    for axes, robot in zip(panels[0], robots_of):
+        mine = [row for row in rows if row['parameter'].split(':')[0] == robot]
+        ranges = list(dict.fromkeys(row['parameter'].split(': ')[1] for row in mine))
+        left = [0.0] * len(ranges)
+        for level, colour in zip(levels, (COLOURS[OURS], '#6fb1cf', '#6b8e23', '#e0a030', '#c22020')):
+            share = {row['parameter'].split(': ')[1]: 100.0 * float(row['error']) for row in mine if row['method'] == level}
+            widths = [share.get(name, 0.0) for name in ranges]
+            axes.barh(range(len(ranges)), widths, left=left, height=0.75, color=colour, label=level.replace('decided ', ''))
+            left = [before + width for before, width in zip(left, widths)]
+        axes.set_yticks(range(len(ranges)))
+        axes.set_yticklabels(ranges)
+        axes.set_xlim(0, 100)
+        axes.set_title(robot.replace('panda', 'Panda'))
+        axes.set_xlabel('percent of the edges')
+        for i, name in enumerate(ranges):
+            count = next(row['nodes'] for row in mine if row['parameter'].endswith(': ' + name))
+            axes.text(101, i, count, va='center', fontsize=7, color='#777777')
+    panels[0][0].set_ylabel('nearest to the scene')
+    legend_below(panels[0][0])
+    return save(figure, 'robots_edge_levels')
+
+
 def robots(rows, save):
     for workload in ('all edges', 'grazing edges'):
         yield edges(rows, save, workload, f'A Panda by 59 balls, {workload} of a planner: time against wrong verdicts',
                     'robots_' + workload.replace(' ', '_'))
+    yield edge_levels(rows, save)
     for workload in ('environment', 'self'):
         bounded = [row for row in rows if row['method'] != 'sampling .05']  # which knows no epsilon; "sampling" stands at its error
         yield work_precision(bounded, save, 'robots', workload, r'epsilon ([0-9.e-]+)', f'Robots, {workload}: time against accuracy',

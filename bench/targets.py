@@ -13,7 +13,7 @@ AT_LEAST = ('ratio', 'each', 'fewer')
 # How far a figure may be beyond its limit: two runs on a shared machine differ by so much. Counts do not.
 SLACK = {'ratio': 0.2, 'each': 0.2, 'growth': 0.2, 'tail': 0.5, 'exponent': 0.1}
 # Peers that a machine may lack.
-PEERS = ('coal', 'Tight-Inclusion', 'FCL', 'octomap', 'Ipopt', 'ipopt', 'OpenCASCADE', 'SISL', 'Bullet', 'NLopt', 'OMPL', 'KDL')
+PEERS = ('coal', 'Tight-Inclusion', 'VAMP', 'FCL', 'octomap', 'Ipopt', 'ipopt', 'OpenCASCADE', 'SISL', 'Bullet', 'NLopt', 'OMPL', 'KDL')
 
 
 def read_targets():

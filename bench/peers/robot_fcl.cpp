@@ -5,6 +5,7 @@
 #include <fcl/broadphase/default_broadphase_callbacks.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
@@ -53,6 +54,10 @@ void robot_fcl_add_box(robot_fcl *r, cprox_vec3 edges) {
 
 void robot_fcl_add_cylinder(robot_fcl *r, double radius, double height) {
   r->parts.emplace_back(new Object(std::make_shared<fcl::Cylinderd>(radius, height)));
+}
+
+void robot_fcl_add_capsule(robot_fcl *r, double radius, double height) {
+  r->parts.emplace_back(new Object(std::make_shared<fcl::Capsuled>(radius, height)));
 }
 
 void robot_fcl_add_sphere(robot_fcl *r, double radius) {

@@ -21,11 +21,12 @@ typedef struct robot_fcl robot_fcl;
 robot_fcl *robot_fcl_create(void);
 void robot_fcl_free(robot_fcl *r);
 
-/* A part of the robot: m triangles, nine numbers each, or a box, a cylinder (height), a sphere. Numbered as they come.
- */
+/* A part of the robot: m triangles, nine numbers each, or a box, a cylinder or capsule along z (the
+ * height of its straight part), a sphere. Numbered as they come. */
 void robot_fcl_add_mesh(robot_fcl *r, const double *corners, size_t m);
 void robot_fcl_add_box(robot_fcl *r, cprox_vec3 edges);
 void robot_fcl_add_cylinder(robot_fcl *r, double radius, double height);
+void robot_fcl_add_capsule(robot_fcl *r, double radius, double height);
 void robot_fcl_add_sphere(robot_fcl *r, double radius);
 
 /* The part added last belongs to the world, and stands there. */

@@ -26,6 +26,10 @@ void robot_fcl_add_cylinder(robot_fcl *r, double radius, double height) {
   (void)r, (void)radius, (void)height;
 }
 
+void robot_fcl_add_capsule(robot_fcl *r, double radius, double height) {
+  (void)r, (void)radius, (void)height;
+}
+
 void robot_fcl_add_sphere(robot_fcl *r, double radius) {
   (void)r, (void)radius;
 }

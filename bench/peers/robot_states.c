@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/frame.h"
 #include "bvh/bvh.h"
@@ -31,6 +32,8 @@ static void add_shape(robot_fcl *fcl, const cprox_body *body, const cprox_body *
     robot_fcl_add_box(fcl, (cprox_vec3){2.0 * size[0], 2.0 * size[1], 2.0 * size[2]});
   } else if (body->kind == CPROX_BODY_CYLINDER) {
     robot_fcl_add_cylinder(fcl, size[0], 2.0 * size[1]);
+  } else if (body->kind == CPROX_BODY_CAPSULE) {
+    robot_fcl_add_capsule(fcl, size[0], 2.0 * size[1]);
   } else {
     robot_fcl_add_sphere(fcl, body->shape.margin);
   }
@@ -50,19 +53,16 @@ robot_fcl *robot_states_fcl(const robot_case *c) {
 }
 
 void robot_states_place(robot_fcl *fcl, const robot_case *c, const double *values) {
+  placement axes[CASE_MAX_LINKS];
+  robot_place_axes(c->robot, values, axes);
   for (size_t g = 0; g < c->n_geometries; g++) {
-    cprox_vec3 position;
-    double link[9], rotation[9];
-    cprox_robot_link_frame(c->robot, values, (size_t)c->links[g], &position, link);
+    const robot_link *link = &c->robot->links[c->links[g]];
     const frame own = frame_create(&c->poses[g], (cprox_vec3){0, 0, 0});
-    const double at[3] = {c->poses[g].position.x, c->poses[g].position.y, c->poses[g].position.z};
-    double *p[3] = {&position.x, &position.y, &position.z};
-    for (int i = 0; i < 3; i++) {
-      for (int k = 0; k < 3; k++) *p[i] += link[3 * i + k] * at[k];
-      for (int j = 0; j < 3; j++)
-        rotation[3 * i + j] = link[3 * i] * own.r[j] + link[3 * i + 1] * own.r[3 + j] + link[3 * i + 2] * own.r[6 + j];
-    }
-    robot_fcl_place(fcl, g, position, rotation);
+    placement here = {.p = c->poses[g].position};
+    memcpy(here.r, own.r, sizeof here.r);
+    here = placement_compose(&link->at, &here);
+    if (link->axis >= 0) here = placement_compose(&axes[link->axis], &here);
+    robot_fcl_place(fcl, g, here.p, here.r);
   }
 }
 

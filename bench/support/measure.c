@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { MAX_ROUNDS = 64, MAX_METHODS = 16, BLOCK = 10 };
+enum { MAX_ROUNDS = 64, MAX_METHODS = 32, BLOCK = 10 };
 
 /* A sample lasts at least this long, so that the clock's own cost does not count [s]. */
 static const double SHORTEST_SAMPLE = 2e-5;
