@@ -86,9 +86,9 @@ typedef struct cprox_mover {
   /** the number of pairs with itself */
   size_t n_self_pairs;
   /** a radius that changes: at each parameter the x of this curve is added to radius [m]. It has the domain of `curve`,
-   *  and the sum is 0 or more. NULL: nothing is added. Distance, tolerance and collision take it, against convex bodies
-   *  and compounds of them that stand or are synchronized; all other queries refuse it, as do certificates, signed
-   *  distances and obstacle sets with a BVH. doc/curve-bound.md */
+   *  and the sum is 0 or more. NULL: nothing is added. Distances (signed or not), verdicts, profiles, the nearest
+   *  obstacles, gradients and the time of contact take it, against all obstacles but curves that are known by their arc
+   *  length alone. Certificates, violations and the nearest pairs refuse it. doc/curve-bound.md */
   const cprox_curve *radius_curve;
 } cprox_mover;
 

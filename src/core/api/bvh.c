@@ -42,7 +42,8 @@ static cprox_status out_of_memory(const query *q) {
 
 static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, cprox_result *result) {
   const unsigned others = ARGUMENTS_INTERVAL | (query_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED | ARGUMENTS_SHARE);
-  const cprox_status begun = bvh_begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | others});
+  const cprox_status begun =
+      bvh_begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_RADIUS | others});
   if (begun != CPROX_OK) return begun;
   if (q->mover.motion || !boxes_hold(q)) return solve_query(q, 0, q->n, INFINITY, result);
   set_traversal walk;
@@ -95,8 +96,8 @@ cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, con
   query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
   const cprox_status begun =
       bvh_begin(set, &q,
-                (arguments_query){"time of contact with a set",
-                                  ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL});
+                (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE |
+                                                                    ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS});
   if (begun != CPROX_OK) return begun;
   if (q.set) return robot_time_of_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))
@@ -120,7 +121,8 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
                          cprox_workspace *workspace, cprox_result *nearest, cprox_listed *listed) {
   query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  const arguments_query asked = {"the nearest obstacles of a set", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
+  const arguments_query asked = {"the nearest obstacles of a set",
+                                 ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS};
   const cprox_status begun = bvh_begin(set, &q, asked);
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one obstacle");

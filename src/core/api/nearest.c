@@ -35,8 +35,8 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
                           cprox_listed *listed) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  const cprox_status begun =
-      query_begin(&q, (arguments_query){"the nearest obstacles", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
+  const cprox_status begun = query_begin(
+      &q, (arguments_query){"the nearest obstacles", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS});
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one obstacle");
   const candidate *rank = rank_targets(&q);
@@ -73,8 +73,8 @@ cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_
   if (usable != CPROX_OK) return usable;
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  const cprox_status begun =
-      query_begin(&q, (arguments_query){"the obstacles within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
+  const cprox_status begun = query_begin(
+      &q, (arguments_query){"the obstacles within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS});
   if (begun != CPROX_OK) return begun;
   cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;

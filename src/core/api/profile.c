@@ -130,7 +130,8 @@ cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   cprox_status status =
-      query_begin(&q, (arguments_query){"a clearance profile", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_WHOLE});
+      query_begin(&q, (arguments_query){"a clearance profile",
+                                        ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_WHOLE | ARGUMENTS_RADIUS});
   if (status != CPROX_OK) return status;
   if (!(horizon >= 0.0))
     return workspace_fail(workspace, CPROX_INVALID, "horizon is %g, must be 0 or more, or infinity", horizon);

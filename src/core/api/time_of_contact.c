@@ -9,8 +9,8 @@
 cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targets, size_t n,
                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, targets, n, 0.0, false, options, workspace);
-  const arguments_query asked = {"time of contact",
-                                 ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL};
+  const arguments_query asked = {
+      "time of contact", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS};
   const cprox_status begun = query_begin(&q, asked);
   if (begun != CPROX_OK) return begun;
   if (mover.motion) return robot_time_of_contact(&q, result);

@@ -3,6 +3,7 @@
 
 #include "base/rounding.h"
 #include "base/workspace.h"
+#include "problem/radius.h"
 #include "shape/body.h"
 
 /* ---- the heap ---- */
@@ -67,7 +68,8 @@ static double capsules_to_box(const cprox_curve *curve, vec3 centre, vec3 low, v
 /* How far what rides the curve reaches from it. */
 static double carried_reach(const query *q) {
   const cprox_body *body = q->mover.body;
-  return q->mover.radius + (body ? vec_norm(body->ball_centre) + body->ball_radius : 0.0);
+  return q->mover.radius + radius_most(q->mover.radius_curve) +
+         (body ? vec_norm(body->ball_centre) + body->ball_radius : 0.0);
 }
 
 bool traversal_begin(set_traversal *w, const obstacle_bvh *set, const query *q) {

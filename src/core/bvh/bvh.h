@@ -158,11 +158,13 @@ typedef struct tree_segment {
   size_t n;                      /* 1 … TREE_MOST_POINTS */
   double p[3][TREE_MOST_POINTS]; /* the points less x */
   double radius;
-  bool known;    /* a normal from elsewhere is to be tried too: */
-  vec3 normal;   /* unit within 4 u, */
-  double along;  /* min normal·p, less the radius */
-  bool stepping; /* x is the first point, and slopes are wanted */
-  double beyond; /* lanes that are farther are of no interest: infinity, where all are */
+  const double *thick; /* NULL, or what is taken off at each point on top of that */
+  double thickest;     /* the most of it; 0 where there is none */
+  bool known;          /* a normal from elsewhere is to be tried too: */
+  vec3 normal;         /* unit within 4 u, */
+  double along;        /* min normal·p, less what is taken off */
+  bool stepping;       /* x is the first point, and slopes are wanted */
+  double beyond;       /* lanes that are farther are of no interest: infinity, where all are */
 } tree_segment;
 
 /* What one node or pack says of a segment, lane by lane. */

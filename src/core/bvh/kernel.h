@@ -186,18 +186,14 @@ TREE_TARGET static inline void raise_by_slabs(const tree *t, uint32_t at, vec3 x
   }
 }
 
-/* (min n·p - support)/|n| for each lane's own n; 0 where n has no direction. */
-TREE_TARGET static inline void bound_by_own(const normals *near, const tree_segment *segment, tree_lanes *lanes) {
-  _Alignas(64) double least[TREE_LANES];
-  for (int l = 0; l < TREE_LANES; l++) least[l] = INFINITY;
-  for (size_t k = 0; k < segment->n; k++) {
-    const double px = segment->p[0][k], py = segment->p[1][k], pz = segment->p[2][k];
-#pragma omp simd
-    for (int l = 0; l < TREE_LANES; l++) {
-      const double g = near->n[0][l] * px + near->n[1][l] * py + near->n[2][l] * pz;
-      least[l] = g < least[l] ? g : least[l];
-    }
-  }
+TREE_TARGET static inline double length_of(const normals *near, int l) {
+  const double n2 = near->n[0][l] * near->n[0][l] + near->n[1][l] * near->n[1][l] + near->n[2][l] * near->n[2][l];
+  return sqrt(n2 > LEAST_LENGTH2 ? n2 : LEAST_LENGTH2);
+}
+
+/* The bounds, of min n·p. */
+TREE_TARGET static inline void finish_bounds(const normals *near, const tree_segment *segment,
+                                             const double least[TREE_LANES], tree_lanes *lanes) {
 #pragma omp simd
   for (int l = 0; l < TREE_LANES; l++) {
     const double n2 = near->n[0][l] * near->n[0][l] + near->n[1][l] * near->n[1][l] + near->n[2][l] * near->n[2][l];
@@ -208,8 +204,83 @@ TREE_TARGET static inline void bound_by_own(const normals *near, const tree_segm
   }
 }
 
+/* The slopes, of f n·p. */
+TREE_TARGET static inline void finish_slopes(const normals *near, const double slope[TREE_LANES], tree_lanes *lanes) {
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double n2 = near->n[0][l] * near->n[0][l] + near->n[1][l] * near->n[1][l] + near->n[2][l] * near->n[2][l];
+    const double length = sqrt(n2 > LEAST_LENGTH2 ? n2 : LEAST_LENGTH2);
+    lanes->first[l] = n2 > LEAST_LENGTH2 ? -near->support[l] / length : 0.0;
+    lanes->slope[l] = slope[l] / length;
+  }
+}
+
+/* Of points that are thick by r: (min n·p - r |n| - support)/|n|. */
+TREE_TARGET __attribute__((noinline, cold)) static void bound_thick(const normals *near, const tree_segment *segment,
+                                                                    tree_lanes *lanes) {
+  _Alignas(64) double least[TREE_LANES];
+  for (int l = 0; l < TREE_LANES; l++) least[l] = INFINITY;
+  for (size_t k = 0; k < segment->n; k++) {
+    const double px = segment->p[0][k], py = segment->p[1][k], pz = segment->p[2][k], r = segment->thick[k];
+#pragma omp simd
+    for (int l = 0; l < TREE_LANES; l++) {
+      const double g = near->n[0][l] * px + near->n[1][l] * py + near->n[2][l] * pz - length_of(near, l) * r;
+      least[l] = g < least[l] ? g : least[l];
+    }
+  }
+  finish_bounds(near, segment, least, lanes);
+  /* without a direction nothing but the largest ball is known */
+  for (int l = 0; l < TREE_LANES; l++)
+    lanes->bound[l] -=
+        near->n[0][l] * near->n[0][l] + near->n[1][l] * near->n[1][l] + near->n[2][l] * near->n[2][l] > LEAST_LENGTH2
+            ? 0.0
+            : segment->thickest;
+}
+
+TREE_TARGET __attribute__((noinline, cold)) static void slopes_of_thick(const normals *near,
+                                                                        const tree_segment *segment,
+                                                                        tree_lanes *lanes) {
+  _Alignas(64) double slope[TREE_LANES] = {0};
+  const double degree = (double)(segment->n - 1);
+  for (size_t k = 1; k < segment->n; k++) {
+    const double f = degree / (double)k;
+    const double px = f * segment->p[0][k], py = f * segment->p[1][k], pz = f * segment->p[2][k],
+                 r = f * (segment->thick[k] - segment->thick[0]);
+#pragma omp simd
+    for (int l = 0; l < TREE_LANES; l++) {
+      const double g = near->n[0][l] * px + near->n[1][l] * py + near->n[2][l] * pz - length_of(near, l) * r;
+      slope[l] = g < slope[l] ? g : slope[l];
+    }
+  }
+  finish_slopes(near, slope, lanes);
+  for (int l = 0; l < TREE_LANES; l++) lanes->first[l] -= segment->thick[0];
+}
+
+/* (min n·p - support)/|n| for each lane's own n; 0 where n has no direction. */
+TREE_TARGET static inline void bound_by_own(const normals *near, const tree_segment *segment, tree_lanes *lanes) {
+  if (segment->thick) {
+    bound_thick(near, segment, lanes);
+    return;
+  }
+  _Alignas(64) double least[TREE_LANES];
+  for (int l = 0; l < TREE_LANES; l++) least[l] = INFINITY;
+  for (size_t k = 0; k < segment->n; k++) {
+    const double px = segment->p[0][k], py = segment->p[1][k], pz = segment->p[2][k];
+#pragma omp simd
+    for (int l = 0; l < TREE_LANES; l++) {
+      const double g = near->n[0][l] * px + near->n[1][l] * py + near->n[2][l] * pz;
+      least[l] = g < least[l] ? g : least[l];
+    }
+  }
+  finish_bounds(near, segment, least, lanes);
+}
+
 /* The same normals at the first point, and the line through there below all others. */
 TREE_TARGET static inline void find_slopes(const normals *near, const tree_segment *segment, tree_lanes *lanes) {
+  if (segment->thick) {
+    slopes_of_thick(near, segment, lanes);
+    return;
+  }
   _Alignas(64) double slope[TREE_LANES] = {0};
   const double degree = (double)(segment->n - 1);
   for (size_t k = 1; k < segment->n; k++) {
@@ -221,13 +292,7 @@ TREE_TARGET static inline void find_slopes(const normals *near, const tree_segme
       slope[l] = g < slope[l] ? g : slope[l];
     }
   }
-#pragma omp simd
-  for (int l = 0; l < TREE_LANES; l++) {
-    const double n2 = near->n[0][l] * near->n[0][l] + near->n[1][l] * near->n[1][l] + near->n[2][l] * near->n[2][l];
-    const double length = sqrt(n2 > LEAST_LENGTH2 ? n2 : LEAST_LENGTH2);
-    lanes->first[l] = n2 > LEAST_LENGTH2 ? -near->support[l] / length : 0.0;
-    lanes->slope[l] = slope[l] / length;
-  }
+  finish_slopes(near, slope, lanes);
 }
 
 TREE_TARGET static inline void raise(tree_lanes *lanes, const double bound[TREE_LANES]) {

@@ -87,6 +87,7 @@ static void measure_ranges(curve_side *side) {
 void curve_side_begin(curve_side *side, const cprox_curve *curve, const frame *placed, points_pool *pool,
                       size_t root_slot) {
   side->curve = curve;
+  side->radius = NULL;
   side->frame = *placed;
   side->part = curve_side_whole();
   side->pool = pool;
@@ -95,6 +96,108 @@ void curve_side_begin(curve_side *side, const cprox_curve *curve, const frame *p
   side->root_error = side->root_magnitude = 0.0;
   measure_frame(side);
   measure_ranges(side);
+}
+
+/* ---- a radius that changes ---- */
+
+static double *radii_of_slot(const curve_side *side, size_t slot) {
+  return points_pool_at(side->pool, slot) + control_size(side->curve->degree);
+}
+
+const double *curve_side_radii(const curve_side *side, const curve_interval *at) {
+  return radii_of_slot(side, (size_t)at->slot);
+}
+
+bool curve_side_thicken(curve_side *side, const cprox_curve *radius) {
+  points_pool *pool = side->pool;
+  side->radius = radius;
+  side->root_piece = SIZE_MAX;
+  pool->stride += side->curve->degree + 1;
+  pool->points = workspace_reserve(pool->workspace, WORKSPACE_POINTS, pool->slots * pool->stride * sizeof(double));
+  /* of ranges: the numbers of a capsule are exact, their sum is not */
+  double least, most;
+  const curve_interval whole = curve_side_whole();
+  curve_side_radius_range(side, &whole, &least, &most);
+  const double size = fmax(fabs(least), fabs(most));
+  side->range_magnitude = ROUND_UP * (side->range_magnitude + size);
+  side->range_error = ROUND_UP * (side->range_error + 4.0 * ROUND_U * size);
+  return pool->points;
+}
+
+curve_thickness curve_side_thickness_of(curve_side *side, size_t piece, double s) {
+  curve_side_load(side, piece);
+  const double *r = radii_of_slot(side, side->root_slot);
+  vec3 at, d1, d2;
+  curve_bezier_evaluate(r, r, r, 1, side->curve->degree, curve_binomial(side->curve), s, &at, &d1, &d2);
+  return (curve_thickness){at.x, d1.x, d2.x};
+}
+
+void curve_side_radius_range(const curve_side *side, const curve_interval *at, double *least, double *most) {
+  *least = *most = 0.0;
+  if (!side->radius) return;
+  if (at->slot >= 0) {
+    const double *r = curve_side_radii(side, at);
+    *least = *most = r[0];
+    for (size_t i = 1; i <= side->curve->degree; i++) *least = lesser(*least, r[i]), *most = greater(*most, r[i]);
+    return;
+  }
+  const curve_capsule capsule = curve_capsule_at(side->radius, at->part);
+  *least = lesser(capsule.a.x, capsule.b.x) - capsule.radius;
+  *most = greater(capsule.a.x, capsule.b.x) + capsule.radius;
+}
+
+size_t curve_side_lowest(const curve_side *side, const curve_interval *at, vec3 n) {
+  const size_t degree = side->curve->degree;
+  const double *x = points_pool_at(side->pool, (size_t)at->slot), *y = x + degree + 1, *z = y + degree + 1;
+  if (!side->radius) return control_lowest(x, degree, n);
+  const double *r = curve_side_radii(side, at);
+  size_t lowest = 0;
+  double least = INFINITY;
+  for (size_t i = 0; i <= degree; i++) {
+    const double g = vec_dot(n, vec(x[i], y[i], z[i])) - r[i];
+    if (g < least) least = g, lowest = i;
+  }
+  return lowest;
+}
+
+/* min n·P - r over the control points: n·psi - r is the polynomial with these coefficients. */
+static double least_of_thick(const curve_side *side, const curve_interval *at, vec3 n) {
+  const size_t degree = side->curve->degree;
+  const double *x = points_pool_at(side->pool, (size_t)at->slot), *y = x + degree + 1, *z = y + degree + 1,
+               *r = curve_side_radii(side, at);
+  double least = INFINITY;
+  for (size_t i = 0; i <= degree; i++) least = lesser(n.x * x[i] + n.y * y[i] + n.z * z[i] - r[i], least);
+  return least;
+}
+
+/* Cuts the numbers of a row at s: `right` holds them on entry, and those of [s, 1] on return. */
+static void split_row(double *left, double *right, size_t degree, double s) {
+  for (size_t level = 0; level <= degree; level++) {
+    left[level] = right[0];
+    for (size_t i = 0; i + level < degree; i++) right[i] = (1.0 - s) * right[i] + s * right[i + 1];
+  }
+}
+
+/* Cuts the numbers of a slot: control points, and radii where there are. Returns the error added. */
+static double split_slot(const curve_side *side, size_t left, size_t right, double s) {
+  const size_t degree = side->curve->degree;
+  if (side->radius) split_row(radii_of_slot(side, left), radii_of_slot(side, right), degree, s);
+  return control_split(points_pool_at(side->pool, left), points_pool_at(side->pool, right), degree, s,
+                       side->root_magnitude);
+}
+
+/* How many numbers of a slot are in use. */
+static size_t slot_size(const curve_side *side) {
+  return control_size(side->curve->degree) + (side->radius ? side->curve->degree + 1 : 0);
+}
+
+/* The loaded piece's radii; what they add to its rounding. */
+static void load_radii(curve_side *side, size_t piece) {
+  const vec3 *from = curve_piece(side->radius, piece);
+  double *r = radii_of_slot(side, side->root_slot), most = 0.0;
+  for (size_t i = 0; i <= side->curve->degree; i++) r[i] = from[i].x, most = greater(fabs(r[i]), most);
+  side->root_magnitude += most;
+  side->root_error += side->radius->error[piece];
 }
 
 curve_interval curve_side_whole(void) {
@@ -191,6 +294,7 @@ void curve_side_load(curve_side *side, size_t piece) {
   side->root_magnitude = control_magnitude(x, degree);
   const double turned = side->turned_slope * side->root_magnitude + side->turned_offset;
   side->root_error = (side->curve->arcs ? side->curve->arcs->error : side->curve->error[piece]) + turned;
+  if (side->radius) load_radii(side, piece);
 }
 
 /* ---- intervals of curves that are known by their arc length ---- */
@@ -289,15 +393,12 @@ bool curve_side_cut_arcs(const curve_side *side, const curve_interval *piece, co
 static bool cut_to_section(curve_side *side, curve_interval *at) {
   const int32_t rest = points_pool_take(side->pool);
   if (rest < 0) return false;
-  const size_t degree = side->curve->degree;
-  double *points = points_pool_at(side->pool, (size_t)at->slot), *other = points_pool_at(side->pool, (size_t)rest);
+  const size_t degree = side->curve->degree, own = (size_t)at->slot, other = (size_t)rest;
   if (at->b < 1.0) {
-    at->error += control_split(other, points, degree, at->b, side->root_magnitude);
-    memcpy(points, other, control_size(degree) * sizeof(double));
+    at->error += split_slot(side, other, own, at->b);
+    memcpy(points_pool_at(side->pool, own), points_pool_at(side->pool, other), slot_size(side) * sizeof(double));
   }
-  if (at->a > 0.0) {
-    at->error += control_split(other, points, degree, at->a / at->b, side->root_magnitude);
-  }
+  if (at->a > 0.0) at->error += split_slot(side, other, own, at->a / at->b);
   /* a, b and a/b are rounded, by 4 u in all: along a curve with |psi'| <= 2 degree max|P| */
   at->error += ROUND_UP * 8.0 * (double)degree * ROUND_U * side->root_magnitude;
   points_pool_release(side->pool, rest);
@@ -310,7 +411,7 @@ bool curve_side_materialise(curve_side *side, curve_interval *at) {
   at->slot = points_pool_take(side->pool);
   if (at->slot < 0) return false;
   if (side->curve->arcs) return arc_materialise(side, at);
-  const size_t bytes = control_size(side->curve->degree) * sizeof(double);
+  const size_t bytes = slot_size(side) * sizeof(double);
   memcpy(points_pool_at(side->pool, (size_t)at->slot), points_pool_at(side->pool, side->root_slot), bytes);
   at->error = side->root_error;
   return (at->a == 0.0 && at->b == 1.0) || cut_to_section(side, at);
@@ -345,7 +446,9 @@ static curve_reach range_reach(const curve_side *side, const curve_interval *at,
   const vec3 turned = frame_turn_to_world(&side->frame, n);
   const double a = vec_dot(turned, vec_sub(capsule.a, side->frame.position));
   const double b = vec_dot(turned, vec_sub(capsule.b, side->frame.position));
-  return (curve_reach){.least = lesser(a, b) - capsule.radius - vec_dot(n, side->frame.centre),
+  double thin, thick;
+  curve_side_radius_range(side, at, &thin, &thick);
+  return (curve_reach){.least = lesser(a, b) - capsule.radius - vec_dot(n, side->frame.centre) - thick,
                        .error = side->range_error,
                        .magnitude = side->range_magnitude};
 }
@@ -358,6 +461,10 @@ size_t curve_side_children(const curve_side *side, const curve_interval *range, 
   for (size_t k = 0; k < n; k++) {
     part[k] = *range;
     part[k].part = (uint32_t)(first + k);
+    double thin, thick;
+    if (!side->radius) continue;
+    curve_side_radius_range(side, &part[k], &thin, &thick);
+    pack->radius[k] += thick;
   }
   return n;
 }
@@ -375,17 +482,23 @@ double curve_side_distance_from(const curve_side *side, const curve_interval *at
   const double *points = points_pool_at(side->pool, (size_t)at->slot);
   const double distance =
       control_distance_from(points, side->curve->degree, curve_square(side->curve), centre, axis, scratch);
+  double thin, thick;
+  if (side->radius) {
+    curve_side_radius_range(side, at, &thin, &thick);
+    return distance - thick;
+  }
   /* an ellipsoid lies in the capsule round its chord */
   return side->curve->arcs ? fmax(distance - ROUND_UP * arc_hull(side, at).radius, 0.0) : distance;
 }
 
 curve_reach curve_side_reach(const curve_side *side, const curve_interval *at, vec3 n) {
   if (at->slot >= 0 && side->curve->arcs) return arc_reach(side, at, n);
-  if (at->slot >= 0)
-    return (curve_reach){.least = control_least(points_pool_at(side->pool, (size_t)at->slot), side->curve->degree, n),
-                         .error = at->error,
-                         .magnitude = side->root_magnitude};
-  return range_reach(side, at, n);
+  if (at->slot < 0) return range_reach(side, at, n);
+  const double *points = points_pool_at(side->pool, (size_t)at->slot);
+  return (curve_reach){
+      .least = side->radius ? least_of_thick(side, at, n) : control_least(points, side->curve->degree, n),
+      .error = at->error,
+      .magnitude = side->root_magnitude};
 }
 
 curve_reach curve_side_children_distance(const curve_side *side, const curve_pack *pack, double least[CURVE_PACK]) {
@@ -482,9 +595,7 @@ bool curve_side_cut_piece(curve_side *side, curve_interval *piece, double cut, d
   if (side->curve->arcs) return curve_side_cut_arcs(side, piece, &cut, 1, half);
   const int32_t left = points_pool_take(side->pool);
   if (left < 0) return false;
-  const double added =
-      control_split(points_pool_at(side->pool, (size_t)left), points_pool_at(side->pool, (size_t)piece->slot),
-                    side->curve->degree, s, side->root_magnitude);
+  const double added = split_slot(side, (size_t)left, (size_t)piece->slot, s);
   half[0] = half[1] = *piece;
   half[0].slot = left;
   half[0].b = half[1].a = cut;

@@ -31,8 +31,14 @@ bool points_pool_begin(points_pool *pool, size_t degree, size_t reserved, cprox_
 double *points_pool_at(const points_pool *pool, size_t slot);
 void points_pool_release(points_pool *pool, int32_t slot);
 
+/* A radius that changes along a side, and its derivatives by the piece's own parameter. Zeros where there is none. */
+typedef struct curve_thickness {
+  double value, slope, bend;
+} curve_thickness;
+
 typedef struct curve_side {
   const cprox_curve *curve;
+  const cprox_curve *radius; /* NULL, or a curve with the same pieces: its x is the radius of what rides this one */
   frame frame;
   curve_interval part; /* what of the curve is asked about: all of it, or some of one piece */
   points_pool *pool;
@@ -46,6 +52,26 @@ typedef struct curve_side {
 
 void curve_side_begin(curve_side *side, const cprox_curve *curve, const frame *placed, points_pool *pool,
                       size_t root_slot);
+
+/* Gives a side that has begun, and whose pool has, a radius: bounds and cuts then know it, and slots hold its numbers
+ * behind the control points. False where memory is out. */
+bool curve_side_thicken(curve_side *side, const cprox_curve *radius);
+
+/* The radius at s of a piece, which becomes the loaded one. Its error is within curve_side_point_error(). */
+curve_thickness curve_side_thickness_of(curve_side *side, size_t piece, double s);
+
+static inline curve_thickness curve_side_thickness(curve_side *side, size_t piece, double s) {
+  return side->radius ? curve_side_thickness_of(side, piece, s) : (curve_thickness){0};
+}
+
+/* The radii at an interval's control points: the Bernstein coefficients. The interval has points of its own. */
+const double *curve_side_radii(const curve_side *side, const curve_interval *at);
+
+/* No radius over an interval is larger than *most or less than *least; zeros where there is none. */
+void curve_side_radius_range(const curve_side *side, const curve_interval *at, double *least, double *most);
+
+/* The control point of an interval with points of its own that is lowest along n, the first of several. */
+size_t curve_side_lowest(const curve_side *side, const curve_interval *at, vec3 n);
 
 /* The status of a call below that returned false: CPROX_MEMORY with its reason, or what a curve's own functions did
  * wrong. And the latter alone, CPROX_OK where they did nothing wrong: to be asked where points were taken. */
@@ -82,7 +108,7 @@ bool curve_side_copy(const curve_side *side, curve_interval *at);
 
 /* What an interval reaches along a direction. */
 typedef struct curve_reach {
-  double least;     /* min n·x over the interval's hull */
+  double least;     /* min n·x over the interval's hull; less the radius at each point, where there is one */
   double error;     /* how far the exact curve can be from the computed hull */
   double magnitude; /* of the points that entered, for the rounding of the products */
 } curve_reach;
@@ -108,7 +134,7 @@ typedef struct curve_hull {
   double error; /* as in curve_reach */
 } curve_hull;
 
-/* Fills points, relative to `from`. A piece must have points of its own. */
+/* Fills points, relative to `from`; a radius that changes is not in it. A piece must have points of its own. */
 curve_hull curve_side_hull(const curve_side *side, const curve_interval *at, vec3 from, double *x, double *y,
                            double *z);
 
@@ -121,7 +147,7 @@ bool curve_side_cut_arcs(const curve_side *side, const curve_interval *piece, co
 vec3 curve_side_end(const curve_side *side, const curve_interval *at, bool last);
 
 /* A lower bound of the distance from a centre, or an axis through it (NULL for none), over an interval with points of
- * its own, as control_distance_from() gives it. `scratch` holds a slot's numbers. */
+ * its own, as control_distance_from() gives it, less the radius. `scratch` holds a slot's numbers. */
 double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis,
                                 double *scratch);
 

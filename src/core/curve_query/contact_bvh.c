@@ -84,8 +84,10 @@ static cprox_status probe_piece(contact_tree *c, search_node *node) {
   if (status < 0) return status;
   if (isfinite(least2)) {
     const tree_sample sample = measure(c, nearest, curve_side_piece(&o->side, at), at->a, x, at->error);
-    const double speed = -vec_dot(sample.near.normal, first_velocity(&segment));
-    const double clearance = sample.near.distance - o->offset;
+    const curve_thickness radius = curve_side_thickness(&o->side, sample.piece, sample.s);
+    const double thickens = radius.slope * (at->b - at->a);
+    const double speed = thickens - vec_dot(sample.near.normal, first_velocity(&segment));
+    const double clearance = sample.near.distance - o->offset - radius.value;
     if (clearance > 0.0 && speed > 0.0) c->ahead = clearance / speed;
   }
   if (!segment.stepping) return CPROX_OK;
@@ -187,7 +189,7 @@ static double approach(curve_tree *o, const tree_sample *sample) {
   const double *x = points_pool_at(&o->pool, o->side.root_slot), *y = x + degree + 1, *z = y + degree + 1;
   vec3 velocity;
   curve_bezier_evaluate(x, y, z, 1, degree, curve_binomial(o->side.curve), sample->s, NULL, &velocity, NULL);
-  return -vec_dot(sample->near.normal, velocity);
+  return curve_side_thickness(&o->side, sample->piece, sample->s).slope - vec_dot(sample->near.normal, velocity);
 }
 
 void contact_tree_prove(contact_tree *c) {
@@ -214,7 +216,7 @@ void contact_tree_prove(contact_tree *c) {
     bound.at = curve_side_parameter_below(&o->side, piece, next);
     consider(c, &sample, &bound);
   }
-  if (c->proven_bound.at < found_at || o->offset > 0.0) return;
+  if (c->proven_bound.at < found_at || o->offset > 0.0 || o->side.radius) return;
 
   /* without a radius: through the surface */
   size_t piece;

@@ -25,6 +25,7 @@ static cprox_status measure(contact_convex *c, size_t piece, double s, vec3 y, d
   curve_convex *o = &c->base;
   const vec3 before = o->hint.towards = o->last.normal;
   o->settled = vec_norm2(before) > 0.0 ? c->epsilon : 0.0;
+  if (o->side.radius) o->hint.floor = o->offset + curve_side_thickness(&o->side, piece, s).value;
   const cprox_status status = curve_convex_measure(o, piece, s, y, error, &o->last, bound);
   if (status < 0) return status;
   if (!(vec_norm2(o->last.normal) > 0.0)) o->last.normal = before;
@@ -139,6 +140,10 @@ static double free_fraction(const contact_convex *c, const search_node *node) {
   double rest[CPROX_MAX_DEGREE + 1];
   for (size_t k = 0; k <= degree; k++)
     rest[k] = vec_dot(n, vec(x[k], y[k], z[k])) - o->last.support - 4.0 * node->slack - FOLLOWED * c->epsilon;
+  if (o->side.radius) {
+    const double *r = curve_side_radii(&o->side, &curve_convex_known(node)->at);
+    for (size_t k = 0; k <= degree; k++) rest[k] -= r[k];
+  }
   if (!isfinite(rest[0])) return 0.0;
   const double root = first_root(rest, degree);
   return root < 1.0 ? (1.0 - 1e-12) * root : 1.0; /* ends of windows are rounded */
@@ -240,7 +245,7 @@ static double inward_speed(curve_convex *o, const curve_sample *sample) {
   const double *x = points_pool_at(&o->pool, o->side.root_slot), *y = x + degree + 1, *z = y + degree + 1;
   vec3 velocity;
   curve_bezier_evaluate(x, y, z, 1, degree, curve_binomial(o->side.curve), sample->s, NULL, &velocity, NULL);
-  return -vec_dot(sample->normal, velocity);
+  return curve_side_thickness(&o->side, sample->piece, sample->s).slope - vec_dot(sample->normal, velocity);
 }
 
 /* From the best sample on, Newton's method on the distance, aimed below the surface by so many times what rounding

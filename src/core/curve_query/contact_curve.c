@@ -93,12 +93,13 @@ static double free_fraction(const contact_curve *c, const search_node *node) {
                *z = y + degree + 1;
   const vec3 n = o->last_normal, start = vec(x[0], y[0], z[0]);
   double slope = 0.0;
+  const double *r = o->side[0].radius ? curve_side_radii(&o->side[0], &curve_curve_known(node)->side[0]) : NULL;
   for (size_t k = 1; k <= degree; k++) {
-    const double rise = vec_dot(n, vec_sub(vec(x[k], y[k], z[k]), start));
+    const double rise = vec_dot(n, vec_sub(vec(x[k], y[k], z[k]), start)) - (r ? r[k] - r[0] : 0.0);
     slope = fmin(slope, rise * (double)degree / (double)k);
   }
-  const double above =
-      vec_dot(n, vec_sub(start, curve_side_point(&o->side[1], c->nearest))) - o->offset - 4.0 * node->slack;
+  const double above = vec_dot(n, vec_sub(start, curve_side_point(&o->side[1], c->nearest))) -
+                       (o->offset + (r ? r[0] : 0.0)) - 4.0 * node->slack;
   return slope < 0.0 ? fmin(above / -slope, 1.0) : above > 0.0 ? 1.0 : 0.0;
 }
 
@@ -172,7 +173,9 @@ void contact_curve_prove(contact_curve *c) {
   for (int i = 0; i < MOST_STEPS && c->proven_bound.at == found_at; i++) {
     vec3 velocity, unused;
     jet_at(&o->side[0], m.s[0], &velocity, &unused);
-    const double inward = -vec_dot(m.normal, velocity), s = m.s[0] + (bound.upper + 2.0 * bound.slack) / inward;
+    const double thickens = curve_side_thickness(&o->side[0], m.piece[0], m.s[0]).slope;
+    const double inward = thickens - vec_dot(m.normal, velocity),
+                 s = m.s[0] + (bound.upper + 2.0 * bound.slack) / inward;
     if (!(inward > 0.0 && s > m.s[0] && m.s[0] < 1.0)) return;
     m.s[0] = fmin(s, 1.0);
     m.point[0] = curve_side_point(&o->side[0], m.s[0]);

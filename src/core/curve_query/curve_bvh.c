@@ -35,8 +35,9 @@ search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, do
   o->distance_queries++;
   *sample = (tree_sample){.place = place, .y = y, .piece = piece, .s = s};
   tree_element_near(o->tree, place, y, &sample->near);
-  const double slack = measure_slack(o, error, sample->near.distance, y);
-  return (search_best){.upper = sample->near.distance - o->offset + slack, .slack = slack};
+  const double radius = curve_side_thickness(&o->side, piece, s).value;
+  const double slack = measure_slack(o, error + ROUND_U * radius, sample->near.distance, y);
+  return (search_best){.upper = sample->near.distance - (o->offset + radius) + slack, .slack = slack};
 }
 
 static bool adopt_better(curve_tree *o, const tree_sample *sample, const search_best *bound) {
@@ -49,19 +50,20 @@ static bool adopt_better(curve_tree *o, const tree_sample *sample, const search_
 
 /* ---- better points ---- */
 
-/* One step of Newton's method on the distance to the feature that is nearest at a sample. */
-static double newton_step(const tree_sample *sample, vec3 d1, vec3 d2) {
+/* One step of Newton's method on the distance, less a radius that changes, to the feature that is nearest at a sample.
+ */
+static double newton_step(const tree_sample *sample, curve_thickness radius, vec3 d1, vec3 d2) {
   const tree_near *near = &sample->near;
-  const double slope = vec_dot(near->normal, d1);
-  double across2 = vec_norm2(d1) - slope * slope;
+  const double along = vec_dot(near->normal, d1), slope = along - radius.slope;
+  double across2 = vec_norm2(d1) - along * along;
   for (int k = 0; k < near->tangents; k++) {
-    const double along = vec_dot(near->e[k], d1);
-    across2 -= along * along;
+    const double beside = vec_dot(near->e[k], d1);
+    across2 -= beside * beside;
   }
-  const double bend = vec_dot(near->normal, d2);
+  const double bend = vec_dot(near->normal, d2) - radius.bend;
   /* a face has no bend of its own; there the height itself is aimed at where it falls to 0 */
   const double curvature = bend + (near->tangents < 2 ? fmax(across2, 0.0) / near->distance : 0.0);
-  const double to_zero = slope != 0.0 ? -near->distance / slope : 0.0;
+  const double to_zero = slope != 0.0 ? -(near->distance - radius.value) / slope : 0.0;
   if (!(curvature > 0.0)) return to_zero;
   const double to_least = -slope / curvature;
   return fabs(to_zero) < fabs(to_least) ? to_zero : to_least;
@@ -76,7 +78,8 @@ static void refine_on_element(curve_tree *o) {
   vec3 at, d1, d2;
   curve_bezier_evaluate(x, y, z, 1, degree, binomial, sample.s, &at, &d1, &d2);
   for (int i = 0; i < MOST_STEPS && sample.near.distance > 0.0; i++) {
-    const double next = fmin(fmax(sample.s + newton_step(&sample, d1, d2), o->side.part.a), o->side.part.b);
+    const curve_thickness radius = curve_side_thickness(&o->side, sample.piece, sample.s);
+    const double next = fmin(fmax(sample.s + newton_step(&sample, radius, d1, d2), o->side.part.a), o->side.part.b);
     if (!(fabs(next - sample.s) > 1e-16)) return;
     curve_bezier_evaluate(x, y, z, 1, degree, binomial, next, &at, &d1, &d2);
     const search_best bound = curve_tree_measure(o, sample.place, sample.piece, next, at, error, &sample);
@@ -211,7 +214,8 @@ static void seed_at(curve_tree *o, size_t piece, double s) {
   const vec3 y = curve_side_point(&o->side, s);
   const double error = curve_side_point_error(&o->side);
   if (!vec_finite(y)) return;
-  const double bound = fmin(o->best_bound.upper, o->asked.cutoff) + o->offset;
+  const double radius = curve_side_thickness(&o->side, piece, s).value;
+  const double bound = fmin(o->best_bound.upper, o->asked.cutoff) + (o->offset + radius);
   const tree_hit hit = tree_nearest(o->tree, y, bound);
   o->distance_queries++;
   if (!hit.found) return;
@@ -256,23 +260,27 @@ static tree_entry *list_reserve(const curve_tree *o, size_t n) {
 }
 
 void curve_tree_segment(const curve_tree *o, const search_node *node, vec3 x, tree_segment *segment, double *slack) {
+  const curve_interval *at = &curve_tree_known(node)->at;
   segment->x = x;
-  const curve_hull hull =
-      curve_side_hull(&o->side, &curve_tree_known(node)->at, x, segment->p[0], segment->p[1], segment->p[2]);
+  const curve_hull hull = curve_side_hull(&o->side, at, x, segment->p[0], segment->p[1], segment->p[2]);
+  double thinnest;
+  curve_side_radius_range(&o->side, at, &thinnest, &segment->thickest);
+  segment->thick = o->side.radius && at->slot >= 0 ? curve_side_radii(&o->side, at) : NULL;
   segment->n = hull.n;
   segment->radius = hull.radius;
+  if (!segment->thick) segment->radius += segment->thickest, segment->thickest = 0.0;
   segment->known = o->found && vec_norm2(o->best.near.normal) > 0.5;
   segment->normal = o->best.near.normal;
   double reach2 = 0.0, along = INFINITY;
   const vec3 n = segment->normal;
   for (size_t k = 0; k < hull.n; k++) {
     const vec3 p = vec(segment->p[0][k], segment->p[1][k], segment->p[2][k]);
-    const double square = vec_norm2(p), g = vec_dot(n, p);
+    const double square = vec_norm2(p), g = vec_dot(n, p) - (segment->thick ? segment->thick[k] : 0.0);
     reach2 = square > reach2 ? square : reach2;
     along = g < along ? g : along;
   }
-  segment->along = along - hull.radius;
-  const double sizes = vec_norm(x) + o->tree->scale + sqrt(reach2) + hull.radius + o->offset;
+  segment->along = along - segment->radius;
+  const double sizes = vec_norm(x) + o->tree->scale + sqrt(reach2) + segment->radius + segment->thickest + o->offset;
   *slack = ROUND_UP * (hull.error + TREE_ROUND * ROUND_U * sizes);
 }
 
@@ -314,7 +322,8 @@ cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_segment *s
   const double taken = o->offset + slack,
                wide2 = (o->asked.limit >= 0.0 ? WIDE_VERDICT2 : WIDE_DISTANCE2) * width2_of(segment),
                goal = search_pruning_bound(&o->asked, o->best_bound.upper);
-  const double best = fmax(o->best_bound.upper + o->offset, 0.0), best2 = best < 1e150 ? best * best : INFINITY;
+  const double best = fmax(o->best_bound.upper + o->offset + segment->thickest, 0.0),
+               best2 = best < 1e150 ? best * best : INFINITY;
   double kept = INFINITY, rest = payload->rest;
   *least2 = INFINITY;
   /* so much farther that what is left of it, less what was taken, is still above the goal */
@@ -401,10 +410,10 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   if (status < 0) return status;
 
   /* the distance in the middle */
-  if (piece && sqrt(least2) - o->offset < o->best_bound.upper) {
+  const size_t on = piece ? curve_side_piece(&o->side, at) : 0;
+  if (piece && sqrt(least2) - o->offset - curve_side_thickness(&o->side, on, s).value < o->best_bound.upper) {
     tree_sample sample;
-    const search_best bound =
-        curve_tree_measure(o, nearest, curve_side_piece(&o->side, at), s, x, curve_side_point_error(&o->side), &sample);
+    const search_best bound = curve_tree_measure(o, nearest, on, s, x, curve_side_point_error(&o->side), &sample);
     if (adopt_better(o, &sample, &bound) && bound.upper > o->effort.good_enough && o->nodes > o->effort.newton_after)
       refine_witness(o);
     if (o->best_bound.upper <= o->asked.epsilon) prove_contact(o);

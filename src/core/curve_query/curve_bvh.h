@@ -41,8 +41,8 @@ typedef struct curve_tree {
   curve_side side; /* seen from the body's frame */
   const cprox_body *body;
   const tree *tree;
-  cprox_curve relative; /* where the other is on the mover's clock: the mover's curve, seen from there */
-  double offset;        /* margin, the ball's radius, and that of points */
+  cprox_curve own[2]; /* the curve and the radius of `side` where they were made for this search */
+  double offset;      /* margin, the ball's radius, and that of points */
   search_goal asked;
   search_effort effort; /* depths are not measured: epsilon is that of `asked` */
 

@@ -164,7 +164,7 @@ static double filter(void *self, search_node *node, double goal) {
       (o->refined || o->nodes >= o->effort.newton_after)) {
     const bool covered = know_cover(o) && (cover_is_the_body(o) || holds_best(o, node));
     if (covered) bound_by_cover(o, node);
-    const bool round = node->lower < goal && has_round_core(o);
+    const bool round = node->lower < goal && has_round_core(o) && !o->side.radius;
     if (round) bound_all_round(o, node);
     if (covered || round) payload->seen_ball = o->incumbent;
   }
@@ -174,8 +174,8 @@ static double filter(void *self, search_node *node, double goal) {
 /* ---- distance queries ---- */
 
 /* A distance from the core whose upper bound ends the search: its last digits are of no interest. */
-static double near_enough(const curve_convex *o, double rounding) {
-  const double d = o->effort.good_enough + o->offset;
+static double near_enough(const curve_convex *o, double offset, double rounding) {
+  const double d = o->effort.good_enough + offset;
   return d > 0.0 ? d + o->shape->margin - 2.0 * (rounding + 4.0 * ROUND_U * (d + o->shape->margin)) : 0.0;
 }
 
@@ -219,9 +219,10 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
   if (usable < 0) return usable;
   o->distance_queries++;
   sample->piece = piece, sample->s = s, sample->y = y;
+  const double offset = o->side.radius ? o->offset + curve_side_thickness(&o->side, piece, s).value : o->offset;
   const double sizes = vec_norm(y) + o->shape->scale + o->shape->margin;
   const double rounding = error + o->shape->ops->near_rounding * ROUND_U * sizes + o->shape->slack;
-  o->hint.near_enough = near_enough(o, rounding);
+  o->hint.near_enough = near_enough(o, offset, rounding);
   if (piece_is_planar(o))
     convex_polygon_nearest_in_plane(o->shape, y, &sample->near);
   else
@@ -232,8 +233,8 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
   if (isnan(d)) return workspace_fail(o->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
 
   /* the surface point is attained, so the distance to it is an upper bound but for rounding */
-  bound->slack = ROUND_UP * (rounding + 2.0 * ROUND_U * (fabs(d) + o->offset));
-  bound->upper = d - o->offset + bound->slack - convex_sure(o->shape, d);
+  bound->slack = ROUND_UP * (rounding + 2.0 * ROUND_U * (fabs(d) + offset));
+  bound->upper = d - offset + bound->slack - convex_sure(o->shape, d);
 
   /* any direction near the normal will do for the lower bounds, as long as its length is 1 */
   sample->normal = sample->near.normal;
@@ -346,7 +347,7 @@ static double promising(const curve_convex *o, const curve_interval *at, double 
   }
   if (o->incumbent > 0 && vec_norm2(o->best.normal) > 0.0) {
     const size_t degree = o->side.curve->degree;
-    const size_t lowest = control_lowest(points_pool_at(&o->pool, (size_t)at->slot), degree, o->best.normal);
+    const size_t lowest = curve_side_lowest(&o->side, at, o->best.normal);
     fraction = lesser(greater((double)lowest / (double)degree, 0.125), 0.875);
   }
   return at->a + fraction * (at->b - at->a);

@@ -37,9 +37,9 @@ typedef struct curve_convex {
   /* the problem */
   curve_side side; /* seen from the body's frame */
   const convex *shape;
-  convex joined;        /* where a body is carried: the shape that stands for both */
-  cprox_curve relative; /* where the other is on the mover's clock: the mover's curve, seen from there */
-  double offset;        /* margin of the body + radius of the ball */
+  convex joined;      /* where a body is carried: the shape that stands for both */
+  cprox_curve own[2]; /* the curve and the radius of `side` where they were made for this search */
+  double offset;      /* margin of the body + radius of the ball */
   search_effort effort;
 
   /* what is known */

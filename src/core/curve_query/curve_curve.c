@@ -90,7 +90,7 @@ static bool is_hard(const curve_curve *o) {
 }
 
 static bool may_bend(const curve_curve *o, const search_node *node) {
-  if (o->carries || o->side[0].curve->arcs || o->side[1].curve->arcs) return false;
+  if (o->carries || o->side[0].radius || o->side[0].curve->arcs || o->side[1].curve->arcs) return false;
   const curve_interval *at = curve_curve_known(node)->side;
   return curve_side_is_piece(&o->side[0], &at[0]) && curve_side_is_piece(&o->side[1], &at[1]);
 }
@@ -137,7 +137,7 @@ static bool holds_best(const curve_curve *o, const search_node *node) {
 /* ---- distance queries ---- */
 
 /* The same of a carried body at the first point. */
-static void measure_carried(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
+static void measure_carried(curve_curve *o, curve_meeting *m, double offset, double error, search_best *bound) {
   const convex *shape = &o->joined;
   const vec3 apart = vec_add(vec_sub(m->point[0], m->point[1]), o->shift);
   shape->ops->nearest(shape, apart, NULL, &m->near);
@@ -150,22 +150,23 @@ static void measure_carried(curve_curve *o, curve_meeting *m, double error, sear
   if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0) m->normal = vec_scale(1.0 / sqrt(length2), m->normal);
   const double sizes = vec_norm(apart) + 2.0 * vec_norm(o->shift) + shape->scale + shape->margin;
   bound->slack = ROUND_UP * (error + shape->ops->near_rounding * ROUND_U * sizes + shape->slack +
-                             ROUND_U * (8.0 * fabs(m->distance) + 2.0 * o->offset));
-  bound->upper = m->distance - o->offset + bound->slack - convex_sure(shape, m->distance);
+                             ROUND_U * (8.0 * fabs(m->distance) + 2.0 * offset));
+  bound->upper = m->distance - offset + bound->slack - convex_sure(shape, m->distance);
 }
 
 /* The distance between two points of the curves, each within its error of the exact one, is an upper bound. */
 void curve_curve_measure(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
   o->distance_queries++;
+  const double offset = o->offset + curve_side_thickness(&o->side[0], m->piece[0], m->s[0]).value;
   if (o->carries) {
-    measure_carried(o, m, error, bound);
+    measure_carried(o, m, offset, error, bound);
     return;
   }
   const vec3 apart = vec_sub(m->point[0], m->point[1]);
   m->distance = vec_norm(apart);
   m->normal = m->distance > 0.0 ? vec_scale(1.0 / m->distance, apart) : vec(0, 0, 0);
-  bound->slack = ROUND_UP * (error + ROUND_U * (8.0 * m->distance + 2.0 * o->offset));
-  bound->upper = m->distance - o->offset + bound->slack;
+  bound->slack = ROUND_UP * (error + ROUND_U * (8.0 * m->distance + 2.0 * offset));
+  bound->upper = m->distance - offset + bound->slack;
 }
 
 void curve_curve_adopt(curve_curve *o, const curve_meeting *m, search_best bound) {
@@ -454,7 +455,7 @@ bool curve_curve_carry(curve_curve *o, const cprox_pose *placed, const cprox_bod
 
 search_node curve_curve_root(const curve_curve *o) {
   /* two balls on curves are never nearer than minus the sum of their radii: curves have no inside */
-  search_node root = {.lower = o->carries ? -INFINITY : -o->offset};
+  search_node root = {.lower = o->carries || o->side[0].radius ? -INFINITY : -o->offset};
   *curve_curve_own(&root) = (curve_curve_node){.side = {o->side[0].part, o->side[1].part}};
   return root;
 }

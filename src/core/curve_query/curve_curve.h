@@ -35,6 +35,7 @@ typedef struct curve_meeting {
 
 typedef struct curve_curve {
   /* the problem */
+  cprox_curve own[2]; /* the curve and the radius of the first side where they were made for this search */
   curve_side side[2];
   double offset; /* the sum of the two radii */
   bool carries;  /* a body rides the first curve: the points' difference, moved by `shift`, against `joined` */

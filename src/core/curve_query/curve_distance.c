@@ -39,9 +39,10 @@ static bool is_better(const curve_distance *o, const search_best *bound) {
 /* A point of the curve within `error` of the exact one, whose value is known. */
 static void consider(curve_distance *o, const distance_sample *sample, double error) {
   const double d = sample->seen.value;
+  const double offset = o->offset + curve_side_thickness(&o->side, sample->piece, sample->s).value;
   search_best bound = {.at = curve_side_parameter_below(&o->side, sample->piece, sample->s)};
-  const double rounding = ROUND_UP * (error + sample->seen.rounding + 2.0 * ROUND_U * (fabs(d) + o->offset));
-  bound.upper = d - o->offset + rounding + (sample->seen.error - sample->seen.rounding);
+  const double rounding = ROUND_UP * (error + sample->seen.rounding + 2.0 * ROUND_U * (fabs(d) + offset));
+  bound.upper = d - offset + rounding + (sample->seen.error - sample->seen.rounding);
   bound.slack = rounding + 0.5 * o->body->field->error + 0.125 * o->epsilon;
   if (o->left_to_right && bound.upper <= 0.0 && bound.at < o->proven_bound.at) {
     o->proven = *sample;
@@ -125,7 +126,9 @@ static cprox_status bound(curve_distance *o, search_node *node, const interval_h
   const double away = deviation_of(hull), sizes = vec_norm(first.y) + vec_norm(last.y) + o->body->shape.scale;
   const double rounding =
       ROUND_UP * (hull->of.error + 16.0 * ROUND_U * (sizes + vec_norm(o->body->centre) + away + least + o->offset));
-  node->lower = greater(least - away - o->offset - rounding, node->lower);
+  double thin, thick;
+  curve_side_radius_range(&o->side, &payload->at, &thin, &thick);
+  node->lower = greater(least - away - (o->offset + thick) - rounding, node->lower);
   node->slack = rounding + 0.5 * o->body->field->error + 0.125 * o->epsilon;
   return CPROX_OK;
 }
@@ -161,7 +164,10 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 static bool is_short(const curve_distance *o, const curve_interval *at) {
   const interval_hull hull = hull_of(o, at);
   const vec3 chord = vec_sub(hull_point(&hull, hull.of.n - 1), hull_point(&hull, 0));
-  return vec_norm(chord) + deviation_of(&hull) <= greater(0.25 * o->body->field->error, 0.125 * o->epsilon);
+  double thin, thick;
+  curve_side_radius_range(&o->side, at, &thin, &thick);
+  return vec_norm(chord) + deviation_of(&hull) + (thick - thin) <=
+         greater(0.25 * o->body->field->error, 0.125 * o->epsilon);
 }
 
 static int split(void *self, search_node *node, search_node *child) {

@@ -20,8 +20,8 @@ typedef struct distance_sample {
 typedef struct curve_distance {
   curve_side side; /* seen from the body's frame */
   const cprox_body *body;
-  cprox_curve relative; /* where the body is on the mover's clock: the mover's curve, seen from there */
-  double offset;        /* margin of the body + radius of the ball */
+  cprox_curve own[2]; /* where the body is on the mover's clock: the mover's curve, seen from there */
+  double offset;      /* margin of the body + radius of the ball */
   double epsilon;
   bool left_to_right; /* the best sample is the leftmost within epsilon; while there is none, the nearest */
   distance_sample best, proven;

@@ -9,7 +9,6 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/curve_convex.c
   ${CMAKE_CURRENT_LIST_DIR}/curve_curve.c
   ${CMAKE_CURRENT_LIST_DIR}/curve_distance.c
-  ${CMAKE_CURRENT_LIST_DIR}/curve_radius.c
   ${CMAKE_CURRENT_LIST_DIR}/kernel.c
   ${CMAKE_CURRENT_LIST_DIR}/newton_convex.c
   ${CMAKE_CURRENT_LIST_DIR}/newton_curves.c

@@ -22,24 +22,53 @@ static search_effort effort_of(const query *q) {
                          .epsilon = q->options.epsilon};
 }
 
-/* The curve that the search runs along, about the obstacle: synchronized it is where the mover is, seen from the other.
- * NULL where memory is out. */
-static const cprox_curve *curve_about(const query *q, const placed_pair *p, cprox_curve *relative) {
-  const cprox_obstacle *obstacle = p->obstacle;
-  if (!obstacle->synchronized) return q->mover.curve;
-  const bool made = relative_create(q->mover.curve, obstacle->curve, &obstacle->pose, q->t0, q->t1, q->workspace,
-                                    WORKSPACE_RELATIVE, relative);
-  return made ? relative : NULL;
+/* The curve that a search runs along, about the obstacle: synchronized it is where the mover is, seen from the other.
+ * Where the radius changes, that too, with the same pieces. */
+typedef struct search_way {
+  const cprox_curve *curve, *radius; /* radius: NULL where it does not change */
+  cprox_curve made[2];               /* the two, where they were made for this search */
+} search_way;
+
+/* The curve whose x is what both radii add to their constant parts: the sum of two is the difference from the second
+ * one after half a turn about z. */
+static const cprox_curve *radius_about(const query *q, const placed_pair *p, cprox_curve *sum) {
+  static const cprox_pose HALF_TURN = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  const cprox_curve *own = q->mover.radius_curve, *other = p->obstacle->radius_curve;
+  if (!own || !other) return own ? own : other;
+  return relative_create(own, other, &HALF_TURN, q->t0, q->t1, q->workspace, WORKSPACE_RADII, sum) ? sum : NULL;
 }
 
-/* The search owns the relative curve, which is all of it; of another curve it sees the part in query. */
-static void keep_curve(const query *q, const placed_pair *p, const cprox_curve *relative, cprox_curve *kept,
-                       curve_side *side) {
+/* False where memory is out. */
+static bool way_begin(const query *q, const placed_pair *p, search_way *way) {
+  const cprox_obstacle *obstacle = p->obstacle;
+  way->curve = q->mover.curve, way->radius = NULL;
+  if (obstacle->synchronized) {
+    way->curve = &way->made[0];
+    if (!relative_create(q->mover.curve, obstacle->curve, &obstacle->pose, q->t0, q->t1, q->workspace,
+                         WORKSPACE_RELATIVE, &way->made[0]))
+      return false;
+  }
+  if (!p->radius_changes) return true;
+  cprox_curve sum, centres;
+  const cprox_curve *radius = radius_about(q, p, &sum);
+  if (!radius || !relative_align(way->curve, radius, q->t0, q->t1, q->workspace, WORKSPACE_ALIGNED, &centres) ||
+      !relative_align(radius, way->curve, q->t0, q->t1, q->workspace, WORKSPACE_ALIGNED_RADII, &way->made[1]))
+    return false;
+  way->made[0] = centres;
+  way->curve = &way->made[0], way->radius = &way->made[1];
+  return true;
+}
+
+/* The search owns what was made for it, which is all of it; of another curve it sees the part in query. */
+static bool way_keep(const query *q, const search_way *way, cprox_curve own[2], curve_side *side) {
   side->part = q->part;
-  if (!p->obstacle->synchronized) return;
-  *kept = *relative;
-  side->curve = kept;
+  if (way->curve != &way->made[0]) return true;
+  own[0] = way->made[0];
+  side->curve = &own[0];
   side->part = curve_side_whole();
+  if (!way->radius) return true;
+  own[1] = way->made[1];
+  return curve_side_thicken(side, &own[1]);
 }
 
 static void begin_finding(curve_finding *seen, bool found, const search_best *bound, uint32_t distance_queries) {
@@ -71,11 +100,8 @@ static bool begin_along(const query *q, const placed_pair *p, const cprox_curve 
 }
 
 bool curve_convex_begin_pair(curve_convex *o, const query *q, const placed_pair *p) {
-  cprox_curve relative;
-  const cprox_curve *curve = curve_about(q, p, &relative);
-  if (!curve || !begin_along(q, p, curve, o)) return false;
-  keep_curve(q, p, &relative, &o->relative, &o->side);
-  return true;
+  search_way way;
+  return way_begin(q, p, &way) && begin_along(q, p, way.curve, o) && way_keep(q, &way, o->own, &o->side);
 }
 
 static cprox_status begin_convex(curve_search *s) {
@@ -89,7 +115,7 @@ static cprox_status start_convex(curve_search *s, curve_start *start) {
   o->effort = effort_of(q);
   start->oracle = curve_convex_oracle(o);
   start->root = curve_convex_root(o);
-  if (!(which->seed_s > 0.0)) return CPROX_OK;
+  if (!(which->seed_s > 0.0) || o->side.radius) return CPROX_OK; /* seeds are about the mover's own pieces */
   const cprox_status seeded = curve_convex_seed(o, which->seed_piece, which->seed_s, &start->root);
   start->upper = o->best_bound.upper;
   return seeded;
@@ -151,50 +177,12 @@ static void found_convex(const curve_search *s, curve_finding *seen) {
   curve_convex_finding(&s->state.convex.base, seen);
 }
 
-/* ---- a convex shape, and a radius that changes ---- */
-
-/* The curve whose x is what both radii add to their constant parts: the sum of two is the difference from the second
- * one after half a turn about z. */
-static const cprox_curve *radius_about(const query *q, const placed_pair *p, cprox_curve *sum) {
-  static const cprox_pose HALF_TURN = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
-  const cprox_curve *own = q->mover.radius_curve, *other = p->obstacle->radius_curve;
-  if (!own || !other) return own ? own : other;
-  return relative_create(own, other, &HALF_TURN, q->t0, q->t1, q->workspace, WORKSPACE_RADII, sum) ? sum : NULL;
-}
-
-static cprox_status begin_radius(curve_search *s) {
-  curve_radius *o = &s->state.radius;
-  const query *q = s->q;
-  cprox_curve relative, sum, centres, radii;
-  const cprox_curve *curve = curve_about(q, s->pair, &relative), *radius = radius_about(q, s->pair, &sum);
-  if (!curve || !radius || !relative_align(curve, radius, q->t0, q->t1, q->workspace, WORKSPACE_ALIGNED, &centres) ||
-      !relative_align(radius, curve, q->t0, q->t1, q->workspace, WORKSPACE_ALIGNED_RADII, &radii) ||
-      !begin_along(q, s->pair, &centres, &o->base))
-    return CPROX_MEMORY;
-  curve_radius_begin(o, &centres, &radii);
-  return CPROX_OK;
-}
-
-static cprox_status start_radius(curve_search *s, curve_start *start) {
-  curve_radius *o = &s->state.radius;
-  o->base.effort = effort_of(s->q);
-  start->oracle = curve_radius_oracle(o);
-  start->root = curve_radius_root(o);
-  return CPROX_OK;
-}
-
-static void found_radius(const curve_search *s, curve_finding *seen) {
-  curve_convex_finding(&s->state.radius.base, seen);
-}
-
 /* ---- the elements of a BVH ---- */
 
 bool curve_tree_begin_pair(curve_tree *o, const query *q, const placed_pair *p) {
-  cprox_curve relative;
-  const cprox_curve *curve = curve_about(q, p, &relative);
-  if (!curve || !curve_tree_begin(o, curve, p->shape, p->frame, p->offset, q->workspace)) return false;
-  keep_curve(q, p, &relative, &o->relative, &o->side);
-  return true;
+  search_way way;
+  return way_begin(q, p, &way) && curve_tree_begin(o, way.curve, p->shape, p->frame, p->offset, q->workspace) &&
+         way_keep(q, &way, o->own, &o->side);
 }
 
 static cprox_status begin_tree(curve_search *s) {
@@ -256,8 +244,10 @@ static cprox_status begin_curve(curve_search *s) {
   const query *q = s->q;
   const placed_pair *p = s->pair;
   const cprox_pose *pose = &p->obstacle->pose;
-  if (!curve_curve_begin(o, q->mover.curve, p->obstacle->curve, pose, p->offset, q->workspace)) return CPROX_MEMORY;
-  o->side[0].part = q->part;
+  search_way way;
+  if (!way_begin(q, p, &way) || !curve_curve_begin(o, way.curve, p->obstacle->curve, pose, p->offset, q->workspace) ||
+      !way_keep(q, &way, o->own, &o->side[0]))
+    return CPROX_MEMORY;
   return !p->carried || curve_curve_carry(o, pose, p->carried, &p->carried_pose) ? CPROX_OK : CPROX_MEMORY;
 }
 
@@ -307,12 +297,12 @@ static cprox_status prove_contact_curve(curve_search *s, curve_finding *proven) 
 static cprox_status begin_field(curve_search *s) {
   curve_distance *o = &s->state.distance;
   const placed_pair *p = s->pair;
-  cprox_curve relative;
-  const cprox_curve *curve = curve_about(s->q, p, &relative);
-  if (!curve || !curve_distance_begin(o, curve, p->shape, p->frame, p->offset, s->q->options.epsilon, s->q->workspace))
-    return CPROX_MEMORY;
-  keep_curve(s->q, p, &relative, &o->relative, &o->side);
-  return CPROX_OK;
+  search_way way;
+  const bool begun =
+      way_begin(s->q, p, &way) &&
+      curve_distance_begin(o, way.curve, p->shape, p->frame, p->offset, s->q->options.epsilon, s->q->workspace) &&
+      way_keep(s->q, &way, o->own, &o->side);
+  return begun ? CPROX_OK : CPROX_MEMORY;
 }
 
 static cprox_status start_field(curve_search *s, curve_start *start) {
@@ -362,10 +352,6 @@ static const curve_kernel convex_kernel = {.knows_depth = true,
                                            .prove_contact = prove_contact_convex,
                                            .best_found = found_convex};
 
-/* Queries that ask for a depth, a time of contact or a proof refuse a radius that changes. */
-static const curve_kernel radius_kernel = {
-    .begin_state = begin_radius, .start_distance = start_radius, .best_found = found_radius};
-
 static const curve_kernel tree_kernel = {.begin_state = begin_tree,
                                          .start_distance = start_tree,
                                          .start_contact = start_contact_tree,
@@ -386,7 +372,6 @@ static const curve_kernel field_kernel = {.begin_state = begin_field,
                                           .best_found = found_field};
 
 const curve_kernel *curve_kernel_of(const placed_pair *p) {
-  if (p->radius_changes) return &radius_kernel;
   if (!p->shape) return &two_curves_kernel;
   if (p->shape->field) return &field_kernel;
   return p->shape->tree ? &tree_kernel : &convex_kernel;

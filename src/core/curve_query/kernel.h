@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The five kernels of a mover's curve against one obstacle: a convex shape, the same with a radius that changes, the
- * elements of a BVH, another curve, a set known by its distance. Searches for distances, for verdicts and for the time
+/* The four kernels of a mover's curve against one obstacle: a convex shape, the elements of a BVH, another curve, a set
+ * known by its distance. Each knows a radius that changes along the curve. Searches for distances, for verdicts and for the time
  * of contact are the same for all of them; what differs between the kernels is one row of operations each. */
 #ifndef CPROX_CURVE_QUERY_KERNEL_H
 #define CPROX_CURVE_QUERY_KERNEL_H
@@ -9,7 +9,6 @@
 #include "curve_query/contact_convex.h"
 #include "curve_query/contact_curve.h"
 #include "curve_query/curve_distance.h"
-#include "curve_query/curve_radius.h"
 #include "problem/placed_pair.h"
 
 typedef struct curve_search curve_search;
@@ -72,7 +71,6 @@ struct curve_search {
     contact_tree tree;
     contact_curve curve;
     curve_distance distance;
-    curve_radius radius;
   } state;
 };
 

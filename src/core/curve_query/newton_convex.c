@@ -136,10 +136,50 @@ static cprox_status refine_by_points(curve_convex *o, double step) {
   return CPROX_OK;
 }
 
+/* ---- a radius that changes ---- */
+
+/* The slope of the distance less the radius at a sample, and its bend, which of the distance is that from the nearest
+ * point: the largest there can be. */
+static void thick_slopes(curve_convex *o, const curve_sample *sample, double *slope, double *bend) {
+  const curve_thickness radius = curve_side_thickness(&o->side, sample->piece, sample->s);
+  const curve_jet j = newton_jet(o, points_pool_at(&o->pool, CURVE_CONVEX_ROOT), sample->s);
+  const double along = vec_dot(sample->normal, j.d1), d = fabs(sample->near.distance);
+  *slope = along - radius.slope;
+  *bend = vec_dot(sample->normal, j.d2) - radius.bend;
+  if (d > 0.0) *bend += greater(vec_norm2(j.d1) - along * along, 0.0) / d;
+}
+
+/* From the best sample, by secants of the slope, until nothing gets better. The first step goes by the bend. */
+static cprox_status refine_by_secants(curve_convex *o, double longest) {
+  enum { MOST_SECANTS = 10 };
+  const double least = o->side.part.a, most = o->side.part.b;
+  curve_sample sample = o->best;
+  double slope, bend;
+  thick_slopes(o, &sample, &slope, &bend);
+  for (int i = 0; i < MOST_SECANTS; i++) {
+    const double wanted = bend > 0.0 ? -slope / bend : (slope > 0.0 ? -longest : longest), s = sample.s;
+    const double next = clamp(s + clamp(wanted, -longest, longest), least, most);
+    if (!(fabs(next - s) > 1e-10)) break; /* also where a slope is not a number */
+    const uint32_t before = o->incumbent;
+    search_best bound = {.upper = INFINITY};
+    const cprox_status status = curve_convex_measure(o, sample.piece, next, curve_side_point(&o->side, next),
+                                                     curve_side_point_error(&o->side), &sample, &bound);
+    if (status < 0) return status;
+    if (bound.upper < o->best_bound.upper) curve_convex_adopt(o, &sample, bound);
+    if (o->best_bound.upper <= o->effort.good_enough || o->incumbent == before) break;
+    double there, unused;
+    thick_slopes(o, &sample, &there, &unused);
+    bend = (there - slope) / (next - s);
+    slope = there;
+  }
+  return CPROX_OK;
+}
+
 /* ---- with them ---- */
 
 cprox_status newton_refine(curve_convex *o, const double *points, curve_jet *j, double step) {
   if (o->side.curve->arcs) return refine_by_points(o, step);
+  if (o->side.radius) return refine_by_secants(o, step);
   const double error = curve_side_point_error(&o->side);
   curve_sample samples[2];
   const curve_sample *from = &o->best;

@@ -66,6 +66,22 @@ static slopes slopes_of_points(const jet *x, const jet *y) {
   return k;
 }
 
+/* Of |x(s) - y(t)|. */
+static slopes slopes_of_balls(const jet *x, const jet *y) {
+  const vec3 w = vec_sub(x->x, y->x);
+  const double d = vec_norm(w), by = d > 0.0 ? 1.0 / d : 0.0;
+  const vec3 n = vec_scale(by, w);
+  const double xn = vec_dot(n, x->d1), yn = vec_dot(n, y->d1);
+  slopes k = {.gs = xn,
+              .gt = -yn,
+              .ss = by * (vec_norm2(x->d1) - xn * xn),
+              .tt = by * (vec_norm2(y->d1) - yn * yn),
+              .cross = -by * (vec_dot(x->d1, y->d1) - xn * yn)};
+  k.hss = k.ss + vec_dot(n, x->d2);
+  k.htt = k.tt - vec_dot(n, y->d2);
+  return k;
+}
+
 static vec3 hessian_times(const double h[6], vec3 v) {
   return vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
              h[2] * v.x + h[4] * v.y + h[5] * v.z);
@@ -129,15 +145,20 @@ static vec3 gap_of(const jet *x, const jet *y, const vec3 *shift) {
   return shift ? vec_add(w, *shift) : w;
 }
 
-bool newton_curves_descend(const curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step) {
+bool newton_curves_descend(curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step) {
   if (side[0].curve->arcs || side[1].curve->arcs) return false; /* no derivatives to go by */
   double s[2] = {meeting->s[0], meeting->s[1]};
   jet x = jet_at(&side[0], s[0]), y = jet_at(&side[1], s[1]);
   const vec3 seen = gap_of(&x, &y, shift);
   for (int i = 0; i < MAX_STEPS; i++) {
     double wanted[2], moved = 0.0;
-    const slopes at =
-        shift ? slopes_of_body(&meeting->near, seen, gap_of(&x, &y, shift), &x, &y) : slopes_of_points(&x, &y);
+    slopes at = shift             ? slopes_of_body(&meeting->near, seen, gap_of(&x, &y, shift), &x, &y)
+                : !side[0].radius ? slopes_of_points(&x, &y)
+                                  : slopes_of_balls(&x, &y);
+    if (side[0].radius) {
+      const curve_thickness radius = curve_side_thickness(&side[0], meeting->piece[0], s[0]);
+      at.gs -= radius.slope, at.hss -= radius.bend;
+    }
     newton_step(&at, s, wanted);
     for (int k = 0; k < 2; k++) {
       const double next = clamp(s[k] + clamp(wanted[k], -step, step), side[k].part.a, side[k].part.b);

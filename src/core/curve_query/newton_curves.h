@@ -11,7 +11,8 @@ vec3 newton_curves_of_chords(const vec3 first[2], const vec3 second[2], double f
 
 /* Newton on |x(s) - y(t)|²/2 over the pieces of the meeting, which must be the loaded ones, in steps of at most `step`.
  * Moves the meeting's points and parameters; false where they did not move. Where a body is carried, `shift` is not
- * NULL, and it is the distance of x(s) - y(t) + shift from the feature of meeting->near. */
-bool newton_curves_descend(const curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step);
+ * NULL, and it is the distance of x(s) - y(t) + shift from the feature of meeting->near; where the first side has a
+ * radius, |x(s) - y(t)| or that less the radius. */
+bool newton_curves_descend(curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step);
 
 #endif

@@ -230,7 +230,8 @@ static void interval_of(const dual *d, int which, dual_side other, tree_segment 
     box_of(t, other, &low, &high);
     turn_box(d, which, low, high, segment);
   }
-  segment->radius = 0.0;
+  segment->radius = segment->thickest = 0.0;
+  segment->thick = NULL;
   segment->stepping = false;
   segment->beyond = farthest(d) + d->margins + d->rounding;
   add_normal(d, which, other, segment);

@@ -214,11 +214,11 @@ static cprox_status check_radius_applies(const cprox_options *options, arguments
                                          cprox_workspace *workspace) {
   if (!(asked.has & ARGUMENTS_RADIUS))
     return workspace_fail(workspace, CPROX_INVALID,
-                          "a radius that changes does not apply to %s: ask for a distance, a tolerance or a collision",
+                          "a radius that changes does not apply to %s: ask for a distance, a verdict, a profile or a "
+                          "time of contact",
                           asked.name);
-  if (options->certificate || options->signed_distance)
-    return workspace_fail(workspace, CPROX_INVALID, "a radius that changes: there is no %s for it",
-                          options->certificate ? "certificate" : "signed distance");
+  if (options->certificate)
+    return workspace_fail(workspace, CPROX_INVALID, "a radius that changes: there is no certificate for it");
   return CPROX_OK;
 }
 
@@ -230,20 +230,15 @@ static cprox_status check_own_radius(const cprox_mover *mover, const cprox_optio
   return radius_check("the mover's radius", mover->radius_curve, mover->radius, mover->curve, workspace);
 }
 
-/* Against what is convex or has convex parts. */
 static cprox_status check_radius_against(const cprox_mover *mover, const cprox_obstacle *target, size_t index,
                                          const cprox_options *options, arguments_query asked,
                                          cprox_workspace *workspace) {
   if (!radius_changes(mover, target)) return CPROX_OK;
   const cprox_status applies = check_radius_applies(options, asked, workspace);
   if (applies != CPROX_OK) return applies;
-  if ((target->curve && !target->synchronized) ||
-      (target->body && (target->body->field || model_has_tree(target->body, options->max_lod))))
-    return workspace_fail(
-        workspace, CPROX_INVALID,
-        "a radius that changes: obstacle %zu is a curve, a mesh, points, boxes or known by its distance "
-        "alone, must be convex or have convex parts",
-        index);
+  if (target->curve && target->curve->arcs)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "a radius that changes: of obstacle %zu only the arc length is known", index);
   char whose[48];
   snprintf(whose, sizeof whose, "the radius of obstacle %zu", index);
   return radius_check(whose, target->radius_curve, target->margin, mover->curve, workspace);

@@ -8,6 +8,7 @@
 #include "curve_query/report.h"
 #include "problem/level_of_detail.h"
 #include "problem/minkowski.h"
+#include "problem/radius.h"
 #include "problem/validate.h"
 #include "shape/body.h"
 #include "solve/gradient_ties.h"
@@ -60,7 +61,8 @@ typedef struct look {
   double s;
   vec3 y, normal;
   double distance; /* without margins; */
-  double slope;    /* how fast it changes along the curve */
+  double radius;   /* what changes of the radius, and is not in the offset */
+  double slope;    /* how fast the distance less the radius changes along the curve */
   double slack;    /* of the distance */
 } look;
 
@@ -87,7 +89,7 @@ static double size_of(const beside *o) {
 }
 
 static cprox_status look_from(beside *o, size_t piece, double s, vec3 y, double error, look *seen) {
-  *seen = (look){.piece = piece, .s = s, .y = y};
+  *seen = (look){.piece = piece, .s = s, .y = y, .radius = curve_side_thickness(side_of(o), piece, s).value};
   if (o->is_tree) {
     tree_sample *sample = &seen->sample.tree;
     const tree_hit hit = tree_nearest(o->of.tree.tree, y, INFINITY);
@@ -117,13 +119,13 @@ static cprox_status look_at(beside *o, double t, bool from_left, look *seen) {
   vec3 at, velocity;
   curve_bezier_evaluate(x, y, z, 1, c->degree, curve_binomial(c), s, &at, &velocity, NULL);
   const cprox_status status = look_from(o, piece, s, at, curve_side_point_error(side), seen);
-  seen->slope = vec_dot(seen->normal, velocity) / length;
+  seen->slope = (vec_dot(seen->normal, velocity) - curve_side_thickness(side, piece, s).slope) / length;
   return status;
 }
 
 /* As the search would report it. */
 static void finding_of(beside *o, const look *seen, curve_finding *finding) {
-  const search_best bound = {.upper = seen->distance - offset_of(o)};
+  const search_best bound = {.upper = seen->distance - offset_of(o) - seen->radius};
   if (o->is_tree) {
     o->of.tree.best = seen->sample.tree, o->of.tree.best_bound = bound, o->of.tree.found = true;
     curve_tree_finding(&o->of.tree, finding);
@@ -206,8 +208,8 @@ static double clamp(double x, double least, double most) {
   return x < least ? least : x > most ? most : x;
 }
 
-/* Newton on |psi(t) - phi(u)|²/2 from a minimiser that is nearly one;
- * parameters at an end stay there. */
+/* Newton on |psi(t) - phi(u)|²/2 from a minimiser that is nearly one; where a radius changes on the distance less the
+ * radius, times the distance. Parameters at an end stay there. */
 static void refine_pair(const cprox_mover *mover, const cprox_obstacle *target, cprox_workspace *workspace, double *t,
                         double *u) {
   enum { MOST_STEPS = 12 };
@@ -220,8 +222,16 @@ static void refine_pair(const cprox_mover *mover, const cprox_obstacle *target, 
     jet_of(mover->curve, NULL, *t, workspace, &x);
     jet_of(target->curve, &f, *u, workspace, &y);
     const vec3 w = vec_sub(x.x, y.x);
-    const double gt = vec_dot(w, x.d1), gu = -vec_dot(w, y.d1), cross = -vec_dot(x.d1, y.d1);
+    double gt = vec_dot(w, x.d1), gu = -vec_dot(w, y.d1), cross = -vec_dot(x.d1, y.d1);
     double htt = vec_norm2(x.d1) + vec_dot(w, x.d2), huu = vec_norm2(y.d1) - vec_dot(w, y.d2);
+    const double apart = vec_norm(w);
+    if (mover->radius_curve && apart > 0.0) {
+      curve_jet r;
+      jet_of(mover->radius_curve, NULL, *t, workspace, &r);
+      const double xn = gt / apart, yn = -gu / apart;
+      htt -= xn * xn + apart * r.d2.x, huu -= yn * yn, cross += xn * yn;
+      gt -= apart * r.d1.x;
+    }
     const bool hold_t = (*t <= t0 && gt > 0.0) || (*t >= t1 && gt < 0.0);
     const bool hold_u = (*u <= u0 && gu > 0.0) || (*u >= u1 && gu < 0.0);
     const double det = htt * huu - cross * cross;
@@ -289,13 +299,13 @@ static cprox_status is_alone(cprox_mover mover, const cprox_obstacle *target, co
 
 /* What stands when the mover is stopped where psi is `at`, seen by a target
  * curve that moves instead. */
-static cprox_obstacle stopped(const cprox_mover *mover, const cprox_obstacle *target, vec3 at) {
+static cprox_obstacle stopped(const cprox_mover *mover, const cprox_obstacle *target, vec3 at, double radius) {
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
   const cprox_quat q = target->pose.orientation;
   double unused = 0.0;
   return (cprox_obstacle){.body = mover->body ? mover->body : &carried_point,
                           .pose = {.position = frame_to_local(&f, at, &unused), .orientation = {q.w, -q.x, -q.y, -q.z}},
-                          .margin = mover->radius};
+                          .margin = radius};
 }
 
 /* Whether no other pair of parts is as near at the minimiser. */
@@ -311,7 +321,7 @@ static cprox_status part_is_alone(const query *q, const placed_pair *best, doubl
     look seen;
     const cprox_status status = look_at(&o, t, false, &seen);
     if (status < 0) return status;
-    *alone = seen.distance - offset_of(&o) > distance + 2.0 * q->options.epsilon;
+    *alone = seen.distance - offset_of(&o) - seen.radius > distance + 2.0 * q->options.epsilon;
   }
   return CPROX_OK;
 }
@@ -357,7 +367,8 @@ static placed_bodies bodies_at(const query *q, const placed_pair *c, double t) {
                      .workspace = q->workspace};
   p.a = (cprox_obstacle){.body = q->mover.body ? q->mover.body : &carried_point,
                          .pose = {.orientation = {1, 0, 0, 0}},
-                         .margin = q->mover.radius};
+                         .margin = q->mover.radius + radius_at(q->mover.radius_curve, t, false, q->workspace)};
+  p.b.margin += radius_at(p.b.radius_curve, t, false, q->workspace);
   (void)WORKSPACE_LEND(q->workspace,
                        cprox_curve_evaluate(q->mover.curve, t, q->workspace, &p.a.pose.position, NULL, NULL));
   if (!p.b.synchronized) return p;
@@ -402,7 +413,7 @@ static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox
   look here = {.slope = 0.0};
   if (status == CPROX_OK) status = look_at(&o, g->t, end > 0, &here);
   if (status < 0) return status;
-  const double distance = here.distance - offset_of(&o);
+  const double distance = here.distance - offset_of(&o) - here.radius;
   if (end < 0) g->t0 = here.slope;
   if (end > 0) g->t1 = here.slope;
 
@@ -439,8 +450,9 @@ static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox
 static cprox_status carried_way_out_is_alone(const query *q, const placed_pair *c, vec3 on_curve, double t,
                                              double distance, bool *alone) {
   *alone = true;
-  if (!q->mover.body || !(distance + q->mover.radius + q->targets[0].margin <= 0.0)) return CPROX_OK;
-  placed_bodies p = bodies_at(q, c, t);
+  placed_bodies p = {.b = q->targets[0]};
+  if (q->mover.body) p = bodies_at(q, c, t);
+  if (!q->mover.body || !(distance + p.a.margin + q->targets[0].margin <= 0.0)) return CPROX_OK;
   p.b = (cprox_obstacle){.body = &carried_point, .pose = {on_curve, {1, 0, 0, 0}}, .margin = q->targets[0].margin};
   p.part_b = 0;
   p.size = q->mover.body->ball_radius;
@@ -456,14 +468,17 @@ static cprox_status gradient_of_curve(const query *q, const placed_pair *c, cons
   jet_of(q->mover.curve, NULL, g->t, q->workspace, &x);
   jet_of(target->curve, &f, g->t_obstacle, q->workspace, &y);
   vec3 n = vec_sub(x.x, y.x);
-  double distance = vec_norm(n) - q->mover.radius - target->margin;
+  curve_jet thickness = {.x = vec(0, 0, 0)};
+  if (q->mover.radius_curve) jet_of(q->mover.radius_curve, NULL, g->t, q->workspace, &thickness);
+  const double radius = q->mover.radius + thickness.x.x;
+  double distance = vec_norm(n) - radius - target->margin;
   n = vec_norm(n) > 0.0 ? vec_scale(1.0 / vec_norm(n), n) : n;
   if (q->mover.body) n = result->normal, distance = result->upper;
   fill(target, n, y.x, g);
   double t0, t1;
   curve_domain(q->mover.curve, &t0, &t1);
-  if (g->t == t0) g->t0 = fmax(vec_dot(n, x.d1), 0.0);
-  if (g->t == t1) g->t1 = fmin(vec_dot(n, x.d1), 0.0);
+  if (g->t == t0) g->t0 = fmax(vec_dot(n, x.d1) - thickness.d1.x, 0.0);
+  if (g->t == t1) g->t1 = fmin(vec_dot(n, x.d1) - thickness.d1.x, 0.0);
   if (vec_norm2(n) == 0.0) return invalid(q->workspace, g, "there is no normal");
   if (!q->is_signed && !(distance > 0.0)) return invalid(q->workspace, g, "the distance is 0");
 
@@ -474,7 +489,7 @@ static cprox_status gradient_of_curve(const query *q, const placed_pair *c, cons
   status = is_alone(q->mover, target, &q->options, g->t, distance, q->workspace, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "the distance is as small elsewhere along the curve");
-  const cprox_obstacle other = stopped(&q->mover, target, x.x);
+  const cprox_obstacle other = stopped(&q->mover, target, x.x, radius);
   const cprox_mover moved = cprox_tube_along(target->curve, target->margin);
   status = is_alone(moved, &other, &q->options, g->t_obstacle, distance, q->workspace, &alone);
   if (status < 0) return status;
@@ -489,7 +504,7 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, c
   query q = query_create(mover, &target, 1, -1.0, false, options, workspace);
   workspace_clear(workspace);
   if (mover.motion) return workspace_fail(workspace, CPROX_INVALID, "no gradient is known along a robot's motion");
-  const arguments_query asked = {"a gradient", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
+  const arguments_query asked = {"a gradient", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS};
   const cprox_status checked = validate_query(&mover, &target, 1, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (!result || !gradient)
