@@ -142,9 +142,12 @@ Eigen::Isometry3d linkPose(const std::string &link, const ros::Time &stamp, cons
   return robot->linkPoses(joints.positions, rootPose(*robot, live.srdf, stamp, lookup)).at(link);
 }
 
-/** A source of LiveScene::unknowns: an object that came by topic and could not be used. */
-std::string refusedObject(const std::string &id) {
-  return "object " + id;
+/** Nothing of the scene before is left. */
+bool replacesScene(const SceneChange &change) {
+  return change.clear ||
+         std::any_of(change.operations.begin(), change.operations.end(), [](const Operation &operation) {
+           return operation.kind == Operation::Kind::REMOVE && operation.object.id.empty();
+         });
 }
 
 std::shared_ptr<const SecondOpinions> secondOpinions(const Parameters &parameters) {
@@ -175,7 +178,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   checkPathBody(parameters_);
   loadScene();
   restoreScene();
-  live_.sensors.appeared = [this] { state_file_.changed(); };
+  live_.sensors.appeared = live_.unknowns.changed = [this] { state_file_.changed(); };
   state_file_.watch(parameters_.fixed_frame);
   markers_ = std::make_unique<MarkerPublisher>(
       control_handle_, live_.scene, parameters_.fixed_frame,
@@ -353,7 +356,7 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
   addAttachments(request, to_fixed, link_to_fixed, *before, change, faults);
   change.clear_allowed = replaces_srdf;
   for (std::string &fault : applyChange(change, *before)) faults.push_back(std::move(fault));
-  if (faults.empty()) live_.unknowns.forget(LOST_SCENE);
+  if (faults.empty() && replacesScene(change)) live_.unknowns.forget(LOST_SCENE);
   return faults;
 }
 
@@ -378,11 +381,11 @@ std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const
       live_.sensors.awaitsAll();
     else
       live_.sensors.forget(id);
-    live_.unknowns.forget(refusedObject(id));
+    live_.unknowns.forget(REFUSED_OBJECT + id);
   }
   if (change.clear) {
     live_.sensors.awaitsAll();
-    live_.unknowns.forgetAll(refusedObject(""));
+    live_.unknowns.forgetAll(REFUSED_OBJECT);
   }
   state_file_.changed();
   return faults;
@@ -405,7 +408,7 @@ void ProximityServer::changeScene(const char *topic, Fill &&fill) {
   std::string id;
   const auto complain = [&](const std::string &why) {
     ROS_ERROR("%s: %s", topic, why.c_str());
-    live_.unknowns.set(refusedObject(id), {{std::string(topic) + ": object '" + id + "' is not used: " + why, id}});
+    live_.unknowns.set(REFUSED_OBJECT + id, {{std::string(topic) + ": object '" + id + "' is not used: " + why, id}});
   };
   const RequestThreads::AtWork at_work(threads_);
   guarded(
@@ -454,6 +457,7 @@ void ProximityServer::restoreScene() {
   if (!kept) return;
   const std::vector<std::string> faults = apply(kept->request, kept->replaces_srdf);
   for (const std::string &fault : faults) ROS_WARN("of the scene before the restart: %s", fault.c_str());
+  for (const auto &[source, unknowns] : kept->unknowns) live_.unknowns.set(source, unknowns);
   if (kept->behind || !faults.empty()) state_file_.lose();
   for (const std::string &id : kept->sensors) live_.sensors.awaits(id);
   ROS_INFO("the scene is as before the restart: %zu objects; of sensors %zu are awaited",

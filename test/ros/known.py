@@ -199,8 +199,8 @@ class Known(unittest.TestCase):
         _, server = self.crash(again, 'kept', state_file=path)
         self.assertEqual(server.scene().objects, [])
         self.assertTrue(any('lost' in w for w in server.distance(LINE).warnings))
-        self.assertTrue(server.apply(sphere('ball', 0.25)).success)
-        self.assertEqual(server.distance(LINE).warnings, [])
+        server.replace(sphere('ball', 0.25))
+        self.assertFalse(any('lost' in w for w in server.distance(LINE).warnings))  # of the cloud nothing is known yet
 
     def test_a_change_that_was_not_written_yet_when_the_server_died_is_not_forgotten(self):
         path = tempfile.mkdtemp() + '/kept.scene'
@@ -208,11 +208,31 @@ class Known(unittest.TestCase):
         server.replace(sphere('ball', 0.25))
         self.assertTrue(until(lambda: self.written(path), 5))
         self.assertTrue(server.apply(sphere('on_line', 0.25, (0, 0, 1))).success)  # and at once:
-        _, server = self.crash(node, 'hasty', state_file=path)
+        again, server = self.crash(node, 'hasty', state_file=path)
         row, = server.tolerance(LINE, 0.1).results
         self.assertEqual((row.status, row.verdict), ('unknown', 'undecided'))
         self.assertIn('lost', row.message)
-        self.assertTrue(server.apply(sphere('ball', 0.25)).success)
+        self.assertTrue(server.apply(sphere('other', 0.1, (5, 5, 5))).success)  # one object is no scene
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')
+        self.assertTrue(until(lambda: self.written(path), 5))
+        node, server = self.crash(again, 'hasty', state_file=path)  # nor does another crash bring back what is lost
+        self.assertIn('lost', server.tolerance(LINE, 0.1).results[0].message)
+        server.replace(sphere('ball', 0.25))
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].verdict, 'clear')
+
+    def test_an_object_that_was_refused_before_a_crash_is_unknown_after_it(self):
+        path = tempfile.mkdtemp() + '/kept.scene'
+        node, server = self.begin('stubborn', state_file=path, tf_timeout=0.05)
+        server.replace(sphere('ball', 0.25))
+        objects = self.publisher('/stubborn/collision_object', CollisionObject)
+        objects.publish(sphere('post', 0.1, (0, 0, 1), frame='nowhere'))
+        self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].status == 'unknown', 5))
+        self.assertTrue(until(lambda: self.written(path), 5))
+        _, server = self.crash(node, 'stubborn', state_file=path, tf_timeout=0.05)
+        row, = server.tolerance(LINE, 0.1).results
+        self.assertEqual(row.status, 'unknown')
+        self.assertIn("object 'post' is not used", row.message)
+        self.assertTrue(server.apply(sphere('post', 0.1, (0, 0, 5))).success)
         self.assertEqual(server.tolerance(LINE, 0.1).results[0].verdict, 'clear')
 
     @staticmethod
@@ -363,8 +383,10 @@ class Known(unittest.TestCase):
         row, = server.distance(LINE).results
         self.assertEqual((row.status, row.lower), ('unknown', 0.0))
 
-        # from the next scene on nothing is lost any more
+        # from the next whole scene on nothing is lost any more
         self.assertTrue(server.apply(sphere('ball', 0.25)).success)
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')
+        server.replace(sphere('ball', 0.25))
         answer = server.tolerance(LINE, 0.1)
         self.assertEqual((answer.results[0].status, answer.results[0].verdict), ('ok', 'clear'))
         self.assertEqual(answer.warnings, [])

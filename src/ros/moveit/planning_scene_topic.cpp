@@ -221,7 +221,6 @@ void PlanningSceneTopic::publishUnknowns() {
   const PlanningSceneReport now = report();
   std::vector<Unknown> unknowns;
   if (now.full == 0 && now.diffs > 0) unknowns.push_back({NO_FULL_SCENE, ""});
-  if (now.full == 0 && now.diffs == 0 && parameters_.ask_planning_scene) unknowns.push_back({NO_SCENE, ""});
   if (!now.unused.empty())
     unknowns.push_back({"not used of ~planning_scene: " + joined(now.unused), "", Missing::ANYTHING});
   if (!now.differences.empty())
@@ -229,6 +228,8 @@ void PlanningSceneTopic::publishUnknowns() {
         {"the scene differs from that of ~get_planning_scene: " + joined(now.differences), "", Missing::ANYTHING});
   if (now.full == 0 && now.diffs == 1) complain(NO_FULL_SCENE);
   live_.unknowns.set("planning scene", std::move(unknowns));
+  const bool awaited = now.full == 0 && now.diffs == 0 && parameters_.ask_planning_scene;
+  live_.unknowns.set(AWAITED_SCENE, awaited ? std::vector<Unknown>{{NO_SCENE, ""}} : std::vector<Unknown>{});
 }
 
 void PlanningSceneTopic::complain(const std::string &why) {

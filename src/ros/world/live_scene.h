@@ -46,8 +46,10 @@ struct LiveScene {
   void demand(const Snapshot &snapshot, const ros::Time &epoch_wanted, std::uint64_t version_wanted) const;
 };
 
-/** A source of LiveScene::unknowns: the scene of the server before this one, until a scene is sent. */
-constexpr const char *LOST_SCENE = "lost scene";
+/** Sources of LiveScene::unknowns. */
+constexpr const char *LOST_SCENE = "lost scene"; /**< of the server before this one, until a whole scene is sent */
+constexpr const char *AWAITED_SCENE = "awaited scene"; /**< ~ask_planning_scene, until one comes */
+constexpr const char *REFUSED_OBJECT = "object ";      /**< and its id: it came by topic and could not be used */
 
 /** Where the root link stands in the fixed frame: by tf2, or where tf2 knows nothing by a fixed virtual joint. Throws
  *  Error where neither does. */

@@ -22,7 +22,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr const char *MAGIC = "curve_proximity scene 4";
+constexpr const char *MAGIC = "curve_proximity scene 5";
 constexpr std::chrono::seconds WRITING_PERIOD{1}; /* between two writings at least */
 constexpr std::size_t MOST_BYTES = std::size_t{64} << 20;
 
@@ -102,6 +102,31 @@ KeptScene keptOf(const LiveScene &live, const std::string &fixed_frame) {
   out.request.link_padding = std::move(scene.link_padding);
   out.request.link_scale = std::move(scene.link_scale);
   out.request.allowed_contacts = std::move(scene.allowed_contacts);
+  // the rest of an incomplete scene comes with the next whole one, whoever sends that
+  for (const auto &[source, unknowns] : live.unknowns.bySource()) {
+    if (source == AWAITED_SCENE) continue;
+    const bool is_object = source.rfind(REFUSED_OBJECT, 0) == 0;
+    std::vector<Unknown> &to = out.unknowns[is_object ? source : LOST_SCENE];
+    to.insert(to.end(), unknowns.begin(), unknowns.end());
+  }
+  return out;
+}
+
+/** A row of source, message, object and missing for each. */
+std::vector<std::string> toTable(const UnknownsBySource &unknowns) {
+  std::vector<std::string> out;
+  for (const auto &[source, list] : unknowns)
+    for (const Unknown &unknown : list)
+      out.insert(out.end(), {source, unknown.message, unknown.object,
+                             unknown.missing == Missing::GEOMETRY ? "geometry" : "anything"});
+  return out;
+}
+
+UnknownsBySource fromTable(const std::vector<std::string> &table) {
+  UnknownsBySource out;
+  for (std::size_t i = 0; i + 3 < table.size(); i += 4)
+    out[table[i]].push_back(
+        {table[i + 1], table[i + 2], table[i + 3] == "geometry" ? Missing::GEOMETRY : Missing::ANYTHING});
   return out;
 }
 
@@ -163,6 +188,9 @@ std::optional<KeptScene> StateFile::read() {
         ros::serialization::IStream stream(reinterpret_cast<std::uint8_t *>(const_cast<char *>(bytes.data())),
                                            static_cast<std::uint32_t>(bytes.size()));
         ros::serialization::deserialize(stream, kept.sensors);
+        std::vector<std::string> unknowns;
+        ros::serialization::deserialize(stream, unknowns);
+        kept.unknowns = fromTable(unknowns);
         std::uint8_t replaces_srdf = 0;
         ros::serialization::deserialize(stream, replaces_srdf);
         kept.replaces_srdf = replaces_srdf != 0;
@@ -178,9 +206,9 @@ std::optional<KeptScene> StateFile::read() {
 void StateFile::lose() {
   live_.unknowns.set(LOST_SCENE,
                      {{"the scene of the server before this one, or its last change, is lost, and none has been "
-                       "sent since: send it again",
+                       "sent since: send the whole of it again (clear: true)",
                        ""}});
-  ROS_WARN("the scene of the server before this one is lost: answers say so until a scene is sent");
+  ROS_WARN("the scene of the server before this one is lost: answers say so until a whole scene is sent");
 }
 
 /** For a server that comes after this one, should it be killed. */
@@ -245,8 +273,8 @@ void StateFile::run() {
 void StateFile::write() {
   if (!isKept()) return;
   const KeptScene kept = keptOf(live_, fixed_frame_);
-  const std::string bytes =
-      serialised(kept.sensors) + serialised(std::uint8_t{kept.replaces_srdf}) + serialised(kept.request);
+  const std::string bytes = serialised(kept.sensors) + serialised(toTable(kept.unknowns)) +
+                            serialised(std::uint8_t{kept.replaces_srdf}) + serialised(kept.request);
   std::ostringstream text;
   text << MAGIC << '\n'
        << run_ << '\n'

@@ -22,13 +22,14 @@ namespace curve_proximity {
 struct KeptScene {
   ApplySceneRequest request;        /**< replaces the scene */
   std::vector<std::string> sensors; /**< objects that sensors kept, and objects too large to be written */
+  UnknownsBySource unknowns;        /**< what was not known of the scene, and the new server does not find out itself */
   bool replaces_srdf = false;       /**< Snapshot::replacesSrdf() of the scene */
   bool behind = false;              /**< the last changes are not in it */
 };
 
-/** The file: a line of text ("curve_proximity scene 4"), the run (/run_id), a digest of what the scene began with (the
+/** The file: a line of text ("curve_proximity scene 5"), the run (/run_id), a digest of what the scene began with (the
  * scene file, the robot, the fixed frame), the type's MD5, a count of bytes and their digest, a line each; then
- * the names of sensors' objects, replaces_srdf and the request of ~apply_scene, serialised. Beside it stands a file
+ * the names of sensors' objects, what is unknown, replaces_srdf and the request of ~apply_scene, serialised. Beside it stands a file
  * ".behind" with the run from a change of the scene until it is written. */
 class StateFile {
  public:

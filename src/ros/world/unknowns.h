@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_ROS_UNKNOWNS_H
 
 #include <curve_proximity/coverage.hpp>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -17,18 +18,30 @@ struct Unknown {
   std::string message;
   std::string object; /**< what it is about; "": anything in the scene */
   Missing missing = Missing::GEOMETRY;
+
+  bool operator==(const Unknown &other) const {
+    return message == other.message && object == other.object && missing == other.missing;
+  }
 };
+
+/** By the source that says so. */
+using UnknownsBySource = std::map<std::string, std::vector<Unknown>>;
 
 /** Rows that take in what is unknown are never clear. Any number of threads. */
 class Unknowns {
  public:
   /** Those of one source take the place of those that it told before; none: all is known. */
   void set(const std::string &source, std::vector<Unknown> unknowns) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (unknowns.empty())
-      sources_.erase(source);
-    else
-      sources_[source] = std::move(unknowns);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const auto before = sources_.find(source);
+      if (before == sources_.end() ? unknowns.empty() : before->second == unknowns) return;
+      if (unknowns.empty())
+        sources_.erase(source);
+      else
+        sources_[source] = std::move(unknowns);
+    }
+    if (changed) changed();
   }
 
   void forget(const std::string &source) {
@@ -37,23 +50,28 @@ class Unknowns {
 
   /** Those of all sources whose names begin so. */
   void forgetAll(const std::string &prefix) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    for (auto it = sources_.lower_bound(prefix);
-         it != sources_.end() && it->first.compare(0, prefix.size(), prefix) == 0;)
-      it = sources_.erase(it);
+    for (const auto &source : bySource())
+      if (source.first.compare(0, prefix.size(), prefix) == 0) forget(source.first);
   }
+
+  UnknownsBySource bySource() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return sources_;
+  }
+
+  /** Called after each change; set before there are threads. */
+  std::function<void()> changed;
 
   /** Of all sources. */
   std::vector<Unknown> all() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
     std::vector<Unknown> out;
-    for (const auto &source : sources_) out.insert(out.end(), source.second.begin(), source.second.end());
+    for (const auto &source : bySource()) out.insert(out.end(), source.second.begin(), source.second.end());
     return out;
   }
 
  private:
   mutable std::mutex mutex_;
-  std::map<std::string, std::vector<Unknown>> sources_;
+  UnknownsBySource sources_;
 };
 
 } // namespace curve_proximity
