@@ -181,46 +181,59 @@ static placement place_in_frame(const cprox_edge_checker *c, const robot_part *p
   return at;
 }
 
-static void add_point(cprox_edge_checker *c, vec3 p) {
-  float *to = c->points + 3 * c->n_points++;
-  to[0] = (float)p.x, to[1] = (float)p.y, to[2] = (float)p.z;
+static size_t blocks_of(size_t points) {
+  return (points + EDGE_BLOCK - 1) / EDGE_BLOCK;
 }
 
-static vec3 point_at(const cprox_edge_checker *c, size_t i) {
-  const float *p = c->points + 3 * i;
-  return vec((double)p[0], (double)p[1], (double)p[2]);
+/* Point i of a hull; points are set in order. */
+static void set_point(float *points, size_t i, vec3 p) {
+  for (size_t k = i; k == i || k % EDGE_BLOCK != 0; k++) {
+    float *to = points + edge_point_place(k);
+    to[0] = (float)p.x, to[EDGE_BLOCK] = (float)p.y, to[2 * EDGE_BLOCK] = (float)p.z;
+  }
+}
+
+static const float *points_of(const cprox_edge_checker *c, const edge_hull *hull) {
+  return c->points + (size_t)hull->first * 3 * EDGE_BLOCK;
+}
+
+static vec3 point_at(const float *points, size_t i) {
+  const float *p = points + edge_point_place(i);
+  return vec((double)p[0], (double)p[EDGE_BLOCK], (double)p[2 * EDGE_BLOCK]);
 }
 
 /* A ball about the middle of their box that all points of a hull are in. */
 static void enclose_points(edge_hull *hull, const float *points) {
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (uint32_t i = 0; i < 3 * hull->n; i++) {
-    const float x = points[i];
-    low[i % 3] = x < low[i % 3] ? x : low[i % 3], high[i % 3] = x > high[i % 3] ? x : high[i % 3];
-  }
+  for (uint32_t i = 0; i < hull->n; i++)
+    for (size_t k = 0; k < 3; k++) {
+      const float x = points[edge_point_place(i) + k * EDGE_BLOCK];
+      low[k] = x < low[k] ? x : low[k], high[k] = x > high[k] ? x : high[k];
+    }
   for (int k = 0; k < 3; k++) hull->centre[k] = 0.5f * low[k] + 0.5f * high[k];
   double core2 = 0.0;
+  const vec3 centre = vec((double)hull->centre[0], (double)hull->centre[1], (double)hull->centre[2]);
   for (uint32_t i = 0; i < hull->n; i++) {
-    double apart2 = 0.0;
-    for (uint32_t k = 0; k < 3; k++) {
-      const double along = (double)points[3 * i + k] - (double)hull->centre[k];
-      apart2 += along * along;
-    }
-    core2 = greater(apart2, core2);
+    const vec3 apart = vec_sub(point_at(points, i), centre);
+    core2 = greater(vec_dot(apart, apart), core2);
   }
   hull->core = float_above(sqrt(core2) * (1.0 + 0x1p-40));
 }
 
-/* A hull of the points first … n_points - 1. */
-static edge_hull *add_hull(cprox_edge_checker *c, size_t first, double margin, double inner, int32_t geometry) {
+/* A hull of n points. */
+static edge_hull *add_hull(cprox_edge_checker *c, const placement *at, const vec3 *points, size_t n, double margin,
+                           double inner, int32_t geometry) {
   edge_hull *hull = &c->hulls[c->n_hulls++];
-  *hull = (edge_hull){.first = (uint32_t)first,
-                      .n = (uint32_t)(c->n_points - first),
+  float *own = c->points + c->n_blocks * 3 * EDGE_BLOCK;
+  *hull = (edge_hull){.first = (uint32_t)c->n_blocks,
+                      .n = (uint32_t)n,
                       .margin = float_above(margin),
                       .inner = float_below(inner),
                       .end = (uint32_t)c->n_hulls,
                       .geometry = geometry};
-  enclose_points(hull, c->points + 3 * first);
+  for (size_t i = 0; i < n; i++) set_point(own, i, placement_apply(at, points[i]));
+  c->n_blocks += blocks_of(n);
+  enclose_points(hull, own);
   return hull;
 }
 
@@ -235,10 +248,7 @@ static void add_balls(cprox_edge_checker *c, const robot_covers *covers, size_t 
                                          .inner = float_below(ball->inner),
                                          .reach = float_above(vec_norm(p) * (1.0 + EDGE_U)),
                                          .geometry = part->geometry};
-    if (covers->hulls.n == 0) continue;
-    const size_t first = c->n_points;
-    add_point(c, p);
-    add_hull(c, first, ball->outer, ball->inner, part->geometry);
+    if (covers->hulls.n > 0) add_hull(c, &at, &ball->centre, 1, ball->outer, ball->inner, part->geometry);
   }
 }
 
@@ -248,9 +258,8 @@ static void add_hulls(cprox_edge_checker *c, const robot_covers *covers, size_t 
   const uint32_t root = (uint32_t)c->n_hulls;
   for (size_t k = covers->first_hull[i]; k < covers->first_hull[i + 1]; k++) {
     const cover_hull *hull = &covers->hulls.hull[k];
-    const size_t first = c->n_points;
-    for (uint32_t l = 0; l < hull->n; l++) add_point(c, placement_apply(&at, covers->hulls.point[hull->first + l]));
-    edge_hull *made = add_hull(c, first, hull->margin, hull->inner, part->geometry);
+    edge_hull *made =
+        add_hull(c, &at, covers->hulls.point + hull->first, hull->n, hull->margin, hull->inner, part->geometry);
     made->child = root + hull->child, made->n_children = hull->n_children;
   }
   if (c->n_hulls > root) c->hulls[root].end = (uint32_t)c->n_hulls;
@@ -277,10 +286,10 @@ static void enclose(const cprox_edge_checker *c, edge_part *part) {
     }
   for (uint32_t h = part->first_hull; h < part->end_hull; h = c->hulls[h].end) {
     const edge_hull *hull = &c->hulls[h];
-    for (uint32_t i = hull->first; i < hull->first + hull->n; i++)
+    for (uint32_t i = 0; i < hull->n; i++)
       for (size_t k = 0; k < 3; k++) {
-        low[k] = lesser(low[k], (double)(c->points[3 * i + k] - hull->margin));
-        high[k] = greater(high[k], (double)(c->points[3 * i + k] + hull->margin));
+        const float x = points_of(c, hull)[edge_point_place(i) + k * EDGE_BLOCK];
+        low[k] = lesser(low[k], (double)(x - hull->margin)), high[k] = greater(high[k], (double)(x + hull->margin));
       }
   }
   for (int k = 0; k < 3; k++) part->centre[k] = (float)(0.5 * (low[k] + high[k]));
@@ -292,8 +301,8 @@ static void enclose(const cprox_edge_checker *c, edge_part *part) {
     const edge_hull *hull = &c->hulls[h];
     const vec3 own = vec((double)hull->centre[0], (double)hull->centre[1], (double)hull->centre[2]);
     part->reach_of_centre = greater(vec_norm(own) * (1.0 + 0x1p-40), part->reach_of_centre);
-    for (uint32_t i = hull->first; i < hull->first + hull->n; i++)
-      take_in(part, centre, point_at(c, i), (double)hull->margin, &outer, &core);
+    for (uint32_t i = 0; i < hull->n; i++)
+      take_in(part, centre, point_at(points_of(c, hull), i), (double)hull->margin, &outer, &core);
   }
   part->outer = float_above(outer * (1.0 + 0x1p-40)), part->core = float_above(core * (1.0 + 0x1p-40));
   part->reach = float_above(vec_norm(centre) * (1.0 + 0x1p-40));
@@ -378,13 +387,10 @@ static void add_content(cprox_edge_checker *c, const part_model *m, const frame 
   o->within = by_tree && m->tree->kind == TREE_POINTS ? float_below(thick) : -1.0f;
   o->tree = by_tree ? m->tree : NULL;
   if (by_tree) return;
-  float *corners = c->corners + 3 * c->n_corners;
+  float *corners = c->corners + c->n_corners * 3 * EDGE_BLOCK;
   o->hull = (edge_hull){.first = (uint32_t)c->n_corners, .n = (uint32_t)n, .inner = -1.0f};
-  for (size_t i = 0; i < n; i++) {
-    corners[3 * i] = (float)m->shape->x[i];
-    corners[3 * i + 1] = (float)m->shape->y[i], corners[3 * i + 2] = (float)m->shape->z[i];
-  }
-  c->n_corners += n;
+  for (size_t i = 0; i < n; i++) set_point(corners, i, vec(m->shape->x[i], m->shape->y[i], m->shape->z[i]));
+  c->n_corners += blocks_of(n);
   enclose_points(&o->hull, corners);
 }
 
@@ -686,7 +692,9 @@ static void lay_out_robot(cprox_edge_checker *c, const edge_asked *asked, const 
   const size_t balls = covers->first[robot->n_parts], hulls = covers->hulls.n, alike = hulls > 0 ? balls : 0;
   c->balls = take(a, balls, sizeof *c->balls);
   c->hulls = take(a, hulls + alike, sizeof *c->hulls);
-  c->points = take(a, 3 * (covers->hulls.n_points + alike), sizeof *c->points);
+  size_t blocks = alike;
+  for (size_t i = 0; i < hulls; i++) blocks += blocks_of(covers->hulls.hull[i].n);
+  c->points = take(a, blocks * 3 * EDGE_BLOCK, sizeof *c->points);
   c->lane_pairs = take(a, pairs, sizeof *c->lane_pairs);
   c->relations = take(a, different, sizeof *c->relations);
   c->steps = take(a, different * 2 * (deepest + 1), sizeof *c->steps);
@@ -718,11 +726,11 @@ static void lay_out_scene(cprox_edge_checker *c, const cprox_obstacle *targets, 
   for (size_t i = first; i < last; i++)
     for (size_t k = 0; k < body_n_parts(targets[i].body); k++, n_obstacles++) {
       const part_model m = part_model_of(body_part_at(targets[i].body, k));
-      n_corners += corners_of(&m);
+      n_corners += blocks_of(corners_of(&m));
     }
   c->obstacles = take(a, n_obstacles, sizeof *c->obstacles);
   c->near = take(a, c->n_parts * n_obstacles, sizeof *c->near);
-  c->corners = take(a, 3 * n_corners, sizeof *c->corners);
+  c->corners = take(a, n_corners * 3 * EDGE_BLOCK, sizeof *c->corners);
 }
 
 size_t edge_model_scene_size(const cprox_edge_checker *c, const cprox_obstacle *targets, size_t first, size_t last) {

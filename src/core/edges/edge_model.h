@@ -34,9 +34,18 @@ typedef struct edge_ball {
   int32_t geometry;
 } edge_ball;
 
+/* Points of hulls stand in blocks of eight: eight x, eight y, eight z. What is left of a hull's last block repeats its
+ * last point. */
+enum { EDGE_BLOCK = 8 };
+
+/* Where the first coordinate of point i of a hull stands; the others follow EDGE_BLOCK apart. */
+static inline size_t edge_point_place(size_t i) {
+  return i / EDGE_BLOCK * 3 * EDGE_BLOCK + i % EDGE_BLOCK;
+}
+
 /* A hull of points of its part's frame; in a robot that has hulls a ball is one, too, of its centre. */
 typedef struct edge_hull {
-  uint32_t first, n;          /* numbers of edge points: three each */
+  uint32_t first, n;          /* its first block, and how many points it has */
   float centre[3], core;      /* a ball that all its points are in */
   float margin;               /* what it stands for is within this of the hull */
   float inner;                /* what it stands for reaches so far about each point; negative: that is not known */
@@ -127,15 +136,15 @@ struct cprox_edge_checker {
   vec3 base;
   edge_rows rows;
   int32_t *frame_of; /* of an axis; -1: it carries nothing that is asked about */
-  size_t n_frames, n_parts, n_members, n_balls, n_hulls, n_points, n_corners, n_obstacles, n_near, n_lane_pairs,
+  size_t n_frames, n_parts, n_members, n_balls, n_hulls, n_blocks, n_corners, n_obstacles, n_near, n_lane_pairs,
       n_relations, n_steps;
   edge_frame *frames;
   edge_part *parts;
   int32_t *members; /* geometries by part */
   edge_ball *balls;
   edge_hull *hulls;
-  float *points;  /* of hulls */
-  float *corners; /* of obstacles */
+  float *points;  /* of hulls, in blocks */
+  float *corners; /* of obstacles, in blocks */
   edge_obstacle *obstacles;
   uint32_t *near; /* obstacles by part */
   edge_pair *lane_pairs;

@@ -4,6 +4,7 @@
  * attribute of its functions, and EDGE_AVX2 where that is AVX2's: its instructions have names of gcc's own. */
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "edges/edge_bound.h"
 
@@ -29,11 +30,12 @@ EDGE_INLINE lane lane_abs(lane a) {
   return (lane)((lane_bits)a & sign);
 }
 
+#if defined(EDGE_AVX2) && !defined(__clang__)
+/* All bits of an element of `first` are the same. */
 EDGE_INLINE lane lane_choose(lane_bits first, lane a, lane b) {
-  return (lane)(((lane_bits)a & first) | ((lane_bits)b & ~first));
+  return __builtin_ia32_blendvps256(b, a, (lane)first);
 }
 
-#if defined(EDGE_AVX2) && !defined(__clang__)
 EDGE_INLINE lane lane_max(lane a, lane b) {
   return __builtin_ia32_maxps256(a, b);
 }
@@ -51,6 +53,10 @@ EDGE_INLINE uint32_t lane_mask(lane_bits m) {
   return (uint32_t)__builtin_ia32_movmskps256((lane)m);
 }
 #else
+EDGE_INLINE lane lane_choose(lane_bits first, lane a, lane b) {
+  return (lane)(((lane_bits)a & first) | ((lane_bits)b & ~first));
+}
+
 EDGE_INLINE lane lane_max(lane a, lane b) {
   return lane_choose((lane_bits)(a > b), a, b);
 }
@@ -70,6 +76,32 @@ EDGE_INLINE uint32_t lane_mask(lane_bits m) {
   return mask;
 }
 #endif
+
+/* The elements whose bits are set. */
+EDGE_INLINE lane_bits lane_those(uint32_t mask) {
+  const int32_t m = (int32_t)mask;
+  const lane_bits bit = {1, 2, 4, 8, 16, 32, 64, 128}, all = {m, m, m, m, m, m, m, m};
+  return (all & bit) != 0;
+}
+
+EDGE_INLINE lane lane_load(const float *from) {
+  lane a;
+  memcpy(&a, from, sizeof a);
+  return a;
+}
+
+#if defined(__clang__)
+#define LANE_SHUFFLED(a, ...) __builtin_shufflevector(a, a, __VA_ARGS__)
+#else
+#define LANE_SHUFFLED(a, ...) __builtin_shuffle(a, (lane_bits){__VA_ARGS__})
+#endif
+
+/* The least element, in all elements. */
+EDGE_INLINE lane lane_least(lane a) {
+  a = lane_min(a, LANE_SHUFFLED(a, 4, 5, 6, 7, 0, 1, 2, 3));
+  a = lane_min(a, LANE_SHUFFLED(a, 2, 3, 0, 1, 6, 7, 4, 5));
+  return lane_min(a, LANE_SHUFFLED(a, 1, 0, 3, 2, 5, 4, 7, 6));
+}
 
 EDGE_INLINE lane3 lane3_add(lane3 a, lane3 b) {
   return (lane3){a.x + b.x, a.y + b.y, a.z + b.z};

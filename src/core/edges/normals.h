@@ -46,30 +46,75 @@ EDGE_INLINE lane3 lane_turn_back(const lane *r, lane3 p) {
                  r[2] * p.x + r[5] * p.y + r[8] * p.z};
 }
 
+EDGE_INLINE const float *points_of_hull(const lane_batch *b, const edge_hull *hull) {
+  return b->c->points + (size_t)hull->first * 3 * EDGE_BLOCK;
+}
+
 EDGE_INLINE lane_hull place_hull(const lane_batch *b, const edge_hull *hull, const lane_frame *own) {
   return (lane_hull){.hull = hull,
-                     .points = b->c->points + 3 * (size_t)hull->first,
+                     .points = points_of_hull(b, hull),
                      .frame = own,
                      .centre = lane3_add(own->o, lane_turn(own, hull->centre))};
 }
 
-/* The least product of a hull's points with a direction, both seen from the frame's origin; `at`: that point. */
-EDGE_TARGET static lane least_along(const lane_hull *h, lane3 n, lane3 *at) {
-  const lane3 t = lane_turn_back(h->frame->r, n);
-  const float *p = h->points;
-  lane least = t.x * lane_all(p[0]) + t.y * lane_all(p[1]) + t.z * lane_all(p[2]);
-  lane_bits which = {0};
-  for (int32_t i = 1; i < (int32_t)h->hull->n; i++) {
-    p += 3;
-    const lane along = t.x * lane_all(p[0]) + t.y * lane_all(p[1]) + t.z * lane_all(p[2]);
-    const lane_bits less = (lane_bits)(along < least), number = {i, i, i, i, i, i, i, i};
-    least = lane_choose(less, along, least);
-    which = (number & less) | (which & ~less);
+/* Of one lane, eight points at once. `which`: the first point that does. */
+EDGE_INLINE float least_of_one(const float *p, int32_t n, float x, float y, float z, int32_t *which) {
+  lane least = lane_all(x) * lane_load(p) + lane_all(y) * lane_load(p + EDGE_BLOCK) +
+               lane_all(z) * lane_load(p + 2 * EDGE_BLOCK);
+  lane_bits number = {0, 1, 2, 3, 4, 5, 6, 7}, best = number;
+  for (int32_t i = EDGE_BLOCK; i < n; i += EDGE_BLOCK) {
+    p += 3 * EDGE_BLOCK, number += EDGE_BLOCK;
+    const lane along = lane_all(x) * lane_load(p) + lane_all(y) * lane_load(p + EDGE_BLOCK) +
+                       lane_all(z) * lane_load(p + 2 * EDGE_BLOCK);
+    const lane_bits less = (lane_bits)(along < least);
+    least = lane_min(along, least);
+    best = (lane_bits)lane_choose(less, (lane)number, (lane)best);
   }
-  lane3 own;
-  for (int l = 0; l < EDGE_LANES; l++) {
-    const float *q = h->points + 3 * which[l];
-    own.x[l] = q[0], own.y[l] = q[1], own.z[l] = q[2];
+  uint32_t equal = lane_mask((lane_bits)(least == lane_least(least)));
+  int k = equal ? __builtin_ctz(equal) : 0;
+  for (equal &= equal - 1; equal; equal &= equal - 1)
+    if (best[__builtin_ctz(equal)] < best[k]) k = __builtin_ctz(equal);
+  *which = best[k];
+  return least[k];
+}
+
+/* The same of all lanes, one point at once. */
+EDGE_INLINE lane least_of_all(const float *p, int32_t n, lane3 t, lane_bits *which) {
+  lane least = t.x * lane_all(p[0]) + t.y * lane_all(p[EDGE_BLOCK]) + t.z * lane_all(p[2 * EDGE_BLOCK]);
+  lane_bits best = {0}, number = best;
+  for (int32_t i = 1; i < n; i++) {
+    const float *q = p + edge_point_place((size_t)i);
+    number += 1;
+    const lane along = t.x * lane_all(q[0]) + t.y * lane_all(q[EDGE_BLOCK]) + t.z * lane_all(q[2 * EDGE_BLOCK]);
+    const lane_bits less = (lane_bits)(along < least);
+    least = lane_min(along, least);
+    best = (lane_bits)lane_choose(less, (lane)number, (lane)best);
+  }
+  *which = best;
+  return least;
+}
+
+/* The least product of a hull's points with a direction in some lanes, both seen from the frame's origin; `at`: that
+ * point. */
+EDGE_TARGET static lane least_along(const lane_hull *h, lane3 n, uint32_t lanes, lane3 *at) {
+  const lane3 t = lane_turn_back(h->frame->r, n);
+  const int32_t count = (int32_t)h->hull->n, blocks = (count + EDGE_BLOCK - 1) / EDGE_BLOCK;
+  lane least = lane_all(0.0f);
+  lane_bits which = {0};
+  if (__builtin_popcount(lanes) * (blocks + 4) >= count)
+    least = least_of_all(h->points, count, t, &which);
+  else
+    for (uint32_t left = lanes; left; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      int32_t first;
+      least[l] = least_of_one(h->points, count, t.x[l], t.y[l], t.z[l], &first);
+      which[l] = first;
+    }
+  lane3 own = {least, least, least};
+  for (uint32_t left = lanes; left; left &= left - 1) {
+    const int l = __builtin_ctz(left);
+    const float *q = h->points + edge_point_place((size_t)which[l]);
+    own.x[l] = q[0], own.y[l] = q[EDGE_BLOCK], own.z[l] = q[2 * EDGE_BLOCK];
   }
   *at = lane_turn_lanes(h->frame->r, own);
   return least;
@@ -156,22 +201,63 @@ EDGE_INLINE lane3 from_obstacle(const edge_obstacle *o, lane3 at) {
   return obstacle_axes(o, lane3_choose(inside, own, out));
 }
 
-/* The point of a triangle's two sides x w and p w, or of its inside, that is nearest to 0. */
-EDGE_INLINE lane3 nearest_of_triangle(lane3 x, lane3 p, lane3 w) {
-  const lane zero = lane_all(0.0f), one = lane_all(1.0f), tiny = lane_all(1e-30f);
-  const lane3 e = lane3_sub(w, x), f = lane3_sub(p, x), g = lane3_sub(w, p);
-  const lane ee = lane3_dot(e, e), ef = lane3_dot(e, f), ff = lane3_dot(f, f);
-  const lane xe = -lane3_dot(x, e), xf = -lane3_dot(x, f);
-  const lane along_e = lane_max(lane_min(xe / lane_max(ee, tiny), one), zero);
-  const lane along_g = lane_max(lane_min(-lane3_dot(p, g) / lane_max(lane3_dot(g, g), tiny), one), zero);
-  lane3 best = lane3_axpy(x, along_e, e);
-  const lane3 beside = lane3_axpy(p, along_g, g);
-  best = lane3_choose((lane_bits)(lane3_norm2(beside) < lane3_norm2(best)), beside, best);
-  const lane det = ee * ff - ef * ef, over = one / lane_max(det, tiny);
-  const lane s = (xe * ff - xf * ef) * over, t = (xf * ee - xe * ef) * over;
-  const lane_bits inside = (lane_bits)(det > lane_all(1e-6f) * ee * ff) & (lane_bits)(s > zero) &
-                           (lane_bits)(t > zero) & (lane_bits)(s + t < one);
-  return lane3_choose(inside, lane3_axpy(lane3_axpy(x, s, e), t, f), best);
+/* Three points of the difference of two hulls, and the point of the triangle that is nearest to 0. */
+typedef struct lane_triangle {
+  lane3 a, b, c, nearest;
+} lane_triangle;
+
+/* The point of a side w v that is nearest to 0; e = v - w. */
+EDGE_INLINE lane3 nearest_of_side(lane3 w, lane3 e, lane we, lane ee) {
+  const lane share = lane_max(lane_min(-we / lane_max(ee, lane_all(1e-30f)), lane_all(1.0f)), lane_all(0.0f));
+  return lane3_axpy(w, share, e);
+}
+
+/* The lanes in which the point of a plane w e f that is nearest to 0 lies in the triangle; that point. */
+EDGE_INLINE lane_bits nearest_of_inside(lane3 w, lane3 e, lane3 f, lane we, lane wf, lane ee, lane ef, lane ff,
+                                        lane3 *nearest) {
+  const lane zero = lane_all(0.0f), one = lane_all(1.0f);
+  const lane det = ee * ff - ef * ef, over = one / lane_max(det, lane_all(1e-30f));
+  const lane s = (wf * ef - we * ff) * over, t = (we * ef - wf * ee) * over;
+  *nearest = lane3_axpy(lane3_axpy(w, s, e), t, f);
+  return (lane_bits)(det > lane_all(1e-6f) * ee * ff) & (lane_bits)(s > zero) & (lane_bits)(t > zero) &
+         (lane_bits)(s + t < one);
+}
+
+/* Of the three triangles that a new point w makes with the sides of the old one, that which is nearest to 0. Returns
+ * the lanes in which the tetrahedron of the four points contains 0. */
+EDGE_INLINE uint32_t take_in_point(lane_triangle *to, lane3 w) {
+  const lane zero = lane_all(0.0f);
+  const lane3 a = to->a, b = to->b, c = to->c;
+  const lane3 bc = lane3_cross(b, c), ca = lane3_cross(c, a), ab = lane3_cross(a, b);
+  const lane volume = lane3_dot(a, bc);
+  const uint32_t around =
+      lane_mask((lane_bits)(volume * lane3_dot(w, bc) < zero) & (lane_bits)(volume * lane3_dot(w, ca) < zero) &
+                (lane_bits)(volume * lane3_dot(w, ab) < zero));
+
+  const lane3 e = lane3_sub(a, w), f = lane3_sub(b, w), g = lane3_sub(c, w);
+  const lane ee = lane3_dot(e, e), ff = lane3_dot(f, f), gg = lane3_dot(g, g);
+  const lane ef = lane3_dot(e, f), fg = lane3_dot(f, g), ge = lane3_dot(g, e);
+  const lane we = lane3_dot(w, e), wf = lane3_dot(w, f), wg = lane3_dot(w, g);
+  const lane3 sides[3] = {nearest_of_side(w, e, we, ee), nearest_of_side(w, f, wf, ff), nearest_of_side(w, g, wg, gg)};
+  lane3 insides[3];
+  const lane_bits inside[3] = {nearest_of_inside(w, e, f, we, wf, ee, ef, ff, &insides[0]),
+                               nearest_of_inside(w, f, g, wf, wg, ff, fg, gg, &insides[1]),
+                               nearest_of_inside(w, g, e, wg, we, gg, ge, ee, &insides[2])};
+  lane least = lane_all(INFINITY);
+  lane_bits dropped[3] = {{0}, {0}, {0}}; /* c, a, b */
+  for (int k = 0; k < 6; k++) {
+    const lane3 point = k < 3 ? sides[k] : insides[k - 3];
+    const lane distance2 = lane3_norm2(point);
+    lane_bits nearer = (lane_bits)(distance2 < least);
+    if (k >= 3) nearer &= inside[k - 3];
+    least = lane_choose(nearer, distance2, least);
+    to->nearest = lane3_choose(nearer, point, to->nearest);
+    for (int l = 0; l < 3; l++) dropped[l] = l == k % 3 ? dropped[l] | nearer : dropped[l] & ~nearer;
+  }
+  to->c = lane3_choose(dropped[0], w, c);
+  to->a = lane3_choose(dropped[1], w, a);
+  to->b = lane3_choose(dropped[2], w, b);
+  return around;
 }
 
 /* What is asked about two hulls, or a hull and an obstacle. */
@@ -206,7 +292,8 @@ EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint
                        two->a.frame->o.z - lane_all(two->o->p[2])}
              : lane3_sub(two->a.frame->o, two->b.frame->o);
   const bool plane = two->o && two->o->shape == EDGE_HALFSPACE;
-  lane3 x = two->o ? from_obstacle(two->o, two->a.centre) : lane3_sub(two->a.centre, two->b.centre), last = x;
+  lane3 x = two->o ? from_obstacle(two->o, two->a.centre) : lane3_sub(two->a.centre, two->b.centre);
+  lane_triangle near = {x, x, x, x};
   if (plane) x = (lane3){lane_all(two->o->r[0]), lane_all(two->o->r[3]), lane_all(two->o->r[6])};
   uint32_t open = lanes, asked = lanes, standing = 0;
   *depth = lane_all(INFINITY);
@@ -214,31 +301,26 @@ EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint
     const lane length = lane_sqrt(lane3_norm2(x)), over = lane_all(1.0f) / lane_max(length, lane_all(1e-18f));
     const lane3 n = plane ? x : lane3_scale(over, x);
     lane3 at = {zero, zero, zero}, its = at;
-    const lane least = least_along(&two->a, n, &at);
-    const lane most = two->o ? obstacle_along(two->o, n, &its) : -least_along(&two->b, lane3_neg(n), &its);
+    const lane least = least_along(&two->a, n, asked, &at);
+    const lane most = two->o ? obstacle_along(two->o, n, &its) : -least_along(&two->b, lane3_neg(n), asked, &its);
     const lane gap = lane3_dot(n, origins) + (least - most);
     const lane turns = lane_sqrt(lane3_norm2(lane3_cross(n, two->spin)));
     const lane moves =
         b->half * (lane_abs(lane3_dot(n, two->speed)) + turns * lane_all(two->a.hull->core)) + accelerated;
     const lane needed = (moves + radius) * grow;
     const lane_bits apart = (lane_bits)(gap > needed);
-    const uint32_t now = lane_mask(apart) & open;
-    if (b->measures && now) {
-      lane_bits which = apart;
-      for (int l = 0; l < EDGE_LANES; l++)
-        if (!(now >> l & 1u)) which[l] = 0;
-      note_left(b, two->pair, gap * lane_all(1.0f - (float)EDGE_GROW) - needed, which);
-    }
+    const uint32_t now = lane_mask(apart) & asked;
+    if (b->measures && now) note_left(b, two->pair, gap * lane_all(1.0f - (float)EDGE_GROW) - needed, lane_those(now));
     open &= ~now, asked &= ~now;
-    standing |= lane_mask((lane_bits)(gap > stands));
-    *depth = lane_min(radius - gap, *depth);
+    standing |= lane_mask((lane_bits)(gap > stands)) & asked;
+    *depth = lane_choose(lane_those(asked), lane_min(radius - gap, *depth), *depth);
     if (plane) break;
     /* no normal will do better: they are too near each other, or they move too far */
     asked &= ~(lane_mask((lane_bits)(length <= stands)) | (standing & lane_mask((lane_bits)(length <= needed))));
     if (!asked) break;
     const lane3 w = lane3_add(origins, lane3_sub(at, its));
-    x = nearest_of_triangle(x, last, w);
-    last = w;
+    asked &= ~take_in_point(&near, w);
+    x = near.nearest;
   }
   *still = open & ~standing;
   return open;
@@ -253,7 +335,8 @@ EDGE_TARGET static uint32_t touches(const lane_hull *h, const edge_obstacle *o, 
              third = lane_all(o->size[2] - deep), zero = lane_all(0.0f);
   uint32_t found = 0;
   for (uint32_t i = 0; i < h->hull->n; i++) {
-    const lane3 at = lane3_add(h->frame->o, lane_turn(h->frame, h->points + 3 * i));
+    const float *p = h->points + edge_point_place(i), own[3] = {p[0], p[EDGE_BLOCK], p[2 * EDGE_BLOCK]};
+    const lane3 at = lane3_add(h->frame->o, lane_turn(h->frame, own));
     found |= proven_within(distance2_from(o, at), within);
     if (deep < 0.0f) continue;
     const lane3 x =

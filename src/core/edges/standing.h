@@ -63,7 +63,7 @@ EDGE_TARGET static void open_piece(lane_batch *b, lane_standing *s, const lane_p
     if (!lanes) continue;
     lane_piece own = *piece;
     if (at.hull != piece->number)
-      own = place_piece(s, &c->hulls[at.hull], c->points + 3 * (size_t)c->hulls[at.hull].first, at.hull);
+      own = place_piece(s, &c->hulls[at.hull], points_of_hull(b, &c->hulls[at.hull]), at.hull);
     const edge_hull *hull = own.placed.hull;
     two.a = own.placed, two.speed = own.speed;
     two.radius = hull->margin + s->o->around + s->delta + s->room;
@@ -94,7 +94,7 @@ EDGE_TARGET static void place_element(const lane_standing *s, const double *numb
     for (uint32_t k = 0; k < 3; k++) {
       const uint32_t corner = kind == TREE_BOXES ? i >> k & 1u : i;
       const float x = (float)numbers[(3 * corner + k) * TREE_LANES];
-      points[3 * i + k] = x;
+      for (uint32_t l = i; l == i || (i + 1 == hull->n && l < EDGE_BLOCK); l++) points[k * EDGE_BLOCK + l] = x;
       low[k] = x < low[k] ? x : low[k], high[k] = x > high[k] ? x : high[k];
     }
   float core2 = 0.0f;
@@ -159,7 +159,7 @@ EDGE_TARGET static bool open_pack(lane_batch *b, lane_standing *s, const lane_pi
       continue;
     }
     edge_hull hull = {.n = 0};
-    float points[24];
+    float points[3 * EDGE_BLOCK];
     lane_hull element;
     place_element(s, own, &hull, points, &element);
     open_piece(b, s, piece, &element, lanes);
@@ -219,7 +219,8 @@ EDGE_TARGET static bool open_standing(lane_batch *b, size_t i, uint32_t near_at,
                      .delta = (float)c->asked.delta};
   place_standing(o, &s.frame);
   need(b, part->by_hulls || !o->tree ? CPROX_EDGE_NORMAL : CPROX_EDGE_COVER);
-  lane_hull beside = {.hull = &o->hull, .points = c->corners + 3 * (size_t)o->hull.first, .frame = &s.frame};
+  lane_hull beside = {
+      .hull = &o->hull, .points = c->corners + (size_t)o->hull.first * 3 * EDGE_BLOCK, .frame = &s.frame};
   beside.centre = lane3_add(s.frame.o, lane_turn(&s.frame, o->hull.centre));
   const uint32_t first = part->by_hulls ? part->first_hull : part->first,
                  end = part->by_hulls ? part->end_hull : part->first + part->n;
@@ -231,7 +232,9 @@ EDGE_TARGET static bool open_standing(lane_batch *b, size_t i, uint32_t near_at,
       ball.margin = of->outer, ball.inner = of->inner, ball.geometry = of->geometry;
     }
     const edge_hull *hull = part->by_hulls ? &c->hulls[k] : &ball;
-    const float *points = part->by_hulls ? c->points + 3 * (size_t)hull->first : ball.centre;
+    float centre[3 * EDGE_BLOCK];
+    for (int l = 0; l < 3 * EDGE_BLOCK && !part->by_hulls; l++) centre[l] = ball.centre[l / EDGE_BLOCK];
+    const float *points = part->by_hulls ? points_of_hull(b, hull) : centre;
     const lane_piece piece = place_piece(&s, hull, points, part->by_hulls ? k : UINT32_MAX);
     if (!o->tree)
       open_piece(b, &s, &piece, &beside, near & ~s.left);
