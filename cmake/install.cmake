@@ -34,7 +34,7 @@ install(FILES ${PROJECT_BINARY_DIR}/cprox.pc ${PROJECT_BINARY_DIR}/cprox_fourier
 
 install(DIRECTORY include/curve_proximity/ DESTINATION include/curve_proximity FILES_MATCHING PATTERN "*.h")
 # The C++ classes over the core alone need Eigen, and parallel.hpp threads; they are headers.
-install(FILES include/curve_proximity/core.hpp include/curve_proximity/parallel.hpp DESTINATION include/curve_proximity)
+install(FILES include/curve_proximity/core.hpp include/curve_proximity/fourier.hpp include/curve_proximity/parallel.hpp DESTINATION include/curve_proximity)
 
 # The scene library, the program that reads meshes for it, and the Python package. A static scene library serves the Python
 # package alone: whoever links it would need all that it needs.

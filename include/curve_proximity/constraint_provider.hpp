@@ -85,10 +85,17 @@ struct ConstraintGradient {
 /** The result of an evaluation. Its vectors keep their memory between evaluations. */
 struct ConstraintValue {
   cprox_status status = CPROX_OK; /**< never negative: a failure throws Error */
-  double value = 0.0;   /**< >= 0 where the constraint holds. [m] for distances; else as the provider states */
+  double value =
+      0.0; /**< >= 0 where the constraint holds (but for a penalty). [m] for distances; else as the provider states */
   bool bounded = false; /**< lower and upper are proven: lower <= true value <= upper */
   double lower = 0.0;   /**< if bounded: <= true value */
   double upper = 0.0;   /**< if bounded: >= true value */
+
+  /** The value is a penalty and no constraint: the larger the freer, and its sign says nothing. Where the sides touch
+   *  without an overlap it is between touching_least and touching_most, both proven; infinite where nothing is. */
+  bool penalty = false;
+  double touching_least = 0.0; /**< of a penalty: below it the sides overlap */
+  double touching_most = 0.0;  /**< of a penalty: above it the sides do not meet */
 
   bool valid = false;   /**< the gradient exists; false: not differentiable here, or not shown to be */
   std::string reason;   /**< why valid is false, in a few words */
@@ -198,7 +205,7 @@ class Constraint {
 
 /** The version of the plugin interface. It is raised when the order of virtual functions or the meaning of a member
  *  changes. */
-constexpr std::uint64_t PROVIDER_VERSION = 4;
+constexpr std::uint64_t PROVIDER_VERSION = 5;
 
 /** One number that a plugin and its loader must have in common: the interface version, the sizes of all shared types,
  *  and Eigen's alignment (-mavx changes how Eigen frees memory). */

@@ -10,7 +10,8 @@ namespace {
 
 const char *kHeader =
     "id,provider,status,value,lower,upper,valid,t,ga_vx,ga_vy,ga_vz,ga_wx,ga_wy,ga_wz,gb_vx,gb_vy,gb_vz,gb_wx,gb_wy,"
-    "gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_radius,microseconds,message,n,g0x,g0y,g0z\n";
+    "gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_radius,touching_least,touching_most,"
+    "microseconds,message,n,g0x,g0y,g0z\n";
 
 const char *kMotionHeader =
     "id,provider,status,value,lower,upper,valid,t,t0,t1,kind,a,b,ga_vx,ga_vy,ga_vz,ga_wx,ga_wy,ga_wz,gb_vx,gb_vy,gb_vz,"
@@ -119,7 +120,7 @@ std::string gradientsHeader() {
 std::string constraintsLine(const ConstraintRow &row) {
   const ConstraintValue &value = row.value;
   std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + statusName(row);
-  if (row.status < 0) return line + std::string(29, ',') + quotedField(row.message) + ",,,,\n";
+  if (row.status < 0) return line + std::string(31, ',') + quotedField(row.message) + ",,,,\n";
   appendValue(line, value.value, value.bounded, value.lower, value.upper);
   line += value.valid ? ",true" : ",false";
   const bool along = value.points.cols() > 0;
@@ -128,6 +129,8 @@ std::string constraintsLine(const ConstraintRow &row) {
   appendGradient(line, value.b);
   appendWitness(line, value);
   appendField(line, value.radius);
+  appendField(line, value.touching_least, value.penalty);
+  appendField(line, value.touching_most, value.penalty);
   line += microseconds(row) + quotedField(row.message) + ',' + std::to_string(value.points.cols());
   for (Eigen::Index i = 0; i < value.points.cols(); ++i) appendVector(line, value.points.col(i));
   return line + (along ? "\n" : ",,,\n");

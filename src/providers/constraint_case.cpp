@@ -232,6 +232,8 @@ void applyCoverage(const Coverage &coverage, ConstraintRow &row) {
   row.gap = coverage.gap();
   row.message += (row.message.empty() ? "" : "; ") + coverage.message();
   row.value.bounded = false;
+  row.value.touching_least = -std::numeric_limits<double>::infinity(); // a penalty's
+  row.value.touching_most = std::numeric_limits<double>::infinity();
   if (!row.motion) return;
   row.motion->bounded = false;
   for (MotionRow &one : row.motion->rows) {

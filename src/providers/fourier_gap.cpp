@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* curve_proximity/FourierGap: a smooth measure of overlap with its SE(2) or SE(3) gradient. */
+/* curve_proximity/FourierGap: a smooth measure of overlap in metres, with its SE(2) or SE(3) gradient. */
 #include <pluginlib/class_list_macros.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include <curve_proximity/constraint_provider.hpp>
 
+#include "fourier_guide.h"
+#include "least_along.h"
 #include "solids.h"
 
 namespace curve_proximity {
@@ -18,7 +21,18 @@ struct Parameters {
   cprox_gap_options options = CPROX_GAP_OPTIONS_DEFAULT;
   int dimension = 3;
   double level = 0.0; /* of the signal mode, subtracted */
+  bool guide = false;
 };
+
+/* The samples of a guide's coarsest stage. Each further one has twice as many, less one. */
+constexpr std::uint32_t COARSEST = 9;
+
+/* -log(v) for v >= LEAST, below that its tangent: there V is all but flat, and its logarithm is not. */
+constexpr double LEAST = 0.05;
+
+double negativeLog(double v) {
+  return v >= LEAST ? -std::log(v) : 1.0 - std::log(LEAST) - v / LEAST;
+}
 
 Eigen::Quaterniond toQuaternion(const cprox_quat &q) {
   return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
@@ -68,39 +82,41 @@ struct Asked {
   Eigen::Vector3d arm_a, arm_b;                     /* from the origins to the centres, fixed frame */
 };
 
-/* A value, and its derivatives by the gap's value and by the distance between the spheres. */
+/* A value between its bounds, and its derivatives by the gap's value and by the distance between the spheres. */
 struct Mixture {
-  double value, error, by_gap, by_distance;
+  double value, lower, upper, by_gap, by_distance;
 };
 
-/* Along a curve: parameters looked at first, so many for each sample's width of the gap, and how often the best
- * interval is halved. */
-constexpr double LOOKS_A_SAMPLE = 2.0;
-constexpr int LEAST_LOOKS = 16, MOST_LOOKS = 400, HALVINGS = 50;
 constexpr std::uint32_t PROOF_NODES = 20000;
+
+void requireCarried(const ConstraintPair &pair) {
+  if (pair.along_curve && pair.a.parts.empty())
+    throw DoesNotApply("FourierGap carries a body along the curve, such as a sphere: give side a a shape");
+}
 
 /* The gap of a standing pair; along a curve side a is the gap's second solid. */
 class FourierGapConstraint : public Constraint {
  public:
   FourierGapConstraint(const Parameters &parameters, const ConstraintPair &pair) : parameters_(parameters) {
-    if (pair.along_curve && pair.a.parts.empty())
-      throw DoesNotApply("FourierGap carries a body along the curve, such as a sphere: give side a a shape");
+    requireCarried(pair);
     pair_.along_curve = pair.along_curve;
     const Stop stop = [&pair] { return pair.stop && pair.stop(pair.stop_user); };
     const SolidHandle a = side(pair.a, "a", stop), b = side(pair.b, "b", stop);
     const SolidHandle &first = pair.along_curve ? b : a, &second = pair.along_curve ? a : b;
     const Workspace workspace;
     cprox_workspace_set_stop(workspace.get(), pair.stop, pair.stop_user);
-    cprox_gap *gap = nullptr;
-    require(cprox_gap_create(first.get(), second.get(), &parameters.options, workspace.get(), &gap), workspace);
-    gap_.reset(gap, cprox_gap_free);
+    gap_ = makeGap(first, second, parameters.options, workspace);
     sphere_a_.emplace(first), sphere_b_.emplace(second);
-    const cprox_gap_info info = cprox_gap_get_info(gap);
-    guaranteed_ = info.guaranteed;
+    const cprox_gap_info info = cprox_gap_get_info(gap_.get());
     sample_ = info.period / info.samples;
-    size_ = sphere_a_->radius + sphere_b_->radius;
-    fades_within_ = std::min(info.over_reach, size_);
-    if (parameters.options.mode != CPROX_GAP_MODE_SIGNAL) depth_ = depthOf(workspace);
+    length_ = info.length;
+    touching_least_ = length_ * (info.touching_least - parameters.level);
+    touching_most_ = length_ * (info.touching_most - parameters.level);
+  }
+
+  /* [m] The period over the samples. */
+  double sample() const {
+    return sample_;
   }
 
   void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
@@ -122,9 +138,12 @@ class FourierGapConstraint : public Constraint {
     Mixture mixed = signal ? mixSignal(asked, r) : mix(asked, r);
     out.status = status;
     out.value = mixed.value;
-    out.bounded = !signal && guaranteed_;
-    out.lower = mixed.value - mixed.error;
-    out.upper = mixed.value + mixed.error;
+    out.bounded = !signal;
+    out.lower = mixed.lower;
+    out.upper = mixed.upper;
+    out.penalty = signal;
+    out.touching_least = touching_least_;
+    out.touching_most = touching_most_;
     const bool known = status != CPROX_PRECISION && std::isfinite(mixed.value);
     if (!known) mixed.by_gap = 0.0;
     fillGradient(asked, r, mixed, out);
@@ -136,78 +155,31 @@ class FourierGapConstraint : public Constraint {
     out.has_points = false;
   }
 
-  /* The place of the carried side at t, and the derivative of the value by t. */
+  /* With the carried side at t of the curve; the derivative of the value by t. */
   double slopeAt(const ConstraintPlace &place, double t, Workspace &workspace, ConstraintPlace &here,
                  ConstraintValue &out) const {
-    cprox_vec3 velocity;
+    const Eigen::Vector3d velocity = carryTo(*place.curve, t, workspace, here.b);
     here.a = place.b;
-    here.b = CPROX_POSE_IDENTITY;
-    require(cprox_curve_evaluate(place.curve->curve.get(), t, workspace.get(), &here.b.position, &velocity, nullptr),
-            workspace);
     evaluateAt(here, workspace, out);
-    return out.b.linear.dot(toEigen(velocity));
-  }
-
-  /* The least value of many parameters, then of the interval about it, by the sign of the derivative. */
-  double nearestParameter(const ConstraintPlace &place, double t0, double t1, Workspace &workspace,
-                          ConstraintValue &out) const {
-    ConstraintPlace here;
-    double length = 0.0;
-    for (int i = 0; i <= LEAST_LOOKS; ++i) {
-      const cprox_vec3 before = here.b.position;
-      require(cprox_curve_evaluate(place.curve->curve.get(), at(t0, t1, i, LEAST_LOOKS), workspace.get(),
-                                   &here.b.position, nullptr, nullptr),
-              workspace);
-      if (i > 0) length += (toEigen(here.b.position) - toEigen(before)).norm();
-    }
-    const double wanted = LOOKS_A_SAMPLE * length / sample_;
-    const int looks = std::max(LEAST_LOOKS, static_cast<int>(std::min(wanted, double{MOST_LOOKS})));
-    int best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i <= looks; ++i) {
-      slopeAt(place, at(t0, t1, i, looks), workspace, here, out);
-      if (out.value < least) least = out.value, best = i;
-    }
-    double low = at(t0, t1, std::max(0, best - 1), looks), high = at(t0, t1, std::min(looks, best + 1), looks);
-    for (int i = 0; i < HALVINGS; ++i) {
-      const double t = 0.5 * (low + high);
-      (slopeAt(place, t, workspace, here, out) > 0.0 ? high : low) = t;
-    }
-    const double t = 0.5 * (low + high);
-    slopeAt(place, t, workspace, here, out);
-    return out.value <= least ? t : at(t0, t1, best, looks);
-  }
-
-  static double at(double t0, double t1, int i, int of) {
-    return i == of ? t1 : t0 + (t1 - t0) * i / of;
+    return out.b.linear.dot(velocity);
   }
 
   /* The least value along the curve: that of the parameters looked at, with its gradient. Where the gap proves that the
    * whole curve is clear, 0 is below it. */
   void evaluateAlong(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const {
-    const CurveDescription &curve = place.curve->description;
-    if (curve.radius != 0.0) throw DoesNotApply("FourierGap takes no radius of a curve: give side a padding");
+    requireNoRadius(*place.curve);
     const cprox_curve_info info = cprox_curve_get_info(place.curve->curve.get());
-    const double t = nearestParameter(place, info.t0, info.t1, workspace, out);
     ConstraintPlace here;
-    slopeAt(place, t, workspace, here, out);
+    const auto slope = [&](double t) { return slopeAt(place, t, workspace, here, out); };
+    const double t = leastAlong(*place.curve, sample_, {}, workspace, slope, out);
+    slope(t);
     if (out.bounded) out.bounded = out.value > 0.0 && isProvenClear(place, info, workspace);
     out.lower = 0.0;
 
-    // Danskin: the value changes as at t. The carried side is the gap's second.
-    const Eigen::Vector3d n = out.b.linear, position = toEigen(here.b.position);
+    // The carried side is the gap's second.
+    const Eigen::Vector3d n = out.b.linear;
     out.b = out.a;
-    out.a.linear = n;
-    out.a.angular = position.cross(n);
-    // The weights stand at the front of the matrix; from the back, a column covers none that is still to be read.
-    out.points.resize(3, curve.points.cols());
-    double *weights = out.points.data();
-    curveWeights(curve, t, weights);
-    for (Eigen::Index i = curve.points.cols(); i-- > 0;) {
-      const double w = weights[i];
-      out.points.col(i) = w * n;
-    }
-    out.t = t;
+    fillAlong(*place.curve, t, toEigen(here.b.position), n, out);
   }
 
   bool isProvenClear(const ConstraintPlace &place, const cprox_curve_info &info, Workspace &workspace) const {
@@ -219,25 +191,23 @@ class FourierGapConstraint : public Constraint {
   }
 
   Mixture mixSignal(const Asked &asked, const cprox_gap_result &r) const {
-    const double beyond = std::max(0.0, asked.away);
-    return {r.value - parameters_.level + beyond / size_, r.error, 1.0, asked.isBeyond() ? 1.0 / size_ : 0.0};
+    const double value = length_ * (r.value - parameters_.level) + std::max(0.0, asked.away);
+    return {value, value, value, length_, asked.isBeyond() ? 1.0 : 0.0};
   }
 
-  /* The constraint grows where the gap falls, 1 - V/t, and is never negative where the spheres are apart. Inside it is
-   * at least what rises to 0 where they touch; beyond them what is left of V/t fades away, and their distance is added.
-   */
+  /* -length log(V/t), and never less than the distance between the spheres. Beyond them what the gap has where they
+   * touch, if that is above 0, and their distance. It rises with both numbers, so that bounds go through. */
   Mixture mix(const Asked &asked, const cprox_gap_result &r) const {
-    if (!asked.isBeyond()) {
-      const double rise = depth_ / size_, floor = rise * asked.away;
-      if (floor > 1.0 - r.value) return {floor, rise * asked.rounding, 0.0, rise};
-      return {1.0 - r.value, r.error, -1.0, 0.0};
-    }
-    const double left = std::max(0.0, 1.0 - asked.away / fades_within_), fading = left * left;
-    const bool above = r.value > 1.0;
-    const double v = above ? 1.0 : r.value;
-    return {1.0 - fading * v + asked.away / size_,
-            fading * r.error + asked.rounding * (1.0 / size_ + 2.0 / fades_within_), above ? 0.0 : -fading,
-            1.0 / size_ + 2.0 * left * v / fades_within_};
+    const auto at = [&](double v, double away) {
+      const double metres = length_ * negativeLog(v);
+      return asked.isBeyond() ? std::max(0.0, metres) + away : std::max(metres, away);
+    };
+    const double lower = at(r.value + r.error, asked.away - asked.rounding),
+                 upper = at(r.value - r.error, asked.away + asked.rounding);
+    const double metres = length_ * negativeLog(r.value), least = asked.isBeyond() ? 0.0 : asked.away;
+    const bool counts = metres > least;
+    return {at(r.value, asked.away), lower, upper, counts ? -length_ / std::max(r.value, LEAST) : 0.0,
+            asked.isBeyond() || !counts ? 1.0 : 0.0};
   }
 
   /* With D between the centres, P the part across the line, times `share`, and g the gap's gradient by b's position at
@@ -251,16 +221,6 @@ class FourierGapConstraint : public Constraint {
     out.a.linear = -by_centres;
     out.b.angular = mixed.by_gap * turned(asked.place.b.orientation, r.rotation_b) + asked.arm_b.cross(by_centres - g);
     out.a.angular = mixed.by_gap * turned(asked.place.a.orientation, r.rotation_a) - asked.arm_a.cross(by_centres - g);
-  }
-
-  /* V/t where the centres are one point, at least 1: how deep a pair can be, for the floor inside the spheres. */
-  double depthOf(const Workspace &workspace) const {
-    const cprox_pose a = CPROX_POSE_IDENTITY;
-    cprox_pose b = CPROX_POSE_IDENTITY;
-    b.position = toVec3(sphere_a_->centre - sphere_b_->centre);
-    cprox_gap_result r;
-    require(cprox_gap_evaluate(gap_.get(), &a, &b, workspace.get(), &r), workspace);
-    return std::max(1.0, r.value);
   }
 
   SolidHandle side(const ConstraintBody &described, const char *name, const Stop &stop) const {
@@ -278,13 +238,11 @@ class FourierGapConstraint : public Constraint {
 
   const Parameters parameters_;
   ConstraintPair pair_; /* without the sides */
-  std::shared_ptr<cprox_gap> gap_;
-  std::optional<Sphere> sphere_a_, sphere_b_; /* of the gap's first solid and of its second */
-  double sample_ = 0.0;                       /* [m] the period over the samples */
-  double size_ = 0.0;                         /* [m] both radii */
-  double fades_within_ = 0.0;                 /* [m] beyond the spheres */
-  double depth_ = 1.0;                        /* V/t of coinciding centres */
-  bool guaranteed_ = false;
+  GapHandle gap_;
+  std::optional<Sphere> sphere_a_, sphere_b_;         /* of the gap's first solid and of its second */
+  double sample_ = 0.0;                               /* [m] the period over the samples */
+  double length_ = 0.0;                               /* [m] by which the gap's logarithm is multiplied */
+  double touching_least_ = 0.0, touching_most_ = 0.0; /* [m] of the signal mode */
 };
 
 } // namespace
@@ -293,10 +251,14 @@ class FourierGap : public ConstraintProvider {
  public:
   void initialise(const ParameterMap &parameters) override {
     ParameterReader reader(parameters);
-    const std::string mode = reader.word("mode", "certified", {"certified", "tuned", "signal"});
-    parameters_.options.mode = mode == "signal"  ? CPROX_GAP_MODE_SIGNAL
-                               : mode == "tuned" ? CPROX_GAP_MODE_TUNED
-                                                 : CPROX_GAP_MODE_CERTIFIED;
+    const auto given = parameters.find("mode");
+    if (given != parameters.end() && given->second == ParameterValue(std::string("tuned")))
+      throw Error(
+          "parameter mode: tuned is no constraint: its value falls again outwards beyond contact, and clear is "
+          "not proven; take certified or guide");
+    const std::string mode = reader.word("mode", "certified", {"certified", "guide", "signal"});
+    parameters_.options.mode = mode == "signal" ? CPROX_GAP_MODE_SIGNAL : CPROX_GAP_MODE_CERTIFIED;
+    parameters_.guide = mode == "guide";
     parameters_.dimension = reader.count("dimension", 3, 2, 3);
     parameters_.options.delta = reader.number("delta", 0.0, 0.0);
     parameters_.options.samples = static_cast<std::uint32_t>(reader.count("samples", 0, 0, 1025));
@@ -311,12 +273,31 @@ class FourierGap : public ConstraintProvider {
     if (parameters_.options.samples != 0 && parameters_.options.delta != 0.0)
       throw Error("parameters samples and delta: give one of the two, delta chooses the samples");
     if (parameters_.options.samples == 0 && parameters_.options.delta == 0.0) parameters_.options.samples = 33;
+    if (parameters_.guide && parameters_.options.delta != 0.0)
+      throw Error("parameter delta: the mode guide takes samples, those of its finest stage");
+    if (parameters_.guide && parameters_.options.samples < COARSEST)
+      throw Error("parameter samples: the coarsest stage of the mode guide has " + std::to_string(COARSEST));
+    if (parameters_.guide && parameters_.dimension == 2)
+      throw Error("parameter mode: guide is for space: in the plane no depth of an overlap is measured");
     if (parameters_.level != 0.0 && parameters_.options.mode != CPROX_GAP_MODE_SIGNAL)
       throw Error("parameter level: only the mode signal has one");
   }
 
   std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {
-    return std::make_unique<FourierGapConstraint>(parameters_, pair);
+    if (!parameters_.guide) return std::make_unique<FourierGapConstraint>(parameters_, pair);
+    requireCarried(pair);
+    ConstraintPair standing = pair;
+    standing.along_curve = false;
+    std::vector<GuideStage> stages;
+    for (std::uint32_t samples = COARSEST;; samples = std::min(2 * samples - 1, parameters_.options.samples)) {
+      Parameters stage = parameters_;
+      stage.options.samples = samples;
+      auto gap = std::make_unique<FourierGapConstraint>(stage, standing);
+      const double sample = gap->sample();
+      stages.push_back({std::move(gap), sample});
+      if (samples == parameters_.options.samples) break;
+    }
+    return makeGuide(pair, std::move(stages));
   }
 
  private:

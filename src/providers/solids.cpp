@@ -27,13 +27,6 @@ using Corners = std::vector<std::array<std::uint32_t, 3>>;
 /* Of the pyramid round a cone. */
 constexpr int SIDES = 32;
 
-SolidHandle own(const cprox_solid_description &description) {
-  Workspace workspace;
-  cprox_solid *solid = nullptr;
-  require(cprox_solid_create(&description, workspace.get(), &solid), workspace);
-  return SolidHandle(solid, [](const cprox_solid *s) { cprox_solid_free(const_cast<cprox_solid *>(s)); });
-}
-
 SolidHandle meshSolid(const Points &vertices, const Corners &triangles) {
   cprox_solid_description solid{};
   solid.kind = CPROX_SOLID_MESH;
@@ -41,7 +34,7 @@ SolidHandle meshSolid(const Points &vertices, const Corners &triangles) {
   solid.n = vertices.size();
   solid.triangles = reinterpret_cast<const std::uint32_t(*)[3]>(triangles.data());
   solid.n_triangles = triangles.size();
-  return own(solid);
+  return makeSolid(solid);
 }
 
 /* Turns each triangle so that it looks away from a point inside a convex hull. */
@@ -241,7 +234,7 @@ SolidHandle loopSolid(const std::vector<Point> &corners) {
   solid.kind = CPROX_SOLID_POLYGON;
   solid.corners = reinterpret_cast<const double(*)[2]>(corners.data());
   solid.n = corners.size();
-  return own(solid);
+  return makeSolid(solid);
 }
 
 /* The hull of planar points, counter-clockwise (Andrew's chains). */
@@ -302,17 +295,6 @@ cprox_vec3 enlargedAxes(const std::vector<double> &a, int dimension, double p) {
   return {axis(a[0]), axis(a[1]), axis(a[2])};
 }
 
-SolidHandle unite(const std::vector<SolidHandle> &parts, const std::vector<cprox_pose> &poses) {
-  std::vector<const cprox_solid *> handles;
-  for (const SolidHandle &part : parts) handles.push_back(part.get());
-  cprox_solid_description all{};
-  all.kind = CPROX_SOLID_UNION;
-  all.parts = handles.data();
-  all.poses = poses.data();
-  all.n = handles.size();
-  return own(all);
-}
-
 /* Twice the area of a loop, positive counter-clockwise, and whether it never turns to the right then. */
 double area2(const std::vector<Point> &loop) {
   double sum = 0.0;
@@ -349,7 +331,7 @@ SolidHandle outlineSolid(const ConstraintBody::Part &part, double padding) {
   rim.points = edges.data();
   rim.n = edges.size();
   rim.radius = padding;
-  return unite({inside, own(rim)}, {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY});
+  return makeUnion({inside, makeSolid(rim)}, {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY});
 }
 
 /* ---- clouds and octrees ---- */
@@ -387,7 +369,7 @@ SolidHandle gridSolid(const Boxes &boxes, double padding, int dimension) {
   grid.cell = cell;
   for (std::size_t i = 0; i < 3; ++i) grid.counts[i] = static_cast<std::uint32_t>(counts.at(i));
   grid.occupied = occupied.data();
-  return own(grid);
+  return makeSolid(grid);
 }
 
 SolidHandle cloudSolid(const ShapeDescription &shape, double padding, int dimension) {
@@ -437,16 +419,16 @@ SolidHandle planarSolid(const ConstraintBody::Part &part, double padding) {
     case ShapeType::SPHERE:
       solid.kind = CPROX_SOLID_BALL;
       solid.radius = d.at(0) + padding;
-      return own(solid);
+      return makeSolid(solid);
     case ShapeType::BOX:
       if (padding > 0.0) return polygonRound(part.body, padding);
       solid.kind = CPROX_SOLID_BOX;
       solid.size = {d.at(0), d.at(1), d.at(2)};
-      return own(solid);
+      return makeSolid(solid);
     case ShapeType::ELLIPSOID:
       solid.kind = CPROX_SOLID_ELLIPSOID;
       solid.semi_axes = enlargedAxes(d, 2, padding);
-      return own(solid);
+      return makeSolid(solid);
     case ShapeType::POLYGON: return outlineSolid(part, padding);
     case ShapeType::POINTS: return cloudSolid(shape, padding, 2);
     case ShapeType::POLYTOPE: {
@@ -469,25 +451,25 @@ SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding, const
     case ShapeType::SPHERE:
       solid.kind = CPROX_SOLID_BALL;
       solid.radius = d.at(0) + padding;
-      return own(solid);
+      return makeSolid(solid);
     case ShapeType::BOX:
       solid.kind = CPROX_SOLID_BOX;
       solid.size = {d.at(0) + 2.0 * padding, d.at(1) + 2.0 * padding, d.at(2) + 2.0 * padding};
-      return own(solid);
+      return makeSolid(solid);
     case ShapeType::ELLIPSOID:
       solid.kind = CPROX_SOLID_ELLIPSOID;
       solid.semi_axes = enlargedAxes(d, 3, padding);
-      return own(solid);
+      return makeSolid(solid);
     case ShapeType::CYLINDER:
       solid.kind = CPROX_SOLID_CYLINDER;
       solid.height = d.at(0) + 2.0 * padding;
       solid.radius = d.at(1) + padding;
-      return own(solid);
+      return makeSolid(solid);
     case ShapeType::CAPSULE:
       solid.kind = CPROX_SOLID_CAPSULE;
       solid.height = d.at(0);
       solid.radius = d.at(1) + padding;
-      return own(solid);
+      return makeSolid(solid);
     case ShapeType::CONE: return padding > 0.0 ? polytopeRound(part.body, padding) : coneSolid(d.at(0), d.at(1));
     case ShapeType::POLYTOPE:
       return padding > 0.0 ? polytopeRound(part.body, padding) : hullSolid(shape.vertices, stop);
@@ -518,7 +500,7 @@ SolidHandle makeSolid(const ConstraintBody &side, int dimension, const Stop &sto
     moved = moved || !part.shape.pose.matrix().isIdentity(0.0);
   }
   if (parts.size() == 1 && !moved) return parts.front();
-  return unite(parts, poses);
+  return makeUnion(parts, poses);
 }
 
 } // namespace curve_proximity

@@ -3,13 +3,10 @@
 #ifndef CURVE_PROXIMITY_PROVIDERS_SOLIDS_H
 #define CURVE_PROXIMITY_PROVIDERS_SOLIDS_H
 
-#include <curve_proximity/cprox_fourier.h>
 #include <curve_proximity/constraint_provider.hpp>
-#include <memory>
+#include <curve_proximity/fourier.hpp>
 
 namespace curve_proximity {
-
-using SolidHandle = std::shared_ptr<const cprox_solid>;
 
 /** The union of a side's parts, each as a solid that contains the shape and all within the side's padding of it.
  *

@@ -39,7 +39,11 @@ TEST(Parameters, of_a_wrong_name_type_or_value_are_refused_by_name) {
   EXPECT_SAYS(refusal(pair, {{"most_exponent", 1.5}}),
               "parameter most_exponent: 1.5 is not at least 2 and at most 1000");
   EXPECT_SAYS(refusal(gap, {{"mode", std::string("sure")}}),
-              "parameter mode: 'sure' is none of certified, tuned, signal");
+              "parameter mode: 'sure' is none of certified, guide, signal");
+  EXPECT_SAYS(refusal(gap, {{"mode", std::string("tuned")}}), "falls again outwards beyond contact");
+  EXPECT_SAYS(refusal(gap, {{"mode", std::string("guide")}, {"delta", 0.1}}), "parameter delta");
+  EXPECT_SAYS(refusal(gap, {{"mode", std::string("guide")}, {"samples", 7}}), "parameter samples");
+  EXPECT_SAYS(refusal(gap, {{"mode", std::string("guide")}, {"dimension", 2}}), "guide is for space");
   EXPECT_SAYS(refusal(gap, {{"mode", 3}}), "parameter mode");
   EXPECT_SAYS(refusal(gap, {{"dimension", 4}}), "parameter dimension");
   EXPECT_SAYS(refusal(gap, {{"samples", 16}}), "parameter samples");

@@ -127,8 +127,8 @@ class Markers(unittest.TestCase):
         self.assertLess(len(hulls), 48)  # and not all of the curve
 
     def test_the_zero_level_of_a_gap_is_where_the_bodies_come_apart(self):
-        """A certified gap is 0 no nearer than where two balls touch, 0.7 m, and less than 0.3 m beyond; the grid is of 40 to 64
-        cells over 1.7 m, of which a line may be one off."""
+        """A certified gap is 0 where two balls touch, 0.7 m, since balls are their own bounding spheres; the further lines are those
+        of values. The grid is of 40 to 64 cells over 1.7 m, of which a line may be one off."""
         rospy.wait_for_service('/curve_proximity/evaluate_constraints', 20)
         evaluate = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints)
         at, height = (0.5, -0.25, 1.0), 0.2
@@ -144,11 +144,11 @@ class Markers(unittest.TestCase):
             self.assertGreater(len(points), 40)
             self.assertEqual({round(p[2], 12) for p in points}, {at[2] + height})
             rings.append([math.hypot(p[0] - at[0], p[1] - at[1], height) for p in points])
-        zero, half, tenth = rings
+        zero, near, far = rings
         self.assertGreater(min(zero), 0.7 - 0.05)
         self.assertLess(max(zero), 1.0)
-        self.assertLess(sum(zero) / len(zero), sum(half) / len(half))
-        self.assertLess(sum(half) / len(half), sum(tenth) / len(tenth))
+        self.assertLess(sum(zero) / len(zero), sum(near) / len(near))
+        self.assertLess(sum(near) / len(near), sum(far) / len(far))
 
 
 if __name__ == '__main__':

@@ -135,6 +135,8 @@ ConstraintResult constraintMessage(const ConstraintRow &row, const ConstraintCas
   message.value = answered ? value.value : NONE;
   message.lower = answered && value.bounded ? value.lower : NONE;
   message.upper = answered && value.bounded ? value.upper : NONE;
+  message.touching_least = answered && value.penalty ? value.touching_least : NONE;
+  message.touching_most = answered && value.penalty ? value.touching_most : NONE;
   message.valid = answered && value.valid;
   message.gradient_a = toTwistMessage(answered ? value.a : none);
   message.gradient_b = toTwistMessage(answered ? value.b : none);

@@ -19,10 +19,10 @@ constexpr double LEVEL_WIDTH = 0.006;            /* [m] */
 constexpr double AROUND = 1.2; /* how much wider the grid is than the places where bounding spheres meet */
 
 struct Level {
-  double value;
+  double share; /* of both sides' reach: the value there */
   double r, g, b;
 };
-constexpr Level LEVELS[] = {{0.0, 0.78, 0.10, 0.16}, {0.5, 0.96, 0.62, 0.20}, {0.9, 0.35, 0.72, 0.62}};
+constexpr Level LEVELS[] = {{0.0, 0.78, 0.10, 0.16}, {0.05, 0.96, 0.62, 0.20}, {0.15, 0.35, 0.72, 0.62}};
 
 /** Draws a side; how far its points are from its origin [m]. */
 double addSide(Canvas &canvas, const ObjectDescription &side, const ResourceOptions &resources) {
@@ -56,8 +56,7 @@ class Field {
   }
 
   /** Both triangles of each cell are met by a level once at most. */
-  void addLevel(Marker &lines, double value) const {
-    const double level = evened(value);
+  void addLevel(Marker &lines, double level) const {
     for (int j = 0; j < side_; ++j) {
       for (int i = 0; i < side_; ++i) {
         addCrossing(lines, level, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1));
@@ -76,14 +75,7 @@ class Field {
     place_.a.position.x = x;
     place_.a.position.y = y;
     constraint_.evaluate(place_, workspace_, value_);
-    return evened(value_.value);
-  }
-
-  /* V/t falls by orders of magnitude from one point of the grid to the next: between them its logarithm is the nearer
-   * to a straight line. */
-  static double evened(double value) {
-    constexpr double LEAST = 1e-3;
-    return -std::log(std::max(1.0 - value, LEAST));
+    return value_.value;
   }
 
   Corner corner(int i, int j) const {
@@ -120,7 +112,7 @@ void addLevels(Canvas &canvas, const LevelDrawing &drawing, const ResourceOption
     Marker &lines = canvas.add("levels", Marker::LINE_LIST);
     setScale(lines, LEVEL_WIDTH, 0.0, 0.0);
     lines.color = colour(level.r, level.g, level.b, 1.0);
-    field.addLevel(lines, level.value);
+    field.addLevel(lines, level.share * reach);
   }
 }
 

@@ -18,7 +18,7 @@ struct LevelDrawing {
 };
 
 /** Both sides, and lines through those places of side a, turned as it is and at its height, where the value is 0 (dark:
- * from there on the constraint holds), 0.5 and 0.9: of a certified gap V/t = 1, 1/2, 1/10. Values between the points of
+ * from there on the constraint holds), and a twentieth and 15 % of both sides' reach. Values between the points of
  * a grid are interpolated: the lines are for the eye. The finer the grid, the faster one evaluation is; all takes some
  * 0.1 s at most. */
 void addLevels(Canvas &canvas, const LevelDrawing &drawing, const ResourceOptions &resources);

@@ -61,7 +61,7 @@ void Doubts::apply(ConstraintResult &row) {
   const Coverage why = coverage();
   if (why.complete()) return;
   row.status = why.status();
-  row.lower = row.upper = std::numeric_limits<double>::quiet_NaN();
+  row.lower = row.upper = row.touching_least = row.touching_most = std::numeric_limits<double>::quiet_NaN();
   for (TrajectoryConstraint &one : row.rows) one.lower = one.upper = row.lower;
   row.message += (row.message.empty() ? "" : "; ") + why.message();
 }

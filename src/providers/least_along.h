@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The least value along a curve that carries a body, of values that are known at one place at a time. */
+#ifndef CURVE_PROXIMITY_PROVIDERS_LEAST_ALONG_H
+#define CURVE_PROXIMITY_PROVIDERS_LEAST_ALONG_H
+
+#include <algorithm>
+#include <curve_proximity/constraint_provider.hpp>
+#include <limits>
+#include <optional>
+
+namespace curve_proximity {
+
+/** Parameters looked at first, so many for each sample's width of the gap, and how often the interval about the best is
+ *  halved. */
+constexpr double LOOKS_A_SAMPLE = 2.0;
+constexpr int LEAST_LOOKS = 16, MOST_LOOKS = 400, HALVINGS = 50;
+
+/** Puts the place at t of the curve, without turning; the velocity there [m a unit of t]. */
+inline Eigen::Vector3d carryTo(const ConstraintCurve &curve, double t, Workspace &workspace, cprox_pose &place) {
+  cprox_vec3 velocity;
+  place = CPROX_POSE_IDENTITY;
+  require(cprox_curve_evaluate(curve.curve.get(), t, workspace.get(), &place.position, &velocity, nullptr), workspace);
+  return toEigen(velocity);
+}
+
+/** A gap takes no radius of a curve. */
+inline void requireNoRadius(const ConstraintCurve &curve) {
+  if (curve.description.radius != 0.0) throw DoesNotApply("FourierGap takes no radius of a curve: give side a padding");
+}
+
+inline double parameterAt(double t0, double t1, int i, int of) {
+  return i == of ? t1 : t0 + (t1 - t0) * i / of;
+}
+
+/** The parameter of the least value of many, then of the interval about it by the sign of the derivative. slope(t)
+ *  evaluates into out and returns the derivative by t; also: one more parameter to look at. sample [m]. */
+template <class Slope>
+double leastAlong(const ConstraintCurve &curve, double sample, std::optional<double> also, Workspace &workspace,
+                  const Slope &slope, const ConstraintValue &out) {
+  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  const double t0 = info.t0, t1 = info.t1;
+  double length = 0.0;
+  cprox_pose before, here = CPROX_POSE_IDENTITY;
+  for (int i = 0; i <= LEAST_LOOKS; ++i) {
+    before = here;
+    carryTo(curve, parameterAt(t0, t1, i, LEAST_LOOKS), workspace, here);
+    if (i > 0) length += (toEigen(here.position) - toEigen(before.position)).norm();
+  }
+  const double wanted = LOOKS_A_SAMPLE * length / sample;
+  const int looks = std::max(LEAST_LOOKS, static_cast<int>(std::min(wanted, double{MOST_LOOKS})));
+  double best = t0, least = std::numeric_limits<double>::infinity();
+  const auto look = [&](double t) {
+    slope(t);
+    if (out.value < least) least = out.value, best = t;
+  };
+  for (int i = 0; i <= looks; ++i) look(parameterAt(t0, t1, i, looks));
+  if (also) look(*also);
+  const double width = (t1 - t0) / looks;
+  double low = std::max(t0, best - width), high = std::min(t1, best + width);
+  for (int i = 0; i < HALVINGS; ++i) {
+    const double t = 0.5 * (low + high);
+    (slope(t) > 0.0 ? high : low) = t;
+  }
+  const double t = 0.5 * (low + high);
+  slope(t);
+  return out.value <= least ? t : best;
+}
+
+/** The gradient of a value at t by all of the curve, where n is that by the carried place (Danskin). */
+inline void fillAlong(const ConstraintCurve &curve, double t, const Eigen::Vector3d &position, const Eigen::Vector3d &n,
+                      ConstraintValue &out) {
+  out.a.linear = n;
+  out.a.angular = position.cross(n);
+  // The weights stand at the front of the matrix; from the back, a column covers none that is still to be read.
+  out.points.resize(3, curve.description.points.cols());
+  double *weights = out.points.data();
+  curveWeights(curve.description, t, weights);
+  for (Eigen::Index i = out.points.cols(); i-- > 0;) {
+    const double w = weights[i];
+    out.points.col(i) = w * n;
+  }
+  out.t = t;
+  out.has_points = false;
+}
+
+} // namespace curve_proximity
+#endif
