@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Charts of the Fourier group: over-reach against n, outlines of obstacles, nesting."""
+"""Charts of the Fourier group: over-reach against n, outlines of obstacles, nesting, planning."""
 import collections
 import math
 import re
@@ -263,7 +263,41 @@ def nesting(rows, save, legend_below):
     return save(figure, 'fourier_nesting')
 
 
+PLANNING = {'signed distance': '#999999', 'superquadrics; then distance': '#999999', 'growth distance; then distance': '#999999',
+            'no obstacle; then distance': '#cccccc'}
+
+
+def planning(rows, save, _):
+    """Of all starts: free (pale), and near the best that any method found (full); the milliseconds a start."""
+    rows = [row for row in rows if row['workload'].startswith('planning: ')]
+    workloads = list(dict.fromkeys(row['workload'] for row in rows))
+    if not workloads:
+        return None
+    figure, grid = plt.subplots(2, (len(workloads) + 1) // 2, figsize=(13.0, 5.6), sharey=True, squeeze=False)
+    for axes, workload in zip(grid.T.flat, workloads):
+        own = [row for row in rows if row['workload'] == workload]
+        methods = list(dict.fromkeys(row['method'] for row in own))
+        for parameter, alpha in (('free', 0.35), ('near the best', 1.0)):
+            share = {row['method']: 100.0 * (1.0 - float(row['error'])) for row in own if row['parameter'] == parameter}
+            axes.barh(methods, [share[method] for method in methods], 0.7, alpha=alpha,
+                      color=[PLANNING.get(method, '#0b6e99') for method in methods])
+        for i, method in enumerate(methods):
+            milliseconds = next(float(row['median_us']) for row in own if row['method'] == method) / 1e3
+            axes.text(101.0, i, f'{milliseconds:.3g} ms', va='center', fontsize=7)
+        axes.set_xlim(0.0, 125.0)
+        axes.set_xticks([0, 50, 100])
+        axes.set_title(workload[len('planning: '):], fontsize=9)
+        axes.grid(axis='y', visible=False)
+        axes.tick_params(labelsize=8)
+    grid[0][0].invert_yaxis()
+    for axes in grid[1]:
+        axes.set_xlabel('of 50 starts [%]', fontsize=8)
+    figure.suptitle('Planning problems from random starts: free (pale), near the best (full); blue: Fourier gaps lead')
+    figure.tight_layout()
+    return save(figure, 'fourier_planning')
+
+
 def draw(rows, save, legend_below):
     rows = [row for row in rows if row['group'] == 'fourier']
-    for chart in (over_reach, space, cost, gradients, tables, convergence, profile, obstacle, nesting):
+    for chart in (over_reach, space, cost, gradients, tables, convergence, profile, obstacle, nesting, planning):
         yield chart(rows, save, legend_below)

@@ -9,6 +9,7 @@
 void fourier_row(const char *workload, const char *method, const char *parameter, double microseconds, double count,
                  double error, unsigned long unsound, unsigned long failures);
 
+void fourier_dots(const bench_size *size);
 void fourier_over_reach(const bench_size *size);
 void fourier_obstacle(const bench_size *size);
 void fourier_profile(const bench_size *size);
@@ -17,5 +18,6 @@ void fourier_space(const bench_size *size);
 void fourier_pairs(const bench_size *size);
 void fourier_tables(const bench_size *size);
 void fourier_nesting(const bench_size *size);
+void fourier_planning(const bench_size *size);
 
 #endif

@@ -26,7 +26,7 @@ CHARTS = [
     ('worlds_*', 'meshes, point clouds, octree leaves, sets of bodies, beside FCL'),
     ('implicit_*', 'pairs of implicit bodies: interior point, support functions, both together, a general solver'),
     ('fourier_*', 'over-reach of gap functions by kernel and n, what verdicts are worth in space, and what it costs; gradients; an SE(2) obstacle, '
-     'convergence, value, terms and gradient along a ray, boxes, nesting'),
+     'convergence, value, terms and gradient along a ray, boxes, nesting, planning problems from random starts'),
 ]
 
 

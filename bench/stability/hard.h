@@ -46,4 +46,8 @@ void stability_family(const bench_size *size, const family *f, uint64_t seed, to
  * wrong. */
 void stability_plates(const bench_size *size, uint64_t seed, tools *t);
 
+/* Do solids overlap? Thin ones, a dot among bars, symmetry, unequal sizes, nearly equal rotations, high exponents: Fourier
+ * gaps beside distances. */
+void stability_gaps(const bench_size *size, uint64_t seed, tools *t);
+
 #endif

@@ -14,6 +14,7 @@ int main(int argc, char **argv) {
   for (size_t i = 0; i < N_FAMILIES; i++)
     if (bench_wanted(&size, FAMILIES[i].name)) stability_family(&size, &FAMILIES[i], SEED + i, &t);
   stability_plates(&size, SEED + N_FAMILIES, &t);
+  stability_gaps(&size, SEED + N_FAMILIES + 100, &t);
   free(t.heap);
   cprox_workspace_free(t.workspace);
   return 0;

@@ -149,6 +149,7 @@ void addQueries(py::module &module);
 void addRobots(py::module &module);
 void addMovers(py::module &module);
 void addRoadmaps(py::module &module);
+void addGaps(py::module &module);
 
 } // namespace curve_proximity::python
 

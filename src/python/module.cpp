@@ -205,4 +205,5 @@ PYBIND11_MODULE(_cprox, module) {
   python::addRobots(module);
   python::addMovers(module);
   python::addRoadmaps(module);
+  python::addGaps(module);
 }

@@ -512,6 +512,95 @@ class SceneCurves(unittest.TestCase):
         self.assertEqual(cprox.Scene().collision(line, allow_empty=True)['result'].verdict, 'clear')
 
 
+class Gaps(unittest.TestCase):
+    """The truth is the exact distance of the bodies' convex parts."""
+
+    def parts(self):
+        arm, foot = cprox.transform([-0.3, 0.55, 0.0]), cprox.transform()
+        solid = cprox.Solid.union([cprox.Solid.box([0.3, 0.8, 0.6]), cprox.Solid.box([0.9, 0.25, 0.6])], [arm, foot])
+        return solid, [(cprox.box([0.3, 0.8, 0.6]), arm), (cprox.box([0.9, 0.25, 0.6]), foot)]
+
+    def pose(self, rng, reach):
+        q = rng.normal(size=4)
+        return cprox.transform(rng.uniform(-reach, reach, 3), q / numpy.linalg.norm(q))
+
+    def test_clear_is_never_said_of_an_overlap(self):
+        rng = numpy.random.default_rng(871)
+        solid, boxes = self.parts()
+        gap = cprox.FourierGap(solid, cprox.Solid.ellipsoid([0.5, 0.3, 0.4]), samples=9)
+        other = cprox.ellipsoid([0.5, 0.3, 0.4])
+        counts = {'apart': 0, 'overlapping': 0}
+        for _ in range(200):
+            pose = self.pose(rng, 1.2)
+            distance = min(cprox.pair(cprox.Obstacle(box, at), cprox.Obstacle(other, pose)).upper for box, at in boxes)
+            answers = gap.test(pose), gap.evaluate(pose)
+            for answer in answers:
+                self.assertEqual(answer['status'], 'ok')
+                if distance < 0.0:
+                    self.assertNotIn(answer['verdict'], ('clear', 'far'))
+            counts['overlapping'] += distance < 0.0
+            counts['apart'] += answers[0]['verdict'] in ('clear', 'far')
+            if answers[0]['verdict'] == 'far':
+                self.assertLessEqual(answers[0]['clearance'], distance + 1e-9)
+        self.assertGreater(min(counts.values()), 20)
+        self.assertTrue(gap.guaranteed and gap.samples == 9)
+
+    def test_gradients_are_those_of_differences_one_by_one_and_many_at_once(self):
+        rng = numpy.random.default_rng(872)
+        solid, _ = self.parts()
+        for mode in ('certified', 'signal'):
+            gap = cprox.FourierGap(solid, cprox.Solid.of(cprox.cone(0.7, 0.4)), samples=9, mode=mode)
+            poses = numpy.array([self.pose(rng, 0.4) for _ in range(20)])
+            values, gradients = gap.evaluate_many(poses)
+            for pose, value, gradient in zip(poses, values, gradients):
+                answer = gap.evaluate(pose)
+                self.assertEqual(answer['value'], value)
+                numpy.testing.assert_array_equal(answer['gradient'], gradient)
+                metres = gap.length * (value if mode == 'signal' else -math.log(value))
+                self.assertAlmostEqual(answer['metres'], metres, delta=1e-12)
+                step, h = rng.normal(size=6), 1e-4
+                turned = [pose.copy(), pose.copy()]
+                for sign, moved in zip((1, -1), turned):
+                    w = sign * h * step[3:]
+                    angle = numpy.linalg.norm(w)
+                    k = numpy.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]]) / angle
+                    moved[:3, :3] = (numpy.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * k @ k) @ pose[:3, :3]
+                    moved[:3, 3] += sign * h * step[:3]
+                ahead, behind = gap.evaluate_many(numpy.array(turned))[0]
+                slope = gradient @ step
+                self.assertAlmostEqual((ahead - behind) / (2 * h), slope, delta=1e-5 * (1 + abs(slope) + abs(value)))
+        self.assertLess(gap.touching_least, gap.touching_most)
+
+    def test_solids_have_their_measure_in_the_plane_and_in_space(self):
+        corners = [[0, 0], [1, 0], [1, 0.4], [0.4, 0.4], [0.4, 1], [0, 1]]
+        cells = numpy.zeros((3, 2, 4), dtype=bool)
+        cells[0, 1, 2] = cells[2, 0, 3] = True
+        tetrahedron = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+        for solid, dimension, measure in (
+                (cprox.Solid.ball(0.5, 2), 2, math.pi / 4), (cprox.Solid.ball(0.5), 3, math.pi / 6),
+                (cprox.Solid.box([1, 2]), 2, 2), (cprox.Solid.ellipsoid([1, 2]), 2, 2 * math.pi),
+                (cprox.Solid.cylinder(2, 0.5), 3, math.pi / 2), (cprox.Solid.capsule(2, 0.5, 2), 2, 2 + math.pi / 4),
+                (cprox.Solid.polygon(corners), 2, 0.64), (cprox.Solid.grid(cells, [0, 0, 0], 0.5), 3, 0.25),
+                (cprox.Solid.mesh(*tetrahedron), 3, 1 / 6)):
+            self.assertEqual(solid.dimension, dimension)
+            self.assertAlmostEqual(solid.measure, measure, delta=1e-9)
+        round_cone = cprox.Solid.of(cprox.cone(0.7, 0.4)).measure / (math.pi * 0.16 * 0.7 / 3)
+        self.assertTrue(1.0 < round_cone < 1.5, round_cone)
+
+    def test_what_cannot_be_is_refused_with_what_it_would_cost(self):
+        ball = cprox.Solid.ball(0.5)
+        with self.assertRaisesRegex(ValueError, 'bytes'):
+            cprox.FourierGap(ball, cprox.Solid.box([1, 1, 1]), samples=1025, memory_limit=1 << 20)
+        for words, call in (('none of', lambda: cprox.FourierGap(ball, ball, mode='sure')),
+                            ('corners', lambda: cprox.Solid.polygon([[0, 0, 0]])),
+                            ('size', lambda: cprox.Solid.box([1])), ('poses', lambda: cprox.Solid.union([ball], [])),
+                            ('bounded', lambda: cprox.Solid.of(cprox.halfspace([0, 0, 1], 0))),
+                            ('shape', lambda: cprox.FourierGap(ball, ball, samples=9).evaluate_many(numpy.eye(4))),
+                            ('dimension', lambda: cprox.FourierGap(ball, cprox.Solid.ball(1, 2)))):
+            with self.assertRaisesRegex(ValueError, words):
+                call()
+
+
 class Errors(unittest.TestCase):
     def refused(self, error, part, call, *arguments, **options):
         with self.assertRaises(error) as caught:
