@@ -434,8 +434,9 @@ def memory(rows, save):
     return save(figure, 'seeds_figure_10_memory') if found else plt.close(figure)
 
 
-HARD = (('curves', lambda row: row['group'] == 'stability' and not row['workload'].startswith(('plate', 'graze'))),
+HARD = (('curves', lambda row: row['group'] == 'stability' and not row['workload'].startswith(('plate', 'graze', 'gap: '))),
         ('thin plates and grazes', lambda row: row['group'] == 'stability' and row['workload'].startswith(('plate', 'graze'))),
+        ('overlapping solids', lambda row: row['group'] == 'stability' and row['workload'].startswith('gap: ')),
         ('implicit bodies', lambda row: (row['group'], row['workload']) == ('implicit', 'hard families')))
 
 
