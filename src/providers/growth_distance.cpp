@@ -161,6 +161,7 @@ class GrowthDistance : public ConstraintProvider {
 
   std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {
     if (pair.along_curve) throw DoesNotApply("GrowthDistance answers about standing bodies, not along curves");
+    if (!pair.is_named) throw DoesNotApply("SuperquadricDistance answers about standing bodies");
     return std::make_unique<GrowthConstraint>(parameters_, pair);
   }
 

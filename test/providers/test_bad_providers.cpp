@@ -77,6 +77,12 @@ TEST(Pairs, that_a_provider_cannot_answer_for_are_refused_by_type) {
   EXPECT_EQ(complaint([&] { pair->prepare(along); }), "");
   standing.is_named = along.is_named = false;
   EXPECT_SAYS(complaint([&] { curve->prepare(standing); }), "SuperquadricDistance answers about standing bodies");
+  ConstraintPair balls = standing;
+  balls.b = balls.a;
+  const Loaded growth("curve_proximity/GrowthDistance", {});
+  EXPECT_SAYS(complaint([&] { growth->prepare(balls); }), "SuperquadricDistance answers about standing bodies");
+  balls.is_named = true;
+  EXPECT_EQ(complaint([&] { growth->prepare(balls); }), "");
   EXPECT_SAYS(complaint([&] { pair->prepare(along); }), "CurveDistance answers about curves");
   const Loaded round("curve_proximity/SuperquadricDistance", {{"most_exponent", 8.0}});
   along.is_named = true;

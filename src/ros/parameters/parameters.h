@@ -73,7 +73,9 @@ struct Parameters {
   std::vector<ProviderSpec> constraint_providers = {
       {"curve_proximity/CurveDistance", "curve_proximity/CurveDistance", {}},
       {"curve_proximity/SuperquadricDistance", "curve_proximity/SuperquadricDistance", {}},
-      {"curve_proximity/FourierGap", "curve_proximity/FourierGap", {}}};
+      {"curve_proximity/FourierGap", "curve_proximity/FourierGap", {}},
+      {"curve_proximity/GrowthDistance", "curve_proximity/GrowthDistance", {}},
+      {"curve_proximity/RobotDistance", "curve_proximity/RobotDistance", {}}};
 };
 
 /** The values a number may take: least < value or least <= value, value <= most. */
