@@ -5,7 +5,7 @@
  * machine for longer than a round slows both. Beside them a loop of plain arithmetic over the same pools: where that
  * gains nothing from a second thread, the machine's second core was not free. What is wrong is what differs from one
  * thread's answers.
- * Then single queries, each on all threads: robots with their meshes, against themselves. */
+ * Then edges of a robot, and single queries, each on all threads: robots with their meshes, against themselves. */
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -162,6 +162,49 @@ struct Wanderer {
   Wanderer &operator=(const Wanderer &) = delete;
 };
 
+/* Random straight edges of a Panda by 59 balls in a bookshelf, each against the scene and itself. */
+void manyEdges(const std::vector<std::unique_ptr<Pool>> &pools, int rounds) {
+  constexpr std::size_t kEdges = 20000, kPart = 16;
+  static robot_case scene, model;
+  std::size_t n = 0;
+  FILE *f = std::fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
+  if (!f || std::fscanf(f, "%zu", &n) != 1 || !robot_case_read(f, BENCH_DATA_DIR "/motion", &scene) ||
+      !robot_case_read_robot(BENCH_DATA_DIR "/motion", "panda_spheres", &model))
+    std::abort();
+  std::fclose(f);
+  Workspace workspace;
+  cprox_obstacles *set = nullptr;
+  cprox_edge_checker *checker = nullptr;
+  cprox_obstacles_create(scene.targets, scene.n_targets, CPROX_INDEX_NONE, workspace.get(), &set);
+  cprox_edge_query asked{};
+  asked.obstacles = set, asked.self_pairs = model.self_pairs, asked.n_self_pairs = model.n_self_pairs;
+  if (cprox_edge_checker_create(model.robot, &asked, workspace.get(), &checker) != CPROX_OK) std::abort();
+  std::mt19937_64 engine(9);
+  std::uniform_real_distribution<double> at(-2.5, 2.5), way(-0.7, 0.7);
+  const std::size_t row = model.n_variables;
+  std::vector<double> from(kEdges * row), to(kEdges * row);
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] = at(engine), to[i] = from[i] + way(engine);
+  std::vector<std::vector<std::uint8_t>> verdicts(pools.size(), std::vector<std::uint8_t>(kEdges));
+  const std::vector<Times> times = measure(pools, rounds, [&](std::size_t k) {
+    pools[k]->run(kEdges, kPart, [&](std::size_t first, std::size_t last, Workspace &own) {
+      cprox_robot_edges(checker, &from[first * row], &to[first * row], last - first, own.get(), &verdicts[k][first],
+                        nullptr);
+    });
+  });
+  for (std::size_t k = 0; k < pools.size(); ++k) {
+    std::size_t wrong = 0, failed = 0;
+    for (std::size_t i = 0; i < kEdges; ++i) {
+      wrong += verdicts[k][i] != verdicts[0][i];
+      failed += verdicts[k][i] == CPROX_VERDICT_UNDECIDED;
+    }
+    print("growth threads edges", "curve_proximity", pools[k]->threads(), times[k], 0, wrong, failed);
+  }
+  cprox_edge_checker_free(checker);
+  cprox_obstacles_free(set);
+  robot_case_free(&model);
+  robot_case_free(&scene);
+}
+
 /* Queries that take one thread this long [us]: shorter ones have no need of a second. */
 constexpr double kLongQuery = 5000.0;
 
@@ -221,6 +264,7 @@ int main(int argc, char **argv) {
       print(workload, "curve_proximity", pools[k]->threads(), times[k], nodes, wrong, failed);
     }
   }
+  if (bench_wanted(&size, "growth threads edges")) manyEdges(pools, rounds);
   if (bench_wanted(&size, "growth one query")) oneQuery(pools, rounds);
   const std::string loop = "growth plain loop over threads";
   if (bench_wanted(&size, loop.c_str())) {

@@ -4,40 +4,35 @@
 #include <ompl/base/SpaceInformation.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 
-using curve_proximity::Answer;
-using curve_proximity::Query;
-using curve_proximity::QueryType;
-using curve_proximity::RobotMotion;
-using curve_proximity::TrajectoryDescription;
+#include <cmath>
 
 namespace {
 
-std::vector<double> valuesOf(const Task &task, const ompl::base::State *state) {
-  const double *values = state->as<ompl::base::RealVectorStateSpace::StateType>()->values;
-  return {values, values + task.joints.size()};
+const double *valuesOf(const ompl::base::State *state) {
+  return state->as<ompl::base::RealVectorStateSpace::StateType>()->values;
 }
 
 } // namespace
 
-bool clearBetween(const Task &task, const std::vector<double> &from, const std::vector<double> &to,
-                  curve_proximity::Workspace &workspace) {
-  TrajectoryDescription edge;
-  edge.joints = task.joints;
-  edge.points = {{from, {}, {}, 0.0}, {to, {}, {}, 1.0}};
-  const RobotMotion motion(task.snapshot, edge, task.rest, task.disabled);
+bool isClear(const Task &task, const double *from, const double *to, curve_proximity::Workspace &workspace) {
+  return task.checker->ask(from, to, workspace) == CPROX_VERDICT_CLEAR;
+}
 
-  Query query;
-  query.query_type = QueryType::TOLERANCE;
-  query.delta = task.clearance;
-  for (const Answer &answer : askEnvironment(motion, query, workspace)) {
-    if (answer.result.verdict != CPROX_VERDICT_CLEAR) return false;
+bool isClearAtSamples(const Task &task, const double *from, const double *to, double step,
+                      curve_proximity::Workspace &workspace) {
+  std::vector<double> at(task.joints.size());
+  double length = 0.0;
+  for (std::size_t k = 0; k < at.size(); ++k) length += (to[k] - from[k]) * (to[k] - from[k]);
+  const int n = std::max(1, static_cast<int>(std::ceil(std::sqrt(length) / step)));
+  for (int i = n; i >= 0; --i) {
+    for (std::size_t k = 0; k < at.size(); ++k) at[k] = from[k] + (to[k] - from[k]) * i / n;
+    if (!isClear(task, at.data(), at.data(), workspace)) return false;
   }
-  query.delta = 0.0;
-  return askSelf(motion, query, workspace).result.verdict == CPROX_VERDICT_CLEAR;
+  return true;
 }
 
 bool CertifiedMotionValidator::checkMotion(const ompl::base::State *from, const ompl::base::State *to) const {
-  const bool clear = clearBetween(task_, valuesOf(task_, from), valuesOf(task_, to), workspace_);
+  const bool clear = isClear(task_, valuesOf(from), valuesOf(to), workspace_);
   ++(clear ? valid_ : invalid_);
   return clear;
 }
@@ -53,7 +48,5 @@ bool CertifiedMotionValidator::checkMotion(const ompl::base::State *from, const 
 }
 
 bool StateChecker::isValid(const ompl::base::State *state) const {
-  if (!si_->satisfiesBounds(state)) return false;
-  const std::vector<double> values = valuesOf(task_, state);
-  return clearBetween(task_, values, values, workspace_);
+  return si_->satisfiesBounds(state) && isClear(task_, valuesOf(state), valuesOf(state), workspace_);
 }

@@ -6,24 +6,27 @@
 #include <ompl/base/MotionValidator.h>
 #include <ompl/base/StateValidityChecker.h>
 
-#include <curve_proximity/motion.hpp>
+#include <curve_proximity/roadmap.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
-/** What is planned, and what all checks share: a scene with a robot, the joints, how far away everything must stay. */
+/** What is planned, and what all checks share: a robot in a scene, its joints, how far away everything must stay. */
 struct Task {
-  curve_proximity::SnapshotPtr snapshot;
   std::vector<std::string> joints;
   curve_proximity::JointPositions rest; /**< of the other joints */
-  std::vector<std::array<std::string, 2>> disabled;
-  double clearance = 0.001;        /**< [m] */
-  std::vector<double> start, goal; /**< of the joints */
+  double clearance = 0.001;             /**< [m] from the scene and between links */
+  std::vector<double> start, goal;      /**< of the joints */
+  std::shared_ptr<const curve_proximity::EdgeChecker> checker;
 };
 
-/** Is the robot farther than the clearance from the scene, and apart from itself, everywhere between two joint
- * positions? Proven, not sampled: undecided counts as no. */
-bool clearBetween(const Task &task, const std::vector<double> &from, const std::vector<double> &to,
-                  curve_proximity::Workspace &workspace);
+/** Is the robot farther than the clearance from the scene and from itself, everywhere between two joint positions?
+ *  Proven, not sampled: undecided counts as no. */
+bool isClear(const Task &task, const double *from, const double *to, curve_proximity::Workspace &workspace);
+
+/** The same at states alone, from the end to the beginning, at most `step` rad apart: what planners usually ask. */
+bool isClearAtSamples(const Task &task, const double *from, const double *to, double step,
+                      curve_proximity::Workspace &workspace);
 
 /** The continuous check, for ompl::base::SpaceInformation::setMotionValidator(). */
 class CertifiedMotionValidator : public ompl::base::MotionValidator {
@@ -42,7 +45,7 @@ class CertifiedMotionValidator : public ompl::base::MotionValidator {
   mutable curve_proximity::Workspace workspace_;
 };
 
-/** The check of a single state, which OMPL's own validator samples edges with. */
+/** The check of a single state: an edge of length 0. OMPL's own validator samples edges with it. */
 class StateChecker : public ompl::base::StateValidityChecker {
  public:
   StateChecker(const ompl::base::SpaceInformationPtr &information, const Task &task)

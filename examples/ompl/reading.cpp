@@ -63,8 +63,7 @@ SnapshotPtr readWorld(const std::string &urdf, const std::string &scene_file) {
 Task readTask(const std::string &urdf, const std::string &srdf, const std::string &scene,
               const std::string &trajectory) {
   Task task;
-  task.snapshot = readWorld(urdf, scene);
-  task.disabled = parseSrdf(textOf(srdf)).disabled;
+  const SnapshotPtr world = readWorld(urdf, scene);
   task.rest = {{"panda_finger_joint1", 0.04}, {"panda_finger_joint2", 0.04}};
 
   const YAML::Node file = YAML::Load(textOf(trajectory))["joint_trajectory"];
@@ -73,5 +72,12 @@ Task readTask(const std::string &urdf, const std::string &srdf, const std::strin
   if (task.joints.size() != 7 || points.size() < 2) throw std::runtime_error(trajectory + ": seven joints, two points");
   task.start = points[0]["positions"].as<std::vector<double>>();
   task.goal = points[points.size() - 1]["positions"].as<std::vector<double>>();
+
+  Query query;
+  query.query_type = QueryType::TOLERANCE;
+  query.delta = task.clearance;
+  const PreparedRobot robot(world, parseSrdf(textOf(srdf)).disabled);
+  task.checker = std::make_shared<EdgeChecker>(robot, task.joints, task.rest, RobotPairs::WHOLE, query);
+  if (!task.checker->coverage().complete()) throw std::runtime_error(task.checker->coverage().message());
   return task;
 }

@@ -6,9 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include <curve_proximity/coverage.hpp>
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/parallel.hpp>
 
@@ -28,7 +30,7 @@ struct Roadmap {
  *  shortest_way. As longWays() of a trajectory. */
 std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap);
 
-/** Is the robot farther than query.delta from the objects, or with `self` from itself, everywhere on each edge? As
+/** Is the robot farther than query.delta from the objects, from itself, or from both, everywhere on each edge? As
  *  askEnvironment() and askSelf() answer for the edge as a motion of its own.
  *
  *  robot    prepared in a scene; all threads share it.
@@ -36,13 +38,41 @@ std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap);
  *           that names them.
  *  query    TOLERANCE or COLLISION; no per_object, no certificate.
  *  known    empty, or a verdict for each edge: one that is not CPROX_VERDICT_CLEAR is kept and not asked again. So the
- *           answers for `self`, which are the same in all scenes, are found once and handed to each.
+ *           answers for the robot itself, which are the same in all scenes, are found once and handed to each.
  *
  *  Returns a verdict for each edge; what could not be decided within epsilon or the budget is undecided. Cost: some
  *  microseconds an edge by cprox_robot_edges(), which decides most; a motion for each other one; memory: a few bytes an
  *  edge. */
-std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &roadmap, bool self,
+std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &roadmap, RobotPairs against,
                                         const Query &query, const std::vector<cprox_verdict> &known, Pool &pool);
+
+/** Straight motions that come one at a time, as a planner asks: all that edgeVerdicts() prepares, kept. Immutable: any
+ *  number of threads may use it, each with its own workspace. */
+class EdgeChecker {
+ public:
+  /** joints   those that move: an edge has a value for each; others are at `rest`.
+   *  against  the objects, the robot itself, or both in one verdict.
+   *  query    TOLERANCE or COLLISION; no per_object, no certificate, no signed distance: these are an Error. */
+  EdgeChecker(const PreparedRobot &robot, const std::vector<std::string> &joints, const JointPositions &rest,
+              RobotPairs against, const Query &query);
+  ~EdgeChecker();
+  /** The one that was moved from can only be destroyed or assigned to. */
+  EdgeChecker(EdgeChecker &&) noexcept;
+  /** Likewise. */
+  EdgeChecker &operator=(EdgeChecker &&) noexcept;
+
+  /** The verdict of from + t (to - from), t in [0, 1]; an edge with from = to is a state. Both have a finite value for
+   *  each joint. All pairs count, those too that this edge does not move. Undecided: within epsilon, out of budget, or
+   *  not covered. Cost: some microseconds. */
+  cprox_verdict ask(const double *from, const double *to, Workspace &workspace) const;
+
+  /** What verdicts do not cover: none is `clear` unless it is complete. */
+  const Coverage &coverage() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<const Data> data_;
+};
 
 } // namespace curve_proximity
 #endif

@@ -24,7 +24,7 @@ py::array_t<std::int8_t> edgeVerdictsOf(const PythonScene &scene, const std::vec
                                         const Array &vertices, const py::object &edges, double delta, bool self,
                                         const py::object &known, const JointPositions &rest,
                                         const std::optional<Array> &base, double epsilon, Count max_nodes,
-                                        unsigned threads, bool allow_empty, bool shortest_way) {
+                                        unsigned threads, bool allow_empty, bool shortest_way, bool whole) {
   if (!scene.robot()) throw Error("the scene has no robot");
   Roadmap roadmap = roadmapOf(joints, vertices, edges, scene.rest(rest));
   roadmap.shortest_way = shortest_way;
@@ -41,7 +41,8 @@ py::array_t<std::int8_t> edgeVerdictsOf(const PythonScene &scene, const std::vec
     const py::gil_scoped_release release;
     Pool pool(threads);
     const PreparedRobot robot(scene.snapshot(), scene.robot()->srdf.disabled, {}, {}, at);
-    found = edgeVerdicts(robot, roadmap, self, query, before, pool);
+    const RobotPairs against = whole ? RobotPairs::WHOLE : self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
+    found = edgeVerdicts(robot, roadmap, against, query, before, pool);
   }
   warn("edge_verdicts", longWays(*scene.robot()->robot, roadmap));
   py::array_t<std::int8_t> out(static_cast<py::ssize_t>(found.size()));
@@ -57,12 +58,13 @@ void addRoadmaps(py::module &module) {
       py::arg("delta"), py::arg("self_collision") = false, py::arg("known") = py::none(),
       py::arg("rest") = JointPositions{}, py::arg("base") = py::none(), py::arg("epsilon") = 1e-6,
       py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("threads") = 0, py::arg("allow_empty") = false,
-      py::arg("shortest_way") = false,
+      py::arg("shortest_way") = false, py::arg("whole") = false,
       "Straight motions between postures, the edges of a roadmap: is the robot farther than delta [m] "
       "everywhere?\n"
       "vertices (n, joints), edges (m, 2) of their rows. known (m,): verdicts of an earlier call; those that are "
       "not 0\n"
-      "stand. shortest_way: continuous joints turn the shorter way along an edge. Returns int8 (m,): 0 clear, 1 "
+      "stand. With self_collision it is asked from itself alone, with whole from the objects and itself.\n"
+      "shortest_way: continuous joints turn the shorter way along an edge. Returns int8 (m,): 0 clear, 1 "
       "violated, 2 undecided. All threads work (0: one a processor).");
 }
 

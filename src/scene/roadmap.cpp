@@ -2,10 +2,11 @@
 #include <curve_proximity/roadmap.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "answering.h"
-#include "asked_pairs.h"
+#include "edge_model.h"
 #include "short_way.h"
 
 namespace curve_proximity {
@@ -38,7 +39,12 @@ void check(const Roadmap &roadmap, const Query &query, const std::vector<cprox_v
 }
 
 /* The verdict of a motion; what has no answer is undecided. */
-cprox_verdict verdictOf(const RobotMotion &motion, bool self, const Query &query, Workspace &workspace) {
+cprox_verdict verdictOf(const RobotMotion &motion, RobotPairs against, const Query &query, Workspace &workspace) {
+  if (against == RobotPairs::WHOLE) {
+    const cprox_verdict verdict = verdictOf(motion, RobotPairs::ENVIRONMENT, query, workspace);
+    return verdict == CPROX_VERDICT_CLEAR ? verdictOf(motion, RobotPairs::SELF, query, workspace) : verdict;
+  }
+  const bool self = against == RobotPairs::SELF;
   const Answer answer = self ? askSelf(motion, query, workspace) : askEnvironment(motion, query, workspace).front();
   if (answer.result.status == CPROX_INVALID) throw Error(answer.message);
   return answer.result.status < 0 ? CPROX_VERDICT_UNDECIDED : answer.result.verdict;
@@ -79,80 +85,35 @@ Roadmap shortened(const Robot &robot, const Roadmap &roadmap) {
   return out;
 }
 
-/* A motion of all joints of the roadmap: it has all pairs that an edge can have. */
-TrajectoryDescription everyJoint(const Roadmap &roadmap) {
-  TrajectoryDescription out;
-  out.joints = roadmap.joints;
-  out.points = {pointAt(roadmap, 0, 0.0), pointAt(roadmap, 0, 1.0)};
-  for (double &position : out.points[1].positions) position += 1.0;
-  return out;
-}
-
-/* The core's handle for edges, for all pairs that an edge of the roadmap can have. */
+/* The core's handle, for all pairs that an edge of the roadmap can have. */
 class Lanes {
  public:
-  Lanes(const PreparedRobot &robot, const Roadmap &roadmap, bool self, const Query &query)
-      : roadmap_(roadmap),
-        motion_(robot, everyJoint(roadmap), roadmap.rest, query.links),
-        asked_(self ? askedSelf(motion_.data(), query)
-                    : askedItems(motion_.data(), namedItems(motion_.data(), query.objects), query)),
-        rest_(cprox_motion_get_info(motion_.data().core.get()).n_variables) {
-    cprox_motion_evaluate(motion_.data().core.get(), 0.0, rest_.data());
-    Workspace workspace;
-    if (makeObstacles(asked_.targets, CPROX_INDEX_NONE, workspace, obstacles_) < 0) throw Error(workspace.reason());
-    cprox_edge_query edges{};
-    edges.obstacles = obstacles_.get();
-    const cprox_robot_pair *pairs = asked_.pairs.empty() ? &NOTHING : asked_.pairs.data(); // NULL would be all
-    edges.pairs = self ? &NOTHING : pairs;
-    edges.n_pairs = self ? 0 : asked_.pairs.size();
-    edges.self_pairs = self ? pairs : &NOTHING;
-    edges.n_self_pairs = self ? asked_.pairs.size() : 0;
-    edges.without_self = !self;
-    edges.delta = (query.query_type == QueryType::TOLERANCE ? query.delta : 0.0) + asked_.rounding;
-    options_ = query.options;
-    edges.options = &options_;
-    cprox_edge_checker *made = nullptr;
-    const cprox_robot *core = motion_.data().kinematics->core.get();
-    if (cprox_edge_checker_create(core, &edges, workspace.get(), &made) < 0) throw Error(workspace.reason());
-    checker_.reset(made);
+  Lanes(const PreparedRobot &robot, const Roadmap &roadmap, RobotPairs against, const Query &query)
+      : roadmap_(roadmap), model_(robot, roadmap.joints, roadmap.rest, against, query) {}
+
+  /* Of both at once one alone may have pairs. */
+  RobotPairs against() const {
+    return model_.asked.against;
   }
 
   /* Is there no pair to measure? */
   bool isEmpty() const {
-    return asked_.pairs.empty();
+    return model_.asked.pairs.empty();
   }
 
   /* The verdict of an edge, if that is the verdict of its motion as well: what is clear of all pairs is; else its
-   * motion must have all pairs, as it has where all joints move, and all of them must be the core's own. */
+   * motion must have all pairs, as it has where all joints move. */
   std::optional<cprox_verdict> ask(const std::array<std::uint32_t, 2> &edge, Workspace &workspace) const {
-    std::vector<double> from = rest_, to = rest_;
-    const TrajectoryShape &shape = motion_.data().shape;
-    bool all_move = true;
-    for (std::size_t k = 0; k < shape.column.size(); ++k) {
-      const auto variable = static_cast<std::size_t>(shape.variable[k]);
-      const auto row = static_cast<Eigen::Index>(shape.column[k]);
-      from[variable] = roadmap_.vertices(row, edge[0]);
-      to[variable] = roadmap_.vertices(row, edge[1]);
-      all_move = all_move && from[variable] != to[variable];
-    }
-    std::uint8_t verdict = CPROX_VERDICT_UNDECIDED;
-    const cprox_status status =
-        cprox_robot_edges(checker_.get(), from.data(), to.data(), 1, workspace.get(), &verdict, nullptr);
-    if (status >= 0 && verdict == CPROX_VERDICT_CLEAR) return CPROX_VERDICT_CLEAR;
-    if (status >= 0 && verdict == CPROX_VERDICT_VIOLATED && all_move && asked_.rounding == 0.0)
-      return CPROX_VERDICT_VIOLATED;
-    return std::nullopt;
+    const auto from = roadmap_.vertices.col(edge[0]), to = roadmap_.vertices.col(edge[1]);
+    const EdgeModel::Found found = model_.ask(from.data(), to.data(), workspace);
+    const bool stands = found.verdict == CPROX_VERDICT_CLEAR || found.all_move;
+    if (found.verdict == CPROX_VERDICT_UNDECIDED || !stands) return std::nullopt;
+    return found.verdict;
   }
 
  private:
-  static constexpr cprox_robot_pair NOTHING{};
   const Roadmap &roadmap_;
-  RobotMotion motion_;
-  Asked asked_;
-  std::vector<double> rest_;
-  cprox_options options_{};
-  ObstaclesHandle obstacles_;
-  std::unique_ptr<cprox_edge_checker, void (*)(cprox_edge_checker *)> checker_{nullptr, cprox_edge_checker_free};
+  EdgeModel model_;
 };
 
 /* Whether verdicts of the core are those of the motions: nothing is left out, and no coarser model is asked for. */
@@ -169,6 +130,8 @@ std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap) {
   std::vector<std::string> out;
   std::size_t n = 0;
   for (std::size_t i = 0; i < roadmap.edges.size(); ++i) {
+    const auto [from, to] = roadmap.edges[i];
+    if ((roadmap.vertices.col(to) - roadmap.vertices.col(from)).cwiseAbs().maxCoeff() <= M_PI) continue;
     const std::vector<std::string> ways = longWays(robot, straight(roadmap, roadmap.edges[i]));
     if (ways.empty() || n++ > 0) continue;
     for (const std::string &way : ways) out.push_back("edge " + std::to_string(i) + ": " + way);
@@ -177,8 +140,8 @@ std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap) {
   return out;
 }
 
-std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &given, bool self, const Query &query,
-                                        const std::vector<cprox_verdict> &known, Pool &pool) {
+std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &given, RobotPairs against,
+                                        const Query &query, const std::vector<cprox_verdict> &known, Pool &pool) {
   check(given, query, known);
   const bool shortens = given.shortest_way && robot.snapshot()->robot();
   const Roadmap roadmap = shortens ? shortened(*robot.snapshot()->robot(), given) : given;
@@ -186,8 +149,13 @@ std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadma
   std::vector<cprox_verdict> verdicts = known;
   if (verdicts.empty()) verdicts.assign(n, CPROX_VERDICT_CLEAR);
   std::optional<Lanes> lanes;
-  if (n > 0 && speaksForAll(robot, query)) lanes.emplace(robot, roadmap, self, query);
+  if (n > 0 && speaksForAll(robot, query)) lanes.emplace(robot, roadmap, against, query);
   if (lanes && lanes->isEmpty()) lanes.reset(); // no edge is clear of nothing, but where the query allows it
+  if (lanes && lanes->against() != against) {   // one of both after the other
+    const std::vector<cprox_verdict> of_objects =
+        edgeVerdicts(robot, given, RobotPairs::ENVIRONMENT, query, known, pool);
+    return edgeVerdicts(robot, given, RobotPairs::SELF, query, of_objects, pool);
+  }
   pool.run(n, A_PART, [&](std::size_t first, std::size_t last, Workspace &workspace) {
     for (std::size_t i = first; i < last; ++i) {
       if (verdicts[i] != CPROX_VERDICT_CLEAR) continue;
@@ -198,7 +166,7 @@ std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadma
         continue;
       }
       const RobotMotion motion(robot, straight(roadmap, roadmap.edges[i]), roadmap.rest, query.links);
-      verdicts[i] = verdictOf(motion, self, query, workspace);
+      verdicts[i] = verdictOf(motion, against, query, workspace);
     }
   });
   return verdicts;

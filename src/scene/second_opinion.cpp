@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "answering.h"
 #include "peers.h"
 
 namespace curve_proximity {

@@ -14,7 +14,7 @@ INTO_SHELF = os.path.join(DATA, 'trajectories/panda_bookshelf_thin_0017_rrt.yaml
 class Ompl(Case):
     def plan(self, runs, out):
         self.assertTrue(os.environ.get('CPROX_EXAMPLE_OMPL'), 'example_ompl was not built: is OMPL installed?')
-        done = subprocess.run([os.environ['CPROX_EXAMPLE_OMPL'], *PANDA, SHELF, INTO_SHELF, str(runs), out],
+        done = subprocess.run([os.environ['CPROX_EXAMPLE_OMPL'], *PANDA, SHELF, INTO_SHELF, str(runs), out, '2000'],
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=LIMIT, universal_newlines=True)
         self.assertEqual((done.returncode, done.stderr), (0, ''), done.stdout)
         return done.stdout

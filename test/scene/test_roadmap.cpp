@@ -66,7 +66,7 @@ std::string refusalOf(const Roadmap &roadmap, const Case &c, const Query &query 
                       const std::vector<cprox_verdict> &known = {}) {
   Pool pool(1);
   try {
-    edgeVerdicts(PreparedRobot(c.snapshot, c.srdf.disabled), roadmap, false, query, known, pool);
+    edgeVerdicts(PreparedRobot(c.snapshot, c.srdf.disabled), roadmap, RobotPairs::ENVIRONMENT, query, known, pool);
   } catch (const Error &error) {
     return error.what();
   }
@@ -95,9 +95,73 @@ TEST(Roadmaps, edges_have_the_verdicts_of_their_motions) {
     EXPECT_GT(count[CPROX_VERDICT_VIOLATED], self ? 0 : 20);
     for (const unsigned threads : {1U, 3U}) {
       Pool pool(threads);
-      EXPECT_EQ(edgeVerdicts(robot, c.roadmap, self, tolerance(), {}, pool), expected);
+      EXPECT_EQ(
+          edgeVerdicts(robot, c.roadmap, self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, tolerance(), {}, pool),
+          expected);
     }
   }
+}
+
+/* One verdict of both is clear where both are; else it is the first of them that is not (seed 91). */
+TEST(Roadmaps, the_verdict_of_objects_and_robot_is_that_of_both) {
+  const Case c = makeCase(91, 60, 200);
+  const PreparedRobot robot(c.snapshot, c.srdf.disabled);
+  Pool pool(1);
+  const auto of = [&](RobotPairs against, const std::vector<cprox_verdict> &known) {
+    return edgeVerdicts(robot, c.roadmap, against, tolerance(), known, pool);
+  };
+  const std::vector<cprox_verdict> whole = of(RobotPairs::WHOLE, {});
+  EXPECT_EQ(whole, of(RobotPairs::SELF, of(RobotPairs::ENVIRONMENT, {})));
+
+  /* and one edge at a time, which asks all pairs, also those that do not move */
+  const EdgeChecker checker(robot, c.roadmap.joints, c.roadmap.rest, RobotPairs::WHOLE, tolerance());
+  EXPECT_TRUE(checker.coverage().complete());
+  Workspace workspace;
+  std::map<cprox_verdict, int> count;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const auto [from, to] = c.roadmap.edges[i];
+    if (from == to) continue;
+    EXPECT_EQ(checker.ask(c.roadmap.vertices.col(from).data(), c.roadmap.vertices.col(to).data(), workspace), whole[i]);
+    ++count[whole[i]];
+  }
+  EXPECT_GT(count[CPROX_VERDICT_CLEAR], 10);
+  EXPECT_GT(count[CPROX_VERDICT_VIOLATED], 20);
+}
+
+/* Without objects nothing was measured. A robot alone is no objects. */
+TEST(Roadmaps, no_edge_is_clear_of_a_scene_that_is_not_covered) {
+  const Case c = makeCase(91, 4, 4);
+  const Scene empty(c.snapshot->robot());
+  const PreparedRobot alone(empty.snapshot(), c.srdf.disabled), among(c.snapshot, c.srdf.disabled);
+  Query query = tolerance();
+  const EdgeChecker nothing(alone, c.roadmap.joints, {}, RobotPairs::ENVIRONMENT, query);
+  query.coverage.add(Gap::PARTIAL, "something was left out");
+  const EdgeChecker partial(among, c.roadmap.joints, {}, RobotPairs::ENVIRONMENT, query);
+  EXPECT_EQ(nothing.coverage().status(), "empty");
+  EXPECT_EQ(partial.coverage().status(), "partial");
+  Workspace workspace;
+  for (const EdgeChecker *checker : {&nothing, &partial})
+    for (int i = 0; i < 4; ++i) {
+      const double *at = c.roadmap.vertices.col(i).data();
+      EXPECT_EQ(checker->ask(at, at, workspace), CPROX_VERDICT_UNDECIDED);
+    }
+}
+
+TEST(Roadmaps, an_edge_checker_refuses_what_it_cannot_answer) {
+  const Case c = makeCase(91, 4, 4);
+  const PreparedRobot robot(c.snapshot, c.srdf.disabled);
+  const auto refuses = [&](const Query &query) {
+    EXPECT_THROW(EdgeChecker(robot, c.roadmap.joints, {}, RobotPairs::WHOLE, query), Error);
+  };
+  Query query = tolerance();
+  query.query_type = QueryType::DISTANCE;
+  refuses(query);
+  query = tolerance();
+  query.per_object = true;
+  refuses(query);
+  query = tolerance();
+  query.options.signed_distance = true;
+  refuses(query);
 }
 
 /* What is known stands; the rest is asked (seed 92). */
@@ -105,10 +169,12 @@ TEST(Roadmaps, what_is_known_is_not_asked_again) {
   const Case c = makeCase(92, 20, 40);
   const PreparedRobot robot(c.snapshot, c.srdf.disabled);
   Pool pool(1);
-  const std::vector<cprox_verdict> plain = edgeVerdicts(robot, c.roadmap, false, tolerance(), {}, pool);
+  const std::vector<cprox_verdict> plain =
+      edgeVerdicts(robot, c.roadmap, RobotPairs::ENVIRONMENT, tolerance(), {}, pool);
   std::vector<cprox_verdict> known(plain.size(), CPROX_VERDICT_CLEAR);
   for (std::size_t i = 0; i < known.size(); i += 3) known[i] = CPROX_VERDICT_UNDECIDED;
-  const std::vector<cprox_verdict> joined = edgeVerdicts(robot, c.roadmap, false, tolerance(), known, pool);
+  const std::vector<cprox_verdict> joined =
+      edgeVerdicts(robot, c.roadmap, RobotPairs::ENVIRONMENT, tolerance(), known, pool);
   for (std::size_t i = 0; i < known.size(); ++i) EXPECT_EQ(joined[i], i % 3 == 0 ? CPROX_VERDICT_UNDECIDED : plain[i]);
 }
 
@@ -118,8 +184,8 @@ TEST(Roadmaps, an_edge_without_a_budget_is_undecided) {
   query.options.stop = [](void *) { return true; };
   Pool pool(1);
   const PreparedRobot robot(c.snapshot, c.srdf.disabled);
-  const std::vector<cprox_verdict> all = edgeVerdicts(robot, c.roadmap, false, tolerance(), {}, pool),
-                                   stopped = edgeVerdicts(robot, c.roadmap, false, query, {}, pool);
+  const std::vector<cprox_verdict> all = edgeVerdicts(robot, c.roadmap, RobotPairs::ENVIRONMENT, tolerance(), {}, pool),
+                                   stopped = edgeVerdicts(robot, c.roadmap, RobotPairs::ENVIRONMENT, query, {}, pool);
   int undecided = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     undecided += stopped[i] == CPROX_VERDICT_UNDECIDED;

@@ -36,10 +36,7 @@ def edges(scene, joints, start, end, delta=0.0, self_collision=True, **options):
         raise ValueError('start and end must be arrays of shape (n, joints): one row a posture')
     vertices = numpy.concatenate((start, end))
     pairs = numpy.arange(len(vertices), dtype=numpy.uint32).reshape(2, -1).T
-    verdicts = edge_verdicts(scene, joints, vertices, pairs, delta, **options)  # noqa: F405
-    if self_collision:
-        verdicts = edge_verdicts(scene, joints, vertices, pairs, delta, self_collision=True, known=verdicts,  # noqa: F405
-                                 **options)
+    verdicts = edge_verdicts(scene, joints, vertices, pairs, delta, whole=self_collision, **options)  # noqa: F405
     return verdicts.astype(numpy.uint8)
 
 
