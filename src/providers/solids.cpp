@@ -429,6 +429,15 @@ SolidHandle planarSolid(const ConstraintBody::Part &part, double padding) {
       solid.kind = CPROX_SOLID_ELLIPSOID;
       solid.semi_axes = enlargedAxes(d, 2, padding);
       return makeSolid(solid);
+    case ShapeType::CYLINDER: // along z: their sections at z = 0 are discs
+    case ShapeType::CAPSULE:
+      solid.kind = CPROX_SOLID_BALL;
+      solid.radius = d.at(1) + padding;
+      return makeSolid(solid);
+    case ShapeType::CONE: // half as wide at z = 0; what is padded is wider there by the padding over a cosine at most
+      solid.kind = CPROX_SOLID_BALL;
+      solid.radius = 0.5 * d.at(1) + padding * std::hypot(1.0, d.at(1) / d.at(0)) * (1.0 + 1e-14);
+      return makeSolid(solid);
     case ShapeType::POLYGON: return outlineSolid(part, padding);
     case ShapeType::POINTS: return cloudSolid(shape, padding, 2);
     case ShapeType::POLYTOPE: {

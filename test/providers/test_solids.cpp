@@ -204,6 +204,33 @@ TEST(Outlines, that_are_not_convex_are_as_they_are_and_never_clear_in_an_overlap
       row.value.value, 1e-9);
 }
 
+/* Seed 844: in the plane a cylinder, a capsule and a cone along z are discs at z = 0, the cone one of half its radius. */
+TEST(Sections, of_bodies_along_z_are_never_clear_in_an_overlap) {
+  ProviderSet providers({{"gap", "curve_proximity/FourierGap", {{"dimension", 2}, {"samples", 33}}}});
+  Workspace workspace;
+  Random random(844);
+  for (const auto &[s, radius] :
+       {std::pair(shape(ShapeType::CYLINDER, {0.7, 0.4}), 0.4), std::pair(shape(ShapeType::CAPSULE, {0.7, 0.4}), 0.4),
+        std::pair(shape(ShapeType::CONE, {0.7, 0.8}), 0.4)}) {
+    int clear = 0, deep = 0;
+    for (int i = 0; i < 200; ++i) {
+      const Eigen::Vector3d at(random.uniform(-0.9, 0.9), random.uniform(-0.9, 0.9), 0.0);
+      const double distance = at.norm() - radius - 0.1;
+      const ConstraintRow row = answered(providers, s, 0.0, shape(ShapeType::SPHERE, {0.1}), at, workspace);
+      ASSERT_EQ(row.status, CPROX_OK) << row.message;
+      if (distance < -1e-9) {
+        EXPECT_LT(row.value.lower, 0.0) << at.transpose();
+      }
+      if (distance > 0.1) {
+        EXPECT_GT(row.value.lower, 0.0) << at.transpose();
+      }
+      clear += row.value.lower > 0.0, deep += distance < -1e-9;
+    }
+    EXPECT_GT(clear, 50);
+    EXPECT_GT(deep, 30);
+  }
+}
+
 /* Seed 842: a cloud of balls, and a ball about it. */
 TEST(Clouds, are_never_clear_in_an_overlap) {
   ProviderSet providers({{"gap", "curve_proximity/FourierGap", {{"samples", 17}}}});
