@@ -378,6 +378,27 @@ SolidHandle cloudSolid(const ShapeDescription &shape, double padding, int dimens
                    dimension);
 }
 
+/* A box about each cell of a height field: from the floor, or from its lowest corner, to its highest. */
+SolidHandle groundSolid(const ShapeDescription &shape, double padding) {
+  const std::vector<double> &d = shape.dimensions;
+  const auto across = static_cast<std::size_t>(d.at(2)), along = static_cast<std::size_t>(d.at(3));
+  if (shape.values.size() != across * along || across < 2 || along < 2) throw Error("it has no cells");
+  Boxes boxes;
+  const auto cells = static_cast<Eigen::Index>((across - 1) * (along - 1));
+  boxes.low.resize(3, cells), boxes.high.resize(3, cells);
+  Eigen::Index k = 0;
+  for (std::size_t j = 0; j + 1 < along; ++j)
+    for (std::size_t i = 0; i + 1 < across; ++i, ++k) {
+      const double *row = &shape.values[j * across + i];
+      const auto [lowest, highest] = std::minmax({row[0], row[1], row[across], row[across + 1]});
+      if (!std::isfinite(lowest + highest)) throw Error("its heights must be finite");
+      const double x = d[0] * static_cast<double>(i), y = d[1] * static_cast<double>(j);
+      boxes.low.col(k) << x, y, d.size() > 4 ? d[4] : lowest;
+      boxes.high.col(k) << x + d[0], y + d[1], highest;
+    }
+  return gridSolid(boxes, padding, 3);
+}
+
 SolidHandle coneSolid(double height, double radius) {
   const double r = radius / std::cos(M_PI / SIDES);
   Eigen::Matrix3Xd points(3, SIDES + 1);
@@ -486,6 +507,7 @@ SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding, const
       return padding > 0.0 ? polytopeRound(part.body, padding + part.excess) : meshOf(loadedShape(shape, {}));
     case ShapeType::POINTS: return cloudSolid(shape, padding, 3);
     case ShapeType::OCTREE: return gridSolid(octreeBoxes(shape), padding, 3);
+    case ShapeType::HEIGHT_FIELD: return groundSolid(shape, padding);
     case ShapeType::SUPERQUADRIC: return polytopeRound(part.body, padding);
     case ShapeType::IMPLICIT: return implicitSolid(part, padding);
     default: throw Error("FourierGap has no solid for it in space");

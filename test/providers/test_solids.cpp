@@ -231,6 +231,33 @@ TEST(Sections, of_bodies_along_z_are_never_clear_in_an_overlap) {
   }
 }
 
+/* Seed 845: a ball over hills with a floor. The truth is the distance of the triangles, by SuperquadricDistance, and the
+ * height where the ball's middle is. */
+TEST(HeightFields, are_never_clear_in_an_overlap) {
+  ProviderSet gaps({{"gap", "curve_proximity/FourierGap", {{"samples", 17}}}}),
+      distances({{"distance", "curve_proximity/SuperquadricDistance", {{"epsilon", 1e-9}}}});
+  Workspace workspace;
+  Random random(845);
+  ShapeDescription ground = shape(ShapeType::HEIGHT_FIELD, {0.2, 0.25, 7, 6, -0.5});
+  for (int i = 0; i < 42; ++i) ground.values.push_back(random.uniform(-0.2, 0.2));
+  int clear = 0, deep = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d at(random.uniform(-0.3, 1.5), random.uniform(-0.3, 1.5), random.uniform(-0.4, 1.3));
+    const ShapeDescription ball = shape(ShapeType::SPHERE, {0.1});
+    const ConstraintRow row = answered(gaps, ground, 0.0, ball, at, workspace),
+                        truth = answered(distances, ground, 0.0, ball, at, workspace);
+    ASSERT_EQ(row.status, CPROX_OK) << row.message;
+    ASSERT_GE(truth.status, 0) << truth.message;
+    const bool overlaps = truth.value.value < -1e-9 || truth.status == CPROX_OVERLAP;
+    if (overlaps) {
+      EXPECT_LT(row.value.lower, 0.0) << at.transpose();
+    }
+    clear += row.value.lower > 0.0, deep += overlaps;
+  }
+  EXPECT_GT(clear, 20);
+  EXPECT_GT(deep, 30);
+}
+
 /* Seed 842: a cloud of balls, and a ball about it. */
 TEST(Clouds, are_never_clear_in_an_overlap) {
   ProviderSet providers({{"gap", "curve_proximity/FourierGap", {{"samples", 17}}}});
