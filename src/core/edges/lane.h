@@ -90,6 +90,13 @@ EDGE_INLINE lane lane_load(const float *from) {
   return a;
 }
 
+/* Eight doubles, rounded. */
+EDGE_INLINE lane lane_narrow(const double *from) {
+  float a[EDGE_LANES];
+  for (int i = 0; i < EDGE_LANES; i++) a[i] = (float)from[i];
+  return lane_load(a);
+}
+
 #if defined(__clang__)
 #define LANE_SHUFFLED(a, ...) __builtin_shufflevector(a, a, __VA_ARGS__)
 #else

@@ -117,18 +117,52 @@ EDGE_INLINE lane distance2_from_box(lane3 x, const float *low, const float *high
   return lane3_norm2(out);
 }
 
-/* A ball that something moves in: where the obstacle sees its centre, how far it moves, and its radius. */
+/* A ball that something moves in: where the obstacle sees its centre, and its radius. */
 typedef struct lane_ball {
   lane3 x;
-  lane moves;
+  lane r; /* how far what it needs reaches: its radius and how far it moves, from above */
   float radius;
 } lane_ball;
 
 EDGE_INLINE lane_ball ball_of_piece(const lane_batch *b, const lane_standing *s, const lane_piece *p) {
   const edge_hull *hull = p->placed.hull;
+  const float radius = hull->core + hull->margin + s->o->around + s->delta + s->room;
   return (lane_ball){.x = lane_turn_back(s->frame.r, lane3_sub(p->placed.centre, s->frame.o)),
-                     .moves = piece_moves(b, s, p),
-                     .radius = hull->core + hull->margin + s->o->around + s->delta + s->room};
+                     .r = (piece_moves(b, s, p) + lane_all(radius)) * lane_all(1.0f + (float)EDGE_GROW),
+                     .radius = radius};
+}
+
+/* Eight boxes: children of a node, or elements of a pack. */
+typedef struct lane_boxes {
+  lane3 low, high;
+} lane_boxes;
+
+EDGE_INLINE lane3 lane3_narrow(const double *from) {
+  return (lane3){lane_narrow(from), lane_narrow(from + TREE_LANES), lane_narrow(from + 2 * (size_t)TREE_LANES)};
+}
+
+/* The boxes of `use` that a ball comes near, and for each of them in which lanes of `lanes`. Boxes stand in lanes here,
+ * one interval after another. */
+EDGE_INLINE uint32_t near_boxes(lane_batch *b, const lane_standing *s, const lane_ball *ball, const lane_boxes *boxes,
+                                uint32_t use, uint32_t lanes, lane_bits *near) {
+  const lane zero = lane_all(0.0f), r2 = ball->r * ball->r;
+  const lane3 low = boxes->low, high = boxes->high;
+  lane beyond2 = lane_all(INFINITY); /* of each interval the least that is not near */
+  lane_bits found = {0};
+  for (uint32_t left = lanes; left; left &= left - 1) {
+    const int l = __builtin_ctz(left), bit = 1 << l;
+    const lane3 x = {lane_all(ball->x.x[l]), lane_all(ball->x.y[l]), lane_all(ball->x.z[l])};
+    const lane3 out = {lane_max(lane_max(low.x - x.x, x.x - high.x), zero),
+                       lane_max(lane_max(low.y - x.y, x.y - high.y), zero),
+                       lane_max(lane_max(low.z - x.z, x.z - high.z), zero)};
+    const lane distance2 = lane3_norm2(out);
+    const lane_bits is_near = (lane_bits)(distance2 <= lane_all(r2[l]));
+    found |= is_near & (lane_bits){bit, bit, bit, bit, bit, bit, bit, bit};
+    if (b->measures) beyond2[l] = lane_least(lane_choose(lane_those(use) & ~is_near, distance2, lane_all(INFINITY)))[0];
+  }
+  if (b->measures) note_least(b, s->pair, beyond2, ball->r);
+  *near = found;
+  return lane_mask(found != 0) & use;
 }
 
 /* The elements of a pack that come near a piece's ball. Whether contact is proven. */
@@ -137,23 +171,28 @@ EDGE_TARGET static bool open_pack(lane_batch *b, lane_standing *s, const lane_pi
   const tree *t = s->o->tree;
   const double *numbers = t->packs + (size_t)pack * tree_pack_size(t->kind);
   const uint32_t *ids = t->ids + (size_t)pack * TREE_LANES;
-  for (int e = 0; e < TREE_LANES; e++) {
-    if (e > 0 && ids[e] == ids[e - 1]) break; /* what fills a pack */
+  const size_t corners = t->kind == TREE_TRIANGLES ? 3 : t->kind == TREE_BOXES ? 2 : 1;
+  lane_boxes boxes = {.low = lane3_narrow(numbers)};
+  boxes.high = boxes.low;
+  for (size_t c = 1; c < corners; c++) {
+    const lane3 x = lane3_narrow(numbers + 3 * c * TREE_LANES), low = boxes.low, high = boxes.high;
+    boxes.low = (lane3){lane_min(x.x, low.x), lane_min(x.y, low.y), lane_min(x.z, low.z)};
+    boxes.high = (lane3){lane_max(x.x, high.x), lane_max(x.y, high.y), lane_max(x.z, high.z)};
+  }
+  int n = 1;
+  while (n < TREE_LANES && ids[n] != ids[n - 1]) n++; /* what fills a pack repeats the last one */
+  lane_bits near_each;
+  for (uint32_t use = near_boxes(b, s, ball, &boxes, (1u << n) - 1u, near, &near_each); use; use &= use - 1) {
+    const int e = __builtin_ctz(use);
     const double *own = numbers + e;
-    float low[3], high[3];
-    for (int k = 0; k < 3; k++) {
-      low[k] = high[k] = (float)own[(size_t)k * TREE_LANES];
-      for (int corner = 1; corner < (t->kind == TREE_TRIANGLES ? 3 : t->kind == TREE_BOXES ? 2 : 1); corner++) {
-        const float x = (float)own[(size_t)(3 * corner + k) * TREE_LANES];
-        low[k] = x < low[k] ? x : low[k], high[k] = x > high[k] ? x : high[k];
-      }
-    }
-    const lane distance2 = distance2_from_box(ball->x, low, high);
-    const uint32_t lanes = within(b, s->pair, distance2, ball->moves, ball->radius) & near & ~b->split & ~s->left;
+    const uint32_t lanes = (uint32_t)near_each[e] & ~b->split & ~s->left;
     if (!lanes) continue;
     if (t->kind != TREE_TRIANGLES && piece->number == UINT32_MAX) {
       const lane_two two = {piece->placed.hull->geometry, s->o->target, false};
       const float inner = sure_radius(piece->placed.hull->inner, s->o->within, s->delta, s->room + s->o->costs);
+      const float low[3] = {boxes.low.x[e], boxes.low.y[e], boxes.low.z[e]},
+                  high[3] = {boxes.high.x[e], boxes.high.y[e], boxes.high.z[e]};
+      const lane distance2 = distance2_from_box(ball->x, low, high);
       if (settle_near(b, s->pair, &two, distance2, lanes, ball->radius, inner)) return true;
       s->left |= lanes;
       continue;
@@ -190,13 +229,11 @@ EDGE_TARGET static bool open_tree(lane_batch *b, lane_standing *s, const lane_pi
       continue;
     }
     const tree_node *node = &t->nodes[at.child];
-    for (uint32_t use = node->lanes; use; use &= use - 1) {
+    const lane_boxes boxes = {lane3_narrow(node->low[0]), lane3_narrow(node->high[0])};
+    lane_bits near_each;
+    for (uint32_t use = near_boxes(b, s, &ball, &boxes, node->lanes, lanes, &near_each); use; use &= use - 1) {
       const int k = __builtin_ctz(use);
-      const float low[3] = {(float)node->low[0][k], (float)node->low[1][k], (float)node->low[2][k]},
-                  high[3] = {(float)node->high[0][k], (float)node->high[1][k], (float)node->high[2][k]};
-      const uint32_t inside =
-          within(b, s->pair, distance2_from_box(ball.x, low, high), ball.moves, ball.radius) & lanes;
-      if (!inside) continue;
+      const uint32_t inside = (uint32_t)near_each[k];
       if (n == EDGE_TREE_STACK)
         s->left |= inside;
       else
