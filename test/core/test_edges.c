@@ -547,11 +547,12 @@ static cprox_edge_query ask_of(const world *w, bool self, double delta) {
 enum { EDGES = 8 };
 
 /* 120 worlds (seed 404), 8 edges each, every kind of obstacle, balls and capsules: no verdict is wrong, by 64 samples
- * refined. Both instruction sets give the same results. */
+ * refined. Fewer worlds go on until lanes left some edge open. */
 CASE(edge_verdicts_are_never_wrong) {
   rng r = rng_seed(404);
   size_t counts[3] = {0}, levels[CPROX_EDGE_SEARCH + 1] = {0};
-  for (size_t i = 0; i < test_cases(120); i++) {
+  for (size_t i = 0;
+       i < test_cases(120) || (i < 120 && levels[CPROX_EDGE_MEASUREMENT] + levels[CPROX_EDGE_SEARCH] == 0); i++) {
     const double scale = rng_log_uniform(&r, 1e-2, 1e2);
     const bool self = rng_index(&r, 2);
     world w;

@@ -118,7 +118,7 @@ CASE(a_state_is_where_forward_kinematics_puts_it) {
     cprox_body_free(box);
     robot_free(&t);
   }
-  assert_true(near > 100);
+  assert_true(near > test_cases(100));
 }
 
 /* 300 robots (seed 302): a state changed by motion_set_state() answers as one that was made so, and as a motion through
