@@ -44,8 +44,9 @@ typedef struct paper_obstacle {
   size_t n;
 } paper_obstacle;
 
-/* Distance of two vertex sets by GJK; *lower is its lower bound. Counts support evaluations in *evaluations. */
-double paper_gjk(const vec3 *a, size_t na, const vec3 *b, size_t nb, double *lower, uint32_t *evaluations);
+/* Distance of two vertex sets by GJK; *lower is its lower bound. *at, where not NULL: where the nearest point of the
+ * second hull lies, as the mean of its vertices' numbers, from 0 to 1. Counts support evaluations in *evaluations. */
+double paper_gjk(const vec3 *a, size_t na, const vec3 *b, size_t nb, double *lower, double *at, uint32_t *evaluations);
 
 typedef enum paper_query_type { PAPER_DISTANCE, PAPER_TOLERANCE, PAPER_COLLISION } paper_query_type;
 
@@ -70,5 +71,13 @@ void paper_search(const paper_curve *curve, const paper_obstacle *obstacle, cons
                   paper_answer *answer);
 void paper_search_curves(const paper_curve *first, const paper_curve *second, const paper_query *q, paper_node *heap,
                          paper_answer *answer);
+
+/* The distance of a Bézier curve by subdivision: Chang, Chen, Paul and others, Computation of the minimum distance
+ * between two Bézier curves/surfaces, Computers & Graphics 35, 2011, of which the paper's Fig. 10 shows the time. The
+ * Bernstein toolkit BeBOT (Kielas-Jensen and others, 2022) searches in the same way. Written here from what both say:
+ * the lower bound of a part is the GJK distance of its control points' hull, the upper bound that of points of the
+ * curve. A part is cut where the hull's nearest point suggests, and the half whose end is nearer comes first. Depth
+ * first, in plain double arithmetic. `paper_answer` has the interval; ended: within PAPER_MAX_NODES parts. */
+void paper_subdivide(const paper_bezier *bezier, const paper_obstacle *obstacle, double epsilon, paper_answer *answer);
 
 #endif

@@ -78,11 +78,11 @@ static double bound(const problem *p, paper_node *node, double upper, uint32_t *
   }
   double lower, unused;
   if (p->curve[1]) {
-    paper_gjk(h[1].vertex, h[1].n, h[0].vertex, h[0].n, &lower, evaluations);
+    paper_gjk(h[1].vertex, h[1].n, h[0].vertex, h[0].n, &lower, NULL, evaluations);
     upper = fmin(upper, vec_norm(vec_sub(middle[0], middle[1])));
   } else {
-    paper_gjk(p->obstacle->vertex, p->obstacle->n, h[0].vertex, h[0].n, &lower, evaluations);
-    upper = fmin(upper, paper_gjk(p->obstacle->vertex, p->obstacle->n, &middle[0], 1, &unused, evaluations));
+    paper_gjk(p->obstacle->vertex, p->obstacle->n, h[0].vertex, h[0].n, &lower, NULL, evaluations);
+    upper = fmin(upper, paper_gjk(p->obstacle->vertex, p->obstacle->n, &middle[0], 1, &unused, NULL, evaluations));
   }
   node->lower = fmax(node->lower, lower);
   return upper;

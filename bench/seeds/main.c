@@ -25,6 +25,7 @@ typedef struct query {
   cprox_obstacle target;
   const paper_curve *first, *second; /* second NULL: the obstacle */
   const paper_obstacle *obstacle;
+  const paper_bezier *bezier; /* or NULL: the curve is none, or there are two */
 } query;
 
 static const double EPSILON = 1e-10;
@@ -61,11 +62,22 @@ static void paper(const void *queries, size_t i, void *state, bench_answer *a) {
   a->failed = !r.ended;
 }
 
+/* Distances alone: the subdivision's authors ask for nothing else. */
+static void subdivision(const void *queries, size_t i, void *state, bench_answer *a) {
+  (void)state;
+  const query *q = (const query *)queries + i;
+  paper_answer r;
+  paper_subdivide(q->bezier, q->obstacle, EPSILON, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.evaluations};
+  a->failed = !r.ended;
+}
+
 static void measure(const bench_size *size, const char *workload, const char *parameter, const query *queries,
                     size_t n) {
   const bench_workload w = {.group = "seeds", .name = workload, .parameter = parameter, .problems = queries, .n = n};
-  const bench_method methods[] = {{"curve_proximity", ours, NULL}, {"paper", paper, NULL}};
-  bench_measure(&w, size, methods, 2);
+  const bench_method methods[] = {
+      {"curve_proximity", ours, NULL}, {"paper", paper, NULL}, {"subdivision", subdivision, NULL}};
+  bench_measure(&w, size, methods, queries->bezier && queries->query_type == PAPER_DISTANCE ? 3 : 2);
 }
 
 /* Distance, tolerance and collision; delta is half of the distance, as far as curves that cross have one. */
@@ -206,7 +218,8 @@ static void figure_ten(const bench_size *size, const tools *t) {
                            .mover = cprox_point_along(p[i].curve),
                            .target = p[i].target,
                            .first = &p[i].paper,
-                           .obstacle = &p[i].paper_obstacle};
+                           .obstacle = &p[i].paper_obstacle,
+                           .bezier = &p[i].bezier};
     }
     char parameter[32];
     snprintf(parameter, sizeof parameter, "order %02zu", order);
