@@ -274,7 +274,7 @@ void addQueries(py::module &module) {
           "'clear', 'violated' or 'undecided'; undecided counts as unsafe.")
       .def_property_readonly(
           "status", [](const cprox_result &r) { return cprox_status_name(r.status); },
-          "'ok', or why the interval is wider than asked: 'budget', 'precision', 'stopped'.")
+          "'ok', or why the interval is wider than asked: 'budget', 'precision', 'inexact', 'stopped'.")
       .def("__repr__", &describe);
 
   py::class_<Mover, std::shared_ptr<Mover>>(module, "Mover", "What moves: a point, a ball or a shape along a curve.");

@@ -5,6 +5,8 @@ import os
 
 from support import DATA, Case, bezier, cprox
 
+PAPERS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), 'examples/papers')
+
 CABLE = '{type: curve, curve: {basis: bezier, radius: 0.1, points: [[0, -1, 2], [0, 1, 2]]}}'
 # along y through the origin, while the mover comes along x: both are at the origin at t = 0.5 and 1 of their lines
 OTHER = 'curve: {basis: polynomial, degree: 1, radius: 0.1, points: [[0, -1, 0], [0, 2, 0]]%s}'
@@ -133,9 +135,27 @@ class ChangingRadius(Case):
         row = self.ask('distance', [self.GROWS.replace('0.1 0.2 0.3', '0.1 0.5')], scene(other)).row('grows')
         self.assertAnswer(row, 2 - 0.6 - 0.3)
 
+    def a_curve_that_stands_is_nearest_where_the_radius_is_most(self):
+        """A cable of 0.1 m, 2 m above the tube's end."""
+        cable = '{type: curve, curve: {basis: bezier, radius: 0.1, points: [[-2, 0, 4], [2, 0, 4]]}}'
+        row = self.ask('distance', [self.GROWS], scene(cable)).row('grows')
+        self.assertAnswer(row, 2 - 0.1 - 0.6)
+        self.assertAlmostEqual(float(row['t']), 1, places=4)
+
+    def the_papers_prediction_grows_until_it_touches(self):
+        """examples/papers: (t - 2)^2 + 1 = (0.35 + 0.35 t)^2 at the pillar; the fence is reached at t = 3.714."""
+        files = ['--curves', f'{PAPERS}/prediction.csv', '--scene', f'{PAPERS}/prediction.yaml']
+        answer = cprox('distance', *files)
+        self.assertAnswer(answer.row('sure'), 1 - 0.25 - 0.1)
+        self.assertEqual(float(answer.row('growing')['upper']), 0)
+        answer = cprox('time-of-contact', *files)
+        self.assertEqual(answer.row('sure')['verdict'], 'clear')
+        row = answer.row('growing')
+        self.assertEqual((row['verdict'], row['b']), ('violated', 'pillar'))
+        a, b, c = 1 - 0.35**2, -4 - 2 * 0.35**2, 5 - 0.35**2
+        self.assertAlmostEqual(float(row['t']), (-b - math.sqrt(b * b - 4 * a * c)) / (2 * a), places=5)
+
     def what_cannot_be_asked_is_told(self):
         down = self.GROWS.replace('0.1 0.2 0.3', '0.1 -1')
         self.assertFailedRow(self.ask('distance', [down], self.BOX), 'grows', 'radius', 'must be 0 or more')
-        self.assertFailedRow(self.ask('time-of-contact', [self.GROWS], self.BOX), 'grows', 'a radius that changes')
-        self.assertFailedRow(self.ask('distance', [self.GROWS], scene(CABLE)), 'grows', 'a radius that changes')
         self.assertFailedRow(self.ask('distance', [self.GROWS.replace('0.1 0.2', '0.1 x')], self.BOX), 'grows', "'x' is not a finite number")

@@ -44,6 +44,7 @@ CPROX_API const char *cprox_version(void);
   X(CPROX_PRECISION, 2, "precision", "double arithmetic allows no narrower interval")             \
   X(CPROX_STOPPED, 3, "stopped", "the caller's stop function asked for it; the interval is true") \
   X(CPROX_OVERLAP, 4, "overlap", "they overlap; how deep was not measured, lower bounds it")      \
+  X(CPROX_INEXACT, 5, "inexact", "the obstacle's own distances are not known more narrowly")      \
   X(CPROX_INVALID, -1, "invalid", "an argument is unusable; see the reason")                      \
   X(CPROX_MEMORY, -2, "memory", "an allocation failed")
 

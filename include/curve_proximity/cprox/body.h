@@ -118,7 +118,7 @@ typedef double (*cprox_distance_fn)(const void *shape, const double point[3]);
  *  error      how far a value may be from the distance [m], >= 0.
  *
  *  Answers are certified relative to `error`: the interval is wider by twice that, and where that is more than epsilon,
- *  the status is CPROX_PRECISION. Contact is proven only by values below -error: a callback that answers 0 inside
+ *  the status is CPROX_INEXACT. Contact is proven only by values below -error: a callback that answers 0 inside
  * leaves it undecided. Balls on curves are held against such bodies, standing or on the clock; robots, carried bodies,
  *  compounds, pairs, gradients and certificates are refused. A value that is not finite, or that contradicts another
  *  one, `lipschitz`, or `radius`, gives CPROX_INVALID: 256 places are tried at once, and every value of a query is

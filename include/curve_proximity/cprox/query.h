@@ -283,6 +283,8 @@ typedef struct cprox_result {
  *  Returns CPROX_OK        upper - lower <= max(epsilon, relative_epsilon * upper)
  *          CPROX_BUDGET    max_nodes were not enough: the interval is true, only wider
  *          CPROX_PRECISION epsilon is below what double arithmetic can promise at this scale: likewise
+ *          CPROX_INEXACT epsilon is below the stated error of a distance function, or that of a grid's interpolation:
+ *          likewise
  *          CPROX_STOPPED   options->stop said so: likewise
  *          CPROX_INVALID   an argument is unusable; cprox_workspace_error() says which and why; *result is untouched
  *          CPROX_MEMORY    likewise
@@ -324,8 +326,8 @@ CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_obstacle obstacl
  *                   witness points at t: 0 for violated, at most epsilon for undecided.
  *
  *  A ball round the obstacle that is not to be entered is its margin. Returns as cprox_distance(); after CPROX_BUDGET,
- *  CPROX_STOPPED and CPROX_PRECISION t_contact_lower is true, but may lie before the place where the distance is
- *  epsilon. relative_epsilon is refused. Source: doc/time-of-contact.md. */
+ *  CPROX_STOPPED, CPROX_PRECISION and CPROX_INEXACT t_contact_lower is true, but may lie before the place where the
+ *  distance is epsilon. relative_epsilon is refused. Source: doc/time-of-contact.md. */
 CPROX_API cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                                              cprox_workspace *workspace, cprox_result *result);
 

@@ -41,7 +41,6 @@ static cprox_status search_model(const query *q, const candidate *c, double cuto
   r.status = search_placed(q, p, &goal, &found, &r);
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
   if (r.status < 0) return r.status;
-
   /* distances are not negative, unless asked for; where the search fell short the ball may know a better lower bound */
   const double least = q->is_signed ? -INFINITY : 0.0;
   double by_ball = c->lower;
@@ -54,6 +53,8 @@ static cprox_status search_model(const query *q, const candidate *c, double cuto
     r.lower = fmin(by_ball, r.upper);
     if (r.upper <= 2.0 * found.best.slack) r.status = CPROX_OVERLAP; /* 0 but for rounding */
   }
+  if (r.status == CPROX_OK && !depth_unknown && !query_is_satisfied(q, cutoff, &r)) r.status = CPROX_PRECISION;
+  r.status = curve_kernel_shortfall(p, r.status, found.best.slack);
   *result = r;
   return r.status;
 }

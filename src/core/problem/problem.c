@@ -79,6 +79,7 @@ const char *query_shortfall(cprox_status status) {
   switch (status) {
     case CPROX_BUDGET: return "the budget ended the search: raise max_nodes or epsilon";
     case CPROX_PRECISION: return "epsilon is below what double arithmetic allows at this scale";
+    case CPROX_INEXACT: return "epsilon is below the error of an obstacle's distances, or of their interpolation";
     case CPROX_STOPPED: return "the stop function ended the search";
     case CPROX_OVERLAP: return cprox_status_text(status);
     default: return "";

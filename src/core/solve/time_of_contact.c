@@ -33,6 +33,7 @@ static cprox_status meet_placed(const query *q, const placed_pair *p, search_goa
   const bool touches = touch.bound.at < goal->time_cutoff;
   cprox_status reported = touches ? CPROX_OK : report_finding(q, p, &near, &met->near);
   met->near.t = near.t, met->near.upper = near.bound.upper;
+  met->slack = near.bound.slack;
   if (!touches || reported < 0) return reported < 0 ? reported : status;
   reported = report_finding(q, p, &touch, &met->touch);
   if (reported < 0) return reported;
@@ -72,6 +73,7 @@ static cprox_status meet_model(const query *q, const candidate *c, double time_c
   const bool near = met->near.upper <= q->options.epsilon;
   const double end = near ? fmin(met->near_at, time_cutoff) : time_cutoff;
   if (met->status == CPROX_OK && met->free_until < end) met->status = CPROX_PRECISION;
+  met->status = curve_kernel_shortfall(&p, met->status, met->slack);
   return near && !isfinite(met->touch.t) && !isfinite(time_cutoff) ? prove_farther(q, c, met) : CPROX_OK;
 }
 

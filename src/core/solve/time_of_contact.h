@@ -12,6 +12,7 @@ typedef struct time_of_contact {
   cprox_result touch; /* t: the leftmost parameter of proven contact, or infinity; upper <= 0 */
   cprox_result
       near; /* t: that of contact within epsilon, or infinity; if there is none, upper is the least distance measured */
+  double slack;   /* of what was measured there */
   double near_at; /* near.t, rounded down as free_until is */
   uint32_t nodes, distance_queries;
   cprox_lod lod;       /* the finest that was needed */
