@@ -587,6 +587,14 @@ class Gaps(unittest.TestCase):
         round_cone = cprox.Solid.of(cprox.cone(0.7, 0.4)).measure / (math.pi * 0.16 * 0.7 / 3)
         self.assertTrue(1.0 < round_cone < 1.5, round_cone)
 
+    def test_gaps_lead_more_starts_of_the_example_near_the_best(self):
+        example = os.path.join(DATA, '..', '..', 'examples', 'place_part.py')
+        done = subprocess.run([sys.executable, example, '8'], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        alone, led = (line.split(': ')[1].replace(',', '').split() for line in done.stdout.splitlines())
+        self.assertEqual((alone[2], led[2], led[0]), ('8', '8', '8'), done.stdout)
+        self.assertGreater(int(led[4]), int(alone[4]), done.stdout)
+
     def test_what_cannot_be_is_refused_with_what_it_would_cost(self):
         ball = cprox.Solid.ball(0.5)
         with self.assertRaisesRegex(ValueError, 'bytes'):
