@@ -60,8 +60,9 @@ struct ConstraintPair {
 
 /** A compiled curve with its description, from compile() or makeConstraintCurve(). */
 struct ConstraintCurve {
-  CurveDescription description; /**< as given */
-  CurveHandle curve;            /**< compiled */
+  CurveDescription description;       /**< as given */
+  CurveHandle curve;                  /**< compiled */
+  CurveHandle radius_curve = nullptr; /**< compiled, of a radius that changes: its x is added to the radius; or null */
 };
 
 /** The poses of both sides, or a curve and the pose of b, in the fixed frame. The curve is kept by reference. */
@@ -101,7 +102,9 @@ struct ConstraintValue {
   std::string reason;   /**< why valid is false, in a few words */
   ConstraintGradient a; /**< by side a; if valid is false: that of one of the minimisers, or 0 */
   ConstraintGradient b; /**< by side b, likewise */
-  /** Gradient by the curve's control points or coefficients, one a column; 0 columns without a curve. */
+  /** Gradient by the curve's control points or coefficients, axes of the fixed frame, one a column; of clothoids,
+   *  involutes and Pythagorean hodographs by the start. 0 columns without a curve, and for dubins and piecewise curves,
+   *  which have a gradient by their pose alone (a). */
   Eigen::Matrix3Xd points;
   double radius = 0.0;                                 /**< gradient by the curve's radius; 0 without a curve */
   double t = std::numeric_limits<double>::quiet_NaN(); /**< the curve's parameter at which the value is attained */
@@ -276,6 +279,8 @@ using ConstraintProvider = LayoutProvider<providerLayout()>;
 /** The weight of each control point or coefficient in the curve's point at t; n = description.points.cols() of them.
  *  false: the basis has none, and nothing is written. */
 inline bool findCurveWeights(const CurveDescription &curve, double t, double *weights) {
+  for (const char *name : {"clothoid", "involute", "pythagorean_hodograph"})
+    if (curve.basis == name) return weights[0] = 1.0, true; /* the start, with which the whole curve moves */
   static constexpr std::pair<const char *, cprox_curve_kind> kinds[] = {
       {"bezier", CPROX_CURVE_BEZIER},         {"bspline", CPROX_CURVE_BSPLINE},
       {"polynomial", CPROX_CURVE_POLYNOMIAL}, {"legendre", CPROX_CURVE_LEGENDRE},
@@ -291,9 +296,21 @@ inline bool findCurveWeights(const CurveDescription &curve, double t, double *we
   return false;
 }
 
-/** The same. Throws Error where the basis has none. */
-inline void curveWeights(const CurveDescription &curve, double t, double *weights) {
-  if (!findCurveWeights(curve, t, weights)) throw Error("no weights are known of the basis '" + curve.basis + "'");
+/** The derivative of a value by the curve's points, n being that by its point at t. 0 columns where the basis has no
+ *  weights. */
+inline void gradientByPoints(const CurveDescription &curve, double t, const Eigen::Vector3d &n,
+                             Eigen::Matrix3Xd &points) {
+  points.resize(3, curve.points.cols());
+  /* the weights stand at the front of the matrix; from the back, a column covers none that is still to be read */
+  double *weights = points.data();
+  if (!findCurveWeights(curve, t, weights)) {
+    points.resize(3, 0);
+    return;
+  }
+  for (Eigen::Index i = points.cols(); i-- > 0;) {
+    const double w = weights[i];
+    points.col(i) = w * n;
+  }
 }
 
 /** The side as one body: its only part if that stands at the side's origin, otherwise a compound of all parts. exact:

@@ -124,7 +124,7 @@ std::string constraintsLine(const ConstraintRow &row) {
   appendValue(line, value.value, value.bounded, value.lower, value.upper);
   line += value.valid ? ",true" : ",false";
   const bool along = value.points.cols() > 0;
-  appendField(line, value.t, along);
+  appendField(line, value.t, std::isfinite(value.t));
   appendGradient(line, value.a);
   appendGradient(line, value.b);
   appendWitness(line, value);

@@ -80,7 +80,24 @@ class Checker {
     for (Eigen::Index k = 0; k < value.points.cols(); ++k)
       for (int i = 0; i < 3; ++i)
         compare("point " + std::to_string(k) + ' ' + AXES[i], value.points(i, k),
-                [&](ConstraintCase &moved, double step) { moved.curve->points(i, k) += step; });
+                [&](ConstraintCase &moved, double step) {
+                  Eigen::Vector3d by = step * Eigen::Vector3d::Unit(i);
+                  if (moved.curve->pose) by = moved.curve->pose->linear().transpose() * by;
+                  moved.curve->points.col(k) += by;
+                });
+    /* the curve as a whole moves, and turns about the origin */
+    for (int i = 0; i < 3; ++i) {
+      const auto step_by = [i](ConstraintCase &moved, double along, double angle) {
+        Eigen::Isometry3d by = Eigen::Isometry3d::Identity();
+        by.translation()[i] = along;
+        by.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(i)).toRotationMatrix();
+        moved.curve->pose = by * moved.curve->pose.value_or(Eigen::Isometry3d::Identity());
+      };
+      compare(std::string("curve linear ") + AXES[i], value.a.linear[i],
+              [&](ConstraintCase &moved, double step) { step_by(moved, step, 0.0); });
+      compare(std::string("curve angular ") + AXES[i], value.a.angular[i],
+              [&](ConstraintCase &moved, double step) { step_by(moved, 0.0, step); });
+    }
     if (asked_.curve->radius > STEP)
       compare("radius", value.radius, [](ConstraintCase &moved, double step) { moved.curve->radius += step; });
   }

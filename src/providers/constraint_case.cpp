@@ -143,9 +143,9 @@ void makeReady(const ConstraintCase &described, Asked &asked) {
   if (described.curve) {
     if (!described.a.pose.matrix().isIdentity(0.0))
       throw Error("a: what rides a curve stands where the curve is: its pose must be the identity");
-    if (!described.curve->radius_polynomial.empty())
-      throw Error("curve: constraints are about tubes whose radius does not change");
-    asked.curve.curve = compile(*described.curve).curve;
+    const CompiledCurve compiled = compile(*described.curve);
+    asked.curve.curve = compiled.curve;
+    asked.curve.radius_curve = compiled.radius_curve;
     asked.curve.description = *described.curve;
     asked.place.curve = &asked.curve;
   }

@@ -65,6 +65,7 @@ class CurveDistanceConstraint : public Constraint {
     cprox_mover mover = sides.carried ? cprox_body_along(sides.carried.get(), place.curve->curve.get())
                                       : cprox_tube_along(place.curve->curve.get(), 0.0);
     mover.radius = place.curve->description.radius + pair_.a.padding;
+    mover.radius_curve = place.curve->radius_curve.get();
     return mover;
   }
 
@@ -94,7 +95,7 @@ class CurveDistanceConstraint : public Constraint {
     out.b.linear = toEigen(gradient.position);
     out.b.angular = toEigen(gradient.rotation);
     out.radius = gradient.radius;
-    fillCurve(place.curve->description, gradient.t, toEigen(gradient.mover), out);
+    fillCurve(*place.curve, gradient.t, toEigen(gradient.mover), workspace, out);
   }
 
   void evaluateAll(const Sides &sides, const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const {
@@ -148,19 +149,24 @@ class CurveDistanceConstraint : public Constraint {
     require(cprox_curve_evaluate(place.curve->curve.get(), t, workspace.get(), &at.position, nullptr, nullptr),
             workspace);
     const cprox_body *carried = shapes_.carried ? shapes_.carried.get() : point_.get();
-    const cprox_obstacle mover =
-        cprox_with_margin(cprox_obstacle_at(carried, at), place.curve->description.radius + pair_.a.padding);
+    cprox_vec3 more{};
+    if (place.curve->radius_curve)
+      require(cprox_curve_evaluate(place.curve->radius_curve.get(), t, workspace.get(), &more, nullptr, nullptr),
+              workspace);
+    const double radius = std::max(0.0, place.curve->description.radius + more.x);
+    const cprox_obstacle mover = cprox_with_margin(cprox_obstacle_at(carried, at), radius + pair_.a.padding);
     require(cprox_pair(mover, targetOf(shapes_, place), &parameters_.options, workspace.get(), &result), workspace);
-    result.upper += curveError(*place.curve);
+    result.upper += curveError(place.curve->curve.get(), place.curve->description.points);
+    if (place.curve->radius_curve) result.upper += curveError(place.curve->radius_curve.get(), Eigen::Matrix3Xd());
     return result;
   }
 
   /* How far a plain evaluation may be from the curve. */
-  static double curveError(const ConstraintCurve &curve) {
-    const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  static double curveError(const cprox_curve *curve, const Eigen::Matrix3Xd &points) {
+    const cprox_curve_info info = cprox_curve_get_info(curve);
     const double size = toEigen(info.lowest).cwiseAbs().cwiseMax(toEigen(info.highest).cwiseAbs()).maxCoeff();
     double coefficients = size;
-    if (curve.description.points.cols() > 0) coefficients += curve.description.points.cwiseAbs().maxCoeff();
+    if (points.cols() > 0) coefficients += points.cwiseAbs().maxCoeff();
     return info.error + (12.0 * static_cast<double>(info.degree) + 20.0) * 0x1p-52 * coefficients;
   }
 
@@ -181,22 +187,14 @@ class CurveDistanceConstraint : public Constraint {
     out.normal = toEigen(result.normal);
   }
 
-  /* By the curve's points, and by the curve as a whole: psi(t) changes by the weights, and the value by n for psi(t).
-   * The weights stand at the front of the matrix; from the back, a column never covers a weight that is still to be
-   * read. */
-  static void fillCurve(const CurveDescription &curve, double t, const Eigen::Vector3d &n, ConstraintValue &out) {
-    const Eigen::Index count = curve.points.cols();
-    out.points.resize(3, count);
-    double *weights = out.points.data();
-    curveWeights(curve, t, weights);
-    Eigen::Vector3d at = Eigen::Vector3d::Zero();
-    for (Eigen::Index i = count; i-- > 0;) {
-      const double w = weights[i];
-      at += w * curve.points.col(i);
-      out.points.col(i) = w * n;
-    }
+  /* By the curve's points, and by the curve as a whole: its point at t moves and turns with it. */
+  static void fillCurve(const ConstraintCurve &curve, double t, const Eigen::Vector3d &n, Workspace &workspace,
+                        ConstraintValue &out) {
+    gradientByPoints(curve.description, t, n, out.points);
+    cprox_vec3 at{};
+    require(cprox_curve_evaluate(curve.curve.get(), t, workspace.get(), &at, nullptr, nullptr), workspace);
     out.a.linear = n;
-    out.a.angular = at.cross(n);
+    out.a.angular = toEigen(at).cross(n);
   }
 
   /* They overlap, and the target cannot tell how deep. */

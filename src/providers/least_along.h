@@ -25,7 +25,8 @@ inline Eigen::Vector3d carryTo(const ConstraintCurve &curve, double t, Workspace
 
 /** A gap takes no radius of a curve. */
 inline void requireNoRadius(const ConstraintCurve &curve) {
-  if (curve.description.radius != 0.0) throw DoesNotApply("FourierGap takes no radius of a curve: give side a padding");
+  if (curve.description.radius != 0.0 || curve.radius_curve)
+    throw DoesNotApply("FourierGap takes no radius of a curve: give side a padding");
 }
 
 inline double parameterAt(double t0, double t1, int i, int of) {
@@ -71,14 +72,7 @@ inline void fillAlong(const ConstraintCurve &curve, double t, const Eigen::Vecto
                       ConstraintValue &out) {
   out.a.linear = n;
   out.a.angular = position.cross(n);
-  // The weights stand at the front of the matrix; from the back, a column covers none that is still to be read.
-  out.points.resize(3, curve.description.points.cols());
-  double *weights = out.points.data();
-  curveWeights(curve.description, t, weights);
-  for (Eigen::Index i = out.points.cols(); i-- > 0;) {
-    const double w = weights[i];
-    out.points.col(i) = w * n;
-  }
+  gradientByPoints(curve.description, t, n, out.points);
   out.t = t;
   out.has_points = false;
 }

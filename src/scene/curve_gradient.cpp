@@ -14,8 +14,7 @@ namespace {
 void fillCurve(const CurveDescription &curve, const cprox_gradient &in, CurveGradient &out) {
   const Eigen::Vector3d n = toEigen(in.mover);
   out.linear = n;
-  Eigen::VectorXd weights(curve.points.cols());
-  if (findCurveWeights(curve, in.t, weights.data())) out.points = n * weights.transpose();
+  gradientByPoints(curve, in.t, n, out.points);
 }
 
 /* The core turns an obstacle about its own position, we the object about its origin. */

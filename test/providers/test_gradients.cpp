@@ -177,6 +177,86 @@ TEST(Gradients, of_CurveDistance_are_those_of_finite_differences_along_random_st
   EXPECT_GT(tally.valid, 200);
 }
 
+/* A curve that start, headings and lengths describe, some with a radius that changes. */
+CurveDescription namedCurve(Random &random, int i) {
+  CurveDescription out;
+  const auto number = [&](double low, double high) { return random.uniform(low, high); };
+  const Eigen::Vector3d start(number(-1, 1), number(-1, 1), number(0.8, 1.2));
+  out.points = start;
+  switch (i % 4) {
+    case 0:
+      out.basis = "clothoid";
+      out.parameters = {number(-3, 3), number(-1, 1), number(-1, 1)};
+      break;
+    case 1:
+      out.basis = "involute";
+      out.parameters = {number(0.1, 0.5), number(-3, 3)};
+      break;
+    case 2:
+      out.basis = "pythagorean_hodograph";
+      out.degree = 1;
+      for (int k = 0; k < 8; ++k) out.parameters.push_back(number(-1, 1));
+      break;
+    default:
+      out.basis = "dubins";
+      out.points.resize(3, 2);
+      out.points << start, start + Eigen::Vector3d(number(-2, 2), number(-2, 2), 0.0);
+      out.parameters = {number(-3, 3), number(-3, 3), 0.3};
+      out.t0 = out.t1 = 0.0;
+  }
+  out.pose = Eigen::Translation3d(random.inCube(0.3)) * random.rotation();
+  if (i % 3 == 0) out.radius_polynomial = {0.01, 0.01};
+  return out;
+}
+
+/* Seed 821, 200 curves without control points, in a frame of their own: the derivatives by a step of the whole curve, and
+ * by its start where it has one, are central differences at 1e-5. 1e-4 is what second derivatives leave. */
+TEST(Gradients, of_curves_without_control_points_are_those_of_a_step_of_the_whole_curve) {
+  constexpr double STEP = 1e-5;
+  const Loaded provider("curve_proximity/CurveDistance", {{"epsilon", 1e-12}});
+  Random random(821);
+  Workspace workspace;
+  int valid = 0;
+  for (int i = 0; i < 200; ++i) {
+    ConstraintPair pair;
+    pair.along_curve = true;
+    pair.b = side({i % 2 ? shape(ShapeType::BOX, {0.5, 0.7, 0.9}) : shape(ShapeType::SPHERE, {0.35})});
+    const CurveDescription given = namedCurve(random, i);
+    ConstraintPlace place;
+    place.b = random.pose(0.5);
+    const auto constraint = provider->prepare(pair);
+    const auto valueOf = [&](const CurveDescription &curve, ConstraintValue &value) {
+      const CompiledCurve compiled = compile(curve);
+      const ConstraintCurve along{curve, compiled.curve, compiled.radius_curve};
+      place.curve = &along;
+      constraint->evaluate(place, workspace, value);
+      return value.value;
+    };
+    ConstraintValue here, there;
+    valueOf(given, here);
+    ASSERT_TRUE(here.points.cols() == (given.basis == "dubins" ? 0 : 1)) << given.basis;
+    if (!here.valid) continue;
+    ++valid;
+    const Eigen::Vector3d linear = random.direction(), angular = random.direction();
+    double value[2], of_start[2];
+    for (int k = 0; k < 2; ++k) {
+      const double h = k ? STEP : -STEP;
+      CurveDescription moved = given;
+      moved.pose = Eigen::Translation3d(h * linear) * Eigen::AngleAxisd(h, angular) * *given.pose;
+      value[k] = valueOf(moved, there);
+      moved = given;
+      moved.points.col(0) += h * (given.pose->linear().transpose() * linear);
+      of_start[k] = valueOf(moved, there);
+    }
+    const double expected = (value[1] - value[0]) / (2.0 * STEP);
+    EXPECT_NEAR(here.a.linear.dot(linear) + here.a.angular.dot(angular), expected, 1e-4) << given.basis << ' ' << i;
+    if (here.points.cols() == 1) {
+      EXPECT_NEAR(here.points.col(0).dot(linear), (of_start[1] - of_start[0]) / (2.0 * STEP), 1e-4) << given.basis;
+    }
+  }
+  EXPECT_GT(valid, 100);
+}
+
 TEST(Gradients, of_SuperquadricDistance_are_those_of_finite_differences_apart_and_overlapping) {
   const Loaded provider("curve_proximity/SuperquadricDistance", {{"epsilon", 1e-13}, {"most_exponent", 8}});
   Random random(812);
