@@ -377,12 +377,17 @@ std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const
   for (const Operation &operation : change.operations) {
     const std::string &id = operation.object.id;
     if (!faults.empty() && object(before, id) == object(*after, id)) continue;
+    // what is moved, or has another part, is as unknown as before
+    if (operation.kind != Operation::Kind::ADD && operation.kind != Operation::Kind::REMOVE) continue;
     if (operation.kind == Operation::Kind::REMOVE && id.empty())
       live_.sensors.awaitsAll();
     else
       live_.sensors.forget(id);
     live_.unknowns.forget(REFUSED_OBJECT + id);
   }
+  for (const Attachment &attachment : change.attachments)
+    if (faults.empty() && attachment.kind == Attachment::Kind::ATTACH && !attachment.object.shapes.empty())
+      live_.unknowns.forget(REFUSED_OBJECT + attachment.object.id);
   if (change.clear) {
     live_.sensors.awaitsAll();
     live_.unknowns.forgetAll(REFUSED_OBJECT);
@@ -405,16 +410,18 @@ void ProximityServer::applyScene(const Call &call, const RequestThreads::AtWork 
 /** As ~apply_scene with one object; there is nobody to be told but the log. */
 template <class Fill>
 void ProximityServer::changeScene(const char *topic, Fill &&fill) {
-  std::string id;
+  std::string id, about;
   const auto complain = [&](const std::string &why) {
     ROS_ERROR("%s: %s", topic, why.c_str());
-    live_.unknowns.set(REFUSED_OBJECT + id, {{std::string(topic) + ": object '" + id + "' is not used: " + why, id}});
+    live_.unknowns.set(REFUSED_OBJECT + id,
+                       {{std::string(topic) + ": object '" + id + "' is not used: " + why, about}});
   };
   const RequestThreads::AtWork at_work(threads_);
   guarded(
       [&] {
         ApplyScene::Request request;
         id = fill(request);
+        if (request.attached_collision_objects.empty()) about = id; // else it is about the robot
         const memory::Share share(SCENE_TIMES_WIRE * ros::serialization::serializationLength(request), requestLimit());
         for (const std::string &fault : apply(request)) complain(fault);
       },

@@ -12,7 +12,7 @@ import unittest
 
 import moveit_types as moveit
 import rospy
-from curve_proximity.msg import CollisionObject, ConstraintQuery, ProximityResults
+from curve_proximity.msg import AttachedCollisionObject, CollisionObject, ConstraintQuery, ProximityResults
 from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
 from geometry_msgs.msg import TransformStamped
@@ -214,6 +214,7 @@ class Known(unittest.TestCase):
         self.assertIn('lost', row.message)
         self.assertTrue(server.apply(sphere('other', 0.1, (5, 5, 5))).success)  # one object is no scene
         self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')
+        self.assertEqual(server.tolerance(LINE, 0.1, objects=['ball']).results[0].status, 'unknown')  # it may have moved
         self.assertTrue(until(lambda: self.written(path), 5))
         node, server = self.crash(again, 'hasty', state_file=path)  # nor does another crash bring back what is lost
         self.assertIn('lost', server.tolerance(LINE, 0.1).results[0].message)
@@ -305,6 +306,36 @@ class Known(unittest.TestCase):
         self.assertEqual(server.tolerance(LINE, 0.1, objects=['ball']).results[0].verdict, 'clear')
         objects.publish(sphere('post', 0.1, (0, 0, 5)))
         self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear', 5))
+
+    def test_a_carried_object_that_is_refused_is_unknown_wherever_the_robot_is_asked_about(self):
+        self.set_robot()
+        _, server = self.begin('carrying', fixed_frame='base', tf_timeout=0.05)
+        carried = self.publisher('/carrying/attached_collision_object', AttachedCollisionObject)
+        server.replace(sphere('ball', 0.1, (0, 0, 9)))
+        turning = joint_trajectory(['turn'], (0.0,), (0.5,))
+
+        def statuses():
+            rows = server.tolerance([], 0.01, trajectory=turning, self_collision=True, objects=['ball']).results
+            return {(row.kind, row.status) for row in rows}
+
+        self.assertEqual(statuses(), {('environment', 'ok'), ('self', 'ok')})
+        for frame, status in (('nowhere', 'unknown'), ('arm', 'ok')):
+            carried.publish(AttachedCollisionObject(link_name='arm', object=sphere('tool', 0.05, (0.5, 0, 0.2), frame=frame)))
+            self.assertTrue(until(lambda: statuses() == {('environment', status), ('self', status)}, 5), statuses())
+
+    def test_what_is_unknown_stays_so_when_it_is_moved(self):
+        _, server = self.begin('pushed', tf_timeout=0.05)
+        objects = self.publisher('/pushed/collision_object', CollisionObject)
+        clouds = self.publisher('/pushed/cloud', PointCloud2)
+        server.replace(sphere('ball', 0.25), sphere('post', 0.1, (0, 0, 4)))
+        clouds.publish(cloud((0, 0, -3)))
+        self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear' and server.scene().scene.sensors, 5))
+        clouds.publish(cloud((math.nan, 0, 0)))
+        objects.publish(sphere('post', 0.1, (0, 0, 1), frame='nowhere'))
+        for name, word in (('cloud', 'sensor'), ('post', 'not used')):
+            self.assertTrue(until(lambda: word in server.tolerance(LINE, 0.1, objects=[name]).results[0].message, 5))
+            self.assertTrue(server.apply(thing(name, (0, 0, 5), operation=CollisionObject.MOVE)).success)
+            self.assertEqual(server.tolerance(LINE, 0.1, objects=[name]).results[0].status, 'unknown')
 
     def test_a_cloud_that_is_refused_is_unknown_also_where_none_was_before(self):
         _, server = self.begin('frameless', tf_timeout=0.05)

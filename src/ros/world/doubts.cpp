@@ -24,7 +24,7 @@ void Doubts::objects(const Query &query, bool any) {
     return any && (everything || std::find(query.objects.begin(), query.objects.end(), id) != query.objects.end());
   };
   for (const Unknown &unknown : unknowns_)
-    if (asked(unknown.object)) objects_.add(Gap::UNKNOWN, unknown.message, unknown.missing);
+    if (unknown.object.empty() || asked(unknown.object)) objects_.add(Gap::UNKNOWN, unknown.message, unknown.missing);
   for (const SensorState &sensor : sensors_) {
     if (!asked(sensor.id)) continue;
     if (sensor.unknown) {

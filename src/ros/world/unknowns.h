@@ -16,7 +16,7 @@ namespace curve_proximity {
 /** One thing, as a sentence. */
 struct Unknown {
   std::string message;
-  std::string object; /**< what it is about; "": anything in the scene */
+  std::string object; /**< what it is about; "": anything, also objects that are named, and what the robot carries */
   Missing missing = Missing::GEOMETRY;
 
   bool operator==(const Unknown &other) const {
