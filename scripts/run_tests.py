@@ -457,6 +457,8 @@ def main():
     if arguments.list:
         print('\n'.join(GROUPS))
         return 0
+    if not WORKSPACE or not LOGS:
+        parser.error('WORKSPACE and LOGS are not set: scripts/test sets them, and runs this')
     unknown = [name for name in arguments.groups if name not in GROUPS and name.partition('.')[0] not in NAMED]
     if unknown:
         parser.error(f"no group {', '.join(unknown)}: there are {', '.join(GROUPS)}")
