@@ -92,7 +92,9 @@ TEST(Pairs, that_a_provider_cannot_answer_for_are_refused_by_type) {
   EXPECT_EQ(complaint([&] { pair->prepare(standing); }), "");
   standing.b = side({shape(ShapeType::CONE, {1, 1})});
   EXPECT_EQ(complaint([&] { gap->prepare(standing); }), "");
-  EXPECT_SAYS(complaint([&] { plane->prepare(standing); }), "side b: cone");
+  EXPECT_EQ(complaint([&] { plane->prepare(standing); }), ""); // its section is a disc
+  standing.b = side({shape(ShapeType::HALFSPACE, {0, 0, 1, 0})});
+  EXPECT_SAYS(complaint([&] { plane->prepare(standing); }), "side b: halfspace");
   standing.b = {};
   EXPECT_SAYS(complaint([&] { pair->prepare(standing); }), "side b has no shape");
   EXPECT_SAYS(complaint([&] { gap->prepare(standing); }), "side b");

@@ -190,7 +190,7 @@ CurveDescription namedCurve(Random &random, int i) {
       break;
     case 1:
       out.basis = "involute";
-      out.parameters = {number(0.1, 0.5), number(-3, 3)};
+      out.parameters = {number(-3, 3), number(0.1, 0.5)};
       break;
     case 2:
       out.basis = "pythagorean_hodograph";
@@ -238,12 +238,13 @@ TEST(Gradients, of_curves_without_control_points_are_those_of_a_step_of_the_whol
     if (!here.valid) continue;
     ++valid;
     const Eigen::Vector3d linear = random.direction(), angular = random.direction();
-    double value[2], of_start[2];
+    double value[2], of_start[2] = {0.0, 0.0};
     for (int k = 0; k < 2; ++k) {
       const double h = k ? STEP : -STEP;
       CurveDescription moved = given;
       moved.pose = Eigen::Translation3d(h * linear) * Eigen::AngleAxisd(h, angular) * *given.pose;
       value[k] = valueOf(moved, there);
+      if (here.points.cols() == 0) continue;
       moved = given;
       moved.points.col(0) += h * (given.pose->linear().transpose() * linear);
       of_start[k] = valueOf(moved, there);
