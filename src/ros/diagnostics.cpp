@@ -114,7 +114,8 @@ void Diagnostics::sensors(Status &status) {
   tell("cloud", sensors_.cloud(), cloud_);
   tell("octomap", sensors_.octomap(), octomap_);
   if (!unknown.empty()) {
-    status.summary(DiagnosticStatus::WARN, "what is at an object is unknown: its sensor sees nothing");
+    status.summary(DiagnosticStatus::WARN,
+                   "what is at an object is unknown: its sensor sees nothing, or what it sent cannot be used");
   } else if (refused) {
     status.summary(DiagnosticStatus::WARN, "messages that are of no use: the log says why");
   } else if (dropped) {

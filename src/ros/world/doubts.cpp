@@ -28,8 +28,10 @@ void Doubts::objects(const Query &query, bool any) {
   for (const SensorState &sensor : sensors_) {
     if (!asked(sensor.id)) continue;
     if (sensor.unknown) {
-      objects_.add(Gap::UNKNOWN, "what is at object '" + sensor.id + "' is unknown: its sensor sees nothing",
-                   Missing::GEOMETRY);
+      objects_.add(
+          Gap::UNKNOWN,
+          "what is at object '" + sensor.id + "' is unknown: its sensor sees nothing, or what it sent cannot be used",
+          Missing::GEOMETRY);
     } else if (max_age_ > 0.0 && sensor.age > max_age_) {
       objects_.add(Gap::STALE, tooOld("object '" + sensor.id + "'", sensor.age, max_age_));
     }
