@@ -32,13 +32,7 @@ class SensorBoard {
 
   /** A message came that cannot be used: the object is as old as before, and what is there now is not known. */
   void refused(const std::string &id) {
-    bool is_new = false;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      is_new = sensors_.count(id) == 0;
-      sensors_[id].unknown = true;
-    }
-    if (is_new && appeared) appeared();
+    change(id, [](Sensor &sensor) { sensor.unknown = true; });
   }
 
   /** A sensor is expected to show the object; no message has come since the server started. */
@@ -80,12 +74,17 @@ class SensorBoard {
     bool unknown = false;
   };
 
-  void set(const std::string &id, const Sensor &sensor) {
+  void set(const std::string &id, const Sensor &now) {
+    change(id, [&](Sensor &sensor) { sensor = now; });
+  }
+
+  template <class Work>
+  void change(const std::string &id, Work &&work) {
     bool is_new = false;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       is_new = sensors_.count(id) == 0;
-      sensors_[id] = sensor;
+      work(sensors_[id]);
     }
     if (is_new && appeared) appeared();
   }

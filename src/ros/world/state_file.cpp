@@ -207,7 +207,7 @@ void StateFile::lose() {
   live_.unknowns.set(LOST_SCENE,
                      {{"the scene of the server before this one, or its last change, is lost, and none has been "
                        "sent since: send the whole of it again (clear: true)",
-                       ""}});
+                       "", Missing::ANYTHING}}); // what was moved or removed last is back where it was
   ROS_WARN("the scene of the server before this one is lost: answers say so until a whole scene is sent");
 }
 

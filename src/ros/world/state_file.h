@@ -29,8 +29,8 @@ struct KeptScene {
 
 /** The file: a line of text ("curve_proximity scene 5"), the run (/run_id), a digest of what the scene began with (the
  * scene file, the robot, the fixed frame), the type's MD5, a count of bytes and their digest, a line each; then
- * the names of sensors' objects, what is unknown, replaces_srdf and the request of ~apply_scene, serialised. Beside it stands a file
- * ".behind" with the run from a change of the scene until it is written. */
+ * the names of sensors' objects, what is unknown, replaces_srdf and the request of ~apply_scene, serialised. Beside it
+ * stands a file ".behind" with the run from a change of the scene until it is written. */
 class StateFile {
  public:
   /** handle: private. live: kept by reference. Writes nothing before watch(). */
