@@ -609,6 +609,54 @@ CASE(grazing_edges_are_decided_rightly) {
   assert_true(asked > test_cases(1000) / 4 && decided * 100 >= 97 * asked);
 }
 
+/* What the caller's numbers may be off by (125 worlds, seed 411, 8 edges each; CPROX_TEST_SCALE=100 for 10^5 edges). The
+ * delta is drawn beside the least distance by up to three times that, or is 0. Clear is farther than both together,
+ * violated is nearer than delta without it, and the verdicts are those of two checkers that are asked for the one and
+ * for the other. Tolerance beside check()'s: the search is undecided within its epsilon, 1e-6 of 1 m. */
+CASE(rounding_of_the_caller_is_on_the_safe_side_of_both_verdicts) {
+  rng r = rng_seed(411);
+  size_t counts[3] = {0}, levels[CPROX_EDGE_SEARCH + 1] = {0}, differ = 0, asked = 0;
+  for (size_t i = 0; i < test_cases(125); i++) {
+    world w;
+    make_world(&r, 1.0, i % 8 == 0, &w);
+    const bool self = rng_index(&r, 2);
+    const size_t n = w.b.t.n_variables;
+    double from[EDGES * TEST_MAX_VARIABLES + 1], to[EDGES * TEST_MAX_VARIABLES + 1], least[EDGES], at = 0.0;
+    for (size_t k = 0; k < EDGES; k++) {
+      draw_edge(&r, &w.b, 1.0, from + k * n, to + k * n);
+      least[k] = sampled(&w, from + k * n, to + k * n, 64, self, &at);
+    }
+    cprox_edge_query q = ask_of(&w, self, 0.0), clear = q, hit = q;
+    q.rounding = rng_log_uniform(&r, 1e-12, 1e-2);
+    const double beside = least[rng_index(&r, EDGES)] + 3.0 * q.rounding * rng_uniform(&r, -1, 1);
+    if (isfinite(beside) && rng_index(&r, 4)) q.delta = fmax(beside, 0.0);
+    clear.delta = q.delta + q.rounding, hit.delta = fmax(q.delta - q.rounding, 0.0);
+    uint8_t verdicts[3][EDGES];
+    cprox_edge_result results[EDGES];
+    for (int by = 0; by < 3; by++) {
+      cprox_edge_checker *c = checker_of(w.b.robot, by == 0 ? &q : by == 1 ? &clear : &hit);
+      assert_true(cprox_robot_edges(c, from, to, EDGES, ws, verdicts[by], by == 0 ? results : NULL) >= 0);
+      cprox_edge_checker_free(c);
+    }
+    for (size_t k = 0; k < EDGES; k++) {
+      const uint8_t verdict = verdicts[0][k];
+      check(&w, verdict == CPROX_VERDICT_CLEAR ? &clear : &hit, &results[k], verdict, from + k * n, to + k * n, 1.0,
+            self, least[k]);
+      const uint8_t both = verdicts[1][k] == CPROX_VERDICT_CLEAR      ? CPROX_VERDICT_CLEAR
+                           : verdicts[2][k] == CPROX_VERDICT_VIOLATED ? CPROX_VERDICT_VIOLATED
+                                                                      : CPROX_VERDICT_UNDECIDED;
+      asked++, differ += verdict != both;
+      if (verdict != both && fmin(fabs(least[k] - clear.delta), fabs(least[k] - hit.delta)) > 3e-6)
+        fail_msg("%d, by two checkers %d: least %.9g, delta %.9g, rounding %.9g, level %d", (int)verdict, (int)both,
+                 least[k], q.delta, q.rounding, (int)results[k].level);
+      counts[verdict]++, levels[results[k].level]++;
+    }
+    free_world(&w);
+  }
+  assert_true(counts[0] > asked / 10 && counts[1] > asked / 10 && differ * 1000 <= asked);
+  if (asked >= 1000) assert_true(counts[2] > 0 && levels[CPROX_EDGE_MEASUREMENT] > 0 && levels[CPROX_EDGE_SEARCH] > 0);
+}
+
 /* The plain kernel and that of the machine give the same results, bit by bit (300 worlds, seed 406). */
 CASE(all_instruction_sets_find_the_same) {
   static lane_memory memory;
@@ -680,6 +728,14 @@ CASE(what_is_asked_of_edges_is_checked) {
   cprox_edge_query q = ask_of(&w, true, -1.0);
   assert_int_equal(cprox_edge_checker_create(w.b.robot, &q, ws, &c), CPROX_INVALID);
   q.delta = 0.1, q.first = true;
+  assert_int_equal(cprox_edge_checker_create(w.b.robot, &q, ws, &c), CPROX_INVALID);
+  static const double BAD[] = {-1e-9, NAN, INFINITY};
+  for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
+    q = ask_of(&w, true, 0.1), q.rounding = BAD[i];
+    assert_int_equal(cprox_edge_checker_create(w.b.robot, &q, ws, &c), CPROX_INVALID);
+    assert_non_null(strstr(cprox_workspace_error(ws), "rounding is"));
+  }
+  q = ask_of(&w, false, 0.0), q.first = true, q.rounding = 1e-9;
   assert_int_equal(cprox_edge_checker_create(w.b.robot, &q, ws, &c), CPROX_INVALID);
   const cprox_robot_pair none = {0, (int32_t)w.n}, itself = {0, 0};
   q = (cprox_edge_query){.obstacles = w.set, .pairs = &none, .n_pairs = 1};

@@ -29,6 +29,11 @@ typedef struct cprox_edge_query {
   bool without_self;
   /** [m] >= 0: verdicts are about this distance; 0: collision */
   double delta;
+  /** [m] >= 0: what the caller's numbers may be off by, in any distance. Clear is then proven beyond delta + rounding,
+   *  and violated within delta - rounding, or 0 where that is negative: contact of the numbers as they are. What is
+   *  nearer to delta is undecided. Costs nothing where lanes decide, and a second search where the search finds what is
+   *  within delta + rounding only */
+  double rounding;
   /** of an edge that is not clear, cprox_edge_result.t_free is wanted as late as can be proven. Such an edge costs a
    *  search for its time of contact. */
   bool first;
@@ -46,8 +51,9 @@ typedef struct cprox_edge_checker cprox_edge_checker;
  *  asked    copied, but for the obstacles; NULL: all members 0.
  *  checker  receives the handle, owned by the caller: cprox_edge_checker_free(). Untouched on failure.
  *
- *  CPROX_INVALID where a pair names what is not there or delta is negative; CPROX_MEMORY. Cost: a few microseconds an
- *  obstacle and geometry; convex bodies on links take up to some hundred nearest-point queries each. */
+ *  CPROX_INVALID where a pair names what is not there, or delta or rounding is negative or not finite; CPROX_MEMORY.
+ *  Cost: a few microseconds an obstacle and geometry; convex bodies on links take up to some hundred nearest-point
+ *  queries each. */
 CPROX_API cprox_status cprox_edge_checker_create(const cprox_robot *robot, const cprox_edge_query *asked,
                                                  cprox_workspace *workspace, cprox_edge_checker **checker);
 

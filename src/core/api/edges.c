@@ -116,9 +116,14 @@ static cprox_status create_motion(const edges_call *call, const double *from, co
   return WORKSPACE_LEND(call->workspace, cprox_motion_create(robot, &edge, call->workspace, motion));
 }
 
-/* Asks the search about the rest, or with `first` for its time of contact. */
-static cprox_status search(const edges_call *call, const cprox_motion *motion, const edge_rest *rest, bool first,
-                           cprox_result *r) {
+/* What the search is asked about the rest: whether it stays beyond a distance, or its time of contact. */
+typedef struct edge_question {
+  double beyond;
+  bool first;
+} edge_question;
+
+static cprox_status search(const edges_call *call, const cprox_motion *motion, const edge_rest *rest,
+                           edge_question question, cprox_result *r) {
   const cprox_edge_query *asked = &call->c->asked;
   const bool about_obstacles = rest->n_pairs > 0;
   const cprox_obstacle *targets = about_obstacles ? obstacles_list(asked->obstacles) : NULL;
@@ -127,8 +132,8 @@ static cprox_status search(const edges_call *call, const cprox_motion *motion, c
   const double interval[2] = {rest->from, rest->to};
   options.interval = rest->to > rest->from && (rest->from > 0.0 || rest->to < 1.0) ? interval : NULL;
   const cprox_mover mover = mover_of(motion, rest);
-  if (first) return list_time_of_contact(mover, targets, n, &options, call->workspace, r);
-  query q = query_create(mover, targets, n, asked->delta, asked->delta > 0.0, &options, call->workspace);
+  if (question.first) return list_time_of_contact(mover, targets, n, &options, call->workspace, r);
+  query q = query_create(mover, targets, n, question.beyond, question.beyond > 0.0, &options, call->workspace);
   const arguments_query has = {"edges", ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL};
   const cprox_status begun = query_begin(&q, has);
   if (rest->at_once) q.t0 = q.t1 = rest->from;
@@ -147,6 +152,24 @@ static void take_search(const edges_call *call, const edge_rest *rest, const cpr
   if (rest->n_pairs == 0) out->other += (int32_t)obstacles_count(call->c->asked.obstacles);
 }
 
+/* Whether it is clear beyond delta and the caller's rounding; what is not must be a hit without that rounding. */
+static cprox_status search_both(const edges_call *call, const cprox_motion *motion, const edge_rest *rest,
+                                cprox_edge_result *out) {
+  const cprox_edge_checker *c = call->c;
+  cprox_result r = {0};
+  cprox_status status = search(call, motion, rest, (edge_question){.beyond = c->clear_beyond}, &r);
+  if (status < 0) return status;
+  if (r.verdict == CPROX_VERDICT_VIOLATED && r.upper > c->hit_within) {
+    out->nodes += r.nodes;
+    r = (cprox_result){0};
+    status = search(call, motion, rest, (edge_question){.beyond = c->hit_within}, &r);
+    if (status < 0) return status;
+    if (r.verdict == CPROX_VERDICT_CLEAR) r.verdict = CPROX_VERDICT_UNDECIDED;
+  }
+  take_search(call, rest, &r, out);
+  return status;
+}
+
 static cprox_status ask_search(const edges_call *call, const double *from, const double *to, const edge_rest *rest,
                                cprox_edge_result *out) {
   if (rest->n_pairs + rest->n_self_pairs == 0) {
@@ -156,9 +179,7 @@ static cprox_status ask_search(const edges_call *call, const double *from, const
   cprox_motion *motion = NULL;
   cprox_status status = create_motion(call, from, to, &motion);
   if (status < 0) return status;
-  cprox_result r = {0};
-  status = search(call, motion, rest, false, &r);
-  if (status >= 0) take_search(call, rest, &r, out);
+  status = search_both(call, motion, rest, out);
   cprox_motion_free(motion);
   return status;
 }
@@ -170,7 +191,7 @@ static cprox_status find_first(const edges_call *call, const double *from, const
   cprox_status status = create_motion(call, from, to, &motion);
   if (status < 0) return status;
   cprox_result r = {0};
-  status = search(call, motion, &all, true, &r);
+  status = search(call, motion, &all, (edge_question){.first = true}, &r);
   cprox_motion_free(motion);
   if (status < 0) return status;
   const cprox_verdict known = out->verdict;
@@ -201,7 +222,7 @@ static cprox_status measure(const edges_call *call, const double *from, const do
   cprox_status status = create_motion(call, from, to, &motion);
   if (status < 0) return status;
   cprox_result r = {0};
-  status = search(call, motion, &one, false, &r);
+  status = search(call, motion, &one, (edge_question){.beyond = call->c->hit_within}, &r);
   cprox_motion_free(motion);
   if (status < 0) return status;
   out->nodes += r.nodes;

@@ -479,7 +479,7 @@ static double reach_of(const cprox_edge_checker *c, const edge_part *part) {
 /* How much of the way to what lies within `extent` about a point is left beyond `reach`; rounded down. Not above 0: it
  * may be in reach. */
 static double left_of(const cprox_edge_checker *c, double apart, double reach, double extent) {
-  return apart - (reach + c->asked.delta + extent) * (1.0 + 1e-4) - 1e-30;
+  return apart - (reach + c->clear_beyond + extent) * (1.0 + 1e-4) - 1e-30;
 }
 
 static double obstacle_beyond(const cprox_edge_checker *c, double reach, const edge_obstacle *o) {
@@ -639,10 +639,13 @@ static cprox_status check_pairs(const cprox_robot_pair *pairs, size_t n, size_t 
 static cprox_status check(const cprox_robot *robot, const cprox_edge_query *q, cprox_workspace *workspace) {
   if (!(q->delta >= 0.0) || isinf(q->delta))
     return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be finite and >= 0", q->delta);
+  if (!(q->rounding >= 0.0) || isinf(q->rounding))
+    return workspace_fail(workspace, CPROX_INVALID, "rounding is %g, must be finite and >= 0", q->rounding);
   if ((q->n_pairs > 0 && !q->pairs) || (q->n_self_pairs > 0 && !q->self_pairs))
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", q->n_pairs > 0 && !q->pairs ? "pairs" : "self_pairs");
-  if (q->first && q->delta > 0.0)
-    return workspace_fail(workspace, CPROX_INVALID, "the time of contact is that of collision: first needs delta = 0");
+  if (q->first && (q->delta > 0.0 || q->rounding > 0.0))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "the time of contact is that of collision: first needs delta = 0 and rounding = 0");
   for (size_t i = 0; i < obstacles_count(q->obstacles); i++) {
     const cprox_obstacle *o = &q->obstacles->targets[i];
     if (!o->body || o->curve || o->body->field)
@@ -790,7 +793,11 @@ cprox_status cprox_edge_checker_create(const cprox_robot *robot, const cprox_edg
   if (status != CPROX_OK) return status;
   cprox_edge_checker *c = calloc(1, sizeof *c);
   if (c) {
-    *c = (cprox_edge_checker){.robot = robot, .asked = q};
+    *c = (cprox_edge_checker){.robot = robot, .asked = q, .clear_beyond = q.delta, .hit_within = q.delta};
+    if (q.rounding > 0.0) { /* sums in double are rounded, too */
+      c->clear_beyond = nextafter(q.delta + q.rounding, INFINITY);
+      c->hit_within = greater(nextafter(q.delta - q.rounding, 0.0), 0.0);
+    }
     c->n_pairs = list_pairs(robot, &q, NULL), c->n_self_pairs = list_self_pairs(robot, &q, NULL);
     c->pairs = calloc(c->n_pairs + c->n_self_pairs + 1, sizeof *c->pairs);
   }

@@ -151,7 +151,9 @@ struct cprox_edge_checker {
   edge_relation *relations;
   edge_step *steps;
   double obstacle_reach; /* the largest coordinate of an obstacle */
-  double beyond;         /* obstacles that are out of reach stay farther away than delta and this */
+  double clear_beyond;   /* [m] delta and the caller's rounding; */
+  double hit_within;     /* delta without it, at least 0 */
+  double beyond;         /* obstacles that are out of reach stay farther away than clear_beyond and this */
 };
 
 /* What is asked about, for the robot's side of a model. */

@@ -321,7 +321,7 @@ bool edge_first_level(const query *q, size_t first, size_t last, bool suspects, 
   cprox_edge_checker *c = model_of(q);
   if (!c || !c->in_lanes) return false;
   edge_run run;
-  c->asked.delta = q->limit;
+  c->clear_beyond = c->hit_within = q->limit;
   const bool placed = place(q, c, first, last, &over, &run);
   c->in_lanes = true; /* the robot's side is */
   if (!placed || c->n_near + c->n_lane_pairs == 0) return false;

@@ -246,7 +246,7 @@ EDGE_TARGET static void suspect(lane_batch *b, const lane_two *two, uint32_t lan
 }
 
 /* A ball of the robot comes near something in some lanes. `outer` and `inner` are the radii of both sides together,
- * with delta, and what rounding may cost. Whether contact is proven. */
+ * with what clear and hits need, and what rounding may cost. Whether contact is proven. */
 EDGE_INLINE bool settle_near(lane_batch *b, uint32_t pair, const lane_two *two, lane distance2, uint32_t near,
                              float outer, float inner) {
   const uint32_t touching = proven_within(distance2, inner) & b->all;
@@ -266,9 +266,9 @@ EDGE_INLINE bool settle_near(lane_batch *b, uint32_t pair, const lane_two *two, 
 
 /* The radius within which contact is proven of two balls, or of one and an obstacle (its inner radius 0); negative
  * where none is known. */
-EDGE_INLINE float sure_radius(float inner, float other, float delta, float costs) {
+EDGE_INLINE float sure_radius(float inner, float other, float within, float costs) {
   if (!(inner >= 0.0f && other >= 0.0f)) return -1.0f;
-  return (inner + other + delta) * (1.0f - 0x1p-21f) -
+  return (inner + other + within) * (1.0f - 0x1p-21f) -
          costs; /* the sums' rounding, which does not shrink with what is left */
 }
 
@@ -284,17 +284,17 @@ EDGE_INLINE lane moves_of(const lane_batch *b, lane3 speed, edge_half_bound boun
 EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, const edge_obstacle *o) {
   const edge_part *part = &b->c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
-  const float delta = (float)b->c->asked.delta, room = b->motion->room[i];
+  const float beyond = (float)b->c->clear_beyond, room = b->motion->room[i];
   need(b, CPROX_EDGE_COVER);
   for (uint32_t k = part->first; k < part->first + part->n; k++) {
     const edge_ball *ball = &b->c->balls[k];
     lane3 speed;
     const lane distance2 = distance2_from(o, place_point(own, ball->centre, &speed));
     const lane moves = moves_of(b, speed, b->motion->frames[part->frame], ball->reach);
-    const float outer = ball->outer + delta + room;
+    const float outer = ball->outer + beyond + room;
     const uint32_t near = within(b, near_at, distance2, moves, outer) & b->all & ~b->split;
     const lane_two two = {ball->geometry, o->target, false};
-    const float inner = sure_radius(ball->inner, 0.0f, delta, room + o->grown);
+    const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, room + o->grown);
     if (near && settle_near(b, near_at, &two, distance2, near, outer, inner)) return true;
   }
   return false;
@@ -310,7 +310,7 @@ EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
   if (part->n_near == 0) return false;
   const lane moves = moves_of(b, at->speed, b->motion->frames[part->frame], (float)part->reach_of_centre) +
                      b->half * lane_sqrt(lane3_norm2(own->spin)) * lane_all(part->core);
-  const float radius = part->outer + (float)b->c->asked.delta + b->motion->room[i];
+  const float radius = part->outer + (float)b->c->clear_beyond + b->motion->room[i];
   for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
     const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
     const uint32_t near = within(b, k, distance2_from(o, at->centre), moves, radius) & b->all & ~b->split;
@@ -347,7 +347,7 @@ EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float cos
       const lane distance2 = lane3_norm2(lane3_sub(at, its));
       const float outer = ball->outer + beside->outer + room;
       const uint32_t near = within(b, number, distance2, moves, outer) & b->all & ~b->split;
-      const float inner = sure_radius(ball->inner, beside->inner, (float)c->asked.delta, costs);
+      const float inner = sure_radius(ball->inner, beside->inner, (float)c->hit_within, costs);
       const lane_two two = {ball->geometry, beside->geometry, true};
       if (near && settle_near(b, number, &two, distance2, near, outer, inner)) return true;
     }
@@ -360,7 +360,7 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
   const edge_part *first = &b->c->parts[pair->a], *second = &b->c->parts[pair->b];
   const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
   const lane_part *at = &b->parts[pair->a];
-  const float costs = b->motion->room[pair->a] + b->motion->room[pair->b], room = costs + (float)b->c->asked.delta;
+  const float costs = b->motion->room[pair->a] + b->motion->room[pair->b], room = costs + (float)b->c->clear_beyond;
   const lane distance2 = lane3_norm2(lane3_sub(at->centre, b->parts[pair->b].centre));
   const lane3 speed = relative_speed(other, at->centre, at->speed);
   const lane moves = moves_of(b, speed, b->motion->relations[pair->relation], (float)first->reach_of_centre) +

@@ -265,7 +265,7 @@ typedef struct lane_apart {
   lane3 speed, spin;      /* of a's centre and a, as the other sees it */
   lane_hull a, b;         /* b.hull NULL: */
   const edge_obstacle *o; /* the obstacle */
-  float reach, radius;    /* of a's part; of both sides together, with delta and what rounding may cost */
+  float reach, radius;    /* of a's part; of both sides together, with clear_beyond and what rounding may cost */
   uint32_t pair;
   edge_half_bound bound;
 } lane_apart;
@@ -327,10 +327,10 @@ EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint
 }
 
 /* Lanes in which a point of a hull is proven to be in an obstacle, or within the radius of it. */
-EDGE_TARGET static uint32_t touches(const lane_hull *h, const edge_obstacle *o, float delta, float costs) {
+EDGE_TARGET static uint32_t touches(const lane_hull *h, const edge_obstacle *o, float hit_within, float costs) {
   if (!(h->hull->inner >= 0.0f) || !(costs < INFINITY)) return 0;
-  const float within = sure_radius(h->hull->inner, 0.0f, delta, costs);
-  const float deep = costs * (1.0f + 0x1p-20f) - (h->hull->inner + delta) * (1.0f - 0x1p-20f);
+  const float within = sure_radius(h->hull->inner, 0.0f, hit_within, costs);
+  const float deep = costs * (1.0f + 0x1p-20f) - (h->hull->inner + hit_within) * (1.0f - 0x1p-20f);
   const lane first = lane_all(o->size[0] - deep), second = lane_all(o->size[1] - deep),
              third = lane_all(o->size[2] - deep), zero = lane_all(0.0f);
   uint32_t found = 0;
@@ -370,7 +370,7 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
   const cprox_edge_checker *c = b->c;
   const edge_part *part = &c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
-  const float delta = (float)c->asked.delta, room = b->motion->room[i];
+  const float room = b->motion->room[i];
   need(b, CPROX_EDGE_NORMAL);
   lane_apart two = {.o = o,
                     .spin = own->spin,
@@ -388,7 +388,7 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
       if (!lanes) continue;
       two.a = place_hull(b, hull, own);
       two.speed = lane3_add(own->speed, lane3_cross(own->spin, lane3_sub(two.a.centre, own->o)));
-      two.radius = hull->margin + round_of(o) + delta + room;
+      two.radius = hull->margin + round_of(o) + (float)c->clear_beyond + room;
       if (at.hull != root) lanes &= balls_near(b, &two);
       if (!lanes) continue;
       lane depth;
@@ -397,7 +397,7 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
       if (!still) continue;
       const lane_two both = {hull->geometry, o->target, false};
       if (n == 0 || hull->n_children == 0) {
-        const uint32_t touching = touches(&two.a, o, delta, room + o->grown) & still;
+        const uint32_t touching = touches(&two.a, o, (float)c->hit_within, room + o->grown) & still;
         if (touching) {
           b->found->verdict = CPROX_VERDICT_VIOLATED, b->found->is_suspect = false;
           note_contact(b, &both, touching);
@@ -430,7 +430,7 @@ EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
   const edge_part *first = &c->parts[pair->a], *second = &c->parts[pair->b];
   const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
   const uint32_t number = (uint32_t)(c->n_near + i);
-  const float room = b->motion->room[pair->a] + b->motion->room[pair->b] + (float)c->asked.delta;
+  const float room = b->motion->room[pair->a] + b->motion->room[pair->b] + (float)c->clear_beyond;
   need(b, CPROX_EDGE_NORMAL);
   lane_apart two = {.spin = lane3_sub(own->spin, other->spin),
                     .bound = b->motion->relations[pair->relation],

@@ -20,7 +20,7 @@ typedef struct lane_standing {
   const lane_frame *own;
   lane_frame frame; /* the obstacle's */
   uint32_t pair, left;
-  float room, delta;
+  float room, beyond;
 } lane_standing;
 
 /* A piece of a part, which a ball is one of. */
@@ -66,7 +66,7 @@ EDGE_TARGET static void open_piece(lane_batch *b, lane_standing *s, const lane_p
       own = place_piece(s, &c->hulls[at.hull], points_of_hull(b, &c->hulls[at.hull]), at.hull);
     const edge_hull *hull = own.placed.hull;
     two.a = own.placed, two.speed = own.speed;
-    two.radius = hull->margin + s->o->around + s->delta + s->room;
+    two.radius = hull->margin + s->o->around + s->beyond + s->room;
     lanes &= balls_near(b, &two);
     if (!lanes) continue;
     lane depth;
@@ -126,7 +126,7 @@ typedef struct lane_ball {
 
 EDGE_INLINE lane_ball ball_of_piece(const lane_batch *b, const lane_standing *s, const lane_piece *p) {
   const edge_hull *hull = p->placed.hull;
-  const float radius = hull->core + hull->margin + s->o->around + s->delta + s->room;
+  const float radius = hull->core + hull->margin + s->o->around + s->beyond + s->room;
   return (lane_ball){.x = lane_turn_back(s->frame.r, lane3_sub(p->placed.centre, s->frame.o)),
                      .r = (piece_moves(b, s, p) + lane_all(radius)) * lane_all(1.0f + (float)EDGE_GROW),
                      .radius = radius};
@@ -189,7 +189,8 @@ EDGE_TARGET static bool open_pack(lane_batch *b, lane_standing *s, const lane_pi
     if (!lanes) continue;
     if (t->kind != TREE_TRIANGLES && piece->number == UINT32_MAX) {
       const lane_two two = {piece->placed.hull->geometry, s->o->target, false};
-      const float inner = sure_radius(piece->placed.hull->inner, s->o->within, s->delta, s->room + s->o->costs);
+      const float inner =
+          sure_radius(piece->placed.hull->inner, s->o->within, (float)b->c->hit_within, s->room + s->o->costs);
       const float low[3] = {boxes.low.x[e], boxes.low.y[e], boxes.low.z[e]},
                   high[3] = {boxes.high.x[e], boxes.high.y[e], boxes.high.z[e]};
       const lane distance2 = distance2_from_box(ball->x, low, high);
@@ -253,7 +254,7 @@ EDGE_TARGET static bool open_standing(lane_batch *b, size_t i, uint32_t near_at,
                      .own = &b->frames[part->frame],
                      .pair = near_at,
                      .room = b->motion->room[i],
-                     .delta = (float)c->asked.delta};
+                     .beyond = (float)c->clear_beyond};
   place_standing(o, &s.frame);
   need(b, part->by_hulls || !o->tree ? CPROX_EDGE_NORMAL : CPROX_EDGE_COVER);
   lane_hull beside = {
