@@ -20,14 +20,22 @@ namespace py = pybind11;
 /** An array of float64 in C order; others are copied into one. */
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/** A body, as Python holds it. */
+/** A body, as Python holds it. made: by which function, with what arguments; for pickle. */
 struct Shape {
   BodyHandle body;
+  py::object made = py::none();
 };
 
 /** A curve, as Python holds it. */
 struct Curve {
   CurveHandle curve;
+  py::object made = py::none();
+};
+
+/** An answer of the core. asked: a verdict was; of a distance it has no meaning. */
+struct Result {
+  cprox_result result;
+  bool asked;
 };
 
 /** An array (n, 3) as n vectors, in place. Throws Error that names `what` for any other shape. */
@@ -36,6 +44,58 @@ struct Points {
   const cprox_vec3 *data;
   std::size_t size;
 };
+
+/** An argument, for pickle: arrays are copied, as their owner may change them. */
+py::object kept(const Array &array);
+py::object kept(const py::object &given);
+template <typename Value>
+py::object kept(const Value &value) {
+  if constexpr (std::is_base_of_v<py::object, Value>)
+    return kept(static_cast<const py::object &>(value));
+  else
+    return py::cast(value);
+}
+
+inline py::object &madeOf(Shape &shape) {
+  return shape.made;
+}
+inline py::object &madeOf(Curve &curve) {
+  return curve.made;
+}
+template <typename Kind>
+py::object &madeOf(const std::shared_ptr<Kind> &one) {
+  return one->made;
+}
+
+/** A constructor that keeps its name in the package and its arguments in what it makes. */
+template <typename Make, typename Out, typename... Given>
+auto recorded(const char *name, const Make &make, Out (Make::*)(Given...) const) {
+  return [name, make](Given... given) -> Out {
+    Out out = make(given...);
+    madeOf(out) = py::make_tuple(name, kept(given)...);
+    return out;
+  };
+}
+template <typename Make>
+auto recorded(const char *name, const Make &make) {
+  return recorded(name, make, &Make::operator());
+}
+
+/** Adds a function whose results can be pickled. */
+template <typename Make, typename... Extra>
+void define(py::module &module, const char *name, const Make &make, const Extra &...extra) {
+  module.def(name, recorded(name, make), extra...);
+}
+
+/** For __reduce__: made is a tuple of a name in the package and arguments. Throws TypeError with `why` where there is
+ *  none. */
+py::tuple remake(const py::object &made, const char *why);
+
+/** pickle of this class is a TypeError that says why. */
+template <typename Class>
+void refusePickle(Class &type, const char *why) {
+  type.def("__reduce__", [why](const py::object &) { return remake(py::none(), why); });
+}
 
 /** Three numbers. */
 cprox_vec3 toVector(const Array &array, const char *what);
@@ -146,7 +206,8 @@ std::string whatIs(py::handle given);
 void addShapes(py::module &module);
 void addCurves(py::module &module);
 void addQueries(py::module &module);
-void addRobots(py::module &module);
+void addScenes(py::module &module);
+void addMotions(py::module &module);
 void addMovers(py::module &module);
 void addRoadmaps(py::module &module);
 void addGaps(py::module &module);

@@ -64,18 +64,21 @@ void addCurves(py::module &module) {
           "t1", [](const Curve &c) { return cprox_curve_get_info(c.curve.get()).t1; }, "End.")
       .def_property_readonly(
           "n_pieces", [](const Curve &c) { return cprox_curve_get_info(c.curve.get()).n_pieces; }, "Polynomial pieces.")
-      .def(
-          "restrict", [](const Curve &c, double t0, double t1) { return Curve{restrictCurve(c.curve, t0, t1)}; },
-          py::arg("t0"), py::arg("t1"), "The part of the curve on [t0, t1]; its points keep their parameters.")
+      .def("restrict",
+           recorded("Curve.restrict",
+                    [](const Curve &c, double t0, double t1) { return Curve{restrictCurve(c.curve, t0, t1)}; }),
+           py::arg("t0"), py::arg("t1"), "The part of the curve on [t0, t1]; its points keep their parameters.")
       .def("__call__", &evaluate, py::arg("t"), py::arg("derivative") = 0,
-           "The point at t, or the first or second derivative: (3,) for a number, (n, 3) for an array (n,).");
+           "The point at t, or the first or second derivative: (3,) for a number, (n, 3) for an array (n,).")
+      .def("__reduce__", [](const Curve &c) { return remake(c.made, "this Curve cannot be pickled"); });
 
-  module.def(
-      "bezier", [](const Array &points, double t0, double t1) { return make(CPROX_CURVE_BEZIER, points, t0, t1); },
+  define(
+      module, "bezier",
+      [](const Array &points, double t0, double t1) { return make(CPROX_CURVE_BEZIER, points, t0, t1); },
       py::arg("points"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
       "A Bézier curve; points (n, 3) [m]. It begins at t0 and ends at t1; Curve.restrict() makes parts.");
-  module.def(
-      "bspline",
+  define(
+      module, "bspline",
       [](const Array &points, std::size_t degree, const Array &knots, std::optional<double> t0,
          std::optional<double> t1) {
         const Points p(points, "points");
@@ -91,29 +94,29 @@ void addCurves(py::module &module) {
       py::arg("points"), py::arg("degree"), py::arg("knots"), py::arg("t0") = py::none(), py::arg("t1") = py::none(),
       "A B-spline curve; points (n, 3) [m], knots (n + degree + 1,), non-decreasing. Its range is that of the knots:\n"
       "[knots[degree], knots[n]].");
-  module.def(
-      "polynomial",
+  define(
+      module, "polynomial",
       [](const Array &coefficients, double t0, double t1) {
         return make(CPROX_CURVE_POLYNOMIAL, coefficients, t0, t1);
       },
       py::arg("coefficients"), py::arg("t0") = 0.0, py::arg("t1") = 1.0, "The sum of coefficients[k] t^k; (n, 3).");
-  module.def(
-      "trigonometric",
+  define(
+      module, "trigonometric",
       [](const Array &coefficients, double t0, double t1) {
         return make(CPROX_CURVE_TRIGONOMETRIC, coefficients, t0, t1);
       },
       py::arg("coefficients"), py::arg("t0"), py::arg("t1"),
       "A trigonometric series; the rows of coefficients (2 k + 1, 3) belong to 1, cos t, sin t, cos 2t, …");
-  module.def(
-      "clothoid",
+  define(
+      module, "clothoid",
       [](const Array &start, double heading, double curvature, double curvature_rate, double t0, double t1) {
         return Curve{makeClothoid(toEigen(toVector(start, "start")), heading, curvature, curvature_rate, t0, t1)};
       },
       py::arg("start"), py::arg("heading"), py::arg("curvature"), py::arg("curvature_rate"), py::arg("t0"),
       py::arg("t1"),
       "A clothoid in a plane z = const; heading [rad] and curvature [1/m] are those at t = 0, t is the arc length.");
-  module.def(
-      "dubins",
+  define(
+      module, "dubins",
       [](const Array &start, double start_heading, const Array &end, double end_heading, double radius,
          const std::string &word) {
         return Curve{makeDubins(toEigen(toVector(start, "start")), start_heading, toEigen(toVector(end, "end")),
@@ -121,15 +124,15 @@ void addCurves(py::module &module) {
       },
       py::arg("start"), py::arg("start_heading"), py::arg("end"), py::arg("end_heading"), py::arg("radius"),
       py::arg("word") = "shortest", "The shortest Dubins path, or that of a word ('lsl', …); t is the arc length.");
-  module.def(
-      "involute",
+  define(
+      module, "involute",
       [](const Array &centre, double heading, double radius, double t0, double t1) {
         return Curve{makeInvolute(toEigen(toVector(centre, "centre")), radius, heading, t0, t1)};
       },
       py::arg("centre"), py::arg("heading"), py::arg("radius"), py::arg("t0"), py::arg("t1"),
       "The involute of a circle; it leaves the circle at t = 0 in the direction of the heading [rad].");
-  module.def(
-      "pythagorean_hodograph",
+  define(
+      module, "pythagorean_hodograph",
       [](const Array &start, const Array &preimage, double t0, double t1) {
         if (preimage.ndim() != 2 || preimage.shape(1) != 4) throw Error("preimage must be an array of shape (n, 4)");
         std::vector<Eigen::Quaterniond> quaternions;
@@ -139,27 +142,27 @@ void addCurves(py::module &module) {
       },
       py::arg("start"), py::arg("preimage"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
       "A Pythagorean-hodograph curve by the Bernstein coefficients of its preimage, quaternions (w, x, y, z): (n, 4).");
-  module.def(
-      "legendre",
+  define(
+      module, "legendre",
       [](const Array &coefficients, double t0, double t1) { return make(CPROX_CURVE_LEGENDRE, coefficients, t0, t1); },
       py::arg("coefficients"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
       "The sum of coefficients[k] P_k((2t - t0 - t1)/(t1 - t0)); (n, 3).");
-  module.def(
-      "lagrange",
+  define(
+      module, "lagrange",
       [](const Array &points, const Array &nodes, double t0, double t1) {
         return Curve{makeLagrange(toColumns(points), toNumbers(nodes, "nodes"), t0, t1)};
       },
       py::arg("points"), py::arg("nodes"), py::arg("t0"), py::arg("t1"),
       "The polynomial that passes points[i] at nodes[i]; (n, 3) and (n,).");
-  module.def(
-      "rational_bezier",
+  define(
+      module, "rational_bezier",
       [](const Array &points, const Array &weights, double t0, double t1) {
         return Curve{makeRationalBezier(toColumns(points), toNumbers(weights, "weights"), t0, t1)};
       },
       py::arg("points"), py::arg("weights"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
       "A rational Bézier curve; points (n, 3) [m], weights (n,) > 0.");
-  module.def(
-      "nurbs",
+  define(
+      module, "nurbs",
       [](const Array &points, const Array &weights, std::size_t degree, const Array &knots, std::optional<double> t0,
          std::optional<double> t1) {
         const std::vector<double> k = toNumbers(knots, "knots");
@@ -171,8 +174,8 @@ void addCurves(py::module &module) {
       },
       py::arg("points"), py::arg("weights"), py::arg("degree"), py::arg("knots"), py::arg("t0") = py::none(),
       py::arg("t1") = py::none(), "A NURBS curve: a B-spline with weights (n,) > 0.");
-  module.def(
-      "piecewise",
+  define(
+      module, "piecewise",
       [](const std::vector<Curve> &curves, const std::vector<double> &ends, double gap) {
         std::vector<CurveHandle> handles;
         for (const Curve &one : curves) handles.push_back(one.curve);

@@ -17,6 +17,19 @@ Points::Points(const Array &array, const char *what) {
   size = static_cast<std::size_t>(array.shape(0));
 }
 
+py::object kept(const Array &array) {
+  return array.attr("copy")();
+}
+
+py::object kept(const py::object &given) {
+  return py::module::import("copy").attr("deepcopy")(given);
+}
+
+py::tuple remake(const py::object &made, const char *why) {
+  if (made.is_none()) throw py::type_error(why);
+  return py::make_tuple(py::module::import("cprox").attr("_make"), made);
+}
+
 cprox_vec3 toVector(const Array &array, const char *what) {
   if (array.ndim() != 1 || array.shape(0) != 3) throw Error(std::string(what) + " must be three numbers");
   return {array.at(0), array.at(1), array.at(2)};
@@ -202,7 +215,8 @@ PYBIND11_MODULE(_cprox, module) {
   python::addShapes(module);
   python::addCurves(module);
   python::addQueries(module);
-  python::addRobots(module);
+  python::addScenes(module);
+  python::addMotions(module);
   python::addMovers(module);
   python::addRoadmaps(module);
   python::addGaps(module);

@@ -84,14 +84,16 @@ class PythonMovers {
 };
 
 py::dict answer(const PythonMovers &m, const std::string &robot, const std::string &against, const Query &query) {
-  return answerOf(m.ask(robot, against, [&](const auto &of) { return ask(m.get(), of, query, threadWorkspace()); }));
+  return answerOf(m.ask(robot, against, [&](const auto &of) { return ask(m.get(), of, query, threadWorkspace()); }),
+                  query.query_type != QueryType::DISTANCE);
 }
 
 py::dict contactOf(const PythonMovers &m, const std::string &robot, double epsilon, Count max_nodes, const Names &links,
                    const Names &objects, bool allow_empty, const std::string &against, bool moving_only) {
   const Query query = queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only);
   return answerOf(
-      m.ask(robot, against, [&](const auto &of) { return timeOfContact(m.get(), of, query, threadWorkspace()); }));
+      m.ask(robot, against, [&](const auto &of) { return timeOfContact(m.get(), of, query, threadWorkspace()); }),
+      true);
 }
 
 py::dict profileOf(const PythonMovers &m, const std::vector<double> &breaks, const std::string &robot, double epsilon,
@@ -154,14 +156,16 @@ py::dict gradientsOf(const PythonMovers &m, double epsilon, Count max_nodes, con
 } // namespace
 
 void addMovers(py::module &module) {
-  py::class_<PythonMovers, std::shared_ptr<PythonMovers>>(
+  py::class_<PythonMovers, std::shared_ptr<PythonMovers>> movers(
       module, "Movers",
       "Motions of robots, and the objects of a scene that move, on one clock: against each other and what stands.\n"
       "robot of its queries: the name of the motion that is asked about, at its times; '': all that moves.\n"
       "links: of that robot alone, or of all 'name/link'. objects: names of objects or robots.\n"
       "against, where robot is '': 'others', all but no robot against itself; 'both', all; 'movers', each other and "
       "each\n"
-      "robot against itself; 'objects', the objects that stand.")
+      "robot against itself; 'objects', the objects that stand.");
+  refusePickle(movers, "Movers cannot be pickled: make them again in the other process");
+  movers
       .def(
           py::init<const PythonScene &, const Motions &, const Numbers &, const Numbers &, const NamePairs &>(),
           py::arg("scene"), py::arg("motions"), py::arg("starts") = Numbers{}, py::arg("tolerances") = Numbers{},

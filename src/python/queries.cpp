@@ -1,63 +1,46 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What moves, obstacles, and the queries about them. Queries release the GIL. */
 #include <map>
+#include <sstream>
 
-#include <curve_proximity/parallel.hpp>
-
-#include "conversion.h"
+#include "obstacles.h"
 
 namespace curve_proximity::python {
 namespace {
 
-/* A mover, and what it refers to. */
-struct Mover {
-  cprox_mover mover{};
-  CurveHandle curve, radius;
-  BodyHandle body;
-};
+/* ---- many obstacles ---- */
 
-struct Obstacle {
-  cprox_obstacle obstacle{};
-  BodyHandle body;
-  CurveHandle curve;
-  std::vector<std::shared_ptr<Mover>> others; /* at the same parameter */
-};
-
-/* Many obstacles, and what they refer to; immutable. The batch index is made when it is first wanted. */
-class ObstacleSet {
- public:
-  ObstacleSet(std::vector<std::shared_ptr<Obstacle>> list, const std::string &index)
-      : list_(std::move(list)), targets_(targetsOf(list_)), obstacles_(targets_, indexOf(index)) {}
-
-  const Obstacles &get() const {
-    return obstacles_;
+std::vector<cprox_obstacle> targetsOf(const std::vector<std::shared_ptr<Obstacle>> &list) {
+  std::vector<cprox_obstacle> out;
+  for (const auto &one : list) {
+    if (!one) throw py::type_error("obstacles must be a list of Obstacle, got None in it");
+    out.push_back(one->obstacle);
   }
+  return out;
+}
 
-  const Batch &batch() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!batch_) batch_ = std::make_unique<Batch>(targets_);
-    return *batch_;
-  }
+cprox_obstacle_index indexOf(const std::string &name) {
+  if (name == "bvh") return CPROX_INDEX_BVH;
+  if (name == "none") return CPROX_INDEX_NONE;
+  throw Error("index must be 'bvh' or 'none', got '" + name + "'");
+}
 
- private:
-  static std::vector<cprox_obstacle> targetsOf(const std::vector<std::shared_ptr<Obstacle>> &list) {
-    std::vector<cprox_obstacle> out;
-    for (const auto &one : list) out.push_back(one->obstacle);
-    return out;
-  }
+} // namespace
 
-  static cprox_obstacle_index indexOf(const std::string &name) {
-    if (name == "bvh") return CPROX_INDEX_BVH;
-    if (name == "none") return CPROX_INDEX_NONE;
-    throw Error("index must be 'bvh' or 'none', got '" + name + "'");
-  }
+ObstacleSet::ObstacleSet(std::vector<std::shared_ptr<Obstacle>> list, const std::string &index,
+                         std::vector<std::string> names)
+    : list_(std::move(list)),
+      names_(std::move(names)),
+      targets_(targetsOf(list_)),
+      obstacles_(targets_, indexOf(index)) {}
 
-  std::vector<std::shared_ptr<Obstacle>> list_;
-  std::vector<cprox_obstacle> targets_;
-  Obstacles obstacles_;
-  mutable std::mutex mutex_;
-  mutable std::unique_ptr<Batch> batch_;
-};
+const Batch &ObstacleSet::batch() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!batch_) batch_ = std::make_unique<Batch>(targets_);
+  return *batch_;
+}
+
+namespace {
 
 /* ---- options ---- */
 
@@ -124,13 +107,73 @@ std::shared_ptr<ObstacleSet> setOf(const py::object &given) {
 
 /* ---- answers ---- */
 
-std::string describe(const cprox_result &r) {
-  return "<cprox.Result [" + std::to_string(r.lower) + ", " + std::to_string(r.upper) + "] " +
-         cprox_verdict_name(r.verdict) + " at t = " + std::to_string(r.t) + ", " + cprox_status_name(r.status) + ">";
+std::string describe(const Result &answer) {
+  const cprox_result &r = answer.result;
+  return "<cprox.Result [" + std::to_string(r.lower) + ", " + std::to_string(r.upper) + "]" +
+         (answer.asked ? std::string(" ") + cprox_verdict_name(r.verdict) : "") + " at t = " + std::to_string(r.t) +
+         ", " + cprox_status_name(r.status) + ">";
+}
+
+/* The same as a table for notebooks. */
+std::string tableOf(const Result &answer) {
+  const cprox_result &r = answer.result;
+  std::ostringstream out;
+  out.precision(9);
+  out << "<table>";
+  const auto row = [&out](const char *name, const auto &value, const char *unit = "") {
+    out << "<tr><th>" << name << "</th><td>" << value << unit << "</td></tr>";
+  };
+  if (answer.asked) row("verdict", cprox_verdict_name(r.verdict));
+  row("lower", r.lower, " m"), row("upper", r.upper, " m"), row("t", r.t);
+  row("status", cprox_status_name(r.status));
+  out << "</table>";
+  return out.str();
+}
+
+const char *lodName(cprox_lod lod) {
+  return lod == CPROX_LOD_SPHERE ? "sphere" : lod == CPROX_LOD_HULL ? "hull" : "mesh";
+}
+
+/* All that a Result holds, for pickle. */
+py::tuple numbersOf(const Result &answer) {
+  const cprox_result &r = answer.result;
+  const auto three = [](const cprox_vec3 &v) { return py::make_tuple(v.x, v.y, v.z); };
+  return py::make_tuple(answer.asked, static_cast<int>(r.status), static_cast<int>(r.verdict), r.lower, r.upper, r.t,
+                        r.t_obstacle, three(r.witness_mover), three(r.witness_obstacle), three(r.normal),
+                        r.obstacle_index, r.obstacle_part, r.mover_part, static_cast<int>(r.lod), r.nodes,
+                        r.distance_queries, r.t_contact_lower);
+}
+
+Result resultOf(const py::tuple &numbers) {
+  using Three = std::array<double, 3>;
+  if (numbers.size() != 17) throw Error("the pickled Result is of another version");
+  const auto three = [](const py::handle &given) {
+    const auto v = given.cast<Three>();
+    return cprox_vec3{v[0], v[1], v[2]};
+  };
+  Result out{};
+  cprox_result &r = out.result;
+  out.asked = numbers[0].cast<bool>();
+  r.status = static_cast<cprox_status>(numbers[1].cast<int>());
+  r.verdict = static_cast<cprox_verdict>(numbers[2].cast<int>());
+  r.lower = numbers[3].cast<double>(), r.upper = numbers[4].cast<double>(), r.t = numbers[5].cast<double>();
+  r.t_obstacle = numbers[6].cast<double>();
+  r.witness_mover = three(numbers[7]), r.witness_obstacle = three(numbers[8]), r.normal = three(numbers[9]);
+  r.obstacle_index = numbers[10].cast<std::int32_t>(), r.obstacle_part = numbers[11].cast<std::int32_t>();
+  r.mover_part = numbers[12].cast<std::int32_t>(), r.lod = static_cast<cprox_lod>(numbers[13].cast<int>());
+  r.nodes = numbers[14].cast<std::uint32_t>(), r.distance_queries = numbers[15].cast<std::uint32_t>();
+  r.t_contact_lower = numbers[16].cast<double>();
+  return out;
+}
+
+std::vector<Result> measured(const std::vector<cprox_result> &results) {
+  std::vector<Result> out;
+  for (const cprox_result &one : results) out.push_back({one, false});
+  return out;
 }
 
 /* One array a column, for many results. */
-py::dict columnsOf(const std::vector<cprox_result> &results) {
+py::dict columnsOf(const std::vector<cprox_result> &results, bool asked) {
   const auto n = static_cast<py::ssize_t>(results.size());
   Array lower(n), upper(n), t(n);
   py::array_t<std::int32_t> obstacle(n);
@@ -144,7 +187,8 @@ py::dict columnsOf(const std::vector<cprox_result> &results) {
   }
   py::dict out;
   out["lower"] = lower, out["upper"] = upper, out["t"] = t;
-  out["obstacle"] = obstacle, out["verdict"] = verdict, out["status"] = status;
+  out["obstacle"] = obstacle, out["status"] = status;
+  if (asked) out["verdict"] = verdict;
   return out;
 }
 
@@ -179,7 +223,7 @@ py::dict profileOf(const ObstacleSet &set, const Mover &mover, const Array &brea
 
 /* Bézier curves of one degree, (N, n, 3); made and asked by the threads of a pool. */
 template <typename Ask>
-py::dict askBatch(const Array &points, double radius, unsigned threads, const Ask &ask) {
+py::dict askBatch(const Array &points, double radius, unsigned threads, bool asked, const Ask &ask) {
   if (points.ndim() != 3 || points.shape(2) != 3) throw Error("points must be an array of shape (N, n, 3)");
   const auto count = static_cast<std::size_t>(points.shape(0)), n = static_cast<std::size_t>(points.shape(1));
   const auto *data = reinterpret_cast<const cprox_vec3 *>(points.data());
@@ -204,7 +248,7 @@ py::dict askBatch(const Array &points, double radius, unsigned threads, const As
     return found;
   });
   if (answers.status < 0) throw Error(answers.reason, answers.status);
-  return columnsOf(answers.results);
+  return columnsOf(answers.results, asked);
 }
 
 /* ---- the gradient ---- */
@@ -222,7 +266,7 @@ py::dict gradientOf(const Mover &mover, const Obstacle &obstacle, cprox_options 
     return require(status, workspace);
   });
   py::dict out;
-  out["result"] = r, out["valid"] = g.valid, out["reason"] = g.valid ? "" : reason, out["t"] = g.t;
+  out["result"] = Result{r, false}, out["valid"] = g.valid, out["reason"] = g.valid ? "" : reason, out["t"] = g.t;
   out["mover"] = fromVector(g.mover), out["position"] = fromVector(g.position),
   out["rotation"] = fromVector(g.rotation);
   out["radius"] = g.radius, out["margin"] = g.margin, out["t0"] = g.t0, out["t1"] = g.t1;
@@ -231,8 +275,8 @@ py::dict gradientOf(const Mover &mover, const Obstacle &obstacle, cprox_options 
 
 /* A query by its function for one obstacle, which needs no index, or by that for many. */
 template <typename One, typename Many>
-cprox_result ask(const py::object &mover, const py::object &obstacles, const py::kwargs &given, const One &one,
-                 const Many &many) {
+Result ask(const py::object &mover, const py::object &obstacles, const py::kwargs &given, bool asked, const One &one,
+           const Many &many) {
   const std::shared_ptr<Mover> moving = moverOf(mover);
   cprox_options options = optionsOf(given);
   Workspace &workspace = threadWorkspace();
@@ -246,42 +290,64 @@ cprox_result ask(const py::object &mover, const py::object &obstacles, const py:
     const cprox_obstacles *all = set->get().get();
     require(unlocked(options, [&] { return many(all, moving->mover, &options, workspace.get(), &result); }), workspace);
   }
-  return result;
+  return {result, asked};
 }
 
 } // namespace
 
 void addQueries(py::module &module) {
-  py::class_<cprox_result>(module, "Result", "A certified answer: lower <= true value <= upper [m].")
-      .def_readonly("lower", &cprox_result::lower, "[m] The true value is not below this.")
-      .def_readonly("upper", &cprox_result::upper, "[m] The true value is not above this.")
-      .def_readonly("t", &cprox_result::t, "Where on the mover's curve upper is attained.")
-      .def_readonly("t_obstacle", &cprox_result::t_obstacle, "Where on an obstacle that is a curve; NaN for shapes.")
-      .def_readonly("t_contact_lower", &cprox_result::t_contact_lower, "Time of contact: no contact before this.")
-      .def_readonly("obstacle", &cprox_result::obstacle_index, "Which obstacle; -1: none.")
-      .def_readonly("obstacle_part", &cprox_result::obstacle_part, "Which part of a compound.")
-      .def_readonly("nodes", &cprox_result::nodes, "Parameter intervals examined.")
-      .def_readonly("distance_queries", &cprox_result::distance_queries, "Nearest-point queries.")
+  py::class_<Result>(module, "Result", "A certified answer: lower <= true value <= upper [m].")
       .def_property_readonly(
-          "witness_mover", [](const cprox_result &r) { return fromVector(r.witness_mover); }, "(3,)")
+          "lower", [](const Result &r) { return r.result.lower; }, "[m] The true value is not below this.")
       .def_property_readonly(
-          "witness_obstacle", [](const cprox_result &r) { return fromVector(r.witness_obstacle); }, "(3,)")
+          "upper", [](const Result &r) { return r.result.upper; }, "[m] The true value is not above this.")
       .def_property_readonly(
-          "normal", [](const cprox_result &r) { return fromVector(r.normal); },
+          "t", [](const Result &r) { return r.result.t; }, "Where on the mover's curve upper is attained.")
+      .def_property_readonly(
+          "t_obstacle", [](const Result &r) { return r.result.t_obstacle; },
+          "Where on an obstacle that is a curve; NaN for shapes.")
+      .def_property_readonly(
+          "t_contact_lower", [](const Result &r) { return r.result.t_contact_lower; },
+          "Time of contact: no contact before this.")
+      .def_property_readonly(
+          "obstacle", [](const Result &r) { return r.result.obstacle_index; }, "Which obstacle; -1: none.")
+      .def_property_readonly(
+          "obstacle_part", [](const Result &r) { return r.result.obstacle_part; }, "Which part of a compound.")
+      .def_property_readonly(
+          "nodes", [](const Result &r) { return r.result.nodes; }, "Parameter intervals examined.")
+      .def_property_readonly(
+          "distance_queries", [](const Result &r) { return r.result.distance_queries; }, "Nearest-point queries.")
+      .def_property_readonly(
+          "witness_mover", [](const Result &r) { return fromVector(r.result.witness_mover); }, "(3,)")
+      .def_property_readonly(
+          "witness_obstacle", [](const Result &r) { return fromVector(r.result.witness_obstacle); }, "(3,)")
+      .def_property_readonly(
+          "normal", [](const Result &r) { return fromVector(r.result.normal); },
           "(3,) unit, from obstacle to mover; 0 where there is none.")
       .def_property_readonly(
-          "verdict", [](const cprox_result &r) { return cprox_verdict_name(r.verdict); },
-          "'clear', 'violated' or 'undecided'; undecided counts as unsafe.")
+          "verdict",
+          [](const Result &r) -> py::object {
+            if (!r.asked) return py::none();
+            return py::str(cprox_verdict_name(r.result.verdict));
+          },
+          "'clear', 'violated' or 'undecided', which counts as unsafe; None of a distance, where none was asked.")
       .def_property_readonly(
-          "status", [](const cprox_result &r) { return cprox_status_name(r.status); },
+          "lod", [](const Result &r) { return lodName(r.result.lod); },
+          "The finest level of detail that the answer needed: 'sphere', 'hull' or 'mesh'.")
+      .def_property_readonly(
+          "status", [](const Result &r) { return cprox_status_name(r.result.status); },
           "'ok', or why the interval is wider than asked: 'budget', 'precision', 'inexact', 'stopped'.")
+      .def(py::pickle(&numbersOf, &resultOf))
+      .def("_repr_html_", &tableOf)
       .def("__repr__", &describe);
 
-  py::class_<Mover, std::shared_ptr<Mover>>(module, "Mover", "What moves: a point, a ball or a shape along a curve.");
-  module.def(
-      "tube",
+  py::class_<Mover, std::shared_ptr<Mover>>(module, "Mover", "What moves: a point, a ball or a shape along a curve.")
+      .def("__reduce__", [](const Mover &m) { return remake(m.made, "this Mover cannot be pickled"); });
+  define(
+      module, "tube",
       [](const Curve &curve, const Array &radius) {
         if (radius.ndim() > 1 || radius.size() == 0) throw Error("radius must be a number or an array of shape (n,)");
+        if (!(radius.size() > 1 || radius.data()[0] >= 0.0)) throw Error("radius must be 0 or more");
         auto out = std::make_shared<Mover>();
         out->curve = curve.curve, out->mover = cprox_tube_along(out->curve.get(), radius.data()[0]);
         if (radius.size() == 1) return out;
@@ -293,8 +359,8 @@ void addQueries(py::module &module) {
       },
       py::arg("curve"), py::arg("radius"),
       "A ball along the curve. radius: [m] >= 0, or the coefficients of 1, t, t², … of a radius that changes.");
-  module.def(
-      "carried",
+  define(
+      module, "carried",
       [](const Shape &shape, const Curve &curve, double margin) {
         auto out = std::make_shared<Mover>();
         out->curve = curve.curve, out->body = shape.body;
@@ -306,45 +372,57 @@ void addQueries(py::module &module) {
       "A convex shape or a compound, carried along the curve without turning.");
 
   py::class_<Obstacle, std::shared_ptr<Obstacle>>(module, "Obstacle", "A shape at a pose, or a curve.")
-      .def(py::init([](const Shape &shape, const std::optional<Array> &pose, double margin) {
-             auto out = std::make_shared<Obstacle>();
-             out->body = shape.body;
-             out->obstacle = cprox_with_margin(cprox_obstacle_at(out->body.get(), toPose(toTransform(pose))), margin);
-             return out;
-           }),
+      .def(py::init(recorded("Obstacle",
+                             [](const Shape &shape, const std::optional<Array> &pose, double margin) {
+                               if (!(margin >= 0.0)) throw Error("margin must be 0 or more");
+                               auto out = std::make_shared<Obstacle>();
+                               out->body = shape.body;
+                               out->obstacle = cprox_with_margin(
+                                   cprox_obstacle_at(out->body.get(), toPose(toTransform(pose))), margin);
+                               return out;
+                             })),
            py::arg("shape"), py::arg("pose") = py::none(), py::arg("margin") = 0.0,
            "A shape at a pose (4, 4), None: the identity; margin >= 0 [m].")
-      .def_static(
-          "from_curve",
-          [](const Curve &curve, double radius, const std::optional<Array> &pose) {
-            auto out = std::make_shared<Obstacle>();
-            out->curve = curve.curve, out->obstacle = cprox_obstacle_curve(out->curve.get(), radius);
-            out->obstacle.pose = toPose(toTransform(pose));
-            return out;
-          },
-          py::arg("curve"), py::arg("radius") = 0.0, py::arg("pose") = py::none(),
-          "A curve that stands, as thick as a ball of the radius.")
+      .def_static("from_curve",
+                  recorded("Obstacle.from_curve",
+                           [](const Curve &curve, double radius, const std::optional<Array> &pose) {
+                             if (!(radius >= 0.0)) throw Error("radius must be 0 or more");
+                             auto out = std::make_shared<Obstacle>();
+                             out->curve = curve.curve, out->obstacle = cprox_obstacle_curve(out->curve.get(), radius);
+                             out->obstacle.pose = toPose(toTransform(pose));
+                             return out;
+                           }),
+                  py::arg("curve"), py::arg("radius") = 0.0, py::arg("pose") = py::none(),
+                  "A curve that stands, as thick as a ball of the radius.")
       .def_static(
           "synchronized",
           [](const py::object &other) {
             auto out = std::make_shared<Obstacle>();
+            out->made = py::make_tuple("Obstacle.synchronized", other);
             out->others.push_back(moverOf(other));
             out->obstacle = cprox_synchronized(out->others.back()->mover);
             return out;
           },
-          py::arg("mover"), "Another mover, at the same parameter as the mover of the query.");
+          py::arg("mover"), "Another mover, at the same parameter as the mover of the query.")
+      .def("__reduce__", [](const Obstacle &o) { return remake(o.made, "this Obstacle cannot be pickled"); });
 
   py::class_<ObstacleSet, std::shared_ptr<ObstacleSet>>(
       module, "Obstacles", "Many obstacles behind one index. Immutable, shared by threads.")
-      .def(py::init<std::vector<std::shared_ptr<Obstacle>>, const std::string &>(), py::arg("obstacles"),
-           py::arg("index") = "bvh", "index: 'bvh', or 'none' for a few obstacles.")
+      .def(py::init(recorded("Obstacles",
+                             [](const std::vector<std::shared_ptr<Obstacle>> &list, const std::string &index) {
+                               return std::make_shared<ObstacleSet>(list, index);
+                             })),
+           py::arg("obstacles"), py::arg("index") = "bvh", "index: 'bvh', or 'none' for a few obstacles.")
+      .def_property_readonly("names", &ObstacleSet::names,
+                             "Of Scene.obstacles(): the object that each obstacle belongs to; else empty.")
       .def("__len__", [](const ObstacleSet &set) { return set.get().size(); })
       .def(
           "nearest",
           [](const ObstacleSet &set, const py::object &mover, std::size_t k, const py::kwargs &given) {
             const std::shared_ptr<Mover> moving = moverOf(mover);
             cprox_options options = optionsOf(given);
-            return unlocked(options, [&] { return set.get().nearest(moving->mover, k, options, threadWorkspace()); });
+            return measured(
+                unlocked(options, [&] { return set.get().nearest(moving->mover, k, options, threadWorkspace()); }));
           },
           py::arg("mover"), py::arg("k"), "The k nearest obstacles, a Result each, in ascending order.")
       .def(
@@ -359,32 +437,35 @@ void addQueries(py::module &module) {
           "distance_batch",
           [](const ObstacleSet &set, const Array &points, double radius, unsigned threads, const py::kwargs &given) {
             const cprox_options options = optionsOf(given);
-            return askBatch(points, radius, threads, [&](const std::vector<cprox_mover> &movers, Pool &pool) {
+            return askBatch(points, radius, threads, false, [&](const std::vector<cprox_mover> &movers, Pool &pool) {
               return set.batch().distance(movers, options, pool);
             });
           },
           py::arg("points"), py::arg("radius") = 0.0, py::arg("threads") = 0,
           "The distance of each of N Bézier curves, points (N, n, 3): a dict of arrays (N,) lower, upper, t, "
           "obstacle,\n"
-          "verdict, status. threads 0: as many as the machine has.")
+          "status. threads 0: as many as the machine has.")
       .def(
           "tolerance_batch",
           [](const ObstacleSet &set, const Array &points, double delta, double radius, unsigned threads,
              const py::kwargs &given) {
             const cprox_options options = optionsOf(given);
-            return askBatch(points, radius, threads, [&](const std::vector<cprox_mover> &movers, Pool &pool) {
+            return askBatch(points, radius, threads, true, [&](const std::vector<cprox_mover> &movers, Pool &pool) {
               return set.batch().tolerance(movers, delta, options, pool);
             });
           },
           py::arg("points"), py::arg("delta"), py::arg("radius") = 0.0, py::arg("threads") = 0,
-          "Whether each of N Bézier curves is farther than delta [m] everywhere; as distance_batch(). verdict: 0 "
+          "Whether each of N Bézier curves is farther than delta [m] everywhere; as distance_batch(), and verdict: 0 "
           "clear,\n"
-          "1 violated, 2 undecided.");
+          "1 violated, 2 undecided.")
+      .def("__reduce__", [](const ObstacleSet &set) {
+        return remake(set.made, "the Obstacles of a scene cannot be pickled: pickle numbers, or load the scene again");
+      });
 
   module.def(
       "distance",
       [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
-        return ask(mover, obstacles, given, cprox_distance, [](auto o, auto m, auto options, auto w, auto r) {
+        return ask(mover, obstacles, given, false, cprox_distance, [](auto o, auto m, auto options, auto w, auto r) {
           return cprox_obstacles_distance(o, m, options, w, r, nullptr);
         });
       },
@@ -395,7 +476,7 @@ void addQueries(py::module &module) {
       "tolerance",
       [](const py::object &mover, const py::object &obstacles, double delta, const py::kwargs &given) {
         return ask(
-            mover, obstacles, given,
+            mover, obstacles, given, true,
             [&](auto m, auto o, auto options, auto w, auto r) { return cprox_tolerance(m, o, delta, options, w, r); },
             [&](auto o, auto m, auto options, auto w, auto r) {
               return cprox_obstacles_tolerance(o, m, delta, options, w, r, nullptr);
@@ -405,7 +486,7 @@ void addQueries(py::module &module) {
   module.def(
       "collision",
       [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
-        return ask(mover, obstacles, given, cprox_collision, [](auto o, auto m, auto options, auto w, auto r) {
+        return ask(mover, obstacles, given, true, cprox_collision, [](auto o, auto m, auto options, auto w, auto r) {
           return cprox_obstacles_collision(o, m, options, w, r, nullptr);
         });
       },
@@ -413,14 +494,15 @@ void addQueries(py::module &module) {
   module.def(
       "time_of_contact",
       [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
-        return ask(mover, obstacles, given, cprox_time_of_contact, cprox_obstacles_time_of_contact);
+        return ask(mover, obstacles, given, true, cprox_time_of_contact, cprox_obstacles_time_of_contact);
       },
       py::arg("mover"), py::arg("obstacles"), "Where the mover first touches: in [t_contact_lower, t]. Never late.");
   module.def(
       "pair",
       [](const Obstacle &a, const Obstacle &b, const py::kwargs &given) {
         cprox_options options = optionsOf(given);
-        return unlocked(options, [&] { return pair(a.obstacle, b.obstacle, options, threadWorkspace()); });
+        return Result{unlocked(options, [&] { return pair(a.obstacle, b.obstacle, options, threadWorkspace()); }),
+                      false};
       },
       py::arg("a"), py::arg("b"), "The signed distance of two shapes that stand [m].");
   module.def(
@@ -430,7 +512,7 @@ void addQueries(py::module &module) {
         const cprox_options options = optionsOf(given);
         const cprox_translating first = {a.obstacle, toVector(velocity_a, "velocity_a")},
                                 second = {b.obstacle, toVector(velocity_b, "velocity_b")};
-        return translatingDistance(first, second, duration, options, threadWorkspace());
+        return Result{translatingDistance(first, second, duration, options, threadWorkspace()), false};
       },
       py::arg("a"), py::arg("b"), py::arg("velocity_a"), py::arg("velocity_b"), py::arg("duration"),
       "The least distance [m] of two convex shapes that move at constant velocities (3,) [m/s] for the duration [s].");
@@ -441,8 +523,9 @@ void addQueries(py::module &module) {
         cprox_options options = optionsOf(given);
         const cprox_translating first = {a.obstacle, toVector(velocity_a, "velocity_a")},
                                 second = {b.obstacle, toVector(velocity_b, "velocity_b")};
-        return unlocked(options,
-                        [&] { return translatingContact(first, second, duration, options, threadWorkspace()); });
+        return Result{
+            unlocked(options, [&] { return translatingContact(first, second, duration, options, threadWorkspace()); }),
+            true};
       },
       py::arg("a"), py::arg("b"), py::arg("velocity_a"), py::arg("velocity_b"), py::arg("duration"),
       "When two convex shapes that translate first touch: in [t_contact_lower, t]. Never late.");

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Robots, scenes, and robots along joint trajectories. Queries release the GIL. */
-#include <fstream>
+/* Robots along joint trajectories. Queries release the GIL. */
 #include <optional>
-#include <sstream>
 
 #include <curve_proximity/files.hpp>
-#include <curve_proximity/mesh_remarks.hpp>
 
 #include "robots.h"
 
@@ -23,76 +20,6 @@ py::object fromMatrix(const Eigen::MatrixXd &matrix) {
 
 } // namespace
 
-void warn(const std::string &path, const std::vector<std::string> &sentences) {
-  for (const std::string &sentence : sentences) {
-    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + sentence).c_str(), 1) != 0) throw py::error_already_set();
-  }
-}
-
-ResourceOptions resourcesOf(const std::string &path, const Packages &packages) {
-  ResourceOptions out;
-  const std::size_t slash = path.rfind('/');
-  out.base_dir = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  out.find_package = [packages](const std::string &name) {
-    const auto found = packages.find(name);
-    return found == packages.end() ? std::string() : found->second;
-  };
-  return out;
-}
-
-void PythonScene::load(const std::string &path) {
-  SceneFileContents contents;
-  {
-    const py::gil_scoped_release release;
-    contents = robot_ ? loadSceneFile(path, robot_->robot.get(), robot_->srdf) : loadSceneFile(path);
-  }
-  if (!contents.moving_robots.empty())
-    throw Error(path + ": moving robot '" + contents.moving_robots.front().name +
-                "': further robots are made as Motions, and joined by Movers");
-  warn(path, contents.warnings);
-  change(contents.change);
-  for (const Operation &operation : contents.change.operations) tellMeshes(path, operation.object);
-  for (const Attachment &attachment : contents.change.attachments) tellMeshes(path, attachment.object);
-  for (const auto &[joint, value] : contents.joints) joints_[joint] = value;
-  if (contents.change.clear || !contents.base.matrix().isIdentity(0.0)) base_ = contents.base;
-}
-
-void PythonScene::add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
-                      const std::optional<Array> &pose, double padding, const std::optional<Array> &vertices,
-                      const py::object &triangles, const std::string &resource, bool solid) {
-  const std::optional<ShapeType> known = shapeTypeFromName(type);
-  if (!known) throw Error("object '" + id + "': there is no shape '" + type + "'");
-  ShapeDescription shape;
-  shape.type = *known, shape.dimensions = dimensions, shape.resource = resource, shape.solid = solid;
-  if (vertices) {
-    const Points points(*vertices, "vertices");
-    shape.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices->data(), 3, static_cast<Eigen::Index>(points.size));
-  }
-  if (!triangles.is_none()) {
-    const Whole indices = toWhole(triangles, "triangles", 0, std::numeric_limits<int>::max());
-    if (indices.ndim() != 2 || indices.shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
-    shape.triangles =
-        Eigen::Map<const Eigen::Matrix<std::int64_t, 3, Eigen::Dynamic>>(indices.data(), 3, indices.shape(0))
-            .cast<int>();
-  }
-  Operation add;
-  add.object.id = id, add.object.pose = toTransform(pose), add.object.padding = padding;
-  add.object.shapes.push_back(std::move(shape));
-  SceneChange change;
-  change.operations.push_back(std::move(add));
-  this->change(change);
-  tellMeshes("object '" + id + "'", change.operations.front().object);
-}
-
-void PythonScene::tellMeshes(const std::string &where, const ObjectDescription &object) const {
-  std::vector<std::string> remarks;
-  {
-    const py::gil_scoped_release release;
-    remarks = meshRemarks(object, resources_);
-  }
-  warn(where, remarks);
-}
-
 Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links,
               const Names &objects, bool allow_empty, bool moving_only) {
   Query out;
@@ -108,10 +35,10 @@ Query queryOf(const std::string &type, double delta, double epsilon, std::uint32
   return out;
 }
 
-py::dict answerOf(const Answer &answer) {
+py::dict answerOf(const Answer &answer, bool asked) {
   if (answer.result.status < 0) throw Error(answer.message, answer.result.status);
   py::dict out;
-  out["result"] = answer.result, out["kind"] = answer.kind, out["a"] = answer.a, out["b"] = answer.b;
+  out["result"] = Result{answer.result, asked}, out["kind"] = answer.kind, out["a"] = answer.a, out["b"] = answer.b;
   out["by_hull"] = answer.by_hull, out["message"] = answer.message, out["status"] = answer.status;
   return out;
 }
@@ -174,35 +101,6 @@ py::list toList(const std::vector<Answer> &answers) {
 }
 
 namespace {
-
-std::string readText(const std::string &path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw Error(path + ": the file cannot be read");
-  return text.str();
-}
-
-std::shared_ptr<LoadedRobot> load(const std::string &urdf, const std::optional<std::string> &srdf,
-                                  const Packages &packages) {
-  auto out = std::make_shared<LoadedRobot>();
-  RobotOptions options;
-  options.resources = resourcesOf(urdf, packages);
-  const auto read = [](const std::string &path, const auto &parse) {
-    try {
-      return parse(readText(path));
-    } catch (const Error &e) {
-      throw Error(path + ": " + e.what(), e.status());
-    }
-  };
-  {
-    const py::gil_scoped_release release;
-    out->robot = read(urdf, [&](const std::string &text) { return Robot::fromUrdf(text, options); });
-    if (srdf) out->srdf = read(*srdf, [](const std::string &text) { return parseSrdf(text); });
-  }
-  warn(urdf, out->robot->warnings());
-  return out;
-}
 
 /* ---- motions ---- */
 
@@ -271,7 +169,7 @@ py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
   const Answer answer = unlocked([&] {
     return self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
   });
-  return answerOf(answer);
+  return answerOf(answer, query.query_type != QueryType::DISTANCE);
 }
 
 py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, Count max_nodes, const Names &links,
@@ -281,7 +179,7 @@ py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, Count m
                          queryOf("collision", 0.0, epsilon, max_nodes, links, objects, allow_empty, moving_only),
                          threadWorkspace());
   });
-  return answerOf(answer);
+  return answerOf(answer, true);
 }
 
 /* An answer with its proof, and the query that it is about as cprox_check reads it. */
@@ -298,7 +196,7 @@ py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, b
     text = "cprox-problem 1\n" + describeQuery(motion, self, query);
     return self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
   });
-  py::dict out = answerOf(answer);
+  py::dict out = answerOf(answer, delta.has_value());
   if (!answer.unproven.empty()) throw Error("no certificate: " + answer.unproven);
   const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
   if (info.claim == CPROX_CLAIM_NONE) throw Error("no certificate: the answer is not decided");
@@ -411,61 +309,14 @@ py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool s
 
 } // namespace
 
-void addRobots(py::module &module) {
-  py::class_<LoadedRobot, std::shared_ptr<LoadedRobot>>(module, "Robot", "A robot from its URDF. Immutable.")
-      .def_static("from_urdf", &load, py::arg("urdf"), py::arg("srdf") = py::none(), py::arg("packages") = Packages{},
-                  "Reads the file of a URDF, and of an SRDF. packages: the folder of each package:// in them.")
-      .def_property_readonly("name", [](const LoadedRobot &r) { return r.robot->name(); })
-      .def_property_readonly(
-          "variables", [](const LoadedRobot &r) { return r.robot->variables(); }, "The names of all joints that move.")
-      .def(
-          "link_poses",
-          [](const LoadedRobot &r, const JointPositions &positions) {
-            py::dict out;
-            for (const auto &[link, pose] : r.robot->linkPoses(positions)) out[py::str(link)] = fromTransform(pose);
-            return out;
-          },
-          py::arg("positions"), "Forward kinematics: the pose (4, 4) of each link for joint values by name.");
-
-  SceneClass scene(module, "Scene", "Objects by name, and a robot.");
-  addCurveQueries(scene);
-  scene
-      .def(py::init<std::shared_ptr<LoadedRobot>, const Packages &>(), py::arg("robot") = nullptr,
-           py::arg("packages") = Packages{})
-      .def(
-          "load", &PythonScene::load, py::arg("path"),
-          "Takes over a scene file (YAML), which replaces the scene unless it is a diff. Where its robot_state has the "
-          "joints,\n"
-          "they stand in motions that are made later and do not say better. What is ignored is a UserWarning.")
-      .def("add", &PythonScene::add, py::arg("id"), py::arg("type"), py::arg("dimensions") = std::vector<double>{},
-           py::arg("pose") = py::none(), py::arg("padding") = 0.0, py::arg("vertices") = py::none(),
-           py::arg("triangles") = py::none(), py::arg("resource") = "", py::arg("solid") = false,
-           "Adds or replaces an object: type 'box', dimensions [x, y, z] and so on, as in a scene file.")
-      .def(
-          "move",
-          [](PythonScene &s, const std::string &id, const Array &pose) {
-            s.operate(Operation::Kind::MOVE, id, toTransform(pose));
-          },
-          py::arg("id"), py::arg("pose"))
-      .def(
-          "remove",
-          [](PythonScene &s, const std::string &id) {
-            s.operate(Operation::Kind::REMOVE, id, Eigen::Isometry3d::Identity());
-          },
-          py::arg("id"))
-      .def("allow", &PythonScene::allow, py::arg("a"), py::arg("b"), py::arg("allowed") = true,
-           "Sets an entry of the allowed collision matrix; b '': the default of a.")
-      .def_property_readonly("objects", [](const PythonScene &s) {
-        py::list out;
-        for (const auto &[id, object] : s.snapshot()->objects()) out.append(id);
-        return out;
-      });
-
-  py::class_<RobotMotion, std::shared_ptr<RobotMotion>>(
+void addMotions(py::module &module) {
+  py::class_<RobotMotion, std::shared_ptr<RobotMotion>> motion(
       module, "Motion",
       "The robot of a scene along a joint trajectory, in the scene as it was when the motion was made.\n"
       "links, objects of its queries: of these alone, names of links() and of the scene; with self_collision pairs of "
-      "which\na link is one, and no objects.")
+      "which\na link is one, and no objects.");
+  refusePickle(motion, "a Motion cannot be pickled: make it again of a Scene in the other process");
+  motion
       .def(
           py::init(&makeMotion), py::arg("scene"), py::arg("joints"), py::arg("times"), py::arg("positions"),
           py::arg("velocities") = py::none(), py::arg("accelerations") = py::none(), py::arg("rest") = JointPositions{},
@@ -482,6 +333,10 @@ void addRobots(py::module &module) {
       .def(
           "link_poses",
           [](const RobotMotion &m, double t) {
+            const std::array<double, 2> domain = m.domain();
+            if (!(t >= domain[0] && t <= domain[1]))
+              throw Error("t must be within the motion's domain [" + std::to_string(domain[0]) + ", " +
+                          std::to_string(domain[1]) + "] s, got " + std::to_string(t));
             py::dict out;
             for (const auto &[link, pose] : m.linkPoses(t)) out[py::str(link)] = fromTransform(pose);
             return out;

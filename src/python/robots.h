@@ -11,7 +11,7 @@
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/srdf.hpp>
 
-#include "conversion.h"
+#include "obstacles.h"
 
 namespace curve_proximity::python {
 
@@ -27,6 +27,7 @@ void warn(const std::string &path, const std::vector<std::string> &sentences);
 struct LoadedRobot {
   std::shared_ptr<const Robot> robot;
   Srdf srdf;
+  py::object made = py::none(); /* of which texts, for pickle */
 };
 
 /** A scene whose changes throw. */
@@ -67,6 +68,9 @@ class PythonScene {
     this->change(change);
   }
 
+  /** What stands in the scene, without the robot and what it carries. Throws Error where that is not all. */
+  std::shared_ptr<ObstacleSet> obstacles(const std::string &index) const;
+
   SnapshotPtr snapshot() const {
     return scene_.snapshot();
   }
@@ -104,8 +108,8 @@ inline constexpr std::uint32_t DEFAULT_BUDGET = 500000;
 Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes, const Names &links = {},
               const Names &objects = {}, bool allow_empty = false, bool moving_only = false);
 
-/** Throws Error for an answer that is a refusal. */
-py::dict answerOf(const Answer &answer);
+/** Throws Error for an answer that is a refusal. asked: a verdict was. */
+py::dict answerOf(const Answer &answer, bool asked = false);
 
 /** The answer with its derivatives. */
 py::dict toDict(const ClearanceRow &row);

@@ -35,7 +35,8 @@ struct Asked {
 };
 
 py::dict answer(const Asked &asked) {
-  return answerOf(unlocked([&] { return ask(asked.targets, asked.curve, asked.query, threadWorkspace()).front(); }));
+  return answerOf(unlocked([&] { return ask(asked.targets, asked.curve, asked.query, threadWorkspace()).front(); }),
+                  asked.query.query_type != QueryType::DISTANCE);
 }
 
 /* Adds one method: its own arguments come first. */
@@ -87,7 +88,7 @@ void addCurveQueries(SceneClass &scene) {
         const Asked asked(s, curve, "collision", 0.0,
                           {radius, positions, epsilon, max_nodes, objects, links, allow_empty});
         return answerOf(
-            unlocked([&] { return timeOfContact(asked.targets, asked.curve, asked.query, threadWorkspace()); }));
+            unlocked([&] { return timeOfContact(asked.targets, asked.curve, asked.query, threadWorkspace()); }), true);
       },
       "Where the curve first touches: in [t_contact_lower, t] of the result. Never late. As distance().");
   add(

@@ -151,44 +151,46 @@ BodyHandle compoundOf(const std::vector<Shape> &parts, const std::vector<Array> 
 } // namespace
 
 void addShapes(py::module &module) {
-  py::class_<Shape>(module, "Shape", "A set of points in its own frame. Immutable, shared by threads.");
-  module.def(
-      "point", [](const Array &position) { return Shape{makePoint(toEigen(toVector(position, "position")))}; },
+  py::class_<Shape>(module, "Shape", "A set of points in its own frame. Immutable, shared by threads.")
+      .def("__reduce__", [](const Shape &s) { return remake(s.made, "this Shape cannot be pickled"); });
+  define(
+      module, "point", [](const Array &position) { return Shape{makePoint(toEigen(toVector(position, "position")))}; },
       py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), "A point (3,) [m].");
-  module.def(
-      "sphere", [](double radius) { return Shape{makeSphere(radius)}; }, py::arg("radius"),
+  define(
+      module, "sphere", [](double radius) { return Shape{makeSphere(radius)}; }, py::arg("radius"),
       "A ball about the origin; radius > 0 [m].");
-  module.def(
-      "box", [](const Array &size) { return Shape{makeBox(toEigen(toVector(size, "size")))}; }, py::arg("size"),
+  define(
+      module, "box", [](const Array &size) { return Shape{makeBox(toEigen(toVector(size, "size")))}; }, py::arg("size"),
       "A box about the origin; size (3,): full edge lengths [m].");
-  module.def(
-      "capsule", [](double height, double radius) { return Shape{makeCapsule(height, radius)}; }, py::arg("height"),
-      py::arg("radius"), "A capsule along z about the origin; height: between the centres of the hemispheres [m].");
-  module.def(
-      "cylinder", [](double height, double radius) { return Shape{makeCylinder(height, radius)}; }, py::arg("height"),
-      py::arg("radius"), "A cylinder along z about the origin [m].");
-  module.def(
-      "cone", [](double height, double radius) { return Shape{makeCone(height, radius)}; }, py::arg("height"),
+  define(
+      module, "capsule", [](double height, double radius) { return Shape{makeCapsule(height, radius)}; },
+      py::arg("height"), py::arg("radius"),
+      "A capsule along z about the origin; height: between the centres of the hemispheres [m].");
+  define(
+      module, "cylinder", [](double height, double radius) { return Shape{makeCylinder(height, radius)}; },
+      py::arg("height"), py::arg("radius"), "A cylinder along z about the origin [m].");
+  define(
+      module, "cone", [](double height, double radius) { return Shape{makeCone(height, radius)}; }, py::arg("height"),
       py::arg("radius"), "A cone along z about mid-height, apex at +z [m].");
-  module.def(
-      "ellipsoid",
+  define(
+      module, "ellipsoid",
       [](const Array &semi_axes) { return Shape{makeEllipsoid(toEigen(toVector(semi_axes, "semi_axes")))}; },
       py::arg("semi_axes"), "An ellipsoid about the origin; semi_axes (3,) [m].");
-  module.def(
-      "halfspace",
+  define(
+      module, "halfspace",
       [](const Array &normal, double offset) {
         return Shape{makeHalfspace(toEigen(toVector(normal, "normal")), offset)};
       },
       py::arg("normal"), py::arg("offset"), "The halfspace normal·x + offset <= 0.");
-  module.def(
-      "superquadric",
+  define(
+      module, "superquadric",
       [](const Array &semi_axes, const Array &exponents) {
         return Shape{
             makeSuperquadric(toEigen(toVector(semi_axes, "semi_axes")), toEigen(toVector(exponents, "exponents")))};
       },
       py::arg("semi_axes"), py::arg("exponents"), "The sum of |x_i/semi_axes_i|^exponents_i is <= 1; exponents >= 1.");
-  module.def(
-      "implicit",
+  define(
+      module, "implicit",
       [](const std::vector<std::vector<std::array<double, 5>>> &hyperquadrics,
          const std::vector<std::array<double, 4>> &planes, const std::vector<std::array<double, 10>> &quadrics) {
         return Shape{makeImplicit(hyperquadrics, planes, quadrics)};
@@ -197,8 +199,8 @@ void addShapes(py::module &module) {
       "An intersection: hyperquadrics, each a list of terms [a, b, c, d, n]; planes [b1, b2, b3, c]; quadrics [q11, "
       "q12, "
       "q13,\nq22, q23, q33, b1, b2, b3, c]. Bounded, with an interior.");
-  module.def(
-      "deformed",
+  define(
+      module, "deformed",
       [](const Shape &shape, const Array &linear, const Array &translation, const std::vector<double> &exponents) {
         return Shape{
             makeDeformed(shape.body, linearOf(linear), toEigen(toVector(translation, "translation")), exponents)};
@@ -207,14 +209,14 @@ void addShapes(py::module &module) {
       py::arg("exponents") = py::list(),
       "A superquadric or implicit shape under x -> linear x + translation, with other exponents, one a term; none: as "
       "they\nare.");
-  module.def(
-      "polytope", [](const Array &vertices) { return Shape{polytopeOf(vertices)}; }, py::arg("vertices"),
+  define(
+      module, "polytope", [](const Array &vertices) { return Shape{polytopeOf(vertices)}; }, py::arg("vertices"),
       "The convex hull of vertices (n, 3) [m], in any order and of any dimension.");
-  module.def(
-      "polygon", [](const Array &vertices) { return Shape{polygonOf(vertices)}; }, py::arg("vertices"),
+  define(
+      module, "polygon", [](const Array &vertices) { return Shape{polygonOf(vertices)}; }, py::arg("vertices"),
       "A convex polygon in the plane z = 0; vertices (n, 2) [m] in order.");
-  module.def(
-      "mesh",
+  define(
+      module, "mesh",
       [](const Array &vertices, const py::object &triangles, bool solid) {
         return Shape{makeMeshOf(vertices, triangles, solid)};
       },
@@ -222,19 +224,19 @@ void addShapes(py::module &module) {
       "A triangle mesh: vertices (n, 3) [m], triangles (m, 3) of indices from 0. A hollow surface; with solid, a "
       "closed\n"
       "mesh includes its interior, and one that is not closed is a ValueError.");
-  module.def(
-      "point_cloud", [](const Array &points, double radius) { return Shape{cloudOf(points, radius)}; },
+  define(
+      module, "point_cloud", [](const Array &points, double radius) { return Shape{cloudOf(points, radius)}; },
       py::arg("points"), py::arg("radius") = 0.0, "A ball of the radius >= 0 about each of points (n, 3) [m].");
-  module.def(
-      "height_field",
+  define(
+      module, "height_field",
       [](const Array &heights, const Array &cell, const std::optional<double> &floor) {
         return Shape{heightFieldOf(heights, cell, floor)};
       },
       py::arg("heights"), py::arg("cell"), py::arg("floor") = py::none(),
       "The ground below heights (n_y, n_x) [m] that stand cell = (along x, along y) [m] apart, the first one above the "
       "origin:\ntwo triangles a cell. Solid down to the floor; without one, a surface.");
-  module.def(
-      "distance_grid",
+  define(
+      module, "distance_grid",
       [](const Array &values, double cell, double error, double truncated_at) {
         return Shape{distanceGridOf(values, cell, error, truncated_at)};
       },
@@ -243,8 +245,8 @@ void addShapes(py::module &module) {
       "The set whose signed distances at grid points are values (n_z, n_y, n_x) [m], cell [m] apart, from the origin "
       "on (an\nESDF); each within error of the distance; those from truncated_at on say \"at least so far\". Nothing "
       "stands beyond the\ngrid. For curves.");
-  module.def(
-      "distance_function",
+  define(
+      module, "distance_function",
       [](const py::function &function, const Array &centre, double radius, double lipschitz, double error) {
         return Shape{distanceOf(function, centre, radius, lipschitz, error)};
       },
@@ -253,8 +255,8 @@ void addShapes(py::module &module) {
       "radius "
       "of\ncentre. Values differ by at most lipschitz times the way, and are within error [m] of the distance: answers "
       "are\ncertified relative to error. Values that contradict this are refused. For curves.");
-  module.def(
-      "convex_function",
+  define(
+      module, "convex_function",
       [](const py::function &function, const Array &interior, double radius, double error, bool planar, double margin) {
         return Shape{convexOf(function, interior, radius, error, planar, margin)};
       },
@@ -265,8 +267,8 @@ void addShapes(py::module &module) {
       "function "
       "is\nnegative. Values are within error of the function. planar: of x and y alone, the body is flat, at z = 0. A "
       "function\nthat is seen not to be convex is refused with the places that show it.");
-  module.def(
-      "compound",
+  define(
+      module, "compound",
       [](const std::vector<Shape> &parts, const std::vector<Array> &poses) { return Shape{compoundOf(parts, poses)}; },
       py::arg("parts"), py::arg("poses"), "The union of convex shapes, each at its pose (4, 4).");
   module.def(
@@ -274,6 +276,7 @@ void addShapes(py::module &module) {
       [](const Array &position, const std::optional<Array> &quaternion) {
         cprox_pose pose = CPROX_POSE_IDENTITY;
         pose.position = toVector(position, "position");
+        if (!toEigen(pose.position).allFinite()) throw Error("position must be finite");
         if (quaternion) {
           if (quaternion->ndim() != 1 || quaternion->shape(0) != 4)
             throw Error("a quaternion is four numbers x, y, z, w");

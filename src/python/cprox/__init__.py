@@ -10,9 +10,11 @@ in metres, angles in radians, poses are homogeneous matrices of shape (4, 4). A 
     answer = cprox.distance(cprox.tube(curve, 0.2), wall)
     print(answer.lower, answer.upper, answer.t)
 """
+import operator as _operator
 import os as _os
 import struct as _struct
 import subprocess as _subprocess
+import sys as _sys
 import tempfile as _tempfile
 
 from pkgutil import extend_path as _extend_path
@@ -22,6 +24,11 @@ __path__ = _extend_path(__path__, __name__)
 
 from ._cprox import *  # noqa: E402,F401,F403
 from ._cprox import __version__  # noqa: E402,F401
+
+
+def _make(name, *arguments):
+    """For pickle: what a function of this package, or of one of its classes, makes of the arguments."""
+    return _operator.attrgetter(name)(_sys.modules[__name__])(*arguments)
 
 
 def edges(scene, joints, start, end, delta=0.0, self_collision=True, **options):
@@ -49,6 +56,9 @@ def check(certificate, program=None):
     if program is None:
         beside = _os.path.join(_os.path.dirname(_os.path.abspath(__file__)), 'curve_proximity', 'cprox_check')
         program = beside if _os.path.exists(beside) else 'cprox_check'
+    if not (isinstance(certificate, dict) and isinstance(certificate.get('record'), bytes) and isinstance(certificate.get('query'), str)):
+        raise TypeError('certificate must be a dict with record (bytes) and query (str), got ' + type(certificate).__name__
+                        + (f' of {", ".join(map(str, certificate))}' if isinstance(certificate, dict) else ''))
     record = certificate['record']
     with _tempfile.TemporaryDirectory(prefix='cprox-') as folder:
         path = _os.path.join(folder, 'certificate')
