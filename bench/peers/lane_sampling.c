@@ -64,7 +64,7 @@ SIMD_TARGET_AVX2 bool lane_sampling_hits(const cprox_edge_checker *c, const doub
   const int n = wanted > 1.0 ? (int)wanted : 1;
   for (int i = 0; i < n; i++) { /* spread over the whole edge each time, its end first */
     for (int l = 0; l < EDGE_LANES; l++) b.middle[l] = (float)((l + 1) * n - i) / (float)(EDGE_LANES * n) - 0.5f;
-    for (size_t k = 1; k < c->n_frames; k++) place_frame(&b, k, false);
+    for (size_t k = 1; k < c->n_frames; k++) place_frame(&b, k);
     for (size_t k = 0; k < c->n_parts; k++)
       if (part_hits(&b, k)) return true;
     for (size_t k = 0; k < c->n_lane_pairs; k++)

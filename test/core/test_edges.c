@@ -200,7 +200,8 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
         .obstacles = set, .pairs = pairs, .n_pairs = b.n, .self_pairs = selves, .n_self_pairs = n_selves};
     cprox_edge_checker *c = checker_of(b.robot, &q);
     assert_true(c->in_lanes && c->n_parts == b.n && c->n_lane_pairs == n_selves);
-    assert_true(edge_lanes_size(c) <= sizeof memory.lanes && edge_motion_size(c) <= sizeof memory.motion);
+    assert_true(edge_lanes_size(c, c->n_near + c->n_lane_pairs) <= sizeof memory.lanes &&
+                edge_motion_size(c) <= sizeof memory.motion);
 
     edge_path path;
     draw_path(&r, &b, scale, i % 2, &path);
@@ -223,7 +224,7 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
       batch.middle[l] = (float)(-0.5 + half * (2.0 * (double)rng_index(&r, (size_t)8 << depth) + 1.0));
     }
     batch.half2 = batch.half * batch.half;
-    for (size_t k = 1; k < c->n_frames && fits; k++) place_frame(&batch, k, true);
+    for (size_t k = 1; k < c->n_frames && fits; k++) place_frame(&batch, k), move_frame(&batch, k);
 
     const vec3 base = c->robot->n_axes > 0 ? c->robot->axes[0].at.p : vec(0, 0, 0);
     refused += !fits;

@@ -2,6 +2,7 @@
 #include "edges/edge_bound.h"
 
 #include <math.h>
+#include <string.h>
 
 /* By how much one joint's transforms turn what is behind it too much, in EDGE_U, without its angle's own error; what a
  * product with a vector adds; what the vector to an obstacle adds. doc/rounding.md, Edges */
@@ -120,8 +121,8 @@ static bool take_way(const edge_frame *f, const edge_way *way, edge_motion *m, s
   b->value_error = error + u * ((f->shifts ? 2.0 * fabs(middle) : 2.0 * PI) + (degree > 1 ? 2.0 : 1.5) * fabs(rate));
   b->rate_error = degree > 1 ? error + u * 3.0 * fabs(rate) : 0.0;
   double half = 0.5; /* 2^(1-k) */
-  for (size_t k = 2; k <= EDGE_POWERS + 1; k++) {
-    const double power = k <= degree ? f->multiplier * way->power[k] : 0.0, size = fabs(power) * half;
+  for (size_t k = 2; k <= degree; k++) {
+    const double power = f->multiplier * way->power[k], size = fabs(power) * half;
     m->more[i * EDGE_POWERS + k - 2] = (float)power, m->more_rate[i * EDGE_POWERS + k - 2] = (float)((double)k * power);
     half *= 0.5, beside += 0.5 * size;
     b->value_error += (double)(k + 1) * u * size;
@@ -237,6 +238,7 @@ bool edge_motion_fill(const cprox_edge_checker *c, const double *from, const dou
 bool edge_motion_fill_along(const cprox_edge_checker *c, const cprox_motion *along, const motion_interval *over,
                             edge_motion *m) {
   begin(m);
+  memset(m->more, 0, 2 * EDGE_POWERS * c->n_frames * sizeof *m->more); /* what is beyond a variable's own degree */
   for (size_t i = 1; i < c->n_frames; i++) {
     const edge_way way = way_along(along, c->frames[i].variable, over);
     if (!add_frame(c, &way, m, i)) return false;

@@ -256,8 +256,9 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   for (size_t i = first; i < last; i++) n_obstacles += body_n_parts(q->targets[i].body);
   if (n_obstacles > MOST_TARGETS) return false;
   const size_t scene = aligned(edge_model_scene_size(c, q->targets, first, last)), moves = aligned(edge_motion_size(c)),
-               rows = aligned(edge_lanes_size(c)), reaches = aligned(c->n_parts * sizeof(double)),
-               noted = c->n_parts * n_obstacles + c->n_lane_pairs + 1;
+               reaches = aligned(c->n_parts * sizeof(double)), near = c->n_parts * n_obstacles,
+               noted = near + c->n_lane_pairs + 1,
+               rows = aligned(edge_lanes_size(c, (near < MOST_NEAR ? near : MOST_NEAR) + c->n_lane_pairs));
   char *memory = workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
                                    64 + rows + scene + moves + reaches + 4 * noted * sizeof(uint32_t));
   if (!memory) return false;

@@ -34,6 +34,7 @@ typedef struct lane_batch {
   edge_found *found;
   lane_frame *frames;
   lane_part *parts;
+  lane *apart2; /* squares of distances of parts from obstacles, by `near` */
   lane_interval interval[EDGE_LANES];
   uint32_t all;   /* the lanes that are in use */
   uint32_t split; /* those that are to be halved: nothing more is asked about them */
@@ -67,22 +68,21 @@ EDGE_INLINE void lane_compose(const lane_frame *above, const edge_frame *f, lane
   }
 }
 
-/* moves: its velocities are wanted, too. */
-EDGE_INLINE void place_frame(lane_batch *b, size_t i, bool moves) {
+/* Horner's scheme from the highest power of all variables down to the second, then the first one. */
+EDGE_INLINE lane powers_at(const lane_batch *b, const float *more, float first) {
+  lane higher = lane_all(0.0f);
+  for (size_t k = b->motion->degree > 1 ? b->motion->degree - 1 : 0; k-- > 0;)
+    higher = lane_all(more[k]) + b->middle * higher;
+  return b->motion->degree > 1 ? lane_all(first) + b->middle * higher : lane_all(first);
+}
+
+/* Where a frame is. Its speed is left to move_frame(), and is the way from its parent's origin to its own one. */
+EDGE_INLINE void place_frame(lane_batch *b, size_t i) {
   const edge_frame *f = &b->c->frames[i];
   const lane_frame *above = &b->frames[f->parent];
   lane_frame *to = &b->frames[i];
   const edge_motion *m = b->motion;
-  lane rate = lane_all(m->rate[i]), first = rate;
-  if (m->degree > 1) { /* Horner's scheme from the highest power of all variables down to the second */
-    lane higher = lane_all(0.0f), slope = higher;
-    for (size_t k = m->degree - 1; k-- > 0;) {
-      higher = lane_all(m->more[i * EDGE_POWERS + k]) + b->middle * higher;
-      slope = lane_all(m->more_rate[i * EDGE_POWERS + k]) + b->middle * slope;
-    }
-    first = rate + b->middle * higher, rate = rate + b->middle * slope;
-  }
-  const lane value = lane_all(m->middle[i]) + b->middle * first;
+  const lane value = lane_all(m->middle[i]) + b->middle * powers_at(b, m->more + i * EDGE_POWERS, m->rate[i]);
   lane r[9];
   lane_compose(above, f, r);
   lane3 d = lane_turn(above, f->p);
@@ -98,11 +98,18 @@ EDGE_INLINE void place_frame(lane_batch *b, size_t i, bool moves) {
       to->r[row + 2] = r[row + 2];
     }
   }
-  to->o = lane3_add(above->o, d);
-  if (!moves) return;
-  const lane3 along = {r[2] * rate, r[5] * rate, r[8] * rate};
+  to->o = lane3_add(above->o, d), to->speed = d;
+}
+
+/* How a frame that is placed moves. */
+EDGE_INLINE void move_frame(lane_batch *b, size_t i) {
+  const edge_frame *f = &b->c->frames[i];
+  const lane_frame *above = &b->frames[f->parent];
+  lane_frame *to = &b->frames[i];
+  const lane rate = powers_at(b, b->motion->more_rate + i * EDGE_POWERS, b->motion->rate[i]);
+  const lane3 along = {to->r[2] * rate, to->r[5] * rate, to->r[8] * rate};
   to->spin = f->shifts ? above->spin : lane3_add(above->spin, along);
-  to->speed = lane3_add(above->speed, lane3_cross(above->spin, d));
+  to->speed = lane3_add(above->speed, lane3_cross(above->spin, to->speed));
   if (f->shifts) to->speed = lane3_add(to->speed, along);
 }
 
@@ -245,23 +252,25 @@ EDGE_TARGET static void suspect(lane_batch *b, const lane_two *two, uint32_t lan
   }
 }
 
-/* A ball of the robot comes near something in some lanes. `outer` and `inner` are the radii of both sides together,
- * with what clear and hits need, and what rounding may cost. Whether contact is proven. */
-EDGE_INLINE bool settle_near(lane_batch *b, uint32_t pair, const lane_two *two, lane distance2, uint32_t near,
-                             float outer, float inner) {
-  const uint32_t touching = proven_within(distance2, inner) & b->all;
-  if (touching) {
-    b->found->verdict = CPROX_VERDICT_VIOLATED, b->found->is_suspect = false;
-    note_contact(b, two, touching);
-    return true;
-  }
+/* Whether two are proven to be within a radius of each other in some lane. */
+EDGE_INLINE bool proves_contact(lane_batch *b, const lane_two *two, lane distance2, float radius) {
+  const uint32_t touching = proven_within(distance2, radius) & b->all;
+  if (!touching) return false;
+  b->found->verdict = CPROX_VERDICT_VIOLATED, b->found->is_suspect = false;
+  note_contact(b, two, touching);
+  return true;
+}
+
+/* A ball of the robot comes near something in some lanes, but contact is not proven. `outer` is the radii of both sides
+ * together, with what clear needs, and what rounding may cost. */
+EDGE_INLINE void settle_near(lane_batch *b, uint32_t pair, const lane_two *two, lane distance2, uint32_t near,
+                             float outer) {
   const uint32_t still = near & within_still(distance2, outer);
   if (still) {
     leave_open(b, pair, still);
     suspect(b, two, still, lane_all(outer) - lane_sqrt(distance2));
   }
   halve(b, pair, near & ~still);
-  return false;
 }
 
 /* The radius within which contact is proven of two balls, or of one and an obstacle (its inner radius 0); negative
@@ -279,6 +288,43 @@ EDGE_INLINE lane moves_of(const lane_batch *b, lane3 speed, edge_half_bound boun
 
 #include "edges/normals.h"
 
+/* ---- contact ---- */
+
+/* In the middles of intervals: only places are needed. Most edges that are not clear end here. */
+
+EDGE_TARGET static bool part_touches(lane_batch *b, size_t i, const edge_obstacle *o) {
+  const edge_part *part = &b->c->parts[i];
+  const lane_frame *own = &b->frames[part->frame];
+  need(b, CPROX_EDGE_COVER);
+  for (const edge_ball *ball = b->c->balls + part->first; ball < b->c->balls + part->first + part->n; ball++) {
+    const lane_two two = {ball->geometry, o->target, false};
+    const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, b->motion->room[i] + o->grown);
+    if (inner > 0.0f &&
+        proves_contact(b, &two, distance2_from(o, lane3_add(own->o, lane_turn(own, ball->centre))), inner))
+      return true;
+  }
+  return false;
+}
+
+/* Distances of a part from all obstacles; whether contact of a ball is proven. Its speed is left to
+ * move_part(), and is the way from its frame's origin. */
+EDGE_TARGET static bool place_part(lane_batch *b, size_t i) {
+  const edge_part *part = &b->c->parts[i];
+  const lane_frame *own = &b->frames[part->frame];
+  const bool by_balls = !part->coarse && !part->by_hulls;
+  const float radius = part->core + (float)b->c->hit_within; /* some ball's centre may be so near */
+  const lane3 way = lane_turn(own, part->centre), centre = lane3_add(own->o, way);
+  b->parts[i] = (lane_part){.centre = centre, .speed = way};
+  for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
+    const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
+    const lane distance2 = distance2_from(o, centre);
+    b->apart2[k] = distance2;
+    if (by_balls && o->grown < INFINITY && (within_still(distance2, radius) & b->all) && part_touches(b, i, o))
+      return true;
+  }
+  return false;
+}
+
 /* ---- obstacles ---- */
 
 EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, const edge_obstacle *o) {
@@ -293,32 +339,40 @@ EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, con
     const lane moves = moves_of(b, speed, b->motion->frames[part->frame], ball->reach);
     const float outer = ball->outer + beyond + room;
     const uint32_t near = within(b, near_at, distance2, moves, outer) & b->all & ~b->split;
+    if (!near) continue;
     const lane_two two = {ball->geometry, o->target, false};
-    const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, room + o->grown);
-    if (near && settle_near(b, near_at, &two, distance2, near, outer, inner)) return true;
+    if (proves_contact(b, &two, distance2, sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, room + o->grown)))
+      return true;
+    settle_near(b, near_at, &two, distance2, near, outer);
   }
   return false;
 }
 
 #include "edges/standing.h"
 
+/* How the centre of a part that is placed moves. */
+EDGE_INLINE void move_part(lane_batch *b, size_t i) {
+  const lane_frame *own = &b->frames[b->c->parts[i].frame];
+  b->parts[i].speed = lane3_add(own->speed, lane3_cross(own->spin, b->parts[i].speed));
+}
+
 EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
   const edge_part *part = &b->c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
-  lane_part *at = &b->parts[i];
-  at->centre = place_point(own, part->centre, &at->speed);
+  const lane_part *at = &b->parts[i];
   if (part->n_near == 0) return false;
   const lane moves = moves_of(b, at->speed, b->motion->frames[part->frame], (float)part->reach_of_centre) +
                      b->half * lane_sqrt(lane3_norm2(own->spin)) * lane_all(part->core);
   const float radius = part->outer + (float)b->c->clear_beyond + b->motion->room[i];
   for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
     const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
-    const uint32_t near = within(b, k, distance2_from(o, at->centre), moves, radius) & b->all & ~b->split;
-    if (near && part->coarse) {
+    const uint32_t near = within(b, k, b->apart2[k], moves, radius) & b->all & ~b->split;
+    if (!near) continue;
+    if (part->coarse) {
       leave_open(b, k, near);
-    } else if (near && (o->tree || o->hull.n > 0)) {
+    } else if (o->tree || o->hull.n > 0) {
       if (open_standing(b, i, k, o, near)) return true;
-    } else if (near && (part->by_hulls ? open_hulls(b, i, k, o, near) : open_part(b, i, k, o))) {
+    } else if (part->by_hulls ? open_hulls(b, i, k, o, near) : open_part(b, i, k, o)) {
       return true;
     }
   }
@@ -347,9 +401,11 @@ EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float cos
       const lane distance2 = lane3_norm2(lane3_sub(at, its));
       const float outer = ball->outer + beside->outer + room;
       const uint32_t near = within(b, number, distance2, moves, outer) & b->all & ~b->split;
-      const float inner = sure_radius(ball->inner, beside->inner, (float)c->hit_within, costs);
+      if (!near) continue;
       const lane_two two = {ball->geometry, beside->geometry, true};
-      if (near && settle_near(b, number, &two, distance2, near, outer, inner)) return true;
+      if (proves_contact(b, &two, distance2, sure_radius(ball->inner, beside->inner, (float)c->hit_within, costs)))
+        return true;
+      settle_near(b, number, &two, distance2, near, outer);
     }
   }
   return false;
@@ -367,13 +423,14 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
                      b->half * lane_sqrt(lane3_norm2(lane3_sub(own->spin, other->spin))) * lane_all(first->core);
   const uint32_t number = (uint32_t)(b->c->n_near + i);
   const uint32_t near = within(b, number, distance2, moves, first->outer + second->outer + room) & b->all & ~b->split;
-  if (near && (first->coarse || second->coarse)) leave_open(b, number, near);
-  if (!near || first->coarse || second->coarse) return false;
-  if (first->by_hulls || second->by_hulls) {
+  if (!near) return false;
+  if (first->coarse || second->coarse)
+    leave_open(b, number, near);
+  else if (first->by_hulls || second->by_hulls)
     open_hull_pair(b, i, near);
-    return false;
-  }
-  return open_pair(b, i, room, costs);
+  else
+    return open_pair(b, i, room, costs);
+  return false;
 }
 
 /* ---- the search ---- */
@@ -381,13 +438,17 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
 /* Whether contact is proven. */
 EDGE_TARGET static bool look_at_batch(lane_batch *b) {
   const cprox_edge_checker *c = b->c;
-  for (size_t i = 1; i < c->n_frames; i++) place_frame(b, i, true);
-  for (size_t i = 0; i < c->n_parts; i++)
-    if (look_at_obstacles(b, i)) return true;
+  for (size_t i = 1; i < c->n_frames; i++) place_frame(b, i);
+  for (size_t i = c->n_parts; i-- > 0;)
+    if (place_part(b, i)) return true;
+  for (size_t i = 1; i < c->n_frames; i++) move_frame(b, i);
+  for (size_t i = 0; i < c->n_parts; i++) move_part(b, i);
   if (!b->related) edge_motion_relate(c, b->motion);
   b->related = true;
   for (size_t i = 0; i < c->n_lane_pairs; i++)
     if (look_at_pair(b, i)) return true;
+  for (size_t i = 0; i < c->n_parts; i++)
+    if (look_at_obstacles(b, i)) return true;
   return false;
 }
 
@@ -432,6 +493,7 @@ EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *mot
   b.least = lane_all(INFINITY);
   b.frames = (lane_frame *)(void *)lanes->memory;
   b.parts = (lane_part *)(void *)(b.frames + c->n_frames);
+  b.apart2 = (lane *)(void *)(b.parts + c->n_parts);
   memset(&b.frames[0], 0, sizeof b.frames[0]);
   for (int k = 0; k < 9; k += 4) b.frames[0].r[k] = lane_all(1.0f);
   *found = (edge_found){.verdict = CPROX_VERDICT_CLEAR, .level = CPROX_EDGE_BALL};

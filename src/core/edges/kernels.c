@@ -9,7 +9,7 @@ edge_kernel *edge_kernel_at(simd_level level) {
   return edge_kernel_plain;
 }
 
-/* Twelve rows of lanes a frame's state with its velocities at most 18, three a part. */
-size_t edge_lanes_size(const cprox_edge_checker *c) {
-  return (18 * c->n_frames + 6 * c->n_parts) * EDGE_LANES * sizeof(float);
+/* 18 rows of lanes a frame with its velocities, 6 a part, one a distance. */
+size_t edge_lanes_size(const cprox_edge_checker *c, size_t n_asked) {
+  return (18 * c->n_frames + 6 * c->n_parts + n_asked) * EDGE_LANES * sizeof(float);
 }

@@ -194,7 +194,8 @@ EDGE_TARGET static bool open_pack(lane_batch *b, lane_standing *s, const lane_pi
       const float low[3] = {boxes.low.x[e], boxes.low.y[e], boxes.low.z[e]},
                   high[3] = {boxes.high.x[e], boxes.high.y[e], boxes.high.z[e]};
       const lane distance2 = distance2_from_box(ball->x, low, high);
-      if (settle_near(b, s->pair, &two, distance2, lanes, ball->radius, inner)) return true;
+      if (proves_contact(b, &two, distance2, inner)) return true;
+      settle_near(b, s->pair, &two, distance2, lanes, ball->radius);
       s->left |= lanes;
       continue;
     }
