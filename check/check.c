@@ -16,6 +16,7 @@
 #include "quick.h"
 #include "robot_check.h"
 #include "support.h"
+#include "winding.h"
 
 enum { MAX_DEPTH = 256 };
 
@@ -79,6 +80,14 @@ static sign separation(const section *c, int level, const double normal[3], part
 /* One leaf. More bits are for what fewer leave open, and for nothing else: to refuse it needs no more than to accept.
  */
 static bool separates(const section *c, const double normal[3], part mine, const part *theirs) {
+  const set group =
+      theirs && c->set->corners > 0 ? set_group(c->set, (size_t)theirs->from, (size_t)theirs->to) : (set){.corners = 0};
+  section of_group = *c;
+  if (group.n > 0) {
+    of_group.set = &group;
+    theirs = NULL;
+    c = &of_group;
+  }
   quick_query quick = {.set = c->set, .mover = c->mover, .target = c->target, .from = mine.from, .to = mine.to};
   if (theirs) {
     quick.theirs[0] = theirs->from;
@@ -111,7 +120,8 @@ static const char *check_convex(const section *c) {
   return from == (double)c->mover->n ? NULL : "its parts do not cover the curve";
 }
 
-/* A tree in preorder: leaves {0, n}; {1 or 2, cut} and two trees for a pair whose first or second part is cut. */
+/* A tree in preorder: leaves {0, n}; {1 or 2, cut} and two trees for a pair whose first or second part is cut. Parts of
+ * elements are counted by these. */
 static const char *check_tree(const section *c, part mine, part theirs, int depth) {
   const unsigned char tag = reader_byte(c->in);
   if (c->in->bad || tag > 2 || depth > MAX_DEPTH) return "its tree is broken";
@@ -124,6 +134,7 @@ static const char *check_tree(const section *c, part mine, part theirs, int dept
   const double at = reader_number(c->in);
   part *whole = tag == 1 ? &mine : &theirs;
   if (c->in->bad || !(at > whole->from && at < whole->to)) return "a cut lies outside its part";
+  if (tag == 2 && c->set->corners > 0 && at != floor(at)) return "a cut lies inside an element";
   const part all = *whole;
   *whole = (part){all.from, at};
   const char *fault = check_tree(c, mine, theirs, depth + 1);
@@ -145,14 +156,20 @@ static const char *read_pieces(reader *in, const curve *c, pieces *p, double **b
 }
 
 static const char *check_section(section *c) {
-  const unsigned char wanted = c->set->kind == CURVE ? 2 : 1;
+  const unsigned char wanted = c->set->kind == CURVE ? 2 : c->set->corners > 0 ? 3 : 1;
+  const part all = {0.0, (double)c->mover->n};
   if (reader_byte(c->in) != wanted) return "it is about another kind of target";
   if (wanted == 1) return check_convex(c);
+  if (wanted == 3) {
+    const char *broken = check_tree(c, all, (part){0.0, (double)set_elements(c->set)}, 0);
+    if (broken || c->set->kind != SOLID || winding_pieces_begin_outside(c->set, c->mover)) return broken;
+    return "the curve does not begin outside the mesh";
+  }
   pieces target = {0};
   double *breaks = NULL;
   const char *fault = read_pieces(c->in, &c->set->curve, &target, &breaks);
   c->target = &target;
-  if (!fault) fault = check_tree(c, (part){0.0, (double)c->mover->n}, (part){0.0, (double)target.n}, 0);
+  if (!fault) fault = check_tree(c, all, (part){0.0, (double)target.n}, 0);
   c->target = NULL;
   pieces_free(&target);
   free(breaks);

@@ -210,3 +210,20 @@ void kinematics_motion(const robot *r, const axis_state *states, const body *mov
     }
   }
 }
+
+/* De Casteljau at u: all points become the value there, as if the variable stood still. */
+static void hold_at(num *c, size_t degree, double u) {
+  const num s = num_of(u);
+  for (size_t level = 1; level <= degree; level++)
+    for (size_t i = 0; i + level <= degree; i++) c[i] = num_add(c[i], num_mul(s, num_sub(c[i + 1], c[i])));
+  for (size_t i = 1; i <= degree; i++) c[i] = c[0];
+}
+
+void kinematics_hold(const robot *r, size_t segment, double u, num *points, axis_state *states, place *places) {
+  const size_t row = ROBOT_MAX_DEGREE + 1;
+  for (size_t i = 0; i < r->n_variables * row; i++) points[i] = robot_points(r, segment, 0)[i];
+  for (size_t v = 0; v < r->n_variables; v++)
+    if (r->moved[v]) hold_at(points + v * row, r->degrees[segment], u);
+  kinematics_axes(r, r->degrees[segment], points, states);
+  for (size_t i = 0; i < r->n_bodies; i++) places[i] = kinematics_place(&r->bodies[i], states);
+}

@@ -21,6 +21,9 @@ void kinematics_axes(const robot *r, size_t degree, const num *points, axis_stat
 /* The world place of a body in the middle. */
 place kinematics_place(const body *b, const axis_state *states);
 
+/* The places of all bodies at u of a segment. points: room for those of a segment, states: for all axes. */
+void kinematics_hold(const robot *r, size_t segment, double u, num *points, axis_state *states, place *places);
+
 /* A body's motion as seen from another one. */
 typedef struct body_motion {
   vec v, omega, a, alpha; /* of its centre, in the middle */

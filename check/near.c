@@ -2,12 +2,14 @@
 /* At the parameter t the point y of the mover is within delta + radius + margin of a point of the set: then the
  * distance is at most delta. Everything is seen from the set's own frame. What the point of the set is:
  *   a curve's own at a parameter; a point itself; of four vertices of a polytope the mean by weights, or where all
- * weights are 0 y itself, inside their tetrahedron; of the other bodies y - v, v being given. */
+ * weights are 0 y itself, inside their tetrahedron; of elements one of them, as of a polytope; of the other bodies y -
+ * v, v being given. */
 #include "near.h"
 
 #include "check.h"
 #include "pieces.h"
 #include "support.h"
+#include "winding.h"
 
 /* out = the point of the curve at t, at a jump its limit from the left or from the right, within the remainder */
 static const char *point_at(iv out[3], iv *remainder, const curve *c, double t, bool left) {
@@ -186,7 +188,26 @@ bool near_read_point(iv x[3], const set *s, reader *in) {
   return !in->bad && contains(s, x);
 }
 
+/* One element, or that y is inside of a closed mesh. */
+static const char *check_element(const set *s, iv *y, iv *apart, reader *in, bool left) {
+  const uint32_t element = reader_count(in);
+  if (in->bad) return "it is cut off or not a number";
+  if (element == UINT32_MAX && s->kind == SOLID) {
+    const vec seen = winding_ball_of(y), centre = vec_of(s->centre), own = vec_sub(&seen, &centre);
+    return winding_side(s, &own) == INSIDE ? NULL : "the point is not inside the mesh";
+  }
+  if (element >= set_elements(s)) return "it is about no element of the target";
+  set one = set_group(s, element, element + (size_t)1);
+  one.kind = POLYTOPE;
+  iv *ball = iv_new(1);
+  iv_set_d(ball, s->size[0]);
+  iv_add(apart, apart, ball);
+  iv_free(ball, 1);
+  return near_check_point(&one, y, apart, in, left);
+}
+
 const char *near_check_point(const set *s, iv *y, iv *apart, reader *in, bool left) {
+  if (s->corners > 0) return check_element(s, y, apart, in, left);
   iv *v = iv_new(3), *w = iv_new(2);
   const char *fault = NULL;
   if (s->kind == CURVE) { /* the point of the other curve */

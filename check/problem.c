@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "robot.h"
+#include "winding.h"
 #include "words.h"
 
 enum { MAX_DEGREE = 60 };
@@ -110,10 +111,35 @@ void set_free(set *s) {
 
 /* ---- targets ---- */
 
+set set_group(const set *s, size_t begin, size_t end) {
+  set group = *s;
+  group.kind = s->kind == POINTS ? HULL : POLYTOPE;
+  group.vertices = s->vertices + begin * s->corners;
+  group.n = (end - begin) * s->corners;
+  group.corners = 0;
+  return group;
+}
+
+/* N elements: three corners of a triangle, a point, the two corners of a cell, which become eight. */
+static void read_elements(words *w, set *s) {
+  s->corners = s->kind == POINTS ? 1 : s->kind == CELLS ? 8 : 3;
+  const size_t n = words_count(w);
+  if (n == 0) w->wrong = true;
+  s->vertices = words_room(w, w->wrong ? 1 : n, s->corners * sizeof *s->vertices);
+  for (size_t i = 0; i < n && !w->wrong; i++) {
+    double(*v)[3] = s->vertices + i * s->corners, ends[2][3];
+    words_numbers(w, s->kind == CELLS ? 6 : 3 * s->corners, s->kind == CELLS ? ends[0] : v[0]);
+    for (size_t k = 0; s->kind == CELLS && k < 24; k++) v[k / 3][k % 3] = ends[k / 3 >> k % 3 & 1][k % 3];
+  }
+  s->n = w->wrong ? 0 : n * s->corners;
+  if (s->kind == SOLID && !w->wrong && !winding_is_closed(s)) w->wrong = true;
+}
+
 void words_set(words *w, set *s) {
-  static const char *const names[] = {"point",     "sphere",    "box",      "capsule", "cylinder", "cone",
-                                      "ellipsoid", "halfspace", "polytope", "hull",    "curve"};
-  static const size_t sizes[] = {0, 1, 3, 2, 2, 2, 3, 4, 0, 1, 0};
+  static const char *const names[] = {"point", "sphere",    "box",       "capsule",  "cylinder",
+                                      "cone",  "ellipsoid", "halfspace", "polytope", "hull",
+                                      "curve", "triangles", "solid",     "points",   "cells"};
+  static const size_t sizes[] = {0, 1, 3, 2, 2, 2, 3, 4, 0, 1, 0, 0, 0, 1, 0};
   s->margin = words_number(w);
   s->n_poses = words_count(w);
   if (!(s->margin >= 0.0) || s->n_poses > 2) w->wrong = true;
@@ -123,11 +149,12 @@ void words_set(words *w, set *s) {
     const double *q = s->poses[i].q;
     if (q[0] == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0) w->wrong = true;
   }
-  s->kind = (kind)words_choose(w, names, 11);
+  s->kind = (kind)words_choose(w, names, sizeof names / sizeof *names);
   words_numbers(w, sizes[s->kind], s->size);
   for (size_t i = 0; s->kind != HALFSPACE && i < sizes[s->kind]; i++)
     if (!(s->size[i] >= 0.0)) w->wrong = true;
-  if (s->kind == POINT || s->kind == POLYTOPE || s->kind == HULL) words_numbers(w, 3, s->centre);
+  const bool elements = s->kind > CURVE;
+  if (s->kind == POINT || s->kind == POLYTOPE || s->kind == HULL || elements) words_numbers(w, 3, s->centre);
   if (s->kind == POLYTOPE || s->kind == HULL) {
     s->n = words_count(w);
     if (s->n == 0) w->wrong = true;
@@ -135,6 +162,7 @@ void words_set(words *w, set *s) {
     for (size_t i = 0; i < s->n && !w->wrong; i++) words_numbers(w, 3, s->vertices[i]);
   }
   if (s->kind == CURVE) read_curve(w, &s->curve);
+  if (elements && !w->wrong) read_elements(w, s);
 }
 
 /* ---- lines ---- */

@@ -18,26 +18,51 @@ typedef struct curve {
   double *knots;
 } curve;
 
-typedef enum kind { POINT, SPHERE, BOX, CAPSULE, CYLINDER, CONE, ELLIPSOID, HALFSPACE, POLYTOPE, HULL, CURVE } kind;
+typedef enum kind {
+  POINT,
+  SPHERE,
+  BOX,
+  CAPSULE,
+  CYLINDER,
+  CONE,
+  ELLIPSOID,
+  HALFSPACE,
+  POLYTOPE,
+  HULL,
+  CURVE,
+  /* unions of elements: triangles without or with the inside, balls about points, boxes along the axes */
+  TRIANGLES,
+  SOLID,
+  POINTS,
+  CELLS
+} kind;
 
 /* position x y z, quaternion w x y z of any norm */
 typedef struct pose {
   double x[3], q[4];
 } pose;
 
-/* A convex body or a curve, inside its poses (the outermost first), and a ball added to it. */
+/* A convex body, a curve or a union of elements, inside its poses (the outermost first), and a ball added to it. */
 typedef struct set {
   kind kind;
   double margin;
   size_t n_poses;
   pose poses[2];
   double size[4];   /* as the text has them */
-  double centre[3]; /* POINT, POLYTOPE, HULL */
+  double centre[3]; /* POINT, POLYTOPE, HULL, elements */
   size_t n;
-  double (*vertices)[3]; /* about the centre */
+  double (*vertices)[3]; /* about the centre; of elements `corners` each, in a row */
+  size_t corners;        /* 0: it is no union of elements */
   curve curve;
   char name[64]; /* whose it is, or "" */
 } set;
+
+static inline size_t set_elements(const set *s) {
+  return s->corners > 0 ? s->n / s->corners : 0;
+}
+
+/* The hull of the elements begin ... end - 1, which refers to the vertices of the set. */
+set set_group(const set *s, size_t begin, size_t end);
 
 typedef struct mover {
   char id[256];

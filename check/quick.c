@@ -64,6 +64,18 @@ static rot rot_of_pose(const pose *p) {
   return rot_of_quaternion(q);
 }
 
+vec quick_to_frame(const set *s, const vec *p) {
+  vec own = *p;
+  for (size_t i = 0; i < s->n_poses; i++) {
+    const vec x = vec_of(s->poses[i].x);
+    own = vec_sub(&own, &x);
+    if (!turns(&s->poses[i])) continue;
+    const rot r = rot_of_pose(&s->poses[i]);
+    own = rot_turn(&r, &own, true);
+  }
+  return own;
+}
+
 bool quick_separates(const quick_query *q) {
   const set *s = q->set;
   if (!used) return false;

@@ -5,6 +5,8 @@
 
 #include "pieces.h"
 
+struct vec;
+
 /* A part of the mover's pieces; a set, or the part [theirs] of the pieces of a set that is a curve. */
 typedef struct quick_query {
   const set *set;
@@ -16,6 +18,9 @@ typedef struct quick_query {
 
 /* True: the direction separates, as separates() of check.c means it. False: nothing is known. */
 bool quick_separates(const quick_query *q);
+
+/* A world point in the set's own frame; of ball.h. */
+struct vec quick_to_frame(const set *s, const struct vec *p);
 
 /* For tests, which compare both ways: false, and from now on nothing is known in doubles. */
 void quick_use(bool on);

@@ -83,7 +83,7 @@ static void read_part(words *w, robot *r) {
   const size_t on = words_size(w);
   set *s = &r->parts[r->n_parts++];
   words_set(w, s);
-  if (on >= r->n_links || s->kind == HALFSPACE || s->kind == CURVE) w->wrong = true;
+  if (on >= r->n_links || s->kind == HALFSPACE || s->kind >= CURVE) w->wrong = true;
   if (!w->wrong) add_body(r, s, &r->links[on]);
 }
 
@@ -148,6 +148,7 @@ void robot_forget(robot *r) {
   free(r->axes);
   free(r->parts);
   free(r->bodies);
+  for (size_t i = 0; r->pairs && i < r->n_pairs; i++) free(r->pairs[i].items);
   free(r->pairs);
   free(r->rest);
   free(r->moved);

@@ -32,7 +32,7 @@ typedef struct hook {
   place at;
 } hook;
 
-/* A convex set on an axis, -1: one that stands. */
+/* A convex set on an axis, -1: one that stands, which may be a union of elements. */
 typedef struct body {
   const set *shape;
   int axis;
@@ -41,10 +41,19 @@ typedef struct body {
   double middle[3], half[3]; /* of a box about it in its own frame; only to choose by */
 } body;
 
+/* What stands, or a part of its elements. */
+typedef struct item {
+  size_t begin, end;                          /* elements; not of a convex body */
+  double middle[3], half[3], low[3], high[3]; /* boxes, about the body's centre: to choose by; of all vertices */
+  size_t inner;                               /* the first of the two that it is cut into; 0: it is not */
+  double normal[3];                           /* the last one given, in the frame of what stands */
+  bool given;
+} item;
+
 typedef struct pair {
   size_t moving, standing; /* bodies */
-  double normal[3];        /* the last one given, in the frame of what stands */
-  bool given;
+  item *items;             /* while a certificate is read: the first one is the whole */
+  size_t n_items, room;
 } pair;
 
 typedef struct robot {

@@ -4,6 +4,10 @@
  * round what stands to the centre of what moves. What neither settles is open on both halves; an interval that is not
  * cut must settle all.
  *
+ * Of a union of elements a pair has items: ranges of these. The first one is all of them; the certificate cuts an item
+ * into two, which are items from then on. One that was cut is tried by the box round it; where that does not settle it,
+ * its two are tried.
+ *
  * A direction n, fixed in what stands, settles a pair if in the middle its plane parts the two by more than delta and
  * the way that points of the moving body may take (first order), or if the second or third order expansion of n·x over
  * the interval stays above delta. */
@@ -14,6 +18,7 @@
 #include "kinematics.h"
 #include "span.h"
 #include "trajectory.h"
+#include "winding.h"
 
 enum { MAX_DEPTH = 64 };
 
@@ -41,11 +46,32 @@ typedef struct walk {
 /* A pair over the interval, seen from what stands. */
 typedef struct view {
   const body *moving, *standing;
+  const item *item;
+  const set *shape; /* of what stands, NULL: the box round the item, and the ball about its elements */
   const place *at, *from;
-  double pad; /* both margins */
-  vec apart;  /* of the centres */
+  vec apart; /* of the centres */
   const body_motion *motion;
 } view;
+
+/* An item that no direction has settled yet. */
+typedef struct open_item {
+  size_t pair, item;
+} open_item;
+
+typedef struct open_list {
+  open_item *at;
+  size_t n, room;
+} open_list;
+
+/* max n·(x - centre) over what stands. */
+static num highest(const view *v, const vec *n) {
+  const set *s = v->standing->shape;
+  if (v->shape) return span_along(v->shape, v->standing->radius, n);
+  double most = s->size[0] * length_of(n->m);
+  for (int k = 0; k < 3; k++) most += fmax(n->m[k] * v->item->low[k], n->m[k] * v->item->high[k]);
+  const double reach = 2.0 * v->standing->radius; /* of a corner of the box */
+  return (num){most, GROW(reach * (n->e + 16.0 * BALL_U * length_of(n->m)))};
+}
 
 /* min d·(x - centre) over the moving body, without margin. */
 static num lowest(const view *v, const vec *d) {
@@ -62,7 +88,7 @@ static bool is_beyond(num f, double rest) {
 static bool settles(const walk *w, const view *v, const double own[3]) {
   const vec n_own = vec_of(own), n = rot_turn(&v->from->r, &n_own, false);
   const double size = vec_top(&n_own), moving_pad = v->moving->shape->margin, standing_pad = v->standing->shape->margin;
-  const num start = num_sub(vec_dot(&n, &v->apart), span_along(v->standing->shape, v->standing->radius, &n_own));
+  const num start = num_sub(vec_dot(&n, &v->apart), highest(v, &n_own));
   const double limit = GROW((w->delta + standing_pad) * size);
   ++*w->tries;
   if (!(size > SHORTEST && size < LONGEST)) return false;
@@ -101,7 +127,7 @@ static bool settles(const walk *w, const view *v, const double own[3]) {
 static void default_normal(const view *v, double n[3]) {
   const vec y = rot_turn(&v->from->r, &v->apart, true);
   for (int k = 0; k < 3; k++) {
-    const double from = y.m[k] - v->standing->middle[k], half = v->standing->half[k];
+    const double from = y.m[k] - v->item->middle[k], half = v->item->half[k];
     n[k] = v->standing->shape->kind == HALFSPACE ? v->standing->shape->size[k]
            : from > half                         ? from - half
            : from < -half                        ? from + half
@@ -109,9 +135,47 @@ static void default_normal(const view *v, double n[3]) {
   }
 }
 
-/* The last direction given, then the one that needs not be given. */
-static bool is_settled(walk *w, const pair *p) {
+/* By the last direction given, then by the one that needs not be given. */
+static bool is_settled_by(const walk *w, const view *v) {
+  double n[3];
+  default_normal(v, n);
+  const bool flat = v->standing->shape->kind == HALFSPACE;
+  return (v->item->given && !flat && settles(w, v, v->item->normal)) || settles(w, v, n);
+}
+
+static bool push(open_list *list, size_t pair_index, size_t item_index) {
+  if (list->n == list->room) {
+    open_item *more = realloc(list->at, (2 * list->room + 16) * sizeof *more);
+    if (!more) return false;
+    list->at = more;
+    list->room = 2 * list->room + 16;
+  }
+  list->at[list->n++] = (open_item){pair_index, item_index};
+  return true;
+}
+
+/* What is not settled of an item joins the list; false where memory is out. */
+static bool try_item(const walk *w, view *v, open_item which, open_list *left_open) {
+  const pair *p = &w->r->pairs[which.pair];
+  const item *one = &p->items[which.item];
+  const set *whole = v->standing->shape;
+  v->item = one;
+  v->shape = whole->corners > 0 ? NULL : whole;
+  if (is_settled_by(w, v)) return true;
+  if (one->inner > 0)
+    return try_item(w, v, (open_item){which.pair, one->inner}, left_open) &&
+           try_item(w, v, (open_item){which.pair, one->inner + 1}, left_open);
+  if (whole->corners > 0) {
+    const set group = set_group(whole, one->begin, one->end);
+    v->shape = &group;
+    if (is_settled_by(w, v)) return true;
+  }
+  return push(left_open, which.pair, which.item);
+}
+
+static bool try_open(walk *w, open_item which, open_list *left_open) {
   const body *bodies = w->r->bodies;
+  const pair *p = &w->r->pairs[which.pair];
   view v = {.moving = &bodies[p->moving], .standing = &bodies[p->standing]};
   v.at = &w->places[p->moving], v.from = &w->places[p->standing];
   v.apart = vec_sub(&v.at->p, &v.from->p);
@@ -121,29 +185,72 @@ static bool is_settled(walk *w, const pair *p) {
     kinematics_motion(w->r, w->states, v.moving, v.at, radius, v.standing, w->chain, w->levers, &w->motion);
     w->mover = v.moving, w->seen_from = v.standing->axis;
   }
-  double n[3];
-  default_normal(&v, n);
-  const bool flat = v.standing->shape->kind == HALFSPACE;
-  return (p->given && !flat && settles(w, &v, p->normal)) || settles(w, &v, n);
+  return try_item(w, &v, which, left_open);
 }
 
-/* COUNT × {u16 pair, n[3]}: from here on these are the directions of those pairs. */
+/* ---- items ---- */
+
+/* An item of the elements begin ... end - 1, or of all of what stands; false where memory is out. */
+static bool add_item(pair *p, const body *standing, size_t begin, size_t end, const item *outer) {
+  if (p->n_items == p->room) {
+    const size_t room = 2 * p->room + 1;
+    item *more = realloc(p->items, room * sizeof *more);
+    if (!more) return false;
+    p->items = more;
+    p->room = room;
+  }
+  item *one = &p->items[p->n_items++];
+  *one = (item){.begin = begin, .end = end};
+  if (outer) {
+    one->given = outer->given;
+    for (int k = 0; k < 3; k++) one->normal[k] = outer->normal[k];
+  }
+  const set *s = standing->shape;
+  for (int k = 0; k < 3; k++) one->middle[k] = standing->middle[k], one->half[k] = standing->half[k];
+  for (int k = 0; k < 3 && s->corners > 0; k++) {
+    one->low[k] = INFINITY, one->high[k] = -INFINITY;
+    for (size_t i = begin * s->corners; i < end * s->corners; i++) {
+      one->low[k] = fmin(one->low[k], s->vertices[i][k]);
+      one->high[k] = fmax(one->high[k], s->vertices[i][k]);
+    }
+    one->middle[k] = 0.5 * (one->low[k] + one->high[k]);
+    one->half[k] = 0.5 * (one->high[k] - one->low[k]);
+  }
+  return true;
+}
+
+/* COUNT × {u16 pair, ENTRY}: from here on these are the directions of those pairs. ENTRY is n[3]; of elements u32 2 ×
+ * ITEM and n[3], or u32 2 × ITEM + 1 and u32, the first element of the second one that the item is cut into. */
 static const char *read_directions(const walk *w, size_t count) {
   for (size_t i = 0; i < count; i++) {
     const size_t index = (size_t)reader_bits(w->in, 2);
-    double n[3];
-    reader_normal(w->in, w->width, n);
     if (w->in->bad || index >= w->r->n_pairs) return "it is cut off, or it speaks of no pair of these";
     pair *p = &w->r->pairs[index];
-    for (int k = 0; k < 3; k++) p->normal[k] = n[k];
-    p->given = true;
+    const body *standing = &w->r->bodies[p->standing];
+    const uint32_t code = standing->shape->corners > 0 ? reader_count(w->in) : 0;
+    if (w->in->bad || code / 2 >= p->n_items) return "it is cut off, or it speaks of no elements of these";
+    if (code % 2 == 1) {
+      const size_t at = reader_count(w->in), second = p->n_items + 1;
+      const item one = p->items[code / 2];
+      if (w->in->bad || one.inner > 0 || at <= one.begin || at >= one.end) return "it cuts elements where it must not";
+      if (!add_item(p, standing, one.begin, at, &one) || !add_item(p, standing, at, one.end, &one))
+        return "memory is out";
+      p->items[code / 2].inner = second - 1;
+      continue;
+    }
+    item *one = &p->items[code / 2];
+    reader_normal(w->in, w->width, one->normal);
+    if (w->in->bad) return "it is cut off, or not a number";
+    one->given = true;
   }
   return NULL;
 }
 
-/* One interval: `open` pairs, n of them; points are overwritten. NODE: u16 2 × COUNT + (1 where it is cut), the
+/* ---- intervals ---- */
+
+/* One interval: `open` items, n of them; points are overwritten. NODE: u16 2 × COUNT + (1 where it is cut), the
  * directions, and where it is cut the left and the right half. */
-static const char *check_interval(walk *w, num *points, const size_t *open, size_t n, int depth) {
+static const char *check_interval(walk *w, num *points, const open_item *open, size_t n, int depth) {
   const robot *r = w->r;
   const size_t head = (size_t)reader_bits(w->in, 2), room = r->n_variables * (ROBOT_MAX_DEGREE + 1);
   if (w->in->bad || depth > MAX_DEPTH) return "its tree is broken";
@@ -158,24 +265,43 @@ static const char *check_interval(walk *w, num *points, const size_t *open, size
   kinematics_axes(r, w->degree, points, w->states);
   w->mover = NULL;
   for (size_t i = 0; i < r->n_bodies; i++) w->places[i] = kinematics_place(&r->bodies[i], w->states);
-  size_t *left_open = malloc((n + 1) * sizeof *left_open), kept = 0;
+  open_list left_open = {.n = 0};
   num *left = malloc((room + 1) * sizeof *left);
-  if (!left_open || !left) fault = "memory is out";
+  if (!left) fault = "memory is out";
   for (size_t i = 0; i < n && !fault; i++) {
-    if (is_settled(w, &r->pairs[open[i]])) continue;
-    left_open[kept++] = open[i];
-    if (head % 2 == 0) fault = "a pair is not settled on an interval";
+    if (!try_open(w, open[i], &left_open)) fault = "memory is out";
+    if (!fault && left_open.n > 0 && head % 2 == 0) fault = "a pair is not settled on an interval";
   }
   if (!fault && head % 2 == 1) {
     for (size_t v = 0; v < r->n_variables; v++)
       if (r->moved[v])
         trajectory_halve(points + v * (ROBOT_MAX_DEGREE + 1), w->degree, left + v * (ROBOT_MAX_DEGREE + 1));
-    fault = check_interval(w, left, left_open, kept, depth + 1);
-    if (!fault) fault = check_interval(w, points, left_open, kept, depth + 1);
+    fault = check_interval(w, left, left_open.at, left_open.n, depth + 1);
+    if (!fault) fault = check_interval(w, points, left_open.at, left_open.n, depth + 1);
   }
-  free(left_open);
+  free(left_open.at);
   free(left);
   return fault;
+}
+
+/* Where a segment begins nothing is inside of a closed mesh. Then it comes in nowhere, being apart from the triangles.
+ */
+static const char *check_outside(const walk *w, size_t segment, num *points) {
+  const robot *r = w->r;
+  bool placed = false;
+  for (size_t i = 0; i < r->n_pairs; i++) {
+    const body *moving = &r->bodies[r->pairs[i].moving], *standing = &r->bodies[r->pairs[i].standing];
+    if (standing->shape->kind != SOLID) continue;
+    if (!placed) kinematics_hold(r, segment, 0.0, points, w->states, w->places);
+    placed = true;
+    const double *vertex = moving->shape->n > 0 ? moving->shape->vertices[0] : NULL;
+    vec x = vertex ? vec_of(vertex) : (vec){.e = 0.0}; /* a point of it, about the centre */
+    x = place_apply(&w->places[r->pairs[i].moving], &x);
+    x = vec_sub(&x, &w->places[r->pairs[i].standing].p);
+    x = rot_turn(&w->places[r->pairs[i].standing].r, &x, true);
+    if (winding_side(standing->shape, &x) != OUTSIDE) return "a part does not begin outside a mesh";
+  }
+  return NULL;
 }
 
 const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, size_t *tries) {
@@ -186,16 +312,20 @@ const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, size
   w.chain = malloc((r->n_axes + 1) * sizeof *w.chain);
   w.levers = malloc((r->n_axes + 1) * sizeof *w.levers);
   num *points = malloc((room + 1) * sizeof *points);
-  size_t *all = malloc((r->n_pairs + 1) * sizeof *all);
+  open_item *all = malloc((r->n_pairs + 1) * sizeof *all);
   const char *fault = w.states && w.places && w.chain && w.levers && points && all ? NULL : "memory is out";
   for (size_t i = 0; i < r->n_pairs && !fault; i++) {
-    all[i] = i;
-    r->pairs[i].given = false;
+    pair *p = &r->pairs[i];
+    const body *standing = &r->bodies[p->standing];
+    all[i] = (open_item){i, 0};
+    p->n_items = 0;
+    if (!add_item(p, standing, 0, set_elements(standing->shape), NULL)) fault = "memory is out";
   }
   for (size_t s = 0; s < r->n_segments && !fault; s++) {
     w.degree = r->degrees[s];
+    fault = check_outside(&w, s, points);
     for (size_t i = 0; i < room; i++) points[i] = robot_points(r, s, 0)[i];
-    fault = check_interval(&w, points, all, r->n_pairs, 0);
+    if (!fault) fault = check_interval(&w, points, all, r->n_pairs, 0);
   }
   free(w.states);
   free(w.places);

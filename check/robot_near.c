@@ -6,35 +6,7 @@
 #include "kinematics.h"
 #include "near.h"
 #include "robot_check.h"
-
-/* De Casteljau at u: all points become the value there, as if the variable stood still. */
-static void hold_at(num *c, size_t degree, double u) {
-  const num s = num_of(u);
-  for (size_t level = 1; level <= degree; level++)
-    for (size_t i = 0; i + level <= degree; i++) c[i] = num_add(c[i], num_mul(s, num_sub(c[i + 1], c[i])));
-  for (size_t i = 1; i <= degree; i++) c[i] = c[0];
-}
-
-/* The places of all bodies at u of a segment. */
-static void place_bodies(const robot *r, size_t segment, double u, num *points, axis_state *states, place *places) {
-  const size_t row = ROBOT_MAX_DEGREE + 1;
-  for (size_t i = 0; i < r->n_variables * row; i++) points[i] = robot_points(r, segment, 0)[i];
-  for (size_t v = 0; v < r->n_variables; v++)
-    if (r->moved[v]) hold_at(points + v * row, r->degrees[segment], u);
-  kinematics_axes(r, r->degrees[segment], points, states);
-  for (size_t i = 0; i < r->n_bodies; i++) places[i] = kinematics_place(&r->bodies[i], states);
-}
-
-static vec vec_of_intervals(const iv x[3]) {
-  vec v = {.e = 0.0};
-  for (int k = 0; k < 3; k++) {
-    const double low = mpfr_get_d(x[k].lo, MPFR_RNDD), high = mpfr_get_d(x[k].hi, MPFR_RNDU);
-    v.m[k] = 0.5 * (low + high);
-    v.e += GROW(high - low + BALL_U * fabs(v.m[k]));
-  }
-  v.e = GROW(v.e);
-  return v;
-}
+#include "winding.h"
 
 static void intervals_of_vec(iv x[3], const vec *v) {
   for (int k = 0; k < 3; k++) {
@@ -47,8 +19,7 @@ static void intervals_of_vec(iv x[3], const vec *v) {
 
 /* The moving body's point y, brought from its frame about the centre into the standing one's. */
 static void bring(iv y[3], const body *moving, const place *at, const body *standing, const place *from) {
-  const vec named = vec_of_intervals(y), centre = vec_of(moving->shape->centre),
-            other = vec_of(standing->shape->centre);
+  const vec named = winding_ball_of(y), centre = vec_of(moving->shape->centre), other = vec_of(standing->shape->centre);
   vec x = vec_sub(&named, &centre);
   x = place_apply(at, &x);
   x = vec_sub(&x, &from->p);
@@ -85,7 +56,7 @@ const char *robot_near(const robot *r, reader *in, double delta) {
   place *places = malloc((r->n_bodies + 1) * sizeof *places);
   const char *fault = "memory is out";
   if (points && states && places) {
-    place_bodies(r, segment, u, points, states, places);
+    kinematics_hold(r, segment, u, points, states, places);
     fault = check_points(r, in, &r->pairs[index], places, delta);
   }
   free(points);

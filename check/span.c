@@ -12,19 +12,17 @@ static double along(const set *s, const double n[3]) {
     case CYLINDER: return a[0] * fabs(n[2]) + a[1] * across;
     case CONE: return fmax(a[0] * n[2], a[1] * across - a[0] * n[2]);
     case HALFSPACE: return -a[3];
-    case POLYTOPE:
-    case HULL: {
+    case POINT: return 0.0;
+    case CURVE: return INFINITY;
+    default: { /* of vertices */
       double most = -INFINITY;
       for (size_t i = 0; i < s->n; i++) {
         const double *v = s->vertices[i], far = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
         if (far > most) most = far;
       }
-      return most + (s->kind == HULL ? a[0] * length_of(n) : 0.0);
+      return most + a[0] * length_of(n);
     }
-    case POINT: return 0.0;
-    case CURVE: break;
   }
-  return INFINITY;
 }
 
 num span_along(const set *s, double radius, const vec *n) {
@@ -42,13 +40,12 @@ double span_radius(const set *s) {
     case CYLINDER:
     case CONE: most = length_of((const double[3]){a[0], a[1], 0.0}); break;
     case HALFSPACE: most = fabs(a[3]); break;
-    case POLYTOPE:
-    case HULL:
-      for (size_t i = 0; i < s->n; i++) most = fmax(most, length_of(s->vertices[i]));
-      if (s->kind == HULL) most += a[0];
-      break;
     case POINT: break;
     case CURVE: most = INFINITY; break;
+    default:
+      for (size_t i = 0; i < s->n; i++) most = fmax(most, length_of(s->vertices[i]));
+      most += a[0];
+      break;
   }
   return GROW(most);
 }

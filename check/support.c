@@ -144,7 +144,7 @@ void support_of_body(iv *out, const set *s, const iv n[3]) {
       iv_max(out, out, &w[0]);
       break;
     case HALFSPACE: /* along its own normal only: n·x + d <= 0 */ iv_set_d(out, -size[3]); break;
-    case CURVE: break; /* asked part by part */
+    default: break; /* asked part by part */
   }
   iv_free(w, 2);
 }

@@ -145,9 +145,9 @@ std::vector<std::string> movingNames(const RobotMotion &motion);
 std::vector<std::string> askedNames(const RobotMotion &motion, bool self, bool moving_only = false);
 
 /** The query as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its
- *  motion, the pairs that askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A
- *  certificate of these (options.certificate) is about this text. Empty where there is no pair, or a body of a kind
- *  that has no certificates. */
+ *  motion, the pairs that askEnvironment() or with `self` askSelf() asks about; links that are meshes by their convex
+ *  hulls. A certificate of these (options.certificate) is about this text. Empty where there is no pair, or a body of
+ *  a kind that has no certificates. */
 std::string describeQuery(const RobotMotion &motion, bool self, const Query &query);
 
 /** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */

@@ -164,8 +164,8 @@ std::vector<cprox_obstacle> coreTargets(const Targets &targets);
 /** The index of the obstacle that an answer names; -1 for none. */
 std::int32_t coreTargetOf(const Targets &targets, const Answer &answer);
 
-/** The obstacles as text for the program cprox_check (doc/certificates.md): one line per convex part with the name of
- *  its owner; meshes as their convex hulls. Empty if a kind of body has no certificates. */
+/** The obstacles as text for the program cprox_check (doc/certificates.md): one line per convex part, mesh, cloud or
+ *  octree with the name of its owner. Empty if a kind of body has no certificates. */
 std::string describeTargets(const Targets &targets);
 
 /** The bodies that have no certificates, one message each. If there is one, no result can be proven. */

@@ -163,14 +163,15 @@ std::string describeQuery(const RobotMotion &motion, bool self, const Query &que
 std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Query &query) {
   const Asked asked = askedOf(motion, againstOf(self), query);
   std::vector<std::string> sentences;
-  const auto look = [&](const std::string &who, const cprox_body *body) {
-    const std::string sentence = unprovable(who, cprox_obstacle_at(body, CPROX_POSE_IDENTITY));
+  const auto look = [&](const std::string &who, const cprox_body *body, bool moves) {
+    const std::string sentence = unprovable(who, cprox_obstacle_at(body, CPROX_POSE_IDENTITY), moves);
     if (!sentence.empty()) sentences.push_back(sentence);
   };
   for (const MovingGeometry &geometry : asked.data.kinematics->geometries)
-    if (!geometry.within) look((geometry.attached ? "object '" : "link '") + geometry.owner() + "'", geometry.body);
+    if (!geometry.within)
+      look((geometry.attached ? "object '" : "link '") + geometry.owner() + "'", geometry.body, true);
   for (std::size_t i = 0; i < asked.items.size(); ++i)
-    look("object '" + *asked.data.snapshot->world().items()[asked.items[i]].owner + "'", asked.targets[i].body);
+    look("object '" + *asked.data.snapshot->world().items()[asked.items[i]].owner + "'", asked.targets[i].body, false);
   return sentences;
 }
 

@@ -44,8 +44,10 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
   if (status != CPROX_OK) answer.unproven = workspace.reason();
 }
 
-std::string unprovable(const std::string &who, const cprox_obstacle &target) {
-  if (cprox_obstacle_describe(&target, nullptr, 0) > 0) return {};
+std::string unprovable(const std::string &who, const cprox_obstacle &target, bool moves) {
+  const cprox_body_kind kind = target.body ? cprox_body_get_info(target.body).kind : CPROX_BODY_POINT;
+  const bool elements = kind == CPROX_BODY_MESH || kind == CPROX_BODY_POINTS || kind == CPROX_BODY_OCTREE;
+  if (!(moves && elements) && cprox_obstacle_describe(&target, nullptr, 0) > 0) return {};
   return who + " is of a kind that has no certificates: " +
          (target.body ? cprox_body_kind_name(cprox_body_get_info(target.body).kind) : "curve");
 }

@@ -16,8 +16,9 @@ namespace curve_proximity {
 void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
                 const cprox_result &result, Workspace &workspace, Answer &answer);
 
-/* Why nothing at all can be proven where this body takes part; empty where it can. `who`: "object 'can'". */
-std::string unprovable(const std::string &who, const cprox_obstacle &target);
+/* Why nothing at all can be proven where this body takes part; empty where it can. `who`: "object 'can'". moves: it
+ * is a link, or attached. */
+std::string unprovable(const std::string &who, const cprox_obstacle &target, bool moves = false);
 
 /* The number of lines and a line a convex part, with the name of its owner; empty where a body is of a kind that has no
  * certificates. */

@@ -47,12 +47,13 @@ static bool is_true(const finding *found, const double interval[2]) {
   return found->claim == CLAIM_NONE || found->delta >= interval[0];
 }
 
-/* Every interval takes two bytes at least, and on every interval each pair is tried with two directions at most. The
- * head of a genuine certificate tells the number of pairs. */
+/* Every interval takes two bytes at least, and on every interval each item is tried with two directions at most, by its
+ * box and by its vertices. The head of a genuine certificate tells the number of pairs; a cut of an item into two takes
+ * ten bytes. */
 static bool is_bounded(const bytes *genuine, size_t size, const finding *found) {
   uint32_t pairs;
   memcpy(&pairs, genuine->at + HEAD - sizeof pairs, sizeof pairs);
-  return found->leaves <= 2 * (size_t)pairs * (size / 2 + 1);
+  return found->leaves <= 4 * (pairs + size / 5) * (size / 2 + 1);
 }
 
 static void judge(const finding *found, bool bounded, const double interval[2], const char *done, size_t query,

@@ -9,7 +9,9 @@ by substitution in powers. Numbers are exact fractions; roots are rounded up, co
 """
 import struct
 import sys
+from copy import copy
 from fractions import Fraction as F
+from itertools import product
 from math import comb, isqrt
 
 TINY = F(1, 2 ** 250)
@@ -208,7 +210,8 @@ def interpolate(values):
 
 class Set:
     SIZES = {'point': 0, 'sphere': 1, 'box': 3, 'capsule': 2, 'cylinder': 2, 'cone': 2, 'ellipsoid': 3, 'halfspace': 4,
-             'polytope': 0, 'hull': 1, 'curve': 0}
+             'polytope': 0, 'hull': 1, 'curve': 0, 'triangles': 0, 'solid': 0, 'points': 1, 'cells': 0}
+    CORNERS = {'triangles': 3, 'solid': 3, 'points': 1, 'cells': 2}
 
     def __init__(self, words):
         self.margin = words.number()
@@ -221,6 +224,41 @@ class Set:
             self.vertices = [[c + x for c, x in zip(centre, v)] for v in about]
         if self.kind == 'curve':
             self.curve = Curve(words)
+        self.elements = self.read_elements(words) if self.kind in self.CORNERS else None
+
+    def read_elements(self, words):
+        """The vertices of each."""
+        centre, found = words.numbers(3), []
+        for _ in range(words.count()):
+            corners = [words.numbers(3) for _ in range(self.CORNERS[self.kind])]
+            if self.kind == 'cells':
+                corners = [list(p) for p in product(*zip(*corners))]
+            found.append([[c + x for c, x in zip(centre, v)] for v in corners])
+        return found
+
+    def group(self, start, end):
+        """The hull of some elements."""
+        hull = copy(self)
+        hull.kind, hull.size = 'hull', self.size or [F(0)]
+        hull.vertices = [v for element in self.elements[int(start):int(end)] for v in element]
+        return hull
+
+    def winding(self, p):
+        """How often a closed mesh winds round a point of its frame: its triangles that a ray goes through, by signs."""
+        require(self.kind == 'solid', 'it is no solid')
+        d, total = [F(3, 7), F(-5, 11), F(6, 13)], 0
+        for element in self.elements:
+            a, b, c = ([x - y for x, y in zip(v, p)] for v in element)
+            n = cross([x - y for x, y in zip(b, a)], [x - y for x, y in zip(c, a)])
+            facing, height = dot(n, d), dot(n, a)
+            if facing == 0 or height / facing < 0:
+                continue
+            hit = [x * height / facing for x in d]
+            sides = [dot(n, cross([x - y for x, y in zip(v, u)], [x - y for x, y in zip(hit, u)]))
+                     for u, v in ((a, b), (b, c), (c, a))]
+            require(0 not in sides and height != 0, 'the ray or the point meets an edge')
+            total += (all(s > 0 for s in sides)) * (1 if facing > 0 else -1)
+        return total
 
     def matrices(self):
         for x, (w, a, b, c) in self.poses:
@@ -375,7 +413,7 @@ def check_apart(sets, radius, curve, bytes_, width, delta):
     n = F(len(mover.pieces))
     for set_ in sets:
         gap, kind = delta + radius + set_.margin, bytes_.take('<B')
-        require(kind == (2 if set_.kind == 'curve' else 1), 'another kind of target')
+        require(kind == (2 if set_.kind == 'curve' else 3 if set_.elements else 1), 'another kind of target')
         if kind == 1:
             start = F(0)
             for _ in range(bytes_.count()):
@@ -385,22 +423,28 @@ def check_apart(sets, radius, curve, bytes_, width, delta):
                 start = end
             require(start == n, 'the parts do not cover the curve')
             continue
-        target = Pieces(set_.curve, bytes_)
-        open_ = [((F(0), n), (F(0), F(len(target.pieces))), 0)]
+        target = Pieces(set_.curve, bytes_) if kind == 2 else None
+        open_ = [((F(0), n), (F(0), F(len(target.pieces if target else set_.elements))), 0)]
         while open_:
             mine, other, depth = open_.pop()
             tag = bytes_.take('<B')
             require(tag <= 2 and depth <= 256, 'the tree is broken')
             if tag == 0:
                 normal = bytes_.normal(width)
-                require(separates(set_, mover, normal, mine, gap, target, other), 'a direction does not separate')
+                if target:
+                    require(separates(set_, mover, normal, mine, gap, target, other), 'a direction does not separate')
+                else:
+                    require(separates(set_.group(*other), mover, normal, mine, gap), 'a direction does not separate')
                 continue
             cut = bytes_.number()
             whole = mine if tag == 1 else other
+            require(target or tag == 1 or cut == int(cut), 'a cut lies inside an element')
             require(whole[0] < cut < whole[1], 'a cut lies outside')
             halves = [(whole[0], cut), (cut, whole[1])]
             for half in reversed(halves):
                 open_.append((half, other, depth + 1) if tag == 1 else (mine, half, depth + 1))
+        for powers, _ in mover.pieces if set_.kind == 'solid' else ():
+            require(set_.winding(set_.point_to_frame(powers[0])) == 0, 'a piece begins inside')
 
 
 def inside_tetrahedron(corners, p):
@@ -416,6 +460,14 @@ def check_near_at(sets, radius, curve, bytes_, delta, limits):
     set_ = sets[index]
     p, error = curve.point(t, limits[0])
     y, gap = set_.point_to_frame(p), delta + radius + set_.margin - error
+    if set_.elements:
+        element = bytes_.count()
+        if element == 2 ** 32 - 1:
+            return require(set_.winding(y) != 0, 'it is not inside')
+        require(element < len(set_.elements), 'no such element')
+        gap += set_.size[0] if set_.size else 0
+        set_ = set_.group(element, element + 1)
+        set_.kind = 'polytope'
     if set_.kind == 'curve':
         q, error = set_.curve.point(bytes_.number(), limits[1])
         v, gap = [a - b for a, b in zip(y, q)], gap - error

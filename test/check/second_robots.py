@@ -9,6 +9,7 @@ there, "not farther" at the time that the certificate names. Another reader of t
 functions, Cox and de Boor's recursion, and distances by Wolfe's algorithm for the nearest point of a convex set that is known by its
 support function: nothing of the checker, and none of its bounds. TOLERANCE covers doubles. By default 12 queries, 6 mutants, seed 3.
 """
+import itertools
 import math
 import os
 import random
@@ -17,6 +18,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+from copy import copy
 
 TOLERANCE = 1e-8
 TIMES = 12
@@ -88,7 +90,9 @@ class Words:
         return int(self.word())
 
 
-SIZES = {'point': 0, 'sphere': 1, 'box': 3, 'capsule': 2, 'cylinder': 2, 'cone': 2, 'ellipsoid': 3, 'halfspace': 4, 'polytope': 0, 'hull': 1}
+SIZES = {'point': 0, 'sphere': 1, 'box': 3, 'capsule': 2, 'cylinder': 2, 'cone': 2, 'ellipsoid': 3, 'halfspace': 4, 'polytope': 0, 'hull': 1,
+         'triangles': 0, 'solid': 0, 'points': 1, 'cells': 0}
+CORNERS = {'triangles': 3, 'solid': 3, 'points': 1, 'cells': 2}
 
 
 class Body:
@@ -106,6 +110,32 @@ class Body:
         if self.kind in ('polytope', 'hull'):
             centre = self.vertices[0]
             self.vertices = [add(centre, words.numbers(3)) for _ in range(words.count())]
+        self.elements = self.read_elements(words) if self.kind in CORNERS else []
+
+    def read_elements(self, words):
+        """Each is a body of its own, with a ball about it."""
+        centre, found = words.numbers(3), []
+        for _ in range(words.count()):
+            corners = [add(centre, words.numbers(3)) for _ in range(CORNERS[self.kind])]
+            one = copy(self)
+            one.elements, one.kind = [], 'hull' if self.kind == 'points' else 'polytope'
+            one.vertices = [list(p) for p in itertools.product(*zip(*corners))] if self.kind == 'cells' else corners
+            one.middle = [sum(v[k] for v in one.vertices) / len(one.vertices) for k in range(3)]
+            one.radius = max(norm(add(v, one.middle, -1.0)) for v in one.vertices)
+            found.append(one)
+        return found
+
+    def holds(self, p):
+        """Whether a closed mesh winds round a point of its frame, by solid angles."""
+        if self.kind != 'solid':
+            return False
+        total = 0.0
+        for one in self.elements:
+            a, b, c = (add(v, p, -1.0) for v in one.vertices)
+            la, lb, lc = norm(a), norm(b), norm(c)
+            volume = dot(a, cross(b, c))
+            total += 2 * math.atan2(volume, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+        return abs(total) > 2 * math.pi
 
     def margin(self):
         """Of a ball that is added to the rest."""
@@ -311,8 +341,25 @@ def nearest(farthest, start):
     return size, lower
 
 
+def to_elements(a, at_a, b, at_b):
+    """To the nearest one; those farther than the best one by their balls are left out."""
+    some = add(at_a.p, turn(at_a.q, a.farthest([0.3, 0.5, 0.8])))
+    if b.holds(turn_back(at_b.q, add(some, at_b.p, -1.0))):
+        return -a.margin() - b.own_margin
+    way = {one: norm(add(some, add(at_b.p, turn(at_b.q, one.middle)), -1.0)) - one.radius for one in b.elements}
+    reach = 2.0 * max(norm(add(a.farthest(d), a.farthest([-x for x in d]), -1.0)) for d in ([1, 0, 0], [0, 1, 0], [0, 0, 1]))
+    best = math.inf
+    for one in sorted(b.elements, key=way.get):
+        if way[one] - reach - a.margin() - one.margin() > best:
+            break
+        best = min(best, distance(a, at_a, one, at_b))
+    return best
+
+
 def distance(a, at_a, b, at_b):
     """Of two posed bodies, from above: attained but for rounding."""
+    if b.elements:
+        return to_elements(a, at_a, b, at_b)
     margins = a.margin() + b.margin()
     if b.kind == 'halfspace':
         n = turn(at_b.q, b.size[:3])

@@ -107,7 +107,9 @@ static void examine_query(const asked *given, rng *r, double scale, tally *sum) 
   const size_t n = breaks_of(&p.mover.curve, mine);
   assert_null(pieces_make(&moving, &p.mover.curve, mine, n));
   for (size_t i = 0; i < p.n_sets; i++) {
-    quick_query q = {.set = &p.sets[i], .mover = &moving};
+    const bool elements = p.sets[i].corners > 0; /* the hull of all of them */
+    const set hull = elements ? set_group(&p.sets[i], 0, set_elements(&p.sets[i])) : p.sets[i];
+    quick_query q = {.set = &hull, .mover = &moving};
     pieces target = {0};
     if (q.set->kind == CURVE) {
       const size_t m = breaks_of(&q.set->curve, theirs);
@@ -138,6 +140,7 @@ CASE(doubles_accept_nothing_that_is_not_proven_and_almost_all_that_is) {
     const double away = rng_index(&r, 3) ? 0.0 : rng_log_uniform(&r, scale, 1e6 * scale);
     asked_random(&q, &r,
                  (asked_kinds){.curve_target = rng_index(&r, 2) == 0,
+                               .elements = true,
                                .meshes = scale == 1.0 && away == 0.0 && rng_index(&r, 4) == 0},
                  scale, away, ws);
     examine_query(&q, &r, scale + away, &sum);

@@ -194,7 +194,7 @@ CASE(turning_cranks_and_wheels_leave_certificates_that_hold) {
 /* ---- meshes ---- */
 
 /* 60 robots with meshes on links and beside them (seed 5). The answer is that without a certificate; what is proven is
- * accepted and does not contradict the distance to the triangles; of hulls nothing is near. */
+ * accepted and does not contradict the distance to the triangles; links are taken by their hulls. */
 CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
   cprox_certificate *c = cprox_certificate_create();
   rng r = rng_seed(5);

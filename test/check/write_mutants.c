@@ -83,7 +83,8 @@ int main(int argc, char **argv) {
     const asked_kinds kinds = {.bezier_only = rng_index(&r, 2) == 0,
                                .polytope_only = rng_index(&r, 3) == 0,
                                .curve_target = rng_index(&r, 4) == 0,
-                               .meshes = rng_index(&r, 3) == 0};
+                               .meshes = rng_index(&r, 3) == 0,
+                               .elements = true};
     asked_random(&q, &r, kinds, rng_log_uniform(&r, 1e-2, 1e2), rng_log_uniform(&r, 1e-2, 1e4), ws);
     double interval[2];
     if (ask(&q, &r, ws, c, interval, &genuine)) {

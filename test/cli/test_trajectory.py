@@ -142,7 +142,7 @@ class Trajectory(Case):
             self.assertEqual(checked.code, code, checked.out + checked.err)
         self.assertIn('go.environment: refused: a pair is not settled', checked.out)
 
-    def proofs_of_meshes_change_no_answer_and_claim_nothing_near(self):
+    def proofs_of_meshes_change_no_answer(self):
         """A slider that goes through a window: the mesh of a frame, and the same as a solid."""
         file = os.path.join(self.folder, 'proof.cpc')
         corners = [[0, y, z] for s in (1, 3) for y, z in ((-s, -s), (s, -s), (s, s), (-s, s))]
@@ -162,15 +162,15 @@ class Trajectory(Case):
                 self.assertEqual((plain.code, asked.code), (plain.code_of_verdicts(),) * 2, asked.err)
                 self.assertEqual([{k: v for k, v in row.items() if k not in ('microseconds', 'proof')} for row in asked.rows],
                                  plain.without_times()[0:len(asked.rows)])
-                self.assertEqual(asked.rows[0]['proof'], 'none')
-                self.assertIn('no certificate', asked.err)
+                self.assertIn(asked.rows[0]['proof'], ('apart', 'near'), asked.err)
                 checked = self.robot('check', SLIDE, file, scene=scene, urdf=urdf)
-                self.assertEqual((checked.code, checked.out), (1, 'go.environment: nothing is claimed\n'), checked.err)
+                self.assertEqual(checked.code, 0, checked.out + checked.err)
+                self.assertIn('go.environment: proven', checked.out)
             short = SLIDE.replace('[2]', '[0.3]')
             asked = self.robot('distance', short, '--certificate', file, scene=scene, urdf=urdf)
             self.assertEqual(asked.rows[0]['proof'], 'apart', asked.err)
             checked = self.robot('check', short, file, scene=scene, urdf=urdf)
-            self.assertIn("meshes by their convex hulls: 'window'", checked.out, checked.err)
+            self.assertEqual(checked.code, 0, checked.out + checked.err)
 
     def each_object_has_a_row_of_its_own_when_asked(self):
         answer = self.robot('distance', SLIDE, '--per-object')

@@ -193,7 +193,7 @@ def inputs_of(row, folder):
 
 def recheck(client, manifest, table, count, seed, program='cprox'):
     """Random rows of a merged table, answered again by one worker; a clear one's certificate is checked by another. A hit of
-    meshes has no certificate. Returns how many of each verdict; RuntimeError where any of the two says otherwise."""
+    links that are meshes has no certificate. Returns how many of each verdict; RuntimeError where any of the two says otherwise."""
     with open(manifest) as stream:
         lines = stream.readlines()
     verdicts = [row['verdict'] for row in csv.DictReader(table.splitlines())]

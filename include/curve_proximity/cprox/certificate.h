@@ -59,9 +59,10 @@ CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certific
  *  options     max_nodes bounds the parts of the cover that are tried, for each obstacle; NULL: the default.
  *  certificate receives the proof. It is empty (CPROX_CLAIM_NONE) where none was found, and where the call failed.
  *
- *  A mesh is known by the convex hull that it was made with (cprox_body_create_lod), which contains it. `apart` is
- *  proven of the hull; `near` is never claimed of a mesh. Of a distance that a mesh answered, the claim is the distance
- *  to the hulls, where that is above 0.
+ *  Obstacles that are meshes, points or boxes are taken by their triangles, points and boxes. A robot's link that is a
+ *  mesh is known by the convex hull that it was made with (cprox_body_create_lod), which contains it. `apart` is proven
+ *  of the hull; `near` is never claimed of such a link. Of a distance that such a link answered, the claim may be the
+ *  distance to the hulls, where that is above 0.
  *
  *  A claim that is as tight as double arithmetic allows may be proven for a delta that is weaker by a few roundings;
  *  that of a distance (delta == answer->lower) by epsilon, where the curve bends round an obstacle at a constant
@@ -72,8 +73,9 @@ CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certific
  *          CPROX_BUDGET    max_nodes were not enough
  *          CPROX_PRECISION the distance is too close to delta
  *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks,
- *                          superquadrics and other implicit bodies, points, octrees, meshes without a hull, carried
- *                          bodies, movers synchronized; or the nearest obstacle is a mesh, and `near` was to be claimed
+ *                          superquadrics and other implicit bodies, carried bodies, movers synchronized, links of
+ *                          points and octrees, links of meshes without a hull; or the nearest link is a mesh, and
+ *                          `near` was to be claimed
  *          CPROX_MEMORY    an allocation failed
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.
@@ -86,13 +88,14 @@ CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *o
  *  holds them.
  *
  *  text   receives the lines, cut to size - 1 characters and ended by 0; NULL with size 0: only their length is asked.
- *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, and for curves. Of meshes
- *  the hulls stand for them (`hull`), of which the checker accepts no `near`.
+ *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, for curves, and where
+ *  memory is out. Meshes are there by their triangles, in the order that certificates count them in.
  */
 CPROX_API size_t cprox_obstacle_describe(const cprox_obstacle *obstacle, char *text, size_t size);
 
 /** A robot along a motion as the checker reads it, with the pairs that the query is about: its obstacles are described
- *  before, by cprox_obstacle_describe(). Of meshes the hulls stand for them: of those "near" is never claimed.
+ *  before, by cprox_obstacle_describe(). Links that are meshes are there by their hulls: of those "near" is never
+ *  claimed.
  *
  *  id          one word.
  *  text, size  as above.

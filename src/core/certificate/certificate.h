@@ -23,10 +23,10 @@ struct cprox_certificate {
 };
 
 /* Kinds of sections. */
-enum { SECTION_CONVEX = 1, SECTION_CURVE = 2 };
+enum { SECTION_CONVEX = 1, SECTION_CURVE = 2, SECTION_ELEMENTS = 3 };
 
-/* Tags of the nodes of a curve-curve tree. */
-enum { TREE_LEAF = 0, TREE_CUT_FIRST = 1, TREE_CUT_SECOND = 2 };
+/* Tags of the nodes of a tree of parts of a curve and parts of what stands: of a curve, or of elements. */
+enum { COVER_LEAF = 0, COVER_CUT_FIRST = 1, COVER_CUT_SECOND = 2 };
 
 /* Empties it and writes the head; width: bytes of a normal's number, 4 or 8. */
 void certificate_begin(cprox_certificate *c, uint32_t width, cprox_claim claim, double delta, uint32_t sections);

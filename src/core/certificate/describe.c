@@ -4,7 +4,9 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "certificate/elements.h"
 #include "curve_proximity/cprox/certificate.h"
 #include "shape/kinds.h"
 
@@ -39,11 +41,22 @@ static bool is_known(const cprox_body *body) {
   return body->hull->kind == CPROX_BODY_POLYTOPE || body->hull->kind == CPROX_BODY_POLYGON;
 }
 
-const cprox_body *describe_unknown_kind(const cprox_body *body) {
-  if (body->kind != CPROX_BODY_COMPOUND) return is_known(body) ? NULL : body;
-  for (size_t i = 0; i < body->n_parts; i++)
-    if (!is_known(body->parts[i].body)) return body->parts[i].body;
+static bool is_known_obstacle(const cprox_body *body) {
+  return elements_body(body) || is_known(body);
+}
+
+static const cprox_body *unknown_part(const cprox_body *body, bool (*known)(const cprox_body *body)) {
+  for (size_t i = 0; i < body_n_parts(body); i++)
+    if (!known(body_part_at(body, i))) return body_part_at(body, i);
   return NULL;
+}
+
+const cprox_body *describe_unknown_kind(const cprox_body *body) {
+  return unknown_part(body, is_known);
+}
+
+const cprox_body *describe_unknown_obstacle(const cprox_body *body) {
+  return unknown_part(body, is_known_obstacle);
 }
 
 bool describe_has_mesh(const cprox_body *body) {
@@ -70,25 +83,58 @@ void describe_body(text *t, const cprox_body *body) {
   for (int i = 0; i < kind->n_sizes; i++) say(t, " %a", size[kind->sizes[i]]);
 }
 
-static void describe_one(text *t, const cprox_obstacle *target, const cprox_body *body, const cprox_pose *inner) {
+/* ---- elements ---- */
+
+typedef struct listed {
+  text *t;
+  const tree *elements;
+} listed;
+
+static void describe_element(void *self, tree_place at) {
+  const listed *l = self;
+  vec3 corner[3];
+  const int n = tree_corners(l->elements, at, corner);
+  for (int k = 0; k < n; k++) describe_vector(l->t, corner[k]);
+}
+
+/* In the order that certificates count them in; false where memory is out. */
+static bool describe_elements(text *t, const cprox_body *body) {
+  const tree *elements = body->tree;
+  uint32_t *first = malloc(elements->n_packs * sizeof *first);
+  if (!first) return false;
+  const element_order order = elements_order(elements, first);
+  const element_range all = elements_all(&order);
+  if (elements->kind == TREE_POINTS)
+    say(t, " points %a", body->shape.margin);
+  else
+    say(t, elements->kind == TREE_BOXES ? " cells" : body->winding ? " solid" : " triangles");
+  describe_vector(t, body->centre);
+  say(t, " %zu", elements->n);
+  listed l = {t, elements};
+  elements_each(&order, &all, describe_element, &l);
+  free(first);
+  return true;
+}
+
+/* ---- obstacles ---- */
+
+static bool describe_one(text *t, const cprox_obstacle *target, const cprox_body *body, const cprox_pose *inner) {
   say(t, "target %a %d", target->margin, inner ? 2 : 1);
   describe_pose(t, &target->pose);
   if (inner) describe_pose(t, inner);
-  describe_body(t, body);
+  const cprox_body *elements = elements_body(body);
+  if (elements && !describe_elements(t, elements)) return false;
+  if (!elements) describe_body(t, body);
   say(t, "\n");
+  return true;
 }
 
 size_t cprox_obstacle_describe(const cprox_obstacle *target, char *out, size_t size) {
   const cprox_body *body = target->body;
-  if (!body || target->synchronized || describe_unknown_kind(body)) return 0;
+  if (!body || target->synchronized || describe_unknown_obstacle(body)) return 0;
   text t = {.at = out, .size = out ? size : 0};
-  if (body->kind != CPROX_BODY_COMPOUND) {
-    describe_one(&t, target, body, NULL);
-    return t.length;
-  }
-  for (size_t i = 0; i < body->n_parts; i++) {
-    const body_part *part = &body->parts[i];
-    describe_one(&t, target, part->body, &part->pose);
-  }
+  const bool compound = body->kind == CPROX_BODY_COMPOUND;
+  for (size_t i = 0; i < body_n_parts(body); i++)
+    if (!describe_one(&t, target, body_part_at(body, i), compound ? &body->parts[i].pose : NULL)) return 0;
   return t.length;
 }

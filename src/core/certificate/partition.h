@@ -14,8 +14,7 @@
 /* What is to be proven, and what may help. */
 typedef struct cover {
   const cprox_curve *curve;
-  reach_set set;   /* the radius of the mover belongs to its offset; of a mesh its hull */
-  bool is_mesh;    /* the set may be larger than what it stands for: nothing is near because it is */
+  reach_set set;   /* the radius of the mover belongs to its offset, and that of elements */
   cprox_pose pose; /* of the set, composed */
   double delta;
   double witness, witness_on_set; /* counting parameters where mover and curve targets are nearest, -1: not known */
@@ -36,6 +35,7 @@ double partition_cut(const cover *c, reach_part part, double witness);
 /* Writes the section: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
 cprox_status partition_convex(cover *c);
 cprox_status partition_curves(cover *c);
+cprox_status partition_elements(cover *c);
 
 /* The surface point of the convex body next to a point, drawn in so that rounding does not leave it outside; false
  * where it cannot be. */
@@ -44,6 +44,11 @@ bool cover_draw_in(const cprox_body *body, const convex_near *near, double by, v
 /* Writes how a body's point is found that is near y, a point of the frame about its centre that is within error of the
  * exact one; returns how far y is from it: 0 inside, infinity for none. */
 double partition_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error);
+
+/* The same of the element that is nearest to y, which is seen about the origin of the body's tree; of the inside of a
+ * closed mesh that y is in it. first: of the order. */
+double partition_near_element(const cprox_body *body, const uint32_t *first, cprox_certificate *certificate, vec3 y,
+                              double error);
 
 /* Writes that at the witness of the answer the distance is at most delta. */
 cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer);

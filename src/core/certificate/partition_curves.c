@@ -25,7 +25,7 @@ static bool separates(const cover *c, const pair *p, vec3 n) {
 }
 
 static void write_leaf(cover *c, vec3 n) {
-  certificate_byte(c->certificate, TREE_LEAF);
+  certificate_byte(c->certificate, COVER_LEAF);
   certificate_normal(c->certificate, n);
 }
 
@@ -79,7 +79,7 @@ static proven prove(cover *c, const frame *placed, const pair *p, vec3 inherited
   const double cut = choose_cut(c, p, first, second, &side);
   if (isnan(cut) || depth >= MAX_DEPTH) return (proven){.status = CPROX_PRECISION};
   const size_t place = c->certificate->size;
-  certificate_byte(c->certificate, side == 0 ? TREE_CUT_FIRST : TREE_CUT_SECOND);
+  certificate_byte(c->certificate, side == 0 ? COVER_CUT_FIRST : COVER_CUT_SECOND);
   certificate_number(c->certificate, cut);
   pair half[2] = {*p, *p};
   half[0].part[side].to = half[1].part[side].from = cut;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Of every pair the last normal that was written stays in force (robot_pair.normal, in the frame of what stands), and
+/* Of every pair the last normal that was written stays in force (cover_item.normal, in the frame of what stands), and
  * beside it the one from the box round what stands to the centre of what moves, which need not be written. Only where
- * neither parts the pair is a distance measured, and its normal written where that settles the pair. */
+ * neither parts the pair is a distance measured, and its normal written where that settles the pair. Against elements
+ * the same is done with ranges of these, which are cut where the hull of a range is too near or too large. */
 #include "certificate/partition_robot.h"
 
 #include <math.h>
@@ -21,95 +22,250 @@ static const double MOST_DISPLACEMENT = 0.25;
 /* The normal that is not written is computed once here and once by the checker: it may differ by this, of the sizes. */
 #define UNSURE 0x1p-46
 
-typedef enum outcome { SETTLED, WRITTEN, OPEN, TOO_NEAR } outcome;
+typedef enum outcome { SETTLED, WRITTEN, OPEN, CUT, TOO_NEAR } outcome;
 
-static bool is_halfspace(const placed_robot_pair *v) {
-  return robot_body_is_halfspace(v->standing);
+/* ---- items ---- */
+
+/* What stands, or a range of its elements. The first ones are the wholes, one a pair. */
+typedef struct cover_item {
+  int32_t pair;
+  uint32_t code;       /* its number among those of the pair */
+  uint32_t count;      /* of a whole: how many the pair has */
+  int32_t inner;       /* the first of the two that it was cut into; 0: it was not */
+  element_range range; /* of elements */
+  element_box box;
+  vec3 normal; /* that was written last, in the frame of what stands */
+  bool normal_known;
+} cover_item;
+
+/* An item in the middle of the interval. */
+typedef struct item_view {
+  placed_robot_pair pair;
+  const cover_item *item;
+  const robot_cover_elements *elements; /* NULL: what stands is convex */
+  robot_body standing;                  /* of elements: the hull of the range about the tree's origin */
+  element_hull hull;
+  bool by_box; /* the item was cut: it is as large as its box */
+} item_view;
+
+static cover_item *items_reserve(const robot_cover *c, size_t n) {
+  return workspace_reserve(c->scene->q->workspace, WORKSPACE_COVER_ITEMS, (n + 1) * sizeof(cover_item));
 }
 
-/* Does a normal in the frame of what stands settle the pair? unsure: by how much it may be off. */
-static bool settles(const robot_cover *c, const placed_robot_pair *v, vec3 own, double unsure) {
-  vec3 n = placement_turn(&v->standing->side.at, own);
+static const robot_cover_elements *elements_of(const robot_cover *c, const robot_pair *pair) {
+  const robot_cover_elements *e = pair->self ? NULL : &c->elements[pair->standing];
+  return e && e->order.t ? e : NULL;
+}
+
+/* Begins with the wholes. */
+static bool begin_items(robot_cover *c) {
+  c->n_items = c->scene->n_pairs;
+  cover_item *items = items_reserve(c, c->n_items);
+  for (size_t i = 0; items && i < c->n_items; i++) {
+    items[i] = (cover_item){.pair = (int32_t)i, .count = 1};
+    const robot_cover_elements *e = elements_of(c, &c->scene->pairs[i]);
+    if (!e) continue;
+    items[i].range = elements_all(&e->order);
+    items[i].box = elements_box(&e->order, &items[i].range);
+  }
+  return items != NULL;
+}
+
+/* Cuts an item in two, which go on with its normal. */
+static bool cut_item(robot_cover *c, int32_t index) {
+  cover_item *items = items_reserve(c, c->n_items + 2);
+  if (!items) return false;
+  cover_item *one = &items[index], *whole = &items[one->pair];
+  const robot_cover_elements *e = elements_of(c, &c->scene->pairs[one->pair]);
+  element_range half[2];
+  elements_cut(&e->order, one->range, half);
+  one->inner = (int32_t)c->n_items;
+  for (int k = 0; k < 2; k++) {
+    cover_item *inner = &items[c->n_items++];
+    *inner = *one;
+    inner->inner = 0;
+    inner->code = whole->count++;
+    inner->range = half[k];
+    inner->box = elements_box(&e->order, &half[k]);
+  }
+  return true;
+}
+
+static void place_item(const robot_cover *c, int32_t index, item_view *v) {
+  const cover_item *item = workspace_filled(c->scene->q->workspace, WORKSPACE_COVER_ITEMS);
+  v->item = item + index;
+  placed_robot_pair_at(c->scene, v->item->pair, &v->pair);
+  placed_robot_pair_move(&v->pair);
+  v->elements = elements_of(c, v->pair.pair);
+  v->by_box = v->item->inner > 0;
+  if (!v->elements) {
+    v->standing = *v->pair.standing;
+    return;
+  }
+  v->standing = v->elements->standing;
+  elements_hull(&v->hull, &v->elements->order, v->item->range);
+  v->standing.side.shape = &v->hull.shape;
+}
+
+/* ---- normals ---- */
+
+static bool is_halfspace(const item_view *v) {
+  return robot_body_is_halfspace(&v->standing);
+}
+
+/* How far what stands reaches along a unit normal of the world, seen from its own origin. */
+static double height_of(const item_view *v, vec3 n) {
+  if (!v->elements) return robot_pair_height(&v->standing, n);
+  const vec3 own = placement_turn_back(&v->standing.side.at, n);
+  const double height = v->by_box ? element_box_reach(&v->item->box, own)
+                                  : elements_reach(&v->elements->order, &v->item->range, own, NULL);
+  return height + v->standing.side.margin;
+}
+
+/* Does a normal in the frame of what stands settle the item? unsure: by how much it may be off. */
+static bool settles(const robot_cover *c, const item_view *v, vec3 own, double unsure) {
+  const robot_body *moving = v->pair.moving, *standing = &v->standing;
+  vec3 n = placement_turn(&standing->side.at, own);
   const double length = vec_norm(n);
   if (!(length > 0.0) || !isfinite(length)) return false;
   n = vec_scale(1.0 / length, n);
   n = vec_scale(1.0 / vec_norm(n), n);
-  const double height = robot_pair_height(v->standing, n), heights[2] = {height, height};
-  const vec3 apart = vec_sub(v->moving->side.at.p, v->standing->side.at.p);
-  const double middle = vec_dot(n, apart) - bound_height(&v->moving->side, vec_neg(n)) - height;
+  const double height = height_of(v, n), heights[2] = {height, height};
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
+  const double middle = vec_dot(n, apart) - bound_height(&moving->side, vec_neg(n)) - height;
   if (!(middle > c->delta)) return false;
   double slack;
-  const double bound = motion_plane_bound(v->motion, &v->moving->side, &v->standing->side, n, vec(0, 0, 0), heights,
-                                          v->moving->steps + v->standing->steps, INFINITY, &slack);
-  const double sizes = vec_norm(apart) + v->moving->radius;
+  const double bound = motion_plane_bound(v->pair.motion, &moving->side, &standing->side, n, vec(0, 0, 0), heights,
+                                          moving->steps + standing->steps, INFINITY, &slack);
+  const double sizes = vec_norm(apart) + moving->radius;
   const double needed = c->delta + SLACKS * slack + unsure * sizes;
-  return middle - v->motion->displacement > needed || bound > needed;
+  return middle - v->pair.motion->displacement > needed || bound > needed;
 }
 
-static outcome settle(const robot_cover *c, const placed_robot_pair *v, double width, vec3 *written) {
-  if (v->pair->normal_known && settles(c, v, v->pair->normal, 0.0)) return SETTLED;
+/* From the box to the centre of what moves, in the frame of what stands. */
+static vec3 default_normal(const item_view *v, double *unsure) {
+  const bound_side *side = &v->standing.side;
+  const double *normal = side->shape->size;
+  *unsure = 0.0;
+  if (is_halfspace(v)) return vec(normal[0], normal[1], normal[2]);
+  const vec3 y = placement_turn_back(&side->at, vec_sub(v->pair.moving->side.at.p, side->at.p));
+  const bool rounded = side->shape->ops->kind == CPROX_BODY_ELLIPSOID; /* the box is that of its core */
+  const double more = rounded ? side->shape->margin : 0.0;
+  const vec3 h = vec_add(side->half, vec(more, more, more));
+  const element_box box =
+      v->elements ? v->item->box : (element_box){vec_sub(side->middle, h), vec_add(side->middle, h)};
+  const vec3 out = element_box_way(&box, y), half = element_box_half(&box);
+  *unsure = UNSURE * (vec_norm(vec_sub(y, element_box_middle(&box))) + vec_norm(half)) / vec_norm(out);
+  return out;
+}
 
-  /* from the box to the centre */
-  const vec3 apart = vec_sub(v->moving->side.at.p, v->standing->side.at.p);
-  const vec3 y = vec_sub(placement_turn_back(&v->standing->side.at, apart), v->standing->side.middle);
-  const bool rounded = v->standing->side.shape->ops->kind == CPROX_BODY_ELLIPSOID; /* the box is that of its core */
-  const double more = rounded ? v->standing->side.shape->margin : 0.0;
-  const vec3 h = vec_add(v->standing->side.half, vec(more, more, more));
-  vec3 out = vec(copysign(fmax(fabs(y.x) - h.x, 0.0), y.x), copysign(fmax(fabs(y.y) - h.y, 0.0), y.y),
-                 copysign(fmax(fabs(y.z) - h.z, 0.0), y.z));
-  const double *normal = v->standing->side.shape->size;
-  if (is_halfspace(v)) out = vec(normal[0], normal[1], normal[2]);
-  const double length = vec_norm(out), unsure = is_halfspace(v) ? 0.0 : UNSURE * (vec_norm(y) + vec_norm(h)) / length;
+/* Whether halves of the elements tell more than halves of the interval: of those that the moving part is too near to,
+ * and of those that are larger than its way. */
+static bool is_to_be_cut(const item_view *v, bool too_near, double way) {
+  element_range unused[2];
+  if (!v->elements || !elements_cut(&v->elements->order, v->item->range, unused)) return false;
+  return too_near || vec_norm(element_box_half(&v->item->box)) > way;
+}
+
+static outcome settle(const robot_cover *c, const item_view *v, double width, vec3 *written) {
+  if (v->item->normal_known && settles(c, v, v->item->normal, 0.0)) return SETTLED;
+  double unsure;
+  const vec3 out = default_normal(v, &unsure);
+  const double length = vec_norm(out), displacement = v->pair.motion->displacement;
   if (length > 0.0 && settles(c, v, out, unsure)) return SETTLED;
+  if (v->by_box) return OPEN;
 
-  const double size = fmax(v->moving->radius, MOST_DISPLACEMENT * (length - v->moving->radius));
-  if (is_halfspace(v) || (v->motion->displacement > size && width > SHORT_INTERVAL)) return OPEN;
+  const robot_body *moving = v->pair.moving;
+  const double size = fmax(moving->radius, MOST_DISPLACEMENT * (length - moving->radius));
+  if (is_halfspace(v) || (displacement > size && width > SHORT_INTERVAL)) return OPEN;
   robot_gap gap;
   const robot_accuracy accuracy = {.floor = c->delta, .fraction = 0.01};
-  robot_pair_measure(v->moving, v->standing, accuracy, &gap);
-  if (gap.support_failed || !(gap.upper > c->delta) || !(vec_norm2(gap.normal) > 0.0)) return TOO_NEAR;
-  *written = certificate_round(c->certificate, placement_turn_back(&v->standing->side.at, gap.normal));
-  return settles(c, v, *written, 0.0) ? WRITTEN : OPEN;
+  robot_pair_measure(moving, &v->standing, accuracy, &gap);
+  const bool too_near = gap.support_failed || !(gap.upper > c->delta) || !(vec_norm2(gap.normal) > 0.0);
+  if (!too_near) {
+    *written = certificate_round(c->certificate, placement_turn_back(&v->standing.side.at, gap.normal));
+    if (settles(c, v, *written, 0.0)) return WRITTEN;
+  }
+  if (is_to_be_cut(v, too_near, fmax(displacement, moving->radius))) return CUT;
+  return too_near ? TOO_NEAR : OPEN;
 }
+
+/* ---- intervals ---- */
 
 static int32_t *reserve(const robot_cover *c, size_t n) {
   return workspace_reserve(c->scene->q->workspace, WORKSPACE_COVER, (n + 1) * sizeof(int32_t));
 }
 
-/* The pairs that an interval leaves open come to stand behind `to`; their number is *kept. Writes the head and the
- * normals. */
-static cprox_status certify_open_pairs(robot_cover *c, size_t from, size_t to, double width, size_t *kept) {
-  const size_t head = certificate_short(c->certificate, 0);
-  unsigned count = 0;
-  *kept = 0;
-  for (size_t i = from; i < to; i++) {
-    int32_t *open = reserve(c, to + *kept + 1);
-    if (!open) return CPROX_MEMORY;
-    placed_robot_pair v;
-    placed_robot_pair_at(c->scene, open[i], &v);
-    placed_robot_pair_move(&v);
-    vec3 written = vec(0, 0, 0);
-    const outcome out = settle(c, &v, width, &written);
-    if (out == TOO_NEAR) return CPROX_PRECISION;
-    if (out == OPEN || (out == WRITTEN && count == MOST_WRITTEN)) open[to + (*kept)++] = open[i];
-    if (out != WRITTEN || count == MOST_WRITTEN) continue;
-    v.pair->normal = written;
-    v.pair->normal_known = true;
-    certificate_short(c->certificate, (uint16_t)open[i]);
+/* The list of an interval: what it leaves open stands from `to` on. */
+typedef struct open_list {
+  size_t to, kept;
+  double width;
+  unsigned count; /* entries written */
+} open_list;
+
+static void write_entry(const robot_cover *c, const cover_item *item, bool cut) {
+  certificate_short(c->certificate, (uint16_t)item->pair);
+  if (elements_of(c, &c->scene->pairs[item->pair])) certificate_count(c->certificate, 2 * item->code + cut);
+}
+
+/* Writes what settles an item, or puts it on the list. */
+static cprox_status try_item(robot_cover *c, int32_t index, open_list *list) {
+  item_view v;
+  place_item(c, index, &v);
+  vec3 written = vec(0, 0, 0);
+  outcome out = settle(c, &v, list->width, &written);
+  if (out == SETTLED) return CPROX_OK;
+  if (out == TOO_NEAR) return CPROX_PRECISION;
+  if (out != OPEN && list->count == MOST_WRITTEN) out = OPEN;
+  cover_item *items = workspace_filled(c->scene->q->workspace, WORKSPACE_COVER_ITEMS);
+  if (out == WRITTEN) {
+    items[index].normal = written;
+    items[index].normal_known = true;
+    write_entry(c, &items[index], false);
     certificate_normal(c->certificate, written);
-    count++;
+    list->count++;
+    return CPROX_OK;
   }
-  certificate_restate_short(c->certificate, head, (uint16_t)(2 * count + (*kept > 0)));
+  if (out == CUT) {
+    if (!cut_item(c, index)) return CPROX_MEMORY;
+    items = workspace_filled(c->scene->q->workspace, WORKSPACE_COVER_ITEMS);
+    write_entry(c, &items[index], true);
+    certificate_count(c->certificate, items[items[index].inner].range.end);
+    list->count++;
+  }
+  const int32_t inner = items[index].inner;
+  if (inner > 0) {
+    const cprox_status status = try_item(c, inner, list);
+    return status == CPROX_OK ? try_item(c, inner + 1, list) : status;
+  }
+  int32_t *open = reserve(c, list->to + list->kept + 1);
+  if (!open) return CPROX_MEMORY;
+  open[list->to + list->kept++] = index;
   return CPROX_OK;
 }
 
-/* The interval [a, b] of a segment and the pairs at from … to - 1 of the list. Its depth is that of halves of 1. */
+/* The items that an interval leaves open come to stand behind `to`; their number is *kept. Writes the head and the
+ * normals. */
+static cprox_status certify_open_items(robot_cover *c, size_t from, size_t to, double width, size_t *kept) {
+  const size_t head = certificate_short(c->certificate, 0);
+  open_list list = {.to = to, .width = width};
+  for (size_t i = from; i < to; i++) {
+    const int32_t *open = workspace_filled(c->scene->q->workspace, WORKSPACE_COVER);
+    const cprox_status status = try_item(c, open[i], &list);
+    if (status != CPROX_OK) return status;
+  }
+  *kept = list.kept;
+  certificate_restate_short(c->certificate, head, (uint16_t)(2 * list.count + (list.kept > 0)));
+  return CPROX_OK;
+}
+
+/* The interval [a, b] of a segment and the items at from ... to - 1 of the list. Its depth is that of halves of 1. */
 static cprox_status lay(robot_cover *c, size_t segment, double a, double b, size_t from, size_t to) {
   if (c->budget == 0) return CPROX_BUDGET;
   c->budget--;
   robot_scene_enter(c->scene, segment, a, b);
   size_t kept;
-  cprox_status status = certify_open_pairs(c, from, to, b - a, &kept);
+  cprox_status status = certify_open_items(c, from, to, b - a, &kept);
   if (status != CPROX_OK || kept == 0) return status;
   if (!(b - a > c->shortest)) return CPROX_PRECISION;
   const double middle = 0.5 * (a + b);
@@ -121,11 +277,8 @@ cprox_status partition_robot(robot_cover *c) {
   const size_t n = c->scene->n_pairs;
   cprox_status status = CPROX_OK;
   int32_t *open = reserve(c, n);
-  if (!open) return CPROX_MEMORY;
-  for (size_t i = 0; i < n; i++) {
-    open[i] = (int32_t)i;
-    c->scene->pairs[i].normal_known = false;
-  }
+  if (!open || !begin_items(c)) return CPROX_MEMORY;
+  for (size_t i = 0; i < n; i++) open[i] = (int32_t)i;
   for (size_t s = 0; s < c->scene->motion->n_segments && status == CPROX_OK; s++) status = lay(c, s, 0.0, 1.0, 0, n);
   return status;
 }

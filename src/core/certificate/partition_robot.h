@@ -5,15 +5,28 @@
 #define CPROX_CERTIFICATE_PARTITION_ROBOT_H
 
 #include "certificate/certificate.h"
+#include "certificate/elements.h"
 #include "robot_query/placed_robot_pair.h"
+
+/* An obstacle of the scene that is made of elements; order.t NULL: it is not. */
+typedef struct robot_cover_elements {
+  element_order order;
+  const cprox_body *body;
+  robot_body standing; /* about the tree's origin, its shape apart */
+} robot_cover_elements;
 
 typedef struct robot_cover {
   robot_scene *scene;
+  const robot_cover_elements *elements; /* of each obstacle */
+  size_t n_items;
   double delta;
   uint32_t budget; /* intervals that may be tried */
   double shortest; /* intervals shorter than this part of a segment are given up */
   cprox_certificate *certificate;
 } robot_cover;
+
+/* The obstacles of a scene as covers take them, in the workspace; NULL where memory is out. Links become their hulls. */
+const robot_cover_elements *partition_robot_begin(robot_scene *scene);
 
 /* Writes the trees of all segments: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY.
  */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "certificate/reach.h"
 
+#include "base/rounding.h"
+
 /* The margin that is asked for, of the sizes that entered. */
 #define MARGIN 0x1p-90
 
@@ -131,6 +133,19 @@ reach_value reach_of_body(const reach_set *set, const reach_direction *n) {
   far.value = dd_add(far.value, dd_add(dot(&own, body->centre), height_of_core(&body->shape, &own)));
   far.value = dd_add(far.value, dd_multiply(length(n), dd_sum(ball, margin)));
   far.size += vec_norm(body->centre) + body->shape.scale;
+  return far;
+}
+
+reach_value reach_of_elements(const reach_set *set, const reach_direction *n, const element_order *order,
+                              const element_range *range) {
+  reach_value far;
+  const reach_direction own = to_own_frame(set, n, &far);
+  const vec3 d = vec(own.k[0].high, own.k[1].high, own.k[2].high);
+  const double scale = order->t->scale, height = elements_reach(order, range, d, NULL);
+  const dd most = dd_sum(height, 8.0 * ROUND_U * vec_norm(d) * scale);
+  far.value = dd_add(far.value, dd_add(dot(&own, set->body->centre), most));
+  far.value = dd_add(far.value, dd_scale(length(n), set->offset));
+  far.size += vec_norm(set->body->centre) + scale;
   return far;
 }
 

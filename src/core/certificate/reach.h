@@ -7,6 +7,7 @@
 #define CPROX_CERTIFICATE_REACH_H
 
 #include "base/double_double.h"
+#include "certificate/elements.h"
 #include "curve/curve.h"
 #include "shape/body.h"
 
@@ -17,7 +18,7 @@ typedef struct reach_direction {
 
 /* A body or a curve where it stands: the poses from the outermost to the innermost, and the ball added to it. */
 typedef struct reach_set {
-  const cprox_body *body;   /* convex, or NULL */
+  const cprox_body *body;   /* convex or of elements, or NULL */
   const cprox_curve *curve; /* or NULL */
   const cprox_pose *pose[2];
   int poses;
@@ -44,6 +45,10 @@ reach_direction reach_of_halfspace(const reach_set *set);
 
 /* max n·x over the body, its offset included. */
 reach_value reach_of_body(const reach_set *set, const reach_direction *n);
+
+/* The same of a range of the body's elements, their own margin apart; rounded up. */
+reach_value reach_of_elements(const reach_set *set, const reach_direction *n, const element_order *order,
+                              const element_range *range);
 
 /* max n·x over a part of the posed curve, its offset included. */
 reach_value reach_of_curve(const reach_set *set, const reach_direction *n, reach_part part);

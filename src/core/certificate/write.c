@@ -70,10 +70,10 @@ static cover cover_of(const task *t, size_t target, size_t part, uint32_t width)
     c.set.poses = 2;
     c.pose = frame_compose(&at->pose, &inner->pose);
   }
-  if (c.set.body && c.set.body->mesh) {
-    c.is_mesh = true;
-    c.set.offset = sum_up(c.set.offset, c.set.body->excess);
-    c.set.body = c.set.body->hull;
+  const cprox_body *elements = elements_body(c.set.body);
+  if (elements) {
+    c.set.offset = sum_up(c.set.offset, elements->shape.margin);
+    c.set.body = elements;
   }
   const cprox_result *r = t->answer;
   if (r && r->obstacle_index == (int32_t)target && r->obstacle_part == (int32_t)part && isfinite(r->t)) {
@@ -107,7 +107,9 @@ static cprox_status attempt(const task *t, uint32_t width, double delta) {
     for (size_t part = 0; part < body_n_parts(t->targets[i].body); part++) {
       cover c = cover_of(t, i, part, width);
       c.delta = delta;
-      const cprox_status status = c.set.curve ? partition_curves(&c) : partition_convex(&c);
+      const cprox_status status = c.set.curve        ? partition_curves(&c)
+                                  : c.set.body->tree ? partition_elements(&c)
+                                                     : partition_convex(&c);
       if (status != CPROX_OK) return status;
     }
   }
@@ -140,10 +142,6 @@ static cprox_status certify_near(const task *t) {
   size_t section = (size_t)r->obstacle_part;
   for (size_t i = 0; i < (size_t)r->obstacle_index; i++) section += body_n_parts(t->targets[i].body);
   cover c = cover_of(t, (size_t)r->obstacle_index, (size_t)r->obstacle_part, 8);
-  if (c.is_mesh)
-    return workspace_fail(t->workspace, CPROX_INVALID,
-                          "obstacle %d is a mesh: its convex hull cannot prove that it is near",
-                          (int)r->obstacle_index);
   c.delta = t->delta;
   certificate_begin(t->certificate, 8, CPROX_CLAIM_NEAR, t->delta, 1);
   return cover_near(&c, (uint32_t)section, r);
@@ -163,9 +161,9 @@ static cprox_status certify_curve(const task *t) {
     if (!target->body && target->curve->arcs)
       return workspace_fail(t->workspace, CPROX_INVALID,
                             "obstacle %zu is known by its arc length alone: it has no certificates", i);
-    if (target->body && describe_unknown_kind(target->body))
+    if (target->body && describe_unknown_obstacle(target->body))
       return workspace_fail(t->workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
-                            cprox_body_kind_name(describe_unknown_kind(target->body)->kind));
+                            cprox_body_kind_name(describe_unknown_obstacle(target->body)->kind));
   }
   if (!t->answer || t->answer->upper > t->delta) return certify_clear(t);
   const cprox_status status = certify_near(t);
@@ -178,18 +176,18 @@ static cprox_status prove(const task *t) {
   return certify_robot(t->mover, t->targets, t->n, t->delta, t->answer, t->options, t->workspace, t->certificate);
 }
 
-/* ---- meshes ---- */
+/* ---- links that are meshes ---- */
 
-static bool has_mesh(const task *t) {
+/* Links that are meshes stand there by their hulls. */
+static bool has_hulls(const task *t) {
   bool found = false;
-  for (size_t i = 0; i < t->n && !found; i++) found = t->targets[i].body && describe_has_mesh(t->targets[i].body);
   const cprox_robot *robot = t->mover->motion ? t->mover->motion->robot : NULL;
   for (size_t i = 0; robot && i < robot->n_geometries && !found; i++)
     found = describe_has_mesh(robot->given_geometries[i].body);
   return found;
 }
 
-/* What the hulls of meshes can prove of their distance: that the hulls are as far apart as they are. */
+/* What the hulls of links can prove of a distance: that the hulls are as far apart as they are. */
 static cprox_status prove_of_hulls(const task *t) {
   cprox_options options = *t->options;
   options.max_lod = CPROX_LOD_HULL;
@@ -220,10 +218,8 @@ static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targ
                   .workspace = workspace,
                   .certificate = certificate};
   if (!isfinite(delta)) return workspace_fail(workspace, CPROX_INVALID, "there is nothing to measure");
-  const bool by_mesh = is_of_distance(&t) && delta > 0.0 && has_mesh(&t);
-  cprox_status status = CPROX_PRECISION;
-  if (!by_mesh || answer->lod != CPROX_LOD_MESH) status = prove(&t);
-  if (status > 0 && by_mesh) status = prove_of_hulls(&t);
+  cprox_status status = prove(&t);
+  if (status > 0 && is_of_distance(&t) && delta > 0.0 && has_hulls(&t)) status = prove_of_hulls(&t);
   if (status == CPROX_OK) {
     workspace_clear(workspace);
     return status;
@@ -233,8 +229,8 @@ static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targ
   if (status == CPROX_MEMORY) return workspace_fail(workspace, status, "no memory for a certificate");
   if (status == CPROX_BUDGET) return workspace_fail(workspace, status, "max_nodes were not enough for a certificate");
   return workspace_fail(workspace, status,
-                        has_mesh(&t) ? "too close to delta for a certificate, which takes meshes by their convex hulls"
-                                     : "too close to delta for a certificate");
+                        has_hulls(&t) ? "too close to delta for a certificate, which takes links by their convex hulls"
+                                      : "too close to delta for a certificate");
 }
 
 /* Of a query. That there is no proof changes nothing in the answer. */

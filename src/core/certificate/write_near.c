@@ -2,6 +2,7 @@
 /* The claim that somewhere the distance is at most delta: the parameter, and a point of the target that is near enough.
  * The checker looks at the exact points, so the one named here is drawn in by more than the rounding of both. */
 #include "base/rounding.h"
+#include "bvh/winding.h"
 #include "certificate/partition.h"
 #include "convex/gjk.h"
 #include "shape/kinds.h"
@@ -62,6 +63,29 @@ double partition_near_point(const cprox_body *body, cprox_certificate *certifica
   return vec_norm(v);
 }
 
+double partition_near_element(const cprox_body *body, const uint32_t *first, cprox_certificate *certificate, vec3 y,
+                              double error) {
+  const tree *t = body->tree;
+  if (body->winding && winding_side_of(body->winding, t, y, error) == WINDING_INSIDE) {
+    certificate_count(certificate, UINT32_MAX);
+    return 0.0;
+  }
+  const tree_place at = tree_nearest(t, y, INFINITY).at;
+  element_body one;
+  elements_one(&one, t, at);
+  certificate_count(certificate, first[at.pack] + elements_lane(t, at));
+  return partition_near_point(&one.body, certificate, y, error);
+}
+
+/* The same with an order that has to be found. */
+static double near_element(const cover *c, vec3 y, double error) {
+  const tree *t = c->set.body->tree;
+  uint32_t *first = workspace_reserve(c->workspace, WORKSPACE_COVER_ELEMENTS, t->n_packs * sizeof *first);
+  if (!first) return INFINITY;
+  elements_order(t, first);
+  return partition_near_element(c->set.body, first, c->certificate, y, error);
+}
+
 /* The point of a curve at its counting parameter; where two pieces meet that do not join, the one that is nearer to
  * `by`. */
 static vec3 point_by(const cprox_curve *curve, double sigma, vec3 by) {
@@ -90,7 +114,7 @@ cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *an
   } else {
     const frame f = frame_create(&c->pose, c->set.body->centre);
     const vec3 y = local_point(c, &f, world, &error);
-    apart = partition_near_point(c->set.body, c->certificate, y, error);
+    apart = c->set.body->tree ? near_element(c, y, error) : partition_near_point(c->set.body, c->certificate, y, error);
     size = vec_norm(y) + c->set.body->shape.scale;
   }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A certificate for an answer about a robot along a motion. It is about hulls where there are meshes. */
+/* A certificate for an answer about a robot along a motion. It is about the hulls of links that are meshes. */
 #include "base/rounding.h"
 #include "certificate/describe.h"
 #include "certificate/partition_robot.h"
@@ -22,28 +22,68 @@ static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu is of a kind that has no certificates: %s", geometry,
                           cprox_body_kind_name(describe_unknown_kind(robot->given_geometries[geometry].body)->kind));
   for (size_t i = 0; i < n; i++)
-    if (describe_unknown_kind(targets[i].body))
+    if (describe_unknown_obstacle(targets[i].body))
       return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
-                            cprox_body_kind_name(describe_unknown_kind(targets[i].body)->kind));
+                            cprox_body_kind_name(describe_unknown_obstacle(targets[i].body)->kind));
   return CPROX_OK;
 }
 
-static cprox_status attempt(robot_scene *scene, uint32_t width, double delta, uint32_t budget, cprox_certificate *c) {
-  robot_cover cover = {.scene = scene, .delta = delta, .budget = budget, .certificate = c};
+static cprox_status attempt(const robot_cover *of, uint32_t width, double delta) {
+  robot_cover cover = *of;
+  cover.delta = delta;
   cover.shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE;
-  certificate_begin(c, width, CPROX_CLAIM_APART, delta, (uint32_t)scene->n_pairs);
+  certificate_begin(of->certificate, width, CPROX_CLAIM_APART, delta, (uint32_t)of->scene->n_pairs);
   const cprox_status status = partition_robot(&cover);
-  return status == CPROX_OK && c->failed ? CPROX_MEMORY : status;
+  return status == CPROX_OK && of->certificate->failed ? CPROX_MEMORY : status;
 }
+
+/* ---- elements ---- */
+
+/* About the origin of its tree. Sums of lengths that the tree reaches, turned once. */
+static robot_body placed_elements(const robot_body *owner) {
+  robot_body body = *owner;
+  const double scale = owner->tree->scale;
+  body.tree = NULL, body.clusters = NULL, body.winding = NULL;
+  body.side.margin = owner->tree_margin;
+  body.side.at.p = placement_apply(&owner->side.at, owner->tree_at);
+  body.side.error +=
+      ROUND_UP * ROUND_U * (ROUND_ROTATION * (vec_norm(owner->tree_at) + 2.0 * scale) + 3.0 * vec_norm(body.side.at.p));
+  body.radius = scale + owner->tree_margin;
+  return body;
+}
+
+const robot_cover_elements *partition_robot_begin(robot_scene *s) {
+  for (size_t i = 0; i < s->motion->robot->n_parts; i++) {
+    robot_body *body = &s->parts[i].body;
+    body->tree = NULL, body->clusters = NULL, body->winding = NULL;
+  }
+  size_t packs = 0;
+  for (size_t i = 0; i < s->n_obstacles; i++) packs += s->obstacles[i].tree ? s->obstacles[i].tree->n_packs : 0;
+  robot_cover_elements *elements = workspace_reserve(
+      s->q->workspace, WORKSPACE_COVER_ELEMENTS, (s->n_obstacles + 1) * sizeof *elements + packs * sizeof(uint32_t));
+  if (!elements) return NULL;
+  uint32_t *first = (uint32_t *)(void *)(elements + s->n_obstacles + 1);
+  for (size_t i = 0; i < s->n_obstacles; i++) {
+    const robot_body *o = &s->obstacles[i];
+    elements[i] = (robot_cover_elements){.order = {.t = NULL}};
+    if (!o->tree) continue;
+    elements[i].order = elements_order(o->tree, first);
+    elements[i].body = elements_body(body_part_at(s->q->targets[o->index].body, (size_t)o->part));
+    elements[i].standing = placed_elements(o);
+    first += o->tree->n_packs;
+  }
+  return elements;
+}
+
+/* ---- claims ---- */
 
 /* What the search's bounds prove with planes that turn, planes that stand may not: the claim about a distance gives
  * away epsilon. */
-static cprox_status certify_clear(robot_scene *scene, double delta, const cprox_result *answer, double epsilon,
-                                  uint32_t budget, cprox_certificate *c) {
-  cprox_status status = attempt(scene, 4, delta, budget, c);
-  if (status > 0) status = attempt(scene, 8, delta, budget, c);
-  const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower;
-  if (status > 0 && distance && delta > epsilon) status = attempt(scene, 4, delta - epsilon, budget, c);
+static cprox_status certify_clear(const robot_cover *cover, bool distance, double epsilon) {
+  const double delta = cover->delta;
+  cprox_status status = attempt(cover, 4, delta);
+  if (status > 0) status = attempt(cover, 8, delta);
+  if (status > 0 && distance && delta > epsilon) status = attempt(cover, 4, delta - epsilon);
   return status;
 }
 
@@ -51,7 +91,7 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
   query q = query_create(*mover, targets, n, delta, false, options, workspace);
-  q.options.max_lod = CPROX_LOD_HULL;
+  q.options.max_lod = CPROX_LOD_MESH;
   const cprox_status known = check_kinds(mover->motion, targets, n, workspace);
   if (known != CPROX_OK) return known;
   robot_scene scene;
@@ -60,11 +100,14 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
   if (scene.n_pairs > MOST_PAIRS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);
   const double epsilon = answer ? width_allowed(options->epsilon, options->relative_epsilon, answer->upper) : 0.0;
-  const robot_cover near = {.scene = &scene, .delta = delta, .certificate = certificate};
-  const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower && delta > 0.0;
+  const robot_cover_elements *elements = partition_robot_begin(&scene);
+  if (!elements) return CPROX_MEMORY;
+  const robot_cover cover = {
+      .scene = &scene, .elements = elements, .delta = delta, .budget = options->max_nodes, .certificate = certificate};
+  const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower;
   if (answer && answer->upper <= delta) {
-    const cprox_status status = partition_robot_near(&near, answer);
-    if (status == CPROX_OK || status == CPROX_MEMORY || !distance) return status;
+    const cprox_status status = partition_robot_near(&cover, answer);
+    if (status == CPROX_OK || status == CPROX_MEMORY || !distance || !(delta > 0.0)) return status;
   }
-  return certify_clear(&scene, delta, answer, epsilon, options->max_nodes, certificate);
+  return certify_clear(&cover, distance, epsilon);
 }

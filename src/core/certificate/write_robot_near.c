@@ -30,8 +30,7 @@ static const cprox_body *body_of_part(const cprox_robot *robot, int32_t part) {
 
 static const cprox_body *body_of_obstacle(const robot_scene *s, int32_t obstacle) {
   const robot_body *o = &s->obstacles[obstacle];
-  const cprox_body *body = body_part_at(s->q->targets[o->index].body, (size_t)o->part);
-  return body->mesh ? NULL : body;
+  return body_part_at(s->q->targets[o->index].body, (size_t)o->part);
 }
 
 /* The nearest pair of the two that the answer names, -1: there is none. The scene is at the place. */
@@ -102,13 +101,17 @@ cprox_status partition_robot_near(const robot_cover *c, const cprox_result *answ
   placed_robot_pair placed;
   placed_robot_pair_at(s, index, &placed);
   const robot_pair *pair = placed.pair;
-  const robot_body *moving = placed.moving, *standing = placed.standing;
+  const robot_cover_elements *elements = pair->self ? NULL : &c->elements[pair->standing];
+  if (elements && !elements->order.t) elements = NULL;
+  const robot_body *moving = placed.moving, *standing = elements ? &elements->standing : placed.standing;
   const cprox_body *part = body_of_part(m->robot, pair->moving);
-  const cprox_body *other = pair->self ? body_of_part(m->robot, pair->standing) : body_of_obstacle(s, pair->standing);
+  const cprox_body *other = elements     ? elements->body
+                            : pair->self ? body_of_part(m->robot, pair->standing)
+                                         : body_of_obstacle(s, pair->standing);
   if (!part || !other)
-    return workspace_fail(
-        s->q->workspace, CPROX_INVALID, "%s %d is a mesh: its convex hull cannot prove that it is near",
-        !part || pair->self ? "geometry" : "obstacle", (int)(part ? answer->obstacle_index : answer->mover_part));
+    return workspace_fail(s->q->workspace, CPROX_INVALID,
+                          "geometry %d is a mesh: its convex hull cannot prove that it is near",
+                          (int)(part ? answer->obstacle_index : answer->mover_part));
 
   cprox_certificate *to = c->certificate;
   certificate_begin(to, 8, CPROX_CLAIM_NEAR, c->delta, (uint32_t)s->n_pairs);
@@ -118,13 +121,16 @@ cprox_status partition_robot_near(const robot_cover *c, const cprox_result *answ
   const vec3 x =
       write_point_of(part, to, placement_turn_back(&moving->side.at, vec_sub(gap.on_moving, moving->side.at.p)));
   const vec3 world = placement_apply(&moving->side.at, x);
-  const double sizes = vec_norm(vec_sub(world, standing->side.at.p)) + moving->radius + standing->side.shape->scale;
+  const double sizes = vec_norm(vec_sub(world, standing->side.at.p)) + moving->radius +
+                       (elements ? elements->order.t->scale : standing->side.shape->scale);
   const double error = ERRORS * (moving->side.error + standing->side.error) + ROOM * ROUND_U * sizes;
-  const double apart = partition_near_point(
-      other, to, placement_turn_back(&standing->side.at, vec_sub(world, standing->side.at.p)), error);
+  const vec3 y = placement_turn_back(&standing->side.at, vec_sub(world, standing->side.at.p));
+  const double apart = elements ? partition_near_element(elements->body, elements->order.first, to, y, error)
+                                : partition_near_point(other, to, y, error);
 
   /* a claim that is too tight is lifted by what rounding may have cost */
-  const double margins = moving->side.margin - part->shape.margin + standing->side.margin - other->shape.margin;
+  const double margins =
+      moving->side.margin - part->shape.margin + standing->side.margin - (elements ? 0.0 : other->shape.margin);
   const double needed = apart > 0.0 ? apart + error - margins : 0.0;
   if (apart > 0.0 && needed > c->delta - error) {
     if (!(needed <= c->delta + LIFTED * error)) return CPROX_PRECISION;

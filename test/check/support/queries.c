@@ -159,6 +159,73 @@ query_mesh query_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_w
   return made;
 }
 
+/* Boxes of any size, on a grid or not. */
+static void cells_random(query_mesh *made, rng *r, double size, size_t n, cprox_workspace *ws) {
+  vec3 low[20], high[20];
+  test_mesh *mesh = &made->surface;
+  *mesh = (test_mesh){.n = 0, .m = 0, .vertices = calloc(8 * n, sizeof(vec3)), .triangles = calloc(12 * n, 12)};
+  assert_true(mesh->vertices && mesh->triangles);
+  for (size_t i = 0; i < n; i++) {
+    const vec3 half = vec(rng_uniform(r, 0.02, 0.2) * size, rng_uniform(r, 0.02, 0.2) * size, 0.1 * size);
+    const vec3 at = rng_in_cube(r, size);
+    low[i] = vec_sub(at, half), high[i] = vec_add(at, half);
+    test_mesh box = mesh_box(half);
+    for (size_t k = 0; k < box.m; k++, mesh->m++)
+      for (int j = 0; j < 3; j++) mesh->triangles[mesh->m][j] = box.triangles[k][j] + (uint32_t)mesh->n;
+    for (size_t k = 0; k < box.n; k++) mesh->vertices[mesh->n++] = vec_add(at, box.vertices[k]);
+    mesh_free(&box);
+  }
+  made->cells = true;
+  if (cprox_body_create_boxes(low, high, n, SIZE_MAX, ws, &made->body) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
+}
+
+static void points_body(query_mesh *made, rng *r, double size, size_t n, cprox_workspace *ws) {
+  test_mesh *mesh = &made->surface;
+  *mesh = (test_mesh){.n = n, .m = n, .vertices = calloc(n, sizeof(vec3)), .triangles = calloc(n, 12)};
+  assert_true(mesh->vertices && mesh->triangles);
+  for (size_t i = 0; i < n; i++) {
+    mesh->vertices[i] = rng_in_cube(r, size);
+    for (int j = 0; j < 3; j++) mesh->triangles[i][j] = (uint32_t)i;
+  }
+  made->radius = rng_index(r, 2) ? 0.0 : 0.1 * size;
+  if (cprox_body_create_points(mesh->vertices, n, made->radius, SIZE_MAX, ws, &made->body) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
+}
+
+query_mesh query_elements_random(rng *r, double scale, cprox_workspace *ws) {
+  query_mesh made = {.radius = 0.0};
+  const double size = rng_uniform(r, 0.2, 0.5) * scale;
+  switch (rng_index(r, 4)) {
+    case 0: points_body(&made, r, size, 1 + rng_index(r, 200), ws); break;
+    case 1: cells_random(&made, r, size, 1 + rng_index(r, 20), ws); break;
+    case 2:
+      made.surface = mesh_torus(6 + rng_index(r, 30), 4 + rng_index(r, 20), size, size * rng_uniform(r, 0.1, 0.5), 0.1);
+      made.body = mesh_body(&made.surface, rng_index(r, 2) ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE, ws);
+      break;
+    default:
+      made.surface = mesh_soup(r, 3 + rng_index(r, 50), 0.5 * size, size);
+      made.body = mesh_body(&made.surface, CPROX_MESH_FILL_SURFACE, ws);
+  }
+  return made;
+}
+
+double query_mesh_distance(const query_mesh *mesh, vec3l p) {
+  const cprox_body *body = mesh->mesh ? mesh->mesh : mesh->body;
+  const double d = (double)mesh_distance(&mesh->surface, p);
+  if (mesh->cells) {
+    for (size_t i = 0; i < mesh->surface.m; i += 12) {
+      const test_mesh box = {
+          .n = 8, .m = 12, .vertices = mesh->surface.vertices, .triangles = mesh->surface.triangles + i};
+      if (fabsl(mesh_winding(&box, p)) > 0.5L) return 0.0;
+    }
+    return d;
+  }
+  const bool solid =
+      cprox_body_get_info(body).is_solid && mesh->surface.m > 1 && cprox_body_get_info(body).kind == CPROX_BODY_MESH;
+  return solid && fabsl(mesh_winding(&mesh->surface, p)) > 0.5L ? 0.0 : fmax(d - mesh->radius, 0.0);
+}
+
 static cprox_body *body_random(asked *q, rng *r, bool polytope_only, cprox_workspace *ws) {
   cprox_body *body = query_body(r, q->scale, polytope_only, ws);
   q->bodies[q->n_bodies++] = body;
@@ -192,7 +259,10 @@ void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away
       continue;
     }
     if (kinds.meshes && rng_index(r, 2)) {
-      q->mesh[i] = query_mesh_random(r, scale, rng_index(r, 3) ? CPROX_MESH_FILL_SURFACE : CPROX_MESH_FILL_SOLID, ws);
+      q->mesh[i] =
+          kinds.elements && rng_index(r, 2)
+              ? query_elements_random(r, scale, ws)
+              : query_mesh_random(r, scale, rng_index(r, 3) ? CPROX_MESH_FILL_SURFACE : CPROX_MESH_FILL_SOLID, ws);
       *t = cprox_obstacle_at(q->mesh[i].body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
       if (rng_index(r, 3) == 0) *t = cprox_with_margin(*t, 0.05 * scale);
       continue;

@@ -23,10 +23,13 @@ typedef struct given_curve {
 } given_curve;
 
 /* A mesh that is not convex, with its hull: the body of both, the mesh, the hull; to be freed in this order. And its
- * triangles. */
+ * triangles. Or elements without a hull: `mesh` and `hull` are NULL. Points are triangles of no size, cells those of
+ * their corners: */
 typedef struct query_mesh {
   cprox_body *body, *mesh, *hull;
   test_mesh surface;
+  double radius; /* balls round points */
+  bool cells;    /* twelve triangles each */
 } query_mesh;
 
 typedef struct asked {
@@ -46,13 +49,20 @@ typedef struct asked_kinds {
   bool bezier_only; /* curves of the other bases, too */
   bool polytope_only;
   bool curve_target;
-  bool meshes; /* half of the targets */
+  bool meshes;   /* half of the targets */
+  bool elements; /* those of any kind, too */
 } asked_kinds;
 
 /* Of any convex kind. */
 cprox_body *query_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws);
 
 query_mesh query_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws);
+/* A mesh without a hull, points, or cells. */
+query_mesh query_elements_random(rng *r, double scale, cprox_workspace *ws);
+
+/* From a point of its own frame, by every element; 0 inside. */
+double query_mesh_distance(const query_mesh *mesh, vec3l p);
+
 void query_mesh_free(query_mesh *mesh);
 
 /* Fills q, which must stay where it is. Sizes around `scale`, everything `away` from the origin. */

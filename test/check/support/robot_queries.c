@@ -24,9 +24,12 @@ static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
 
 /* One body, a mesh, or a union of two. */
 static cprox_body *one_or_two(robot_query *q, rng *r, bool bounded, double scale, bool meshes, cprox_workspace *ws) {
-  if (meshes && rng_index(r, 3) == 0) {
+  if (meshes && rng_index(r, bounded ? 6 : 2) == 0) {
     query_mesh *mesh = &q->mesh[q->n_meshes++];
-    *mesh = query_mesh_random(r, scale, CPROX_MESH_FILL_SURFACE, ws);
+    if (!bounded && rng_index(r, 2))
+      *mesh = query_elements_random(r, scale, ws);
+    else
+      *mesh = query_mesh_random(r, scale, rng_index(r, 2) ? CPROX_MESH_FILL_SURFACE : CPROX_MESH_FILL_SOLID, ws);
     return mesh->body;
   }
   cprox_body *one = bounded ? bounded_body(r, scale, ws) : query_body(r, scale, false, ws), *both = NULL;

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A ray from the point crosses a closed mesh as often outwards as inwards, but for the winding number. A crossing is
+ * counted by the signs of volumes; where a sign is not known, another ray is tried. */
+#include "winding.h"
+
+#include <stdlib.h>
+
+#include "quick.h"
+
+/* ---- closed meshes ---- */
+
+/* An edge from its lesser vertex to the greater one; the sign says which way it is run through. */
+typedef struct edge {
+  const double *end[2];
+  int sign;
+} edge;
+
+static int compare_vertices(const double *a, const double *b) {
+  for (int k = 0; k < 3; k++)
+    if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
+  return 0;
+}
+
+static int compare_edges(const void *a, const void *b) {
+  const edge *first = a, *second = b;
+  const int order = compare_vertices(first->end[0], second->end[0]);
+  return order != 0 ? order : compare_vertices(first->end[1], second->end[1]);
+}
+
+bool winding_is_closed(const set *s) {
+  edge *edges = malloc((s->n + 1) * sizeof *edges);
+  if (!edges) return false;
+  for (size_t i = 0; i < s->n; i++) {
+    const double *from = s->vertices[i], *to = s->vertices[i % 3 == 2 ? i - 2 : i + 1];
+    const int order = compare_vertices(from, to); /* 0: the edge is a point, and cancels itself */
+    edges[i] = order <= 0 ? (edge){{from, to}, -order} : (edge){{to, from}, -1};
+  }
+  qsort(edges, s->n, sizeof *edges, compare_edges);
+  long sum = 0;
+  bool closed = true;
+  for (size_t i = 0; i < s->n && closed; i++) {
+    if (i > 0 && compare_edges(&edges[i - 1], &edges[i]) != 0) {
+      closed = sum == 0;
+      sum = 0;
+    }
+    sum += edges[i].sign;
+  }
+  free(edges);
+  return closed && sum == 0;
+}
+
+/* ---- rays ---- */
+
+typedef enum sign { NEGATIVE = -1, NO_SIGN, POSITIVE } sign;
+
+static sign sign_of(num a) {
+  return num_bottom(a) > 0.0 ? POSITIVE : num_top(a) < 0.0 ? NEGATIVE : NO_SIGN;
+}
+
+/* How the ray from 0 along d crosses the triangle: +-1, 0 where it does not, 2 where that is not known. */
+static int crossing(const vec v[3], const vec *d) {
+  vec across[3]; /* a x b, b x c, c x a */
+  num along[3], sum = num_of(0.0);
+  int positive = 0, negative = 0;
+  for (int k = 0; k < 3; k++) {
+    across[k] = vec_cross(&v[k], &v[(k + 1) % 3]);
+    along[k] = vec_dot(d, &across[k]);
+    sum = num_add(sum, along[k]);
+    const sign s = sign_of(along[k]);
+    positive += s == POSITIVE;
+    negative += s == NEGATIVE;
+  }
+  if (positive > 0 && negative > 0) return 0; /* it misses the triangle */
+  const sign facing = sign_of(sum), ahead = sign_of(vec_dot(&v[0], &across[1]));
+  if (facing != NO_SIGN && ahead == -facing) return 0; /* the plane is behind */
+  if (positive < 3 && negative < 3) return 2;
+  return facing != NO_SIGN && ahead == facing ? (int)facing : 2;
+}
+
+/* OUTSIDE of the box round the vertices, or not known. */
+static side side_of_box(const set *s, const vec *y) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t i = 0; i < s->n; i++)
+    for (int k = 0; k < 3; k++) {
+      low[k] = fmin(low[k], s->vertices[i][k]);
+      high[k] = fmax(high[k], s->vertices[i][k]);
+    }
+  for (int k = 0; k < 3; k++) {
+    const num at = {y->m[k], y->e};
+    if (num_bottom(at) > high[k] || num_top(at) < low[k]) return OUTSIDE;
+  }
+  return UNKNOWN_SIDE;
+}
+
+side winding_side(const set *s, const vec *y) {
+  static const double ways[][3] = {{0.61, 0.35, 0.71},   {-0.23, 0.89, -0.39}, {0.47, -0.68, 0.56},
+                                   {-0.83, -0.29, 0.47}, {0.17, 0.41, -0.89},  {0.93, -0.31, -0.19}};
+  if (side_of_box(s, y) == OUTSIDE) return OUTSIDE;
+  for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+    const vec d = vec_of(ways[i]);
+    long winding = 0;
+    size_t k = 0;
+    for (; k < s->n; k += 3) {
+      vec v[3];
+      for (size_t j = 0; j < 3; j++) {
+        const vec corner = vec_of(s->vertices[k + j]);
+        v[j] = vec_sub(&corner, y);
+      }
+      const int crossed = crossing(v, &d);
+      if (crossed == 2) break;
+      winding += crossed;
+    }
+    if (k >= s->n) return winding != 0 ? INSIDE : OUTSIDE;
+  }
+  return UNKNOWN_SIDE;
+}
+
+/* ---- who asks ---- */
+
+bool winding_pieces_begin_outside(const set *s, pieces *p) {
+  const vec centre = vec_of(s->centre);
+  for (size_t i = 0; i < p->n; i++) {
+    const pieces_quick *piece = pieces_quick_at(p, i);
+    if (!piece) return false;
+    vec y = vec_of(piece->points[0]);
+    y.e = GROW(piece->radius + piece->remainder);
+    y = quick_to_frame(s, &y);
+    y = vec_sub(&y, &centre);
+    if (winding_side(s, &y) != OUTSIDE) return false;
+  }
+  return true;
+}
+
+vec winding_ball_of(const iv x[3]) {
+  vec v = {.e = 0.0};
+  for (int k = 0; k < 3; k++) {
+    const double low = mpfr_get_d(x[k].lo, MPFR_RNDD), high = mpfr_get_d(x[k].hi, MPFR_RNDU);
+    v.m[k] = 0.5 * (low + high);
+    v.e += GROW(high - low + BALL_U * fabs(v.m[k]));
+  }
+  v.e = GROW(v.e);
+  return v;
+}

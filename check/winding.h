@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The inside of closed meshes. */
+#ifndef CHECK_WINDING_H
+#define CHECK_WINDING_H
+
+#include "ball.h"
+#include "pieces.h"
+#include "problem.h"
+
+typedef enum side { OUTSIDE, INSIDE, UNKNOWN_SIDE } side;
+
+/* Every edge is run through as often one way as the other; vertices with equal coordinates are one. */
+bool winding_is_closed(const set *s);
+
+/* Where a point is that is seen from the centre of a closed mesh: INSIDE, if the mesh winds round it. What is said
+ * holds of every point within the radius. */
+side winding_side(const set *s, const vec *y);
+
+/* Whether every piece of a curve begins outside. */
+bool winding_pieces_begin_outside(const set *s, pieces *p);
+
+/* A ball about a point in intervals. */
+vec winding_ball_of(const iv x[3]);
+
+#endif
