@@ -379,7 +379,8 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
                     .pair = near_at};
   uint32_t left = 0;
   for (uint32_t root = part->first_hull; root < part->end_hull; root = c->hulls[root].end) {
-    open_hull stack[EDGE_HULL_STACK] = {{root, 0, near}};
+    open_hull stack[EDGE_HULL_STACK];
+    stack[0] = (open_hull){root, 0, near};
     int looked = 0;
     for (size_t n = 1; n > 0; looked++) {
       const open_hull at = stack[--n];

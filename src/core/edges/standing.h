@@ -50,7 +50,8 @@ EDGE_INLINE lane piece_moves(const lane_batch *b, const lane_standing *s, const 
 EDGE_TARGET static void open_piece(lane_batch *b, lane_standing *s, const lane_piece *piece, const lane_hull *beside,
                                    uint32_t near) {
   const cprox_edge_checker *c = b->c;
-  open_hull stack[EDGE_HULL_STACK] = {{piece->number, 0, near}};
+  open_hull stack[EDGE_HULL_STACK];
+  stack[0] = (open_hull){piece->number, 0, near};
   lane_apart two = {.b = *beside,
                     .spin = s->own->spin,
                     .bound = b->motion->frames[s->part->frame],
@@ -216,7 +217,8 @@ typedef struct open_node {
 EDGE_TARGET static bool open_tree(lane_batch *b, lane_standing *s, const lane_piece *piece, uint32_t near) {
   const tree *t = s->o->tree;
   const lane_ball ball = ball_of_piece(b, s, piece);
-  open_node stack[EDGE_TREE_STACK] = {{0, near}};
+  open_node stack[EDGE_TREE_STACK];
+  stack[0] = (open_node){0, near};
   int looked = 0;
   for (size_t n = 1; n > 0; looked++) {
     const open_node at = stack[--n];
