@@ -206,9 +206,14 @@ EDGE_INLINE uint32_t proven_within(lane distance2, float radius) {
   return r > 0.0f ? lane_mask((lane_bits)(distance2 < lane_all(r * r))) : 0;
 }
 
+/* The search is asked about it anyway: lanes look no deeper, and halve nothing more for it. */
+EDGE_INLINE bool is_open(const lane_batch *b, uint32_t pair) {
+  return b->open->seen[pair] == b->open->edge;
+}
+
 EDGE_TARGET static void leave_open(lane_batch *b, uint32_t pair, uint32_t lanes) {
   edge_open *open = b->open;
-  if (open->seen[pair] != open->edge) {
+  if (!is_open(b, pair)) {
     open->seen[pair] = open->edge;
     open->pairs[open->n++] = pair;
   }

@@ -371,6 +371,7 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
   const edge_part *part = &c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
   const float room = b->motion->room[i];
+  const bool known = is_open(b, near_at);
   need(b, CPROX_EDGE_NORMAL);
   lane_apart two = {.o = o,
                     .spin = own->spin,
@@ -394,6 +395,10 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
       if (!lanes) continue;
       lane depth;
       lanes = not_apart(b, &two, lanes, &still, &depth);
+      if (known) {
+        left |= lanes;
+        continue;
+      }
       halve(b, near_at, lanes & ~still);
       if (!still) continue;
       const lane_two both = {hull->geometry, o->target, false};
@@ -432,6 +437,7 @@ EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
   const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
   const uint32_t number = (uint32_t)(c->n_near + i);
   const float room = b->motion->room[pair->a] + b->motion->room[pair->b] + (float)c->clear_beyond;
+  const bool known = is_open(b, number);
   need(b, CPROX_EDGE_NORMAL);
   lane_apart two = {.spin = lane3_sub(own->spin, other->spin),
                     .bound = b->motion->relations[pair->relation],
@@ -456,6 +462,10 @@ EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
         if (!lanes) continue;
         lane depth;
         lanes = not_apart(b, &two, lanes, &still, &depth);
+        if (known) {
+          left |= lanes;
+          continue;
+        }
         halve(b, number, lanes & ~still);
         if (!still) continue;
         const bool opens = opens_first(hull, beside);

@@ -72,6 +72,10 @@ EDGE_TARGET static void open_piece(lane_batch *b, lane_standing *s, const lane_p
     if (!lanes) continue;
     lane depth;
     lanes = not_apart(b, &two, lanes, &still, &depth);
+    if (is_open(b, s->pair)) {
+      s->left |= lanes;
+      continue;
+    }
     halve(b, s->pair, lanes & ~still);
     if (!still) continue;
     if (hull->n_children == 0 || looked > EDGE_MOST_HULLS || n + hull->n_children > EDGE_HULL_STACK) {
