@@ -268,6 +268,7 @@ typedef struct lane_apart {
   float reach, radius;    /* of a's part; of both sides together, with clear_beyond and what rounding may cost */
   uint32_t pair;
   edge_half_bound bound;
+  bool opens; /* pieces of one of them are looked at next: no normal is sought that only holds them apart as they are */
 } lane_apart;
 
 /* The lanes in which not even the balls round the two hulls are apart. */
@@ -316,7 +317,8 @@ EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint
     *depth = lane_choose(lane_those(asked), lane_min(radius - gap, *depth), *depth);
     if (plane) break;
     /* no normal will do better: they are too near each other, or they move too far */
-    asked &= ~(lane_mask((lane_bits)(length <= stands)) | (standing & lane_mask((lane_bits)(length <= needed))));
+    asked &= ~(lane_mask((lane_bits)(length <= stands)) |
+               ((two->opens ? asked : standing) & lane_mask((lane_bits)(length <= needed))));
     if (!asked) break;
     const lane3 w = lane3_add(origins, lane3_sub(at, its));
     asked &= ~take_in_point(&near, w);
@@ -393,6 +395,7 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
       two.radius = hull->margin + round_of(o) + (float)c->clear_beyond + room;
       if (at.hull != root) lanes &= balls_near(b, &two);
       if (!lanes) continue;
+      two.opens = hull->n_children > 0 && looked <= EDGE_MOST_HULLS && n + hull->n_children <= EDGE_HULL_STACK;
       lane depth;
       lanes = not_apart(b, &two, lanes, &still, &depth);
       if (known) {
@@ -410,7 +413,7 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
           return true;
         }
       }
-      if (hull->n_children == 0 || looked > EDGE_MOST_HULLS || n + hull->n_children > EDGE_HULL_STACK) {
+      if (!two.opens) {
         suspect(b, &both, still, depth);
         left |= still;
         continue;
@@ -460,6 +463,10 @@ EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
         two.radius = hull->margin + beside->margin + room;
         lanes &= balls_near(b, &two);
         if (!lanes) continue;
+        const bool first_opens = opens_first(hull, beside);
+        const uint32_t child = first_opens ? hull->child : beside->child;
+        const uint32_t children = first_opens ? hull->n_children : beside->n_children;
+        two.opens = children > 0 && looked <= EDGE_MOST_HULLS && n + children <= EDGE_HULL_STACK;
         lane depth;
         lanes = not_apart(b, &two, lanes, &still, &depth);
         if (known) {
@@ -468,17 +475,14 @@ EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
         }
         halve(b, number, lanes & ~still);
         if (!still) continue;
-        const bool opens = opens_first(hull, beside);
-        const uint32_t child = opens ? hull->child : beside->child;
-        const uint32_t children = opens ? hull->n_children : beside->n_children;
-        if (children == 0 || looked > EDGE_MOST_HULLS || n + children > EDGE_HULL_STACK) {
+        if (!two.opens) {
           const lane_two both = {hull->geometry, beside->geometry, true};
           suspect(b, &both, still, depth);
           left |= still;
           continue;
         }
         for (uint32_t k = 0; k < children; k++)
-          stack[n++] = opens ? (open_hull){child + k, at.other, still} : (open_hull){at.hull, child + k, still};
+          stack[n++] = first_opens ? (open_hull){child + k, at.other, still} : (open_hull){at.hull, child + k, still};
       }
     }
   left &= ~b->split;

@@ -70,6 +70,7 @@ EDGE_TARGET static void open_piece(lane_batch *b, lane_standing *s, const lane_p
     two.radius = hull->margin + s->o->around + s->beyond + s->room;
     lanes &= balls_near(b, &two);
     if (!lanes) continue;
+    two.opens = hull->n_children > 0 && looked <= EDGE_MOST_HULLS && n + hull->n_children <= EDGE_HULL_STACK;
     lane depth;
     lanes = not_apart(b, &two, lanes, &still, &depth);
     if (is_open(b, s->pair)) {
@@ -78,7 +79,7 @@ EDGE_TARGET static void open_piece(lane_batch *b, lane_standing *s, const lane_p
     }
     halve(b, s->pair, lanes & ~still);
     if (!still) continue;
-    if (hull->n_children == 0 || looked > EDGE_MOST_HULLS || n + hull->n_children > EDGE_HULL_STACK) {
+    if (!two.opens) {
       const lane_two both = {hull->geometry, s->o->target, false};
       suspect(b, &both, still, depth);
       s->left |= still;
