@@ -60,6 +60,30 @@ static size_t check_violations(const cprox_violations *v, clearance_at clearance
   return v->count;
 }
 
+/* Ends that are crossed at more than a hundredth of the speed and belong to one violation are as narrow as asked.
+ * Returns how many that are. */
+static size_t check_ends(const cprox_violations *v, clearance_at clearance, const void *scene, double resolution,
+                         double speed) {
+  size_t steep = 0;
+  for (size_t i = 0; i < v->count; i++) {
+    const cprox_violation *one = &v->list[i];
+    if (one->verdict != CPROX_VERDICT_VIOLATED) continue;
+    const double ends[2][2] = {{one->enter_lower, one->enter_upper}, {one->leave_lower, one->leave_upper}};
+    for (size_t k = 0; k < 2; k++) {
+      const bool shared = k == 0 ? i > 0 && v->list[i - 1].leave_upper > one->enter_lower
+                                 : i + 1 < v->count && one->leave_upper > v->list[i + 1].enter_lower;
+      const double width = ends[k][1] - ends[k][0];
+      if (shared || !(width > 0.0)) continue;
+      const double change = (double)fabsl(clearance(scene, ends[k][1]) - clearance(scene, ends[k][0]));
+      if (!(change > 0.01 * speed * width)) continue;
+      steep++;
+      if (width > resolution)
+        fail_msg("an end is %.17g wide, %.17g was asked: %.17g to %.17g", width, resolution, ends[k][0], ends[k][1]);
+    }
+  }
+  return steep;
+}
+
 /* ---- curves ---- */
 
 typedef struct ride {
@@ -88,7 +112,7 @@ static long double ride_clearance(const void *scene, long double t) {
 /* Balls of radius r along Bézier curves past a box and a ball: they go in and out, many touch both. */
 CASE(a_ball_along_a_curve_is_within_delta_where_it_is_said_to_be) {
   rng r = rng_seed(9001);
-  size_t told = 0, within = 0;
+  size_t told = 0, within = 0, steep = 0;
   for (size_t i = 0; i < test_cases(150); i++) {
     ride s = {.half = vec(rng_uniform(&r, 0.1, 0.8), rng_uniform(&r, 0.1, 0.8), rng_uniform(&r, 0.1, 0.8)),
               .radius = i % 2 ? 0.0 : 0.1,
@@ -111,12 +135,13 @@ CASE(a_ball_along_a_curve_is_within_delta_where_it_is_said_to_be) {
     for (size_t k = 1; k < POINTS; k++)
       speed = fmax(speed, (POINTS - 1) * vec_norm(vec_sub(s.control[k], s.control[k - 1])));
     told += check_violations(&v, ride_clearance, &s, delta, 4.0 * speed * resolution + 2e-9, 0, 1, &within);
+    steep += check_ends(&v, ride_clearance, &s, resolution, speed);
     cprox_curve_free(curve);
     cprox_body_free(box);
     cprox_body_free(ball);
   }
-  print_message("%zu violations, %zu places within delta\n", told, within);
-  assert_true(told > 100 && within > 1000);
+  print_message("%zu violations, %zu places within delta, %zu steep ends\n", told, within, steep);
+  assert_true(told > 100 && within > 1000 && steep > 100);
 }
 
 /* ---- movers ---- */

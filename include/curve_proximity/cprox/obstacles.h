@@ -214,10 +214,9 @@ typedef struct cprox_violations {
 /** All intervals of the parameter in which the mover is at most delta [m] from an obstacle: when does it enter, when
  *  does it leave? Outside of them it is proven to be farther; from enter_upper to leave_lower it is proven not to be.
  *
- *  resolution  in units of the parameter, > 0: intervals that are neither proven are halved until they are no longer
- *              than that. Several in a row stay open where the distance comes within twice what moves in `resolution`
- *              of delta: at either end of a violation that is entered or left obliquely, and between two violations,
- *              which may be one: then leave_upper is the next one's enter_upper.
+ *  resolution  in units of the parameter, > 0: each end of a violation is at most so wide. Wider ends stay where the
+ *              distance hardly changes: it runs along delta, or epsilon does not tell it from delta. So does what lies
+ *              between two violations that may be one: then leave_upper is the next one's enter_upper.
  *
  *  Robots and movers with overlaps: delta > 0, as a distance of 0 does not say how deep; with delta = 0 single places
  *  are proven. Convex bodies along curves: with options.signed_distance. Beside a synchronized obstacle likewise only

@@ -220,6 +220,69 @@ static cprox_status look_over(violation_search *s, const piece *whole) {
   return CPROX_OK;
 }
 
+/* All pieces of the range, each as far as it lies in it. */
+static cprox_status search_range(violation_search *s, double from, double to) {
+  const cprox_curve *curve = s->q.mover.motion ? NULL : s->q.mover.curve;
+  for (size_t i = 0; i < (curve ? curve->n_pieces : 1); i++) {
+    const piece part = {curve ? fmax(from, curve->breaks[i]) : from, curve ? fmin(to, curve->breaks[i + 1]) : to, i};
+    if (!(part.from < part.to)) continue;
+    const cprox_status status = look_over(s, &part);
+    if (status != CPROX_OK) return status;
+  }
+  return CPROX_OK;
+}
+
+/* ---- ends as narrow as asked ---- */
+
+enum { NARROWINGS = 16, FEW = 8 };
+
+/* Pieces of `resolution` leave an end open that is crossed obliquely: it is searched again by smaller ones. What is
+ * found replaces the end's bounds. A violation's end is [*clear, *within] where it enters, [*within, *clear] where it
+ * leaves. Ends that get no narrower (it runs along delta, or epsilon is reached), and those that budget or stop leave,
+ * stay as they are. */
+static cprox_status narrow_end(const violation_search *whole, bool enters, double *clear, double *within) {
+  double resolution = whole->resolution;
+  for (int i = 0; i < NARROWINGS && fabs(*within - *clear) > whole->resolution; i++) {
+    const double from = fmin(*clear, *within), to = fmax(*clear, *within), width = to - from;
+    resolution *= fmax(0.5 * whole->resolution / width, 0.25);
+    cprox_violation list[FEW];
+    cprox_violations found = {.list = list, .room = FEW};
+    violation_search s = *whole;
+    s.out = &found, s.resolution = resolution, s.failure = CPROX_OK, s.within = s.open = false;
+    const cprox_status status = search_range(&s, from, to);
+    if (status < 0) return status;
+    if (status != CPROX_OK || s.failure != CPROX_OK || !end_violation(&s)) return CPROX_OK;
+    const cprox_violation *first = &list[0], *last = &list[found.count - (found.count > 0)];
+    if (found.count == 0) {
+      *clear = *within;
+    } else if (enters) {
+      *clear = first->enter_lower;
+      if (last->verdict == CPROX_VERDICT_VIOLATED && last->leave_lower >= to) *within = last->enter_upper;
+    } else {
+      *clear = last->leave_upper;
+      if (first->verdict == CPROX_VERDICT_VIOLATED && first->enter_upper <= from) *within = first->leave_lower;
+    }
+    if (fabs(*within - *clear) > 0.75 * width) return CPROX_OK;
+  }
+  return CPROX_OK;
+}
+
+/* Ends that two violations share are left: between them may be one. */
+static cprox_status narrow_ends(const violation_search *s) {
+  cprox_violation *list = s->out->list;
+  for (size_t i = 0; i < s->out->count; i++) {
+    cprox_violation *v = &list[i];
+    if (v->verdict != CPROX_VERDICT_VIOLATED) continue;
+    const bool shares_first = i > 0 && list[i - 1].leave_upper > v->enter_lower,
+               shares_last = i + 1 < s->out->count && v->leave_upper > list[i + 1].enter_lower;
+    cprox_status status = CPROX_OK;
+    if (!shares_first) status = narrow_end(s, true, &v->enter_lower, &v->enter_upper);
+    if (status == CPROX_OK && !shares_last) status = narrow_end(s, false, &v->leave_upper, &v->leave_lower);
+    if (status != CPROX_OK) return status;
+  }
+  return CPROX_OK;
+}
+
 static cprox_status check(const violation_search *s) {
   cprox_workspace *workspace = s->q.workspace;
   if (!s->out || (!s->out->list && s->out->room > 0) || s->out->room == 0)
@@ -245,16 +308,14 @@ cprox_status list_violations(cprox_mover mover, const cprox_obstacle *targets, s
   if (status != CPROX_OK) return status;
   violations->count = 0;
   const double t0 = s.q.t0, t1 = s.q.t1;
-  const cprox_curve *curve = mover.motion ? NULL : mover.curve;
   bool left = true;
-  if (!curve) status = look_at_standing(&s, &(piece){t0, t1, 0}, &left);
-  for (size_t i = 0; left && i < (curve ? curve->n_pieces : 1) && status == CPROX_OK; i++) {
-    const piece whole = {curve ? curve->breaks[i] : t0, curve ? curve->breaks[i + 1] : t1, i};
-    if (whole.from < whole.to) status = look_over(&s, &whole);
-  }
+  if (mover.motion) status = look_at_standing(&s, &(piece){t0, t1, 0}, &left);
+  if (left && status == CPROX_OK) status = search_range(&s, t0, t1);
   if (status < 0) return status;
   s.q.t1 = t1;
   if (status == CPROX_OK) end_violation(&s);
+  if (left && status == CPROX_OK && s.failure == CPROX_OK) status = narrow_ends(&s);
+  if (status < 0) return status;
   if (violations->count > 0 && status == CPROX_BUDGET) violations->list[violations->count - 1].leave_upper = t1;
   if (s.failure != CPROX_OK) workspace_fail(workspace, s.failure, "%s", query_shortfall(s.failure));
   return s.failure;
