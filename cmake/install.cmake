@@ -69,6 +69,8 @@ if(CPROX_ROS)
   set_target_properties(cprox_cli PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
   install(TARGETS cprox_cli RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+  #catkin_lint: ignore_once missing_file wrong_install_destination
+  install(FILES ${PROJECT_BINARY_DIR}/cprox.1 DESTINATION share/man/man1)
   # Where cprox looks for it.
   set_target_properties(cprox_check PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
@@ -89,5 +91,7 @@ else()
   if(CPROX_SCENE AND BUILD_SHARED_LIBS)
     set_target_properties(cprox_cli PROPERTIES INSTALL_RPATH "$ORIGIN/../${CPROX_LIB_DIR}")
     install(TARGETS cprox_cli RUNTIME DESTINATION bin)
+    #catkin_lint: ignore_once missing_file wrong_install_destination
+    install(FILES ${PROJECT_BINARY_DIR}/cprox.1 DESTINATION share/man/man1)
   endif()
 endif()

@@ -55,7 +55,7 @@ class Lines {
       if (interval.b.empty()) interval.b = asked_.part.object;
       out_.stopped = out_.stopped || interval.status == CPROX_STOPPED;
       out_.against_nothing = out_.against_nothing || interval.gap == Gap::EMPTY || std::isinf(interval.lower);
-      out_.undecided = out_.undecided || interval.gap;
+      noteGap(interval.gap, out_);
       out_.text += profileLine(asked_.id, asked_.kind, interval);
     }
   }
@@ -63,6 +63,7 @@ class Lines {
   void add(const Violations &found) {
     out_.stopped = out_.stopped || found.status == CPROX_STOPPED;
     out_.against_nothing = out_.against_nothing || !found.measured;
+    noteGap(found.gap, out_);
     if (found.list.empty()) out_.text += clearLine(asked_.id, asked_.kind, found.status, found.message);
     for (Violation one : found.list) {
       if (!asked_.part.link.empty() && one.b == asked_.part.link) std::swap(one.a, one.b);

@@ -434,6 +434,11 @@ Arguments parseArguments(const std::vector<std::string> &words) {
     return out;
   }
 
+  if (words.front() == "man" && words.size() == 1) {
+    out.action = Action::MANUAL;
+    return out;
+  }
+
   const Command *known = findCommand(words.front());
   if (!known)
     throw BadUsage("'" + words.front() + "' is no command; the commands are " + commandNames() + " (see --help)");
@@ -451,9 +456,14 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   if (split.has("--certificate") && (out.query.per_object || out.per_link)) {
     throw BadUsage("--certificate takes no --per-object and no --per-link: a certificate is about all pairs at once");
   }
-  out.skipped = split.has("--skipped");
+  out.json = split.has("--json");
+  out.quiet = split.has("--quiet");
+  out.verbose = split.has("-v");
+  out.strict = split.has("--strict");
+  if (out.quiet && out.verbose) throw BadUsage("--quiet and -v exclude each other");
+  out.skipped = split.has("--skipped") || out.verbose;
   if (split.has("--shortest-way") && !out.shortest_way) throw BadUsage("--shortest-way needs --trajectory T.yaml");
-  out.timings = split.has("--timings");
+  out.timings = split.has("--timings") || out.verbose;
   if (split.has("--mesh-tolerance"))
     out.mesh_tolerance = readNumber(split, "--mesh-tolerance", 0.0, true, "of at least 0 (metres)");
   out.threads = std::max(1u, std::thread::hardware_concurrency());

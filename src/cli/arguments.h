@@ -18,6 +18,7 @@ enum class Action {
   HELP,
   VERSION,
   COMPLETION,
+  MANUAL,
   CURVES,
   AGAINST,
   TRAJECTORY,
@@ -72,6 +73,10 @@ struct Arguments {
   std::optional<std::string> failed; /**< CERTIFY: why all rows of the shard are failed */
   std::string shard_folder;          /**< MERGE */
   std::string out;                   /**< file of the results; empty: standard output */
+  bool json = false;                 /**< rows as JSON, not as CSV */
+  bool quiet = false;                /**< standard error has what ends the run alone */
+  bool verbose = false;              /**< at the end, how many rows there were, and which */
+  bool strict = false;               /**< a row that does not cover all that was given is one without an answer */
   std::size_t threads = 1;
   bool skipped = false;        /**< tell on standard error what takes no part, and why */
   bool timings = false;        /**< tell on standard error how long loading takes */

@@ -19,6 +19,10 @@ void Console::wipe() {
 }
 
 void Console::say(const std::string &sentence) {
+  if (!is_quiet_) complain(sentence);
+}
+
+void Console::complain(const std::string &sentence) {
   /* names out of files may hold anything: it stays one line, and nothing that a terminal would obey */
   std::string line = sentence;
   for (char &c : line) {
@@ -36,7 +40,7 @@ void Console::warn(const Warnings &warnings) {
 }
 
 void Console::progress(const std::string &line) {
-  if (!is_terminal_) return;
+  if (!is_terminal_ || is_quiet_) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   wipe();
   std::fputs(line.c_str(), stderr);

@@ -19,8 +19,16 @@ class Console {
   Console(const Console &) = delete;
   Console &operator=(const Console &) = delete;
 
-  /** A line that stays. */
+  /** A line that stays; nothing where the console is quiet. */
   void say(const std::string &sentence);
+
+  /** The same, also where the console is quiet. */
+  void complain(const std::string &sentence);
+
+  /** From now on only what is a complaint is said. */
+  void beQuiet() {
+    is_quiet_ = true;
+  }
 
   /** "warning: …", a line each. */
   void warn(const Warnings &warnings);
@@ -33,7 +41,7 @@ class Console {
 
   std::mutex mutex_;
   const bool is_terminal_;
-  bool shows_progress_ = false;
+  bool shows_progress_ = false, is_quiet_ = false;
 };
 
 } // namespace curve_proximity::cli

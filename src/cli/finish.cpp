@@ -8,7 +8,7 @@
 namespace curve_proximity::cli {
 namespace {
 
-int finish(const Tally &tally, Console &console) {
+int finish(const Tally &tally, const Arguments &arguments, Console &console) {
   if (tally.failed) console.say(std::to_string(tally.failed) + " of " + std::to_string(tally.rows) + " rows failed");
   if (tally.unproven) console.say(std::to_string(tally.unproven) + " answers have no certificate (column proof: none)");
   if (tally.interrupted) {
@@ -22,7 +22,14 @@ int finish(const Tally &tally, Console &console) {
     console.say("warning: the second opinion disagrees in " + std::to_string(tally.disputed) + " of " +
                 std::to_string(tally.rows) + " rows (column second_opinion)");
   if (!tally.rows) console.say("warning: the input has no rows");
-  if (tally.failed || !tally.rows) return kUnanswered;
+  if (arguments.verbose)
+    console.say(std::to_string(tally.rows) + " rows of the input: " + std::to_string(tally.violated) + " violated, " +
+                std::to_string(tally.undecided) + " undecided, " + std::to_string(tally.uncovered) + " not covered, " +
+                std::to_string(tally.failed) + " failed");
+  if (arguments.strict && tally.uncovered)
+    console.complain("cprox: --strict: " + std::to_string(tally.uncovered) + " of " + std::to_string(tally.rows) +
+                     " rows do not cover all that was given (column message)");
+  if (tally.failed || !tally.rows || (arguments.strict && tally.uncovered)) return kUnanswered;
   if (tally.violated) return kSomeViolated;
   return tally.undecided || tally.disputed ? kSomeUndecided : kAllAnswered;
 }
@@ -38,27 +45,35 @@ void tellTimings(const std::vector<std::string> &sentences, Console &console) {
   for (const std::string &sentence : sentences) console.say("timing: " + sentence);
 }
 
+void noteGap(const std::optional<Gap> &gap, Outcome &outcome) {
+  outcome.undecided = outcome.undecided || gap;
+  outcome.uncovered = outcome.uncovered || (gap && *gap != Gap::EMPTY);
+}
+
 void noteVerdict(const ResultRow &row, Outcome &outcome) {
   const bool nothing = row.gap == Gap::EMPTY || row.result.lower == std::numeric_limits<double>::infinity();
   outcome.against_nothing = outcome.against_nothing || (row.result.status >= 0 && nothing);
-  outcome.undecided = outcome.undecided || row.gap;
+  noteGap(row.gap, outcome);
   outcome.disputed = outcome.disputed || row.second_opinion.verdict == SecondOpinion::DISAGREES;
   if (!row.has_verdict || row.result.status < 0) return;
   outcome.violated = outcome.violated || row.result.verdict == CPROX_VERDICT_VIOLATED;
   outcome.undecided = outcome.undecided || row.result.verdict == CPROX_VERDICT_UNDECIDED;
 }
 
-Output::Output(const Arguments &arguments) : threads_(arguments.threads), results_(arguments.out, inputsOf(arguments)) {
+Output::Output(const Arguments &arguments)
+    : arguments_(arguments),
+      results_(arguments.out, inputsOf(arguments)),
+      form_(rowForm(arguments.json, arguments.out)) {
   if (!arguments.certificate.empty())
     certificates_.emplace(arguments.certificate, inputsOf(arguments), "--certificate");
 }
 
 int Output::answer(const std::string &header, Rows rows, Console &console) {
   catchInterrupts();
-  results_.write(header);
-  rows.write = [&](const std::string &text) { results_.write(text); };
+  results_.write(form_(header));
+  rows.write = [&](const std::string &text) { results_.write(form_(text)); };
   if (certificates_) rows.certify = [&](const std::string &records) { certificates_->write(records); };
-  return finish(runRows(threads_, rows, console), console);
+  return finish(runRows(arguments_.threads, rows, console), arguments_, console);
 }
 
 int Output::answer(const std::string &header, const std::vector<Task> &tasks, Console &console) {

@@ -10,6 +10,7 @@
 #include "arguments.h"
 #include "console.h"
 #include "results.h"
+#include "row_text.h"
 #include "run.h"
 
 namespace curve_proximity::cli {
@@ -20,13 +21,16 @@ void tellTimings(const std::vector<std::string> &sentences, Console &console);
 /** --skipped: what takes no part. */
 void tellSkipped(const std::vector<std::string> &sentences, Console &console);
 
+/** Notes what a row does not cover. */
+void noteGap(const std::optional<Gap> &gap, Outcome &outcome);
+
 /** Notes the verdict of a row of the results, and its second opinion, so that a run can count it. */
 void noteVerdict(const ResultRow &row, Outcome &outcome);
 
 /** The files that a run writes: the results, and certificates where these are wanted. */
 class Output {
  public:
-  /** Throws BadUsage where a file cannot be written, or is one of the inputs. */
+  /** Keeps the arguments. Throws BadUsage where a file cannot be written, or is one of the inputs. */
   explicit Output(const Arguments &arguments);
 
   /** Writes the header and answers all rows; rows.write and rows.certify are set here. Returns the exit code that the
@@ -38,8 +42,9 @@ class Output {
   int answer(const std::string &header, const std::vector<Task> &tasks, Console &console);
 
  private:
-  const std::size_t threads_;
+  const Arguments &arguments_;
   ResultsFile results_;
+  RowText form_;
   std::optional<ResultsFile> certificates_;
 };
 

@@ -25,8 +25,10 @@ constexpr const char *INPUTS = R"(INPUTS is one of
 )";
 
 constexpr const char *RESULTS =
-    "Results are CSV, metres and radians. A row that fails has the status 'invalid', and its column message says "
-    "why.\n";
+    "Results are CSV, or with --json a JSON object a row; metres and radians. On a terminal numbers have six digits, "
+    "and "
+    "bounds\nare rounded outwards; files and pipes have all digits. A row that fails has the status 'invalid', and its "
+    "column message\nsays why.\n";
 
 constexpr const char *EXIT_CODES = R"(Exit code of every command
   0                 everything is answered, and nothing of it is violated, undecided or unproven
@@ -117,6 +119,57 @@ std::string helpText(const std::string &command) {
     before = each.columns;
   }
   return out + "\n" + EXIT_CODES;
+}
+
+namespace {
+
+/* For troff: a hyphen is one, a backslash is none of its own, and no line begins with a request. */
+std::string troff(const std::string &text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || text[i - 1] == '\n';
+    if (begins && (text[i] == '.' || text[i] == '\'')) out += "\\&";
+    if (text[i] == '-')
+      out += "\\-";
+    else if (text[i] == '\\')
+      out += "\\e";
+    else
+      out += text[i];
+  }
+  return out;
+}
+
+std::string asItIs(const std::string &text) {
+  return ".nf\n" + troff(text) + ".fi\n";
+}
+
+} // namespace
+
+std::string manualPage() {
+  std::string out =
+      ".TH CPROX 1 \"\" \"cprox " CPROX_VERSION
+      "\" \"User Commands\"\n.SH NAME\ncprox \\- certified distances of continuous motions\n"
+      ".SH SYNOPSIS\n.nf\ncprox COMMAND [OPTION ...]\ncprox [COMMAND] \\-\\-help\ncprox \\-\\-version\n.fi\n"
+      ".SH DESCRIPTION\nHow close a continuous motion comes to the things around it, as intervals that contain the "
+      "true "
+      "value.\nNo ROS master is needed.\n.SH COMMANDS\n";
+  for (const Command &command : commands()) {
+    out += std::string(".SS ") + troff(command.word) + "\n" + troff(command.help) + ".\n.PP\n";
+    std::string forms, examples;
+    addForms(command, forms);
+    eachLine(command.examples, [&](const std::string &line) { examples += "    cprox " + line + "\n"; });
+    out += asItIs(forms) + ".PP\nExamples:\n" + asItIs(examples);
+    if (*command.columns) out += ".PP\nColumns: " + troff(command.columns) + ".\n";
+  }
+  out += ".SH INPUTS\n" + asItIs(INPUTS) + ".SH OPTIONS\n";
+  for (const Option &option : options()) {
+    std::string words;
+    for (const std::string &word : commandsOf(option)) words += (words.empty() ? "" : ", ") + word;
+    out += ".TP\n.B " + troff(option.name) + (*option.value ? " " + std::string(option.value) : "") + "\n" +
+           troff(option.help) + ".\nFor: " + troff(words) + ".\n";
+  }
+  return out + ".SH RESULTS\n" + troff(RESULTS) + ".SH EXIT STATUS\n" + asItIs(EXIT_CODES) +
+         ".SH SEE ALSO\n.BR cprox_check (1)\n";
 }
 
 std::string bashCompletion() {

@@ -13,5 +13,8 @@ std::string helpText(const std::string &command);
 /** For `source <(cprox completion bash)`: commands, the options of each, and files. */
 std::string bashCompletion();
 
+/** All of it as a page for man. */
+std::string manualPage();
+
 } // namespace curve_proximity::cli
 #endif

@@ -20,9 +20,11 @@ using namespace curve_proximity::cli;
 
 int run(const std::vector<std::string> &words, Console &console) {
   const Arguments arguments = parseArguments(words);
+  if (arguments.quiet) console.beQuiet();
   switch (arguments.action) {
     case Action::HELP: std::fputs(helpText(arguments.topic).c_str(), stdout); return kAllAnswered;
     case Action::COMPLETION: std::fputs(bashCompletion().c_str(), stdout); return kAllAnswered;
+    case Action::MANUAL: std::fputs(manualPage().c_str(), stdout); return kAllAnswered;
     case Action::VERSION: std::puts("cprox " CPROX_VERSION); return kAllAnswered;
     case Action::CURVES: return answerCurves(arguments, console);
     case Action::AGAINST: return answerAgainst(arguments, console);
@@ -50,14 +52,14 @@ int main(int argc, char **argv) {
   try {
     return run(std::vector<std::string>(argv + 1, argv + argc), console);
   } catch (const BadUsage &e) {
-    console.say(std::string("cprox: ") + e.what());
+    console.complain(std::string("cprox: ") + e.what());
     return kUnanswered;
   } catch (const std::bad_alloc &) {
-    console.say("cprox: out of memory");
+    console.complain("cprox: out of memory");
   } catch (const std::exception &e) {
-    console.say(std::string("cprox: ") + e.what());
+    console.complain(std::string("cprox: ") + e.what());
   } catch (...) {
-    console.say("cprox: an error without a name");
+    console.complain("cprox: an error without a name");
   }
   return kUnanswered;
 }

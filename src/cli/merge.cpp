@@ -10,6 +10,7 @@
 #include "csv.h"
 #include "failure.h"
 #include "results.h"
+#include "row_text.h"
 #include "run.h"
 #include "shard_file.h"
 
@@ -137,6 +138,7 @@ int mergeShards(const Arguments &arguments, Console &console) {
   const std::string beside = arguments.out.empty() ? "" : arguments.out + ".part";
   {
     ResultsFile results(beside, {});
+    RowText form(rowForm(arguments.json, arguments.out));
     std::string lines = shards.begin()->second.header + "\n";
     constexpr std::size_t kBlock = 1 << 16;
     for (const auto &[number, shard] : shards) {
@@ -144,14 +146,14 @@ int mergeShards(const Arguments &arguments, Console &console) {
       readShard(shard.path, header, [&](const std::string &row) {
         lines += row + "\n";
         if (lines.size() < kBlock) return;
-        results.write(lines);
+        results.write(form(lines));
         lines.clear();
       });
       if (!interrupted(nullptr)) continue;
       if (!beside.empty()) std::remove(beside.c_str());
       return kInterrupted;
     }
-    results.write(lines);
+    results.write(form(lines));
   }
   std::error_code error;
   if (!beside.empty()) std::filesystem::rename(beside, arguments.out, error);

@@ -285,6 +285,15 @@ const std::vector<Option> &options() {
        "is closer than 2 M metres may read as a hit"},
       {"--out", "FILE", "queries report pairs constraints certify merge robust",
        "the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page"},
+      {"--json", "", "queries pairs constraints merge robust",
+       "a JSON object a row, on a line of its own, by the names of the CSV's columns: an infinite number is the text "
+       "\"inf\" or \"-inf\", a field without a value is null"},
+      {"--strict", "", "queries pairs robust",
+       "a row that does not cover all that was given (status partial or rounded) counts as one without an answer: the "
+       "exit code is 2, not 3"},
+      {"--quiet", "", "queries report pairs constraints certify merge check robust",
+       "no warnings and no progress on standard error, only why a run cannot be made"},
+      {"-v", "", "queries pairs robust", "--skipped and --timings, and at the end how many rows there were, and which"},
       {"--replace", "", "send",
        "the file takes the place of the node's scene (default, unless the file says is_diff: true)"},
       {"--add", "", "send", "the file is added to the node's scene"},

@@ -119,6 +119,7 @@ class Run {
       ++tally_.rows;
       tally_.violated += next.violated ? 1 : 0;
       tally_.undecided += next.undecided && !next.violated ? 1 : 0;
+      tally_.uncovered += next.uncovered ? 1 : 0;
       tally_.disputed += next.disputed ? 1 : 0;
       tally_.against_nothing += next.against_nothing ? 1 : 0;
       tally_.failed += next.complaints.empty() ? 0 : 1;

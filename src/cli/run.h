@@ -18,12 +18,13 @@ namespace curve_proximity::cli {
 
 /** What became of one row of the input. */
 struct Outcome {
-  std::string text;                    /**< the lines of the results */
-  std::string certificate;             /**< its record, where certificates are wanted */
-  bool violated = false;               /**< a verdict is violated */
-  bool undecided = false;              /**< a verdict is undecided */
-  bool disputed = false;               /**< a second opinion disagrees */
-  bool against_nothing = false;        /**< there was nothing to measure against */
+  std::string text;             /**< the lines of the results */
+  std::string certificate;      /**< its record, where certificates are wanted */
+  bool violated = false;        /**< a verdict is violated */
+  bool undecided = false;       /**< a verdict is undecided */
+  bool uncovered = false;       /**< it does not cover all that was given, though there was something to measure */
+  bool disputed = false;        /**< a second opinion disagrees */
+  bool against_nothing = false; /**< there was nothing to measure against */
   std::vector<std::string> complaints; /**< for standard error: why there is no answer */
   std::vector<std::string> unproven;   /**< likewise, of an answer: why the certificate that is wanted is empty */
   bool stopped = false;                /**< it was interrupted: it is not to be written */
@@ -38,6 +39,7 @@ struct Tally {
   std::size_t unproven = 0;         /**< answers without the certificate that was wanted */
   std::size_t violated = 0;         /**< rows of the input with a violated verdict */
   std::size_t undecided = 0;        /**< and without one, but with an undecided verdict */
+  std::size_t uncovered = 0;        /**< rows of the input that do not cover all that was given */
   std::size_t disputed = 0;         /**< rows of the input with a second opinion that disagrees */
   std::size_t against_nothing = 0;  /**< rows of the input that had nothing to measure against */
   bool interrupted = false;
