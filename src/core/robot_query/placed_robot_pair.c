@@ -82,14 +82,15 @@ static const bound_side *round_side(const robot_body *body) {
 }
 
 /* The axes that move the pair against each other. Those that turn a side about its own axis are left out where the
- * search has one time: both sides stay within *stray of where they are without. The certificate checker does not know
- * of it, so nothing that is written for it rests on that. */
+ * search has one time: both sides stay within *stray of where they are without. Without a turn about the standing side,
+ * normals turn with it unseen, towards errors of other axes: where there are errors, none is left out there. The
+ * certificate checker does not know of it, so nothing that is written for it rests on that. */
 static size_t chain_of(const placed_robot_pair *p, double *stray) {
   const robot_scene *s = p->scene;
   size_t n = motion_chain(s->motion, seen_from_axis(p), moving_axis(p), s->chain);
   *stray = 0.0;
   if (robot_scene_has_two_times(s) || p->moving->side.margin_turns) return n;
-  const bound_side *round[2] = {round_side(p->moving), round_side(p->standing)};
+  const bound_side *round[2] = {round_side(p->moving), s->q->errors ? NULL : round_side(p->standing)};
   if (round[0] || round[1])
     *stray = motion_leave_out_round(s->axes, s->chain, &n, round[0], round[1], p->moving->steps + p->standing->steps);
   return n;
