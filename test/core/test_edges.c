@@ -282,7 +282,7 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
   }
   /* the bounds are not idle */
   assert_true(refused * 10 < test_cases(1500));
-  assert_true(worst > 0.01L && fullest > 0.99L && fullest_pair > 0.99L);
+  if (test_cases(1500) >= 1000) assert_true(worst > 0.01L && fullest > 0.99L && fullest_pair > 0.99L);
 }
 
 /* Chains whose velocities cancel in the middle, so that accelerations alone move the ball: a shift along an axis that
@@ -548,12 +548,11 @@ static cprox_edge_query ask_of(const world *w, bool self, double delta) {
 enum { EDGES = 8 };
 
 /* 120 worlds (seed 404), 8 edges each, every kind of obstacle, balls and capsules: no verdict is wrong, by 64 samples
- * refined. Fewer worlds go on until lanes left some edge open. */
+ * refined. */
 CASE(edge_verdicts_are_never_wrong) {
   rng r = rng_seed(404);
   size_t counts[3] = {0}, levels[CPROX_EDGE_SEARCH + 1] = {0};
-  for (size_t i = 0;
-       i < test_cases(120) || (i < 120 && levels[CPROX_EDGE_MEASUREMENT] + levels[CPROX_EDGE_SEARCH] == 0); i++) {
+  for (size_t i = 0; i < test_cases(120); i++) {
     const double scale = rng_log_uniform(&r, 1e-2, 1e2);
     const bool self = rng_index(&r, 2);
     world w;
@@ -576,6 +575,7 @@ CASE(edge_verdicts_are_never_wrong) {
     cprox_edge_checker_free(c);
     free_world(&w);
   }
+  if (test_cases(120) < 60) return; /* what follows is about many */
   assert_true(counts[0] > EDGES * test_cases(120) / 10 && counts[1] > EDGES * test_cases(120) / 10);
   assert_true(counts[2] * 100 < counts[0] + counts[1]);
   assert_true(levels[CPROX_EDGE_BALL] > 0 && levels[CPROX_EDGE_COVER] > 0);
@@ -607,7 +607,7 @@ CASE(grazing_edges_are_decided_rightly) {
     }
     free_world(&w);
   }
-  assert_true(asked > test_cases(1000) / 4 && decided * 100 >= 97 * asked);
+  if (test_cases(1000) >= 500) assert_true(asked > test_cases(1000) / 4 && decided * 100 >= 97 * asked);
 }
 
 /* What the caller's numbers may be off by (125 worlds, seed 411, 8 edges each; CPROX_TEST_SCALE=100 for 10^5 edges). The
@@ -654,6 +654,7 @@ CASE(rounding_of_the_caller_is_on_the_safe_side_of_both_verdicts) {
     }
     free_world(&w);
   }
+  if (asked < 500) return;
   assert_true(counts[0] > asked / 10 && counts[1] > asked / 10 && differ * 1000 <= asked);
   if (asked >= 1000) assert_true(counts[2] > 0 && levels[CPROX_EDGE_MEASUREMENT] > 0 && levels[CPROX_EDGE_SEARCH] > 0);
 }
@@ -770,7 +771,7 @@ CASE(the_first_contact_is_never_late) {
     cprox_edge_checker_free(c);
     free_world(&w);
   }
-  assert_true(hits > test_cases(200) / 10);
+  if (test_cases(200) >= 100) assert_true(hits > test_cases(200) / 10);
 }
 
 /* Edges that lanes decide allocate nothing once the workspace has grown. */
