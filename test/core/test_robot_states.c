@@ -113,6 +113,8 @@ CASE(a_state_is_where_forward_kinematics_puts_it) {
       q.distance = false, q.delta = least * (side ? 1.01 : 0.99);
       assert_int_equal(cprox_robot_ask_states(t.robot, &q, packed, 1, ws, results, NULL), CPROX_OK);
       assert_int_equal(results[0].verdict, side ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
+      assert_true(results[0].lower <= both[0].upper && both[0].lower <= results[0].upper);
+      assert_true(side ? results[0].upper <= q.delta : results[0].lower > q.delta);
     }
     cprox_obstacles_free(set);
     cprox_body_free(box);

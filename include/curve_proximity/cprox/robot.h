@@ -328,8 +328,10 @@ typedef struct cprox_state_query {
  *             the part that obstacle_index names in the robot: then about_self[i] is true.
  *  about_self n of them, or NULL.
  *
- *  A state that is violated against the obstacles is not held against itself. Returns CPROX_OK, or the least favourable
- *  status of a result; CPROX_INVALID or CPROX_MEMORY end the call, and results before that state are valid. */
+ *  A verdict ends with the first contact, be it with an obstacle or with itself. A state that is proven clear without a
+ *  measurement has no witness: upper is infinite, obstacle_index and mover_part are -1. Returns CPROX_OK, or the least
+ *  favourable status of a result; CPROX_INVALID or CPROX_MEMORY end the call, and results before that state are
+ *  valid. */
 CPROX_API cprox_status cprox_robot_ask_states(const cprox_robot *robot, const cprox_state_query *asked,
                                               const double *states, size_t n, cprox_workspace *workspace,
                                               cprox_result *results, bool *about_self);

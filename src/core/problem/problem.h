@@ -21,6 +21,7 @@ typedef struct query {
   double limit;      /* verdicts: delta, 0 for collision; distance: -1 */
   bool is_signed;    /* distance: overlaps are measured, too */
   bool is_tolerance; /* and not a collision: for messages */
+  bool is_bare;      /* a robot's verdict: what is proven clear without a measurement needs no witness */
   cprox_options options;
   cprox_workspace *workspace;
   curve_interval part; /* of the mover's curve: the whole of it, or some of one piece */

@@ -24,6 +24,15 @@ static cprox_status conclude(const query *q, double cutoff, double lower, cprox_
   return query_conclude(q, cutoff, result->status, result);
 }
 
+/* Clear, without a witness. */
+static cprox_status tell_clear(const query *q, double cutoff, double lower, cprox_result *result) {
+  cprox_result r = query_nothing();
+  r.mover_part = -1, r.lod = CPROX_LOD_HULL, r.status = CPROX_OK;
+  const cprox_status status = conclude(q, cutoff, lower, &r);
+  *result = r;
+  return status;
+}
+
 /* A measurement is what proves contact; of what is clear it is the witness. */
 static cprox_status measure(const query *q, const edge_first *known, double cutoff, cprox_result *result) {
   const bool clear = known->verdict == CPROX_VERDICT_CLEAR;
@@ -40,6 +49,7 @@ cprox_status robot_verdict(const query *q, size_t first, size_t last, double cut
   const uint64_t done = workspace_work(q->workspace);
   edge_first known;
   for (int suspects = 1; edge_first_level(q, first, last, suspects, &known); suspects = 0) {
+    if (q->is_bare && known.verdict == CPROX_VERDICT_CLEAR) return tell_clear(q, cutoff, known.lower, result);
     cprox_result r;
     const bool open = known.verdict == CPROX_VERDICT_UNDECIDED;
     const cprox_status status = open ? search(q, &known.rest, cutoff, &r) : measure(q, &known, cutoff, &r);
