@@ -14,13 +14,10 @@
 
 #include <cmocka.h>
 
+#include "support/mutants.h"
 #include "support/of_list.h"
 #include "support/robot_queries.h"
 #include "support/tampering.h"
-
-typedef struct tally {
-  size_t genuine, tampered, accepted, failed;
-} tally;
 
 /* The distance of a query, and a certificate of it or of a verdict about it; false where there is none. */
 static bool ask(const robot_query *q, rng *r, cprox_workspace *ws, cprox_certificate *c, double interval[2],
@@ -41,12 +38,6 @@ static bool ask(const robot_query *q, rng *r, cprox_workspace *ws, cprox_certifi
   return true;
 }
 
-/* Is what was found true of a query whose distance lies in the interval? */
-static bool is_true(const finding *found, const double interval[2]) {
-  if (found->claim == CLAIM_APART) return found->delta < interval[1];
-  return found->claim == CLAIM_NONE || found->delta >= interval[0];
-}
-
 /* Every interval takes two bytes at least, and on every interval each item is tried with two directions at most, by its
  * box and by its vertices. The head of a genuine certificate tells the number of pairs; a cut of an item into two takes
  * ten bytes. */
@@ -54,25 +45,6 @@ static bool is_bounded(const bytes *genuine, size_t size, const finding *found) 
   uint32_t pairs;
   memcpy(&pairs, genuine->at + HEAD - sizeof pairs, sizeof pairs);
   return found->leaves <= 4 * (pairs + size / 5) * (size / 2 + 1);
-}
-
-static void judge(const finding *found, bool bounded, const double interval[2], const char *done, size_t query,
-                  tally *sum) {
-  const bool genuine = strcmp(done, "genuine") == 0, proven = found->claim != CLAIM_NONE;
-  sum->genuine += genuine;
-  sum->tampered += !genuine;
-  sum->accepted += !genuine && proven;
-  if (genuine && !proven) {
-    printf("FAILED query %zu: a genuine certificate was refused: %s\n", query, found->fault);
-    sum->failed++;
-  } else if (!is_true(found, interval)) {
-    printf("FAILED query %zu (%s): %s %.17g was accepted, but the distance is in [%.17g, %.17g]\n", query, done,
-           found->claim == CLAIM_APART ? "apart" : "near", found->delta, interval[0], interval[1]);
-    sum->failed++;
-  } else if (!bounded) {
-    printf("FAILED query %zu (%s): %zu directions were tried\n", query, done, found->leaves);
-    sum->failed++;
-  }
 }
 
 /* Targets come nearer by up to a tenth, or the motion goes farther by up to a third. */
@@ -119,14 +91,14 @@ static void write_record(const files *f, const robot_query *q, const bytes *b, c
 }
 
 static void try_query(robot_query *q, size_t number, size_t mutants, rng *r, cprox_workspace *ws, const bytes *genuine,
-                      const bytes *other, const double interval[2], const files *f, tally *sum) {
+                      const bytes *other, const double interval[2], const files *f, mutants_tally *sum) {
   static bytes mutant;
   robot_text text = robot_text_of(&q->mover, q->targets, q->n, ws);
   for (size_t k = 0; k <= mutants; k++) {
     mutant = *genuine;
     const char *done = k == 0 ? "genuine" : tamper(&mutant, r, other);
     const finding found = robot_text_check(&text, mutant.at, mutant.n);
-    judge(&found, is_bounded(genuine, mutant.n, &found), interval, done, number, sum);
+    mutants_judge(&found, is_bounded(genuine, mutant.n, &found), interval, done, number, sum);
     write_record(f, q, &mutant, ws);
   }
   robot_text_free(&text);
@@ -136,7 +108,7 @@ static void try_query(robot_query *q, size_t number, size_t mutants, rng *r, cpr
     if (!ask(q, r, ws, NULL, changed, NULL)) continue;
     text = robot_text_of(&q->mover, q->targets, q->n, ws);
     const finding found = robot_text_check(&text, genuine->at, genuine->n);
-    judge(&found, is_bounded(genuine, genuine->n, &found), changed, "changed query", number, sum);
+    mutants_judge(&found, is_bounded(genuine, genuine->n, &found), changed, "changed query", number, sum);
     robot_text_free(&text);
   }
 }
@@ -151,7 +123,7 @@ int main(int argc, char **argv) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_certificate *c = cprox_certificate_create();
   static bytes genuine, other;
-  tally sum = {0};
+  mutants_tally sum = {0};
   for (size_t i = 0; i < queries;) {
     robot_query q;
     robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), i % 3 == 2, ws);
@@ -166,8 +138,5 @@ int main(int argc, char **argv) {
   }
   cprox_certificate_free(c);
   cprox_workspace_free(ws);
-  printf("robots: %zu genuine certificates, %zu mutants, of which %zu prove something true\n", sum.genuine,
-         sum.tampered, sum.accepted - (sum.failed < sum.accepted ? sum.failed : sum.accepted));
-  printf("%zu passed, %zu failed\n", sum.genuine + sum.tampered - sum.failed, sum.failed);
-  return sum.failed > 0 || sum.genuine == 0;
+  return mutants_report("robots", &sum);
 }

@@ -184,6 +184,43 @@ CASE(proofs_of_elements_hold_of_each_and_leave_answers_as_they_are) {
   cprox_workspace_free(ws);
 }
 
+/* A curve within a closed box is apart from its triangles; of the solid that proves nothing. */
+CASE(what_is_inside_of_a_solid_is_not_apart_from_it) {
+  rng r = rng_seed(8);
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_certificate *c = cprox_certificate_create();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.certificate = c;
+  test_mesh box = mesh_box(vec(1, 1, 1));
+  cprox_body *surface = mesh_body(&box, CPROX_MESH_FILL_SURFACE, ws);
+  cprox_body *solid = mesh_body(&box, CPROX_MESH_FILL_SOLID, ws);
+  for (int i = 0; i < 50; i++) {
+    const double most = i % 2 ? 0.9 : 3.0;
+    asked q = {.scale = 1.0, .n = 1};
+    q.mover = (given_curve){.basis = "bezier", .degree = 3, .t1 = 1.0, .n = 4};
+    for (int k = 0; k < 4; k++) q.mover.points[k] = rng_in_cube(&r, most);
+    assert_int_equal(curve_from(describe_bezier(q.mover.points, 4, 0.0, 1.0), ws, &q.mover.curve), CPROX_OK);
+    cprox_result of_surface, of_solid;
+    q.targets[0] = cprox_obstacle_at(solid, rng_pose(&r, 0.01));
+    ask(&q, -1.0, &options, ws, &of_solid);
+    assert_null(asked_check(&q, cprox_certificate_get_info(c).bytes, cprox_certificate_get_info(c).size).fault);
+    q.targets[0].body = surface;
+    ask(&q, -1.0, &options, ws, &of_surface);
+    const cprox_certificate_info info = cprox_certificate_get_info(c);
+    assert_null(asked_check(&q, info.bytes, info.size).fault);
+    q.targets[0].body = solid;
+    const finding found = asked_check(&q, info.bytes, info.size);
+    if (of_solid.upper == 0.0 && of_surface.lower > 0.0)
+      assert_string_equal(found.fault, "the curve does not begin outside the mesh");
+    asked_free(&q);
+  }
+  cprox_body_free(surface);
+  cprox_body_free(solid);
+  mesh_free(&box);
+  cprox_certificate_free(c);
+  cprox_workspace_free(ws);
+}
+
 /* 30 curves (seed 7) that come near a closed mesh of 20,000 triangles, some through its hole: what they leave is small,
  * and the checker looks at few triangles more than once. */
 CASE(a_large_mesh_leaves_a_small_certificate) {

@@ -227,6 +227,43 @@ CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
   cprox_certificate_free(c);
 }
 
+/* 20 robots (seed 6) within a closed box: they are apart from its triangles, and inside of the solid. */
+CASE(robots_inside_of_a_solid_are_not_apart_from_it) {
+  cprox_certificate *c = cprox_certificate_create();
+  rng r = rng_seed(6);
+  test_mesh box = mesh_box(vec(50, 50, 50));
+  cprox_body *surface = mesh_body(&box, CPROX_MESH_FILL_SURFACE, ws);
+  cprox_body *solid = mesh_body(&box, CPROX_MESH_FILL_SOLID, ws);
+  cprox_options options = accurate(1e-3);
+  options.certificate = c;
+  for (int i = 0; i < 20; i++) {
+    test_robot robot;
+    robot_make(&r, 0.5, &robot);
+    const cprox_mover along = cprox_robot_along(robot.motion, NULL, 0);
+    cprox_obstacle target = cprox_obstacle_at(solid, rng_pose(&r, 1.0));
+    for (int round = 0; round < 2; round++) {
+      cprox_result result;
+      assert_true(distance_of_list(along, &target, 1, &options, ws, &result, NULL) >= 0);
+      assert_true(round == 0 ? result.upper == 0.0 : result.lower > 1.0);
+      robot_text text = robot_text_of(&along, &target, 1, ws);
+      const cprox_certificate_info info = cprox_certificate_get_info(c);
+      assert_null(robot_text_check(&text, info.bytes, info.size).fault);
+      robot_text_free(&text);
+      target.body = surface;
+    }
+    target.body = solid;
+    const cprox_certificate_info info = cprox_certificate_get_info(c);
+    robot_text text = robot_text_of(&along, &target, 1, ws);
+    assert_string_equal(robot_text_check(&text, info.bytes, info.size).fault, "a part does not begin outside a mesh");
+    robot_text_free(&text);
+    robot_free(&robot);
+  }
+  cprox_body_free(surface);
+  cprox_body_free(solid);
+  mesh_free(&box);
+  cprox_certificate_free(c);
+}
+
 /* ---- directions whose squares underflow ---- */
 
 static size_t put(unsigned char *to, uint64_t bits, size_t n) {

@@ -325,21 +325,29 @@ void asked_write_mover(const asked *q, const char *id, FILE *out) {
   fputs("\n", out);
 }
 
-finding asked_check(const asked *q, const void *bytes, size_t size) {
-  char *text = NULL;
+asked_text asked_text_of(const asked *q) {
+  asked_text t = {.text = NULL};
   size_t length = 0;
-  FILE *out = open_memstream(&text, &length);
+  FILE *out = open_memstream(&t.text, &length);
   assert_non_null(out);
   asked_write_targets(q, out);
   asked_write_mover(q, "mover", out);
   fclose(out);
-  FILE *in = fmemopen(text, length, "r");
-  assert_non_null(in);
-  problem p;
-  if (!problem_open(&p, in) || !problem_next(&p)) fail_msg("%s in\n%s", p.fault, text);
-  const finding found = check(&p, bytes, size);
-  problem_close(&p);
-  fclose(in);
-  free(text);
+  t.file = fmemopen(t.text, length, "r");
+  assert_non_null(t.file);
+  if (!problem_open(&t.read, t.file) || !problem_next(&t.read)) fail_msg("%s in\n%s", t.read.fault, t.text);
+  return t;
+}
+
+void asked_text_free(asked_text *t) {
+  problem_close(&t->read);
+  fclose(t->file);
+  free(t->text);
+}
+
+finding asked_check(const asked *q, const void *bytes, size_t size) {
+  asked_text t = asked_text_of(q);
+  const finding found = check(&t.read, bytes, size);
+  asked_text_free(&t);
   return found;
 }

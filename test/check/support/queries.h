@@ -73,6 +73,16 @@ void asked_free(asked *q);
 void asked_write_targets(const asked *q, FILE *out);
 void asked_write_mover(const asked *q, const char *id, FILE *out);
 
+/* A query that the checker has read. */
+typedef struct asked_text {
+  problem read;
+  FILE *file;
+  char *text;
+} asked_text;
+
+asked_text asked_text_of(const asked *q);
+void asked_text_free(asked_text *text);
+
 /* What the checker finds. */
 finding asked_check(const asked *q, const void *bytes, size_t size);
 
