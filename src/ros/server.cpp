@@ -184,51 +184,42 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       control_handle_, live_.scene, parameters_.fixed_frame,
       MarkerResources{resourceOptions("", parameters_), resourceOptions(parameters_.urdf_dir, parameters_)});
   sensors_ = std::make_unique<Sensors>(handle, parameters_, live_, frames_);
-  services_ = {
-      advertise<Distance>(handle_, "distance", queryHandler<Distance>(QueryType::DISTANCE)),
-      advertise<Tolerance>(handle_, "tolerance", queryHandler<Tolerance>(QueryType::TOLERANCE)),
-      advertise<Collision>(handle_, "collision", queryHandler<Collision>(QueryType::COLLISION)),
-      advertise<NearestPairs>(handle_, "nearest_pairs", queryHandler<NearestPairs>(QueryType::DISTANCE)),
-      advertise<TimeOfContact>(handle_, "time_of_contact", queryHandler<TimeOfContact>(QueryType::COLLISION)),
-      advertise<ClearanceProfile>(handle_, "clearance_profile", queryHandler<ClearanceProfile>(QueryType::DISTANCE)),
-      advertise<ListViolations>(handle_, "violations", queryHandler<ListViolations>(QueryType::TOLERANCE)),
-      advertise<ApplyScene>(handle_, "apply_scene",
-                            handler<ApplyScene>(SCENE_TIMES_WIRE,
-                                                [this](const Call &call, const RequestThreads::AtWork &at_work,
-                                                       ApplyScene::Request &request, ApplyScene::Response &response) {
-                                                  applyScene(call, at_work, request, response);
-                                                })),
-      advertise<GetScene>(
-          handle_, "get_scene",
-          handler<GetScene>(QUERY_TIMES_WIRE,
-                            [this](const Call &, const RequestThreads::AtWork &, GetScene::Request &request,
-                                   GetScene::Response &response) { getScene(request, response); })),
-      advertise<EvaluateConstraints>(
-          handle_, "evaluate_constraints",
-          handler<EvaluateConstraints>(
-              SCENE_TIMES_WIRE,
-              [this](const Call &call, const RequestThreads::AtWork &at_work, EvaluateConstraints::Request &request,
-                     EvaluateConstraints::Response &response) {
-                Turn turn(turns_, call.client, waitUntil(call, at_work));
-                response.frame_id = frames_.fixedFrame();
-                std::shared_ptr<const LevelDrawing> drawing;
-                const TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
-                constraints_.answer(request, response, drawing, budget, &turn);
-                if (drawing) markers_->show(std::move(drawing));
-              })),
-      advertise<MeasurePairs>(
-          handle_, "measure_pairs",
-          handler<MeasurePairs>(SCENE_TIMES_WIRE,
-                                [this](const Call &call, const RequestThreads::AtWork &at_work,
-                                       MeasurePairs::Request &request, MeasurePairs::Response &response) {
-                                  Turn turn(turns_, call.client, waitUntil(call, at_work));
-                                  TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
-                                  pairs_.answer(request, response, budget);
-                                }))};
+  serveQueries<Distance>("distance", QueryType::DISTANCE);
+  serveQueries<Tolerance>("tolerance", QueryType::TOLERANCE);
+  serveQueries<Collision>("collision", QueryType::COLLISION);
+  serveQueries<NearestPairs>("nearest_pairs", QueryType::DISTANCE);
+  serveQueries<TimeOfContact>("time_of_contact", QueryType::COLLISION);
+  serveQueries<ClearanceProfile>("clearance_profile", QueryType::DISTANCE);
+  serveQueries<ListViolations>("violations", QueryType::TOLERANCE);
+  using AtWork = RequestThreads::AtWork;
+  serve<ApplyScene>("apply_scene", SCENE_TIMES_WIRE,
+                    [this](const Call &call, const AtWork &at_work, auto &request, auto &response) {
+                      applyScene(call, at_work, request, response);
+                    });
+  serve<GetScene>("get_scene", QUERY_TIMES_WIRE,
+                  [this](const Call &, const AtWork &, auto &request, auto &response) { getScene(request, response); });
+  serve<EvaluateConstraints>("evaluate_constraints", SCENE_TIMES_WIRE,
+                             [this](const Call &call, const AtWork &at_work, auto &request, auto &response) {
+                               Turn turn(turns_, call.client, waitUntil(call, at_work));
+                               response.frame_id = frames_.fixedFrame();
+                               std::shared_ptr<const LevelDrawing> drawing;
+                               const TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
+                               constraints_.answer(request, response, drawing, budget, &turn);
+                               if (drawing) markers_->show(std::move(drawing));
+                             });
+  serve<MeasurePairs>("measure_pairs", SCENE_TIMES_WIRE,
+                      [this](const Call &call, const AtWork &at_work, auto &request, auto &response) {
+                        Turn turn(turns_, call.client, waitUntil(call, at_work));
+                        TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
+                        pairs_.answer(request, response, budget);
+                      });
   const auto take_object = [this](const CollisionObjectConstPtr &object) { takeObject(object); };
+  const auto count_object = [this](const std::string &publisher, const CollisionObject &object) {
+    countObject(publisher, object.header.seq);
+  };
   const auto take_attached = [this](const AttachedCollisionObjectConstPtr &object) { takeAttached(object); };
   ros::SubscribeOptions topics[] = {
-      checkedSubscription<CollisionObject>("collision_object", OBJECTS_KEPT, take_object),
+      checkedSubscription<CollisionObject>("collision_object", OBJECTS_KEPT, take_object, count_object),
       checkedSubscription<AttachedCollisionObject>("attached_collision_object", OBJECTS_KEPT, take_attached)};
   for (ros::SubscribeOptions &topic : topics) objects_.push_back(handle_.subscribe(topic));
   planning_scene_ = std::make_unique<PlanningSceneTopic>(
@@ -259,6 +250,7 @@ void ProximityServer::setThreads(int threads) {
 ProximityServer::~ProximityServer() {
   // Running queries end with what they have; their answers leave while the services still stand.
   stop_ = true;
+  local_.end();
   const bool busy = threads_.atWork() > 0;
   const auto deadline = std::chrono::steady_clock::now() + FAREWELL;
   while (threads_.atWork() > 0 && std::chrono::steady_clock::now() < deadline)
@@ -284,10 +276,10 @@ ProximityServer::~ProximityServer() {
 /** Everything that a handler does happens in here: what it throws becomes a message. A request that cannot be read
  * fails the call, by roscpp. times_wire: what it takes in memory, for a byte on the wire. */
 template <class Service, class Work>
-typename ServiceHelper<Service>::Handler ProximityServer::handler(std::size_t times_wire, Work work) {
+void ProximityServer::serve(const char *name, std::size_t times_wire, Work work) {
   using Helper = ServiceHelper<Service>;
-  return [this, times_wire, work](const Call &call, const typename Helper::Read &read,
-                                  typename Helper::Response &response) {
+  const auto handler = [this, times_wire, work](const Call &call, const typename Helper::Read &read,
+                                                typename Helper::Response &response) {
     const RequestThreads::AtWork at_work(threads_);
     std::optional<memory::Share> share;
     bool admitted = false;
@@ -301,6 +293,8 @@ typename ServiceHelper<Service>::Handler ProximityServer::handler(std::size_t ti
     read(request);
     answered(response, [&] { work(call, at_work, request, response); });
   };
+  services_.push_back(advertise<Service>(handle_, name, handler));
+  local_.add<Service>(services_.back().getService(), handler);
 }
 
 std::size_t ProximityServer::requestLimit() const {
@@ -315,7 +309,7 @@ Turns::Clock::time_point ProximityServer::waitUntil(const Call &call, const Requ
 }
 
 template <class Service>
-typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType query_type) {
+void ProximityServer::serveQueries(const char *name, QueryType query_type) {
   const auto work = [this, query_type](const Call &call, const RequestThreads::AtWork &at_work,
                                        typename Service::Request &asked, typename Service::Response &response) {
     response.frame_id = frames_.fixedFrame();
@@ -337,7 +331,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType
     deliver(request, answer, response);
     markers_->show(std::move(drawing));
   };
-  return handler<Service>(QUERY_TIMES_WIRE, work);
+  serve<Service>(name, QUERY_TIMES_WIRE, work);
 }
 
 /** Objects come in any frame; what is wrong with one is told, and the others are applied. */
@@ -390,7 +384,7 @@ std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const
       live_.unknowns.forget(REFUSED_OBJECT + attachment.object.id);
   if (change.clear) {
     live_.sensors.awaitsAll();
-    live_.unknowns.forgetAll(REFUSED_OBJECT);
+    live_.forgetRefused();
   }
   state_file_.changed();
   return faults;
@@ -413,8 +407,7 @@ void ProximityServer::changeScene(const char *topic, Fill &&fill) {
   std::string id, about;
   const auto complain = [&](const std::string &why) {
     ROS_ERROR("%s: %s", topic, why.c_str());
-    live_.unknowns.set(REFUSED_OBJECT + id,
-                       {{std::string(topic) + ": object '" + id + "' is not used: " + why, about}});
+    live_.refuse(topic, id, about, why, static_cast<std::size_t>(parameters_.max_name_length));
   };
   const RequestThreads::AtWork at_work(threads_);
   guarded(
@@ -426,6 +419,20 @@ void ProximityServer::changeScene(const char *topic, Fill &&fill) {
         for (const std::string &fault : apply(request)) complain(fault);
       },
       complain);
+}
+
+/** A publisher numbers its messages: one that is left out was lost, because more than OBJECTS_KEPT came at once. */
+void ProximityServer::countObject(const std::string &publisher, std::uint32_t number) {
+  constexpr std::size_t MOST = 1000;
+  if (last_objects_.size() > MOST) last_objects_.clear();
+  std::uint32_t &last = last_objects_.emplace(publisher, number).first->second;
+  if (number > last && number - last > 1) {
+    const std::string why = "~collision_object: messages of " + publisher +
+                            " were lost, as too many came at once: send the whole scene again (clear: true)";
+    ROS_ERROR("%s", why.c_str());
+    live_.unknowns.set(REFUSED_OBJECTS, {{why, "", Missing::ANYTHING}});
+  }
+  last = number;
 }
 
 void ProximityServer::takeObject(const CollisionObjectConstPtr &object) {

@@ -22,8 +22,11 @@
 #include <ros/subscriber.h>
 
 #include <atomic>
+#include <cstdint>
 #include <curve_proximity/scene.hpp>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "constraints/constraints.h"
@@ -37,6 +40,7 @@
 #include "queries/batch_action.h"
 #include "queries/measure_pairs.h"
 #include "queries/queries.h"
+#include "transport/local_services.h"
 #include "transport/request_threads.h"
 #include "transport/service.h"
 #include "transport/statistics.h"
@@ -63,15 +67,16 @@ class ProximityServer {
 
  private:
   template <class Service, class Work>
-  typename ServiceHelper<Service>::Handler handler(std::size_t times_wire, Work work);
+  void serve(const char *name, std::size_t times_wire, Work work);
   template <class Service>
-  typename ServiceHelper<Service>::Handler queryHandler(QueryType query_type);
+  void serveQueries(const char *name, QueryType query_type);
   Turns::Clock::time_point waitUntil(const Call &call, const RequestThreads::AtWork &at_work) const;
 
   void applyScene(const Call &call, const RequestThreads::AtWork &at_work, ApplyScene::Request &request,
                   ApplyScene::Response &response);
   void getScene(const GetScene::Request &request, GetScene::Response &response);
 
+  void countObject(const std::string &publisher, std::uint32_t number);
   void takeObject(const CollisionObjectConstPtr &object);
   void takeAttached(const AttachedCollisionObjectConstPtr &object);
   template <class Fill>
@@ -101,7 +106,9 @@ class ProximityServer {
   std::unique_ptr<Sensors> sensors_;
   std::unique_ptr<PlanningSceneTopic> planning_scene_;
   std::vector<ros::ServiceServer> services_;
+  LocalServices local_; /* the same */
   std::vector<ros::Subscriber> objects_;
+  std::map<std::string, std::uint32_t> last_objects_; /* the number of the last one of each publisher */
   std::unique_ptr<Pipeline> pipeline_;
   std::unique_ptr<BatchAction> batches_;
   std::unique_ptr<Diagnostics> diagnostics_;

@@ -307,6 +307,63 @@ class Known(unittest.TestCase):
         objects.publish(sphere('post', 0.1, (0, 0, 5)))
         self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear', 5))
 
+    def test_what_may_have_gone_proves_no_contact(self):
+        """The last shape of a sensor that sees nothing any more, and an object whose next version was refused."""
+        _, server = self.begin('moved', tf_timeout=0.05)
+        objects = self.publisher('/moved/collision_object', CollisionObject)
+        clouds = self.publisher('/moved/cloud', PointCloud2)
+
+        def becomes(*expected):
+            rows = lambda: server.tolerance(LINE, 0.1).results[0]
+            self.assertTrue(until(lambda: (rows().verdict, rows().status) == expected, 5), rows())
+        server.replace(sphere('post', 0.1, (0, 0, 1)))
+        becomes('violated', 'ok')
+        objects.publish(sphere('post', 0.1, (0, 0, 5), frame='nowhere'))
+        becomes('undecided', 'unknown')
+        objects.publish(sphere('post', 0.1, (0, 0, 5)))
+        becomes('clear', 'ok')
+        clouds.publish(cloud((0, 0, 1)))
+        becomes('violated', 'ok')
+        clouds.publish(cloud((math.nan, 0, 0)))
+        becomes('undecided', 'unknown')
+        server.replace(sphere('post', 0.1, (0, 0, 1)))  # the cloud's last shape is gone: it can only be missing
+        becomes('violated', 'unknown')
+
+    def test_any_number_of_refused_objects_takes_no_more_room_and_is_no_more_clear(self):
+        _, server = self.begin('flooded')
+        objects = rospy.Publisher('/flooded/collision_object', CollisionObject, queue_size=0)
+        self.assertTrue(connected(objects))
+        server.replace(sphere('ball', 0.1, (0, 0, 5)))
+
+        def send(radius):
+            """More objects than are kept one by one, and fewer at once than may wait."""
+            for begin in range(0, 1200, 400):
+                for i in range(begin, begin + 400):
+                    objects.publish(sphere('object %d' % i, radius, (0, 0, 5)))
+                objects.publish(sphere('last', 0.1, (0, 0, 5 + radius + begin)))
+                self.assertTrue(until(lambda: [o.pose.position.z for o in server.scene().objects if o.id == 'last'] == [5 + radius + begin], 30))
+
+        def status(names):
+            return server.tolerance(LINE, 0.1, objects=names).results[0].status
+        send(-1.0)
+        self.assertEqual((status([]), status(['ball'])), ('unknown', 'unknown'))  # it may be any of them
+        send(0.1)
+        self.assertEqual((server.scene().scene.objects, status(['ball'])), (1202, 'unknown'))
+        server.replace(sphere('ball', 0.1, (0, 0, 5)))
+        self.assertEqual(status([]), 'ok')
+
+    def test_objects_that_were_lost_because_too_many_came_at_once_are_unknown(self):
+        _, server = self.begin('overrun')
+        objects = rospy.Publisher('/overrun/collision_object', CollisionObject, queue_size=0)
+        self.assertTrue(connected(objects))
+        server.replace(sphere('ball', 0.1, (0, 0, 5)))
+        for i in range(3000):
+            objects.publish(sphere('object %d' % i, 0.1, (0, 0, 5)))
+        self.assertTrue(until(lambda: any(o.id == 'object 2999' for o in server.scene().objects), 60))
+        row = server.tolerance(LINE, 0.1).results[0]
+        there = server.scene().scene.objects
+        self.assertTrue((row.status == 'unknown' and 'were lost' in row.message) if there < 3001 else row.status == 'ok', (there, row))
+
     def test_a_carried_object_that_is_refused_is_unknown_wherever_the_robot_is_asked_about(self):
         self.set_robot()
         _, server = self.begin('carrying', fixed_frame='base', tf_timeout=0.05)

@@ -319,7 +319,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
   const ResourceOptions resources = resourceOptions("", parameters_);
   const WorkspacePool::Lease workspace(workspaces_);
   Work work{snapshot, budget, FrameLookup(frames_, turn)};
-  Doubts doubts(parameters_.max_age, response.scene.sensors, live_.unknowns.all());
+  Doubts doubts(parameters_.max_age, snapshot, response.scene.sensors, live_.unknowns.all());
   std::size_t failed = 0;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
     const ConstraintQuery &asked = request.cases[i];

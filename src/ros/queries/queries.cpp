@@ -195,7 +195,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
             FrameLookup(frames_, request.turn),
             currentJoints(request.more.joint_state, current && snapshot->robot(), live_.joints,
                           !request.more.robot_state && request.curves.size() == 0),
-            Doubts(parameters_.max_age, response.scene.sensors, live_.unknowns.all()),
+            Doubts(parameters_.max_age, snapshot, response.scene.sensors, live_.unknowns.all()),
             response,
             drawing,
             budget_ms,

@@ -31,7 +31,7 @@ void Doubts::objects(const Query &query, bool any) {
       objects_.add(
           Gap::UNKNOWN,
           "what is at object '" + sensor.id + "' is unknown: its sensor sees nothing, or what it sent cannot be used",
-          Missing::GEOMETRY);
+          snapshot_->objects().count(sensor.id) > 0 ? Missing::ANYTHING : Missing::GEOMETRY); // as it was seen last
     } else if (max_age_ > 0.0 && sensor.age > max_age_) {
       objects_.add(Gap::STALE, tooOld("object '" + sensor.id + "'", sensor.age, max_age_));
     }

@@ -7,6 +7,7 @@
 #include <curve_proximity/SensorState.h>
 
 #include <curve_proximity/query.hpp>
+#include <curve_proximity/scene.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -19,9 +20,9 @@ namespace curve_proximity {
 /** What answers do not cover of the world as it is now. For one request. */
 class Doubts {
  public:
-  /** max_age [s]: ~max_age, 0 for none. */
-  Doubts(double max_age, const std::vector<SensorState> &sensors, std::vector<Unknown> unknowns)
-      : max_age_(max_age), sensors_(sensors), unknowns_(std::move(unknowns)) {}
+  /** max_age [s]: ~max_age, 0 for none. snapshot: what answers are measured against. */
+  Doubts(double max_age, SnapshotPtr snapshot, const std::vector<SensorState> &sensors, std::vector<Unknown> unknowns)
+      : max_age_(max_age), snapshot_(std::move(snapshot)), sensors_(sensors), unknowns_(std::move(unknowns)) {}
 
   /** Which objects the rows to come are about: those of the query, or none. */
   void objects(const Query &query, bool any = true);
@@ -43,6 +44,7 @@ class Doubts {
 
  private:
   const double max_age_;
+  const SnapshotPtr snapshot_;
   const std::vector<SensorState> sensors_;
   const std::vector<Unknown> unknowns_;
   Coverage objects_, ages_, joints_;

@@ -37,6 +37,25 @@ SceneState LiveScene::state() const {
   return state(*scene.snapshot(), std::move(seen));
 }
 
+void LiveScene::refuse(const std::string &topic, const std::string &id, const std::string &about,
+                       const std::string &why, std::size_t most_name) {
+  constexpr std::size_t MOST = 1000;
+  const std::string source = REFUSED_OBJECT + id;
+  if (id.size() > most_name || (unknowns.size() >= MOST && !unknowns.has(source)))
+    return unknowns.set(REFUSED_OBJECTS,
+                        {{topic + ": objects are not used, the last one because " + why, "", Missing::ANYTHING}});
+  // as it was before it may be here still
+  const SnapshotPtr now = scene.snapshot();
+  const bool is_here = now->objects().count(id) + now->moving().count(id) + now->attached().count(id) > 0;
+  unknowns.set(source, {{topic + ": object '" + id + "' is not used: " + why, about,
+                         is_here ? Missing::ANYTHING : Missing::GEOMETRY}});
+}
+
+void LiveScene::forgetRefused() {
+  unknowns.forgetAll(REFUSED_OBJECT);
+  unknowns.forget(REFUSED_OBJECTS);
+}
+
 const std::vector<std::array<std::string, 2>> &LiveScene::disabled(const Snapshot &snapshot) const {
   static const std::vector<std::array<std::string, 2>> none;
   return snapshot.replacesSrdf() ? none : srdf.disabled;

@@ -34,6 +34,14 @@ struct LiveScene {
   ros::Time epoch; /**< when the server started */
   Unknowns unknowns;
 
+  /** An object came by a topic and could not be used. about: the object, or "" for what the robot carries. Of more than
+   *  1000 such objects, or of ids that no object can have, one sentence for all is kept. */
+  void refuse(const std::string &topic, const std::string &id, const std::string &about, const std::string &why,
+              std::size_t most_name);
+
+  /** The scene was emptied, or a whole one has come: what was refused is of no matter. */
+  void forgetRefused();
+
   /** The pairs of links that are not checked against each other, beside the allowed pairs of the snapshot. */
   const std::vector<std::array<std::string, 2>> &disabled(const Snapshot &snapshot) const;
 
@@ -50,6 +58,7 @@ struct LiveScene {
 constexpr const char *LOST_SCENE = "lost scene"; /**< of the server before this one, until a whole scene is sent */
 constexpr const char *AWAITED_SCENE = "awaited scene"; /**< ~ask_planning_scene, until one comes */
 constexpr const char *REFUSED_OBJECT = "object ";      /**< and its id: it came by topic and could not be used */
+constexpr const char *REFUSED_OBJECTS = "objects";     /**< … those that are too many to be kept one by one */
 
 /** Where the root link stands in the fixed frame: by tf2, or where tf2 knows nothing by a fixed virtual joint. Throws
  *  Error where neither does. */
