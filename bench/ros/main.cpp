@@ -2,7 +2,7 @@
 /** What ROS adds to the core's time: one curve of 6 points against 30 boxes, by a persistent service connection to a
  * node, and by topic through the nodelet in this process, as inside a manager. Beside both a server and a relay that do
  * nothing but take the same message, keep a processor busy for as long as the core does, and answer: what they cost is
- * roscpp's. Then many curves a call and many clients, beside an empty service: see crowds.h. Starts a master and the
+ * roscpp's. The nodelet is also called as a function. Then many curves a call and many clients, beside an empty service: see crowds.h. Starts a master and the
  * nodes.
  *
  *  usage: curve_proximity_bench_ros [--quick] [--calls N] [--many]
@@ -24,6 +24,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <curve_proximity/client.hpp>
+#include <curve_proximity/local_call.hpp>
 #include <fstream>
 #include <mutex>
 #include <stdexcept>
@@ -172,6 +173,8 @@ void printAdded(const std::string &way, const Times &ours, const Times &plain) {
   row("plain roscpp", way, plain.added);
   for (const auto &[method, times] : {std::make_pair("curve_proximity", &ours), std::make_pair("plain roscpp", &plain)})
     print(method, way + " p99", percentile(times->added, 0.99), percentile(times->added, 0.99));
+  const double more = percentile(ours.added, 0.5) - percentile(plain.added, 0.5);
+  print("curve_proximity", way + " more than plain roscpp", more, more);
 }
 
 /* ---- the measurements ---- */
@@ -259,6 +262,20 @@ void measureNodelet(ros::NodeHandle &handle, const std::string &server, int mess
   printAdded("nodelet 1 kHz", times[0], times[1]);
 }
 
+/** The nodelet called as a function. */
+void measureLocalCalls(const std::string &server, int calls) {
+  Times times;
+  Distance call;
+  call.request.query.curves.push_back(curve());
+  for (int i = 0; i < calls; ++i) {
+    const auto begin = Clock::now();
+    if (!callInProcess(server + "/distance", call) || !call.response.success)
+      throw std::runtime_error("a call in this process failed: " + call.response.message);
+    times.add(Clock::now() - begin, call.response.results.front());
+  }
+  print("curve_proximity", "call in this process", percentile(times.added, 0.5), percentile(times.added, 0.95));
+}
+
 /** The resident set of the node before and after many calls. */
 void measureMemory(ros::NodeHandle &handle, const std::string &server, const Program &node, int calls) {
   PersistentClient<Distance> client(handle, server + "/distance");
@@ -297,6 +314,7 @@ void measure(bool quick, int calls, bool many) {
     throw std::runtime_error("the nodelet does not load");
   std::thread asking([&] { build(nodelet); });
   asking.join();
+  measureLocalCalls(nodelet, quick ? 5000 : 20000);
   measureNodelet(handle, nodelet, quick ? 3000 : 10000);
   loader.clear();
 }

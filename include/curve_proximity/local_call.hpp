@@ -14,11 +14,11 @@ bool call(const std::string &name, const std::string &md5sum, const void *reques
 
 } // namespace local
 
-/** Calls a service of a curve_proximity/ProximityServer in this process by a plain function call. Nothing is serialized,
- *  no socket is used, and the server's work is done in the calling thread. The response is that of the ROS service.
+/** Calls a service of a curve_proximity/ProximityServer in this process by a plain function call. Nothing is
+ *  serialized, no socket is used, and the calling thread does the work. The response is that of the ROS service.
  *
- *  name: the service's resolved name, e.g. "/curve_proximity/distance". Returns false if no server in this process has a
- *  service of this name and type; the response is unchanged then. Any number of threads. */
+ *  name: the service's resolved name, e.g. "/curve_proximity/distance". Returns false if no server in this process has
+ *  a service of this name and type; the response is unchanged then. Any number of threads. */
 template <class Service>
 bool callInProcess(const std::string &name, Service &service) {
   return local::call(name, ros::service_traits::md5sum<Service>(), &service.request, &service.response);

@@ -1,13 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The client helper against a server that goes and comes back. */
+/** The client helper against a server that goes and comes back, and calls of a nodelet in this process. */
+#include <curve_proximity/ApplyScene.h>
+#include <curve_proximity/Distance.h>
 #include <curve_proximity/GetScene.h>
 #include <gtest/gtest.h>
+#include <nodelet/loader.h>
 #include <ros/ros.h>
 
 #include <atomic>
 #include <chrono>
 #include <curve_proximity/client.hpp>
+#include <curve_proximity/local_call.hpp>
 #include <thread>
+#include <vector>
 
 namespace curve_proximity {
 namespace {
@@ -84,6 +89,72 @@ TEST(PersistentClient, a_call_that_hangs_is_ended_by_another_thread) {
     ending = true;
     while (asked) std::this_thread::yield();
   }
+}
+
+Distance lineBesideABall() {
+  Distance out;
+  Curve curve;
+  curve.id = "line";
+  curve.basis = "bezier";
+  curve.points.resize(2);
+  curve.points[1].x = 1.0;
+  out.request.query.curves.push_back(curve);
+  return out;
+}
+
+ApplyScene ball(double z) {
+  ApplyScene out;
+  out.request.clear = true;
+  out.request.objects.resize(1);
+  CollisionObject &object = out.request.objects.front();
+  object.id = "ball";
+  object.pose.position.z = z;
+  object.pose.orientation.w = 1.0;
+  object.primitives.resize(1);
+  object.primitives[0].type = shape_msgs::SolidPrimitive::SPHERE;
+  object.primitives[0].dimensions = {0.5};
+  return out;
+}
+
+TEST(callInProcess, answers_as_the_service_does_until_the_nodelet_is_unloaded) {
+  ros::NodeHandle().setParam("/local/state_file", "");
+  nodelet::Loader loader;
+  ASSERT_TRUE(loader.load("/local", "curve_proximity/ProximityServer", {}, {}));
+  ApplyScene scene = ball(2.0);
+  ASSERT_TRUE(callInProcess("/local/apply_scene", scene));
+  ASSERT_TRUE(scene.response.success) << scene.response.message;
+  Distance here = lineBesideABall(), there = lineBesideABall();
+  ASSERT_TRUE(callInProcess("/local/distance", here));
+  ASSERT_TRUE(ros::service::call("/local/distance", there));
+  ASSERT_TRUE(here.response.success) << here.response.message;
+  EXPECT_NEAR(here.response.results.at(0).lower, 1.5, 1e-6);
+  EXPECT_EQ(here.response.results[0].lower, there.response.results.at(0).lower);
+  EXPECT_EQ(here.response.results[0].upper, there.response.results[0].upper);
+  Distance wrong = lineBesideABall();
+  wrong.request.query.curves[0].basis = "none";
+  ASSERT_TRUE(callInProcess("/local/distance", wrong));
+  EXPECT_FALSE(wrong.response.success);
+
+  GetScene other;
+  EXPECT_FALSE(callInProcess("/local/distance", other)); // of another type
+  EXPECT_FALSE(callInProcess("/local/nothing", other));
+
+  // While threads call it goes: each call is answered, or says that nothing is there.
+  std::atomic<int> answered{0};
+  std::vector<std::thread> calling;
+  for (int i = 0; i < 4; ++i) {
+    calling.emplace_back([&] {
+      Distance call = lineBesideABall();
+      while (callInProcess("/local/distance", call)) {
+        EXPECT_TRUE(call.response.success || !call.response.message.empty());
+        ++answered;
+      }
+    });
+  }
+  while (answered < 100) std::this_thread::yield();
+  EXPECT_TRUE(loader.unload("/local"));
+  for (std::thread &thread : calling) thread.join();
+  EXPECT_FALSE(callInProcess("/local/distance", here));
 }
 
 } // namespace
