@@ -174,14 +174,14 @@ static vec3l lane_of(lane3 v, int i) {
   return (vec3l){v.x[i], v.y[i], v.z[i]};
 }
 
-/* 12,500 robots and edges, every other one a polynomial of degree 1 to 9 (seed 401, sizes of 1e-3 to 1e3 m; CPROX_TEST_SCALE=100 for 10^7 lanes), eight random
+/* 1,500 robots and edges, every other one a polynomial of degree 1 to 9 (seed 401, sizes of 1e-3 to 1e3 m), eight random
  * intervals each: every ball's centre is where long double has it, within what the edge allows for rounding, and from
  * there it stays within the motion bound, seen from the base and from the frames of other balls. */
 CASE(lanes_are_where_they_say_and_stay_where_they_say) {
   static lane_memory memory;
   rng r = rng_seed(401);
   long double worst = 0.0L, fullest = 0.0L, fullest_pair = 0.0L;
-  size_t refused = 0;
+  size_t refused = 0, lanes = 0;
   for (size_t i = 0; i < test_cases(1500); i++) {
     const double scale = rng_log_uniform(&r, 1e-3, 1e3);
     ball_robot b;
@@ -246,7 +246,7 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
         const vec3l exact = ref_sub(centre_of(&b, here, g, 0), ref_vec(base));
         const long double room = (long double)motion.room[p];
         const long double off = ref_norm(ref_sub(exact, at)) / room;
-        worst = off > worst ? off : worst;
+        worst = off > worst ? off : worst, lanes++;
         if (!(off <= 1.0L)) fail_msg("robot %zu: a ball is off by %Lg of its room", i, off);
 
         const lane moves = moves_of(&batch, speed, motion.frames[part->frame], ball->reach);
@@ -280,6 +280,7 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
     cprox_body_free(box);
     free_balls(&b);
   }
+  print_message("%zu lanes, off by %.3Lg of what rounding may cost at most\n", lanes, worst);
   /* the bounds are not idle */
   assert_true(refused * 10 < test_cases(1500));
   if (test_cases(1500) >= 1000) assert_true(worst > 0.01L && fullest > 0.99L && fullest_pair > 0.99L);
@@ -445,12 +446,27 @@ typedef struct world {
   size_t n_pairs, n_selves;
 } world;
 
-static void make_world(rng *r, double scale, bool capsules, world *w) {
+/* Wires, pins and plates: up to ten thousand times as long as thick. */
+static cprox_body *thin_body(rng *r, double s) {
+  const double thick = s * rng_log_uniform(r, 5e-5, 1e-3), length = s * rng_uniform(r, 0.1, 1.0);
+  cprox_body *body = NULL;
+  switch (rng_index(r, 4)) {
+    case 0: cprox_body_create_capsule(length, thick, ws, &body); break;
+    case 1: cprox_body_create_cylinder(length, thick, ws, &body); break;
+    case 2: cprox_body_create_box(vec(length, s * rng_uniform(r, 0.1, 1.0), thick), ws, &body); break;
+    default: cprox_body_create_box(vec(length, thick, thick), ws, &body);
+  }
+  assert_non_null(body);
+  return body;
+}
+
+static void make_world_of(rng *r, double scale, bool capsules, bool thin, world *w) {
   make_balls(r, scale, capsules, &w->b);
   w->n = 1 + rng_index(r, MOST_OBSTACLES);
   for (size_t i = 0; i < w->n; i++) {
-    w->targets[i] = cprox_obstacle_at(random_body(r, scale, rng_index(r, BODY_KINDS)), rng_pose(r, 1.2 * scale));
-    if (rng_index(r, 4) == 0) w->targets[i].margin = scale * rng_uniform(r, 0, 0.05);
+    cprox_body *body = thin ? thin_body(r, scale) : random_body(r, scale, rng_index(r, BODY_KINDS));
+    w->targets[i] = cprox_obstacle_at(body, rng_pose(r, 1.2 * scale));
+    if (!thin && rng_index(r, 4) == 0) w->targets[i].margin = scale * rng_uniform(r, 0, 0.05);
   }
   assert_int_equal(cprox_obstacles_create(w->targets, w->n, CPROX_INDEX_NONE, ws, &w->set), CPROX_OK);
   w->n_pairs = w->n_selves = 0;
@@ -462,6 +478,10 @@ static void make_world(rng *r, double scale, bool capsules, world *w) {
       if (a != z && up != z && down != a) w->selves[w->n_selves++] = (cprox_robot_pair){(int32_t)g, (int32_t)k};
     }
   }
+}
+
+static void make_world(rng *r, double scale, bool capsules, world *w) {
+  make_world_of(r, scale, capsules, false, w);
 }
 
 static void free_world(world *w) {
@@ -510,7 +530,7 @@ static double sampled(const world *w, const double *from, const double *to, size
     const double t = (double)k / (double)samples, d = distance_at(w, from, to, t, self);
     if (d < least) least = d, *at = t;
   }
-  for (double step = 0.5 / (double)samples; step > 1e-9; step *= 0.5)
+  for (double step = 0.5 / (double)samples; step > 1e-7; step *= 0.5)
     for (int side = -1; side <= 1; side += 2) {
       const double t = fmin(fmax(*at + side * step, 0.0), 1.0), d = distance_at(w, from, to, t, self);
       if (d < least) least = d, *at = t;
@@ -547,16 +567,14 @@ static cprox_edge_query ask_of(const world *w, bool self, double delta) {
 
 enum { EDGES = 8 };
 
-/* 120 worlds (seed 404), 8 edges each, every kind of obstacle, balls and capsules: no verdict is wrong, by 64 samples
- * refined. */
-CASE(edge_verdicts_are_never_wrong) {
-  rng r = rng_seed(404);
-  size_t counts[3] = {0}, levels[CPROX_EDGE_SEARCH + 1] = {0};
-  for (size_t i = 0; i < test_cases(120); i++) {
+/* So many worlds, 8 edges each: no verdict is wrong, by 64 samples refined. */
+static void try_edges(uint64_t seed, size_t worlds, bool thin, size_t counts[3], size_t levels[CPROX_EDGE_SEARCH + 1]) {
+  rng r = rng_seed(seed);
+  for (size_t i = 0; i < worlds; i++) {
     const double scale = rng_log_uniform(&r, 1e-2, 1e2);
     const bool self = rng_index(&r, 2);
     world w;
-    make_world(&r, scale, i % 2, &w);
+    make_world_of(&r, scale, i % 2, thin, &w);
     const cprox_edge_query q = ask_of(&w, self, rng_index(&r, 2) ? 0.0 : scale * rng_uniform(&r, 0, 0.1));
     cprox_edge_checker *c = checker_of(w.b.robot, &q);
     double from[EDGES * TEST_MAX_VARIABLES + 1], to[EDGES * TEST_MAX_VARIABLES + 1];
@@ -575,6 +593,13 @@ CASE(edge_verdicts_are_never_wrong) {
     cprox_edge_checker_free(c);
     free_world(&w);
   }
+  print_message("%zu %sedges, none wrong\n", EDGES * worlds, thin ? "thin " : "");
+}
+
+/* 120 worlds (seed 404), every kind of obstacle, balls and capsules. */
+CASE(edge_verdicts_are_never_wrong) {
+  size_t counts[3] = {0}, levels[CPROX_EDGE_SEARCH + 1] = {0};
+  try_edges(404, test_cases(120), false, counts, levels);
   if (test_cases(120) < 60) return; /* what follows is about many */
   assert_true(counts[0] > EDGES * test_cases(120) / 10 && counts[1] > EDGES * test_cases(120) / 10);
   assert_true(counts[2] * 100 < counts[0] + counts[1]);
@@ -582,8 +607,15 @@ CASE(edge_verdicts_are_never_wrong) {
   assert_true(levels[CPROX_EDGE_MEASUREMENT] + levels[CPROX_EDGE_SEARCH] > 0);
 }
 
+/* 120 worlds (seed 412), balls and capsules among wires, pins and plates. */
+CASE(wires_pins_and_plates_are_never_missed) {
+  size_t counts[3] = {0}, levels[CPROX_EDGE_SEARCH + 1] = {0};
+  try_edges(412, test_cases(120), true, counts, levels);
+  if (test_cases(120) >= 60) assert_true(20 * counts[0] > EDGES * 120 && 20 * counts[1] > EDGES * 120);
+}
+
 /* The delta is drawn beside the least distance that was sampled, by 1e-5 to 1e-2 of the scene's size on either side
- * (300 worlds, seed 405): the verdict is that side's. */
+ * (1000 worlds, seed 405): the verdict is that side's. */
 CASE(grazing_edges_are_decided_rightly) {
   rng r = rng_seed(405);
   size_t decided = 0, asked = 0;
@@ -607,6 +639,7 @@ CASE(grazing_edges_are_decided_rightly) {
     }
     free_world(&w);
   }
+  print_message("%zu grazing edges, none wrong\n", asked);
   if (test_cases(1000) >= 500) assert_true(asked > test_cases(1000) / 4 && decided * 100 >= 97 * asked);
 }
 
