@@ -20,7 +20,7 @@
 #include "trajectory.h"
 #include "winding.h"
 
-enum { MAX_DEPTH = 64 };
+enum { MAX_DEPTH = 64, MAX_CUTS = 256 };
 
 /* Of a direction: far from where squares underflow or overflow. */
 #define SHORTEST 0x1p-100
@@ -203,6 +203,7 @@ static bool add_item(pair *p, const body *standing, size_t begin, size_t end, co
   *one = (item){.begin = begin, .end = end};
   if (outer) {
     one->given = outer->given;
+    one->depth = outer->depth + 1;
     for (int k = 0; k < 3; k++) one->normal[k] = outer->normal[k];
   }
   const set *s = standing->shape;
@@ -232,7 +233,8 @@ static const char *read_directions(const walk *w, size_t count) {
     if (code % 2 == 1) {
       const size_t at = reader_count(w->in), second = p->n_items + 1;
       const item one = p->items[code / 2];
-      if (w->in->bad || one.inner > 0 || at <= one.begin || at >= one.end) return "it cuts elements where it must not";
+      if (w->in->bad || one.inner > 0 || at <= one.begin || at >= one.end || one.depth > MAX_CUTS)
+        return "it cuts elements where it must not";
       if (!add_item(p, standing, one.begin, at, &one) || !add_item(p, standing, at, one.end, &one))
         return "memory is out";
       p->items[code / 2].inner = second - 1;

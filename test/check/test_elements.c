@@ -204,6 +204,30 @@ CASE(cuts_that_cannot_be_are_refused) {
   free(robot);
 }
 
+/* 1,000 cuts, each of the rest that the last one left: the checker does not go that deep. */
+CASE(cuts_upon_cuts_are_refused) {
+  enum { MANY = 1000 };
+  char *text = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  fprintf(out, "cprox-problem 1\ntargets 1\ntarget 0 0 points 0 0 0 0 %d", MANY);
+  for (int i = 0; i < MANY; i++) fprintf(out, " %g 0 -1", (double)i / MANY);
+  fprintf(out, "\n" ROBOT);
+  fclose(out);
+  for (uint32_t cuts = 100; cuts < MANY; cuts += 300) {
+    bytes b;
+    begin(&b, 0.2, CLAIM_APART);
+    put_count(&b, 2 * cuts, 2);
+    for (uint32_t i = 1; i <= cuts; i++) {
+      put_count(&b, 0, 2);
+      put_count(&b, 2 * (i == 1 ? 0 : 2 * (i - 1)) + 1, 4);
+      put_count(&b, i, 4);
+    }
+    assert_int_equal(check_text(text, &b).claim, cuts == 100 ? CLAIM_APART : CLAIM_NONE);
+  }
+  free(text);
+}
+
 /* An open mesh is no solid; elements that end early, or that are not numbers, are no elements. */
 CASE(what_are_no_elements_is_refused) {
   static const char *const broken[] = {"solid 0 0 0 1 0 0 0 1 0 0 0 1 0",
@@ -227,6 +251,46 @@ CASE(what_are_no_elements_is_refused) {
     problem_close(&p);
     fclose(in);
   }
+}
+
+/* 5,000 texts and certificates (seed 1), cut off, or with words and bytes that were changed: each is read to an end. For
+ * sanitizers. */
+CASE(texts_that_were_tampered_with_are_read_to_an_end) {
+  static const char *const words[] = {"0",     "1",      "-1",    "7",     "1e300",  "nan", "99999999",
+                                      "solid", "points", "cells", "robot", "target", "\n",  "0x1p-1074"};
+  rng r = rng_seed(1);
+  size_t read = 0, proven = 0;
+  for (size_t i = 0; i < test_cases(5000); i++) {
+    char *text = text_of(KINDS[rng_index(&r, 3)], 0.1, -1.0, NONE, 0.0, i % 2 ? ROBOT : CURVE);
+    const size_t length = strlen(text);
+    for (size_t k = rng_index(&r, 3); k > 0; k--) {
+      const size_t at = rng_index(&r, length);
+      const char *word = words[rng_index(&r, sizeof words / sizeof *words)];
+      if (rng_index(&r, 4) == 0)
+        text[at] = (char)rng_index(&r, 256);
+      else
+        memcpy(text + at, word, strlen(word) < length - at ? strlen(word) : length - at);
+    }
+    bytes b;
+    static const bytes other = {.n = 1};
+    if (i % 2)
+      robot_apart_by(&b, 0.2, (int)rng_index(&r, 3));
+    else
+      curve_apart(&b, 0.2, rng_index(&r, 2) == 0);
+    if (rng_index(&r, 2)) tamper(&b, &r, &other);
+    FILE *in = fmemopen(text, rng_index(&r, 4) ? length : rng_index(&r, length) + 1, "r");
+    problem p;
+    if (problem_open(&p, in))
+      while (problem_next(&p)) {
+        read++;
+        proven += !p.mover.none && check(&p, b.at, b.n).claim != CLAIM_NONE;
+      }
+    problem_close(&p);
+    fclose(in);
+    free(text);
+  }
+  print_message("%zu queries read, %zu certificates proven\n", read, proven);
+  assert_true(read > test_cases(500) && proven > test_cases(100));
 }
 
 int main(void) {
