@@ -200,8 +200,7 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
         .obstacles = set, .pairs = pairs, .n_pairs = b.n, .self_pairs = selves, .n_self_pairs = n_selves};
     cprox_edge_checker *c = checker_of(b.robot, &q);
     assert_true(c->in_lanes && c->n_parts == b.n && c->n_lane_pairs == n_selves);
-    assert_true(edge_lanes_size(c, c->n_near + c->n_lane_pairs) <= sizeof memory.lanes &&
-                edge_motion_size(c) <= sizeof memory.motion);
+    assert_true(edge_lanes_size(c, c->n_near) <= sizeof memory.lanes && edge_motion_size(c) <= sizeof memory.motion);
 
     edge_path path;
     draw_path(&r, &b, scale, i % 2, &path);
@@ -241,8 +240,9 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
         const size_t g = (size_t)c->members[part->first_member];
         lane3 speed;
         const edge_ball *ball = &c->balls[part->first];
-        const vec3l at = lane_of(place_point(&batch.frames[part->frame], ball->centre, &speed), l);
-        batch.parts[p].centre = place_point(&batch.frames[part->frame], part->centre, &batch.parts[p].speed);
+        const lane_frame *own = &batch.frames[part->frame];
+        const vec3l at = lane_of(place_point(own, lane_turn(own, ball->centre), &speed), l);
+        batch.parts[p].centre = place_point(own, lane_turn(own, part->centre), &batch.parts[p].speed);
         const vec3l exact = ref_sub(centre_of(&b, here, g, 0), ref_vec(base));
         const long double room = (long double)motion.room[p];
         const long double off = ref_norm(ref_sub(exact, at)) / room;

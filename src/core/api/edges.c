@@ -30,7 +30,7 @@ static size_t aligned(size_t bytes) {
 static bool begin(edges_call *call) {
   const cprox_edge_checker *c = call->c;
   const size_t noted = c->n_near + c->n_lane_pairs;
-  const size_t lanes = aligned(edge_lanes_size(c, noted)), motion = aligned(edge_motion_size(c)),
+  const size_t lanes = aligned(edge_lanes_size(c, c->n_near)), motion = aligned(edge_motion_size(c)),
                marks = aligned(2 * (noted + 1) * sizeof(uint32_t));
   const size_t pairs = (c->n_pairs + c->n_self_pairs + 1) * sizeof(cprox_robot_pair);
   char *memory = workspace_reserve(call->workspace, WORKSPACE_EDGES, ALIGNED + lanes + motion + marks + pairs);

@@ -258,7 +258,7 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   const size_t scene = aligned(edge_model_scene_size(c, q->targets, first, last)), moves = aligned(edge_motion_size(c)),
                reaches = aligned(c->n_parts * sizeof(double)), near = c->n_parts * n_obstacles,
                noted = near + c->n_lane_pairs + 1,
-               rows = aligned(edge_lanes_size(c, (near < MOST_NEAR ? near : MOST_NEAR) + c->n_lane_pairs));
+               rows = aligned(edge_lanes_size(c, near < MOST_NEAR ? near : MOST_NEAR));
   char *memory = workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
                                    64 + rows + scene + moves + reaches + 4 * noted * sizeof(uint32_t));
   if (!memory) return false;

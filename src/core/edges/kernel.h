@@ -34,7 +34,9 @@ typedef struct lane_batch {
   edge_found *found;
   lane_frame *frames;
   lane_part *parts;
-  lane *apart2; /* squares of distances of parts from obstacles, by `near` */
+  lane *apart2;     /* squares of distances of parts from obstacles, by `near` */
+  lane3 *ways;      /* of balls from their frames' origins, where */
+  uint32_t *placed; /* those of a part are known */
   lane_interval interval[EDGE_LANES];
   uint32_t all;   /* the lanes that are in use */
   uint32_t split; /* those that are to be halved: nothing more is asked about them */
@@ -113,11 +115,19 @@ EDGE_INLINE void move_frame(lane_batch *b, size_t i) {
   if (f->shifts) to->speed = lane3_add(to->speed, along);
 }
 
-/* A point of a frame, and its velocity. */
-EDGE_INLINE lane3 place_point(const lane_frame *f, const float *p, lane3 *speed) {
-  const lane3 d = lane_turn(f, p);
-  *speed = lane3_add(f->speed, lane3_cross(f->spin, d));
-  return lane3_add(f->o, d);
+/* A point of a frame that is `way` from its origin, and its velocity. */
+EDGE_INLINE lane3 place_point(const lane_frame *f, lane3 way, lane3 *speed) {
+  *speed = lane3_add(f->speed, lane3_cross(f->spin, way));
+  return lane3_add(f->o, way);
+}
+
+/* The ways of all balls, among them those of a part, which are found once a batch. */
+EDGE_INLINE const lane3 *ways_of(lane_batch *b, size_t i) {
+  const edge_part *part = &b->c->parts[i];
+  for (uint32_t k = part->first; k < part->first + part->n && !b->placed[i]; k++)
+    b->ways[k] = lane_turn(&b->frames[part->frame], b->c->balls[k].centre);
+  b->placed[i] = 1;
+  return b->ways;
 }
 
 /* The velocity of a point of a as b sees it. */
@@ -301,12 +311,12 @@ EDGE_TARGET static bool part_touches(lane_batch *b, size_t i, const edge_obstacl
   const edge_part *part = &b->c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
   need(b, CPROX_EDGE_COVER);
-  for (const edge_ball *ball = b->c->balls + part->first; ball < b->c->balls + part->first + part->n; ball++) {
+  const lane3 *ways = ways_of(b, i);
+  for (uint32_t k = part->first; k < part->first + part->n; k++) {
+    const edge_ball *ball = &b->c->balls[k];
     const lane_two two = {ball->geometry, o->target, false};
     const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, b->motion->room[i] + o->grown);
-    if (inner > 0.0f &&
-        proves_contact(b, &two, distance2_from(o, lane3_add(own->o, lane_turn(own, ball->centre))), inner))
-      return true;
+    if (inner > 0.0f && proves_contact(b, &two, distance2_from(o, lane3_add(own->o, ways[k])), inner)) return true;
   }
   return false;
 }
@@ -320,6 +330,7 @@ EDGE_TARGET static bool place_part(lane_batch *b, size_t i) {
   const float radius = part->core + (float)b->c->hit_within; /* some ball's centre may be so near */
   const lane3 way = lane_turn(own, part->centre), centre = lane3_add(own->o, way);
   b->parts[i] = (lane_part){.centre = centre, .speed = way};
+  b->placed[i] = 0;
   for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
     const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
     const lane distance2 = distance2_from(o, centre);
@@ -336,11 +347,12 @@ EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, con
   const edge_part *part = &b->c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
   const float beyond = (float)b->c->clear_beyond, room = b->motion->room[i];
+  const lane3 *ways = ways_of(b, i);
   need(b, CPROX_EDGE_COVER);
   for (uint32_t k = part->first; k < part->first + part->n; k++) {
     const edge_ball *ball = &b->c->balls[k];
     lane3 speed;
-    const lane distance2 = distance2_from(o, place_point(own, ball->centre, &speed));
+    const lane distance2 = distance2_from(o, place_point(own, ways[k], &speed));
     const lane moves = moves_of(b, speed, b->motion->frames[part->frame], ball->reach);
     const float outer = ball->outer + beyond + room;
     const uint32_t near = within(b, near_at, distance2, moves, outer) & b->all & ~b->split;
@@ -392,18 +404,18 @@ EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float cos
   const edge_part *first = &c->parts[pair->a], *second = &c->parts[pair->b];
   const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
   const uint32_t number = (uint32_t)(c->n_near + i);
+  const lane3 *ways = ways_of(b, pair->a), *its = ways_of(b, pair->b);
   need(b, CPROX_EDGE_COVER);
   for (uint32_t k = first->first; k < first->first + first->n; k++) {
     const edge_ball *ball = &c->balls[k];
     lane3 speed;
-    const lane3 at = place_point(own, ball->centre, &speed);
+    const lane3 at = place_point(own, ways[k], &speed);
     const lane moves = moves_of(b, relative_speed(other, at, speed), b->motion->relations[pair->relation], ball->reach);
     const lane apart2 = lane3_norm2(lane3_sub(at, b->parts[pair->b].centre));
     if (!(within(b, number, apart2, moves, ball->outer + second->outer + room) & b->all & ~b->split)) continue;
     for (uint32_t l = second->first; l < second->first + second->n; l++) {
       const edge_ball *beside = &c->balls[l];
-      const lane3 its = lane3_add(other->o, lane_turn(other, beside->centre));
-      const lane distance2 = lane3_norm2(lane3_sub(at, its));
+      const lane distance2 = lane3_norm2(lane3_sub(at, lane3_add(other->o, its[l])));
       const float outer = ball->outer + beside->outer + room;
       const uint32_t near = within(b, number, distance2, moves, outer) & b->all & ~b->split;
       if (!near) continue;
@@ -498,7 +510,9 @@ EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *mot
   b.least = lane_all(INFINITY);
   b.frames = (lane_frame *)(void *)lanes->memory;
   b.parts = (lane_part *)(void *)(b.frames + c->n_frames);
-  b.apart2 = (lane *)(void *)(b.parts + c->n_parts);
+  b.ways = (lane3 *)(void *)(b.parts + c->n_parts);
+  b.apart2 = (lane *)(void *)(b.ways + c->n_balls);
+  b.placed = (uint32_t *)(void *)(b.apart2 + c->n_near);
   memset(&b.frames[0], 0, sizeof b.frames[0]);
   for (int k = 0; k < 9; k += 4) b.frames[0].r[k] = lane_all(1.0f);
   *found = (edge_found){.verdict = CPROX_VERDICT_CLEAR, .level = CPROX_EDGE_BALL};

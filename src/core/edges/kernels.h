@@ -16,7 +16,7 @@ typedef struct edge_open {
   float from, to; /* of the edge's parameter, seen from its middle */
 } edge_open;
 
-/* Memory of a search, aligned to 32 bytes: edge_lanes_size() bytes for n_near + n_lane_pairs. */
+/* Memory of a search, aligned to 32 bytes: edge_lanes_size() bytes for at least n_near. */
 typedef struct edge_lanes {
   char *memory;
   edge_open open;
@@ -45,7 +45,7 @@ typedef struct edge_found {
 typedef void edge_kernel(const cprox_edge_checker *checker, const edge_motion *motion, edge_lanes *lanes,
                          edge_found *found);
 
-size_t edge_lanes_size(const cprox_edge_checker *checker, size_t n_asked);
+size_t edge_lanes_size(const cprox_edge_checker *checker, size_t n_near);
 
 edge_kernel edge_kernel_plain, edge_kernel_avx2;
 edge_kernel *edge_kernel_at(simd_level level);
