@@ -42,7 +42,8 @@ std::string digestOfFile(const std::string &path, bool with_meshes) {
   Hasher hasher;
   hasher.add(*text);
   if (!with_meshes) return toHex(hasher.finish());
-  static const std::regex named(R"re((?:filename\s*=\s*|resource\s*:\s*)(?:"([^"]+)"|'([^']+)'|([^\s"',}\]]+)))re");
+  static const std::regex named(
+      R"re((?:filename\s*=\s*|resource["']?\s*:\s*)(?:"([^"]+)"|'([^']+)'|([^\s"',}\]]+)))re");
   const std::string folder = yaml::folderOf(path);
   for (std::sregex_iterator it(text->begin(), text->end(), named), end; it != end; ++it) {
     const std::size_t group = (*it)[1].matched ? 1 : (*it)[2].matched ? 2 : 3;

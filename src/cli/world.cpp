@@ -8,6 +8,7 @@
 
 #include <curve_proximity/mesh_remarks.hpp>
 
+#include "../scene/yaml/cloud_file.h"
 #include "../scene/yaml/frames.h"
 #include "../scene/yaml/path_yaml.h"
 #include "../scene/yaml/scene_change.h"
@@ -95,6 +96,7 @@ ObjectDescription readBody(const Arguments &arguments, Warnings &warnings) {
   SceneChange one;
   try {
     one.operations.push_back({Operation::Kind::ADD, readRider(loadYaml(arguments.body), warnings)});
+    readClouds(one.operations.front().object, folderOf(arguments.body));
   } catch (const BadInput &e) {
     throw BadUsage(arguments.body + ": " + e.what());
   }

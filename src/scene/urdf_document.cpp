@@ -64,6 +64,10 @@ class Document {
     tinyxml2::XMLDocument document;
     if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS)
       throw Error("the URDF is no XML: " + std::string(document.ErrorStr()));
+    const XMLElement *first = document.RootElement();
+    for (const auto &[name, format] : {std::make_pair("mujoco", "MuJoCo's MJCF"), std::make_pair("sdf", "an SDF file")})
+      if (first && std::string(first->Name()) == name)
+        throw Error(std::string("this is ") + format + " (<" + name + ">), not a URDF: convert it to one first");
     const XMLElement *root = document.FirstChildElement("robot");
     if (!root) throw Error("the URDF has no <robot> element");
     if (const XMLElement *second = root->NextSiblingElement())

@@ -63,7 +63,7 @@ class Pages(Case):
                         self.assertTrue(os.access(os.path.join(ROOT, script[0]), os.X_OK), 'there is no such script')
                     if reasons or (command.startswith(PLUGINS) and not os.environ['CPROX_NODE']):
                         continue
-                    done = subprocess.run(['bash', '-c', re.sub(r'^scripts/run ', '', command)], cwd=scratch, env=dict(os.environ, PATH=path),
+                    done = subprocess.run(['bash', '-c', re.sub(r'^scripts/run ', '', command).replace('/tmp/', scratch + '/')], cwd=scratch, env=dict(os.environ, PATH=path),
                                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LIMIT)
                     self.assertIn(done.returncode, (0, 1, 3), done.stdout.decode())
                     ran += 1

@@ -81,6 +81,24 @@ void readGrid(const YamlValue &value, ShapeDescription &shape, Warnings &warning
   shape.values = value.at("values").numbers();
 }
 
+/* Barr's superquadric [a1, a2, a3, e1, e2]: ((x/a1)^(2/e2) + (y/a2)^(2/e2))^(e2/e1) + (z/a3)^(2/e1) <= 1. */
+void readBarr(const YamlValue &place, ShapeDescription &shape) {
+  constexpr std::size_t BARR = 5;
+  std::vector<double> &d = shape.dimensions;
+  if (d.size() != BARR) return;
+  const auto convex = [](double e) { return e > 0.0 && e <= 2.0; };
+  if (!convex(d[3]) || !convex(d[4]))
+    place.fail(
+        "superquadric needs 6 dimensions [a1, a2, a3, n1, n2, n3], or 5 [a1, a2, a3, e, e] with e above 0 and "
+        "at most 2");
+  if (d[3] != d[4])
+    place.fail(
+        "of a superquadric [a1, a2, a3, e1, e2] the exponents are the same, or it is no sum of three powers: "
+        "enclose it in a mesh or a polytope");
+  d[3] = d[4] = 2.0 / d[3];
+  d.push_back(d[3]);
+}
+
 } // namespace
 
 Eigen::Matrix3Xd readVertices(const YamlValue &value) {
@@ -164,9 +182,16 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   }
 
   /* numbers, or points */
+  if (shape.type == ShapeType::POINTS && value.find("resource")) {
+    value.warnOfOthers({"type", "dimensions", "resource", "pose"}, warnings);
+    shape.resource = value.at("resource").text();
+    if (const auto radius = value.find("dimensions")) shape.dimensions = radius->numbers();
+    return shape;
+  }
   value.warnOfOthers({"type", "dimensions", "vertices", "deform", "pose"}, warnings);
   readDeformation(value, shape, warnings);
   if (const auto dimensions = value.find("dimensions")) shape.dimensions = dimensions->numbers();
+  if (shape.type == ShapeType::SUPERQUADRIC) readBarr(*value.find("type"), shape);
   shape.vertices = readVertices(value);
   const bool by_vertices = shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POLYGON ||
                            shape.type == ShapeType::POINT || shape.type == ShapeType::POINTS;

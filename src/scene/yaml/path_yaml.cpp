@@ -5,6 +5,7 @@
 
 #include "../path_times.h"
 #include "failure.h"
+#include "path_text.h"
 #include "scene_yaml.h"
 #include "trajectory_yaml.h"
 
@@ -41,6 +42,11 @@ PathFile readPoses(const YamlValue &root, bool turns, Warnings &warnings) {
   out.frame = header.frame;
   std::vector<std::int64_t> stamps;
   for (const YamlValue &entry : root.at("poses").items()) {
+    if (entry.find("position") || entry.find("orientation")) { /* of a geometry_msgs/PoseArray */
+      stamps.push_back(0);
+      out.poses.push_back({0.0, readPose(entry, turns, warnings)});
+      continue;
+    }
     entry.warnOfOthers({"header", "pose"}, warnings);
     const Header own = readHeader(entry, warnings);
     if (!own.frame.empty() && own.frame != out.frame)
@@ -60,7 +66,7 @@ PathFile readPoses(const YamlValue &root, bool turns, Warnings &warnings) {
 
 PathFile readPath(const std::string &path, bool turns, Warnings &warnings) {
   try {
-    return readPoses(loadYaml(path), turns, warnings);
+    return isPathText(path) ? readPathText(path, turns, warnings) : readPoses(loadYaml(path), turns, warnings);
   } catch (const BadInput &e) {
     throw BadUsage(path + ": " + e.what());
   }

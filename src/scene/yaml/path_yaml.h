@@ -21,7 +21,7 @@ struct PathFile {
   std::string remark; /**< what a reader should know of the times; empty: nothing */
 };
 
-/** Reads a path, as rostopic prints one. turns: else orientations are not looked at, and all poses are upright. Throws
+/** Reads a path, as rostopic prints one, a geometry_msgs/PoseArray likewise, or the lines of readPathText(). turns: else orientations are not looked at, and all poses are upright. Throws
  *  BadUsage naming the file and the place: no poses, one that is no pose, or in another frame than the path's. */
 PathFile readPath(const std::string &path, bool turns, Warnings &warnings);
 

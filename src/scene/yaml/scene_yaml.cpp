@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "body_yaml.h"
+#include "cloud_file.h"
 #include "failure.h"
 #include "numbers.h"
 #include "robot_state_yaml.h"
@@ -359,6 +360,8 @@ SceneFile readScene(const std::string &path, Warnings &told) {
     readLinkSizes(root, out, warnings);
     readAllowed(root, out, warnings);
     readMovingRobots(root, folderOf(path), out, warnings);
+    for (Operation &operation : out.operations) readClouds(operation.object, folderOf(path));
+    for (Attachment &attachment : out.attached) readClouds(attachment.object, folderOf(path));
   } catch (const BadInput &e) {
     throw BadUsage(path + ": " + e.what());
   } catch (const Error &e) {
