@@ -139,10 +139,11 @@ void Canvas::addConvex(const std::string &space, const cprox_body *body, const E
   marker.color = tint;
   const auto at = [body](int ring, int side) {
     const double latitude = M_PI * (static_cast<double>(ring) / RINGS - 0.5), longitude = 2.0 * M_PI * side / SIDES;
+    const bool is_pole = ring == 0 || ring == RINGS; // one point: 0 must not have a sign there
+    const double x = is_pole ? 0.0 : std::cos(latitude) * std::cos(longitude),
+                 y = is_pole ? 0.0 : std::cos(latitude) * std::sin(longitude);
     cprox_vec3 point{};
-    cprox_body_support(
-        body, {std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude)},
-        &point);
+    cprox_body_support(body, {x, y, std::sin(latitude)}, &point);
     return toPointMessage(point);
   };
   for (int ring = 0; ring < RINGS; ++ring) {
