@@ -413,6 +413,7 @@ void readStandardInput(Arguments &out) {
 
 Arguments parseArguments(const std::vector<std::string> &words) {
   Arguments out;
+  out.words = words;
   if (words.empty()) throw BadUsage("no command; the commands are " + commandNames() + " (see --help)");
 
   /* help and version win over everything else on the line */

@@ -34,6 +34,7 @@ enum class Action {
 };
 
 struct Arguments {
+  std::vector<std::string> words; /**< as they were typed */
   Action action = Action::HELP;
   std::string topic; /**< HELP: the command that it is about; empty: all */
   Query query;       /**< CURVES, AGAINST, PAIRS and REPORT: the command, and how it is to be answered */

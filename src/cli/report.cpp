@@ -1,9 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* report: one page that shows how close a trajectory, or curves, come to what is around them. */
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <set>
 
 #include "../scene/digest.h"
+#include "../scene/yaml/numbers.h"
 #include "answers.h"
 #include "certificates.h"
 #include "commands.h"
@@ -212,11 +220,45 @@ std::string titleOf(const Arguments &arguments) {
   return out;
 }
 
+/* As a shell takes it: what it would read otherwise stands in quotes. */
+std::string shellWord(const std::string &word) {
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("-_./=:,+@%", c); };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string commandOf(const Arguments &arguments) {
+  std::string out = "cprox";
+  for (const std::string &word : arguments.words) out += " " + shellWord(word);
+  return out;
+}
+
+/* Now, or where pages are to be the same again SOURCE_DATE_EPOCH. */
+std::string dateNow() {
+  const char *fixed = std::getenv("SOURCE_DATE_EPOCH");
+  const std::optional<std::uint64_t> epoch = fixed ? yaml::parseCount(fixed) : std::nullopt;
+  const std::time_t now = epoch ? static_cast<std::time_t>(*epoch) : std::time(nullptr);
+  std::tm parts{};
+  char text[32] = "";
+  if (gmtime_r(&now, &parts)) std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &parts);
+  return text;
+}
+
+std::string hostName() {
+  char name[256] = "";
+  return gethostname(name, sizeof name - 1) == 0 && *name ? name : "an unnamed host";
+}
+
 /* What the answers rest on: the files by their content, and what was asked. */
 void addBasis(const Arguments &arguments, const World &world, Report &report) {
   Json &data = report.data();
   data["title"] = titleOf(arguments);
   data["version"] = CPROX_VERSION;
+  data["date"] = dateNow();
+  data["host"] = hostName();
+  data["command"] = commandOf(arguments);
   data["epsilon"] = arguments.query.options.epsilon;
   data["delta"] = arguments.has_delta ? Json(arguments.query.delta) : Json();
   data["unit"] = arguments.trajectory.empty() ? "" : "s";

@@ -84,9 +84,11 @@ Surface convexSurface(const cprox_body *body, std::size_t most) {
   for (int ring = 0; ring <= rings; ++ring) {
     for (int side = 0; side < sides; ++side) {
       const double latitude = M_PI * (static_cast<double>(ring) / rings - 0.5), longitude = 2.0 * M_PI * side / sides;
+      const bool is_pole = ring == 0 || ring == rings; // one point: 0 must not have a sign there
+      const double across = std::cos(latitude);
       cprox_vec3 point{};
-      const cprox_vec3 direction{std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
-                                 std::sin(latitude)};
+      const cprox_vec3 direction{is_pole ? 0.0 : across * std::cos(longitude),
+                                 is_pole ? 0.0 : across * std::sin(longitude), std::sin(latitude)};
       cprox_body_support(body, direction, &point);
       points.emplace_back(point.x, point.y, point.z);
       if (!points.back().allFinite()) return {};

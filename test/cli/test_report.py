@@ -5,6 +5,7 @@ import json
 import math
 import os
 import re
+import shlex
 import shutil
 import struct
 import subprocess
@@ -144,6 +145,34 @@ class Report(Case):
         self.assertNotRegex(frame, r'\b(src|href|url)\s*[=(]')
         self.assertIn('THREE.OrbitControls', text)
 
+    def the_page_says_when_where_and_by_which_command(self):
+        words = [*robot_files(self), '--objects', "it's, near"]
+        path = os.path.join(self.folder, 'report.html')
+        scene = TWO.replace('id: far', 'id: "it\'s"')
+        words[words.index('--scene') + 1] = self.file('named.yaml', scene)
+        answer = cprox('report', *words, '--out', path, env={'SOURCE_DATE_EPOCH': '86400'})
+        self.assertEqual(answer.code, 0, answer.err)
+        with open(path, encoding='utf-8') as file:
+            data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', file.read(), re.S).group(1))
+        self.assertEqual((data['date'], data['host']), ('1970-01-02 00:00:00 UTC', os.uname().nodename))
+        self.assertEqual(shlex.split(data['command']), ['cprox', 'report', *words, '--out', path])
+
+    def a_box_is_drawn_with_all_its_faces(self):
+        sizes = {'cube': (1, 1, 1), 'board': (.6, .4, .02), 'bar': (.1, .1, 2)}
+        scene = 'world:\n  collision_objects:\n' + ''.join(
+            f'    - {{id: {name}, primitives: [{{type: box, dimensions: {list(size)}}}], primitive_poses: [{{orientation: [.5, .1, .3, .8]}}]}}\n'
+            for name, size in sizes.items())
+        _, data = self.report('--curves', self.file('curves.csv', OVER + '\n'), '--scene', self.file('scene.yaml', scene))
+        for body in data['bodies']:
+            corners = [body['vertices'][i:i + 3] for i in range(0, len(body['vertices']), 3)]
+            area = 0
+            for i in range(0, len(body['triangles']), 3):
+                a, b, c = (corners[k] for k in body['triangles'][i:i + 3])
+                u, v = [y - x for x, y in zip(a, b)], [y - x for x, y in zip(a, c)]
+                area += math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2
+            x, y, z = sizes[body['name']]
+            self.assertAlmostEqual(area, 2 * (x * y + y * z + z * x), delta=1e-3, msg=body['name'])
+
     def names_cannot_become_tags(self):
         name = '</script><b>&'
         scene = TWO.replace('id: near', f"id: '{name}'")
@@ -230,6 +259,7 @@ class Report(Case):
         self.assertRegex(dom, r'<g class="band" data-name="cart"')
         self.assertIn('<canvas', dom)
         self.assertRegex(dom, r'<p id="view-note">Links have the colour')
+        self.assertRegex(dom, r'<div id="objects">(<span><i style="background: [^"]*"></i>[^<]+</span>){2}</div>')
         chart = re.search(r'<a id="chart-file" download="clearance.svg" href="data:image/svg\+xml;charset=utf-8,([^"]*)"', dom).group(1)
         figure = xml.etree.ElementTree.fromstring(urllib.parse.unquote(chart))
         self.assertEqual(figure.tag, '{http://www.w3.org/2000/svg}svg')
@@ -245,5 +275,7 @@ class Report(Case):
                 seen[colour] = seen.get(colour, 0) + 1
         self.assertGreater(seen.get((244, 246, 248), 0), 20000, 'the background of the view')
         tan = sum(n for (r, g, b), n in seen.items() if r > g > b and r - b > 20 and max(r, g, b) - min(r, g, b) < 90)
-        self.assertGreater(tan, 3000, 'the objects of the scene')
+        blue = sum(n for (r, g, b), n in seen.items() if r < g < b and 20 < b - r < 60 and r > 90)
+        self.assertGreater(tan, 300, 'the post of the scene')
+        self.assertGreater(blue, 3000, 'its wall')
         self.assertGreater(sum(n for c, n in seen.items() if c[0] > 170 and c[1] < 60 and c[2] < 70), 3, 'the closest pair')

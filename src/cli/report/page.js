@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shows the data of a report. They are what src/cli/report.cpp and report_drawing.cpp gather:
 //   title, version, epsilon, delta (or null), unit of t ("s" or ""), self, objects (how many), domain [t0, t1]
+//   date (UTC), host, command
 //   inputs    [{what, file, digest}]
 //   notes     [sentence]
 //   verdicts  [{query, id, kind, a, b, status, verdict, lower, upper, t, points [[x,y,z],[x,y,z]], nodes, microseconds, message,
@@ -13,6 +14,9 @@
 
 const data = JSON.parse(document.getElementById('data').textContent);
 const PALETTE = ['#1b6ca8', '#d1495b', '#2e8b57', '#9467bd', '#c77700', '#17a2a2', '#7f5539', '#d63384', '#5c6b7a', '#6a8d00'];
+// Objects, lighter than the links' colours of clearance.
+const STANDING = ['#b8a88f', '#9db4c0', '#a3b18a', '#c9ada7', '#c2b280', '#8fa6a0', '#d4a373', '#a9a3c4'];
+const MOST_NAMED = 12, MOST_LISTED = 60; // objects with a name in the view, and beneath it
 const MOST_SHOWN = 8; // lines of the chart that are on at first
 
 // ------------------------------------------------------------------------------------------------------------- words
@@ -20,6 +24,11 @@ function metres(x) {
   if (x === null || x === undefined) return '–';
   if (x === 0) return '0 mm';
   return Math.abs(x) < 1 ? (1000 * x).toPrecision(5) + ' mm' : x.toPrecision(6) + ' m';
+}
+
+// A round number as it was given.
+function given(x) {
+  return Math.abs(x) < 1 ? +(1000 * x).toPrecision(5) + ' mm' : +x.toPrecision(6) + ' m';
 }
 
 function moment(t) {
@@ -114,7 +123,8 @@ function showBasis() {
     if (code) item.append(' ', element('code', code));
     list.append(item);
   };
-  add('cprox ' + data.version + ', intervals of at most ' + metres(data.epsilon) + ' asked for.');
+  add('cprox ' + data.version + ' on ' + data.host + ', ' + data.date + ', intervals of at most ' + given(data.epsilon) + ' asked for.');
+  add('The command:', data.command);
   add('Objects in the scene: ' + data.objects + '.');
   if (data.unit === 's' && !data.self) add('The robot was not measured against itself (--self).');
   for (const input of data.inputs)
@@ -202,8 +212,13 @@ function showChart() {
     const label = element('label'), box = element('input'), line = element('i');
     box.type = 'checkbox';
     box.checked = on;
-    box.addEventListener('change', () => group.setAttribute('visibility', box.checked ? 'visible' : 'hidden'));
-    line.style.background = colour;
+    const show = () => {
+      group.setAttribute('visibility', box.checked ? 'visible' : 'hidden');
+      label.classList.toggle('off', !box.checked);
+    };
+    box.addEventListener('change', show);
+    show();
+    line.style.background = i < PALETTE.length ? colour : `repeating-linear-gradient(90deg, ${colour} 0 5px, transparent 5px 8px)`;
     label.append(box, line, name);
     legend.append(label);
   });
@@ -273,6 +288,28 @@ function meshOf(body, material) {
   return new THREE.Mesh(faceted, material);
 }
 
+// Edges where faces meet at more than this: of a board on a floor one sees where it ends.
+const CREASE = 30, EDGE = new THREE.LineBasicMaterial({color: '#3b4652', transparent: true, opacity: 0.55});
+function withEdges(mesh) {
+  mesh.add(new THREE.LineSegments(new THREE.EdgesGeometry(mesh.geometry, CREASE), EDGE));
+  return mesh;
+}
+
+// A name that always faces the eye.
+function nameTag(text, height) {
+  const canvas = document.createElement('canvas'), size = 48, pen = canvas.getContext('2d');
+  pen.font = `${size}px sans-serif`;
+  canvas.width = Math.ceil(pen.measureText(text).width) + 8;
+  canvas.height = size + 16;
+  pen.font = `${size}px sans-serif`;
+  pen.fillStyle = '#1d2733';
+  pen.fillText(text, 4, size);
+  const tag = new THREE.Sprite(new THREE.SpriteMaterial({map: new THREE.CanvasTexture(canvas), depthTest: false, transparent: true}));
+  tag.scale.set(height * canvas.width / canvas.height, height, 1);
+  tag.renderOrder = 1;
+  return tag;
+}
+
 function place(mesh, link, index) {
   const poses = data.frames.poses[link];
   const pose = poses && poses[Math.min(index, poses.length - 1)];
@@ -300,13 +337,24 @@ function makeView() {
   scene.add(lamp);
 
   // What stands.
-  const box = new THREE.Box3();
+  const box = new THREE.Box3(), travelled = new THREE.Box3(), standing = new Map(), around = new Map();
   for (const body of data.bodies.filter(body => body.kind === 'object')) {
-    const mesh = meshOf(body, new THREE.MeshLambertMaterial({color: '#b8a88f', side: THREE.DoubleSide}));
+    if (!standing.has(body.name)) standing.set(body.name, STANDING[standing.size % STANDING.length]);
+    const mesh = withEdges(meshOf(body, new THREE.MeshLambertMaterial({color: standing.get(body.name), side: THREE.DoubleSide,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1})));
     mesh.name = body.name;
     scene.add(mesh);
     box.expandByObject(mesh);
+    around.set(body.name, (around.get(body.name) || new THREE.Box3()).expandByObject(mesh));
   }
+  const list = document.getElementById('objects');
+  for (const [name, colour] of [...standing].slice(0, MOST_LISTED)) {
+    const item = element('span'), swatch = element('i');
+    swatch.style.background = colour;
+    item.append(swatch, name);
+    list.append(item);
+  }
+  if (standing.size > MOST_LISTED) list.append(element('span', `and ${standing.size - MOST_LISTED} more`));
 
   // What moves: at the moment shown, and faintly on its way.
   const ghosts = [0, 0.2, 0.4, 0.6, 0.8, 1].map(share => Math.round(share * (times.length - 1)));
@@ -323,18 +371,18 @@ function makeView() {
       place(ghost, body.on, index);
       ghost.updateMatrixWorld();
       scene.add(ghost);
-      box.expandByObject(ghost);
+      travelled.expandByObject(ghost);
     }
     place(mesh, body.on, 0);
     mesh.updateMatrixWorld();
-    box.expandByObject(mesh);
+    travelled.expandByObject(mesh);
   }
   data.curves.forEach((curve, i) => {
     const points = [];
     for (let k = 0; k + 2 < curve.points.length; k += 3) points.push(new THREE.Vector3(curve.points[k], curve.points[k + 1], curve.points[k + 2]));
     const colour = PALETTE[i % PALETTE.length];
     scene.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({color: colour})));
-    for (const point of points) box.expandByPoint(point);
+    for (const point of points) travelled.expandByPoint(point);
     const ball = new THREE.Mesh(new THREE.SphereBufferGeometry(Math.max(curve.radius, 0.004), 24, 16),
       new THREE.MeshLambertMaterial({color: colour}));
     scene.add(ball);
@@ -361,9 +409,23 @@ function makeView() {
     marks.add(line);
   };
 
+  // What moves fills the view: a large floor is shown as far as twice its size reaches.
+  if (!travelled.isEmpty()) {
+    const reach = travelled.getSize(new THREE.Vector3()).length();
+    box.intersect(travelled.clone().expandByScalar(0.5 * reach)).union(travelled);
+  }
+
   // From above and the side on which the robot stands.
   if (box.isEmpty()) box.expandByPoint(new THREE.Vector3()).expandByScalar(1);
   const middle = box.getCenter(new THREE.Vector3()), radius = Math.max(0.1, box.getSize(new THREE.Vector3()).length() / 2);
+  if (standing.size <= MOST_NAMED) {
+    for (const [name, its] of around) {
+      const tag = nameTag(name, 0.06 * radius), seen = its.clone().intersect(box);
+      (seen.isEmpty() ? its : seen).getCenter(tag.position);
+      tag.position.z = Math.min(its.max.z, box.max.z);
+      scene.add(tag);
+    }
+  }
   const controls = new THREE.OrbitControls(camera, renderer.domElement);
   camera.near = radius / 200;
   camera.far = radius * 40;
