@@ -120,6 +120,16 @@ set set_group(const set *s, size_t begin, size_t end) {
   return group;
 }
 
+void set_box(const set *s, size_t begin, size_t end, double low[3], double high[3]) {
+  for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+  for (size_t i = begin * s->corners; i < end * s->corners; i++)
+    for (int k = 0; k < 3; k++) {
+      const double x = s->vertices[i][k];
+      if (x < low[k]) low[k] = x;
+      if (x > high[k]) high[k] = x;
+    }
+}
+
 /* N elements: three corners of a triangle, a point, the two corners of a cell, which become eight. */
 static void read_elements(words *w, set *s) {
   s->corners = s->kind == POINTS ? 1 : s->kind == CELLS ? 8 : 3;
@@ -132,6 +142,7 @@ static void read_elements(words *w, set *s) {
     for (size_t k = 0; s->kind == CELLS && k < 24; k++) v[k / 3][k % 3] = ends[k / 3 >> k % 3 & 1][k % 3];
   }
   s->n = w->wrong ? 0 : n * s->corners;
+  set_box(s, 0, set_elements(s), s->low, s->high);
   if (s->kind == SOLID && !w->wrong && !winding_is_closed(s)) w->wrong = true;
 }
 

@@ -51,8 +51,9 @@ typedef struct set {
   double size[4];   /* as the text has them */
   double centre[3]; /* POINT, POLYTOPE, HULL, elements */
   size_t n;
-  double (*vertices)[3]; /* about the centre; of elements `corners` each, in a row */
-  size_t corners;        /* 0: it is no union of elements */
+  double (*vertices)[3];  /* about the centre; of elements `corners` each, in a row */
+  size_t corners;         /* 0: it is no union of elements */
+  double low[3], high[3]; /* of elements, a box round all vertices */
   curve curve;
   char name[64]; /* whose it is, or "" */
 } set;
@@ -60,6 +61,9 @@ typedef struct set {
 static inline size_t set_elements(const set *s) {
   return s->corners > 0 ? s->n / s->corners : 0;
 }
+
+/* The box round the vertices of the elements begin ... end - 1. */
+void set_box(const set *s, size_t begin, size_t end, double low[3], double high[3]);
 
 /* The hull of the elements begin ... end - 1, which refers to the vertices of the set. */
 set set_group(const set *s, size_t begin, size_t end);

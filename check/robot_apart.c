@@ -208,12 +208,9 @@ static bool add_item(pair *p, const body *standing, size_t begin, size_t end, co
   }
   const set *s = standing->shape;
   for (int k = 0; k < 3; k++) one->middle[k] = standing->middle[k], one->half[k] = standing->half[k];
+  if (s->corners > 0 && outer) set_box(s, begin, end, one->low, one->high);
+  for (int k = 0; k < 3 && !outer; k++) one->low[k] = s->low[k], one->high[k] = s->high[k];
   for (int k = 0; k < 3 && s->corners > 0; k++) {
-    one->low[k] = INFINITY, one->high[k] = -INFINITY;
-    for (size_t i = begin * s->corners; i < end * s->corners; i++) {
-      one->low[k] = fmin(one->low[k], s->vertices[i][k]);
-      one->high[k] = fmax(one->high[k], s->vertices[i][k]);
-    }
     one->middle[k] = 0.5 * (one->low[k] + one->high[k]);
     one->half[k] = 0.5 * (one->high[k] - one->low[k]);
   }

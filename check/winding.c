@@ -77,27 +77,34 @@ static int crossing(const vec v[3], const vec *d) {
   return facing != NO_SIGN && ahead == facing ? (int)facing : 2;
 }
 
-/* OUTSIDE of the box round the vertices, or not known. */
-static side side_of_box(const set *s, const vec *y) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t i = 0; i < s->n; i++)
-    for (int k = 0; k < 3; k++) {
-      low[k] = fmin(low[k], s->vertices[i][k]);
-      high[k] = fmax(high[k], s->vertices[i][k]);
-    }
+/* Outside of the box round the vertices. */
+static bool is_beyond_box(const set *s, const vec *y) {
+  bool beyond = false;
   for (int k = 0; k < 3; k++) {
     const num at = {y->m[k], y->e};
-    if (num_bottom(at) > high[k] || num_top(at) < low[k]) return OUTSIDE;
+    beyond = beyond || num_bottom(at) > s->high[k] || num_top(at) < s->low[k];
   }
-  return UNKNOWN_SIDE;
+  return beyond;
+}
+
+/* The triangle is on one side of a plane through the ray: e is orthogonal to it, exactly. */
+static bool is_beside(const vec v[3], const double e[3]) {
+  int sides = 0;
+  for (int k = 0; k < 3; k++) {
+    const double m = e[0] * v[k].m[0] + e[1] * v[k].m[1] + e[2] * v[k].m[2];
+    const double slack = 0x1p-48 * (fabs(v[k].m[0]) + fabs(v[k].m[1]) + fabs(v[k].m[2])) + 2.0 * v[k].e;
+    sides += m > slack ? 1 : m < -slack ? -1 : 0;
+  }
+  return sides == 3 || sides == -3;
 }
 
 side winding_side(const set *s, const vec *y) {
   static const double ways[][3] = {{0.61, 0.35, 0.71},   {-0.23, 0.89, -0.39}, {0.47, -0.68, 0.56},
                                    {-0.83, -0.29, 0.47}, {0.17, 0.41, -0.89},  {0.93, -0.31, -0.19}};
-  if (side_of_box(s, y) == OUTSIDE) return OUTSIDE;
+  if (is_beyond_box(s, y)) return OUTSIDE;
   for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
     const vec d = vec_of(ways[i]);
+    const double beside[2][3] = {{d.m[1], -d.m[0], 0.0}, {0.0, d.m[2], -d.m[1]}};
     long winding = 0;
     size_t k = 0;
     for (; k < s->n; k += 3) {
@@ -106,6 +113,7 @@ side winding_side(const set *s, const vec *y) {
         const vec corner = vec_of(s->vertices[k + j]);
         v[j] = vec_sub(&corner, y);
       }
+      if (is_beside(v, beside[0]) || is_beside(v, beside[1])) continue;
       const int crossed = crossing(v, &d);
       if (crossed == 2) break;
       winding += crossed;
