@@ -115,6 +115,35 @@ CASE(a_state_is_where_forward_kinematics_puts_it) {
       assert_int_equal(results[0].verdict, side ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
       assert_true(results[0].lower <= both[0].upper && both[0].lower <= results[0].upper);
       assert_true(side ? results[0].upper <= q.delta : results[0].lower > q.delta);
+
+      /* many in one call, which share what does not change, are those of one call each */
+      cprox_result alone;
+      assert_true(cprox_robot_ask_states(t.robot, &q, packed, MOST_STATES, ws, results, NULL) >= 0);
+      for (size_t k = 0; k < MOST_STATES; k++) {
+        assert_true(cprox_robot_ask_states(t.robot, &q, packed + k * t.n_variables, 1, ws, &alone, NULL) >= 0);
+        assert_int_equal(results[k].verdict, alone.verdict);
+        assert_true(results[k].lower <= both[k].upper && both[k].lower <= results[k].upper);
+      }
+
+      /* and the next call is about its own obstacles */
+      cprox_obstacle aside = target;
+      aside.pose.position.x -= 0.7;
+      cprox_obstacles *others = NULL;
+      assert_int_equal(cprox_obstacles_create(&aside, 1, CPROX_INDEX_NONE, ws, &others), CPROX_OK);
+      cprox_state_query next = {.obstacles = others, .pairs = scene, .n_pairs = t.n_links, .without_self = true};
+      q.without_self = true;
+      for (size_t k = 0; k < MOST_STATES; k++) {
+        cprox_result apart;
+        next.distance = true;
+        assert_true(cprox_robot_ask_states(t.robot, &next, packed + k * t.n_variables, 1, ws, &apart, NULL) >= 0);
+        next.distance = false, next.delta = q.delta;
+        assert_true(cprox_robot_ask_states(t.robot, &q, packed, MOST_STATES, ws, results, NULL) >= 0);
+        assert_true(cprox_robot_ask_states(t.robot, &next, packed + k * t.n_variables, 1, ws, &alone, NULL) >= 0);
+        assert_true(alone.lower <= apart.upper && apart.lower <= alone.upper);
+        if (alone.verdict == CPROX_VERDICT_CLEAR) assert_true(apart.upper > q.delta);
+      }
+      q.without_self = false;
+      cprox_obstacles_free(others);
     }
     cprox_obstacles_free(set);
     cprox_body_free(box);

@@ -62,14 +62,14 @@ static cprox_status begin_verdicts(const cprox_state_query *asked, const cprox_m
   return bvh ? bvh_begin(bvh, q, has) : query_begin(q, has);
 }
 
-static cprox_status ask_verdict(const cprox_state_query *asked, const query *q, cprox_result *result,
-                                bool *about_self) {
+static cprox_status ask_verdict(const cprox_state_query *asked, query *q, cprox_result *result, bool *about_self) {
   *about_self = false;
   *result = query_nothing();
   result->verdict = CPROX_VERDICT_CLEAR;
   if (!asked->obstacles && asked->without_self) return CPROX_OK;
   workspace_clear(q->workspace);
   const cprox_status status = solve_query(q, 0, q->n, INFINITY, result);
+  q->is_repeated = true;
   if (status < 0) return status;
   const int32_t others = mover_is_whole(&q->mover) ? (int32_t)q->n : 0;
   *about_self = result->obstacle_index >= others && !asked->without_self && result->obstacle_index >= 0;

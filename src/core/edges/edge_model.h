@@ -133,6 +133,7 @@ struct cprox_edge_checker {
   size_t n_pairs, n_self_pairs;
   void *memory[2]; /* of the robot's side and of the scene's, where the handle owns them */
   bool in_lanes;   /* single precision can say something */
+  bool has_scene;  /* the scene's side is that of the last query */
   vec3 base;
   edge_rows rows;
   int32_t *frame_of; /* of an axis; -1: it carries nothing that is asked about */

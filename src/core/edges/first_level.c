@@ -266,7 +266,8 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   *run = (edge_run){.motion = edge_motion_in(c, memory + rows), .lanes = {.memory = memory, .measures = true}};
   double *reach = (double *)(void *)(memory + rows + moves);
   if (!find_reach(q, c, over, &run->motion, reach)) return false;
-  edge_model_fill_scene(c, q->targets, first, last, reach, memory + rows + moves + reaches);
+  if (!c->has_scene) /* of many states all are within reach of what the robot can reach */
+    edge_model_fill_scene(c, q->targets, first, last, q->is_bare ? NULL : reach, memory + rows + moves + reaches);
   uint32_t *marks = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
   memset(marks, 0, 2 * noted * sizeof *marks);
   run->lanes.open.seen = marks, run->known = marks + noted;
@@ -274,7 +275,8 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   const uint64_t done = workspace_work(q->workspace), most = q->options.max_nodes;
   run->batches = done < most ? most - done : 1;
   if (run->batches > MOST_BATCHES + over->last - over->first) run->batches = MOST_BATCHES + over->last - over->first;
-  return c->in_lanes && c->n_near <= MOST_NEAR;
+  c->has_scene = c->in_lanes && c->n_near <= MOST_NEAR;
+  return c->has_scene;
 }
 
 static void add_open(edge_run *run) {
@@ -323,6 +325,7 @@ bool edge_first_level(const query *q, size_t first, size_t last, bool suspects, 
   if (!c || !c->in_lanes) return false;
   edge_run run;
   c->clear_beyond = c->hit_within = q->limit;
+  c->has_scene = c->has_scene && q->is_repeated;
   const bool placed = place(q, c, first, last, &over, &run);
   c->in_lanes = true; /* the robot's side is */
   if (!placed || c->n_near + c->n_lane_pairs == 0) return false;

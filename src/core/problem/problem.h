@@ -22,6 +22,7 @@ typedef struct query {
   bool is_signed;    /* distance: overlaps are measured, too */
   bool is_tolerance; /* and not a collision: for messages */
   bool is_bare;      /* a robot's verdict: what is proven clear without a measurement needs no witness */
+  bool is_repeated;  /* the last query of the workspace was this one, but for the state of the robot */
   cprox_options options;
   cprox_workspace *workspace;
   curve_interval part; /* of the mover's curve: the whole of it, or some of one piece */
