@@ -26,16 +26,34 @@ struct Roadmap {
   bool shortest_way = false;
 };
 
+/** Straight motions whose ends stand in the caller's memory, which is not copied. */
+struct EdgeList {
+  /** No edges, until all members have their values. */
+  EdgeList() = default;
+
+  /** The edges of a roadmap, which must outlive the list. Throws Error where its joints are not its rows. */
+  EdgeList(const Roadmap &roadmap); // NOLINT(google-explicit-constructor)
+
+  std::vector<std::string> joints; /**< as of a Roadmap */
+  JointPositions rest;             /**< likewise */
+  bool shortest_way = false;       /**< likewise */
+  const double *from = nullptr;    /**< [rad], [m] n_rows rows of a value for each joint */
+  const double *to = nullptr;      /**< likewise; of a roadmap both are its vertices */
+  std::size_t n_rows = 0;
+  const std::array<std::uint32_t, 2> *ends = nullptr; /**< the rows of both ends; nullptr: edge i has row i of each */
+  std::size_t n = 0;                                  /**< edges; without ends n_rows */
+};
+
 /** A sentence for each continuous joint that turns by more than half a turn on the first edge that has one; none with
  *  shortest_way. As longWays() of a trajectory. */
-std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap);
+std::vector<std::string> longWays(const Robot &robot, const EdgeList &edges);
 
 /** Is the robot farther than query.delta from the objects, from itself, or from both, everywhere on each edge? As
  *  askEnvironment() and askSelf() answer for the edge as a motion of its own.
  *
  *  robot    prepared in a scene; all threads share it.
- *  roadmap  names that the robot does not have, a column that is not there, numbers that are not finite are an Error
- *           that names them.
+ *  edges    names that the robot does not have, a vertex that is not there, numbers that are not finite are an Error
+ *           that names them. A Roadmap is such a list.
  *  query    TOLERANCE or COLLISION; no per_object, no certificate.
  *  known    empty, or a verdict for each edge: one that is not CPROX_VERDICT_CLEAR is kept and not asked again. So the
  *           answers for the robot itself, which are the same in all scenes, are found once and handed to each.
@@ -43,7 +61,7 @@ std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap);
  *  Returns a verdict for each edge; what could not be decided within epsilon or the budget is undecided. Cost: some
  *  microseconds an edge by cprox_robot_edges(), which decides most; a motion for each other one; memory: a few bytes an
  *  edge. */
-std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &roadmap, RobotPairs against,
+std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const EdgeList &edges, RobotPairs against,
                                         const Query &query, const std::vector<cprox_verdict> &known, Pool &pool);
 
 /** Straight motions that come one at a time, as a planner asks: all that edgeVerdicts() prepares, kept. Immutable: any

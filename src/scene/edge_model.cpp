@@ -41,38 +41,35 @@ EdgeModel::EdgeModel(const PreparedRobot &robot, const std::vector<std::string> 
   edges.n_self_pairs = against_itself.size();
   edges.without_self = against_itself.empty();
   edges.options = &options;
-  const double delta = query.query_type == QueryType::TOLERANCE ? query.delta : 0.0;
-  const auto make = [&](double farther_than, Handle &handle) {
-    edges.delta = farther_than;
-    cprox_edge_checker *made = nullptr;
-    const cprox_robot *core = motion.data().kinematics->core.get();
-    if (cprox_edge_checker_create(core, &edges, workspace.get(), &made) < 0) throw Error(workspace.reason());
-    handle.reset(made);
-  };
-  make(delta + asked.rounding, clears);
-  if (asked.rounding > 0.0) make(std::max(delta - asked.rounding, 0.0), violates);
+  edges.delta = query.query_type == QueryType::TOLERANCE ? query.delta : 0.0;
+  edges.rounding = asked.rounding;
+  cprox_edge_checker *made = nullptr;
+  const cprox_robot *core = motion.data().kinematics->core.get();
+  if (cprox_edge_checker_create(core, &edges, workspace.get(), &made) < 0) throw Error(workspace.reason());
+  checker.reset(made);
 }
 
-EdgeModel::Found EdgeModel::ask(const double *from, const double *to, Workspace &workspace) const {
-  std::vector<double> begin = rest, end = rest;
+std::vector<double> EdgeModel::rowsFor(std::size_t n) const {
+  std::vector<double> rows;
+  rows.reserve(2 * n * rest.size());
+  for (std::size_t i = 0; i < 2 * n; ++i) rows.insert(rows.end(), rest.begin(), rest.end());
+  return rows;
+}
+
+void EdgeModel::fill(const double *joints, double *row) const {
   const TrajectoryShape &shape = motion.data().shape;
-  Found found{CPROX_VERDICT_UNDECIDED, true};
-  for (std::size_t k = 0; k < shape.column.size(); ++k) {
-    const auto variable = static_cast<std::size_t>(shape.variable[k]);
-    begin[variable] = from[shape.column[k]];
-    end[variable] = to[shape.column[k]];
-    found.all_move = found.all_move && begin[variable] != end[variable];
-  }
-  const auto by = [&](const Handle &handle) {
-    std::uint8_t verdict = CPROX_VERDICT_UNDECIDED;
-    const cprox_status status =
-        cprox_robot_edges(handle.get(), begin.data(), end.data(), 1, workspace.get(), &verdict, nullptr);
-    return status < 0 ? CPROX_VERDICT_UNDECIDED : static_cast<cprox_verdict>(verdict);
-  };
-  found.verdict = by(clears);
-  if (found.verdict == CPROX_VERDICT_VIOLATED && violates && by(violates) != CPROX_VERDICT_VIOLATED)
-    found.verdict = CPROX_VERDICT_UNDECIDED;
-  return found;
+  for (std::size_t k = 0; k < shape.column.size(); ++k) row[shape.variable[k]] = joints[shape.column[k]];
+}
+
+bool EdgeModel::allMove(const double *from, const double *to) const {
+  const std::vector<std::size_t> &column = motion.data().shape.column;
+  return std::all_of(column.begin(), column.end(), [&](std::size_t k) { return from[k] != to[k]; });
+}
+
+void EdgeModel::ask(const std::vector<double> &rows, std::size_t n, std::uint8_t *verdicts,
+                    Workspace &workspace) const {
+  std::fill(verdicts, verdicts + n, static_cast<std::uint8_t>(CPROX_VERDICT_UNDECIDED));
+  cprox_robot_edges(checker.get(), rows.data(), rows.data() + rows.size() / 2, n, workspace.get(), verdicts, nullptr);
 }
 
 struct EdgeChecker::Data {
@@ -99,7 +96,13 @@ EdgeChecker::EdgeChecker(EdgeChecker &&) noexcept = default;
 EdgeChecker &EdgeChecker::operator=(EdgeChecker &&) noexcept = default;
 
 cprox_verdict EdgeChecker::ask(const double *from, const double *to, Workspace &workspace) const {
-  const cprox_verdict verdict = data_->model.ask(from, to, workspace).verdict;
+  const EdgeModel &model = data_->model;
+  std::vector<double> rows = model.rowsFor(1);
+  model.fill(from, rows.data());
+  model.fill(to, rows.data() + rows.size() / 2);
+  std::uint8_t found;
+  model.ask(rows, 1, &found, workspace);
+  const auto verdict = static_cast<cprox_verdict>(found);
   const bool stands = verdict == CPROX_VERDICT_CLEAR ? data_->coverage.complete() : data_->coverage.provesContact();
   return stands ? verdict : CPROX_VERDICT_UNDECIDED;
 }

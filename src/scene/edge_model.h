@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_EDGE_MODEL_H
 #define CURVE_PROXIMITY_SCENE_EDGE_MODEL_H
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,21 +16,21 @@ struct EdgeModel {
   EdgeModel(const PreparedRobot &robot, const std::vector<std::string> &joints, const JointPositions &rest,
             RobotPairs against, const Query &query);
 
-  struct Found {
-    cprox_verdict verdict;
-    bool all_move; /* each joint ends elsewhere than it begins */
-  };
-  /* A value for each joint. */
-  Found ask(const double *from, const double *to, Workspace &workspace) const;
+  /* Rows of all variables: of n edges where they begin, then where they end. */
+  std::vector<double> rowsFor(std::size_t n) const;
+  /* A value for each joint into such a row. */
+  void fill(const double *joints, double *row) const;
+  /* Whether each joint ends elsewhere than it begins. */
+  bool allMove(const double *from, const double *to) const;
+  /* The verdicts of the first n edges of such rows; what is refused is undecided. */
+  void ask(const std::vector<double> &rows, std::size_t n, std::uint8_t *verdicts, Workspace &workspace) const;
 
   RobotMotion motion; /* of all joints */
   Asked asked;
   std::vector<double> rest; /* of all variables of the core's robot */
   cprox_options options;
   ObstaclesHandle obstacles;
-  using Handle = std::unique_ptr<cprox_edge_checker, void (*)(cprox_edge_checker *)>;
-  Handle clears{nullptr, cprox_edge_checker_free};   /* what it says is clear is, whatever was rounded; */
-  Handle violates{nullptr, cprox_edge_checker_free}; /* what it says is violated is; NULL: the same one */
+  std::unique_ptr<cprox_edge_checker, void (*)(cprox_edge_checker *)> checker{nullptr, cprox_edge_checker_free};
 };
 
 } // namespace curve_proximity

@@ -15,25 +15,33 @@ namespace {
 /** Edges that a thread takes at a time: each takes some microseconds, or some hundred where it needs a motion. */
 constexpr std::size_t A_PART = 16;
 
-void check(const Roadmap &roadmap, const Query &query, const std::vector<cprox_verdict> &known) {
-  const auto joints = static_cast<std::size_t>(roadmap.vertices.rows());
-  const auto vertices = static_cast<std::size_t>(roadmap.vertices.cols());
-  if (joints != roadmap.joints.size())
-    throw Error("vertices have " + std::to_string(joints) + " rows, there are " +
-                std::to_string(roadmap.joints.size()) + " joints");
-  for (Eigen::Index i = 0; i < roadmap.vertices.cols(); ++i) {
-    if (!roadmap.vertices.col(i).allFinite()) throw Error("vertex " + std::to_string(i) + " is not finite");
-  }
-  for (std::size_t i = 0; i < roadmap.edges.size(); ++i) {
-    for (const std::uint32_t end : roadmap.edges[i]) {
-      if (end >= vertices)
+const double *beginOf(const EdgeList &edges, std::size_t i) {
+  return edges.from + (edges.ends ? edges.ends[i][0] : i) * edges.joints.size();
+}
+
+const double *endOf(const EdgeList &edges, std::size_t i) {
+  return edges.to + (edges.ends ? edges.ends[i][1] : i) * edges.joints.size();
+}
+
+void checkRows(const EdgeList &edges, const double *rows, const char *what) {
+  const std::size_t width = edges.joints.size();
+  for (std::size_t i = 0; i < edges.n_rows * width; ++i)
+    if (!std::isfinite(rows[i])) throw Error(what + std::to_string(i / width) + " is not finite");
+}
+
+void check(const EdgeList &edges, const Query &query, const std::vector<cprox_verdict> &known) {
+  checkRows(edges, edges.from, edges.ends ? "vertex " : "the beginning of edge ");
+  if (edges.to != edges.from) checkRows(edges, edges.to, "the end of edge ");
+  for (std::size_t i = 0; i < edges.n && edges.ends; ++i) {
+    for (const std::uint32_t end : edges.ends[i]) {
+      if (end >= edges.n_rows)
         throw Error("edge " + std::to_string(i) + " ends at vertex " + std::to_string(end) + ", there are " +
-                    std::to_string(vertices));
+                    std::to_string(edges.n_rows));
     }
   }
-  if (!known.empty() && known.size() != roadmap.edges.size())
-    throw Error("known has " + std::to_string(known.size()) + " verdicts, there are " +
-                std::to_string(roadmap.edges.size()) + " edges");
+  if (!known.empty() && known.size() != edges.n)
+    throw Error("known has " + std::to_string(known.size()) + " verdicts, there are " + std::to_string(edges.n) +
+                " edges");
   if (query.query_type == QueryType::DISTANCE) throw Error("a verdict is asked of each edge: tolerance or collision");
   if (query.options.certificate) throw Error("edges have no certificates: ask about one motion");
 }
@@ -50,46 +58,24 @@ cprox_verdict verdictOf(const RobotMotion &motion, RobotPairs against, const Que
   return answer.result.status < 0 ? CPROX_VERDICT_UNDECIDED : answer.result.verdict;
 }
 
-TrajectoryPoint pointAt(const Roadmap &roadmap, std::uint32_t vertex, double time) {
-  const double *first = roadmap.vertices.col(vertex).data();
-  TrajectoryPoint point;
-  point.time = time;
-  point.positions.assign(first, first + roadmap.vertices.rows());
-  return point;
-}
-
-TrajectoryDescription straight(const Roadmap &roadmap, const std::array<std::uint32_t, 2> &edge) {
+TrajectoryDescription straight(const EdgeList &edges, std::size_t i) {
+  const auto at = [&](const double *row, double time) {
+    return TrajectoryPoint{std::vector<double>(row, row + edges.joints.size()), {}, {}, time};
+  };
   TrajectoryDescription out;
-  out.joints = roadmap.joints;
-  out.points = {pointAt(roadmap, edge[0], 0.0), pointAt(roadmap, edge[1], 1.0)};
-  out.shortest_way = roadmap.shortest_way;
+  out.joints = edges.joints;
+  out.points = {at(beginOf(edges, i), 0.0), at(endOf(edges, i), 1.0)};
+  out.shortest_way = edges.shortest_way;
   return out;
 }
 
-/* With a vertex of its own for each edge that goes the shorter way to where it is after whole turns. */
-Roadmap shortened(const Robot &robot, const Roadmap &roadmap) {
-  Roadmap out = roadmap;
-  std::vector<Eigen::VectorXd> further;
-  for (std::array<std::uint32_t, 2> &edge : out.edges) {
-    TrajectoryDescription motion = straight(roadmap, edge);
-    takeShortWays(robot, motion);
-    const std::vector<double> &end = motion.points[1].positions;
-    const Eigen::Map<const Eigen::VectorXd> to(end.data(), static_cast<Eigen::Index>(end.size()));
-    if (to == roadmap.vertices.col(edge[1])) continue;
-    edge[1] = static_cast<std::uint32_t>(static_cast<std::size_t>(roadmap.vertices.cols()) + further.size());
-    further.push_back(to);
-  }
-  const Eigen::Index before = roadmap.vertices.cols();
-  out.vertices.conservativeResize(Eigen::NoChange, before + static_cast<Eigen::Index>(further.size()));
-  for (std::size_t i = 0; i < further.size(); ++i) out.vertices.col(before + static_cast<Eigen::Index>(i)) = further[i];
-  return out;
-}
-
-/* The core's handle, for all pairs that an edge of the roadmap can have. */
+/* The core's handle, for all pairs that an edge of the list can have. */
 class Lanes {
  public:
-  Lanes(const PreparedRobot &robot, const Roadmap &roadmap, RobotPairs against, const Query &query)
-      : roadmap_(roadmap), model_(robot, roadmap.joints, roadmap.rest, against, query) {}
+  Lanes(const PreparedRobot &robot, const EdgeList &edges, RobotPairs against, const Query &query)
+      : edges_(edges), model_(robot, edges.joints, edges.rest, against, query) {
+    if (edges.shortest_way) robot_ = robot.snapshot()->robot();
+  }
 
   /* Of both at once one alone may have pairs. */
   RobotPairs against() const {
@@ -101,19 +87,42 @@ class Lanes {
     return model_.asked.pairs.empty();
   }
 
-  /* The verdict of an edge, if that is the verdict of its motion as well: what is clear of all pairs is; else its
-   * motion must have all pairs, as it has where all joints move. */
-  std::optional<cprox_verdict> ask(const std::array<std::uint32_t, 2> &edge, Workspace &workspace) const {
-    const auto from = roadmap_.vertices.col(edge[0]), to = roadmap_.vertices.col(edge[1]);
-    const EdgeModel::Found found = model_.ask(from.data(), to.data(), workspace);
-    const bool stands = found.verdict == CPROX_VERDICT_CLEAR || found.all_move;
-    if (found.verdict == CPROX_VERDICT_UNDECIDED || !stands) return std::nullopt;
-    return found.verdict;
+  /* The verdicts of those of edges first … last - 1 whose verdict is clear so far, at most A_PART; undecided where that
+   * is not the verdict of its motion as well: what is clear of all pairs is; else its motion must have all pairs, as it
+   * has where all joints move. */
+  void ask(std::size_t first, std::size_t last, const std::vector<cprox_verdict> &so_far, std::uint8_t *verdicts,
+           Workspace &workspace) const {
+    std::vector<double> rows = model_.rowsFor(last - first);
+    std::array<std::size_t, A_PART> which;
+    std::array<bool, A_PART> all_move;
+    std::array<std::uint8_t, A_PART> found;
+    std::size_t n = 0;
+    for (std::size_t i = first; i < last; ++i)
+      if (so_far[i] == CPROX_VERDICT_CLEAR) all_move[n] = fill(i, n, rows), which[n++] = i - first;
+    model_.ask(rows, n, found.data(), workspace);
+    for (std::size_t k = 0; k < n; ++k)
+      if (found[k] == CPROX_VERDICT_CLEAR || all_move[k]) verdicts[which[k]] = found[k];
   }
 
  private:
-  const Roadmap &roadmap_;
+  /* Whether all joints move on the edge. */
+  bool fill(std::size_t i, std::size_t row, std::vector<double> &rows) const {
+    const double *from = beginOf(edges_, i), *to = endOf(edges_, i);
+    TrajectoryDescription motion;
+    if (robot_) {
+      motion = straight(edges_, i);
+      takeShortWays(*robot_, motion);
+      from = motion.points[0].positions.data(), to = motion.points[1].positions.data();
+    }
+    double *begin = rows.data() + row * model_.rest.size();
+    model_.fill(from, begin);
+    model_.fill(to, begin + rows.size() / 2);
+    return model_.allMove(from, to);
+  }
+
+  const EdgeList &edges_;
   EdgeModel model_;
+  std::shared_ptr<const Robot> robot_; /* where edges go the shorter way */
 };
 
 /* Whether verdicts of the core are those of the motions: nothing is left out, and no coarser model is asked for. */
@@ -126,13 +135,29 @@ bool speaksForAll(const PreparedRobot &robot, const Query &query) {
 
 } // namespace
 
-std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap) {
+EdgeList::EdgeList(const Roadmap &roadmap)
+    : joints(roadmap.joints),
+      rest(roadmap.rest),
+      shortest_way(roadmap.shortest_way),
+      from(roadmap.vertices.data()),
+      to(from),
+      n_rows(static_cast<std::size_t>(roadmap.vertices.cols())),
+      ends(roadmap.edges.data()),
+      n(roadmap.edges.size()) {
+  if (static_cast<std::size_t>(roadmap.vertices.rows()) != joints.size())
+    throw Error("vertices have " + std::to_string(roadmap.vertices.rows()) + " rows, there are " +
+                std::to_string(joints.size()) + " joints");
+}
+
+std::vector<std::string> longWays(const Robot &robot, const EdgeList &edges) {
   std::vector<std::string> out;
   std::size_t n = 0;
-  for (std::size_t i = 0; i < roadmap.edges.size(); ++i) {
-    const auto [from, to] = roadmap.edges[i];
-    if ((roadmap.vertices.col(to) - roadmap.vertices.col(from)).cwiseAbs().maxCoeff() <= M_PI) continue;
-    const std::vector<std::string> ways = longWays(robot, straight(roadmap, roadmap.edges[i]));
+  for (std::size_t i = 0; i < edges.n && !edges.shortest_way; ++i) {
+    const double *from = beginOf(edges, i), *to = endOf(edges, i);
+    double most = 0.0;
+    for (std::size_t k = 0; k < edges.joints.size(); ++k) most = std::max(most, std::abs(to[k] - from[k]));
+    if (most <= M_PI) continue;
+    const std::vector<std::string> ways = longWays(robot, straight(edges, i));
     if (ways.empty() || n++ > 0) continue;
     for (const std::string &way : ways) out.push_back("edge " + std::to_string(i) + ": " + way);
   }
@@ -140,32 +165,29 @@ std::vector<std::string> longWays(const Robot &robot, const Roadmap &roadmap) {
   return out;
 }
 
-std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const Roadmap &given, RobotPairs against,
+std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const EdgeList &edges, RobotPairs against,
                                         const Query &query, const std::vector<cprox_verdict> &known, Pool &pool) {
-  check(given, query, known);
-  const bool shortens = given.shortest_way && robot.snapshot()->robot();
-  const Roadmap roadmap = shortens ? shortened(*robot.snapshot()->robot(), given) : given;
-  const std::size_t n = roadmap.edges.size();
+  check(edges, query, known);
   std::vector<cprox_verdict> verdicts = known;
-  if (verdicts.empty()) verdicts.assign(n, CPROX_VERDICT_CLEAR);
+  if (verdicts.empty()) verdicts.assign(edges.n, CPROX_VERDICT_CLEAR);
   std::optional<Lanes> lanes;
-  if (n > 0 && speaksForAll(robot, query)) lanes.emplace(robot, roadmap, against, query);
+  if (edges.n > 0 && speaksForAll(robot, query)) lanes.emplace(robot, edges, against, query);
   if (lanes && lanes->isEmpty()) lanes.reset(); // no edge is clear of nothing, but where the query allows it
   if (lanes && lanes->against() != against) {   // one of both after the other
     const std::vector<cprox_verdict> of_objects =
-        edgeVerdicts(robot, given, RobotPairs::ENVIRONMENT, query, known, pool);
-    return edgeVerdicts(robot, given, RobotPairs::SELF, query, of_objects, pool);
+        edgeVerdicts(robot, edges, RobotPairs::ENVIRONMENT, query, known, pool);
+    return edgeVerdicts(robot, edges, RobotPairs::SELF, query, of_objects, pool);
   }
-  pool.run(n, A_PART, [&](std::size_t first, std::size_t last, Workspace &workspace) {
+  pool.run(edges.n, A_PART, [&](std::size_t first, std::size_t last, Workspace &workspace) {
+    std::array<std::uint8_t, A_PART> found;
+    found.fill(CPROX_VERDICT_UNDECIDED);
+    const bool stops = query.options.stop && query.options.stop(query.options.stop_user);
+    if (lanes && !stops) lanes->ask(first, last, verdicts, found.data(), workspace);
     for (std::size_t i = first; i < last; ++i) {
       if (verdicts[i] != CPROX_VERDICT_CLEAR) continue;
-      const bool stops = query.options.stop && query.options.stop(query.options.stop_user);
-      if (const std::optional<cprox_verdict> verdict =
-              lanes && !stops ? lanes->ask(roadmap.edges[i], workspace) : std::nullopt) {
-        verdicts[i] = *verdict;
-        continue;
-      }
-      const RobotMotion motion(robot, straight(roadmap, roadmap.edges[i]), roadmap.rest, query.links);
+      verdicts[i] = static_cast<cprox_verdict>(found[i - first]);
+      if (verdicts[i] != CPROX_VERDICT_UNDECIDED) continue;
+      const RobotMotion motion(robot, straight(edges, i), edges.rest, query.links);
       verdicts[i] = verdictOf(motion, against, query, workspace);
     }
   });

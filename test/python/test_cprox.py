@@ -1139,7 +1139,26 @@ class Edges(unittest.TestCase):
         self.assertEqual(one.tolist(), self.verdicts([start[0]] * 60, end, True, 0.05))
         self.assertEqual(cprox.edges(self.scene, self.joints, numpy.empty((0, 2)), numpy.empty((0, 2))).shape, (0,))
 
+    def test_verdicts_do_not_depend_on_how_the_ends_stand_in_memory(self):
+        r = numpy.random.default_rng(3)
+        start, end = r.uniform(-2.5, 2.5, (2, 500, 2))
+        found = cprox.edges(self.scene, self.joints, start, end, 0.05)
+        self.assertEqual(len(set(found.tolist())), 2)
+        wide = numpy.zeros((500, 4))
+        wide[:, ::2] = end
+        for a, b in ((numpy.asfortranarray(start), end), (start, wide[:, ::2]), (start.tolist(), end.tolist())):
+            self.assertEqual(cprox.edges(self.scene, self.joints, a, b, 0.05).tobytes(), found.tobytes())
+        rows = numpy.arange(500)
+        by_rows = cprox.edge_verdicts(self.scene, self.joints, numpy.concatenate((start, end)), numpy.stack((rows, rows + 500), 1),
+                                      0.05, whole=True)
+        self.assertEqual(by_rows.tobytes(), found.tobytes())
+        turned = cprox.edges(self.scene, self.joints[::-1], start[:, ::-1], end[:, ::-1], 0.05, threads=3)
+        self.assertEqual(turned.tobytes(), found.tobytes())
+
     def test_what_is_no_edge_is_refused(self):
+        for edges, to in ((None, None), ([[0, 1]], [[1, 1], [2, 2]]), (None, [[1, 1]])):
+            with self.assertRaisesRegex(ValueError, 'edges are rows of vertices, or None'):
+                cprox.edge_verdicts(self.scene, self.joints, [[0, 0], [1, 1]], edges, 0, to=to)
         for start, end, words in (([[0, float('nan')]], [[1, 1]], 'nan|finite'), ([[0, 0]], [[1, float('inf')]], 'inf|finite'),
                                   ([[0, 0, 0]], [[1, 1, 1]], 'joints'), ([[[0, 0]]], [[[1, 1]]], 'shape'),
                                   ([[0, 0]] * 2, [[1, 1]] * 3, 'broadcast')):

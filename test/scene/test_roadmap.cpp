@@ -128,6 +128,35 @@ TEST(Roadmaps, the_verdict_of_objects_and_robot_is_that_of_both) {
   EXPECT_GT(count[CPROX_VERDICT_VIOLATED], 20);
 }
 
+/* Rows of both ends, which stand in the caller's memory, are the same edges (seed 91). */
+TEST(Roadmaps, edges_by_their_ends_have_the_verdicts_of_the_roadmap) {
+  const Case c = makeCase(91, 60, 200);
+  const PreparedRobot robot(c.snapshot, c.srdf.disabled);
+  Eigen::MatrixXd from(7, 200), to(7, 200);
+  for (Eigen::Index i = 0; i < 200; ++i) {
+    const auto [begin, end] = c.roadmap.edges[static_cast<std::size_t>(i)];
+    from.col(i) = c.roadmap.vertices.col(begin), to.col(i) = c.roadmap.vertices.col(end);
+  }
+  EdgeList list;
+  list.joints = c.roadmap.joints, list.from = from.data(), list.to = to.data(), list.n_rows = list.n = 200;
+  for (const bool shortest_way : {false, true})
+    for (const unsigned threads : {1U, 3U}) {
+      Pool pool(threads);
+      Roadmap roadmap = c.roadmap;
+      roadmap.shortest_way = list.shortest_way = shortest_way;
+      EXPECT_EQ(edgeVerdicts(robot, list, RobotPairs::WHOLE, tolerance(), {}, pool),
+                edgeVerdicts(robot, roadmap, RobotPairs::WHOLE, tolerance(), {}, pool));
+    }
+  to(3, 17) = NAN;
+  Pool pool(1);
+  try {
+    edgeVerdicts(robot, list, RobotPairs::WHOLE, tolerance(), {}, pool);
+    FAIL();
+  } catch (const Error &error) {
+    EXPECT_STREQ(error.what(), "the end of edge 17 is not finite");
+  }
+}
+
 /* Without objects nothing was measured. A robot alone is no objects. */
 TEST(Roadmaps, no_edge_is_clear_of_a_scene_that_is_not_covered) {
   const Case c = makeCase(91, 4, 4);

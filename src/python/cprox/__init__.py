@@ -41,10 +41,7 @@ def edges(scene, joints, start, end, delta=0.0, self_collision=True, **options):
     start, end = numpy.broadcast_arrays(numpy.atleast_2d(start), numpy.atleast_2d(end))
     if start.ndim != 2:
         raise ValueError('start and end must be arrays of shape (n, joints): one row a posture')
-    vertices = numpy.concatenate((start, end))
-    pairs = numpy.arange(len(vertices), dtype=numpy.uint32).reshape(2, -1).T
-    verdicts = edge_verdicts(scene, joints, vertices, pairs, delta, whole=self_collision, **options)  # noqa: F405
-    return verdicts.astype(numpy.uint8)
+    return edge_verdicts(scene, joints, start, None, delta, whole=self_collision, to=end, **options).view(numpy.uint8)  # noqa: F405
 
 
 def check(certificate, program=None):

@@ -241,10 +241,11 @@ class Movers:
                       links: Sequence[str] = ..., objects: Sequence[str] = ...,
                       allow_empty: bool = ..., against: str = ..., moving_only: bool = ...) -> List[Dict[str, Any]]: ...
 
-def edge_verdicts(scene: Scene, joints: Sequence[str], vertices: ArrayLike, edges: ArrayLike, delta: float,
+def edge_verdicts(scene: Scene, joints: Sequence[str], vertices: ArrayLike, edges: Optional[ArrayLike], delta: float,
                   self_collision: bool = ..., known: Optional[ArrayLike] = ..., rest: Mapping[str, float] = ...,
                   base: Optional[ArrayLike] = ..., epsilon: float = ..., max_nodes: int = ..., threads: int = ...,
-                  allow_empty: bool = ..., shortest_way: bool = ...) -> ndarray: ...
+                  allow_empty: bool = ..., shortest_way: bool = ..., whole: bool = ...,
+                  to: Optional[ArrayLike] = ...) -> ndarray: ...
 
 
 def edges(scene: Scene, joints: Sequence[str], start: ArrayLike, end: ArrayLike, delta: float = ...,
