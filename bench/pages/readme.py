@@ -44,7 +44,7 @@ def reason_for(name, known):
 
 def target_lines(rows, of_passes):
     for verdict, target, value in targets.judge_all(rows):
-        shown = 'no rows' if value is None else f'{value:.3g}'
+        verdict, shown = ('not measured', '') if value is None else (verdict, f'{value:.3g}')
         yield [verdict, target['name'], shown, repeat.spread_text(target, passes.spread_of(target, of_passes)), targets.asked(target),
                target['kind'] + (f" to {target['baseline']}" if target['baseline'] else '')]
 
@@ -93,9 +93,9 @@ def losses(rows):
 
 def loss_lines(rows):
     known = reasons()
-    for verdict, target, _ in targets.judge_all(rows):
+    for verdict, target, value in targets.judge_all(rows):
         why = reason_for(target['name'], known)
-        if verdict == 'MISSED' or verdict in ('within slack', 'above') and why != UNKNOWN:
+        if verdict == 'MISSED' and value is not None or verdict in ('within slack', 'above') and why != UNKNOWN:
             yield f"- **{target['name']}** ({verdict.lower()}). {why}"
     for group, workload, method, ratio in losses(rows):
         name = f'{group}/{workload}/{method}'
