@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* curve_mutants QUERIES MUTANTS SEED: random curves beside meshes, points, cells and convex bodies with genuine
- * certificates and tampered ones, and with genuine ones held against a query that was changed: targets that come nearer,
- * a mesh that becomes a solid, a curve that goes farther. Judged by the distance, known within 1e-12 of the sizes. */
+ * certificates and tampered ones, and with genuine ones held against targets that came nearer. Judged by the distance,
+ * known within 1e-12 of the sizes. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
