@@ -10,6 +10,7 @@
 namespace curve_proximity {
 namespace local {
 
+/** For callInProcess(): md5sum names the type of request and response. */
 bool call(const std::string &name, const std::string &md5sum, const void *request, void *response);
 
 } // namespace local

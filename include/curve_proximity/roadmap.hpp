@@ -34,12 +34,12 @@ struct EdgeList {
   /** The edges of a roadmap, which must outlive the list. Throws Error where its joints are not its rows. */
   EdgeList(const Roadmap &roadmap); // NOLINT(google-explicit-constructor)
 
-  std::vector<std::string> joints; /**< as of a Roadmap */
-  JointPositions rest;             /**< likewise */
-  bool shortest_way = false;       /**< likewise */
-  const double *from = nullptr;    /**< [rad], [m] n_rows rows of a value for each joint */
-  const double *to = nullptr;      /**< likewise; of a roadmap both are its vertices */
-  std::size_t n_rows = 0;
+  std::vector<std::string> joints;                    /**< as of a Roadmap */
+  JointPositions rest;                                /**< likewise */
+  bool shortest_way = false;                          /**< likewise */
+  const double *from = nullptr;                       /**< [rad], [m] n_rows rows of a value for each joint */
+  const double *to = nullptr;                         /**< likewise; of a roadmap both are its vertices */
+  std::size_t n_rows = 0;                             /**< of `from`, and of `to` */
   const std::array<std::uint32_t, 2> *ends = nullptr; /**< the rows of both ends; nullptr: edge i has row i of each */
   std::size_t n = 0;                                  /**< edges; without ends n_rows */
 };
