@@ -43,7 +43,9 @@ TEST(BadRobots, what_is_no_urdf_is_refused) {
   expectContains(why(""), "no XML");
   expectContains(why("hello"), "XML");
   expectContains(why("<robot name='r'><link name='a'>"), "no XML");
-  expectContains(why("<sdf/>"), "no <robot>");
+  expectContains(why("<sdf/>"), "an SDF file");
+  expectContains(why("<mujoco/>"), "MJCF");
+  expectContains(why("<model/>"), "no <robot>");
   expectContains(why("<robot><link name='a'/></robot>"), "no name");
   expectContains(why(urdf("")), "no links");
 }
