@@ -168,7 +168,9 @@ static bool try_item(const walk *w, view *v, open_item which, open_list *left_op
   if (whole->corners > 0) {
     const set group = set_group(whole, one->begin, one->end);
     v->shape = &group;
-    if (is_settled_by(w, v)) return true;
+    const bool settled = is_settled_by(w, v);
+    v->shape = NULL;
+    if (settled) return true;
   }
   return push(left_open, which.pair, which.item);
 }

@@ -90,7 +90,7 @@ cprox_status cprox_robot_ask_states(const cprox_robot *robot, const cprox_state_
   cprox_motion *state = NULL;
   cprox_status worst = WORKSPACE_LEND(workspace, cprox_motion_create(robot, &description, workspace, &state));
   const size_t width = worst < 0 ? 0 : cprox_motion_get_info(state).n_variables;
-  query verdicts;
+  query verdicts = {.workspace = workspace};
   if (worst >= 0 && !asked->distance) worst = begin_verdicts(asked, state, workspace, &verdicts);
   for (size_t i = 0; i < n && worst >= 0; i++) {
     bool self = false;

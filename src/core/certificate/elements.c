@@ -137,6 +137,7 @@ static void reach_lanes(const tree *t, uint32_t at, uint32_t from, uint32_t to, 
     }
     return;
   }
+  if (from >= to) return;
   double bound[TREE_LANES];
   uint32_t farthest = from;
   for (uint32_t l = from; l < to; l++) {

@@ -107,9 +107,10 @@ static cprox_status attempt(const task *t, uint32_t width, double delta) {
     for (size_t part = 0; part < body_n_parts(t->targets[i].body); part++) {
       cover c = cover_of(t, i, part, width);
       c.delta = delta;
-      const cprox_status status = c.set.curve        ? partition_curves(&c)
-                                  : c.set.body->tree ? partition_elements(&c)
-                                                     : partition_convex(&c);
+      const bool has_elements = c.set.body && c.set.body->tree;
+      const cprox_status status = c.set.curve    ? partition_curves(&c)
+                                  : has_elements ? partition_elements(&c)
+                                                 : partition_convex(&c);
       if (status != CPROX_OK) return status;
     }
   }
