@@ -25,7 +25,7 @@ class Console {
   /** The same, also where the console is quiet. */
   void complain(const std::string &sentence);
 
-  /** From now on only what is a complaint is said. */
+  /** From now on only errors are said. */
   void beQuiet() {
     is_quiet_ = true;
   }

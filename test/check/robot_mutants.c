@@ -39,7 +39,7 @@ static bool ask(const robot_query *q, rng *r, cprox_workspace *ws, cprox_certifi
 }
 
 /* Every interval takes two bytes at least, and on every interval each item is tried with two directions at most, by its
- * box and by its vertices. The head of a genuine certificate tells the number of pairs; a cut of an item into two takes
+ * box and by its vertices. The head of a genuine certificate has the number of pairs; a cut of an item into two takes
  * ten bytes. */
 static bool is_bounded(const bytes *genuine, size_t size, const finding *found) {
   uint32_t pairs;

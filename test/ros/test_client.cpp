@@ -14,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "transport/local_services.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -155,6 +157,23 @@ TEST(callInProcess, answers_as_the_service_does_until_the_nodelet_is_unloaded) {
   EXPECT_TRUE(loader.unload("/local"));
   for (std::thread &thread : calling) thread.join();
   EXPECT_FALSE(callInProcess("/local/distance", here));
+}
+
+TEST(callInProcess, a_later_server_of_the_same_name_outlives_the_one_before) {
+  const auto saying = [](const char *what) {
+    return [what](const Call &, const ServiceHelper<GetScene>::Read &, GetScene::Response &response) {
+      response.message = what;
+    };
+  };
+  LocalServices before, after;
+  before.add<GetScene>("/twice/get_scene", saying("before"));
+  after.add<GetScene>("/twice/get_scene", saying("after"));
+  before.end();
+  GetScene call;
+  ASSERT_TRUE(callInProcess("/twice/get_scene", call));
+  EXPECT_EQ(call.response.message, "after");
+  after.end();
+  EXPECT_FALSE(callInProcess("/twice/get_scene", call));
 }
 
 } // namespace

@@ -8,13 +8,14 @@
 #include <shared_mutex>
 
 namespace curve_proximity {
-namespace {
 
 struct LocalService {
   std::string md5sum;
   std::shared_mutex running; /* shared by calls, and held alone by the end */
   std::function<void(const void *request, void *response)> work;
 };
+
+namespace {
 
 /** All of the process. */
 struct Registry {
@@ -50,18 +51,18 @@ void LocalServices::add(const std::string &name, const std::string &md5sum, Work
   service->work = std::move(work);
   const std::lock_guard<std::mutex> lock(registry().mutex);
   registry().services[name] = service;
-  names_.push_back(name);
+  services_.emplace_back(name, service);
 }
 
 void LocalServices::end() {
-  for (const std::string &name : names_) {
-    const std::shared_ptr<LocalService> service = registry().find(name);
+  for (const auto &[name, service] : services_) {
     const std::unique_lock<std::shared_mutex> alone(service->running);
     service->work = nullptr;
     const std::lock_guard<std::mutex> lock(registry().mutex);
-    registry().services.erase(name);
+    const auto found = registry().services.find(name);
+    if (found != registry().services.end() && found->second == service) registry().services.erase(found);
   }
-  names_.clear();
+  services_.clear();
 }
 
 } // namespace curve_proximity

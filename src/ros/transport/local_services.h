@@ -7,14 +7,18 @@
 #include <ros/service_traits.h>
 
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "transport/service.h"
 
 namespace curve_proximity {
 
-/** Those of one server. */
+struct LocalService;
+
+/** Those of one server. A later server of the same name takes the place of the one before. */
 class LocalServices {
  public:
   LocalServices() = default;
@@ -48,7 +52,7 @@ class LocalServices {
   using Work = std::function<void(const void *request, void *response)>;
   void add(const std::string &name, const std::string &md5sum, Work work);
 
-  std::vector<std::string> names_;
+  std::vector<std::pair<std::string, std::shared_ptr<LocalService>>> services_; /* by name */
 };
 
 } // namespace curve_proximity
