@@ -254,8 +254,9 @@ static count try_worlds(rng *r, size_t n, bool content) {
     if (v.level == CPROX_EDGE_NORMAL || (content && v.level != CPROX_EDGE_SEARCH)) all.lanes[v.verdict]++;
     free_world(&w);
   }
-  print_message("by lanes %zu clear, %zu violated; by the search %zu of %zu\n", all.lanes[CPROX_VERDICT_CLEAR],
-                all.lanes[CPROX_VERDICT_VIOLATED], all.search, all.asked);
+  print_message("%zu worlds of hulls%s, none wrong: by lanes %zu clear and %zu violated; by the search %zu\n",
+                all.asked, content ? " and content" : "", all.lanes[CPROX_VERDICT_CLEAR],
+                all.lanes[CPROX_VERDICT_VIOLATED], all.search);
   return all;
 }
 
