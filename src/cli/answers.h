@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../scene/subject.h"
+#include "../scene/query/subject.h"
 #include "arguments.h"
 #include "results.h"
 #include "run.h"

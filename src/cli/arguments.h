@@ -10,7 +10,7 @@
 
 #include <curve_proximity/query.hpp>
 
-#include "../scene/question.h"
+#include "../scene/query/question.h"
 
 namespace curve_proximity::cli {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "../scene/curve_basis.h"
+#include "../scene/motion/curve_basis.h"
 #include "../scene/yaml/numbers.h"
 #include "failure.h"
 

@@ -5,9 +5,9 @@
 #include <array>
 #include <filesystem>
 
-#include "../scene/digest.h"
-#include "../scene/question.h"
-#include "../scene/trajectory_points.h"
+#include "../scene/base/digest.h"
+#include "../scene/motion/trajectory_points.h"
+#include "../scene/query/question.h"
 #include "../scene/yaml/numbers.h"
 #include "../scene/yaml/scene_change.h"
 #include "csv.h"

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <regex>
 
-#include "../scene/digest.h"
+#include "../scene/base/digest.h"
 #include "../scene/yaml/scene_change.h"
 #include "packages.h"
 #include "robot_file.h"

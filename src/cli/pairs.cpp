@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <variant>
 
-#include "../scene/pair_query.h"
+#include "../scene/query/pair_query.h"
 #include "../scene/yaml/scene_change.h"
 #include "commands.h"
 #include "failure.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../scene/pair_query.h"
+#include "../scene/query/pair_query.h"
 #include "../scene/yaml/yaml_value.h"
 #include "failure.h"
 

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <set>
 
-#include "../scene/digest.h"
+#include "../scene/base/digest.h"
 #include "../scene/yaml/numbers.h"
 #include "answers.h"
 #include "certificates.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "../scene/surface.h"
+#include "../scene/geometry/surface.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -16,7 +16,7 @@
 #include <map>
 #include <string>
 
-#include "../scene/digest.h"
+#include "../scene/base/digest.h"
 #include "dataset.h"
 
 namespace curve_proximity::cli {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "../scene/scaling.h"
+#include "../scene/geometry/scaling.h"
 
 namespace curve_proximity {
 namespace {

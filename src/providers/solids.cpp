@@ -16,7 +16,7 @@
 #include <curve_proximity/geometry.hpp>
 #include <curve_proximity/superquadric_fit.hpp>
 
-#include "../scene/scaling.h"
+#include "../scene/geometry/scaling.h"
 
 namespace curve_proximity {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "../../scene/trajectory_points.h"
+#include "../../scene/motion/trajectory_points.h"
 #include "transport/guard.h"
 
 namespace curve_proximity {

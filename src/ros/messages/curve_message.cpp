@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "../../scene/curve_basis.h"
+#include "../../scene/motion/curve_basis.h"
 #include "messages/geometry_message.h"
 
 namespace curve_proximity {

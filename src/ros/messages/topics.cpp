@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "messages/topics.h"
 
-#include "../../scene/free_joints.h"
-#include "../../scene/path_times.h"
+#include "../../scene/motion/path_times.h"
+#include "../../scene/robot/free_joints.h"
 #include "messages/geometry_message.h"
 
 #include <algorithm>

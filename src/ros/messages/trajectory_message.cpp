@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../../scene/trajectory_points.h"
+#include "../../scene/motion/trajectory_points.h"
 #include "messages/geometry_message.h"
 
 namespace curve_proximity {

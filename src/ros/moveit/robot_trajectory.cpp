@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "../../scene/trajectory_points.h"
+#include "../../scene/motion/trajectory_points.h"
 #include "messages/topics.h"
 
 namespace curve_proximity {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "../../providers/provider_set.h"
-#include "../../scene/pair_query.h"
+#include "../../scene/query/pair_query.h"
 #include "messages/geometry_message.h"
 #include "messages/shape_message.h"
 #include "queries/row_message.h"

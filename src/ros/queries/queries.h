@@ -25,7 +25,7 @@
 #include <thread>
 #include <vector>
 
-#include "../scene/subject.h"
+#include "../scene/query/subject.h"
 #include "parameters/parameters.h"
 #include "parameters/tuning.h"
 #include "queries/row_message.h"

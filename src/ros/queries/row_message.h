@@ -12,7 +12,7 @@
 #include <string>
 #include <variant>
 
-#include "../scene/subject.h"
+#include "../scene/query/subject.h"
 
 namespace curve_proximity {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "../scene/subject.h"
+#include "../scene/query/subject.h"
 #include "transport/memory_account.h"
 #include "world/frames.h"
 #include "world/robot_description.h"

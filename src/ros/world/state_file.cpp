@@ -14,7 +14,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "../../scene/digest.h"
+#include "../../scene/base/digest.h"
 #include "messages/scene_message.h"
 #include "transport/guard.h"
 #include "world/robot_description.h"

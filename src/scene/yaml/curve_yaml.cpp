@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "curve_yaml.h"
 
-#include "../curve_basis.h"
 #include "body_yaml.h"
 #include "failure.h"
+#include "motion/curve_basis.h"
 
 namespace curve_proximity::yaml {
 namespace {

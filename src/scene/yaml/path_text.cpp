@@ -10,8 +10,8 @@
 #include <sstream>
 #include <utility>
 
-#include "../path_times.h"
 #include "failure.h"
+#include "motion/path_times.h"
 #include "numbers.h"
 
 namespace curve_proximity::yaml {

@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "../path_times.h"
 #include "failure.h"
+#include "motion/path_times.h"
 #include "path_text.h"
 #include "scene_yaml.h"
 #include "trajectory_yaml.h"

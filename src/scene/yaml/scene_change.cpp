@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <set>
 
-#include "../free_joints.h"
 #include "failure.h"
+#include "robot/free_joints.h"
 
 namespace curve_proximity::yaml {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "../trajectory_points.h"
 #include "failure.h"
+#include "motion/trajectory_points.h"
 #include "robot_state_yaml.h"
 
 namespace curve_proximity::yaml {

@@ -7,7 +7,7 @@
 #include <curve_proximity/nearest_name.hpp>
 
 #include "answering.h"
-#include "placing.h"
+#include "geometry/placing.h"
 #include "proving.h"
 
 namespace curve_proximity {

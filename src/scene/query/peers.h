@@ -9,7 +9,7 @@
 
 #include <curve_proximity/description.hpp>
 
-#include "mesh.h"
+#include "geometry/mesh.h"
 
 namespace curve_proximity {
 

@@ -8,7 +8,7 @@
 
 #include <curve_proximity/query.hpp>
 
-#include "world.h"
+#include "world/world.h"
 
 namespace curve_proximity {
 

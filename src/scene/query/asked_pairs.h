@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "answering.h"
-#include "motion_data.h"
+#include "motion/motion_data.h"
 
 namespace curve_proximity {
 

@@ -12,7 +12,7 @@
 
 #include <curve_proximity/query.hpp>
 
-#include "world.h"
+#include "world/world.h"
 
 namespace curve_proximity {
 
@@ -21,9 +21,6 @@ inline constexpr double INFINITE = std::numeric_limits<double>::infinity();
 using Clock = std::chrono::steady_clock;
 
 double microsecondsSince(Clock::time_point start);
-
-/* A box that contains the curve. */
-Eigen::AlignedBox3d boxOf(const cprox_curve *curve);
 
 /* What a reader must know of an answer with Query::moving_only. */
 inline const char *const MOVING_ONLY = "moving_only: what the trajectory does not move is left out";
@@ -36,9 +33,6 @@ std::string faultOfMotion(const Query &query, bool in_all);
 /* Why a query that knows only objects that stand cannot be answered about the objects named (none: about all), ""
  * where it can. */
 std::string faultOfMoving(const Snapshot &snapshot, const std::vector<std::string> &objects);
-
-/* Throws Error where the item is a curve, as robots are asked about bodies. */
-void requireBody(const Item &item);
 
 /* The answer to such a query. */
 Answer refusal(const std::string &id, const std::string &kind, const std::string &why);
@@ -139,9 +133,6 @@ void answerNothing(const Query &query, cprox_result &result);
 /* What answers do not cover: gaps of the query and of `given`, and Gap::EMPTY where nothing is measured and the query
  * does not allow that. nothing: why nothing is; "" where something is. */
 Coverage coverageOf(const Query &query, const Coverage &given, const std::string &nothing);
-
-/* The gaps of a snapshot: those of its changes, and objects that are to be solid but whose mesh is not closed. */
-Coverage coverageOf(const Snapshot &snapshot);
 
 /* Of an answer that there is: writes gap, status and message; takes from the result what it does not prove. */
 void applyCoverage(const Coverage &coverage, const Query &query, Answer &answer);

@@ -12,9 +12,9 @@
 
 #include <curve_proximity/urdf_model.hpp>
 
+#include "geometry/mesh.h"
+#include "geometry/placing.h"
 #include "joint_parts.h"
-#include "mesh.h"
-#include "placing.h"
 #include "urdf_document.h"
 
 namespace curve_proximity {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "../mesh_reader/protocol.h"
-#include "digest.h"
+#include "../../mesh_reader/protocol.h"
+#include "base/digest.h"
 #include "mesh.h"
 
 namespace curve_proximity {

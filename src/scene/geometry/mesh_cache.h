@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "digest.h"
+#include "base/digest.h"
 #include "hull.h"
 #include "mesh.h"
 

@@ -10,7 +10,7 @@
 #include <curve_proximity/cprox.h>
 #include <curve_proximity/movers.hpp>
 
-#include "moving_body.h"
+#include "world/moving_body.h"
 
 namespace curve_proximity {
 

@@ -11,7 +11,7 @@
 #include <curve_proximity/nearest_name.hpp>
 
 #include "answering.h"
-#include "movers_data.h"
+#include "motion/movers_data.h"
 #include "second_opinion.h"
 
 namespace curve_proximity {

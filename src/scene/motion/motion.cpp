@@ -6,9 +6,9 @@
 #include <deque>
 #include <optional>
 
-#include "answering.h"
 #include "motion_data.h"
-#include "short_way.h"
+#include "robot/short_way.h"
+#include "world/world.h"
 
 namespace curve_proximity {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "free_joints.h"
+#include "robot/free_joints.h"
 
 namespace curve_proximity {
 namespace {

@@ -10,8 +10,8 @@
 #include <curve_proximity/scene.hpp>
 
 #include "attaching.h"
+#include "geometry/placing.h"
 #include "moving_body.h"
-#include "placing.h"
 #include "world.h"
 
 namespace curve_proximity {
@@ -281,32 +281,6 @@ const AllowedPair *findAllowed(const std::vector<AllowedPair> &matrix, const Nam
 }
 
 } // namespace
-
-/* ---- World ---- */
-
-World::World(const Objects &objects) {
-  items_.reserve(objects.size());
-  for (const auto &[id, object] : objects) {
-    for (std::size_t i = 0; i < object->shapes.size(); ++i) {
-      const PlacedShape &shape = object->shapes[i].placed;
-      if (object->shapes[i].geometry.is_open) open_.push_back(id);
-      if (object->shapes[i].geometry.isEmpty()) continue;
-      const auto index = static_cast<std::uint32_t>(items_.size());
-      items_.push_back({&shape, &object->description.id, false, static_cast<int>(i)});
-      (curve_proximity::unbounded(shape) ? unbounded_ : bounded_).push_back(index);
-    }
-  }
-}
-
-const Broadphase &World::tree() const {
-  std::call_once(tree_made_, [this] {
-    std::vector<Eigen::AlignedBox3d> boxes;
-    boxes.reserve(bounded_.size());
-    for (const std::uint32_t index : bounded_) boxes.push_back(items_[index].shape->box);
-    tree_ = std::make_unique<const Broadphase>(boxes);
-  });
-  return *tree_;
-}
 
 /* ---- Snapshot ---- */
 

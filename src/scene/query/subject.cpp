@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "answering.h"
-#include "movers_data.h"
+#include "motion/movers_data.h"
 
 namespace curve_proximity {
 namespace {

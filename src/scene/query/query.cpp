@@ -7,7 +7,7 @@
 #include <curve_proximity/query.hpp>
 
 #include "answering.h"
-#include "placing.h"
+#include "geometry/placing.h"
 #include "proving.h"
 #include "second_opinion.h"
 #include "targets.h"

@@ -25,7 +25,10 @@ double farthest(const CompiledCurve &curve, const cprox_vec3 &from) {
     far = std::max(far, (box.min() - p).cwiseAbs().cwiseMax((box.max() - p).cwiseAbs()).norm());
   };
   for (const Eigen::AlignedBox3d &box : curve.boxes) look(box);
-  if (curve.boxes.empty()) look(boxOf(curve.curve.get()));
+  if (curve.boxes.empty()) {
+    const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+    look({toEigen(info.lowest), toEigen(info.highest)});
+  }
   return far + curve.reach;
 }
 
@@ -49,11 +52,6 @@ void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
 
 double microsecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
-
-Eigen::AlignedBox3d boxOf(const cprox_curve *curve) {
-  const cprox_curve_info info = cprox_curve_get_info(curve);
-  return {toEigen(info.lowest), toEigen(info.highest)};
 }
 
 std::optional<cprox_lod> lodFromName(const std::string &name) {
@@ -85,11 +83,6 @@ std::string faultOfMoving(const Snapshot &snapshot, const std::vector<std::strin
   for (const std::string &object : objects)
     if (moving.count(object) > 0) name = object;
   return name.empty() ? "" : "object '" + name + "' moves along a trajectory, and this query takes objects that stand";
-}
-
-void requireBody(const Item &item) {
-  if (!item.shape->target.body)
-    throw Error("object '" + *item.owner + "' is a curve: it is asked about curves, not about robots");
 }
 
 Answer refusal(const std::string &id, const std::string &kind, const std::string &why) {
@@ -285,22 +278,6 @@ Coverage coverageOf(const Query &query, const Coverage &given, const std::string
   out.add(query.coverage);
   if (!nothing.empty() && !query.allow_empty)
     out.add(Gap::EMPTY, "nothing was measured: " + nothing, Missing::GEOMETRY);
-  return out;
-}
-
-Coverage coverageOf(const Snapshot &snapshot) {
-  Coverage out = snapshot.coverage();
-  const auto note = [&](const char *what, const std::string &id) {
-    out.add(Gap::PARTIAL, what + (" '" + id) + "' is to be solid, but its mesh is not closed: it has no inside",
-            Missing::GEOMETRY);
-  };
-  for (const std::string &id : snapshot.world().open()) note("object", id);
-  for (const auto &[id, object] : snapshot.moving())
-    for (const Geometry &geometry : object->geometries)
-      if (geometry.is_open) note("object", id);
-  for (const auto &[id, object] : snapshot.attached())
-    for (const LinkGeometry &shape : object->shapes)
-      if (shape.geometry.is_open) note("attached object", id);
   return out;
 }
 

@@ -7,7 +7,7 @@
 
 #include "answering.h"
 #include "edge_model.h"
-#include "short_way.h"
+#include "robot/short_way.h"
 
 namespace curve_proximity {
 namespace {

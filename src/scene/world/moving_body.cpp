@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "placing.h"
+#include "geometry/placing.h"
 
 namespace curve_proximity {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "answering.h"
-#include "placing.h"
-#include "world.h"
+#include "geometry/placing.h"
+#include "world/world.h"
 
 namespace curve_proximity {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <curve_proximity/nearest_name.hpp>
 
-#include "placing.h"
-#include "scaling.h"
+#include "geometry/placing.h"
+#include "geometry/scaling.h"
 
 namespace curve_proximity {
 namespace {

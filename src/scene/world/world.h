@@ -24,6 +24,12 @@ struct Item {
   int part = 0; /* number of the shape in its owner */
 };
 
+/* Throws Error where the item is a curve, as robots are asked about bodies. */
+void requireBody(const Item &item);
+
+/* The gaps of a snapshot: those of its changes, and objects that are to be solid but whose mesh is not closed. */
+Coverage coverageOf(const Snapshot &snapshot);
+
 class World {
  public:
   explicit World(const std::map<std::string, std::shared_ptr<const SceneObject>> &objects);

@@ -3,7 +3,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_SECOND_OPINION_H
 #define CURVE_PROXIMITY_SCENE_SECOND_OPINION_H
 
-#include "motion_data.h"
+#include "motion/motion_data.h"
 #include "targets.h"
 
 namespace curve_proximity {

@@ -8,9 +8,9 @@
 #include <curve_proximity/nearest_name.hpp>
 #include <set>
 
-#include "answering.h"
 #include "motion_data.h"
 #include "movers_data.h"
+#include "world/world.h"
 
 namespace curve_proximity {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <curve_proximity/query.hpp>
 
-#include "answering.h"
 #include "curve_basis.h"
 
 namespace curve_proximity {
@@ -47,7 +46,7 @@ std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::v
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     if (!(breaks[i] < breaks[i + 1]) ||
         cprox_curve_control_points(curve, breaks[i], breaks[i + 1], nullptr, points.data()) != CPROX_OK)
-      return {boxOf(curve)};
+      return {whole};
     for (std::size_t step = parts; step > 1; step /= 2) {
       for (std::size_t part = 0; part < parts; part += step)
         halve(&points[part * n], &points[(part + step / 2) * n], n);

@@ -12,8 +12,8 @@
 
 #include <curve_proximity/motion.hpp>
 
-#include "kinematics.h"
-#include "world.h"
+#include "robot/kinematics.h"
+#include "world/world.h"
 
 namespace curve_proximity {
 
