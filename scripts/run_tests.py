@@ -406,6 +406,12 @@ def demo():
     return run_one([os.path.join(REPO, 'test/install/demo')], 'demo', count_lines)
 
 
+def first_hour():
+    """doc/first-hour.md, but for what the groups demo and install do: the demo, and C against a prefix."""
+    tasks = [str(number) for number in range(2, 11) if number != 7]
+    return run_one([os.path.join(REPO, 'scripts/first_hour'), *tasks], 'first_hour', count_lines)
+
+
 def bench_pages():
     return run_one([os.path.join(REPO, 'test/bench/run_tests.py')], 'bench', count_lines)
 
@@ -422,7 +428,7 @@ GROUPS = {
     'core': core, 'tidy': tidy, 'sanitizers': sanitized, 'threads': threads,
     'scene': lambda: room('scene'), 'providers': lambda: room('providers'), 'cli': lambda: room('cli'), 'python': lambda: room('python'),
     'ros': lambda: room('ros'),
-    'install': install, 'demo': demo,
+    'install': install, 'demo': demo, 'first_hour': first_hour,
 }
 
 # These work beside all others, when nothing else wants the processor: while rostests wait, which they mostly do, while CMake

@@ -3,7 +3,7 @@
  *  gradient.
  *
  *  A provider is a pluginlib plugin with the base class curve_proximity::ConstraintProvider. An example is
- *  test/install/example_provider. doc/constraint-providers.md lists signs, units, frames and thread rules.
+ *  examples/provider. doc/constraint-providers.md lists signs, units, frames and thread rules.
  *  Nothing here needs ROS. Metres, radians, right-handed frames. */
 #ifndef CURVE_PROXIMITY_CONSTRAINT_PROVIDER_HPP
 #define CURVE_PROXIMITY_CONSTRAINT_PROVIDER_HPP

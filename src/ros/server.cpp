@@ -241,6 +241,10 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   control_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &control_queue_);
   control_spinner_->start();
   threads_.start();
+  const SnapshotPtr snapshot = live_.scene.snapshot();
+  ROS_INFO("ready: %zu links, %zu objects%s%s, %zu services", snapshot->robot() ? snapshot->robot()->links().size() : 0,
+           snapshot->objects().size() + snapshot->moving().size(), parameters_.scene_file.empty() ? "" : " of ",
+           parameters_.scene_file.c_str(), services_.size());
 }
 
 void ProximityServer::setThreads(int threads) {

@@ -180,7 +180,7 @@ joint_trajectory:
         self.assertEqual(self.constraints('--check-gradient', '--parameters', 'horizon: 0.3').code, 0)
 
     def a_provider_whose_gradient_is_wrong_is_told(self):
-        answer = self.constraints('--check-gradient', provider='example_provider/WrongGradient')
+        answer = self.constraints('--check-gradient', provider='faulty_provider/WrongGradient')
         row = answer.row('t')
         self.assertEqual((answer.code, answer.err, row['verdict'], row['derivative']), (1, '', 'violated', 'position 0 lift'))
         self.assertEqual((float(row['gradient']), round(float(row['difference']), 6)), (1.5, 3.0))
@@ -210,7 +210,7 @@ world:
         checked = cprox('constraints', '--provider', ROBOT, *words, '--check-gradient')
         self.assertEqual((checked.code, checked.row('t')['verdict'], checked.row('t')['derivatives']), (0, 'clear', '4'), checked.err)
         self.assertIn('a horizon is not available', cprox('constraints', '--provider', ROBOT, *words, '--parameters', 'horizon: 0.5').err)
-        self.assertIn('nothing moves beside the robot', cprox('constraints', '--provider', 'example_provider/WrongGradient', *words).err)
+        self.assertIn('nothing moves beside the robot', cprox('constraints', '--provider', 'faulty_provider/WrongGradient', *words).err)
 
     def what_is_wrong_is_told_by_one_line(self):
         self.assertIn('not for joint trajectories', self.constraints(provider=CURVES).err)

@@ -198,10 +198,10 @@ class WrongProviders(unittest.TestCase):
                 self.assertIn(word, self.stopped(providers))
 
     def test_a_plugin_that_fails_is_told_by_name_and_the_node_serves(self):
-        node = Node('faulty', constraint_providers=[{'name': 'mine', 'type': 'example_provider/NoLibrary'}])
+        node = Node('faulty', constraint_providers=[{'name': 'mine', 'type': 'faulty_provider/NoLibrary'}])
         try:
             self.assertTrue(Server('/faulty').scene().success)
-            self.assertIn("constraint provider 'mine' (example_provider/NoLibrary) failed to load", node.output())
+            self.assertIn("constraint provider 'mine' (faulty_provider/NoLibrary) failed to load", node.output())
         finally:
             node.end()
 

@@ -14,7 +14,7 @@ class ConstraintProvider {
 
 } // namespace curve_proximity
 
-namespace example_provider {
+namespace faulty_provider {
 
 class OtherHeaders : public curve_proximity::ConstraintProvider {
  public:
@@ -23,6 +23,6 @@ class OtherHeaders : public curve_proximity::ConstraintProvider {
   }
 };
 
-} // namespace example_provider
+} // namespace faulty_provider
 
-PLUGINLIB_EXPORT_CLASS(example_provider::OtherHeaders, curve_proximity::ConstraintProvider)
+PLUGINLIB_EXPORT_CLASS(faulty_provider::OtherHeaders, curve_proximity::ConstraintProvider)

@@ -4,7 +4,7 @@
 
 #include <curve_proximity/constraint_provider.hpp>
 
-namespace example_provider {
+namespace faulty_provider {
 
 using namespace curve_proximity;
 
@@ -65,8 +65,8 @@ class WrongGradient : public ConstraintProvider {
   }
 };
 
-} // namespace example_provider
+} // namespace faulty_provider
 
-PLUGINLIB_EXPORT_CLASS(example_provider::WrongGradient, curve_proximity::ConstraintProvider)
-PLUGINLIB_EXPORT_CLASS(example_provider::ThrowsAtStart, curve_proximity::ConstraintProvider)
-PLUGINLIB_EXPORT_CLASS(example_provider::ThrowsWhenAsked, curve_proximity::ConstraintProvider)
+PLUGINLIB_EXPORT_CLASS(faulty_provider::WrongGradient, curve_proximity::ConstraintProvider)
+PLUGINLIB_EXPORT_CLASS(faulty_provider::ThrowsAtStart, curve_proximity::ConstraintProvider)
+PLUGINLIB_EXPORT_CLASS(faulty_provider::ThrowsWhenAsked, curve_proximity::ConstraintProvider)
