@@ -22,6 +22,43 @@ CASE(edge_verdicts_are_never_wrong) {
   assert_true(levels[CPROX_EDGE_MEASUREMENT] + levels[CPROX_EDGE_SEARCH] > 0);
 }
 
+/* A ball whose velocity is all but 0 in the middle of the last of the eight intervals that a search begins with: a shift
+ * along an axis that turns by W = .2 rad takes back what another shift does, and D = W h^2 is what the acceleration 2 W
+ * moves it in half the interval, h = 1/16. It touches a small ball at the end of the edge alone. Its way there is 1.04 D
+ * long, and all that is counted for it 1.4 D; with half the acceleration that would be .9 D. */
+CASE(what_an_acceleration_alone_reaches_is_hit) {
+  const double h = 0.0625, rate[4] = {0.3 * 0.2 * h, -1.0, 0.2, 1.0}, size = 0.02 * 0.2 * h * h;
+  const vec3 axes[4] = {vec(0, 0, 1), vec(1, 0, 0), vec(0, 0, 1), vec(1, 0, 0)};
+  cprox_link links[4];
+  double from[4], to[4];
+  for (int i = 0; i < 4; i++) {
+    links[i] = (cprox_link){.parent = i - 1,
+                            .type = i == 2 ? CPROX_JOINT_REVOLUTE : CPROX_JOINT_PRISMATIC,
+                            .origin = CPROX_POSE_IDENTITY,
+                            .axis = axes[i],
+                            .variable = i,
+                            .multiplier = 1.0};
+    from[i] = -15.0 * h * rate[i], to[i] = h * rate[i];
+  }
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(size, ws, &ball), CPROX_OK);
+  const cprox_link_geometry moves = {.body = ball, .pose = CPROX_POSE_IDENTITY, .link = 3};
+  cprox_robot *robot = NULL;
+  assert_int_equal(cprox_robot_create(links, 4, &moves, 1, 4, ws, &robot), CPROX_OK);
+  cprox_obstacle stands = cprox_obstacle_at(ball, CPROX_POSE_IDENTITY);
+  stands.pose.position = vec(h * (cos(to[2]) - 1.0), h * sin(to[2]), to[0]);
+  cprox_obstacles *set = NULL;
+  assert_int_equal(cprox_obstacles_create(&stands, 1, CPROX_INDEX_NONE, ws, &set), CPROX_OK);
+  cprox_edge_checker *c = edge_world_checker(robot, &(cprox_edge_query){.obstacles = set});
+  uint8_t verdict;
+  assert_true(cprox_robot_edges(c, from, to, 1, ws, &verdict, NULL) >= 0);
+  assert_int_equal(verdict, CPROX_VERDICT_VIOLATED);
+  cprox_edge_checker_free(c);
+  cprox_obstacles_free(set);
+  cprox_robot_free(robot);
+  cprox_body_free(ball);
+}
+
 /* ---- input ---- */
 
 CASE(an_edge_that_is_not_finite_is_refused_alone) {

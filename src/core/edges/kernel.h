@@ -296,7 +296,8 @@ EDGE_INLINE float sure_radius(float inner, float other, float within, float cost
          costs; /* the sums' rounding, which does not shrink with what is left */
 }
 
-/* How far the centres of balls move in half an interval: by the velocity in the middle, and by all accelerations. */
+/* How far the centre of a ball moves in half an interval: by the velocity in the middle, and by all accelerations. The
+ * ball looks the same however it turns. `reach`: of the centre from its frame's origin, at most. */
 EDGE_INLINE lane moves_of(const lane_batch *b, lane3 speed, edge_half_bound bound, float reach) {
   return b->half * lane_sqrt(lane3_norm2(speed)) + b->half2 * lane_all(bound.acceleration + bound.turn * reach);
 }
@@ -375,11 +376,9 @@ EDGE_INLINE void move_part(lane_batch *b, size_t i) {
 
 EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
   const edge_part *part = &b->c->parts[i];
-  const lane_frame *own = &b->frames[part->frame];
   const lane_part *at = &b->parts[i];
   if (part->n_near == 0) return false;
-  const lane moves = moves_of(b, at->speed, b->motion->frames[part->frame], (float)part->reach_of_centre) +
-                     b->half * lane_sqrt(lane3_norm2(own->spin)) * lane_all(part->core);
+  const lane moves = moves_of(b, at->speed, b->motion->frames[part->frame], part->reach);
   const float radius = part->outer + (float)b->c->clear_beyond + b->motion->room[i];
   for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
     const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
@@ -431,13 +430,11 @@ EDGE_TARGET static bool open_pair(lane_batch *b, size_t i, float room, float cos
 EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
   const edge_pair *pair = &b->c->lane_pairs[i];
   const edge_part *first = &b->c->parts[pair->a], *second = &b->c->parts[pair->b];
-  const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
   const lane_part *at = &b->parts[pair->a];
   const float costs = b->motion->room[pair->a] + b->motion->room[pair->b], room = costs + (float)b->c->clear_beyond;
   const lane distance2 = lane3_norm2(lane3_sub(at->centre, b->parts[pair->b].centre));
-  const lane3 speed = relative_speed(other, at->centre, at->speed);
-  const lane moves = moves_of(b, speed, b->motion->relations[pair->relation], (float)first->reach_of_centre) +
-                     b->half * lane_sqrt(lane3_norm2(lane3_sub(own->spin, other->spin))) * lane_all(first->core);
+  const lane3 speed = relative_speed(&b->frames[second->frame], at->centre, at->speed);
+  const lane moves = moves_of(b, speed, b->motion->relations[pair->relation], first->reach);
   const uint32_t number = (uint32_t)(b->c->n_near + i);
   const uint32_t near = within(b, number, distance2, moves, first->outer + second->outer + room) & b->all & ~b->split;
   if (!near) return false;

@@ -275,8 +275,7 @@ typedef struct lane_apart {
 EDGE_TARGET static uint32_t balls_near(lane_batch *b, const lane_apart *two) {
   const lane distance2 =
       two->o ? distance2_from(two->o, two->a.centre) : lane3_norm2(lane3_sub(two->a.centre, two->b.centre));
-  const lane moves = moves_of(b, two->speed, two->bound, two->reach) +
-                     b->half * lane_sqrt(lane3_norm2(two->spin)) * lane_all(two->a.hull->core);
+  const lane moves = moves_of(b, two->speed, two->bound, two->reach);
   const float other = two->o ? -round_of(two->o) : two->b.hull->core;
   return within(b, two->pair, distance2, moves, two->a.hull->core + other + two->radius);
 }

@@ -42,8 +42,7 @@ EDGE_INLINE lane_piece place_piece(const lane_standing *s, const edge_hull *hull
 
 /* How far a piece's ball moves. */
 EDGE_INLINE lane piece_moves(const lane_batch *b, const lane_standing *s, const lane_piece *p) {
-  return moves_of(b, p->speed, b->motion->frames[s->part->frame], (float)s->part->reach_of_centre) +
-         b->half * lane_sqrt(lane3_norm2(s->own->spin)) * lane_all(p->placed.hull->core);
+  return moves_of(b, p->speed, b->motion->frames[s->part->frame], (float)s->part->reach_of_centre);
 }
 
 /* A piece and the hull of some points of the obstacle; then the pieces of that piece. */
