@@ -777,6 +777,15 @@ inline cprox_growth growthGradient(const cprox_obstacle &a, const cprox_obstacle
   return growth;
 }
 
+/** The least growth distance along a curve with its derivatives and its parameter t, as cprox_growth_along(). */
+inline cprox_growth growthAlong(const cprox_obstacle &a, const cprox_curve *curve, const cprox_obstacle &b,
+                                const cprox_options &options, Workspace &workspace, double &t,
+                                cprox_growth_derivatives &derivatives) {
+  cprox_growth growth{};
+  require(cprox_growth_along(a, curve, b, &options, workspace.get(), &growth, &t, &derivatives), workspace);
+  return growth;
+}
+
 namespace detail {
 struct FreeObstacles {
   void operator()(cprox_obstacles *handle) const {

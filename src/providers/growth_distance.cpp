@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* curve_proximity/GrowthDistance: by how much standing convex bodies, each scaled about its centre, may grow until they
- * touch. It is as smooth in contact and deep inside as apart. */
+/* curve_proximity/GrowthDistance: by how much convex bodies, each scaled about its centre, may grow until they touch;
+ * along a curve that carries one side, the least of that. It is as smooth in contact and deep inside as apart. */
 #include <pluginlib/class_list_macros.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "distance_constraints.h"
@@ -20,8 +22,20 @@ constexpr double ALIKE = 1e-9;
 struct Parameters {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   double level = 1.0;
+  double smoothing = 0.0; /* [rad] 0: none */
   Meshes meshes = Meshes::EXACT;
 };
+
+/* The axes that b is turned about for a smoothing, in its own frame: the corners of a cube that lies along no face or
+ * edge of a usual body. */
+std::array<Eigen::Vector3d, 8> tiltAxes() {
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.48, 0.6, 0.64)));
+  std::array<Eigen::Vector3d, 8> out;
+  for (int i = 0; i < 8; ++i)
+    out[static_cast<std::size_t>(i)] =
+        turned * Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) / std::sqrt(3.0);
+  return out;
+}
 
 /* A part with its pose in the side's frame. */
 struct Element {
@@ -66,24 +80,32 @@ class GrowthConstraint : public Constraint {
       : parameters_(parameters),
         a_(makeSide(pair.a, parameters, "a")),
         b_(makeSide(pair.b, parameters, "b")),
-        has_hulls_(hasHulls(pair.a) || hasHulls(pair.b)) {}
+        has_hulls_(hasHulls(pair.a) || hasHulls(pair.b)),
+        along_curve_(pair.along_curve) {
+    if (along_curve_ && parameters.smoothing > 0.0)
+      throw Error("parameter smoothing: it is for standing bodies, not along curves");
+  }
 
   void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
-    if (place.curve) throw Error("there is a curve, and the pair is not along one");
+    if (along_curve_ != (place.curve != nullptr))
+      throw Error(place.curve ? "there is a curve, and the pair is not along one"
+                              : "the pair is along a curve, and there is none");
+    if (place.curve && (place.curve->description.radius != 0.0 || place.curve->radius_curve))
+      throw DoesNotApply("GrowthDistance scales bodies about their centres and takes no radius of a curve");
     Found best;
     double lower = INFINITE, upper = INFINITE, next = INFINITE;
     for (const Element &a : a_) {
       for (const Element &b : b_) {
-        const Found found = ask(a, b, place, workspace);
+        const Found found = place.curve ? askAlong(a, b, place, workspace) : askStanding(a, b, place, workspace);
         lower = std::min(lower, found.growth.lower);
         upper = std::min(upper, found.growth.upper);
-        next = std::min(next, std::max(found.value(), best.value()));
-        if (!best.a || found.value() < best.value()) best = found;
+        next = std::min(next, std::max(found.value, best.value));
+        if (!best.a || found.value < best.value) best = found;
       }
     }
-    fill(best, lower, upper, place, out);
-    out.valid = best.derivatives.valid && next > best.value() + ALIKE * (1.0 + best.value());
-    out.reason = !best.derivatives.valid ? best.reason : out.valid ? "" : "two pairs of parts are equally near";
+    fill(best, lower, upper, place, workspace, out);
+    out.valid = best.valid && next > best.value + ALIKE * (1.0 + best.value);
+    out.reason = !best.valid ? best.reason : out.valid ? "" : "two pairs of parts are equally near";
   }
 
  private:
@@ -91,48 +113,110 @@ class GrowthConstraint : public Constraint {
   struct Found {
     const Element *a = nullptr, *b = nullptr;
     cprox_growth growth{};
-    cprox_growth_derivatives derivatives{};
+    double value = INFINITE;                             /* its own, or that of a smoothing */
+    double t = std::numeric_limits<double>::quiet_NaN(); /* along a curve */
+    bool valid = false;
     std::string reason;
-    double value() const {
-      return !a ? INFINITE : growth.upper < INFINITE ? 0.5 * (growth.lower + growth.upper) : growth.lower;
-    }
+    Eigen::Vector3d by_b = Eigen::Vector3d::Zero();   /* by b's position; minus that by a's */
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero(); /* touch x by_b */
+    Eigen::Vector3d touch = Eigen::Vector3d::Zero();
   };
 
-  Found ask(const Element &a, const Element &b, const ConstraintPlace &place, Workspace &workspace) const {
+  static double middle(const cprox_growth &growth) {
+    return growth.upper < INFINITE ? 0.5 * (growth.lower + growth.upper) : growth.lower;
+  }
+
+  /* Adds a part of what one place says. */
+  static void add(const cprox_growth_derivatives &d, double part, const Workspace &workspace, Found &out) {
+    const Eigen::Vector3d touch = toEigen(d.touch), by_b = toEigen(d.b_position);
+    out.by_b += part * by_b;
+    out.touch += part * touch;
+    out.moment += part * touch.cross(by_b);
+    if (d.valid) return;
+    out.valid = false;
+    out.reason = cprox_workspace_error(workspace.get());
+  }
+
+  static cprox_obstacle at(const Element &element, const Eigen::Isometry3d &side) {
+    return cprox_obstacle_at(element.body.get(), toPose(side * element.pose));
+  }
+
+  Found askStanding(const Element &a, const Element &b, const ConstraintPlace &place, Workspace &workspace) const {
     Found out;
     out.a = &a;
     out.b = &b;
-    const cprox_obstacle first = cprox_obstacle_at(a.body.get(), toPose(toIsometry(place.a) * a.pose)),
-                         second = cprox_obstacle_at(b.body.get(), toPose(toIsometry(place.b) * b.pose));
-    out.growth = growthGradient(first, second, parameters_.options, workspace, out.derivatives);
-    if (!out.derivatives.valid) out.reason = cprox_workspace_error(workspace.get());
+    out.valid = true;
+    const Eigen::Isometry3d side = toIsometry(place.b);
+    const cprox_obstacle first = at(a, toIsometry(place.a)), second = at(b, side);
+    cprox_growth_derivatives derivatives{};
+    if (!(parameters_.smoothing > 0.0)) {
+      out.growth = growthGradient(first, second, parameters_.options, workspace, derivatives);
+      out.value = middle(out.growth);
+      add(derivatives, 1.0, workspace, out);
+      return out;
+    }
+    /* the mean over b turned a little about its centre, in eight ways that turn with it */
+    static const std::array<Eigen::Vector3d, 8> axes = tiltAxes();
+    out.growth = growthDistance(first, second, parameters_.options, workspace);
+    out.value = 0.0;
+    const double part = 1.0 / static_cast<double>(axes.size());
+    for (const Eigen::Vector3d &axis : axes) {
+      const Eigen::Isometry3d tilted = side * b.pose * Eigen::Translation3d(b.centre) *
+                                       Eigen::AngleAxisd(parameters_.smoothing, axis) * Eigen::Translation3d(-b.centre);
+      const cprox_growth growth = growthGradient(first, cprox_obstacle_at(b.body.get(), toPose(tilted)),
+                                                 parameters_.options, workspace, derivatives);
+      out.value += part * middle(growth);
+      add(derivatives, part, workspace, out);
+    }
     return out;
   }
 
-  /* A turn about the side's origin: the touching point moves by w x (touch - origin). */
-  void fill(const Found &best, double lower, double upper, const ConstraintPlace &place, ConstraintValue &out) const {
-    const cprox_growth_derivatives &d = best.derivatives;
+  Found askAlong(const Element &a, const Element &b, const ConstraintPlace &place, Workspace &workspace) const {
+    Found out;
+    out.a = &a;
+    out.b = &b;
+    out.valid = true;
+    cprox_growth_derivatives derivatives{};
+    out.growth = growthAlong(at(a, Eigen::Isometry3d::Identity()), place.curve->curve.get(), at(b, toIsometry(place.b)),
+                             parameters_.options, workspace, out.t, derivatives);
+    out.value = out.growth.upper;
+    add(derivatives, 1.0, workspace, out);
+    return out;
+  }
+
+  /* A turn about the side's origin x moves the touching point w by ω x (w - x): the derivative is (w - x) x N. */
+  void fill(const Found &best, double lower, double upper, const ConstraintPlace &place, Workspace &workspace,
+            ConstraintValue &out) const {
     out.status = best.growth.status;
-    out.value = best.value() - parameters_.level;
+    out.value = best.value - parameters_.level;
     out.bounded = true;
     out.lower = lower - parameters_.level;
     out.upper = has_hulls_ ? INFINITE : upper - parameters_.level;
-    out.a.linear = toEigen(d.a_position);
-    out.b.linear = toEigen(d.b_position);
+    out.a.linear = -best.by_b;
+    out.b.linear = best.by_b;
     out.normal = toEigen(best.growth.normal);
-    const Eigen::Vector3d touch = toEigen(d.touch);
-    out.has_points = touch.allFinite() && best.value() > 0.0;
-    if (out.has_points) {
-      out.a.angular = (touch - toEigen(place.a.position)).cross(out.a.linear);
-      out.b.angular = (touch - toEigen(place.b.position)).cross(out.b.linear);
-      out.witness_a = unscaled(touch, *best.a, place.a, best.value());
-      out.witness_b = unscaled(touch, *best.b, place.b, best.value());
-    } else {
-      out.a.angular = out.b.angular = out.witness_a = out.witness_b = Eigen::Vector3d::Zero();
-    }
     out.points.resize(3, 0);
     out.radius = 0.0;
-    out.t = std::numeric_limits<double>::quiet_NaN();
+    out.t = best.t;
+    cprox_pose place_a = place.a;
+    if (place.curve) {
+      require(
+          cprox_curve_evaluate(place.curve->curve.get(), best.t, workspace.get(), &place_a.position, nullptr, nullptr),
+          workspace);
+      gradientByPoints(place.curve->description, best.t, out.a.linear, out.points);
+    }
+    out.has_points = best.touch.allFinite() && best.value > 0.0;
+    if (!out.has_points) {
+      out.a.angular = out.b.angular = out.witness_a = out.witness_b = Eigen::Vector3d::Zero();
+      return;
+    }
+    const Eigen::Vector3d x_a = toEigen(place_a.position), x_b = toEigen(place.b.position);
+    /* the curve turns about the fixed frame's origin, and what it carries does not */
+    out.a.angular =
+        place.curve ? Eigen::Vector3d(x_a.cross(out.a.linear)) : Eigen::Vector3d(x_a.cross(best.by_b) - best.moment);
+    out.b.angular = best.moment - x_b.cross(best.by_b);
+    out.witness_a = unscaled(best.touch, *best.a, place_a, best.value);
+    out.witness_b = unscaled(best.touch, *best.b, place.b, best.value);
   }
 
   /* The body's own point that is where both touch once it is scaled. */
@@ -144,7 +228,7 @@ class GrowthConstraint : public Constraint {
 
   const Parameters parameters_;
   const std::vector<Element> a_, b_;
-  const bool has_hulls_;
+  const bool has_hulls_, along_curve_;
 };
 
 } // namespace
@@ -155,13 +239,16 @@ class GrowthDistance : public ConstraintProvider {
     ParameterReader reader(parameters);
     parameters_.options.epsilon = reader.number("epsilon", 1e-9, 0.0);
     parameters_.level = reader.number("level", 1.0, 0.0);
+    parameters_.smoothing = reader.number("smoothing", 0.0, 0.0);
     parameters_.meshes = readMeshes(reader);
     reader.end();
+    if (parameters_.smoothing > 0.1) throw Error("parameter smoothing: it is an angle of at most 0.1 rad");
   }
 
   std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {
-    if (pair.along_curve) throw DoesNotApply("GrowthDistance answers about standing bodies, not along curves");
-    if (!pair.is_named) throw DoesNotApply("SuperquadricDistance answers about standing bodies");
+    if (!pair.is_named)
+      throw DoesNotApply(pair.along_curve ? "CurveDistance answers about curves"
+                                          : "SuperquadricDistance answers about standing bodies");
     return std::make_unique<GrowthConstraint>(parameters_, pair);
   }
 

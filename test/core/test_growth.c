@@ -9,6 +9,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
 #include "support/implicits.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/shapes.h"
 
@@ -335,6 +336,205 @@ CASE(balls_have_their_formula_and_bad_arguments_are_refused) {
   assert_int_equal(cprox_growth_gradient(a, b, NULL, workspace, NULL, &d), CPROX_INVALID);
   assert_int_equal(cprox_growth_gradient(cprox_with_margin(a, 0.1), b, NULL, workspace, &growth, &d), CPROX_INVALID);
   for (int k = 0; k < 2; k++) cprox_body_free(ball[k]);
+}
+
+/* ---- along curves ---- */
+
+/* A Bezier curve of degree 1 to 6 or a cubic B-spline of 12 spans, about the origin. */
+typedef struct carried {
+  vec3 points[15];
+  size_t n;
+  bool is_spline;
+} carried;
+
+static carried random_carried(rng *r) {
+  carried c = {.is_spline = rng_uniform(r, 0.0, 1.0) < 0.3};
+  c.n = c.is_spline ? 15 : 2 + (size_t)rng_uniform(r, 0.0, 5.99);
+  for (size_t i = 0; i < c.n; i++) c.points[i] = rng_in_cube(r, 3.0);
+  return c;
+}
+
+static cprox_curve *make_carried(const carried *c, cprox_workspace *workspace) {
+  double knots[19];
+  for (int i = 0; i < 19; i++) knots[i] = fmin(fmax(i - 3.0, 0.0), 12.0);
+  const cprox_curve_description d = c->is_spline ? describe_bspline(c->points, c->n, 3, knots, 19, 0.0, 12.0)
+                                                 : describe_bezier(c->points, c->n, -1.0, 2.0);
+  cprox_curve *curve = NULL;
+  if (curve_from(d, workspace, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_error(workspace));
+  return curve;
+}
+
+/* The growth distance where the curve is at t; infinity beyond its ends. */
+static double growth_at(cprox_obstacle a, const cprox_curve *curve, cprox_obstacle b, double t,
+                        cprox_workspace *workspace) {
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  vec3 at;
+  if (!(t >= info.t0 && t <= info.t1)) return INFINITY;
+  assert_int_equal(cprox_curve_evaluate(curve, t, workspace, &at, NULL, NULL), CPROX_OK);
+  a.pose.position = vec_add(a.pose.position, at);
+  const cprox_growth growth = growth_of(a, b, workspace);
+  return 0.5 * (growth.lower + growth.upper);
+}
+
+/* The least of 60 places, and of ever nearer ones beside it. */
+static double least_by_places(cprox_obstacle a, const cprox_curve *curve, cprox_obstacle b,
+                              cprox_workspace *workspace) {
+  enum { PLACES = 60 };
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  double best = INFINITY, at = info.t0, step = (info.t1 - info.t0) / PLACES;
+  for (int i = 0; i <= PLACES; i++) {
+    const double t = i == PLACES ? info.t1 : info.t0 + i * step, g = growth_at(a, curve, b, t, workspace);
+    if (g < best) best = g, at = t;
+  }
+  for (; step > 1e-9; step *= 0.6)
+    for (int k = -1; k <= 1; k += 2) {
+      const double t = fmin(fmax(at + k * step, info.t0), info.t1), g = growth_at(a, curve, b, t, workspace);
+      if (g < best) best = g, at = t;
+    }
+  return best;
+}
+
+/* Two bodies of the kinds: a rides a curve at a pose of its own, b stands. */
+static void place_along(rng *r, const size_t kind[2], cprox_workspace *workspace, test_shape shape[2],
+                        cprox_obstacle x[2], carried *c) {
+  for (int k = 0; k < 2; k++) {
+    make_body(r, kind[k], workspace, &shape[k]);
+    x[k] = cprox_obstacle_at(shape[k].body, rng_pose(r, 1.0));
+  }
+  *c = random_carried(r);
+}
+
+/* Seed 35, a curve for each pair of eleven kinds: no place is below the interval; its upper end is that at t, and what
+ * the least of many places is, within the width asked for. Tolerance: 1e-6 is asked for, 1e-8 is what the places miss.
+ */
+CASE(the_least_value_along_a_curve_is_below_that_at_every_place) {
+  cprox_workspace *workspace = *state;
+  rng r = rng_seed(35);
+  double places = 0.0, most = 0.0;
+  size_t asked = 0;
+  for (size_t i = 0; i < test_cases(1) * N_KINDS * N_KINDS; i++) {
+    const size_t pair = i % (N_KINDS * N_KINDS), kind[2] = {pair % N_KINDS, pair / N_KINDS};
+    test_shape shape[2];
+    cprox_obstacle x[2];
+    carried c;
+    place_along(&r, kind, workspace, shape, x, &c);
+    cprox_curve *curve = make_carried(&c, workspace);
+    cprox_growth growth;
+    double t;
+    const cprox_status status = cprox_growth_along(x[0], curve, x[1], NULL, workspace, &growth, &t, NULL);
+    if (status != CPROX_OK) fail_msg("%s %zu %zu", cprox_workspace_error(workspace), kind[0], kind[1]);
+    assert_true(growth.upper - growth.lower <= 1e-6 * fmax(growth.upper, 1e-3));
+    const double here = growth_at(x[0], curve, x[1], t, workspace),
+                 least = least_by_places(x[0], curve, x[1], workspace);
+    assert_true(fabs(growth.upper - here) <= 1e-6 * here + 1e-9);
+    if (!(growth.lower <= least * (1.0 + 1e-9) + 1e-12)) fail_msg("%.12g above %.12g", growth.lower, least);
+    if (!(growth.upper <= least * (1.0 + 1e-6) + 1e-8)) fail_msg("%.12g far above %.12g", growth.upper, least);
+    asked++, places += growth.pairs, most = fmax(most, growth.pairs);
+    cprox_curve_free(curve);
+    for (int k = 0; k < 2; k++) cprox_body_free(shape[k].body);
+  }
+  printf("%.1f places a curve, at most %.0f\n", places / (double)asked, most);
+}
+
+/* Seed 36, a curve for each pair of eleven kinds: the derivative by a random step of the control points and of both
+ * poses is the central difference of the least value, at the best of two steps. Tolerance: 1e-5; 1e-3 where supports
+ * come from a solver. */
+CASE(derivatives_of_the_least_value_along_a_curve_are_central_differences) {
+  cprox_workspace *workspace = *state;
+  rng r = rng_seed(36);
+  size_t asked = 0, valid = 0;
+  double most[2] = {0, 0};
+  for (size_t i = 0; i < test_cases(1) * N_KINDS * N_KINDS; i++) {
+    const size_t pair = i % (N_KINDS * N_KINDS), kind[2] = {pair % N_KINDS, pair / N_KINDS};
+    test_shape shape[2];
+    cprox_obstacle x[2];
+    carried c, by;
+    place_along(&r, kind, workspace, shape, x, &c);
+    by = c;
+    for (size_t j = 0; j < c.n; j++) by.points[j] = rng_in_cube(&r, 1.0);
+    motion m;
+    for (int k = 0; k < 2; k++) m.v[k] = rng_in_cube(&r, 1.0), m.w[k] = rng_in_cube(&r, 1.0);
+    cprox_curve *curve = make_carried(&c, workspace), *step = make_carried(&by, workspace);
+    cprox_options fine = CPROX_OPTIONS_DEFAULT;
+    fine.epsilon = 1e-10;
+    cprox_growth growth;
+    cprox_growth_derivatives d;
+    double t;
+    vec3 moves;
+    assert_true(cprox_growth_along(x[0], curve, x[1], NULL, workspace, &growth, &t, &d) >= 0);
+    asked++, valid += d.valid;
+    assert_int_equal(cprox_curve_evaluate(step, t, workspace, &moves, NULL, NULL), CPROX_OK);
+    const double slope = along(&d, &m) + vec_dot(d.a_position, moves);
+    double least = INFINITY;
+    for (int digits = 4; digits <= 5 && d.valid; digits++) {
+      const double h = pow(10.0, -digits);
+      double g[2];
+      for (int k = 0; k < 2; k++) {
+        cprox_obstacle y[2] = {x[0], x[1]};
+        carried near = c;
+        moved(y, &m, k ? h : -h);
+        for (size_t j = 0; j < c.n; j++) near.points[j] = vec_axpy(c.points[j], k ? h : -h, by.points[j]);
+        cprox_curve *other = make_carried(&near, workspace);
+        double at;
+        assert_true(cprox_growth_along(y[0], other, y[1], &fine, workspace, &growth, &at, NULL) >= 0);
+        g[k] = growth.upper;
+        cprox_curve_free(other);
+      }
+      least = fmin(least, fabs((g[1] - g[0]) / (2.0 * h) - slope) / (1.0 + fabs(slope)));
+    }
+    if (d.valid) {
+      most[is_open(kind)] = fmax(most[is_open(kind)], least);
+      if (!(least <= (is_open(kind) ? 1e-3 : 1e-5))) fail_msg("%.3e of %.3e: %zu %zu", least, slope, kind[0], kind[1]);
+    }
+    cprox_curve_free(curve);
+    cprox_curve_free(step);
+    for (int k = 0; k < 2; k++) cprox_body_free(shape[k].body);
+  }
+  printf("%zu of %zu valid; differences within %.1e, %.1e\n", valid, asked, most[0], most[1]);
+  assert_true((double)valid >= 0.9 * (double)asked);
+}
+
+/* A ball that slides along a face, and one that goes round a ball, are as near at many times: no gradient. One that
+ * stops at the end of its way has one. Bad arguments are refused. */
+CASE(ways_that_are_as_near_at_many_places_have_no_gradient) {
+  cprox_workspace *workspace = *state;
+  cprox_body *box = NULL, *ball = NULL;
+  assert_int_equal(cprox_body_create_box(vec(4, 4, 2), workspace, &box), CPROX_OK);
+  assert_int_equal(cprox_body_create_sphere(0.5, workspace, &ball), CPROX_OK);
+  const cprox_obstacle a = cprox_obstacle_at(ball, CPROX_POSE_IDENTITY), b = cprox_obstacle_at(box, a.pose);
+  const carried flat = {.points = {{-1, 0, 3}, {1, 0, 3}}, .n = 2}, ends = {.points = {{0, 0, 5}, {0.1, 0, 3}}, .n = 2},
+                touches = {.points = {{0, 0, 5}, {0, 0, 0}}, .n = 2},
+                twice = {.points = {{-2, 0, 6}, {-1, 0, 0}, {0, 0, 8}, {1, 0, 0}, {2, 0, 6}}, .n = 5};
+  cprox_growth growth;
+  cprox_growth_derivatives d;
+  double t;
+  cprox_curve *curve = make_carried(&flat, workspace);
+  assert_int_equal(cprox_growth_along(a, curve, b, NULL, workspace, &growth, &t, &d), CPROX_OK);
+  assert_true(growth.lower <= 2.0 && growth.upper >= 2.0 - 1e-12 && !d.valid);
+  assert_non_null(strstr(cprox_workspace_error(workspace), "as small elsewhere"));
+  assert_int_equal(cprox_growth_along(a, NULL, b, NULL, workspace, &growth, &t, &d), CPROX_INVALID);
+  assert_int_equal(cprox_growth_along(a, curve, b, NULL, workspace, NULL, &t, &d), CPROX_INVALID);
+  assert_int_equal(cprox_growth_along(a, curve, b, NULL, workspace, &growth, NULL, &d), CPROX_INVALID);
+  assert_int_equal(cprox_growth_along(cprox_with_margin(a, 0.1), curve, b, NULL, workspace, &growth, &t, &d),
+                   CPROX_INVALID);
+  cprox_curve_free(curve);
+
+  curve = make_carried(&twice, workspace); /* dips before the middle as after it */
+  assert_int_equal(cprox_growth_along(a, curve, b, NULL, workspace, &growth, &t, &d), CPROX_OK);
+  assert_true(growth.upper < 2.5 && !d.valid);
+  cprox_curve_free(curve);
+
+  curve = make_carried(&ends, workspace);
+  assert_int_equal(cprox_growth_along(a, curve, b, NULL, workspace, &growth, &t, &d), CPROX_OK);
+  assert_true(d.valid && t == 2.0 && fabs(d.a_position.z - 2.0 / 3.0) < 1e-12);
+  cprox_curve_free(curve);
+
+  curve = make_carried(&touches, workspace); /* into the centre */
+  assert_true(cprox_growth_along(a, curve, b, NULL, workspace, &growth, &t, &d) >= 0);
+  assert_true(growth.lower == 0.0 && growth.upper < 1e-9 && !d.valid);
+  cprox_curve_free(curve);
+  cprox_body_free(box);
+  cprox_body_free(ball);
 }
 
 int main(void) {

@@ -394,7 +394,12 @@ TEST(Gradients, of_GrowthDistance_are_refused_between_parallel_faces_and_what_ha
   EXPECT_NEAR(value.value, 1.0, 1e-9);
 
   pair.along_curve = true;
+  pair.is_named = false;
   EXPECT_THROW(provider->prepare(pair), DoesNotApply);
+  pair.is_named = true;
+  pair.a = ConstraintBody(); /* the curve's ball has no size to scale */
+  EXPECT_THROW(provider->prepare(pair), Error);
+  pair.a = pair.b;
   pair.along_curve = false;
   pair.b = side({shape(ShapeType::BOX, {1, 1, 1})}, 0.1);
   EXPECT_THROW(provider->prepare(pair), Error);
@@ -402,6 +407,74 @@ TEST(Gradients, of_GrowthDistance_are_refused_between_parallel_faces_and_what_ha
     pair.b = side({refused});
     EXPECT_THROW(provider->prepare(pair), Error);
   }
+}
+
+/* Seed 822, 120 curves of six bases that carry a body in a pose of its own, some of two parts, past boxes, ellipsoids and
+ * cylinders: by the curve's points, by steps of the whole curve, and of what stands. */
+TEST(Gradients, of_GrowthDistance_along_curves_are_those_of_finite_differences) {
+  const Loaded provider("curve_proximity/GrowthDistance", {{"epsilon", 1e-11}});
+  Random random(822);
+  Workspace workspace;
+  Tally tally;
+  const std::vector<ShapeDescription> targets = {shape(ShapeType::BOX, {0.5, 0.7, 0.9}),
+                                                 shape(ShapeType::ELLIPSOID, {0.3, 0.5, 0.4}),
+                                                 shape(ShapeType::CYLINDER, {0.7, 0.3})};
+  for (int i = 0; i < 120; ++i) {
+    ConstraintPair pair;
+    pair.along_curve = true;
+    ShapeDescription rider = shape(ShapeType::BOX, {0.3, 0.2, 0.4}), other = shape(ShapeType::SPHERE, {0.2});
+    rider.pose = Eigen::Translation3d(random.inCube(0.2)) * random.rotation();
+    other.pose.translation() = random.inCube(0.3);
+    pair.a = i % 3 ? side({rider}) : side({rider, other});
+    pair.b = side({targets[static_cast<std::size_t>(i) % targets.size()]});
+    Case c;
+    c.curve = randomCurve(random, i);
+    c.curve->radius = 0.0;
+    c.b = random.pose(0.3);
+    check(*provider->prepare(pair), c, random, workspace, false, tally, TOLERANCE_BY_SUPPORTS);
+  }
+  std::printf("GrowthDistance along curves: %d of %d valid, worst %.1e\n", tally.valid, tally.asked, tally.worst);
+  EXPECT_GT(tally.valid, 100);
+}
+
+/* Seed 823, 200 places of two boxes whose faces are parallel, apart, touching and deep: with a smoothing of 0.01 rad the
+ * gradient exists, is the central difference of the value, and the value is within the bound of
+ * doc/constraint-providers.md of the growth distance. */
+TEST(Gradients, of_GrowthDistance_with_a_smoothing_exist_between_parallel_faces) {
+  constexpr double ANGLE = 0.01, STEP = 1e-6;
+  const Loaded provider("curve_proximity/GrowthDistance", {{"epsilon", 1e-11}, {"smoothing", ANGLE}});
+  Random random(823);
+  Workspace workspace;
+  int valid = 0;
+  ConstraintPair pair;
+  pair.a = side({shape(ShapeType::BOX, {1, 0.8, 0.6})});
+  pair.b = side({shape(ShapeType::BOX, {0.5, 0.9, 0.7})});
+  const auto constraint = provider->prepare(pair);
+  const double turned = 2.0 * std::sin(0.5 * ANGLE) * 0.5 * Eigen::Vector3d(0.5, 0.9, 0.7).norm() / (0.299 + 0.249);
+  for (int i = 0; i < 200; ++i) {
+    ConstraintPlace place;
+    place.a = random.pose(0.5);
+    place.b.orientation = place.a.orientation;
+    place.b.position = toVec3(toEigen(place.a.position) + random.uniform(0.1, 2.0) * random.direction());
+    ConstraintValue here, there;
+    constraint->evaluate(place, workspace, here);
+    EXPECT_LE(std::abs(here.value - here.lower), (here.lower + 1.0) * turned / (1.0 - turned));
+    if (!here.valid) continue;
+    ++valid;
+    const Eigen::Vector3d linear = random.direction(), angular = random.direction();
+    double value[2];
+    for (int k = 0; k < 2; ++k) {
+      ConstraintPlace near = place;
+      near.b = moved(place.b, linear, angular, k ? STEP : -STEP);
+      near.a = moved(place.a, -0.5 * angular, linear, k ? STEP : -STEP);
+      constraint->evaluate(near, workspace, there);
+      value[k] = there.value;
+    }
+    const double expected = here.b.linear.dot(linear) + here.b.angular.dot(angular) - 0.5 * here.a.linear.dot(angular) +
+                            here.a.angular.dot(linear);
+    EXPECT_NEAR((value[1] - value[0]) / (2.0 * STEP), expected, 1e-5) << i;
+  }
+  EXPECT_GT(valid, 195);
 }
 
 cprox_pose planar(cprox_pose pose, Random &random) {

@@ -120,6 +120,26 @@ CPROX_API cprox_status cprox_growth_gradient(cprox_obstacle a, cprox_obstacle b,
                                              cprox_workspace *workspace, cprox_growth *growth,
                                              cprox_growth_derivatives *derivatives);
 
+/** The least growth distance of a body that a curve carries without turning it, from one that stands.
+ *
+ *  a            its pose is relative to the curve's point; its orientation stays.
+ *  curve        any curve. It may be freed once the call has returned.
+ *  growth       lower <= the least growth distance along the curve <= upper; to a relative width of options->epsilon,
+ *               or 1e-3 of that where the value is below 1e-3. normal and upper are of the place at *t; pairs: places
+ *               that were measured.
+ *  t            receives the curve's parameter where `upper` was measured.
+ *  derivatives  NULL, or receives those at the minimiser, by the envelope theorem. a_position is by the curve's point
+ *               at *t (by a coefficient of the curve: its weight there, cprox_curve_weights(), times that), a_rotation
+ *               by a turn of a about its position. valid is false also where the value is as small elsewhere, within
+ *               1e-9 of itself, and along curves that are known by their arc length (CPROX_CURVE_RECTIFIABLE).
+ *
+ *  Both bodies as in cprox_growth_distance(). Returns as cprox_distance(): CPROX_BUDGET after options->max_nodes nodes
+ *  and places, CPROX_STOPPED, CPROX_PRECISION. Cost: 10 to 40 growth distances, with derivatives 30 to 100
+ *  (doc/implicit.md, Growth distance). */
+CPROX_API cprox_status cprox_growth_along(cprox_obstacle a, const cprox_curve *curve, cprox_obstacle b,
+                                          const cprox_options *options, cprox_workspace *workspace,
+                                          cprox_growth *growth, double *t, cprox_growth_derivatives *derivatives);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,30 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The growth distance and its derivatives. Both bodies scaled by g about their centres touch where, unscaled, they would
  * touch with the centres 1/g times as far apart: where a ray leaves the Minkowski difference (convex/ray.h). */
+#include "narrowphase/growth.h"
+
 #include <math.h>
 
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "convex/feature.h"
-#include "convex/ray.h"
-#include "curve_proximity/cprox/translation.h"
 #include "implicit/implicit.h"
-#include "narrowphase/relative_pose.h"
 #include "narrowphase/translation.h"
 #include "problem/validate.h"
 
 /* Centres that are as near, in sizes of the bodies, coincide. */
 static const double COINCIDE = 1e-12;
-
-/* Two bodies that grow. */
-typedef struct growing {
-  cprox_obstacle a, b;
-  cprox_options asked;
-  pair_side x, y;
-  pair_placement place;
-  vec3 apart; /* from a's centre to b's */
-  double inner_a, inner_b;
-} growing;
 
 /* The radius of a ball about the centre that lies in the body; 0: none is known. */
 static double inner_radius(const cprox_body *body) {
@@ -38,7 +27,13 @@ static cprox_status check_growing(const char *name, const cprox_body *body, doub
                         cprox_body_kind_name(body->kind));
 }
 
-static cprox_status growing_begin(growing *g, const cprox_options *options, cprox_workspace *workspace) {
+void growing_place(growing *g) {
+  g->x = relative_pose_of_side(&g->a, 0), g->y = relative_pose_of_side(&g->b, 0);
+  g->place = relative_pose_make(&g->x, &g->y);
+  g->apart = frame_turn_to_world(&g->x.f, g->place.t);
+}
+
+cprox_status growing_begin(growing *g, const cprox_options *options, cprox_workspace *workspace) {
   const arguments_query kind = {"the growth distance", ARGUMENTS_STOP};
   cprox_status status;
   if (!workspace) return CPROX_INVALID;
@@ -53,15 +48,12 @@ static cprox_status growing_begin(growing *g, const cprox_options *options, cpro
   if ((status = check_growing("a", g->a.body, g->inner_a, workspace)) ||
       (status = check_growing("b", g->b.body, g->inner_b, workspace)))
     return status;
-  g->x = relative_pose_of_side(&g->a, 0), g->y = relative_pose_of_side(&g->b, 0);
-  g->place = relative_pose_make(&g->x, &g->y);
-  g->apart = frame_turn_to_world(&g->x.f, g->place.t);
+  growing_place(g);
   return CPROX_OK;
 }
 
-/* The value, by the ray where that is as narrow as asked for, else by pairs; whether the ray's derivatives are known. */
-static cprox_status growing_measure(const growing *g, bool wants_derivatives, cprox_workspace *workspace,
-                                    cprox_growth *growth, ray_answer *ray) {
+cprox_status growing_measure(const growing *g, bool wants_derivatives, cprox_workspace *workspace, cprox_growth *growth,
+                             ray_answer *ray) {
   const double far = vec_norm(g->apart), reach = g->a.body->ball_radius + g->b.body->ball_radius;
   *growth = (cprox_growth){.status = CPROX_OK};
   *ray = (ray_answer){.found = false};
@@ -122,6 +114,25 @@ static void hessian_to_world(const frame *f, const double h[6], double out[6]) {
       out[k++] = feature_quadratic(h, frame_turn_to_local(f, axis[i]), frame_turn_to_local(f, axis[j]));
 }
 
+const char *growing_differentiate(const growing *g, const cprox_growth *growth, const ray_answer *ray,
+                                  cprox_growth_derivatives *derivatives) {
+  cprox_growth_derivatives d = {.valid = false, .touch = vec(NAN, NAN, NAN)};
+  if (ray->found) {
+    const vec3 slope = frame_turn_to_world(&g->x.f, ray->slope);
+    d.touch = frame_to_world(&g->x.f, vec_scale(0.5 * (growth->lower + growth->upper), ray->on_a));
+    d.a_position = vec_neg(slope), d.b_position = slope;
+    d.a_rotation = vec_cross(vec_sub(d.touch, g->a.pose.position), d.a_position);
+    d.b_rotation = vec_cross(vec_sub(d.touch, g->b.pose.position), d.b_position);
+  }
+  d.valid_position = ray->solved && ray->slope_alone;
+  d.valid = d.valid_position && ray->point_alone;
+  d.bends = d.valid_position && ray->bends;
+  for (int i = 0; i < 6; i++) d.hessian[i] = NAN;
+  if (d.bends) hessian_to_world(&g->x.f, ray->hessian, d.hessian);
+  *derivatives = d;
+  return growth_tie(ray);
+}
+
 cprox_status cprox_growth_gradient(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                    cprox_workspace *workspace, cprox_growth *growth,
                                    cprox_growth_derivatives *derivatives) {
@@ -137,25 +148,8 @@ cprox_status cprox_growth_gradient(cprox_obstacle a, cprox_obstacle b, const cpr
   cprox_growth value;
   status = growing_measure(&g, true, workspace, &value, &ray);
   if (status < 0) return status;
-
-  cprox_growth_derivatives d = {.valid = false};
-  const vec3 nowhere = vec(NAN, NAN, NAN);
-  d.touch = nowhere;
-  if (ray.found) {
-    const vec3 slope = frame_turn_to_world(&g.x.f, ray.slope);
-    const vec3 scaled = vec_scale(0.5 * (value.lower + value.upper), ray.on_a);
-    d.touch = frame_to_world(&g.x.f, scaled);
-    d.a_position = vec_neg(slope), d.b_position = slope;
-    d.a_rotation = vec_cross(vec_sub(d.touch, a.pose.position), d.a_position);
-    d.b_rotation = vec_cross(vec_sub(d.touch, b.pose.position), d.b_position);
-  }
-  d.valid_position = ray.solved && ray.slope_alone;
-  d.valid = d.valid_position && ray.point_alone;
-  d.bends = d.valid_position && ray.bends;
-  for (int i = 0; i < 6; i++) d.hessian[i] = NAN;
-  if (d.bends) hessian_to_world(&g.x.f, ray.hessian, d.hessian);
-  *growth = value, *derivatives = d;
-  const char *tie = growth_tie(&ray);
+  const char *tie = growing_differentiate(&g, &value, &ray, derivatives);
+  *growth = value;
   if (tie && status == CPROX_OK) workspace_fail(workspace, CPROX_OK, "no gradient: %s", tie);
   return status;
 }
