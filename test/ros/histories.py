@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Random histories of a node: objects that come, go and are refused, sensors that see, fail and fall silent, joints that are told in
-part, crashes. Beside it a model of what truly stands there and of what the node can know: nothing is clear that is not,
+part, crashes, launches with another scene file or robot. Beside it a model of what truly stands there and of what the node can know: nothing is clear that is not,
 nothing is clear that is not known, and what is known and clear is called clear. Seeded; a longer run:
 scripts/run rostest curve_proximity histories.test histories:=500 seed:=7"""
 import math
@@ -22,7 +22,23 @@ NAME, MAX_AGE, LIMIT, RADIUS, POINT = 'history', 1.0, 0.05, 0.1, 0.01
 WAY = joint_trajectory(['turn'], (0.0,), (3.0,))
 ON_WAY, ON_ARM, AWAY = (-0.25, 0.433, 0.5), (0, 0.5, 0.5), (0, 0, 5)  # the arm's ball is ON_ARM after a quarter turn, ON_WAY later
 PLACES = (ON_WAY, ON_ARM) + (AWAY,) * 6
+REACHES = (0.5, 0.8)  # [m] of the arm, one for each robot that is launched
 STEPS, PATIENCE = 25, 15
+
+
+def robot(reach):
+    with open(ARM) as text:
+        return text.read().replace('xyz="0.5 0 0"', 'xyz="%g 0 0"' % reach)
+
+
+def write_scene(path, place):
+    """A scene file of one object, or of none."""
+    with open(path, 'w') as file:
+        if place:
+            file.write('world: {collision_objects: [{id: filed, primitives: [{type: sphere, dimensions: [%g]}], '
+                       'primitive_poses: [{position: [%g, %g, %g]}]}]}\n' % (RADIUS, *place))
+        else:
+            file.write('world: {collision_objects: []}\n')
 
 
 class World:
@@ -31,11 +47,11 @@ class World:
     def __init__(self):
         self.objects, self.refused, self.whole = {}, set(), True  # whole: no crash has lost a part of the scene
         self.points, self.seen = [], False                        # of the cloud; whether the node could use the latest
-        self.turn, self.told = 0.0, False
+        self.turn, self.told, self.reach = 0.0, False, REACHES[0]
 
     def distance(self, turn):
         """Of the arm's balls and its cube, which never turns, to all that stands there."""
-        balls = [((0.5 * math.cos(turn), 0.5 * math.sin(turn), 0.5), 0.1), ((turn, 0, -0.5), 0.05)]
+        balls = [((self.reach * math.cos(turn), self.reach * math.sin(turn), 0.5), 0.1), ((turn, 0, -0.5), 0.05)]
 
         def one(place, radius):
             cube = math.hypot(*(max(0.0, abs(c) - 0.1) for c in place))
@@ -61,17 +77,24 @@ class World:
 
 class Histories(unittest.TestCase):
     def setUp(self):
-        with open(ARM) as text:
-            rospy.set_param('/robot_description', text.read())
+        rospy.set_param('/robot_description', robot(REACHES[0]))
         self.addCleanup(rospy.delete_param, '/robot_description')
-        self.parameters = dict(state_file=tempfile.mkdtemp() + '/kept.scene', max_age=MAX_AGE, tf_timeout=0.02, fixed_frame='base',
-                               expected_sensors=['cloud'])
+        self.parameters = dict(max_age=MAX_AGE, tf_timeout=0.02, fixed_frame='base', expected_sensors=['cloud'])
+        self.files()
         self.node, self.world, self.story = None, World(), []
         topics = (('cloud', PointCloud2), ('collision_object', CollisionObject), ('joint_states', JointState))
         self.topics = {name: rospy.Publisher('/%s/%s' % (NAME, name), kind, queue_size=5) for name, kind in topics}
         self.addCleanup(lambda: [topic.unregister() for topic in self.topics.values()])
         self.addCleanup(lambda: self.node.end())
         self.start()
+
+    def files(self):
+        """Those of a history of its own."""
+        folder = tempfile.mkdtemp()
+        self.parameters.update(state_file=folder + '/kept.scene', scene_file=folder + '/scene.yaml')
+        self.launched = REACHES[0], None
+        write_scene(self.parameters['scene_file'], None)
+        rospy.set_param('/robot_description', robot(REACHES[0]))
 
     def start(self, **more):
         self.node = Node(NAME, **self.parameters, **more)
@@ -137,20 +160,35 @@ class Histories(unittest.TestCase):
         message.header.stamp = rospy.Time.now()
         return message
 
-    def crash(self, r):
-        """Perhaps before the last change is written; a sensor and joints are unknown until their next messages."""
+    def kill(self, r):
+        """Perhaps before the last change is written. Whether all of the scene was; what the master has kept of the node."""
         kept = self.parameters['state_file']
         if r.random() < 0.5:
             self.assertTrue(until(lambda: os.path.exists(kept) and not os.path.exists(kept + '.behind'), 5))
-            written = self.world.whole
-        else:
-            written = self.world.whole and os.path.exists(kept) and not os.path.exists(kept + '.behind')
         self.node.process.send_signal(signal.SIGKILL)
         self.node.wait(5)
         last = rospy.get_param('/%s/last_scene' % NAME, None)
-        self.world.whole, self.world.seen, self.world.told, self.sensing, self.telling = written, False, False, None, None
+        self.world.seen, self.world.told, self.sensing, self.telling = False, False, None, None
         self.node.end()
-        self.start(**({'last_scene': last} if last else {}))
+        return self.world.whole and os.path.exists(kept) and not os.path.exists(kept + '.behind'), {'last_scene': last} if last else {}
+
+    def crash(self, r):
+        """A respawn; a sensor and joints are unknown until their next messages."""
+        self.world.whole, last = self.kill(r)
+        self.start(**last)
+
+    def launch(self, r):
+        """Another launch on the same master. With other files the scene begins anew; whether clear_params is set does not matter."""
+        written, last = self.kill(r)
+        before, self.launched = self.launched, (r.choice(REACHES), r.choice((None, ON_ARM, AWAY)))
+        self.world.reach, filed = self.launched
+        rospy.set_param('/robot_description', robot(self.world.reach))
+        write_scene(self.parameters['scene_file'], filed)
+        if self.launched == before:
+            self.world.whole = written
+        else:
+            self.world.objects, self.world.refused, self.world.whole = {'filed': filed} if filed else {}, set(), True
+        self.start(**(last if r.random() < 0.5 else {}))
 
     # ---- one history
     def ask(self):
@@ -175,7 +213,7 @@ class Histories(unittest.TestCase):
         self.sensing = self.telling = None
         self.server.replace(sphere('object0', RADIUS, AWAY))
         self.world.objects = {'object0': AWAY}
-        happenings = [self.add, self.add, self.add_by_topic, self.remove, self.replace, self.fall_silent, self.crash] + [self.see, self.turn] * 3
+        happenings = [self.add, self.add, self.add_by_topic, self.remove, self.replace, self.fall_silent, self.crash, self.launch] + [self.see, self.turn] * 3
         called = 0
         for _ in range(STEPS):
             happening = r.choice(happenings)
@@ -196,7 +234,7 @@ class Histories(unittest.TestCase):
                 if seed > first:
                     self.node.end()
                     self.world, self.story = World(), []
-                    self.parameters['state_file'] = tempfile.mkdtemp() + '/kept.scene'
+                    self.files()
                     self.start()
                 clear += self.play(seed)
         self.assertGreater(clear, 20 * n)  # it is not silent
