@@ -10,7 +10,7 @@ import unittest
 
 import numpy
 import rosgraph
-from curve_proximity.msg import Body, CollisionObject, Curve, ProximityQuery
+from curve_proximity.msg import Body, CollisionObject, ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, DistanceRequest, Distance
 from helpers import Call, Node, Server, bezier, handshake, raw_call, ring_and_shells, run, serialized, sphere, until
 

@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 import rospy
-from helpers import Server, bezier, box, bspline, connected, joints, run, sphere, until
+from helpers import Server, bezier, box, connected, joints, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -83,13 +83,6 @@ class Demo(unittest.TestCase):
             self.assertRegex(said, r'panda_hand +at least 0\.\d+ m, to table')
             with open(picture, 'rb') as stream:
                 self.assertEqual(stream.read(4), b'\x89PNG')
-
-    def test_a_budget_that_ends_early_leaves_open_hulls(self):
-        winding = bspline([(0.9 + 0.1 * math.sin(3 * i), 0.04 * i - 0.6, 0.5 + 0.3 * math.cos(2 * i)) for i in range(30)], 3)
-        self.listen()
-        row, = self.server.distance(winding, max_nodes=1, epsilon=1e-12).results
-        self.assertEqual(row.status, 'budget')
-        self.assertGreater(len([m for m in self.markers({'open'}) if m.ns == 'open']), 0)
 
     def test_a_trajectory_is_shown_at_its_closest_moment_and_swept(self):
         self.assertTrue(self.server.apply(sphere('post', 0.05, (0.45, 0.25, 0.5))).success)

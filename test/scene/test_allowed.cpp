@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The allowed collision matrix, through C++ and scene files, against a model of what moveit_msgs says of it. The
- * messages' side is in test/ros/trajectory.py. */
+ * messages' side is in test/ros/states.py. */
 #include <unistd.h>
 
 #include <algorithm>
