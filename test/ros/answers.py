@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Each service against distances computed by hand; what is wrong is told by name, and the next call is answered."""
 import math
-import os
 import unittest
 
 import rospy
@@ -14,13 +13,6 @@ from helpers import (BOX, CONE, CYLINDER, SPHERE, Server, bezier, body, box, bsp
 
 EPSILON = 1e-9  # [m] asked for in each query that is compared
 ABOVE = bezier((0, 0, 1), (2, 0, 1), id='above')  # a straight line one metre up, middle over (1, 0, 0)
-
-
-def reference(name):
-    """The rows of a file of reference answers."""
-    folder = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
-    with open(os.path.join(folder, 'data', 'reference', name)) as text:
-        return [line.strip().split(',') for line in text if line.strip() and not line.startswith('#')]
 
 
 class TestCase(unittest.TestCase):
@@ -114,30 +106,6 @@ class Answers(TestCase):
         told = self.server.apply(grid('point', 'distance_grid', [1, 3, 3, 3], values))
         self.assertFalse(told.success)
         self.assertIn('neighbour', told.message)
-
-    def test_a_polygon_has_an_inside_to_curves_in_its_plane(self):
-        self.server.replace(body('square', 'polygon', vertices=[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]))
-        inside, beside = bezier((-0.5, 0, 0), (0.5, 0.1, 0)), bezier((2, -3, 0), (2, 3, 0))
-        self.assertEqual(self.row(self.server.collision(inside)).verdict, 'violated')
-        self.assertEqual(self.row(self.server.collision(beside)).verdict, 'clear')
-        self.assertContains(self.distance(beside), 1.0)
-
-    def test_the_first_papers_replanning_curves_are_all_decided(self):
-        # 1000 quintic curves past two polygons of 20 sides; class 1: farther than 0.03 from both, 3: in collision
-        vertices = {}
-        for number, x, y in reference('replan_obstacles.csv'):
-            vertices.setdefault(number, []).append((float(x), float(y), 0.0))
-        self.server.replace(*(body('obstacle' + k, 'polygon', vertices=v) for k, v in vertices.items()))
-        rows, curves = reference('replan_curves.csv'), []
-        for identifier, points, *_ in rows:
-            flat = [float(x) for x in points.split(';')]
-            curves.append(bezier(*((x, y, 0.0) for x, y in zip(flat[::2], flat[1::2])), id=identifier))
-        far, hit = self.server.tolerance(curves, 0.03), self.server.collision(curves)
-        self.assertTrue(far.success and hit.success, far.message + hit.message)
-        self.assertEqual((len(far.results), len(hit.results)), (1000, 1000))
-        for (identifier, _, _, _, kind), clear, touch in zip(rows, far.results, hit.results):
-            self.assertEqual((clear.id, clear.verdict, touch.verdict),
-                             (identifier, 'clear' if kind == '1' else 'violated', 'violated' if kind == '3' else 'clear'))
 
     def test_what_does_not_apply_is_refused_and_named(self):
         self.server.replace(sphere('ball', 0.25, (1, 0, 0)))

@@ -29,21 +29,6 @@ class Demo(unittest.TestCase):
         # robot_state_publisher needs a moment
         until(lambda: cls.server.distance(LINE).success, 20)
 
-    def test_the_pandas_links_are_measured_by_tf2_and_by_joints_alike(self):
-        by_tf2 = self.server.distance(LINE, per_object=True)
-        by_joints = self.server.distance(LINE, per_object=True, joint_state=joints(**READY))
-        self.assertTrue(by_tf2.success and by_joints.success, by_tf2.message + by_joints.message)
-        self.assertEqual([r.b for r in by_tf2.results], [r.b for r in by_joints.results])
-        self.assertEqual(len(by_tf2.results), 12)  # the table and eleven links with geometry
-        for a, b in zip(by_tf2.results, by_joints.results):
-            self.assertAlmostEqual(a.upper, b.upper, delta=1e-5)
-            if a.b.startswith('panda_'):
-                self.assertEqual(a.lod, 'mesh')
-        nearest = min(by_tf2.results, key=lambda r: r.upper)
-        one = self.server.distance(LINE).results[0]
-        self.assertEqual(one.b, nearest.b)
-        self.assertAlmostEqual(one.upper, nearest.upper, delta=3e-6)
-
     def test_markers_show_curve_closest_pair_scene_and_robot(self):
         self.listen()
         self.assertTrue(self.server.distance(LINE).success)

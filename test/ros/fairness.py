@@ -63,8 +63,9 @@ class Fairness(unittest.TestCase):
             self.assertLess(statistics.median(times), 0.1)
             self.assertLess(max(times), 0.5)
             self.assertTrue(all(a.success for a in answers))
-            stopped = {row.status for a in answers for row in a.results}
-            self.assertIn('stopped', stopped)
+            stopped = [row.message for a in answers for row in a.results if row.status == 'stopped']
+            self.assertTrue(stopped)
+            self.assertTrue(all('budget_ms' in message for message in stopped))
 
     def test_what_waits_for_tf_holds_nobody_up(self):
         server = self.begin('patient', threads=2, tf_timeout=0.4)
