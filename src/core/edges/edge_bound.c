@@ -152,8 +152,8 @@ static void bound_frame(const edge_frame *f, const edge_frame_bound *p, edge_fra
                    shifts * (b->turn_error + 3.0 * u) + 2.0 * u * b->speed + (f->shifts ? b->rate_error : 0.0);
 
   b->acceleration = p->acceleration + p->turn * length + 2.0 * p->spin * shifts + (f->shifts ? b->second : 0.0);
-  b->spin_rate = p->spin_rate + p->spin * turns + (f->shifts ? 0.0 : b->second);
-  b->turn = b->spin_rate + b->spin * b->spin;
+  b->bend = p->bend + (f->shifts ? 0.0 : b->second);
+  b->turn = b->bend + b->spin * b->spin;
 }
 
 /* ---- relations ---- */
@@ -164,20 +164,20 @@ static double length_of(const edge_step *step, const edge_motion *m) {
 
 /* As bound_frame(), along the way from one frame to the other. */
 static edge_half_bound bound_relation(const cprox_edge_checker *c, const edge_relation *r, const edge_motion *m) {
-  double acceleration = 0.0, spin = 0.0, spin_rate = 0.0;
+  double acceleration = 0.0, spin = 0.0, bend = 0.0;
   for (uint32_t i = r->first; i < r->first + r->n; i++) {
     const edge_step *step = &c->steps[i];
     const double g = m->bounds[step->frame].rate;
     const double second = m->bounds[step->frame].second;
-    acceleration += (spin_rate + spin * spin) * length_of(step, m);
+    acceleration += (bend + spin * spin) * length_of(step, m);
     if (c->frames[step->frame].shifts) {
       acceleration += 2.0 * spin * g + second;
     } else {
-      spin_rate += spin * g + second;
+      bend += second;
       spin += g;
     }
   }
-  const double turn = spin_rate + spin * spin;
+  const double turn = bend + spin * spin;
   return (edge_half_bound){.acceleration = above(0.5 * (acceleration + turn * length_of(&r->last, m))),
                            .turn = above(0.5 * turn)};
 }

@@ -22,7 +22,7 @@ typedef struct edge_frame_bound {
   double rate, shift;        /* of its own variable: bounds on the rate, and of a shift on its length, */
   double second;             /* on the second derivative; */
   double value_error, rate_error; /* of float: what its value and its rate as lanes have them are off by */
-  double spin_rate;               /* on the rotation rate's derivative */
+  double bend;                    /* on the second derivatives of all turns up to here, together */
   double acceleration, turn;      /* of a point x of the frame: acceleration + turn |x| */
 } edge_frame_bound;
 
