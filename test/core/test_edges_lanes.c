@@ -192,15 +192,16 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
 }
 
 /* Chains whose velocities cancel in the middle, so that accelerations alone move the ball: a shift along an axis that
- * turns (2 W g), and a turn about an axis that a shift is away from (W^2 of the shift). Half of what they reach, or a
- * term less, would be too little, seen from the base and from a ball there. */
+ * turns (2 W g), a turn about an axis that a shift is away from (W^2 of the shift), and two turns about one axis. Half of
+ * what they reach, or a term less, would be too little, seen from the base and from a ball there. */
 CASE(accelerations_alone_are_bounded) {
   static lane_memory memory;
-  enum { CASES = 2 };
-  static const double RATE[CASES][3] = {{-1.0, 0.1, 1.0}, {-1.0, 1.0, 0.0}}, MIDDLE[CASES] = {0.0, 1.0};
+  enum { CASES = 3, LINKS = 5 };
+  static const double RATE[CASES][LINKS - 1] = {{-1.0, 0.1, 1.0, 0.0}, {-1.0, 1.0, 0.0, 0.0}, {-2.0, 1.0, 0.0, 1.0}},
+                                          MIDDLE[CASES] = {0.0, 1.0, 1.0};
   for (int i = 0; i < CASES; i++) {
     const vec3 first = i == 0 ? vec(1, 0, 0) : vec(0, 1, 0);
-    const cprox_link links[4] = {
+    const cprox_link links[LINKS] = {
         {.parent = -1, .type = CPROX_JOINT_FIXED, .origin = CPROX_POSE_IDENTITY, .axis = {0, 0, 1}, .multiplier = 1.0},
         {.parent = 0, .type = CPROX_JOINT_PRISMATIC, .origin = CPROX_POSE_IDENTITY, .axis = first, .multiplier = 1.0},
         {.parent = 1,
@@ -210,6 +211,12 @@ CASE(accelerations_alone_are_bounded) {
          .variable = 1,
          .multiplier = 1.0},
         {.parent = 2,
+         .type = CPROX_JOINT_REVOLUTE,
+         .origin = CPROX_POSE_IDENTITY,
+         .axis = {0, 0, 1},
+         .variable = 3,
+         .multiplier = 1.0},
+        {.parent = 3,
          .type = CPROX_JOINT_PRISMATIC,
          .origin = CPROX_POSE_IDENTITY,
          .axis = {1, 0, 0},
@@ -217,21 +224,21 @@ CASE(accelerations_alone_are_bounded) {
          .multiplier = 1.0}};
     cprox_body *ball = NULL;
     assert_int_equal(cprox_body_create_sphere(0.01, ws, &ball), CPROX_OK);
-    const cprox_link_geometry geometries[2] = {{.body = ball, .pose = CPROX_POSE_IDENTITY, .link = 3},
+    const cprox_link_geometry geometries[2] = {{.body = ball, .pose = CPROX_POSE_IDENTITY, .link = LINKS - 1},
                                                {.body = ball, .pose = CPROX_POSE_IDENTITY, .link = 0}};
     cprox_robot *robot = NULL;
-    assert_int_equal(cprox_robot_create(links, 4, geometries, 2, 3, ws, &robot), CPROX_OK);
+    assert_int_equal(cprox_robot_create(links, LINKS, geometries, 2, LINKS - 1, ws, &robot), CPROX_OK);
     const cprox_robot_pair pair = {0, 1};
     cprox_edge_checker *c = edge_world_checker(robot, &(cprox_edge_query){.self_pairs = &pair, .n_self_pairs = 1});
-    double from[3], to[3];
-    for (int k = 0; k < 3; k++) {
+    double from[LINKS - 1], to[LINKS - 1];
+    for (int k = 0; k < LINKS - 1; k++) {
       const double middle = k == 2 ? MIDDLE[i] : 0.0;
       from[k] = middle - 0.5 * RATE[i][k], to[k] = middle + 0.5 * RATE[i][k];
     }
     edge_motion motion = edge_motion_in(c, memory.motion);
     assert_true(edge_motion_fill(c, from, to, &motion));
     edge_motion_relate(c, &motion);
-    const double half = 0.0625, angle = RATE[i][1] * half, along = MIDDLE[i] + RATE[i][2] * half;
+    const double half = 0.0625, angle = (RATE[i][1] + RATE[i][3]) * half, along = MIDDLE[i] + RATE[i][2] * half;
     const double x = along * cos(angle) + (i == 0 ? RATE[i][0] * half : 0.0) - MIDDLE[i];
     const double y = along * sin(angle) + (i == 0 ? 0.0 : RATE[i][0] * half);
     const double moved = sqrt(x * x + y * y);
