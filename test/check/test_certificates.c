@@ -314,6 +314,39 @@ CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
   cprox_workspace_free(ws);
 }
 
+/* Segments that begin where planes through vertices of a box meet, on a grid in it: there tetrahedra of vertices have
+ * the common point on a face. */
+CASE(contact_on_a_plane_through_vertices_is_proven) {
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_certificate *c = cprox_certificate_create();
+  cprox_vec3 corner[8];
+  for (int i = 0; i < 8; i++) corner[i] = vec(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+  cprox_body *box = NULL;
+  assert_int_equal(cprox_body_create_polytope(corner, 8, ws, &box), CPROX_OK);
+  size_t proven = 0;
+  for (int i = 0; i < 7 * 7 * 7; i++) {
+    asked q = {.scale = 1.0, .radius = 0.0, .n = 1};
+    q.mover = (given_curve){.basis = "bezier", .degree = 1, .t1 = 1.0, .n = 2};
+    q.mover.points[0] = vec((i % 7 - 3) * 0.25, (i / 7 % 7 - 3) * 0.25, (i / 49 - 3) * 0.25);
+    q.mover.points[1] = vec_scale(4.0, q.mover.points[0]);
+    assert_int_equal(curve_from(describe_bezier(q.mover.points, 2, 0.0, 1.0), ws, &q.mover.curve), CPROX_OK);
+    q.targets[0] = cprox_obstacle_at(box, CPROX_POSE_IDENTITY);
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.certificate = c;
+    cprox_result r;
+    assert_int_equal(ask(&q, 0.0, &options, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_VERDICT_VIOLATED);
+    const finding found = asked_check(&q, cprox_certificate_get_info(c).bytes, cprox_certificate_get_info(c).size);
+    if (found.fault) fail_msg("%d: refused: %s", i, found.fault);
+    proven += found.claim == CLAIM_NEAR && found.delta <= 1e-13;
+    cprox_curve_free(q.mover.curve);
+  }
+  assert_int_equal(proven, 7 * 7 * 7);
+  cprox_body_free(box);
+  cprox_certificate_free(c);
+  cprox_workspace_free(ws);
+}
+
 /* ---- work ---- */
 
 /* The numbers of a query: points of both curves, vertices, and what every target takes. */

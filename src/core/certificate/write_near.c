@@ -27,6 +27,27 @@ bool cover_draw_in(const cprox_body *body, const convex_near *near, double by, v
   return true;
 }
 
+/* The radius of a ball about 0 that lies in the tetrahedron of the vertices; not above 0 where there is none. */
+static double ball_in(const simplex *s) {
+  if (s->n < 4) return 0.0;
+  double radius = INFINITY;
+  for (int i = 0; i < 4; i++) {
+    const vec3 a = s->vertex[(i + 1) % 4].w, b = s->vertex[(i + 2) % 4].w, c = s->vertex[(i + 3) % 4].w;
+    const vec3 n = vec_cross(vec_sub(b, a), vec_sub(c, a));
+    const double opposite = vec_dot(n, vec_sub(s->vertex[i].w, a)), size = vec_norm(n);
+    if (!(fabs(opposite) > 0.0)) return 0.0;
+    radius = fmin(radius, copysign(1.0, opposite) * -vec_dot(n, a) / size);
+  }
+  return radius;
+}
+
+/* How far the mean of the vertices by their weights is from 0. */
+static double mean_length(const simplex *s) {
+  vec3 mean = vec(0, 0, 0);
+  for (int i = 0; i < s->n; i++) mean = vec_axpy(mean, s->weight[i], s->vertex[i].w);
+  return vec_norm(mean);
+}
+
 static void write_vertex(cprox_certificate *c, const simplex *s, int i, bool inside) {
   const bool used = i < s->n;
   certificate_count(c, used ? (uint32_t)s->vertex[i].id : (uint32_t)s->vertex[0].id);
@@ -41,9 +62,10 @@ double partition_near_point(const cprox_body *body, cprox_certificate *certifica
   if (kind == CPROX_BODY_POLYTOPE || kind == CPROX_BODY_POLYGON) {
     gjk_answer answer;
     gjk_nearest(shape, y, &hint, &answer);
-    const bool inside = answer.distance < 0.0;
+    /* where y lies on a face of the tetrahedron, no program with errors of its own finds y inside: its mean is near */
+    const bool inside = ball_in(&answer.feature) > 4.0 * error + ROOM * ROUND_U * (vec_norm(y) + shape->scale);
     for (int i = 0; i < 4; i++) write_vertex(certificate, &answer.feature, i, inside);
-    return inside ? 0.0 : answer.distance + error;
+    return inside ? 0.0 : fmax(answer.distance, mean_length(&answer.feature)) + error;
   }
 
   convex_near near;
