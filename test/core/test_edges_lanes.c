@@ -78,9 +78,10 @@ static vec3l lane_of(lane3 v, int i) {
   return (vec3l){v.x[i], v.y[i], v.z[i]};
 }
 
-/* 1,500 robots and edges, every other one a polynomial of degree 1 to 9 (seed 401, sizes of 1e-3 to 1e3 m), eight random
- * intervals each: every ball's centre is where long double has it, within what the edge allows for rounding, and from
- * there it stays within the motion bound, seen from the base and from the frames of other balls. */
+/* 1,500 robots and edges, every other one a polynomial of degree 1 to 9 (seed 401, sizes of 1e-3 to 1e3 m), eight
+ * random intervals each: rates of joints and lengths of shifts are within their bounds, every ball's centre is where
+ * long double has it, within what the edge allows for rounding, and from there it stays within the motion bound, seen
+ * from the base and from the frames of other balls. */
 CASE(lanes_are_where_they_say_and_stay_where_they_say) {
   static lane_memory memory;
   rng r = rng_seed(401);
@@ -127,7 +128,18 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
       batch.middle[l] = (float)(-0.5 + half * (2.0 * (double)rng_index(&r, (size_t)8 << depth) + 1.0));
     }
     batch.half2 = batch.half * batch.half;
-    for (size_t k = 1; k < c->n_frames && fits; k++) place_frame(&batch, k), move_frame(&batch, k);
+    for (size_t k = 1; k < c->n_frames && fits; k++) {
+      place_frame(&batch, k), move_frame(&batch, k);
+      const edge_frame_bound *bound = &motion.bounds[k];
+      const size_t first = k * EDGE_POWERS;
+      const lane rate = powers_at(&batch, motion.more_rate + first, motion.rate[k]),
+                 value =
+                     lane_all(motion.middle[k]) + batch.middle * powers_at(&batch, motion.more + first, motion.rate[k]);
+      for (int l = 0; l < EDGE_LANES; l++) {
+        assert_true(fabs((double)rate[l]) <= bound->rate + bound->rate_error + 1e-30 + EDGE_U * bound->rate);
+        if (c->frames[k].shifts) assert_true(fabs((double)value[l]) <= bound->shift + bound->value_error);
+      }
+    }
 
     const vec3 base = c->robot->n_axes > 0 ? c->robot->axes[0].at.p : vec(0, 0, 0);
     refused += !fits;
@@ -192,13 +204,15 @@ CASE(lanes_are_where_they_say_and_stay_where_they_say) {
 }
 
 /* Chains whose velocities cancel in the middle, so that accelerations alone move the ball: a shift along an axis that
- * turns (2 W g), a turn about an axis that a shift is away from (W^2 of the shift), and two turns about one axis. Half of
- * what they reach, or a term less, would be too little, seen from the base and from a ball there. */
+ * turns (2 W g), a turn about an axis that a shift is away from (W^2 of the shift), two turns about one axis, and a
+ * turn about an axis that another one is away from. Half of what they reach, or a term less, would be too little,
+ * seen from the base and from a ball there. */
 CASE(accelerations_alone_are_bounded) {
   static lane_memory memory;
-  enum { CASES = 3, LINKS = 5 };
-  static const double RATE[CASES][LINKS - 1] = {{-1.0, 0.1, 1.0, 0.0}, {-1.0, 1.0, 0.0, 0.0}, {-2.0, 1.0, 0.0, 1.0}},
-                                          MIDDLE[CASES] = {0.0, 1.0, 1.0};
+  enum { CASES = 4, LINKS = 5 };
+  static const double RATE[CASES][LINKS - 1] = {
+      {-1.0, 0.1, 1.0, 0.0}, {-1.0, 1.0, 0.0, 0.0}, {-2.0, 1.0, 0.0, 1.0}, {-1.0, 1.0, 0.0, 0.0}};
+  static const double MIDDLE[CASES] = {0.0, 1.0, 1.0, 0.0}, BETWEEN[CASES] = {0.0, 0.0, 0.0, 1.0};
   for (int i = 0; i < CASES; i++) {
     const vec3 first = i == 0 ? vec(1, 0, 0) : vec(0, 1, 0);
     const cprox_link links[LINKS] = {
@@ -212,7 +226,7 @@ CASE(accelerations_alone_are_bounded) {
          .multiplier = 1.0},
         {.parent = 2,
          .type = CPROX_JOINT_REVOLUTE,
-         .origin = CPROX_POSE_IDENTITY,
+         .origin = {{BETWEEN[i], 0, 0}, {.w = 1}},
          .axis = {0, 0, 1},
          .variable = 3,
          .multiplier = 1.0},
@@ -238,9 +252,10 @@ CASE(accelerations_alone_are_bounded) {
     edge_motion motion = edge_motion_in(c, memory.motion);
     assert_true(edge_motion_fill(c, from, to, &motion));
     edge_motion_relate(c, &motion);
-    const double half = 0.0625, angle = (RATE[i][1] + RATE[i][3]) * half, along = MIDDLE[i] + RATE[i][2] * half;
-    const double x = along * cos(angle) + (i == 0 ? RATE[i][0] * half : 0.0) - MIDDLE[i];
-    const double y = along * sin(angle) + (i == 0 ? 0.0 : RATE[i][0] * half);
+    const double half = 0.0625, angle = RATE[i][1] * half, both = (RATE[i][1] + RATE[i][3]) * half;
+    const double along = MIDDLE[i] + RATE[i][2] * half, shifted = RATE[i][0] * half;
+    const double x = BETWEEN[i] * (cos(angle) - 1.0) + along * cos(both) + (i == 0 ? shifted : 0.0) - MIDDLE[i];
+    const double y = BETWEEN[i] * sin(angle) + along * sin(both) + (i == 0 ? 0.0 : shifted);
     const double moved = sqrt(x * x + y * y);
     const edge_half_bound seen[2] = {motion.frames[c->parts[c->lane_pairs[0].a].frame], motion.relations[0]};
     for (int k = 0; k < 2; k++)
