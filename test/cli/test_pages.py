@@ -18,7 +18,7 @@ NOT_RUN = {
     'scripts/run cprox send': NODE, 'scripts/run roslaunch': NODE, 'scripts/run rosservice': NODE, 'scripts/run rosrun': NODE,
     'scripts/run /usr/bin/python3': 'an example that needs SciPy: the group python runs it',
     'scripts/setup': WORKSPACE, 'scripts/build': WORKSPACE, 'scripts/demo': WORKSPACE, 'scripts/test': WORKSPACE, 'scripts/moveit_beside': WORKSPACE,
-    'scripts/debian': WORKSPACE, 'scripts/bench': 'takes minutes: the group bench reads what it writes',
+    'scripts/debian': WORKSPACE, 'scripts/wheel': WORKSPACE, 'scripts/bench': 'takes minutes: the group bench reads what it writes',
 }
 PLUGINS = 'cprox constraints', 'scripts/run cprox constraints'
 
