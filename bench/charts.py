@@ -150,7 +150,7 @@ def time_against(points):
 
 def dots(rows, save, group, select, title, name, label=lambda row: f"{row['workload']}, {row['parameter']}", time='median time a query [µs]'):
     """Time of each method: one line of dots for each workload and parameter that select(row) takes. A dot on a logarithmic axis says where it
-    is; a bar would say by its length what depends on where the axis begins."""
+    is; a bar would say by its length what depends on where the axis begins. A hollow dot has wrong answers; the legend counts them."""
     rows = [row for row in rows if row['group'] == group and select(row)]
     keys = list(dict.fromkeys(label(row) for row in rows))
     if not keys:
@@ -158,9 +158,13 @@ def dots(rows, save, group, select, title, name, label=lambda row: f"{row['workl
     figure, axes = plt.subplots(figsize=(7.2, 1.2 + 0.27 * len(keys)))
     seen = []
     for k, method in enumerate(methods_of(rows)):
-        values = {label(row): float(row['median_us']) for row in rows if row['method'] == method}
-        y = [i for i, key in enumerate(keys) if key in values]
-        axes.plot([values[keys[i]] for i in y], y, MARKERS[k % len(MARKERS)], color=colour_of(method, seen), label=LABELS.get(method, method))
+        values = {label(row): (float(row['median_us']), int(float(row['unsound'] or 0))) for row in rows if row['method'] == method}
+        colour, wrong = colour_of(method, seen), sum(unsound for _, unsound in values.values())
+        for hollow in (False, True):
+            y = [i for i, key in enumerate(keys) if key in values and bool(values[key][1]) == hollow]
+            axes.plot([values[keys[i]][0] for i in y], y, MARKERS[k % len(MARKERS)], color=colour, markerfacecolor='white' if hollow else colour)
+        axes.plot([], [], MARKERS[k % len(MARKERS)], color=colour, markerfacecolor='white' if wrong else colour,
+                  label=LABELS.get(method, method) + (f', {wrong} wrong' if wrong else ''))
     axes.set_xscale('log')
     axes.set_yticks(range(len(keys)))
     axes.set_yticklabels(keys)
