@@ -247,5 +247,6 @@ bool edge_motion_fill_along(const cprox_edge_checker *c, const cprox_motion *alo
 }
 
 void edge_motion_relate(const cprox_edge_checker *c, const edge_motion *m) {
-  for (size_t i = 0; i < c->n_relations; i++) m->relations[i] = bound_relation(c, &c->relations[i], m);
+  for (size_t i = 0; i < c->n_relations; i++)
+    m->relations[i] = m->stands ? (edge_half_bound){0} : bound_relation(c, &c->relations[i], m);
 }

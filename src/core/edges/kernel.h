@@ -299,6 +299,7 @@ EDGE_INLINE float sure_radius(float inner, float other, float within, float cost
 /* How far the centre of a ball moves in half an interval: by the velocity in the middle, and by all accelerations. The
  * ball looks the same however it turns. `reach`: of the centre from its frame's origin, at most. */
 EDGE_INLINE lane moves_of(const lane_batch *b, lane3 speed, edge_half_bound bound, float reach) {
+  if (b->motion->stands) return lane_all(0.0f);
   return b->half * lane_sqrt(lane3_norm2(speed)) + b->half2 * lane_all(bound.acceleration + bound.turn * reach);
 }
 
@@ -449,14 +450,25 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
 
 /* ---- the search ---- */
 
+/* Of a state no part and no frame has a speed. */
+EDGE_INLINE void stand_still(lane_batch *b) {
+  const lane zero = lane_all(0.0f);
+  for (size_t i = 1; i < b->c->n_frames; i++) b->frames[i].spin = b->frames[i].speed = (lane3){zero, zero, zero};
+  for (size_t i = 0; i < b->c->n_parts; i++) b->parts[i].speed = (lane3){zero, zero, zero};
+}
+
 /* Whether contact is proven. */
 EDGE_TARGET static bool look_at_batch(lane_batch *b) {
   const cprox_edge_checker *c = b->c;
   for (size_t i = 1; i < c->n_frames; i++) place_frame(b, i);
   for (size_t i = c->n_parts; i-- > 0;)
     if (place_part(b, i)) return true;
-  for (size_t i = 1; i < c->n_frames; i++) move_frame(b, i);
-  for (size_t i = 0; i < c->n_parts; i++) move_part(b, i);
+  if (b->motion->stands)
+    stand_still(b);
+  else {
+    for (size_t i = 1; i < c->n_frames; i++) move_frame(b, i);
+    for (size_t i = 0; i < c->n_parts; i++) move_part(b, i);
+  }
   if (!b->related) edge_motion_relate(c, b->motion);
   b->related = true;
   for (size_t i = 0; i < c->n_lane_pairs; i++)
