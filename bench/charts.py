@@ -354,6 +354,8 @@ def implicit(rows, save):
     yield accuracies(rows, save)
     yield dots(rows, save, 'implicit', lambda row: row['workload'] == 'as meshes', 'Pairs of implicit bodies, and as meshes of 19,000 triangles',
                'implicit_meshes', lambda row: ' and '.join(OBJECTS[name] for name in row['parameter'].split('-')))
+    yield dots(rows, save, 'implicit', lambda row: row['workload'] == 'growth gradient', 'Growth distances with their gradients',
+               'implicit_growth', lambda row: row['parameter'].replace('-', ' and '))
     for kind in ('planes', 'quadrics', 'superquadrics'):
         yield growth(rows, save, 'implicit', f'figure 2 {kind}', r'(\d+)', f'Bodies of many {kind}', f'seeds_figure_2_{kind}',
                      'constraints of both bodies')

@@ -8,6 +8,7 @@
 
 #include "convex/pair.h"
 #include "curve_proximity/cprox/translation.h"
+#include "implicit_growth.h"
 #include "peers/naive.h"
 #include "shape/body.h"
 #include "support/implicit_problems.h"
@@ -509,91 +510,6 @@ static void points(const bench_size *size, cprox_body *const *object, bench_stat
   }
 }
 
-/* ---- growth: a value with its gradient, beside central differences by twelve variables ---- */
-
-typedef struct growth_problem {
-  cprox_obstacle a, b;
-} growth_problem;
-
-static void growth_gradient(const void *problems, size_t i, void *state, bench_answer *a) {
-  const growth_problem *p = (const growth_problem *)problems + i;
-  const bench_state *s = state;
-  cprox_growth growth;
-  cprox_growth_derivatives d;
-  const cprox_status status = cprox_growth_gradient(p->a, p->b, NULL, s->workspace, &growth, &d);
-  *a = (bench_answer){.lower = growth.lower, .upper = growth.upper, .nodes = growth.pairs};
-  a->failed = status != CPROX_OK || !d.valid;
-}
-
-static void growth_value(const void *problems, size_t i, void *state, bench_answer *a) {
-  const growth_problem *p = (const growth_problem *)problems + i;
-  const bench_state *s = state;
-  cprox_growth growth;
-  const cprox_status status = cprox_growth_distance(p->a, p->b, NULL, s->workspace, &growth);
-  *a = (bench_answer){.lower = growth.lower, .upper = growth.upper, .nodes = growth.pairs};
-  a->failed = status != CPROX_OK;
-}
-
-/* Turned about its position by h round an axis: the quaternion's product, to first order. */
-static void turn_slightly(cprox_pose *pose, int axis, double h) {
-  const cprox_quat q = pose->orientation;
-  const double x = axis == 0 ? 0.5 * h : 0.0, y = axis == 1 ? 0.5 * h : 0.0, z = axis == 2 ? 0.5 * h : 0.0;
-  pose->orientation = (cprox_quat){q.w - x * q.x - y * q.y - z * q.z, q.x + x * q.w + y * q.z - z * q.y,
-                                   q.y - x * q.z + y * q.w + z * q.x, q.z + x * q.y - y * q.x + z * q.w};
-}
-
-static void growth_differences(const void *problems, size_t i, void *state, bench_answer *a) {
-  static const double step = 1e-5;
-  const growth_problem *p = (const growth_problem *)problems + i;
-  growth_value(problems, i, state, a);
-  for (int variable = 0; variable < 24; variable++) {
-    growth_problem moved = *p;
-    cprox_pose *pose = variable % 2 ? &moved.b.pose : &moved.a.pose;
-    const int axis = variable / 2 % 3;
-    const double h = variable / 6 % 2 ? step : -step;
-    double *const at[3] = {&pose->position.x, &pose->position.y, &pose->position.z};
-    if (variable < 12)
-      *at[axis] += h;
-    else
-      turn_slightly(pose, axis, h);
-    bench_answer one;
-    growth_value(&moved, 0, state, &one);
-    a->nodes += one.nodes;
-  }
-}
-
-static void growths(const bench_size *size, cprox_body *const *object, bench_state *s) {
-  cprox_body *box = NULL, *cylinder = NULL, *ellipsoid = NULL;
-  if (cprox_body_create_box((vec3){1.0, 1.4, 0.8}, s->workspace, &box) < 0 ||
-      cprox_body_create_cylinder(1.5, 0.4, s->workspace, &cylinder) < 0 ||
-      cprox_body_create_ellipsoid((vec3){1.0, 0.6, 0.4}, s->workspace, &ellipsoid) < 0)
-    exit(1);
-  const cprox_body *pairs[][2] = {
-      {box, box},       {box, cylinder},        {cylinder, cylinder},  {box, ellipsoid}, {ellipsoid, ellipsoid},
-      {box, object[1]}, {object[1], object[2]}, {object[1], object[3]}};
-  static const char *const names[] = {
-      "box-box", "box-cylinder", "cylinder-cylinder", "box-ellipsoid", "ellipsoid-ellipsoid", "box-I", "I-II", "I-III"};
-  rng r = rng_seed(95);
-  growth_problem *problems = calloc(size->problems, sizeof *problems);
-  for (size_t k = 0; problems && k < sizeof names / sizeof *names; k++) {
-    for (size_t i = 0; i < size->problems; i++)
-      problems[i] = (growth_problem){cprox_obstacle_at(pairs[k][0], rng_pose(&r, 1.0)),
-                                     cprox_obstacle_at(pairs[k][1], rng_pose(&r, 1.0))};
-    const bench_method methods[3] = {
-        {"curve_proximity", growth_gradient, s}, {"value", growth_value, s}, {"differences", growth_differences, s}};
-    const bench_workload w = {.group = "implicit",
-                              .name = "growth gradient",
-                              .parameter = names[k],
-                              .problems = problems,
-                              .n = size->problems};
-    bench_measure(&w, size, methods, 3);
-  }
-  free(problems);
-  cprox_body_free(box);
-  cprox_body_free(cylinder);
-  cprox_body_free(ellipsoid);
-}
-
 int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
   bench_state s = {.workspace = cprox_workspace_create()};
@@ -608,7 +524,7 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "figure 2")) figure_2(&size, &s);
   if (bench_wanted(&size, "hard families")) hard(&size, &s);
   if (bench_wanted(&size, "point")) points(&size, object, &s);
-  if (bench_wanted(&size, "growth gradient")) growths(&size, object, &s);
+  if (bench_wanted(&size, "growth gradient")) implicit_growths(&size, object, s.workspace);
   for (int k = 1; k <= 6; k++) cprox_body_free(object[k]);
   cprox_workspace_free(s.workspace);
   return 0;

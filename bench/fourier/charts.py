@@ -265,11 +265,13 @@ def nesting(rows, save, legend_below):
 
 PLANNING = {'signed distance': '#999999', 'superquadrics; then distance': '#999999', 'growth distance; then distance': '#999999',
             'no obstacle; then distance': '#cccccc'}
+SMOOTH = {'signed distance': '#999999', 'growth by a cone program; then distance': '#999999',
+          'randomised smoothing; then distance': '#999999'}
 
 
-def planning(rows, save, _):
+def starts(rows, save, what, title, name, colours):
     """Of all starts: free (pale), and near the best that any method found (full); the milliseconds a start."""
-    rows = [row for row in rows if row['workload'].startswith('planning: ')]
+    rows = [row for row in rows if row['workload'].startswith(what + ': ')]
     workloads = list(dict.fromkeys(row['workload'] for row in rows))
     if not workloads:
         return None
@@ -280,24 +282,35 @@ def planning(rows, save, _):
         for parameter, alpha in (('free', 0.35), ('near the best', 1.0)):
             share = {row['method']: 100.0 * (1.0 - float(row['error'])) for row in own if row['parameter'] == parameter}
             axes.barh(methods, [share[method] for method in methods], 0.7, alpha=alpha,
-                      color=[PLANNING.get(method, '#0b6e99') for method in methods])
+                      color=[colours.get(method, '#0b6e99') for method in methods])
         for i, method in enumerate(methods):
             milliseconds = next(float(row['median_us']) for row in own if row['method'] == method) / 1e3
             axes.text(101.0, i, f'{milliseconds:.3g} ms', va='center', fontsize=7)
         axes.set_xlim(0.0, 125.0)
         axes.set_xticks([0, 50, 100])
-        axes.set_title(workload[len('planning: '):], fontsize=9)
+        axes.set_title(workload[len(what) + 2:], fontsize=9)
         axes.grid(axis='y', visible=False)
         axes.tick_params(labelsize=8)
     grid[0][0].invert_yaxis()
     for axes in grid[1]:
         axes.set_xlabel('of 50 starts [%]', fontsize=8)
-    figure.suptitle('Planning problems from random starts: free (pale), near the best (full); blue: Fourier gaps lead')
+    figure.suptitle(title)
     figure.tight_layout()
-    return save(figure, 'fourier_planning')
+    return save(figure, name)
+
+
+def planning(rows, save, _):
+    return starts(rows, save, 'planning', 'Planning problems from random starts: free (pale), near the best (full); blue: Fourier gaps lead',
+                  'fourier_planning', PLANNING)
+
+
+def smooth(rows, save, _):
+    """The growth distance and how others have it."""
+    return starts(rows, save, 'smooth', 'Placing from random starts: free (pale), near the best (full); blue: our growth distance leads',
+                  'fourier_smooth', SMOOTH)
 
 
 def draw(rows, save, legend_below):
     rows = [row for row in rows if row['group'] == 'fourier']
-    for chart in (over_reach, space, cost, gradients, tables, convergence, profile, obstacle, nesting, planning):
+    for chart in (over_reach, space, cost, gradients, tables, convergence, profile, obstacle, nesting, planning, smooth):
         yield chart(rows, save, legend_below)

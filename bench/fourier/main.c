@@ -25,5 +25,6 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "box value and gradient")) fourier_tables(&size);
   if (bench_wanted(&size, "nesting")) fourier_nesting(&size);
   if (bench_wanted(&size, "planning")) fourier_planning(&size);
+  if (bench_wanted(&size, "smooth")) fourier_smooth(&size);
   return 0;
 }

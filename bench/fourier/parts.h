@@ -19,5 +19,6 @@ void fourier_pairs(const bench_size *size);
 void fourier_tables(const bench_size *size);
 void fourier_nesting(const bench_size *size);
 void fourier_planning(const bench_size *size);
+void fourier_smooth(const bench_size *size);
 
 #endif

@@ -14,6 +14,10 @@ void fourier_planning(const bench_size *size) {
   (void)size;
   fprintf(stderr, "fourier: without NLopt the planning problems are left out\n");
 }
+
+void fourier_smooth(const bench_size *size) {
+  (void)size;
+}
 #else
 #include <math.h>
 #include <nlopt.h>
@@ -23,6 +27,7 @@ void fourier_planning(const bench_size *size) {
 
 #include "curve_proximity/cprox.h"
 #include "curve_proximity/cprox_fourier.h"
+#include "peers/cone_growth.h"
 #include "support/random.h"
 
 enum { PARTS = 6, POINTS = 6, SAMPLES = 49, MOST = 3 * POINTS, DENSE = 400 };
@@ -31,6 +36,7 @@ enum { PARTS = 6, POINTS = 6, SAMPLES = 49, MOST = 3 * POINTS, DENSE = 400 };
 typedef struct thing {
   int n;
   cprox_body *part[PARTS], *rounded[PARTS];
+  cone_body cone[PARTS];
   cprox_pose at[PARTS];
   cprox_solid *solid;
 } thing;
@@ -42,7 +48,20 @@ typedef struct freedom {
 } freedom;
 
 /* COARSE to FINE are certified gaps: 17, 33, 65 samples in the plane, 9, 17, 33 in space; the signal has 9. */
-typedef enum measure { NONE, DISTANCE, SUPERQUADRIC, GROWTH, COARSE, MIDDLE, FINE, SIGNAL, GUIDE } measure;
+typedef enum measure {
+  NONE,
+  DISTANCE,
+  SUPERQUADRIC,
+  GROWTH,
+  CONES,    /* the growth distance by a cone program */
+  TILTED,   /* the mean of growth distances of TILTS turned poses */
+  JITTERED, /* the mean of signed distances of JITTERS random poses beside: randomised smoothing */
+  COARSE,
+  MIDDLE,
+  FINE,
+  SIGNAL,
+  GUIDE
+} measure;
 enum { CERTIFIED = 3, GAPS = CERTIFIED + 1 };
 
 /* A signal leads out of where it is below this: where V is above e^-2 of its mean over all places. */
@@ -50,6 +69,10 @@ enum { CERTIFIED = 3, GAPS = CERTIFIED + 1 };
 
 /* Samples of a path are apart by so much that between two of them a ball may come nearer by less than this [m]. */
 #define PAD 0.02
+
+/* By how much poses are turned, and moved [m, rad], where means are taken. */
+enum { TILTS = 8, JITTERS = 16 };
+static const double TILT = 0.02, JITTER = 0.02;
 
 /* Below this V/t its logarithm is continued by the tangent. */
 #define LEAST 0.05
@@ -73,6 +96,7 @@ static void add_box(thing *t, int dimension, const double low[3], const double h
   t->at[t->n] = CPROX_POSE_IDENTITY;
   t->at[t->n].position =
       (cprox_vec3){0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), dimension == 2 ? 0.0 : 0.5 * (low[2] + high[2])};
+  t->cone[t->n] = (cone_body){CONE_BOX, {half.x, half.y, half.z}};
   if (cprox_body_create_box(size, NULL, &t->part[t->n])) abort();
   if (cprox_body_create_superquadric(half, (cprox_vec3){10, 10, 10}, NULL, &t->rounded[t->n])) abort();
   t->n++;
@@ -103,6 +127,7 @@ static void make_solid(thing *t, int dimension) {
 static void make_ball(thing *t, double radius) {
   t->n = 1;
   t->at[0] = CPROX_POSE_IDENTITY;
+  t->cone[0] = (cone_body){CONE_ELLIPSOID, {radius, radius, radius}};
   if (cprox_body_create_sphere(radius, NULL, &t->part[0])) abort();
   if (cprox_body_create_sphere(radius, NULL, &t->rounded[0])) abort();
 }
@@ -159,7 +184,12 @@ static freedom by_pairs(problem *p, measure by, const cprox_pose *pose) {
                                                                                                     : p->moving.part;
       const cprox_obstacle first = cprox_obstacle_at(a[i], p->fixed.at[i]),
                            second = cprox_obstacle_at(b[j], compose(pose, &p->moving.at[j]));
-      if (by == GROWTH) {
+      if (by == CONES) {
+        const cone_answer c = cone_growth(&p->fixed.cone[i], &first.pose, &p->moving.cone[j], &second.pose);
+        if (!c.solved || !(c.value - 1.0 < least.value)) continue;
+        const cprox_vec3 arm = add(c.touch, -1.0, pose->position);
+        least = (freedom){c.value - 1.0, c.by_b, turn(pose->orientation, -1.0, cross(arm, c.by_b))};
+      } else if (by == GROWTH) {
         cprox_growth g;
         cprox_growth_derivatives d;
         if (cprox_growth_gradient(first, second, NULL, p->ws, &g, &d) < 0) continue;
@@ -180,6 +210,28 @@ static freedom by_pairs(problem *p, measure by, const cprox_pose *pose) {
       }
     }
   return least;
+}
+
+/* The mean over poses that are moved and turned in their own axes by the given steps: the same at every call. */
+static freedom mean_of(problem *p, measure by, const cprox_pose *pose, int n, double shift, double angle) {
+  rng r = rng_seed(831);
+  freedom sum = {.value = 0.0};
+  for (int i = 0; i < n; i++) {
+    const cprox_vec3 zero = {0, 0, 0}, v = rng_unit(&r),
+                     w = p->dimension == 2 ? (cprox_vec3){0, 0, i % 2 ? 1 : -1} : rng_unit(&r);
+    const double far = rng_uniform(&r, 0.0, 1.0), turned = p->dimension == 2 ? angle * (1 + i / 2) * 2.0 / n : angle;
+    cprox_vec3 step = add(zero, shift * far, v);
+    if (p->dimension == 2) step.z = 0.0;
+    const cprox_pose by_step = {step, exponential(add(zero, turned, w))}, near = compose(pose, &by_step);
+    const freedom f = by_pairs(p, by, &near);
+    /* of the step's turned axes, and of a turn about the pose's own origin */
+    const cprox_vec3 local = turn(pose->orientation, -1.0, f.position),
+                     about = add(turn(by_step.orientation, 1.0, f.rotation), 1.0, cross(step, local));
+    sum.value += f.value / n;
+    sum.position = add(sum.position, 1.0 / n, f.position);
+    sum.rotation = add(sum.rotation, 1.0 / n, about);
+  }
+  return sum;
 }
 
 static freedom scaled(double value, double by, const cprox_gap_result *r) {
@@ -242,6 +294,8 @@ static freedom free_of(problem *p, const cprox_pose *pose) {
     case FINE: return by_gap(p, (int)p->by - COARSE, pose);
     case SIGNAL: return by_gap(p, CERTIFIED, pose);
     case GUIDE: return guided(p, pose);
+    case TILTED: return mean_of(p, GROWTH, pose, TILTS, 0.0, TILT);
+    case JITTERED: return mean_of(p, DISTANCE, pose, JITTERS, JITTER, JITTER);
     default: return by_pairs(p, p->by, pose);
   }
 }
@@ -396,7 +450,16 @@ static const recipe RECIPES[] = {
     {"gaps from coarse to fine; then distance", 4, {COARSE, MIDDLE, FINE, DISTANCE}},
     {"guide", 1, {GUIDE}},
 };
-enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES };
+
+/* What of these is smooth, and how others measure it. */
+static const recipe SMOOTH[] = {
+    {"signed distance", 1, {DISTANCE}},
+    {"growth distance; then distance", 2, {GROWTH, DISTANCE}},
+    {"growth by a cone program; then distance", 2, {CONES, DISTANCE}},
+    {"growth of 8 tilts; then distance", 2, {TILTED, DISTANCE}},
+    {"randomised smoothing; then distance", 2, {JITTERED, DISTANCE}},
+};
+enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES, N_SMOOTH = sizeof SMOOTH / sizeof *SMOOTH };
 
 /* Penalties grow. A stage that leads begins and ends with weights that let the next one correct it. */
 static const double LEADING[] = {10, 100}, FINAL[] = {10, 100, 1e3, 1e4, 1e6};
@@ -441,7 +504,7 @@ static void make_path(problem *p, unsigned scene) {
   p->goal[0] = -1.4, p->goal[3] = 1.4;
 }
 
-static void make_problem(problem *p, int dimension, bool path, unsigned scene, cprox_workspace *ws) {
+static void make_problem(problem *p, int dimension, bool path, unsigned scene, bool gaps, cprox_workspace *ws) {
   *p = (problem){.ws = ws, .dimension = dimension, .path = path};
   const int d = dimension;
   if (path)
@@ -450,7 +513,7 @@ static void make_problem(problem *p, int dimension, bool path, unsigned scene, c
     make_placing(p);
   make_solid(&p->fixed, d);
   make_solid(&p->moving, d);
-  for (int k = 0; k < GAPS; k++) {
+  for (int k = 0; k < GAPS && gaps; k++) {
     cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
     o.mode = k == CERTIFIED ? CPROX_GAP_MODE_SIGNAL : CPROX_GAP_MODE_CERTIFIED;
     const uint32_t samples[GAPS] = {d == 2 ? 17 : 9, d == 2 ? 33 : 17, d == 2 ? 65 : 33, 9};
@@ -477,23 +540,24 @@ typedef struct tally {
 } tally;
 
 /* From the same starts for all. */
-static void compare(problem *p, bool by_penalties, unsigned scene, size_t starts, tally sum[N_RECIPES]) {
-  double *found = calloc(N_RECIPES * starts, sizeof *found), best = INFINITY;
+static void compare(problem *p, const recipe *recipes, int n, bool by_penalties, unsigned scene, size_t starts,
+                    tally *sum) {
+  double *found = calloc((size_t)n * starts, sizeof *found), best = INFINITY;
   if (!found) abort();
-  for (int m = 0; m < N_RECIPES; m++) {
+  for (int m = 0; m < n; m++) {
     rng r = rng_seed(83 + scene);
     const double begin = bench_thread_seconds();
     for (size_t i = 0; i < starts; i++) {
       double x[MOST];
       start(p, &r, x);
-      follow(p, &RECIPES[m], by_penalties, x);
+      follow(p, &recipes[m], by_penalties, x);
       const bool is_free = clearance(p, x) >= -(p->path ? PAD : 1e-3);
       found[(size_t)m * starts + i] = is_free ? objective(p, x, NULL) : (double)INFINITY;
       best = fmin(best, found[(size_t)m * starts + i]);
     }
     sum[m].seconds += bench_thread_seconds() - begin;
   }
-  for (int m = 0; m < N_RECIPES; m++)
+  for (int m = 0; m < n; m++)
     for (size_t i = 0; i < starts; i++) {
       const double x = found[(size_t)m * starts + i];
       sum[m].starts++, sum[m].free += isfinite(x), sum[m].near += x <= 1.1 * best;
@@ -501,35 +565,45 @@ static void compare(problem *p, bool by_penalties, unsigned scene, size_t starts
   free(found);
 }
 
-void fourier_planning(const bench_size *size) {
+/* The placing problems, or all of them, by these recipes: rows of workloads `what`. */
+static void plan_all(const bench_size *size, const char *what, const recipe *recipes, int n, bool all) {
   static const char *const names[2][2] = {{"an L into a U", "a prism into a bracket"},
                                           {"a disc's path", "a ball's path"}};
   cprox_workspace *ws = cprox_workspace_create();
   const size_t starts = size->problems < 50 ? size->problems : 50;
-  for (int path = 0; path < 2; path++)
+  for (int path = 0; path < (all ? 2 : 1); path++)
     for (int dimension = 2; dimension <= 3; dimension++) {
-      if (getenv("ONLY") && atoi(getenv("ONLY")) != 2 * path + dimension - 2) continue;
       const unsigned scenes = path ? 10 : 1;
       tally sum[2][N_RECIPES] = {0};
       for (unsigned scene = 0; scene < scenes; scene++) {
         problem p;
-        make_problem(&p, dimension, path, scene, ws);
-        for (int k = 0; k < 2; k++) compare(&p, k == 1, scene, (starts + scenes - 1) / scenes, sum[k]);
+        make_problem(&p, dimension, path, scene, all, ws);
+        for (int k = 0; k < 2; k++) compare(&p, recipes, n, k == 1, scene, (starts + scenes - 1) / scenes, sum[k]);
         for (int k = 0; k < GAPS; k++) cprox_gap_free(p.gap[k]);
         free_thing(&p.fixed), free_thing(&p.moving);
       }
       for (int k = 0; k < 2; k++)
-        for (int m = 0; m < N_RECIPES; m++) {
+        for (int m = 0; m < n; m++) {
           const tally *t = &sum[k][m];
-          const double n = (double)t->starts, us = 1e6 * t->seconds / n;
+          const double tried = (double)t->starts, us = 1e6 * t->seconds / tried;
           char workload[80];
-          snprintf(workload, sizeof workload, "planning: %s by %s", names[path][dimension - 2],
+          snprintf(workload, sizeof workload, "%s: %s by %s", what, names[path][dimension - 2],
                    k ? "penalties" : "constraints");
           /* the last number: the share of starts that do not end so */
-          fourier_row(workload, RECIPES[m].name, "free", us, (double)t->free, 1.0 - (double)t->free / n, 0, 0);
-          fourier_row(workload, RECIPES[m].name, "near the best", us, (double)t->near, 1.0 - (double)t->near / n, 0, 0);
+          fourier_row(workload, recipes[m].name, "free", us, (double)t->free, 1.0 - (double)t->free / tried, 0, 0);
+          fourier_row(workload, recipes[m].name, "near the best", us, (double)t->near, 1.0 - (double)t->near / tried, 0,
+                      0);
         }
     }
   cprox_workspace_free(ws);
+}
+
+void fourier_planning(const bench_size *size) {
+  plan_all(size, "planning", RECIPES, N_RECIPES, true);
+}
+
+void fourier_smooth(const bench_size *size) {
+  _Static_assert(N_SMOOTH <= N_RECIPES, "a tally has room for all");
+  plan_all(size, "smooth", SMOOTH, N_SMOOTH, false);
 }
 #endif
