@@ -654,8 +654,8 @@ CASE(witness_points_attain_upper_however_loose_epsilon_is) {
   }
 }
 
-/* Bounds that contradict each other end the program where CPROX_CHECKED is on, as in every build of tests; bounds that
- * do not, pass. */
+/* Bounds that contradict each other end the program where CPROX_CHECKED is on, as in what tests of the core link; bounds
+ * that do not, pass. */
 CASE(bounds_that_contradict_each_other_are_not_hidden) {
   const query q = {.limit = -1.0, .options = CPROX_OPTIONS_DEFAULT, .workspace = ws};
   for (int contradict = 0; contradict < 2; contradict++) {
