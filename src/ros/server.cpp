@@ -202,10 +202,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
                              [this](const Call &call, const AtWork &at_work, auto &request, auto &response) {
                                Turn turn(turns_, call.client, waitUntil(call, at_work));
                                response.frame_id = frames_.fixedFrame();
-                               std::shared_ptr<const LevelDrawing> drawing;
                                const TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
-                               constraints_.answer(request, response, drawing, budget, &turn);
-                               if (drawing) markers_->show(std::move(drawing));
+                               constraints_.answer(request, response, budget, &turn);
                              });
   serve<MeasurePairs>("measure_pairs", SCENE_TIMES_WIRE,
                       [this](const Call &call, const AtWork &at_work, auto &request, auto &response) {
@@ -237,7 +235,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, turns_, stop_);
   diagnostics_ = std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *sensors_,
                                                *planning_scene_, frames_, live_);
-  reconfigure_ = std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { setThreads(threads); });
+  reconfigure_ =
+      std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { turns_.setSlots(threads); });
   control_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &control_queue_);
   control_spinner_->start();
   threads_.start();
@@ -245,10 +244,6 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   ROS_INFO("ready: %zu links, %zu objects%s%s, %zu services", snapshot->robot() ? snapshot->robot()->links().size() : 0,
            snapshot->objects().size() + snapshot->moving().size(), parameters_.scene_file.empty() ? "" : " of ",
            parameters_.scene_file.c_str(), services_.size());
-}
-
-void ProximityServer::setThreads(int threads) {
-  turns_.setSlots(threads);
 }
 
 ProximityServer::~ProximityServer() {

@@ -85,7 +85,6 @@ class ProximityServer {
   std::vector<std::string> applyChange(SceneChange &change, const Snapshot &before);
   void loadScene();
   void restoreScene();
-  void setThreads(int threads);
   std::size_t requestLimit() const;
 
   const Parameters parameters_;

@@ -23,21 +23,12 @@
 namespace curve_proximity {
 namespace {
 
-/** The provider whose values are a field over places, and not a distance. */
-constexpr const char *GAP = "curve_proximity/FourierGap";
-
 constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 
 /* ---- from messages ---- */
 
 bool hasShapes(const CollisionObject &side) {
   return !side.primitives.empty() || !side.meshes.empty() || !side.planes.empty() || !side.bodies.empty();
-}
-
-bool hasPose(const CollisionObject &side) {
-  const geometry_msgs::Point &p = side.pose.position;
-  const geometry_msgs::Quaternion &q = side.pose.orientation;
-  return p.x != 0 || p.y != 0 || p.z != 0 || q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0;
 }
 
 /** A side as described, or the scene's object of that id; its pose in the fixed frame, unless it rides a curve. */
@@ -55,12 +46,12 @@ ObjectDescription toSide(const CollisionObject &message, const Snapshot &snapsho
     ConstraintSide found = sideOf(snapshot, message.id, places);
     side = std::move(found.object);
     resources = std::move(found.resources);
-    if (found.is_on_robot && hasPose(message))
+    if (found.is_on_robot && !isUnset(message.pose))
       throw Error("'" + message.id + "' is on the robot: its joint values say where it is, leave its pose unset");
     if (rides) side.pose = Eigen::Isometry3d::Identity();
-    if (!hasPose(message)) return side;
+    if (isUnset(message.pose)) return side;
     side.pose = toIsometry(message.pose);
-  } else if (hasPose(message)) {
+  } else if (!isUnset(message.pose)) {
     side.pose = toIsometry(message.pose);
   }
   if (!rides) side.pose = lookup.toFixed(message.header.frame_id, message.header.stamp) * side.pose;
@@ -309,7 +300,7 @@ ConstraintCase Constraints::toCase(const ConstraintQuery &message, Work &work) c
 }
 
 void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
-                         std::shared_ptr<const LevelDrawing> &drawing, const TimeBudget &budget, Turn *turn) {
+                         const TimeBudget &budget, Turn *turn) {
   if (providers_->all().empty()) throw Error("~constraint_providers names none");
   const memory::Share share(checkLimits(request), static_cast<std::size_t>(parameters_.max_request_mb) << 20);
   std::vector<SensorState> sensors = live_.sensors.states();
@@ -349,16 +340,13 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
     response.scene.joint_state_age = std::fmax(response.scene.joint_state_age, work.joints_age);
 
     // The first row that failed is told.
-    std::shared_ptr<const Constraint> gap;
     for (const ConstraintRow &row : rows) {
       if (row.status < 0 && failed++ == 0)
         response.message = "case " + std::to_string(i) + " ('" + row.id + "')" +
                            (row.provider.empty() ? "" : ", provider '" + row.provider + "'") + ": " + row.message;
       response.results.push_back(constraintMessage(row, described));
       doubts.apply(response.results.back());
-      if (row.constraint && row.status >= 0 && providers_->find(row.provider)->spec.type == GAP) gap = row.constraint;
     }
-    if (gap) drawing = std::make_shared<const LevelDrawing>(LevelDrawing{std::move(gap), std::move(described)});
   }
   response.scene.transform_age = work.lookup.oldest();
   doubts.tell(response.warnings);

@@ -13,7 +13,6 @@
 
 #include "../../providers/constraint_case.h"
 #include "../../providers/provider_set.h"
-#include "markers/level_markers.h"
 #include "parameters/parameters.h"
 #include "queries/surroundings.h"
 #include "queries/time_budget.h"
@@ -32,10 +31,9 @@ class Constraints {
   Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames, const FurtherRobots &robots);
 
   /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row, and so
-   * does what is not begun when the budget is over.
-   * drawing: the last case that a Fourier gap has answered, if any. */
+   * does what is not begun when the budget is over. */
   void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
-              std::shared_ptr<const LevelDrawing> &drawing, const TimeBudget &budget, Turn *turn);
+              const TimeBudget &budget, Turn *turn);
 
   /** A sentence for each provider that failed to load. */
   std::vector<std::string> failures() const;

@@ -63,8 +63,8 @@ void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
 
 } // namespace
 
-MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion, const LevelDrawing *levels,
-                      const std::string &frame, const MarkerResources &resources) {
+MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion, const std::string &frame,
+                      const MarkerResources &resources) {
   Canvas canvas(frame);
   StandingBodies objects;
   addScene(canvas, scene, resources.objects, objects);
@@ -78,7 +78,6 @@ MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawin
     addRobot(canvas, *curves->snapshot, curves->links, resources.robot, everything);
   }
   if (curves) addCurves(canvas, scene, *curves, everything);
-  if (levels) addLevels(canvas, *levels, resources.objects);
   return canvas.take();
 }
 
@@ -99,13 +98,6 @@ void MarkerPublisher::show(std::shared_ptr<const Drawing> drawing) {
   changed_ = true;
 }
 
-void MarkerPublisher::show(std::shared_ptr<const LevelDrawing> levels) {
-  if (!isWatched()) return;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  levels_ = std::move(levels);
-  changed_ = true;
-}
-
 void MarkerPublisher::showState(std::shared_ptr<const Drawing> drawing) {
   if (!isWatched()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -118,7 +110,6 @@ void MarkerPublisher::forget() {
   curves_.reset();
   motion_.reset();
   state_.reset();
-  levels_.reset();
   changed_ = true;
 }
 
@@ -126,7 +117,6 @@ void MarkerPublisher::publishIfNew() {
   if (!isWatched()) return forget();
   const SnapshotPtr scene = scene_.snapshot();
   std::shared_ptr<const Drawing> curves, motion;
-  std::shared_ptr<const LevelDrawing> levels;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!changed_ && shown_scene_ == scene->version()) return;
@@ -134,9 +124,8 @@ void MarkerPublisher::publishIfNew() {
     shown_scene_ = scene->version();
     curves = curves_;
     motion = motion_ ? motion_ : state_;
-    levels = levels_;
   }
-  publisher_.publish(toMarkers(*scene, curves.get(), motion.get(), levels.get(), frame_, resources_));
+  publisher_.publish(toMarkers(*scene, curves.get(), motion.get(), frame_, resources_));
 }
 
 } // namespace curve_proximity

@@ -13,7 +13,6 @@
 #include <mutex>
 #include <string>
 
-#include "markers/level_markers.h"
 #include "queries/queries.h"
 
 namespace curve_proximity {
@@ -30,16 +29,13 @@ struct MarkerResources {
  *    robot    the robot: along a trajectory at its closest moment, each link coloured by its clearance from the objects
  *    swept    the robot on its way
  *    sweep    the way of the point of the robot that comes closest
- *    sides    the two bodies that a Fourier gap was last asked about, and
- *    levels   the level sets of the gap over the places of the first
  *    pairs    the closest pairs, each a line with its ends; labels: how long they are
  *  Drawings may be null. Pairs are shown only as long as the scene is the one they were measured in.
  *
  *  Colours come from plain distances at sampled parameters: they are for the eye. The certified answers are the pairs
  * with their labels, and the open hulls. */
 visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion,
-                                          const LevelDrawing *levels, const std::string &frame,
-                                          const MarkerResources &resources);
+                                          const std::string &frame, const MarkerResources &resources);
 
 /** Publishes ~markers, latched, a few times a second at most. Where nobody listens nothing is drawn, and no drawing is
  *  kept: it would hold the scene that it was made in. */
@@ -51,7 +47,6 @@ class MarkerPublisher {
   /** What is to be shown next: its curves in the place of the last ones, its motion in that of the last one. Never
    * waits for what is being published. */
   void show(std::shared_ptr<const Drawing> drawing);
-  void show(std::shared_ptr<const LevelDrawing> levels);
 
   /** The robot as it stands: shown as long as there is no motion. */
   void showState(std::shared_ptr<const Drawing> drawing);
@@ -70,7 +65,6 @@ class MarkerPublisher {
   const MarkerResources resources_;
   std::mutex mutex_;
   std::shared_ptr<const Drawing> curves_, motion_, state_;
-  std::shared_ptr<const LevelDrawing> levels_;
   bool changed_ = true;
   std::uint64_t shown_scene_ = 0;
   ros::Publisher publisher_;

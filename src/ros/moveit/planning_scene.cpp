@@ -17,18 +17,10 @@ using moveit::PlanningScene;
 
 /* ---- messages ---- */
 
-bool isUnset(const geometry_msgs::Quaternion &q) {
-  return q.x == 0.0 && q.y == 0.0 && q.z == 0.0 && q.w == 0.0;
-}
-
-bool isUnset(const geometry_msgs::Pose &pose) {
-  const geometry_msgs::Point &p = pose.position;
-  return p.x == 0.0 && p.y == 0.0 && p.z == 0.0 && isUnset(pose.orientation);
-}
-
 /** To MoveIt a quaternion of zeros is no rotation. */
 geometry_msgs::Pose withRotation(geometry_msgs::Pose pose) {
-  if (isUnset(pose.orientation)) pose.orientation.w = 1.0;
+  const geometry_msgs::Quaternion &q = pose.orientation;
+  if (q.x == 0.0 && q.y == 0.0 && q.z == 0.0 && q.w == 0.0) pose.orientation.w = 1.0;
   return pose;
 }
 

@@ -198,7 +198,6 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
             Doubts(parameters_.max_age, snapshot, response.scene.sensors, live_.unknowns.all()),
             response,
             drawing,
-            budget_ms,
             0,
             0,
             nullptr};

@@ -205,7 +205,6 @@ class Queries {
     Doubts doubts;
     QueryResponse &response;
     Drawing &drawing;
-    double budget_ms;
     std::size_t done;                    /* of the request's curves, paths and trajectories */
     std::size_t trajectories;            /* of the robot, so far */
     std::unique_ptr<CurveSearch> search; /* null as long as there is no curve */
