@@ -323,6 +323,7 @@ class RobotReader {
   void fault(const std::string &sentence) {
     if (!options_.allow_missing_geometry) throw Error(sentence);
     leaveOut(sentence);
+    robot_->coverage_.add(Gap::PARTIAL, sentence, Missing::GEOMETRY);
   }
 
   struct LoadedMesh {
