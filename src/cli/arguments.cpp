@@ -2,6 +2,7 @@
 #include "arguments.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
@@ -135,6 +136,24 @@ std::vector<std::string> readNames(const Words &words, const std::string &option
     if (out.back().empty())
       throw BadUsage(option + " is '" + text + "'; it must be names with commas between them: \"shelf, table\"");
     begin = comma + 1;
+  }
+  return out;
+}
+
+/* "arm_description=/data/arm, hand=/data/hand" */
+std::map<std::string, std::string> readPackages(const Words &words) {
+  std::map<std::string, std::string> out;
+  for (const std::string &entry : readNames(words, "--package")) {
+    const std::size_t equals = entry.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == entry.size())
+      throw BadUsage(
+          "--package is '" + words.text("--package") +
+          "'; it must be names with their folders, and commas between them: \"arm=/data/arm, hand=/data/hand\"");
+    const std::string folder = entry.substr(equals + 1);
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) throw BadUsage("--package: " + folder + " is no folder");
+    if (!out.emplace(entry.substr(0, equals), std::filesystem::absolute(folder).string()).second)
+      throw BadUsage("--package: '" + entry.substr(0, equals) + "' is given twice");
   }
   return out;
 }
@@ -465,6 +484,8 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   out.skipped = split.has("--skipped") || out.verbose;
   if (split.has("--shortest-way") && !out.shortest_way) throw BadUsage("--shortest-way needs --trajectory T.yaml");
   out.timings = split.has("--timings") || out.verbose;
+  out.allow_missing_geometry = split.has("--allow-missing-geometry");
+  out.packages = readPackages(split);
   if (split.has("--mesh-tolerance"))
     out.mesh_tolerance = readNumber(split, "--mesh-tolerance", 0.0, true, "of at least 0 (metres)");
   out.threads = std::max(1u, std::thread::hardware_concurrency());

@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_CLI_ARGUMENTS_H
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -79,9 +80,11 @@ struct Arguments {
   bool verbose = false;              /**< at the end, how many rows there were, and which */
   bool strict = false;               /**< a row that does not cover all that was given is one without an answer */
   std::size_t threads = 1;
-  bool skipped = false;        /**< tell on standard error what takes no part, and why */
-  bool timings = false;        /**< tell on standard error how long loading takes */
-  double mesh_tolerance = 0.0; /**< [m] of ResourceOptions */
+  bool skipped = false;                        /**< tell on standard error what takes no part, and why */
+  bool timings = false;                        /**< tell on standard error how long loading takes */
+  double mesh_tolerance = 0.0;                 /**< [m] of ResourceOptions */
+  bool allow_missing_geometry = false;         /**< of RobotOptions */
+  std::map<std::string, std::string> packages; /**< folders of packages by name */
 };
 
 /** Reads the words after the program's name. Throws BadUsage with one line for words, options and values that are not

@@ -15,6 +15,8 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <regex>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -22,6 +24,7 @@
 #include "commands.h"
 #include "csv.h"
 #include "failure.h"
+#include "json.h"
 #include "trajectory.h"
 #include "world.h"
 
@@ -61,21 +64,50 @@ class Scratch {
     return file_;
   }
 
-  /* All that was written, to standard output. */
-  void print() const {
+  /* All that was written. */
+  std::string text() const {
+    std::string out;
     std::array<char, 1 << 16> block{};
     lseek(file_, 0, SEEK_SET);
     for (ssize_t n = 0; (n = read(file_, block.data(), block.size())) != 0;) {
       if (n < 0 && errno == EINTR) continue;
-      if (n < 0 || std::fwrite(block.data(), 1, static_cast<std::size_t>(n), stdout) != static_cast<std::size_t>(n))
-        throw std::runtime_error(std::string("standard output: writing failed: ") + std::strerror(errno));
+      if (n < 0) throw BadUsage(std::string("the report of cprox_check cannot be read: ") + std::strerror(errno));
+      out.append(block.data(), static_cast<std::size_t>(n));
     }
-    std::fflush(stdout);
+    return out;
   }
 
  private:
   int file_;
 };
+
+/* A line of cprox_check, `ID: proven: farther than X m everywhere (…)` for example, as JSON. */
+std::string jsonLine(const std::string &line) {
+  static const std::regex form(
+      "(?:(.*?): )?(?:(proven): ((not )?farther than ([^ ]+) m.*)|(refused): (.*)|(nothing is claimed))");
+  std::smatch found;
+  Json row;
+  if (!std::regex_match(line, found, form)) {
+    row["message"] = line;
+    return textOfJson(row);
+  }
+  row["id"] = found[1].str();
+  row["proof"] = found[6].matched ? "refused" : !found[2].matched ? "none" : found[4].matched ? "near" : "apart";
+  row["delta"] = found[5].matched ? Json(std::stod(found[5])) : Json();
+  row["message"] = found[2].matched ? found[3].str() : found[6].matched ? found[7].str() : found[8].str();
+  return textOfJson(row);
+}
+
+void print(const std::string &report, bool json) {
+  std::string out = report;
+  if (json) {
+    out.clear();
+    std::istringstream lines(report);
+    for (std::string line; std::getline(lines, line);) out += jsonLine(line) + "\n";
+  }
+  if (std::fwrite(out.data(), 1, out.size(), stdout) != out.size() || std::fflush(stdout) != 0)
+    throw std::runtime_error(std::string("standard output: writing failed: ") + std::strerror(errno));
+}
 
 /* cprox_check at work on one block of rows. */
 class Checker {
@@ -93,11 +125,11 @@ class Checker {
   }
 
   /* Waits for its end, prints its report; its exit code. */
-  int finish() {
+  int finish(bool json) {
     int status = 0;
     while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
     }
-    report_.print();
+    print(report_.text(), json);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
@@ -109,7 +141,7 @@ class Checker {
 /* Several of them: rows are handed out in blocks, reports are printed in the order of the rows. */
 class Checkers {
  public:
-  Checkers(const std::string &certificates, std::size_t threads) : threads_(threads) {
+  Checkers(const std::string &certificates, std::size_t threads, bool json) : threads_(threads), json_(json) {
     std::ifstream stream(certificates, std::ios::binary);
     bytes_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
     if (!stream) throw BadUsage(certificates + ": cannot be read");
@@ -168,7 +200,7 @@ class Checkers {
   }
 
   void collect() {
-    const int code = working_.front()->finish();
+    const int code = working_.front()->finish(json_);
     working_.pop_front();
     if (code != 0 && code != 1)
       throw BadUsage("cprox_check did not come to an end of its own (exit code " + std::to_string(code) + ")");
@@ -176,6 +208,7 @@ class Checkers {
   }
 
   const std::size_t threads_;
+  const bool json_;
   std::string bytes_, head_, movers_;
   std::string_view rest_;
   std::size_t in_block_ = 0, rows_ = 0;
@@ -253,7 +286,7 @@ void tellPairs(const Arguments &arguments, Checkers &checkers) {
 int checkCertificates(const Arguments &arguments, Console &console) {
   if (!std::filesystem::exists(arguments.certificate))
     throw BadUsage(arguments.certificate + ": there is no such file");
-  Checkers checkers(arguments.certificate, arguments.threads);
+  Checkers checkers(arguments.certificate, arguments.threads, arguments.json);
   if (!arguments.trajectory.empty())
     tellTrajectory(arguments, console, checkers);
   else if (arguments.against.empty())

@@ -13,6 +13,7 @@
 #include "console.h"
 #include "failure.h"
 #include "help.h"
+#include "packages.h"
 
 namespace {
 
@@ -21,6 +22,7 @@ using namespace curve_proximity::cli;
 int run(const std::vector<std::string> &words, Console &console) {
   const Arguments arguments = parseArguments(words);
   if (arguments.quiet) console.beQuiet();
+  namePackages(arguments.packages);
   switch (arguments.action) {
     case Action::HELP: std::fputs(helpText(arguments.topic).c_str(), stdout); return kAllAnswered;
     case Action::COMPLETION: std::fputs(bashCompletion().c_str(), stdout); return kAllAnswered;

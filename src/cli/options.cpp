@@ -283,9 +283,14 @@ const std::vector<Option> &options() {
       {"--mesh-tolerance", "M", "queries report robust",
        "replace meshes by ones with fewer triangles that contain them: nothing is clear that the mesh would hit; what "
        "is closer than 2 M metres may read as a hit"},
+      {"--allow-missing-geometry", "", "queries report robust",
+       "go on without collision elements of the robot that cannot be used; the answers are 'partial', never clear"},
+      {"--package", "LIST", "queries report pairs constraints certify check robust",
+       "folders of packages that package:// names, \"arm=/data/arm, hand=/data/hand\"; they come before the folders "
+       "above the URDF, ROS_PACKAGE_PATH, and share/ of CMAKE_PREFIX_PATH and /usr"},
       {"--out", "FILE", "queries report pairs constraints certify merge robust",
        "the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page"},
-      {"--json", "", "queries pairs constraints merge robust",
+      {"--json", "", "queries pairs constraints merge check robust",
        "a JSON object a row, on a line of its own, by the names of the CSV's columns: an infinite number is the text "
        "\"inf\" or \"-inf\", a field without a value is null"},
       {"--strict", "", "queries pairs robust",

@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr int kDeepestFolder = 6; /* folders below an entry of ROS_PACKAGE_PATH */
 
+std::map<std::string, std::string> named; /* by namePackages() */
+
 /* Is this folder the package of that name? Its package.xml says so in <name>. */
 bool isPackage(const fs::path &folder, const std::string &name) {
   std::ifstream stream(folder / "package.xml");
@@ -57,8 +59,13 @@ std::string crawl(const fs::path &folder, const std::string &name, int depth) {
 
 } // namespace
 
+void namePackages(const std::map<std::string, std::string> &folders) {
+  named = folders;
+}
+
 std::function<std::string(const std::string &)> packageFinder(const std::string &beside) {
   return [beside](const std::string &name) -> std::string {
+    if (const auto found = named.find(name); found != named.end()) return found->second;
     std::error_code error;
     for (fs::path folder = fs::absolute(beside, error); folder.has_relative_path(); folder = folder.parent_path()) {
       if (isPackage(folder, name)) return folder.string();

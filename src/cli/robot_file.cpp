@@ -22,8 +22,9 @@ std::string readText(const std::string &path) {
 
 } // namespace
 
-std::shared_ptr<const Robot> readRobot(const std::string &path, double mesh_tolerance) {
+std::shared_ptr<const Robot> readRobot(const std::string &path, double mesh_tolerance, bool allow_missing_geometry) {
   RobotOptions options;
+  options.allow_missing_geometry = allow_missing_geometry;
   options.resources.base_dir = folderOf(path);
   options.resources.find_package = packageFinder(options.resources.base_dir);
   options.resources.mesh_tolerance = mesh_tolerance;

@@ -15,7 +15,8 @@
 namespace curve_proximity::cli {
 
 /** Reads a URDF; mesh files without a scheme are relative to its folder. Throws BadUsage with the file's name. */
-std::shared_ptr<const Robot> readRobot(const std::string &path, double mesh_tolerance = 0.0);
+std::shared_ptr<const Robot> readRobot(const std::string &path, double mesh_tolerance = 0.0,
+                                       bool allow_missing_geometry = false);
 
 /** Throws BadUsage with the file's name where it cannot be read or is no SRDF. */
 Srdf readSrdf(const std::string &path);

@@ -34,7 +34,8 @@ PlacedRobot readPlaced(const Arguments &arguments, const SceneFile &file, const 
                        Warnings &warnings) {
   PlacedRobot out;
   if (arguments.robot.empty()) return out;
-  out.robot = robots ? robots(arguments.robot) : readRobot(arguments.robot, arguments.mesh_tolerance);
+  out.robot = robots ? robots(arguments.robot)
+                     : readRobot(arguments.robot, arguments.mesh_tolerance, arguments.allow_missing_geometry);
   for (const std::string &sentence : out.robot->warnings()) warnings.add(arguments.robot + ": " + sentence);
   if (!arguments.srdf.empty()) out.srdf = readSrdf(arguments.srdf);
   try {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """--certificate and check: what is written is proven by the program cprox_check, for these inputs and for no others."""
+import json
 import math
 import os
 import random
@@ -57,9 +58,9 @@ class CertificateTest(Case):
         self.assertEqual(answer.code, answer.code_of_verdicts(), answer.err)
         return answer
 
-    def check(self, scene='scene.yaml', curves='curves.csv'):
+    def check(self, *more, scene='scene.yaml', curves='curves.csv'):
         return cprox('check', self.certificates, '--curves', os.path.join(self.folder, curves),
-                     '--scene', os.path.join(self.folder, scene))
+                     '--scene', os.path.join(self.folder, scene), *more)
 
     def every_answer_of_a_distance_is_proven(self):
         answer = self.write('distance', ROWS, SCENE)
@@ -104,6 +105,22 @@ class CertificateTest(Case):
             checked = self.check()
             self.assertEqual(checked.code, 1, name + checked.out)
             self.assertIn('refused', checked.out, name)
+
+    def as_json_a_row_says_the_same(self):
+        bad = 'bad,bezier,1,0,1,0,2,0,0'
+        self.certificates = os.path.join(self.folder, 'answers.cpc')
+        self.ask('tolerance', [*ROWS[:2], bad], SCENE, '--delta', '0.5', '--certificate', self.certificates)
+        lines, checked = self.check().out.splitlines(), self.check('--json')
+        self.assertEqual(checked.code, 1)
+        rows = [json.loads(line) for line in checked.out.splitlines()]
+        self.assertEqual([(row['id'], row['proof']) for row in rows], [('passing', 'apart'), ('through', 'near'), ('bad', 'none')])
+        self.assertEqual(rows[0]['delta'], 0.5)
+        self.assertIsNone(rows[2]['delta'])
+        for line, row in zip(lines, rows):
+            self.assertTrue(line.endswith(row['message']), line)
+        with open(self.certificates, 'ab') as file:
+            file.write(b'\0')
+        self.assertEqual(json.loads(self.check('--json').out.splitlines()[-1])['proof'], 'refused')
 
     def rows_without_an_answer_claim_nothing(self):
         self.certificates = os.path.join(self.folder, 'answers.cpc')

@@ -104,6 +104,14 @@ class Robot(Case):
         self.assertRegex(answer.err, "skipped: .*'tip'")
         self.assertEqual(answer.code, 0)
 
+    def geometry_that_cannot_be_used_is_left_out_where_allowed_and_never_clear(self):
+        path = self.file('gone.urdf', ARM.replace('<link name="tip"/>', '<link name="tip"><collision><geometry><mesh filename="gone.stl"/></geometry></collision></link>'))
+        words = ['tolerance', '--delta', '0.1', '--curves', self.file('curves.csv', BESIDE), '--robot', path]
+        self.assertEqual(cprox(*words).code, 2)
+        answer = cprox(*words, '--allow-missing-geometry')
+        self.assertEqual((answer.code, answer.rows[0]['status'], answer.rows[0]['verdict']), (3, 'partial', 'undecided'))
+        self.assertIn('gone.stl', answer.err)
+
     def a_urdf_that_cannot_be_used_is_refused(self):
         for text in ('', 'no xml', '<robot name="r"/>', ARM.replace('radius="0.1"', 'radius="-1"'), ARM.replace('<sphere radius="0.1"/>', '<capsule/>'),
                      ARM.replace('<sphere radius="0.1"/>', '<mesh filename="none.stl"/>')):

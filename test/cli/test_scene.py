@@ -85,6 +85,16 @@ class Shapes(Case):
         self.assertAnswer(row, 3, slack=1e-6)
         self.assertRefused(self.ask('distance', [ORIGIN], scene), 'thing', 'things')
 
+    def package_names_a_folder_without_a_package_xml(self):
+        os.makedirs(self.folder + '/here/meshes')
+        self.file('here/meshes/t.stl', 'solid t\nfacet normal 0 0 0\nouter loop\nvertex 3 0 0\nvertex 5 1 0\nvertex 5 0 1\nendloop\nendfacet\nendsolid t\n')
+        scene = one('meshes: [{resource: "package://things/meshes/t.stl"}]')
+        answer = self.ask('distance', [ORIGIN], scene, '--package', f'others={self.folder}, things={self.folder}/here')
+        self.assertAnswer(answer.row('o'), 3, slack=1e-6)
+        for words in (f'others={self.folder}', f'things={self.folder}/gone', 'things', '=here', f'things={self.folder}, things={self.folder}'):
+            with self.subTest(words=words):
+                self.assertEqual(self.ask('distance', [ORIGIN], scene, '--package', words).code, 2)
+
     def ask_with_packages(self, scene):
         return cprox('distance', '--curves', self.file('curves.csv', ORIGIN), '--scene', self.file('scene.yaml', scene),
                      env={'ROS_PACKAGE_PATH': '/nowhere:' + self.folder + '/src'})
