@@ -40,8 +40,6 @@ constexpr const char *CONSTRAINTS =
 constexpr const char *CERTIFIED = "shards, files that 'merge' joins";
 constexpr const char *MERGED = "the rows of the dataset: doc/datasets.md has the columns";
 
-constexpr const char *QUERIES = "distance tolerance collision profile nearest time-of-contact violations";
-
 } // namespace
 
 const std::vector<Command> &commands() {
@@ -323,8 +321,12 @@ std::vector<std::string> commandsOf(const Option &option) {
   std::vector<std::string> out;
   std::istringstream text(option.commands);
   for (std::string word; text >> word;) {
-    std::istringstream all(word == "queries" ? QUERIES : word);
-    while (all >> word) out.push_back(word);
+    if (word == "queries") {
+      for (const Command &command : commands())
+        if (command.action == Action::CURVES) out.emplace_back(command.word);
+    } else {
+      out.push_back(word);
+    }
   }
   return out;
 }

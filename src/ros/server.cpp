@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "server.h"
 
+#include <curve_proximity/ClearanceProfile.h>
+#include <curve_proximity/Collision.h>
+#include <curve_proximity/Distance.h>
+#include <curve_proximity/ListViolations.h>
+#include <curve_proximity/NearestPairs.h>
+#include <curve_proximity/TimeOfContact.h>
+#include <curve_proximity/Tolerance.h>
 #include <ros/console.h>
 
 #include <algorithm>

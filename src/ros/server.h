@@ -5,16 +5,9 @@
 
 #include <curve_proximity/ApplyScene.h>
 #include <curve_proximity/AttachedCollisionObject.h>
-#include <curve_proximity/ClearanceProfile.h>
-#include <curve_proximity/Collision.h>
 #include <curve_proximity/CollisionObject.h>
-#include <curve_proximity/Distance.h>
 #include <curve_proximity/EvaluateConstraints.h>
 #include <curve_proximity/GetScene.h>
-#include <curve_proximity/ListViolations.h>
-#include <curve_proximity/NearestPairs.h>
-#include <curve_proximity/TimeOfContact.h>
-#include <curve_proximity/Tolerance.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
