@@ -293,6 +293,28 @@ Result ask(const py::object &mover, const py::object &obstacles, const py::kwarg
   return {result, asked};
 }
 
+py::dict growthDict(const cprox_growth &growth) {
+  py::dict out;
+  out["status"] = cprox_status_name(growth.status);
+  out["lower"] = growth.lower;
+  out["upper"] = growth.upper;
+  out["normal"] = fromVector(growth.normal);
+  return out;
+}
+
+py::dict growthDict(const cprox_growth &growth, const cprox_growth_derivatives &d, const Workspace &workspace) {
+  py::dict out = growthDict(growth);
+  out["valid"] = d.valid;
+  out["valid_position"] = d.valid_position;
+  out["reason"] = d.valid ? "" : cprox_workspace_error(workspace.get());
+  out["a_position"] = fromVector(d.a_position);
+  out["a_rotation"] = fromVector(d.a_rotation);
+  out["b_position"] = fromVector(d.b_position);
+  out["b_rotation"] = fromVector(d.b_rotation);
+  out["touch"] = fromVector(d.touch);
+  return out;
+}
+
 } // namespace
 
 void addQueries(py::module &module) {
@@ -533,13 +555,7 @@ void addQueries(py::module &module) {
       "growth_distance",
       [](const Obstacle &a, const Obstacle &b, const py::kwargs &given) {
         const cprox_options options = optionsOf(given);
-        const cprox_growth growth = growthDistance(a.obstacle, b.obstacle, options, threadWorkspace());
-        py::dict out;
-        out["status"] = cprox_status_name(growth.status);
-        out["lower"] = growth.lower;
-        out["upper"] = growth.upper;
-        out["normal"] = fromVector(growth.normal);
-        return out;
+        return growthDict(growthDistance(a.obstacle, b.obstacle, options, threadWorkspace()));
       },
       py::arg("a"), py::arg("b"),
       "The least factor by which two convex shapes, each scaled about its centre, touch: a dict of status, lower, "
@@ -551,24 +567,26 @@ void addQueries(py::module &module) {
         Workspace &workspace = threadWorkspace();
         cprox_growth_derivatives d{};
         const cprox_growth growth = growthGradient(a.obstacle, b.obstacle, options, workspace, d);
-        py::dict out;
-        out["status"] = cprox_status_name(growth.status);
-        out["lower"] = growth.lower;
-        out["upper"] = growth.upper;
-        out["normal"] = fromVector(growth.normal);
-        out["valid"] = d.valid;
-        out["valid_position"] = d.valid_position;
-        out["reason"] = d.valid ? "" : cprox_workspace_error(workspace.get());
-        out["a_position"] = fromVector(d.a_position);
-        out["a_rotation"] = fromVector(d.a_rotation);
-        out["b_position"] = fromVector(d.b_position);
-        out["b_rotation"] = fromVector(d.b_rotation);
-        out["touch"] = fromVector(d.touch);
-        return out;
+        return growthDict(growth, d, workspace);
       },
       py::arg("a"), py::arg("b"),
       "growth_distance with its derivatives: also valid, valid_position, reason, a_position, a_rotation, b_position,\n"
       "b_rotation, touch (where the scaled shapes touch).");
+  module.def(
+      "growth_along",
+      [](const Obstacle &a, const Curve &curve, const Obstacle &b, const py::kwargs &given) {
+        const cprox_options options = optionsOf(given);
+        Workspace &workspace = threadWorkspace();
+        cprox_growth_derivatives d{};
+        double t = 0.0;
+        const cprox_growth growth = growthAlong(a.obstacle, curve.curve.get(), b.obstacle, options, workspace, t, d);
+        py::dict out = growthDict(growth, d, workspace);
+        out["t"] = t;
+        return out;
+      },
+      py::arg("a"), py::arg("curve"), py::arg("b"),
+      "The least growth distance of a, which the curve carries at its pose without turning it, from b: as\n"
+      "growth_gradient at the parameter t where it is least.");
   module.def(
       "distance_gradient",
       [](const py::object &mover, const Obstacle &obstacle, const py::kwargs &given) {

@@ -115,6 +115,14 @@ class Curves(unittest.TestCase):
         turned = cprox.Obstacle(cprox.box([1, 1, 1]), cprox.transform([4, 3, 0], [.2, .4, .4, .8]))
         self.assertTrue(cprox.growth_gradient(box, turned)['valid'])
 
+        # a ball of .5 comes down over a box of 1: (z of its centre) / 1 at the end
+        ball, fall = cprox.Obstacle(cprox.sphere(.5)), cprox.bezier([[0, 0, 4], [.1, 0, 3]])
+        along = cprox.growth_along(ball, fall, box)
+        self.assertEqual((along['status'], along['valid'], along['t']), ('ok', True, 1))
+        self.assertLessEqual(along['lower'], 3)
+        self.assertAlmostEqual(along['upper'], 3, places=5)
+        numpy.testing.assert_allclose(along['a_position'], [0, 0, 1], atol=1e-9)
+
         # Table III: both bodies scaled by .5, 3, .67 are the superquadrics of the scaled semi-axes
         scale = numpy.array([.5, 3, .67])
         axes, exponents, pose = [.3, .2, .4], [4, 6, 3], cprox.transform([3, 2.5, 1])
