@@ -6,8 +6,12 @@
  * gains nothing from a second thread, the machine's second core was not free. What is wrong is what differs from one
  * thread's answers.
  * Then edges of a robot, and single queries, each on all threads: robots with their meshes, against themselves. */
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -89,25 +93,24 @@ struct Times {
   double median, p95;
 };
 
-/* One for each pool, by turns; the first is of one thread. */
-std::vector<Times> measure(const std::vector<std::unique_ptr<Pool>> &pools, int rounds,
-                           const std::function<void(std::size_t)> &ask) {
+/* One for each of n ways, by turns; the first is on one thread. */
+std::vector<Times> measure(std::size_t n, int rounds, const std::function<void(std::size_t)> &ask) {
   double once = 0.0;
-  for (std::size_t k = pools.size(); k-- > 0;) once = wallTime([&] { ask(k); }); // all are warm; one thread is the last
+  for (std::size_t k = n; k-- > 0;) once = wallTime([&] { ask(k); }); // all are warm; one thread is the last
   const int repeats = 1 + static_cast<int>(kShortestSample / std::max(once, 1.0));
-  std::vector<std::vector<double>> times(pools.size()), ratios(pools.size());
+  std::vector<std::vector<double>> times(n), ratios(n);
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t turn = 0; turn < pools.size(); ++turn) {
-      const std::size_t k = round % 2 == 0 ? turn : pools.size() - 1 - turn;
+    for (std::size_t turn = 0; turn < n; ++turn) {
+      const std::size_t k = round % 2 == 0 ? turn : n - 1 - turn;
       times[k].push_back(wallTime([&] {
                            for (int i = 0; i < repeats; ++i) ask(k);
                          }) /
                          repeats);
     }
-    for (std::size_t k = 0; k < pools.size(); ++k) ratios[k].push_back(times[k].back() / times[0].back());
+    for (std::size_t k = 0; k < n; ++k) ratios[k].push_back(times[k].back() / times[0].back());
   }
   std::vector<Times> result;
-  for (std::size_t k = 0; k < pools.size(); ++k)
+  for (std::size_t k = 0; k < n; ++k)
     result.push_back({quantile(times[0], 0.5) * quantile(ratios[k], 0.5), quantile(times[k], 0.95)});
   return result;
 }
@@ -162,7 +165,52 @@ struct Wanderer {
   Wanderer &operator=(const Wanderer &) = delete;
 };
 
-/* Random straight edges of a Panda by 59 balls in a bookshelf, each against the scene and itself. */
+/* So many processes, which do their share each time they are asked to. */
+class Processes {
+ public:
+  Processes(std::size_t n, const std::function<void(std::size_t)> &work) {
+    for (std::size_t i = 0; i < n; ++i) {
+      int to[2], from[2];
+      if (pipe(to) != 0 || pipe(from) != 0) std::abort();
+      const pid_t id = fork();
+      if (id < 0) std::abort();
+      if (id == 0) {
+        close(to[1]), close(from[0]);
+        char byte;
+        while (read(to[0], &byte, 1) == 1) {
+          work(i);
+          if (write(from[1], &byte, 1) != 1) break;
+        }
+        _exit(0);
+      }
+      close(to[0]), close(from[1]);
+      processes_.push_back({id, to[1], from[0]});
+    }
+  }
+  ~Processes() {
+    for (const Process &p : processes_) close(p.go), close(p.done), kill(p.id, SIGKILL), waitpid(p.id, nullptr, 0);
+  }
+  Processes(const Processes &) = delete;
+  Processes &operator=(const Processes &) = delete;
+
+  void run() const {
+    char byte = 0;
+    for (const Process &p : processes_)
+      if (write(p.go, &byte, 1) != 1) std::abort();
+    for (const Process &p : processes_)
+      if (read(p.done, &byte, 1) != 1) std::abort();
+  }
+
+ private:
+  struct Process {
+    pid_t id;
+    int go, done;
+  };
+  std::vector<Process> processes_;
+};
+
+/* Random straight edges of a Panda by 59 balls in a bookshelf, each against the scene and itself. As many processes, each
+ * with its share of the edges, are what the machine has to give. */
 void manyEdges(const std::vector<std::unique_ptr<Pool>> &pools, int rounds) {
   constexpr std::size_t kEdges = 20000, kPart = 16;
   static robot_case scene, model;
@@ -185,10 +233,20 @@ void manyEdges(const std::vector<std::unique_ptr<Pool>> &pools, int rounds) {
   std::vector<double> from(kEdges * row), to(kEdges * row);
   for (std::size_t i = 0; i < from.size(); ++i) from[i] = at(engine), to[i] = from[i] + way(engine);
   std::vector<std::vector<std::uint8_t>> verdicts(pools.size(), std::vector<std::uint8_t>(kEdges));
-  const std::vector<Times> times = measure(pools, rounds, [&](std::size_t k) {
+  const auto ask = [&](std::size_t first, std::size_t last, Workspace &own, std::uint8_t *out) {
+    cprox_robot_edges(checker, &from[first * row], &to[first * row], last - first, own.get(), out + first, nullptr);
+  };
+  std::vector<std::unique_ptr<Processes>> apart;
+  for (const auto &pool : pools) {
+    const std::size_t share = (kEdges + pool->threads() - 1) / pool->threads();
+    apart.push_back(std::make_unique<Processes>(pool->threads(), [&, share](std::size_t i) {
+      ask(i * share, std::min(kEdges, (i + 1) * share), workspace, verdicts[0].data());
+    }));
+  }
+  const std::vector<Times> times = measure(2 * pools.size(), rounds, [&](std::size_t k) {
+    if (k >= pools.size()) return apart[k - pools.size()]->run();
     pools[k]->run(kEdges, kPart, [&](std::size_t first, std::size_t last, Workspace &own) {
-      cprox_robot_edges(checker, &from[first * row], &to[first * row], last - first, own.get(), &verdicts[k][first],
-                        nullptr);
+      ask(first, last, own, verdicts[k].data());
     });
   });
   for (std::size_t k = 0; k < pools.size(); ++k) {
@@ -198,6 +256,7 @@ void manyEdges(const std::vector<std::unique_ptr<Pool>> &pools, int rounds) {
       failed += verdicts[k][i] == CPROX_VERDICT_UNDECIDED;
     }
     print("growth threads edges", "curve_proximity", pools[k]->threads(), times[k], 0, wrong, failed);
+    print("growth threads edges", "separate processes", pools[k]->threads(), times[pools.size() + k], 0, 0, 0);
   }
   cprox_edge_checker_free(checker);
   cprox_obstacles_free(set);
@@ -222,7 +281,7 @@ void oneQuery(const std::vector<std::unique_ptr<Pool>> &pools, int rounds) {
     if (wallTime([&] { query.distance(*pools[0]); }) < kLongQuery) continue;
     std::vector<cprox_result> answers(pools.size());
     const std::vector<Times> times =
-        measure(pools, rounds, [&](std::size_t k) { answers[k] = query.distance(*pools[k]); });
+        measure(pools.size(), rounds, [&](std::size_t k) { answers[k] = query.distance(*pools[k]); });
     for (std::size_t k = 0; k < pools.size(); ++k) {
       const cprox_result &own = answers[k], &alone = answers[0];
       const bool wrong = own.lower > alone.upper || alone.lower > own.upper;
@@ -252,7 +311,7 @@ int main(int argc, char **argv) {
     const std::string workload = std::string("growth threads ") + query_type;
     if (!bench_wanted(&size, workload.c_str())) continue;
     std::vector<Batch::Answers> answers(pools.size());
-    const std::vector<Times> times = measure(pools, rounds, [&](std::size_t k) { answers[k] = ask(*pools[k]); });
+    const std::vector<Times> times = measure(pools.size(), rounds, [&](std::size_t k) { answers[k] = ask(*pools[k]); });
     for (std::size_t k = 0; k < pools.size(); ++k) {
       std::size_t nodes = 0, wrong = 0, failed = 0;
       for (std::size_t i = 0; i < kCurves; ++i) {
@@ -268,7 +327,7 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "growth one query")) oneQuery(pools, rounds);
   const std::string loop = "growth plain loop over threads";
   if (bench_wanted(&size, loop.c_str())) {
-    const std::vector<Times> times = measure(pools, rounds, [&](std::size_t k) { plainLoop(*pools[k]); });
+    const std::vector<Times> times = measure(pools.size(), rounds, [&](std::size_t k) { plainLoop(*pools[k]); });
     for (std::size_t k = 0; k < pools.size(); ++k) print(loop, "arithmetic", pools[k]->threads(), times[k], 0, 0, 0);
   }
   return 0;
