@@ -314,7 +314,8 @@ static cprox_status find_root(along *o, double left, double right, double fa, do
 /* The minimiser near *t, as exactly as its slope tells it. */
 static cprox_status refine(along *o, double t0, double t1, double *t) {
   const double range = t1 - t0;
-  for (double step = 1e-8 * range; step < 0.05 * range; step *= 8.0) {
+  double step = 1e-8 * range;
+  while (step < 0.05 * range) {
     const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
     place a, b;
     cprox_status status = look_at(o, left, true, &a);
@@ -323,6 +324,7 @@ static cprox_status refine(along *o, double t0, double t1, double *t) {
     if (left == t0 && (a.slope > 0.0 || (a.slope == 0.0 && b.slope > 0.0))) return *t = t0, CPROX_OK;
     if (right == t1 && (b.slope < 0.0 || (b.slope == 0.0 && a.slope < 0.0))) return *t = t1, CPROX_OK;
     if (a.slope < 0.0 && b.slope > 0.0) return find_root(o, left, right, a.slope, b.slope, t);
+    step *= 8.0;
   }
   return CPROX_OK;
 }
