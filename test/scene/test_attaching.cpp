@@ -4,7 +4,7 @@
 #include <curve_proximity/movers.hpp>
 #include <curve_proximity/near_pairs.hpp>
 
-#include "scaling.h"
+#include "geometry/scaling.h"
 #include "support.h"
 
 namespace curve_proximity {

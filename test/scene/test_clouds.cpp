@@ -8,7 +8,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
-#include "octree.h"
+#include "geometry/octree.h"
 #include "support.h"
 
 using namespace curve_proximity;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "hull.h"
-#include "mesh.h"
+#include "geometry/hull.h"
+#include "geometry/mesh.h"
 #include "support.h"
 
 using namespace curve_proximity;

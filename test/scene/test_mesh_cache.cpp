@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "hull.h"
-#include "mesh_cache.h"
+#include "geometry/hull.h"
+#include "geometry/mesh_cache.h"
 #include "support.h"
 
 using namespace curve_proximity;

@@ -12,8 +12,8 @@
 
 #include <geometric_shapes/mesh_operations.h>
 
+#include "geometry/mesh_process.h"
 #include "mesh_files.h"
-#include "mesh_process.h"
 #include "support.h"
 
 namespace curve_proximity {

@@ -10,8 +10,8 @@
 #include <cstdlib>
 
 #include "../mesh_reader/read.h"
+#include "geometry/mesh_process.h"
 #include "mesh_files.h"
-#include "mesh_process.h"
 #include "support.h"
 
 namespace curve_proximity {

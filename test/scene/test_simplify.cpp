@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "simplify.h"
+#include "geometry/simplify.h"
 #include "support.h"
 
 using namespace curve_proximity;

@@ -4,7 +4,7 @@
  * been looked at to the end never says so. */
 #include <algorithm>
 
-#include "subject.h"
+#include "query/subject.h"
 #include "support.h"
 
 namespace curve_proximity {
