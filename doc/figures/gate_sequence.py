@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws doc/images/gate.gif: a crane seen from above that swings past a crate, is asked about again and again, and stops.
 
-    scripts/run /usr/bin/python3 doc/figures/gate.py
+    scripts/run /usr/bin/python3 doc/figures/gate_sequence.py
 
 Each picture is an answer of `cprox tolerance` about what is left of the motion, in the scene as it is then: what
 curve_proximity/TrajectoryGate asks the server about a motion that runs (doc/ros.md, Pipelines).
