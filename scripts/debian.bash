@@ -11,6 +11,7 @@ make_debian() { # make_debian SUITE ROOT
     mkdir -p "$2"
     debootstrap --variant=minbase --include=ca-certificates,git "$1" "$2" http://deb.debian.org/debian
   fi
+  [ -e "$2/etc/hosts" ] || cp /etc/hosts "$2/etc/hosts" # roscore looks its own machine up
   [ -e "$clone/.git" ] || git clone --quiet "$REPO" "$clone"
   git -C "$clone" fetch --quiet "$REPO" HEAD
   git -C "$clone" reset --quiet --hard FETCH_HEAD
