@@ -261,7 +261,7 @@ CASE(no_point_is_nearer_than_spans_say) {
       double rows[MOTION_ROWS * (TEST_MAX_VARIABLES + MOTION_LANES)];
       axis_state axes[MAX_AXES + 1];
       const span_centre centre = motion_span_node(p.motion, &over, rows, axes);
-      const size_t stride = motion_rows_stride(p.motion);
+      const size_t stride = p.motion->row_size;
       straight += !centre.bent, spans++;
       assert_true(centre.segment >= over.first && centre.segment < over.last);
       assert_true(centre.segment > over.first || centre.u >= over.a);

@@ -4,15 +4,13 @@
 #include "curve_query/report.h"
 #include "shape/body.h"
 
-/* Searches a pair; *found gets the interval, *r where the two are nearest. */
-static cprox_status search_placed(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
-                                  cprox_result *r) {
-  curve_search s;
+/* Searches a pair that has been begun; *found gets the interval, *r where the two are nearest. */
+static cprox_status search_placed(curve_search *s, const search_goal *goal, search_outcome *found, cprox_result *r) {
+  const query *q = s->q;
   curve_start start;
   start.goal = *goal;
   start.upper = INFINITY;
-  cprox_status status = curve_search_begin(&s, q, p);
-  if (status == CPROX_OK) status = s.kernel->start_distance(&s, &start);
+  cprox_status status = s->kernel->start_distance(s, &start);
   if (status < 0) return status;
   start.goal.cutoff = lesser(start.goal.cutoff, start.upper);
   if (query_wants_verdict(q) && start.upper <= q->limit)
@@ -20,13 +18,13 @@ static cprox_status search_placed(const query *q, const placed_pair *p, const se
   else
     status = search_run(&start.goal, &start.oracle, start.root, q->workspace, found);
   if (status < 0) return status;
-  const bool crosses = s.kernel->prove_crossing && s.kernel->prove_crossing(&s);
+  const bool crosses = s->kernel->prove_crossing && s->kernel->prove_crossing(s);
   curve_finding seen;
-  s.kernel->best_found(&s, &seen);
+  s->kernel->best_found(s, &seen);
   seen.is_contact = crosses;
   found->best = seen.bound;
   r->distance_queries = seen.distance_queries;
-  const cprox_status reported = report_finding(q, p, &seen, r);
+  const cprox_status reported = report_finding(q, s->pair, &seen, r);
   return reported < 0 ? reported : status;
 }
 
@@ -35,10 +33,12 @@ static cprox_status search_model(const query *q, const candidate *c, double cuto
   const placed_pair placed = placed_pair_resolve(q, c), *p = &placed;
   cprox_result r = {.obstacle_index = -1, .t_obstacle = NAN, .lod = p->lod};
   search_goal goal = query_goal(q, query_order(q), cutoff);
-  const bool depth_unknown = q->is_signed && !curve_kernel_of(p)->knows_depth;
+  curve_search s;
+  r.status = curve_search_begin(&s, q, p);
+  const bool depth_unknown = q->is_signed && !s.kernel->knows_depth;
   if (depth_unknown) goal.is_signed = false;
   search_outcome found = {0};
-  r.status = search_placed(q, p, &goal, &found, &r);
+  if (r.status == CPROX_OK) r.status = search_placed(&s, &goal, &found, &r);
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
   if (r.status < 0) return r.status;
   /* distances are not negative, unless asked for; where the search fell short the ball may know a better lower bound */

@@ -113,15 +113,6 @@ motion_interval motion_track_interval(const cprox_motion *m, const motion_track 
   return own;
 }
 
-size_t motion_rows_stride(const cprox_motion *m) {
-  const motion_track *last = &m->tracks[m->n_tracks - 1];
-  return last->first_slot + lanes_padded(last->n_moving);
-}
-
-size_t motion_rows_size(const cprox_motion *m) {
-  return MOTION_ROWS * motion_rows_stride(m);
-}
-
 static void fill_segment(const motion_track *t, const motion_interval *own, double *rows, size_t stride) {
   const size_t segment = own->first, degree = t->degree[segment];
   for (size_t first = 0; first < t->n_moving; first += MOTION_LANES) {
@@ -137,7 +128,7 @@ void motion_fill_track(const cprox_motion *m, size_t track, const motion_interva
   if (motion_is_span(own))
     motion_fill_span(m, t, over, own, centre, rows);
   else
-    fill_segment(t, own, rows, motion_rows_stride(m));
+    fill_segment(t, own, rows, m->row_size);
 }
 
 /* Rounding may move it a little: any place of the interval will do that all tracks take for the same. */

@@ -43,6 +43,7 @@ struct cprox_motion {
   motion_track *tracks;
   int32_t *track_of; /* of a variable, its track */
   int32_t *slot;     /* of a variable in rows, or -1: it stands still */
+  size_t row_size;   /* the numbers in one row; there are MOTION_ROWS */
   double *rest;      /* the values of those; of a state, room for another one behind them */
   bool is_state;     /* nothing moves, and everything is asked about that could */
   bool *axis_moves;
@@ -123,10 +124,6 @@ double motion_value(const cprox_motion *motion, int32_t variable, size_t own, do
 /* Bounds on all derivatives of an axis's variables (of a ball, of their vector) over an interval of its track, by the
  * interval's own parameter: rates[1] … rates[n]. Returns n, their degree. */
 size_t motion_derivative_bounds(const cprox_motion *motion, int32_t axis, const motion_interval *own, double *rates);
-
-/* The numbers in one row, and in all. */
-size_t motion_rows_stride(const cprox_motion *motion);
-size_t motion_rows_size(const cprox_motion *motion);
 
 /* The part of the rows that belongs to a track; `own` is its interval of `over`. A span of one track has its centre
  * where the track passes the middle of its chord, and *centre becomes that; of several it is given, by motion_middle().

@@ -87,7 +87,7 @@ static void place_ball(const robot_axis *axis, double p[3][4], const placement *
 static void ball_over_span(const cprox_motion *m, size_t axis_index, const double *rows, const placement *parent,
                            const placement *before, axis_state *state) {
   const robot_axis *axis = &m->robot->axes[axis_index];
-  const size_t stride = motion_rows_stride(m);
+  const size_t stride = m->row_size;
   double p[3][4] = {{0}}, line = 0.0, stray = 0.0, shift = 0.0, norm = 0.0;
   for (int k = 0; k < 4; k++) {
     const int32_t slot = m->slot[axis->variable + k];
@@ -229,7 +229,7 @@ static void vector_over(const cprox_motion *m, const motion_interval *own, const
 /* Over a span the vector is within `stray` of a straight line; rotations are no farther apart than their vectors. */
 static void vector_over_span(const cprox_motion *m, const robot_axis *axis, const double *rows, const placement *parent,
                              const placement *before, axis_state *state) {
-  const size_t stride = motion_rows_stride(m);
+  const size_t stride = m->row_size;
   double p[3][4] = {{0}}, line = 0.0, stray = 0.0, shift = 0.0;
   for (int k = 0; k < 3; k++) {
     const int32_t slot = m->slot[axis->variable + k];
@@ -296,7 +296,7 @@ static void arc_over(const cprox_motion *m, const motion_interval *own, size_t i
 
 static void line_over(const cprox_motion *m, const motion_interval *own, const robot_axis *axis, const double *rows,
                       const placement *before, axis_state *state) {
-  const size_t stride = motion_rows_stride(m), slot = (size_t)m->slot[axis->variable];
+  const size_t stride = m->row_size, slot = (size_t)m->slot[axis->variable];
   const motion_track *t = &m->tracks[m->track_of[axis->variable]];
   const double *of = rows + slot;
   const double n = (double)t->degree[own->first];

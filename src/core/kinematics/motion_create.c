@@ -7,6 +7,7 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "curve/curve.h"
+#include "kinematics/lanes.h"
 #include "kinematics/motion_build.h"
 
 /* The largest value, velocity times duration, and so on. */
@@ -361,6 +362,8 @@ static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
 
 cprox_status motion_finish(cprox_motion *m, const motion_source *s, cprox_motion **motion) {
   if (m->kind != CPROX_MOTION_JOINED) find_moving(m, s);
+  const motion_track *last = &m->tracks[m->n_tracks - 1];
+  m->row_size = last->first_slot + lanes_padded(last->n_moving);
   finish_arcs(m);
   cprox_status status = finish_axes(m, s);
   if (status == CPROX_OK) status = finish_parts(m, s->workspace);

@@ -429,7 +429,7 @@ static void cut_end(const motion_track *t, const motion_interval *own, bool at_e
 
 void motion_fill_span(const cprox_motion *m, const motion_track *t, const motion_interval *over,
                       const motion_interval *own, span_centre *centre, double *rows) {
-  const size_t n = t->n_moving, stride = motion_rows_stride(m);
+  const size_t n = t->n_moving, stride = m->row_size;
   const duration whole = duration_of(m, over);
   double *cut = rows + MOTION_CUT * stride;
   lane_row *ends[2] = {(lane_row *)cut, (lane_row *)(cut + LANE_ROWS * lanes_padded(n))};

@@ -6,37 +6,38 @@
 #include "base/workspace.h"
 #include "curve/relative_curve.h"
 
-/* A parameter of [a, b] at which a polynomial, given by its Bézier coefficients there, is below `least`; NAN: none that
- * so many halvings find. */
-static double place_below(const double *c, size_t degree, double least, double a, double b, int halvings) {
+/* A parameter of [a, b] at which a polynomial, given by its Bézier coefficients there, is below `least`, and its value
+ * there; NAN: none that so many halvings find. */
+static double place_below(const double *c, size_t degree, double least, double a, double b, int halvings,
+                          double *value) {
   double left[CPROX_MAX_DEGREE + 1], right[CPROX_MAX_DEGREE + 1], lowest = INFINITY;
   for (size_t i = 0; i <= degree; i++) lowest = fmin(lowest, c[i]);
   if (lowest >= least) return NAN;
-  if (c[0] < least) return a;
-  if (c[degree] < least) return b;
+  *value = c[0] < least ? c[0] : c[degree];
+  if (*value < least) return c[0] < least ? a : b;
   if (halvings == 0) return NAN;
   for (size_t i = 0; i <= degree; i++) right[i] = c[i];
   for (size_t level = 0; level <= degree; level++) {
     left[level] = right[0];
     for (size_t i = 0; i + level < degree; i++) right[i] = 0.5 * (right[i] + right[i + 1]);
   }
-  const double middle = 0.5 * (a + b), found = place_below(left, degree, least, a, middle, halvings - 1);
-  return isnan(found) ? place_below(right, degree, least, middle, b, halvings - 1) : found;
+  const double middle = 0.5 * (a + b), found = place_below(left, degree, least, a, middle, halvings - 1, value);
+  return isnan(found) ? place_below(right, degree, least, middle, b, halvings - 1, value) : found;
 }
 
 static cprox_status check_sign(const char *whose, const cprox_curve *radius, double constant,
                                cprox_workspace *workspace) {
   enum { HALVINGS = 26 };
   for (size_t piece = 0; piece < radius->n_pieces; piece++) {
-    double c[CPROX_MAX_DEGREE + 1];
+    double c[CPROX_MAX_DEGREE + 1], value = 0.0;
     for (size_t i = 0; i <= radius->degree; i++) c[i] = curve_piece(radius, piece)[i].x;
     /* what rounding leaves of a radius that touches 0 */
     const double tolerance = radius->error[piece] + 1e-12 * (radius->largest + constant);
     const double t = place_below(c, radius->degree, -constant - tolerance, radius->breaks[piece],
-                                 radius->breaks[piece + 1], HALVINGS);
+                                 radius->breaks[piece + 1], HALVINGS, &value);
     if (isnan(t)) continue;
-    return workspace_fail(workspace, CPROX_INVALID, "%s is %g at t = %.17g, must be 0 or more", whose,
-                          constant + radius_at(radius, t, false, workspace), t);
+    return workspace_fail(workspace, CPROX_INVALID, "%s is %g at t = %.17g, must be 0 or more", whose, constant + value,
+                          t);
   }
   return CPROX_OK;
 }

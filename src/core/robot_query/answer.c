@@ -87,11 +87,10 @@ static cprox_status answer_class(const query *q, const start_class *starts, size
 static cprox_status answer_models(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
                                   double *travel) {
   if (!start_class_is_one_of_many(q->mover.motion)) return answer_class(q, NULL, first, last, cutoff, result, travel);
+  cprox_status failure = CPROX_OK;
+  cprox_result all = query_nothing();
   start_class starts = start_class_first();
-  cprox_status failure = answer_class(q, &starts, first, last, cutoff, result, travel);
-  if (failure < 0) return failure;
-  cprox_result all = *result;
-  while (start_class_next(q->mover.motion, &starts)) {
+  do {
     if (all.verdict == CPROX_VERDICT_VIOLATED) { /* of the classes that are left nothing is known */
       all.lower = fmin(all.lower, 0.0);
       break;
@@ -105,7 +104,7 @@ static cprox_status answer_models(const query *q, size_t first, size_t last, dou
     if (travel && (r.upper < all.upper || all.obstacle_index < 0)) *travel = moves;
     query_join(&all, &r);
     all.verdict = query_verdict(q, &all);
-  }
+  } while (start_class_next(q->mover.motion, &starts));
   query_conclude(q, cutoff, failure, &all);
   *result = all;
   return all.status;

@@ -199,7 +199,7 @@ bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts
                                        : 0;
   const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts + s->motion->n_tracks * sizeof *s->tracks +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
-                       (motion_rows_size(s->motion) + all_displacements) * sizeof *s->rows +
+                       (MOTION_ROWS * s->motion->row_size + all_displacements) * sizeof *s->rows +
                        (q->errors ? n_axes * sizeof *s->deviations + robot->n_parts * sizeof *s->part_deviations : 0);
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
@@ -208,7 +208,7 @@ bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts
   s->axes = (axis_state *)(void *)(s->tracks + s->motion->n_tracks);
   s->chain = (chain_axis *)(void *)(s->axes + n_axes);
   s->rows = (double *)(void *)(s->chain + n_axes);
-  s->scratch = s->rows + motion_rows_size(s->motion);
+  s->scratch = s->rows + MOTION_ROWS * s->motion->row_size;
   s->displacements = all_displacements ? s->scratch + n_axes : NULL;
   s->deviations = (axis_deviations *)(void *)(s->scratch + n_axes + all_displacements);
   s->part_deviations = (part_deviation *)(void *)(s->deviations + (q->errors ? n_axes : 0));
