@@ -5,6 +5,7 @@
 
 #include <curve_proximity/cprox/obstacles.h>
 #include <curve_proximity/cprox/query.h>
+#include <curve_proximity/cprox/translation.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -185,6 +186,43 @@ typedef struct cprox_motion_row {
 CPROX_API cprox_status cprox_robot_rows(const cprox_obstacles *obstacles, cprox_mover mover,
                                         const cprox_rows_query *asked, const cprox_options *options,
                                         cprox_workspace *workspace, cprox_motion_row *rows, size_t room, size_t *count);
+
+/** The least growth distance of a robot's motion. */
+typedef struct cprox_motion_growth {
+  /** lower <= the least growth distance of all pairs along the motion <= upper; normal, from the obstacle or the other
+   *  geometry to the robot's, is of the place at t; pairs: places that were measured */
+  cprox_growth growth;
+  /** [s] when upper was measured; NaN where there is no pair */
+  double t;
+  /** the geometry of the robot, as that of cprox_result; -1: there is no pair */
+  int32_t mover_part;
+  /** The obstacle or the other geometry, likewise. */
+  int32_t obstacle_index;
+  /** where both touch at t once they are scaled, world frame */
+  cprox_vec3 touch;
+  /** [1/m] no pair's growth distance changes faster with the place of one side */
+  double steepest;
+} cprox_motion_growth;
+
+/** The least growth distance of a robot along its motion, and its derivatives by the motion.
+ *
+ *  obstacles  NULL: none, for a robot against itself.
+ *  mover      cprox_robot_along(), cprox_robot_self() or cprox_robot_whole().
+ *  options    NULL: the default. epsilon is the width as a part of the value, or 1e-3 of that where the value is below
+ *             1e-3; max_nodes bounds nodes and places together.
+ *  found      receives the answer: 1 is contact, below 1 the two overlap. Nothing to measure: both bounds are infinite.
+ *  gradient   NULL, or set up as for cprox_robot_distance_gradient(), with derivatives of the growth distance in the
+ *             place of those of the distance; margin is 0.
+ *
+ *  All sides are convex and bounded and have their centre inside, and have no margin. Level-of-detail bodies count by
+ *  their hulls, each scaled about the hull's centre. valid is false where cprox_growth_gradient() has it false at the
+ *  minimiser, and where another place or pair comes as near, within 1e-9 of the value.
+ *
+ *  Returns as cprox_obstacles_distance(). Cost: about three growth distances for each interval that is looked at; with
+ *  derivatives twice that (doc/implicit.md, Along a robot's motion). */
+CPROX_API cprox_status cprox_robot_growth(const cprox_obstacles *obstacles, cprox_mover mover,
+                                          const cprox_options *options, cprox_workspace *workspace,
+                                          cprox_motion_growth *found, cprox_motion_gradient *gradient);
 
 #ifdef __cplusplus
 }

@@ -1,11 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The gradient of a robot's clearance. */
+/* The gradient of a robot's clearance; its least growth distance with its gradient. */
 #include "solve/motion_gradient.h"
 
 #include "api/bvh.h"
 #include "base/workspace.h"
 #include "kinematics/motion.h"
 #include "problem/obstacles.h"
+#include "solve/growth_motion.h"
+
+static cprox_status check_rows(const cprox_motion *motion, const cprox_motion_gradient *gradient,
+                               cprox_workspace *workspace) {
+  const bool rows = gradient->positions || gradient->velocities || gradient->accelerations;
+  if (!rows || motion->kind == CPROX_MOTION_JOINED || !motion->arc_of) return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID,
+                        "slerp and screws have a gradient by their variables, not by their points");
+}
 
 cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cprox_mover mover,
                                            const cprox_options *options, cprox_workspace *workspace,
@@ -23,9 +32,24 @@ cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cpr
                           "the mover is no robot: ask cprox_distance_gradient() for the gradient along a curve");
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
-  const bool rows = gradient->positions || gradient->velocities || gradient->accelerations;
-  if (rows && mover.motion->kind != CPROX_MOTION_JOINED && mover.motion->arc_of)
+  const cprox_status known = check_rows(mover.motion, gradient, workspace);
+  return known ? known : motion_gradient_answer(&q, result, gradient);
+}
+
+cprox_status cprox_robot_growth(const cprox_obstacles *obstacles, cprox_mover mover, const cprox_options *options,
+                                cprox_workspace *workspace, cprox_motion_growth *found,
+                                cprox_motion_gradient *gradient) {
+  WORKSPACE_USE(workspace);
+  static const arguments_query ASKED = {"the growth distance of a robot",
+                                        ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_SIGNED | ARGUMENTS_INTERVAL};
+  query q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance = true; /* it measures overlaps as well */
+  const cprox_status begun = query_begin(&q, ASKED);
+  if (begun != CPROX_OK) return begun;
+  if (!mover.motion)
     return workspace_fail(workspace, CPROX_INVALID,
-                          "slerp and screws have a gradient by their variables, not by their points");
-  return motion_gradient_answer(&q, result, gradient);
+                          "the mover is no robot: ask cprox_growth_along() about a body along a curve");
+  if (!found) return workspace_fail(workspace, CPROX_INVALID, "found is NULL: nowhere to put the answer");
+  const cprox_status known = gradient ? check_rows(mover.motion, gradient, workspace) : CPROX_OK;
+  return known ? known : growth_motion_answer(&q, found, gradient);
 }

@@ -320,3 +320,24 @@ double motion_plane_bound_of_two(const chain_motion *m, const two_times *times, 
   *slack = plane_slack(m, moving, standing, apart, 0.0, steps) + 16.0 * ROUND_U * fabs(least);
   return least - 0.125 * m->second - *slack - m->stray;
 }
+
+/* doc/implicit.md, Along a robot's motion: over the node the scaled sides are apart by a number that is concave in tau,
+ * less what is of second order, so that it is least at one end. */
+double motion_growth_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
+                           uint32_t steps) {
+  const vec3 apart = vec_sub(moving->at.p, standing->at.p), turn = vec_cross(n, m->omega);
+  const double slack = plane_slack(m, moving, standing, apart, 0.0, steps) + m->stray;
+  const double start = vec_dot(n, apart), along = vec_dot(n, m->v), height = bound_height(standing, n);
+  double least = INFINITY;
+  for (int end = 0; end < 2; end++) {
+    const double tau = end == 0 ? -0.5 : 0.5;
+    const vec3 d = vec_axpy(n, tau, turn);
+    if (!usable(d)) return 0.0;
+    const double between = start + tau * along - 0.125 * m->second - slack;
+    if (!(between > 0.0)) return 0.0;
+    const double margin = moving->margin * (moving->margin_turns ? vec_norm(d) : 1.0);
+    const double reach = height - bound_lowest(moving, d) + margin + 0.25 * m->second + 2.0 * slack;
+    least = lesser(between / reach, least);
+  }
+  return least * (1.0 - 16.0 * ROUND_U);
+}

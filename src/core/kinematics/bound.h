@@ -101,4 +101,9 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
 double motion_plane_bound_of_two(const chain_motion *m, const two_times *times, const bound_side *moving,
                                  const bound_side *standing, vec3 n, double height, uint32_t steps, double *slack);
 
+/* The least factor by which both sides, each scaled about its own origin, touch at any time of the node is at least
+ * this: by the plane with the normal n, unit within 4 u, from the standing side to the moving one. */
+double motion_growth_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
+                           uint32_t steps);
+
 #endif

@@ -7,22 +7,27 @@
 
 #include "base/rounding.h"
 #include "base/workspace.h"
+#include "convex/depth.h"
 #include "convex/feature.h"
 #include "implicit/implicit.h"
 #include "narrowphase/translation.h"
 #include "problem/validate.h"
 
-/* Centres that are as near, in sizes of the bodies, coincide. */
-static const double COINCIDE = 1e-12;
+double growing_inner_radius(const convex *shape) {
+  if (shape->implicit) return shape->implicit->inner;
+  const vec3 origin = vec(0, 0, 0);
+  convex_near near;
+  shape->ops->nearest(shape, origin, NULL, &near);
+  depth_complete(shape, origin, &near);
+  return fmax(-0.999 * near.distance, 0.0);
+}
 
-/* The radius of a ball about the centre that lies in the body; 0: none is known. */
 static double inner_radius(const cprox_body *body) {
-  if (body->shape.implicit) return body->shape.implicit->inner;
-  return isfinite(body->ball_radius) ? fmax(-0.999 * cprox_body_nearest(body, body->centre, NULL), 0.0) : 0.0;
+  return isfinite(body->ball_radius) ? growing_inner_radius(&body->shape) : 0.0;
 }
 
 static cprox_status check_growing(const char *name, const cprox_body *body, double inner, cprox_workspace *workspace) {
-  if (inner > COINCIDE * body->ball_radius) return CPROX_OK;
+  if (inner > GROWING_COINCIDE * body->ball_radius) return CPROX_OK;
   return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be bounded and have its centre inside", name,
                         cprox_body_kind_name(body->kind));
 }
@@ -57,7 +62,7 @@ cprox_status growing_measure(const growing *g, bool wants_derivatives, cprox_wor
   const double far = vec_norm(g->apart), reach = g->a.body->ball_radius + g->b.body->ball_radius;
   *growth = (cprox_growth){.status = CPROX_OK};
   *ray = (ray_answer){.found = false};
-  if (far <= COINCIDE * reach) {
+  if (far <= GROWING_COINCIDE * reach) {
     growth->upper = (far + g->place.error) / fmin(g->inner_a, g->inner_b);
     return CPROX_OK;
   }
@@ -97,8 +102,7 @@ cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cpr
 
 /* ---- derivatives ---- */
 
-/* Why the optimum has no gradient; NULL where it has one. */
-static const char *growth_tie(const ray_answer *ray) {
+const char *growing_tie(const ray_answer *ray) {
   if (!ray->found) return "the centres coincide, or the search was stopped";
   if (!ray->solved) return "the optimum was not found as exactly as rounding allows";
   if (!ray->slope_alone) return "more than one plane fits between the scaled bodies";
@@ -130,7 +134,7 @@ const char *growing_differentiate(const growing *g, const cprox_growth *growth, 
   for (int i = 0; i < 6; i++) d.hessian[i] = NAN;
   if (d.bends) hessian_to_world(&g->x.f, ray->hessian, d.hessian);
   *derivatives = d;
-  return growth_tie(ray);
+  return growing_tie(ray);
 }
 
 cprox_status cprox_growth_gradient(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,

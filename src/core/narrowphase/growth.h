@@ -7,6 +7,15 @@
 #include "curve_proximity/cprox/translation.h"
 #include "narrowphase/relative_pose.h"
 
+/* Centres that are as near, in sizes of the bodies, coincide. */
+#define GROWING_COINCIDE 1e-12
+
+/* The radius of a ball about the origin that lies in a bounded shape; 0: none is known. */
+double growing_inner_radius(const convex *shape);
+
+/* Why the optimum has no gradient; NULL where it has one. */
+const char *growing_tie(const ray_answer *ray);
+
 /* Two bodies that grow. */
 typedef struct growing {
   cprox_obstacle a, b;

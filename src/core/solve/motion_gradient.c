@@ -13,7 +13,7 @@
 #include "robot_query/answer.h"
 #include "robot_query/depth.h"
 #include "robot_query/measure.h"
-#include "solve/motion_spot.h"
+#include "solve/motion_derivatives.h"
 
 /* How near another minimiser must not come, in sizes of the robot, and at least in roundings of distances. */
 static const double APART = 1e-9, APART_ROUNDINGS = 16.0;
@@ -299,179 +299,7 @@ static cprox_status run(gradient_search *g, search_outcome *found) {
   return status;
 }
 
-/* ---- the gradient ---- */
-
-/* By what was given of one variable at the points of a motion, rows of n. */
-static void fill_rows(const double *weights, const motion_weights *w, size_t last, size_t n, size_t k, double by,
-                      double *rows) {
-  for (size_t i = 0; rows && i < last; i++) rows[(w->first + i) * n + k] = weights[i] * by;
-}
-
-static void fill_points(const cprox_motion *m, const motion_given *given, const motion_track *track, size_t own,
-                        double u, const double *by_variable, double *const rows[3]) {
-  const motion_weights w = motion_weights_at(given, track, own, u);
-  const size_t n = given->n, points = given->n_points;
-  for (int order = 0; order < 3 && n > 0; order++)
-    if (rows[order]) memset(rows[order], 0, points * n * sizeof(double));
-  for (size_t k = 0; k < n && w.n > 0; k++) {
-    const double by = by_variable[given->variables[k]];
-    fill_rows(w.position, &w, w.n, n, k, by, rows[0]);
-    if (given->degree > 0 || motion_is_on_arc(m, given->variables[k])) continue;
-    fill_rows(w.velocity, &w, 2, n, k, by, rows[1]);
-    fill_rows(w.acceleration, &w, 2, n, k, by, rows[2]);
-  }
-}
-
-/* By the duration of a track at the same fraction of it, its points being kept. */
-static double by_stretch(const cprox_motion *m, const motion_given *given, const motion_track *t, size_t own, double u,
-                         const double *by_variable) {
-  double sum = 0.0;
-  for (size_t k = 0; k < t->n_moving; k++)
-    if (!motion_is_on_arc(m, t->moving[k])) sum += by_variable[t->moving[k]] * motion_stretch_rate(given, t, k, own, u);
-  return sum / (t->times[t->n_segments - t->stands_last] - t->times[t->stands_first]);
-}
-
-/* ---- several motions on one clock ---- */
-
-/* The track of one of the motions, and its place at the spot. False: that motion is a state. */
-static bool find_track(const cprox_motion *m, size_t member, const motion_spot *spot, const motion_track **track,
-                       size_t *own, double *u) {
-  for (size_t i = 0; i < m->n_tracks; i++) {
-    if (m->tracks[i].clock != (int32_t)member) continue;
-    *track = &m->tracks[i], *u = spot->u;
-    *own = motion_track_place(m, *track, spot->segment, u);
-    return true;
-  }
-  return false;
-}
-
-/* Whether one of the track's own times is that of the spot: then the spot goes with it, if it is there for a kink. */
-static bool is_at_own_time(const motion_track *t, size_t own, double time) {
-  const double rounding = 1e-12 * (t->times[t->n_segments] - t->times[0]);
-  for (size_t i = own; i <= own + 1; i++)
-    if (i >= t->stands_first && i + t->stands_last <= t->n_segments && fabs(t->times[i] - time) <= rounding)
-      return true;
-  return false;
-}
-
-/* Whether a step of the track changes the distance: else its times are no kinks of it. */
-static bool is_felt(const gradient_search *g, const motion_track *t) {
-  for (size_t k = 0; k < t->n_moving; k++)
-    if (g->pair.sum[t->moving[k]] != 0.0) return true;
-  return false;
-}
-
-/* What each motion adds to the slope of the distance along the clock, a part of it by what was found at one spot. */
-static void add_slopes(gradient_search *g, const motion_spot *spot, double part, double *slopes) {
-  const cprox_motion *m = g->o.scene.motion;
-  motion_rates(m, spot->segment, spot->u, g->pair.rates);
-  for (size_t i = 0; i < m->n_tracks; i++) {
-    const motion_track *t = &m->tracks[i];
-    for (size_t v = 0; v < m->robot->n_variables; v++)
-      if (m->track_of[v] == (int32_t)i) slopes[t->clock] += part * g->pair.by_variable[v] * g->pair.rates[v];
-  }
-}
-
-/* A motion that starts later is where it was before: its own slope, taken off. At a kink, or at an end of the clock,
- * the slopes do not cancel: that place goes with the motion that has it. */
-static void fill_clocks(gradient_search *g, double *slopes, cprox_motion_gradient *to) {
-  static const double CANCELLED = 1e-7;
-  const cprox_motion *m = g->o.scene.motion;
-  const double time = spot_time(&g->pair, &g->spot);
-  double slope = 0.0, all = 0.0;
-  size_t attached = 0, own = 0;
-  const motion_track *t = NULL;
-  double u = 0.0;
-  for (size_t i = 0; i < m->n_joined; i++) {
-    slope += slopes[i], all += fabs(slopes[i]);
-    attached += find_track(m, i, &g->spot, &t, &own, &u) && is_felt(g, t) && is_at_own_time(t, own, time);
-  }
-  if (fabs(slope) <= CANCELLED * all) attached = 0;
-  for (size_t i = 0; i < m->n_joined; i++) {
-    const bool moves = find_track(m, i, &g->spot, &t, &own, &u);
-    double by_start = moves ? -slopes[i] : 0.0;
-    if (moves && attached > 0 && is_felt(g, t) && is_at_own_time(t, own, time))
-      by_start = attached > 1 ? NAN : by_start + slope;
-    if (to->starts) to->starts[i] = by_start;
-    if (!to->durations) continue;
-    to->durations[i] = 0.0;
-    if (!moves) continue;
-    const double begin = t->times[t->stands_first], end = t->times[t->n_segments - t->stands_last];
-    const double passed = fmin(fmax((time - begin) / (end - begin), 0.0), 1.0);
-    to->durations[i] = by_stretch(m, &m->joined[i], t, own, u, g->pair.sum) + (passed > 0.0 ? passed * by_start : 0.0);
-  }
-}
-
-/* ---- all of it ---- */
-
-static void fill_given(const cprox_motion *m, const motion_spot *spot, const double *by_variable,
-                       cprox_motion_gradient *g) {
-  double *rows[3] = {g->positions, g->velocities, g->accelerations};
-  g->duration = 0.0;
-  if (!m->joined) {
-    fill_points(m, &m->given, m->tracks, spot->segment, spot->u, by_variable, rows);
-    g->duration = by_stretch(m, &m->given, m->tracks, spot->segment, spot->u, by_variable);
-  }
-  for (size_t i = 0; i < m->n_joined; i++) {
-    const motion_given *given = &m->joined[i];
-    const motion_track *t = NULL;
-    size_t own = 0;
-    double u = 0.0;
-    if (!find_track(m, i, spot, &t, &own, &u)) continue;
-    fill_points(m, given, t, own, u, by_variable, rows);
-    for (int order = 0; order < 3; order++)
-      if (rows[order]) rows[order] += given->n * given->n_points;
-  }
-}
-
-/* A part of the derivative is that of the distance at a spot. */
-static void add_spot(gradient_search *g, const motion_spot *spot, double part, double *slopes,
-                     cprox_motion_gradient *to) {
-  spot_differentiate(&g->pair, spot);
-  if (slopes) add_slopes(g, spot, part, slopes);
-  const robot_scene *scene = &g->o.scene;
-  for (size_t v = 0; v < scene->motion->robot->n_variables; v++) g->pair.sum[v] += part * g->pair.by_variable[v];
-  const robot_pair *pair = &g->pair.pair;
-  if (pair->self) return;
-  const vec3 n = spot->gap.normal;
-  const cprox_obstacle *target = &g->q->targets[scene->obstacles[pair->standing].index];
-  to->base_position = vec_axpy(to->base_position, part, n);
-  to->base_rotation = vec_axpy(to->base_rotation, part, vec_cross(spot->gap.on_moving, n));
-  to->position = vec_axpy(to->position, -part, n);
-  to->rotation = vec_axpy(to->rotation, part, vec_cross(n, vec_sub(spot->gap.on_standing, target->pose.position)));
-}
-
-static void fill(gradient_search *g, cprox_motion_gradient *to) {
-  const cprox_motion *motion = g->o.scene.motion;
-  const size_t all = motion->robot->n_variables * sizeof(double);
-  to->base_position = to->base_rotation = to->position = to->rotation = vec(0, 0, 0);
-  memset(g->pair.sum, 0, all);
-  double *slopes = !motion->joined ? NULL : to->starts ? to->starts : to->durations;
-  if (slopes) memset(slopes, 0, motion->n_joined * sizeof *slopes);
-  if (!g->crosses) add_spot(g, &g->spot, 1.0, slopes, to);
-  for (int k = 0; k < SPOT_SIDES && g->crosses; k++) add_spot(g, &g->side[k], g->part[k], slopes, to);
-  to->t = spot_time(&g->pair, &g->spot);
-  to->margin = -1.0;
-  if (to->variables) memcpy(to->variables, g->pair.sum, all);
-  fill_given(motion, &g->spot, g->pair.sum, to);
-  if (slopes) fill_clocks(g, slopes, to);
-}
-
-/* Without a minimiser: all numbers are 0. */
-static void fill_nothing(const gradient_search *g, cprox_motion_gradient *to) {
-  const cprox_motion *m = g->q->mover.motion;
-  size_t given = m->given.n * m->given.n_points * sizeof(double);
-  for (size_t i = 0; i < m->n_joined; i++) given += m->joined[i].n * m->joined[i].n_points * sizeof(double);
-  if (to->starts && m->joined) memset(to->starts, 0, m->n_joined * sizeof *to->starts);
-  if (to->durations && m->joined) memset(to->durations, 0, m->n_joined * sizeof *to->durations);
-  if (to->variables) memset(to->variables, 0, m->robot->n_variables * sizeof *to->variables);
-  if (to->positions && given > 0) memset(to->positions, 0, given);
-  if (to->velocities && given > 0) memset(to->velocities, 0, given);
-  if (to->accelerations && given > 0) memset(to->accelerations, 0, given);
-  to->t = NAN;
-  to->base_position = to->base_rotation = to->position = to->rotation = vec(0, 0, 0);
-  to->duration = to->margin = 0.0;
-}
+/* ---- the answer ---- */
 
 /* By the models that the query allows. */
 static cprox_status gradient_of_models(const query *q, size_t first, size_t last, cprox_result *result,
@@ -502,9 +330,10 @@ static cprox_status gradient_of_models(const query *q, size_t first, size_t last
   if (!g.ended && !(g.previous > g.spot.gap.upper + g.apart))
     end(&g, "the distance is as small elsewhere along the motion, or of another pair");
   if (g.settled && g.pair.scene) {
-    fill(&g, gradient);
+    const spots one = {&g.spot, NULL, 1}, crossing = {g.side, g.part, SPOT_SIDES};
+    motion_derivatives_fill(&g.pair, &g.spot, g.crosses ? &crossing : &one, gradient);
   } else {
-    fill_nothing(&g, gradient);
+    motion_derivatives_fill_nothing(q->mover.motion, gradient);
   }
   gradient->valid = !g.ended;
   *result = r;

@@ -19,6 +19,66 @@
  * nodes, each of them as dear as a depth is, say nothing more. */
 enum { MOST_NODES = 3000 };
 
+/* What is taken for the rounding of a growth distance: differences are judged by it. */
+static const double VALUE_ROUNDING = 1e-12;
+
+/* ---- growth distances at one time, by kinematics in long double ---- */
+
+static cprox_pose pose_of(const ref_pose *at) {
+  return (cprox_pose){{(double)at->p.x, (double)at->p.y, (double)at->p.z},
+                      {(double)at->q[3], (double)at->q[0], (double)at->q[1], (double)at->q[2]}};
+}
+
+static cprox_obstacle geometry_at(const test_robot *t, const ref_pose *links, size_t i) {
+  const cprox_link_geometry *g = &t->geometries[i];
+  const cprox_pose link = pose_of(&links[g->link]);
+  const cprox_quat q = link.orientation, p = g->pose.orientation;
+  const vec3 v = vec(q.x, q.y, q.z), x = g->pose.position, twice = vec_scale(2.0, vec_cross(v, x));
+  const vec3 turned = vec_add(vec_add(x, vec_scale(q.w, twice)), vec_cross(v, twice));
+  const cprox_pose pose = {
+      vec_add(turned, link.position),
+      {q.w * p.w - q.x * p.x - q.y * p.y - q.z * p.z, q.w * p.x + q.x * p.w + q.y * p.z - q.z * p.y,
+       q.w * p.y - q.x * p.z + q.y * p.w + q.z * p.x, q.w * p.z + q.x * p.y - q.y * p.x + q.z * p.w}};
+  return cprox_obstacle_at(g->body, pose);
+}
+
+double gradient_case_growth_at(const gradient_case *p, double t) {
+  const test_robot *robot = &p->robot;
+  long double values[TEST_MAX_VARIABLES];
+  ref_pose links[TEST_MAX_LINKS];
+  robot_ref_values(robot, t, values);
+  robot_ref_links(robot, values, links);
+  cprox_options options = accurate(1e-12);
+  double least = INFINITY;
+  for (size_t i = 0; i < robot->n_links; i++) {
+    const cprox_obstacle a = geometry_at(robot, links, i);
+    cprox_growth g;
+    for (int k = 0; k < GRADIENT_TARGETS && p->kind != CPROX_MOVER_ROBOT_SELF; k++) {
+      assert_true(cprox_growth_distance(a, p->targets[k], &options, ws, &g) >= 0);
+      least = fmin(least, 0.5 * (g.lower + g.upper));
+    }
+    for (size_t k = 0; k < i && p->kind != CPROX_MOVER_ROBOT; k++) {
+      const cprox_link_info between =
+          cprox_motion_get_link_info(robot->motion, robot->geometries[i].link, robot->geometries[k].link);
+      if (between.n_joints < 2) continue;
+      assert_true(cprox_growth_distance(a, geometry_at(robot, links, k), &options, ws, &g) >= 0);
+      least = fmin(least, 0.5 * (g.lower + g.upper));
+    }
+  }
+  return least;
+}
+
+/* ---- the core's answers ---- */
+
+static cprox_result result_of(const cprox_motion_growth *growth) {
+  return (cprox_result){.status = growth->growth.status,
+                        .lower = growth->growth.lower,
+                        .upper = growth->growth.upper,
+                        .t = growth->t,
+                        .mover_part = growth->mover_part,
+                        .obstacle_index = growth->obstacle_index};
+}
+
 /* The core's answer; with a gradient where there is room for it. *width grows to that of the interval. */
 static double ask(const gradient_case *p, gradient_answer *a, double *width) {
   cprox_obstacles *obstacles = NULL;
@@ -28,18 +88,31 @@ static double ask(const gradient_case *p, gradient_answer *a, double *width) {
   mover.kind = p->kind;
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = a ? 1e-6 : 0.0;
-  if (!a) options.max_nodes = MOST_NODES;
+  if (!a && !p->growth) options.max_nodes = MOST_NODES;
   options.signed_distance = p->is_signed;
   const cprox_obstacles *against = p->kind == CPROX_MOVER_ROBOT_SELF ? NULL : obstacles;
   cprox_result r;
   cprox_status status;
+  cprox_motion_growth growth;
   if (a) {
     a->gradient = (cprox_motion_gradient){.variables = a->variables};
     memset(a->rows, 0, sizeof a->rows);
     if (p->robot.turning == CPROX_TURNING_POLYNOMIAL)
       a->gradient.positions = a->rows[0], a->gradient.velocities = a->rows[1], a->gradient.accelerations = a->rows[2];
-    status = cprox_robot_distance_gradient(against, mover, &options, ws, &a->result, &a->gradient);
+    if (p->growth)
+      status = cprox_robot_growth(against, mover, &options, ws, &growth, &a->gradient);
+    else
+      status = cprox_robot_distance_gradient(against, mover, &options, ws, &a->result, &a->gradient);
+    if (p->growth) a->result = result_of(&growth);
     r = a->result;
+  } else if (p->growth) {
+    /* with derivatives the minimiser is refined */
+    cprox_motion_gradient unused = {.variables = NULL};
+    options.epsilon = 1e-9;
+    status = cprox_robot_growth(against, mover, &options, ws, &growth, &unused);
+    r = result_of(&growth);
+    if (isfinite(r.upper)) r.upper = gradient_case_growth_at(p, growth.t);
+    r.lower = r.upper * (1.0 - VALUE_ROUNDING);
   } else {
     status = cprox_obstacles_distance(against, mover, &options, ws, &r, NULL);
   }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random robots on random motions among random bodies, and gradients of their clearance or depth against central
- * differences of the certified distance. Uses the workspace of builders.h. */
+/* Random robots on random motions among random bodies, and gradients of their clearance, depth or growth distance
+ * against central differences of the certified value. Uses the workspace of builders.h. */
 #ifndef CPROX_TEST_GRADIENT_CASE_H
 #define CPROX_TEST_GRADIENT_CASE_H
 
@@ -21,6 +21,7 @@ typedef struct gradient_case {
   cprox_obstacle targets[GRADIENT_TARGETS];
   cprox_mover_kind kind;
   bool indexed, is_signed;
+  bool growth;                  /* of the growth distance instead: without margins */
   const cprox_robot_pair *pair; /* asked about alone, between two breaks; NULL: all pairs, all the time */
   double breaks[2];
 } gradient_case;
@@ -72,6 +73,9 @@ void gradient_case_free(gradient_case *p);
 /* The middle of the distance's interval, and with an answer its gradient. Without one the interval is as narrow as
  * arithmetic allows. */
 double gradient_case_ask(const gradient_case *p, gradient_answer *a);
+
+/* The least growth distance of all pairs at one time, by kinematics in long double. */
+double gradient_case_growth_at(const gradient_case *p, double t);
 
 gradient_step gradient_step_random(rng *r, const gradient_case *p);
 
