@@ -13,6 +13,7 @@
 #include "dataset.h"
 #include "failure.h"
 #include "finish.h"
+#include "json.h"
 #include "library.h"
 #include "run.h"
 #include "shard_file.h"
@@ -70,17 +71,17 @@ void addAnswer(std::size_t row, const std::string &id, const Answer &answer, Que
 
 /* A trajectory file: JSON where it begins with a brace, else YAML. */
 TrajectoryDescription trajectoryOf(const std::string &path) {
+  Warnings warnings;
   std::ifstream stream(path, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && text[first] == '{') {
     try {
-      return toTrajectory(parseJson(text));
+      return readTrajectoryValue(parseJson(text), "", warnings);
     } catch (const BadInput &) {
-      /* a file that is YAML in braces, or has keys that the quick reader does not know */
+      /* a file that is YAML in braces; or what is wrong is said with its line */
     }
   }
-  Warnings warnings;
   return readTrajectory(path, warnings);
 }
 

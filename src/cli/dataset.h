@@ -12,7 +12,8 @@
 #include <curve_proximity/query.hpp>
 #include <curve_proximity/trajectory.hpp>
 
-#include "json.h"
+#include "../scene/yaml/yaml_value.h"
+#include "failure.h"
 
 namespace curve_proximity::cli {
 
@@ -82,9 +83,9 @@ class Dataset {
 
  private:
   bool isRow(const std::string &line) const;
-  Json toJson(const std::string &text) const;
-  RowFiles filesIn(const Json &row) const;
-  std::string fileOf(const Json &row, const char *key) const;
+  YamlValue valueOf(const std::string &text) const;
+  RowFiles filesIn(const YamlValue &row) const;
+  std::string fileOf(const YamlValue &row, const char *key) const;
 
   const std::string path_, folder_;
   bool is_csv_ = false;
@@ -92,10 +93,6 @@ class Dataset {
   std::size_t rows_ = 0;
   std::string digest_;
 };
-
-/** A trajectory as JSON: the keys of a trajectory file, without virtual_joint. Throws BadInput. Whether it is one that
- * a robot can follow is not looked at. */
-TrajectoryDescription toTrajectory(const Json &value);
 
 } // namespace curve_proximity::cli
 #endif

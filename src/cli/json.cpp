@@ -8,60 +8,50 @@
 #include <rapidjson/writer.h>
 
 #include <cmath>
+#include <memory>
+
+#include "../scene/yaml/numbers.h"
 
 namespace curve_proximity::cli {
 namespace {
 
 constexpr std::size_t kDeepestNesting = 64;
 
-/* Receives what the parser finds, in the order of the text. The names are those that the parser asks for. */
-class Builder {
+/* Takes what the parser finds, in the order of the text. The names are those that the parser asks for. */
+class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> {
  public:
   /* outline: what lists and maps inside hold is left out. */
-  Builder(const rapidjson::MemoryStream &at, bool outline, Json &whole) : at_(at), outline_(outline), next_(&whole) {}
+  Builder(const rapidjson::MemoryStream &at, bool outline, YamlDocument &whole)
+      : at_(at), outline_(outline), whole_(whole) {}
 
   bool Null() {
-    return leftOut() || put({});
+    return put(Kind::NOTHING, "");
   }
   bool Bool(bool value) {
-    return leftOut() || put(value);
+    return put(Kind::SCALAR, value ? "true" : "false");
   }
-  bool Int(int value) {
-    return Double(value);
-  }
-  bool Uint(unsigned value) {
-    return Double(value);
-  }
-  bool Int64(std::int64_t value) {
-    return Double(static_cast<double>(value));
-  }
-  bool Uint64(std::uint64_t value) {
-    return Double(static_cast<double>(value));
-  }
-  bool Double(double value) {
-    return leftOut() || put(value);
-  }
-  bool RawNumber(const char *, rapidjson::SizeType, bool) {
-    return false; /* is not asked for */
+  bool RawNumber(const char *text, rapidjson::SizeType length, bool) {
+    if (!parseFinite({text, length})) fail(rapidjson::GetParseError_En(rapidjson::kParseErrorNumberTooBig));
+    return put(Kind::SCALAR, {text, length});
   }
   bool String(const char *text, rapidjson::SizeType length, bool) {
-    return leftOut() || put(std::string(text, length));
+    return put(Kind::SCALAR, {text, length});
   }
   bool StartObject() {
-    return open(Json::Kind::MAP);
+    return open(Kind::MAP);
   }
   bool Key(const char *text, rapidjson::SizeType length, bool) {
     if (leftOut()) return true;
-    std::string name(text, length);
-    if (open_.back()->member(name)) fail("'" + name + "' comes twice");
-    next_ = &open_.back()->members.emplace_back(std::move(name), Json()).second;
-    return true;
+    const std::vector<const YamlNode *> &known = open_.back()->items;
+    for (std::size_t i = 0; i < known.size(); i += 2)
+      if (known[i]->scalar == std::string_view(text, length)) fail("'" + known[i]->scalar + "' comes twice");
+    return put(Kind::SCALAR, {text, length});
   }
   bool EndObject(rapidjson::SizeType) {
     return close();
   }
   bool StartArray() {
-    return open(Json::Kind::LIST);
+    return open(Kind::LIST);
   }
   bool EndArray(rapidjson::SizeType) {
     return close();
@@ -73,27 +63,28 @@ class Builder {
   }
 
  private:
+  using Kind = YamlNode::Kind;
+
   bool leftOut() const {
     return outline_ && depth_ > 1;
   }
-  /* Where the value that was found belongs. */
-  Json &take() {
-    if (open_.empty() || open_.back()->kind == Json::Kind::MAP) return *next_;
-    return open_.back()->items.emplace_back();
+  YamlNode *place(Kind kind, std::string_view text) {
+    YamlNode &node = whole_.nodes.emplace_back();
+    node.kind = kind;
+    node.scalar = text;
+    if (open_.empty())
+      whole_.root = &node;
+    else
+      open_.back()->items.push_back(&node);
+    return &node;
   }
-  bool put(Json value) {
-    take() = std::move(value);
+  bool put(Kind kind, std::string_view text) {
+    if (!leftOut()) place(kind, text);
     return true;
   }
-  bool open(Json::Kind kind) {
-    constexpr std::size_t kUsual = 8; /* joints of an arm */
+  bool open(Kind kind) {
     if (depth_ == kDeepestNesting) fail("it is nested too deep");
-    if (!leftOut()) {
-      Json &out = take();
-      out.kind = kind;
-      if (kind == Json::Kind::LIST && !outline_) out.items.reserve(kUsual);
-      open_.push_back(&out);
-    }
+    if (!leftOut()) open_.push_back(place(kind, ""));
     ++depth_;
     return true;
   }
@@ -105,24 +96,24 @@ class Builder {
 
   const rapidjson::MemoryStream &at_;
   bool outline_;
-  Json *next_;               /* the whole, or the member whose name came last */
-  std::vector<Json *> open_; /* lists and maps that have not ended; only the last one grows, so that none moves */
+  YamlDocument &whole_;
+  std::vector<YamlNode *> open_; /* lists and maps that have not ended */
   std::size_t depth_ = 0;
 };
 
-Json parse(std::string_view text, bool outline) {
-  Json out;
+YamlValue parse(std::string_view text, bool outline) {
+  auto out = std::make_shared<YamlDocument>();
   rapidjson::MemoryStream in(text.data(), text.size());
   const std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.substr(0, byte_order_mark.size()) == byte_order_mark)
     for (std::size_t i = 0; i < byte_order_mark.size(); ++i) in.Take();
-  Builder builder(in, outline, out);
+  Builder builder(in, outline, *out);
   rapidjson::Reader reader;
-  constexpr unsigned kFlags = rapidjson::kParseFullPrecisionFlag | rapidjson::kParseValidateEncodingFlag;
+  constexpr unsigned kFlags = rapidjson::kParseNumbersAsStringsFlag | rapidjson::kParseValidateEncodingFlag;
   const rapidjson::ParseResult result = reader.Parse<kFlags>(in, builder);
   if (result.IsError()) builder.fail(rapidjson::GetParseError_En(result.Code()));
   if (in.Tell() < text.size()) builder.fail("a byte 0"); /* with which the text would end */
-  return out;
+  return {std::move(out), ""};
 }
 
 using Writer = rapidjson::Writer<rapidjson::StringBuffer>;
@@ -172,10 +163,6 @@ void write(const Json &value, Writer &out) {
   }
 }
 
-[[noreturn]] void failKind(const char *what, const char *wanted) {
-  throw BadInput(std::string(what) + " must be " + wanted);
-}
-
 } // namespace
 
 Json Json::listOf(std::vector<Json> items) {
@@ -199,53 +186,11 @@ Json &Json::operator[](const std::string &name) {
   return members.emplace_back(name, Json()).second;
 }
 
-const Json *Json::member(std::string_view name) const {
-  for (const auto &member : members) {
-    if (member.first == name) return &member.second;
-  }
-  return nullptr;
-}
-
-const Json *Json::find(std::string_view name) const {
-  const Json *found = member(name);
-  return found && found->kind != Kind::NOTHING ? found : nullptr;
-}
-
-const std::string &Json::text(const char *what) const {
-  if (kind != Kind::TEXT) failKind(what, "a text");
-  return text_value;
-}
-
-double Json::number(const char *what) const {
-  if (kind != Kind::NUMBER) failKind(what, "a number");
-  return number_value;
-}
-
-bool Json::truth(const char *what) const {
-  if (kind != Kind::TRUTH) failKind(what, "true or false");
-  return truth_value;
-}
-
-const std::vector<Json> &Json::list(const char *what) const {
-  if (kind != Kind::LIST) failKind(what, "a list");
-  return items;
-}
-
-std::vector<double> Json::numbers(const char *what) const {
-  std::vector<double> out;
-  out.reserve(list(what).size());
-  for (const Json &item : items) {
-    if (item.kind != Kind::NUMBER) failKind(what, "a list of numbers");
-    out.push_back(item.number_value);
-  }
-  return out;
-}
-
-Json parseJson(std::string_view text) {
+YamlValue parseJson(std::string_view text) {
   return parse(text, false);
 }
 
-Json outlineOfJson(std::string_view text) {
+YamlValue outlineOfJson(std::string_view text) {
   return parse(text, true);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** JSON as values: for the lines of a dataset, which must cost little beside a search, and for the data of a report. */
+/** JSON: read as YAML is, for the lines of a dataset, which must cost little beside a search; and written, for reports. */
 #ifndef CURVE_PROXIMITY_CLI_JSON_H
 #define CURVE_PROXIMITY_CLI_JSON_H
 
@@ -9,11 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "../scene/yaml/yaml_value.h"
 #include "failure.h"
 
 namespace curve_proximity::cli {
 
-/** A value. The functions that take it for something throw BadInput where it is something else, and name it. */
+/** A value to be written. */
 struct Json {
   enum class Kind { NOTHING, TRUTH, NUMBER, TEXT, LIST, MAP };
 
@@ -38,27 +39,15 @@ struct Json {
 
   /** The member of that name, null where it was not there. What is null becomes a map. */
   Json &operator[](const std::string &name);
-
-  /** The member of that name; null where it is not there. */
-  const Json *member(std::string_view name) const;
-
-  /** The same; null also where its value is null. */
-  const Json *find(std::string_view name) const;
-
-  const std::string &text(const char *what) const;
-  double number(const char *what) const;
-  bool truth(const char *what) const;
-  std::vector<double> numbers(const char *what) const;
-  const std::vector<Json> &list(const char *what) const;
 };
 
-/** The whole text as one value. Throws BadInput: what is wrong, and at which character; a name that comes twice; more
+/** The whole text as one value; its places have no lines. Throws BadInput: what is wrong, and at which character; a name that comes twice; more
  *  than 64 lists and maps in each other. */
-Json parseJson(std::string_view text);
+YamlValue parseJson(std::string_view text);
 
 /** The same without what the lists and maps inside hold: of {"a": 1, "b": {"c": [2]}} it is {"a": 1, "b": {}}. What is
  *  wrong in there is not found. */
-Json outlineOfJson(std::string_view text);
+YamlValue outlineOfJson(std::string_view text);
 
 /** On one line; numbers that are not finite are null. */
 std::string textOfJson(const Json &value);

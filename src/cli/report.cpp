@@ -84,8 +84,8 @@ class Report {
     return data_;
   }
 
-  int exitCode() const {
-    if (failed_ || data_.member("verdicts")->items.empty()) return kUnanswered;
+  int exitCode() {
+    if (failed_ || data_["verdicts"].items.empty()) return kUnanswered;
     if (violated_) return kSomeViolated;
     return undecided_ ? kSomeUndecided : kAllAnswered;
   }

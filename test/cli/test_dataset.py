@@ -130,8 +130,21 @@ class Dataset(Case):
             self.assertEqual(self.certify(os.path.join(self.folder, name), name + '.out').code, 0)
         self.assertEqual(self.merged('one.jsonl.out'), self.merged('two.csv.out'))
 
+    def a_trajectory_in_a_row_is_read_as_its_file_is(self):
+        """A spline, and a key that nobody knows: in the row, in a file of JSON and in one of YAML."""
+        spline = {'joint_spline': {'joint_names': ['slide'], 'degree': 1, 'knots': [0, 0, 2, 2], 'control_points': [[0], [3]]}}
+        for name, of in (('spline', spline), ('odd', dict(slide(2), colour='red'))):
+            self.file(name + '.json', json.dumps(of))
+            self.file(name + '.yaml', '# YAML\n' + json.dumps(of))
+            rows = [self.row('x', trajectory, self=True) for trajectory in (of, name + '.json', name + '.yaml')]
+            self.assertEqual(self.certify(self.manifest(rows), name).code, 0)
+            answers = [dict(row, row='', message=row['message'].replace('trajectory.', '')) for row in self.table(self.merged(name))]
+            self.assertEqual(answers[0]['status'], {'spline': 'ok', 'odd': 'partial'}[name], answers[0])
+            self.assertEqual(answers[:2], answers[2:4])
+            self.assertEqual(answers[:2], answers[4:])
+
     def a_poison_row_is_a_row(self):
-        poison = ['{', '[]', '"text"', '{"robot": 3, "trajectory": "go.yaml"}', '{"robot": "robot.urdf", "robot": "x"}', '\x00\x01', '{' * 300,
+        poison = ['{', '[]', '"text"', '{"robot": [3], "trajectory": "go.yaml"}', '{"robot": "robot.urdf", "robot": "x"}', '\x00\x01', '{' * 300,
                   self.row('a', query='distanse'), self.row('b', delta=-1), self.row('c', delta=1, query='collision'), self.row('d', colour='red'),
                   self.row('e', {'joint_trajectory': {'joint_names': ['ghost'], 'points': [{'positions': [0], 'time_from_start': 0}]}}),
                   self.row('f', {'joint_trajectory': {'joint_names': ['slide'], 'points': []}}), self.row('g', '/'), self.row('h', scene='robot.urdf'),
