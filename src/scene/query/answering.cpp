@@ -167,18 +167,26 @@ ClearanceInterval toInterval(const cprox_profile_interval &found, double roundin
 
 } // namespace
 
-std::vector<ClearanceInterval> searchProfile(const Obstacles &obstacles, const cprox_mover &mover, double rounding,
-                                             const std::vector<double> &breaks, double horizon, const Query &query,
-                                             Workspace &workspace, const IntervalNamer &name) {
+std::vector<ClearanceInterval> searchProfile(const Stated &stated, const std::vector<double> &breaks, double horizon,
+                                             const Query &query, Workspace &workspace) {
+  if (stated.is_empty) return profileOfNothing(breaks);
   std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
-  const cprox_options options = withoutRounding(query.options, rounding);
-  const cprox_status status = cprox_obstacles_profile(obstacles.get(), mover, breaks.data(), intervals.size(),
-                                                      horizon + rounding, &options, workspace.get(), intervals.data());
+  const Obstacles obstacles(stated.targets, CPROX_INDEX_NONE);
+  const cprox_options options = withoutRounding(query.options, stated.rounding);
+  const cprox_status status =
+      cprox_obstacles_profile(obstacles.get(), stated.mover, breaks.data(), intervals.size(), horizon + stated.rounding,
+                              &options, workspace.get(), intervals.data());
   if (status < 0) throw Error(workspace.reason(), status);
   std::vector<ClearanceInterval> out;
-  for (const cprox_profile_interval &interval : intervals) {
-    out.push_back(toInterval(interval, rounding, query.options, horizon, status));
-    name(interval, out.back());
+  for (const cprox_profile_interval &found : intervals) {
+    out.push_back(toInterval(found, stated.rounding, query.options, horizon, status));
+    Answer sides;
+    sides.result.obstacle_index = found.obstacle_index, sides.result.mover_part = found.mover_part;
+    sides.result.witness_mover = found.witness_mover, sides.result.witness_obstacle = found.witness_obstacle;
+    stated.name(sides);
+    out.back().a = sides.a, out.back().witness_a = sides.result.witness_mover;
+    out.back().b = sides.b, out.back().witness_b = sides.result.witness_obstacle;
+    if (std::isinf(sides.result.upper)) out.back().upper = INFINITE;
   }
   return out;
 }
@@ -191,6 +199,14 @@ std::vector<ClearanceInterval> profileOfNothing(const std::vector<double> &break
     out[i].lower = out[i].upper = INFINITE;
   }
   return out;
+}
+
+void searchContact(const cprox_mover &mover, const std::vector<cprox_obstacle> &enlarged, const Query &query,
+                   Workspace &workspace, cprox_result &result) {
+  ObstaclesHandle obstacles;
+  result.status = makeObstacles(enlarged, CPROX_INDEX_NONE, workspace, obstacles);
+  if (result.status >= 0)
+    result.status = cprox_obstacles_time_of_contact(obstacles.get(), mover, &query.options, workspace.get(), &result);
 }
 
 std::string faultOfDistances(const Query &query) {

@@ -53,32 +53,36 @@ cprox_status askCore(const Query &query, const cprox_options &options, const cpr
  * left_out. The verdict is reviewed by the interval as it then is. */
 void widen(const Query &query, double rounding, double left_out, cprox_result &result);
 
-/* Writes the names of both sides of what the core found. */
-using IntervalNamer = std::function<void(const cprox_profile_interval &, ClearanceInterval &)>;
+/* What a profile or a list of violations is about: the arguments of the core, and what the core does not know. */
+struct Stated {
+  cprox_mover mover;
+  std::vector<cprox_obstacle> targets;
+  double rounding;                    /* [m] */
+  bool is_empty;                      /* there is nothing to measure against */
+  std::function<void(Answer &)> name; /* names both sides of what the core found, as nameItem() does */
+};
+
+/* Of a curve against all targets. The arguments outlive it. */
+Stated statedOf(const Targets &targets, const CompiledCurve &curve, const Query &query);
 
 /* The clearance profile, widened by the rounding that the core does not know. Throws Error where the core refuses. */
-std::vector<ClearanceInterval> searchProfile(const Obstacles &obstacles, const cprox_mover &mover, double rounding,
-                                             const std::vector<double> &breaks, double horizon, const Query &query,
-                                             Workspace &workspace, const IntervalNamer &name);
+std::vector<ClearanceInterval> searchProfile(const Stated &stated, const std::vector<double> &breaks, double horizon,
+                                             const Query &query, Workspace &workspace);
 
 /* The same where there is nothing to measure against. */
 std::vector<ClearanceInterval> profileOfNothing(const std::vector<double> &breaks);
-
-/* Writes the names of both sides of what the core found. */
-using ViolationNamer = std::function<void(const cprox_violation &, Violation &)>;
-
-/* Nothing was measured. */
-Violations violationsOfNothing();
-
-void claimOneSide(Violation &violation);
 
 /* Throws Error where violations cannot be asked for in this way. */
 void checkViolations(const Query &query, double resolution);
 
 /* The violations of delta and the rounding that the core does not know: outside of what is found everything is farther
  * than delta. Throws Error where the core refuses. */
-Violations searchViolations(const Obstacles &obstacles, const cprox_mover &mover, double rounding, double resolution,
-                            const Query &query, Workspace &workspace, const ViolationNamer &name);
+Violations searchViolations(const Stated &stated, double resolution, const Query &query, Workspace &workspace);
+
+/* The core's time of contact with obstacles that have been enlarged by what rounding can have moved: no contact comes
+ * before it. */
+void searchContact(const cprox_mover &mover, const std::vector<cprox_obstacle> &enlarged, const Query &query,
+                   Workspace &workspace, cprox_result &result);
 
 /* Why a query of distances alone (nearest pairs, profiles), or of the time of contact, cannot be answered; "" where it
  * can. What cannot be asked of any query is not looked at here. */

@@ -71,6 +71,10 @@ cprox_mover Asked::mover() const {
   return cprox_robot_whole(along, self_pairs.data(), self_pairs.size());
 }
 
+Stated Asked::stated(const Query &query) const {
+  return {mover(), targets, rounding, pairs.empty(), [&](Answer &answer) { nameSides(*this, query, answer); }};
+}
+
 Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted, const Query &query) {
   const Named named(data, query.links);
   Asked asked{data, RobotPairs::ENVIRONMENT, std::move(wanted), {}, {}, {}, mostExcess(data.kinematics->geometries)};

@@ -28,6 +28,7 @@ struct Asked {
   }
 
   cprox_mover mover() const;
+  Stated stated(const Query &query) const; /* both outlive it */
 };
 
 /* The items of all objects, or of those that are named. Throws Error for a name that is none. */

@@ -28,8 +28,8 @@ void requireDistances(const Query &query) {
   if (query.delta != 0.0) throw Error(faultOf(query));
 }
 
-Coverage coverageOf(const Query &query, const Targets &targets, const std::vector<Item> &items) {
-  return coverageOf(query, targets.data().coverage, items.empty() ? NO_OBJECT : "");
+Coverage coverageOf(const Query &query, const Targets &targets) {
+  return coverageOf(query, targets.data().coverage, targets.data().items.empty() ? NO_OBJECT : "");
 }
 
 } // namespace
@@ -40,12 +40,22 @@ double roundingOf(const CompiledCurve &curve, const std::vector<Item> &items) {
   return most;
 }
 
+Stated statedOf(const Targets &targets, const CompiledCurve &curve, const Query &query) {
+  const std::vector<Item> &items = targets.data().items;
+  const auto name = [&](Answer &answer) {
+    answer.a = curve.id;
+    const std::int32_t found = answer.result.obstacle_index;
+    if (found >= 0) nameItem(items[static_cast<std::size_t>(found)], query.options.max_lod, answer);
+  };
+  return {moverOf(curve), coreTargets(targets), roundingOf(curve, items), items.empty(), name};
+}
+
 std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &curve, const PairLimits &limits,
                                  const Query &query, Workspace &workspace) {
   const Clock::time_point start = Clock::now();
   requireDistances(query);
   const std::vector<Item> &items = targets.data().items;
-  const Coverage coverage = coverageOf(query, targets, items);
+  const Coverage coverage = coverageOf(query, targets);
   Answer nothing;
   nothing.id = nothing.a = curve.id;
   std::vector<Answer> answers;
@@ -85,18 +95,10 @@ std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const Co
   requireDistances(query);
   const std::string fault = faultOfProfile(query, breaks, horizon);
   if (!fault.empty()) throw Error(fault);
-  const std::vector<Item> &items = targets.data().items;
-  const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
-  const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
-    out.a = curve.id;
-    if (found.obstacle_index < 0) return;
-    const Item &item = items[static_cast<std::size_t>(found.obstacle_index)];
-    out.b = *item.owner;
-    if (isReplaced(query.options.max_lod, item.shape->is_mesh)) out.upper = INFINITE;
-  };
-  std::vector<ClearanceInterval> profile =
-      searchProfile(obstacles, moverOf(curve), roundingOf(curve, items), breaks, horizon, query, workspace, name);
-  applyCoverage(coverageOf(query, targets, items), profile);
+  Stated stated = statedOf(targets, curve, query);
+  stated.is_empty = false; /* the core checks the breaks, whatever there is to measure against */
+  std::vector<ClearanceInterval> profile = searchProfile(stated, breaks, horizon, query, workspace);
+  applyCoverage(coverageOf(query, targets), profile);
   return profile;
 }
 
@@ -118,11 +120,7 @@ Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Q
     obstacles[i].margin += curve_proximity::roundingOf(curve, *items[i].shape);
   cprox_result result{};
   result.obstacle_index = -1;
-  ObstaclesHandle handle;
-  result.status = makeObstacles(obstacles, CPROX_INDEX_NONE, workspace, handle);
-  if (result.status >= 0)
-    result.status =
-        cprox_obstacles_time_of_contact(handle.get(), moverOf(curve), &query.options, workspace.get(), &result);
+  searchContact(moverOf(curve), obstacles, query, workspace, result);
   Answer answer = answerOf(curve, result, start);
   if (result.status >= 0) {
     widen(query, 2.0 * roundingOf(curve, items), INFINITE, answer.result);
@@ -130,7 +128,7 @@ Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Q
       nameItem(items[static_cast<std::size_t>(result.obstacle_index)], query.options.max_lod, answer);
   }
   finishAnswer(workspace, answer);
-  applyCoverage(coverageOf(query, targets, items), query, answer);
+  applyCoverage(coverageOf(query, targets), query, answer);
   addSecondOpinion(targets.data(), curve, query, answer);
   return answer;
 }

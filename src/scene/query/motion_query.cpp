@@ -56,11 +56,7 @@ double beforeRounding(const Asked &asked, double t, const cprox_options &options
 void searchContact(const Asked &asked, const Query &query, Workspace &workspace, cprox_result &result) {
   std::vector<cprox_obstacle> targets = asked.targets;
   for (cprox_obstacle &target : targets) target.margin += asked.rounding;
-  ObstaclesHandle obstacles;
-  result.status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
-  if (result.status >= 0)
-    result.status =
-        cprox_obstacles_time_of_contact(obstacles.get(), asked.mover(), &query.options, workspace.get(), &result);
+  searchContact(asked.mover(), targets, query, workspace, result);
   const bool touches = result.status >= 0 && !(result.lower > asked.rounding);
   if (asked.against == RobotPairs::SELF && touches && asked.rounding > 0.0)
     result.t_contact_lower = beforeRounding(asked, result.t_contact_lower, query.options, workspace);
@@ -213,21 +209,7 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
   const std::string fault = faultOfProfile(query, breaks, horizon);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, againstOf(self), query);
-  std::vector<ClearanceInterval> profile;
-  const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
-    Answer names;
-    names.result.obstacle_index = found.obstacle_index;
-    names.result.mover_part = found.mover_part;
-    nameSides(asked, query, names);
-    out.a = names.a, out.b = names.b;
-    if (isReplaced(query.options.max_lod, names.by_hull)) out.upper = INFINITE;
-  };
-  if (asked.pairs.empty()) {
-    profile = profileOfNothing(breaks);
-  } else {
-    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
-    profile = searchProfile(obstacles, asked.mover(), asked.rounding, breaks, horizon, query, workspace, name);
-  }
+  std::vector<ClearanceInterval> profile = searchProfile(asked.stated(query), breaks, horizon, query, workspace);
   applyCoverage(coverageOf(query, asked), profile);
   return profile;
 }

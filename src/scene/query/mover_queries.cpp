@@ -231,6 +231,15 @@ View seenBy(const MovingRobot &robot) {
   return [&robot](Answer answer) { return ofRobot(robot, std::move(answer)); };
 }
 
+Stated statedOf(const Movers::Data &data, const Pairs &pairs, const Query &query, const View &view) {
+  const auto name = [&](Answer &answer) {
+    nameSides(data, pairs.against, query, answer);
+    answer = view(std::move(answer));
+  };
+  return {joinedMover(data, pairs), targetsOf(data, pairs), data.rounding,
+          pairs.environment.empty() && pairs.among.empty(), name};
+}
+
 /* Throws Error where movers cannot be asked in this way. */
 void refuse(const std::string &fault) {
   if (!fault.empty()) throw Error(fault);
@@ -244,24 +253,8 @@ std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, 
   if (query.options.interval) throw Error("an interval does not apply: breaks say where a profile begins and ends");
   const Movers::Data &data = movers.data();
   const Pairs pairs = pairsOf(data, against, query);
-  const auto name = [&](const cprox_profile_interval &found, ClearanceInterval &out) {
-    Answer sides;
-    sides.result.obstacle_index = found.obstacle_index;
-    sides.result.mover_part = found.mover_part;
-    sides.result.witness_mover = found.witness_mover;
-    sides.result.witness_obstacle = found.witness_obstacle;
-    nameSides(data, pairs.against, query, sides);
-    sides = view(std::move(sides));
-    out.a = sides.a, out.witness_a = sides.result.witness_mover;
-    out.b = sides.b, out.witness_b = sides.result.witness_obstacle;
-    if (!std::isfinite(sides.result.upper)) out.upper = INFINITE;
-  };
-  std::vector<ClearanceInterval> profile = profileOfNothing(breaks);
-  if (!pairs.environment.empty() || !pairs.among.empty()) {
-    const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
-    profile =
-        searchProfile(obstacles, joinedMover(data, pairs), data.rounding, breaks, horizon, query, workspace, name);
-  }
+  std::vector<ClearanceInterval> profile =
+      searchProfile(statedOf(data, pairs, query, view), breaks, horizon, query, workspace);
   applyCoverage(coverageOf(data, pairs, query), profile);
   return profile;
 }
@@ -321,20 +314,7 @@ Violations violationsOf(const Movers &movers, Against against, double resolution
   refuse(faultOfMovers(query));
   const Movers::Data &data = movers.data();
   const Pairs pairs = pairsOf(data, against, query);
-  const auto name = [&](const cprox_violation &found, Violation &out) {
-    Answer sides;
-    sides.result.obstacle_index = found.obstacle_index;
-    sides.result.mover_part = found.mover_part;
-    nameSides(data, pairs.against, query, sides);
-    sides = view(std::move(sides));
-    out.a = sides.a, out.b = sides.b;
-    if (!std::isfinite(sides.result.upper)) claimOneSide(out);
-  };
-  Violations found = violationsOfNothing();
-  if (!pairs.environment.empty() || !pairs.among.empty()) {
-    const Obstacles obstacles(targetsOf(data, pairs), CPROX_INDEX_NONE);
-    found = searchViolations(obstacles, joinedMover(data, pairs), data.rounding, resolution, query, workspace, name);
-  }
+  Violations found = searchViolations(statedOf(data, pairs, query, view), resolution, query, workspace);
   applyCoverage(coverageOf(data, pairs, query), domainOf(query, movers.domain()), found);
   return found;
 }
@@ -564,10 +544,7 @@ Answer timeOfContact(const Movers &movers, Against against, const Query &query, 
     /* what is nearer than the rounding may be in contact: standing bodies grow by it */
     std::vector<cprox_obstacle> grown = targets;
     for (cprox_obstacle &target : grown) target.margin += movers.data().rounding;
-    ObstaclesHandle obstacles;
-    result.status = makeObstacles(grown, CPROX_INDEX_NONE, workspace, obstacles);
-    if (result.status >= 0)
-      result.status = cprox_obstacles_time_of_contact(obstacles.get(), mover, &query.options, workspace.get(), &result);
+    searchContact(mover, grown, query, workspace, result);
   };
   return answerOf(movers, against, query, fault, workspace, core);
 }

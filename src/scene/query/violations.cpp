@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* All intervals in which a curve or a robot is within delta of something. */
+#include <cmath>
+
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/query.hpp>
 
@@ -16,28 +18,19 @@ void checkViolations(const Query &query, double resolution) {
   if (!(resolution > 0.0)) throw Error("the resolution must be above 0");
 }
 
-Violations violationsOfNothing() {
-  Violations out;
-  out.measured = false;
-  return out;
-}
-
-void claimOneSide(Violation &violation) {
-  violation.upper = INFINITE;
-  violation.verdict = CPROX_VERDICT_UNDECIDED;
-}
-
-Violations searchViolations(const Obstacles &obstacles, const cprox_mover &mover, double rounding, double resolution,
-                            const Query &query, Workspace &workspace, const ViolationNamer &name) {
+Violations searchViolations(const Stated &stated, double resolution, const Query &query, Workspace &workspace) {
   constexpr std::size_t FIRST_ROOM = 64, MOST_ROOM = 65536;
-  std::vector<cprox_violation> room(FIRST_ROOM);
-  const cprox_options options = withoutRounding(query.options, rounding);
   Violations out;
+  out.measured = !stated.is_empty;
+  if (stated.is_empty) return out;
+  const Obstacles obstacles(stated.targets, CPROX_INDEX_NONE);
+  std::vector<cprox_violation> room(FIRST_ROOM);
+  const cprox_options options = withoutRounding(query.options, stated.rounding);
   cprox_violations found{};
   while (true) {
     found = {room.data(), room.size(), 0};
-    out.status = cprox_obstacles_violations(obstacles.get(), mover, query.delta + rounding, resolution, &options,
-                                            workspace.get(), &found);
+    out.status = cprox_obstacles_violations(obstacles.get(), stated.mover, query.delta + stated.rounding, resolution,
+                                            &options, workspace.get(), &found);
     if (out.status != CPROX_BUDGET || found.count < room.size() || room.size() >= MOST_ROOM) break;
     room.resize(4 * room.size());
   }
@@ -46,9 +39,13 @@ Violations searchViolations(const Obstacles &obstacles, const cprox_mover &mover
   if (query.moving_only) out.message += (out.message.empty() ? "" : "; ") + std::string(MOVING_ONLY);
   for (std::size_t i = 0; i < found.count; ++i) {
     const cprox_violation &v = room[i];
-    Violation one{v.enter_lower, v.enter_upper, v.leave_lower, v.leave_upper, v.verdict, v.upper, v.t, "", ""};
-    name(v, one);
-    out.list.push_back(std::move(one));
+    Answer sides;
+    sides.result.obstacle_index = v.obstacle_index, sides.result.mover_part = v.mover_part;
+    stated.name(sides);
+    const bool one_side = std::isinf(sides.result.upper); /* a model answers for one of them */
+    out.list.push_back({v.enter_lower, v.enter_upper, v.leave_lower, v.leave_upper,
+                        one_side ? CPROX_VERDICT_UNDECIDED : v.verdict, one_side ? INFINITE : v.upper, v.t, sides.a,
+                        sides.b});
   }
   return out;
 }
@@ -58,21 +55,10 @@ Violations violations(const Targets &targets, const CompiledCurve &curve, double
   checkViolations(query, resolution);
   const std::string fault = faultOf(query);
   if (!fault.empty()) throw Error(fault);
-  const std::vector<Item> &items = targets.data().items;
-  const auto name = [&](const cprox_violation &found, Violation &out) {
-    out.a = curve.id;
-    if (found.obstacle_index < 0) return;
-    const Item &item = items[static_cast<std::size_t>(found.obstacle_index)];
-    out.b = *item.owner;
-    if (isReplaced(query.options.max_lod, item.shape->is_mesh)) claimOneSide(out);
-  };
-  Violations found = violationsOfNothing();
-  if (!items.empty()) {
-    const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
-    found = searchViolations(obstacles, moverOf(curve), roundingOf(curve, items), resolution, query, workspace, name);
-  }
+  const Stated stated = statedOf(targets, curve, query);
+  Violations found = searchViolations(stated, resolution, query, workspace);
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
-  applyCoverage(coverageOf(query, targets.data().coverage, items.empty() ? NO_OBJECT : ""),
+  applyCoverage(coverageOf(query, targets.data().coverage, stated.is_empty ? NO_OBJECT : ""),
                 domainOf(query, {info.t0, info.t1}), found);
   return found;
 }
@@ -84,20 +70,7 @@ Violations violations(const RobotMotion &motion, bool self, double resolution, c
   const std::string fault = faultInAll(against, query);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, against, query);
-  const auto name = [&](const cprox_violation &found, Violation &out) {
-    Answer names;
-    names.result.obstacle_index = found.obstacle_index;
-    names.result.mover_part = found.mover_part;
-    nameSides(asked, query, names);
-    out.a = names.a;
-    out.b = names.b;
-    if (isReplaced(query.options.max_lod, names.by_hull)) claimOneSide(out);
-  };
-  Violations found = violationsOfNothing();
-  if (!asked.pairs.empty()) {
-    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
-    found = searchViolations(obstacles, asked.mover(), asked.rounding, resolution, query, workspace, name);
-  }
+  Violations found = searchViolations(asked.stated(query), resolution, query, workspace);
   applyCoverage(coverageOf(query, asked), domainOf(query, motion.domain()), found);
   return found;
 }
