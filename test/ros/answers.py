@@ -2,20 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Each service against distances computed by hand; what is wrong is told by name, and the next call is answered."""
 import math
-import unittest
 
-import rospy
 from curve_proximity import srv
 from curve_proximity.msg import AllowedContact, Body, CollisionObject, LinkPadding, PairQuery, SceneState
 from geometry_msgs.msg import Pose, Vector3
-from helpers import (BOX, CONE, CYLINDER, SPHERE, Server, bezier, body, box, bspline, grid, implicit, mesh, plane, point, pose,
-                     run, solid, sphere, thing)
+from helpers import (BOX, CONE, CYLINDER, SPHERE, Case, Server, bezier, body, box, bspline, grid, implicit, mesh, plane, point, pose,
+                     run, service, solid, sphere, thing)
 
 EPSILON = 1e-9  # [m] asked for in each query that is compared
 ABOVE = bezier((0, 0, 1), (2, 0, 1), id='above')  # a straight line one metre up, middle over (1, 0, 0)
 
 
-class TestCase(unittest.TestCase):
+class TestCase(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
@@ -28,17 +26,10 @@ class TestCase(unittest.TestCase):
 
     def assertContains(self, row, true_distance):
         """The interval contains the true value (to the rounding of the value written here) and is narrow."""
-        self.assertLessEqual(row.lower, true_distance + 1e-15)
-        self.assertGreaterEqual(row.upper, true_distance - 1e-15)
-        self.assertLessEqual(row.upper - row.lower, EPSILON)
+        self.assertHolds(row.lower, row.upper, true_distance, EPSILON, 1e-15)
 
     def distance(self, curve=ABOVE, **fields):
         return self.row(self.server.distance(curve, epsilon=EPSILON, **fields))
-
-    def assertRefused(self, response, *words):
-        self.assertFalse(response.success)
-        for word in words:
-            self.assertIn(word, response.message)
 
 
 class Answers(TestCase):
@@ -103,15 +94,11 @@ class Answers(TestCase):
         self.assertLessEqual(row.lower, 2.0)
         self.assertGreaterEqual(row.upper, 2.0)
         values[0] = 9.0
-        told = self.server.apply(grid('point', 'distance_grid', [1, 3, 3, 3], values))
-        self.assertFalse(told.success)
-        self.assertIn('neighbour', told.message)
+        self.assertRefused(self.server.apply(grid('point', 'distance_grid', [1, 3, 3, 3], values)), 'neighbour')
 
     def test_what_does_not_apply_is_refused_and_named(self):
         self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
-        refused = self.server.collision(ABOVE, self_collision=True)
-        self.assertFalse(refused.success)
-        self.assertIn('self_collision', refused.message)
+        self.assertRefused(self.server.collision(ABOVE, self_collision=True), 'self_collision')
 
     def test_poses_of_object_and_shape_are_chained(self):
         # the object is turned by 90 degrees about z, so its shape at (1, 0, 0) stands at (3, 1, 0)
@@ -365,8 +352,7 @@ class MeasurePairs(TestCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        rospy.wait_for_service('/curve_proximity/measure_pairs', 20)
-        cls.service = rospy.ServiceProxy('/curve_proximity/measure_pairs', srv.MeasurePairs, persistent=True)
+        cls.service = service('measure_pairs', srv.MeasurePairs)
 
     def pair(self, ask='', x=3.0, **fields):
         ball = Body(type='sphere', dimensions=[1])

@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """~evaluate_constraints on the live node: values, gradients, and what wrong requests, providers and parameters come to."""
 import math
-import unittest
 
-import rospy
 from curve_proximity.msg import ConstraintQuery
 from curve_proximity.srv import EvaluateConstraints
 from geometry_msgs.msg import Pose
-from helpers import Node, Server, bezier, box, mesh, plane, pose, refusal, run, sphere, thing
+from helpers import Case, Server, bezier, box, mesh, plane, pose, refusal, run, service, sphere, thing
 
 CURVES = 'curve_proximity/CurveDistance'
 
@@ -24,12 +22,11 @@ def query(a=None, b=None, curve=None, providers=(), name='case'):
     return asked
 
 
-class Constraints(unittest.TestCase):
+class Constraints(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        rospy.wait_for_service('/curve_proximity/evaluate_constraints', 20)
-        cls.service = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints, persistent=True)
+        cls.service = service('evaluate_constraints', EvaluateConstraints)
 
     def rows(self, *cases):
         response = self.service(cases=list(cases))
@@ -147,9 +144,7 @@ class Constraints(unittest.TestCase):
 
     def test_more_than_the_limits_is_refused(self):
         ball = sphere('', 0.5)
-        response = self.service(cases=[query(ball, ball, providers=['pairs'])] * 1001)
-        self.assertFalse(response.success)
-        self.assertIn('~max_curves', response.message)
+        self.assertRefused(self.service(cases=[query(ball, ball, providers=['pairs'])] * 1001), '~max_curves')
         self.assertEqual(self.service(cases=[]).results, [])
 
     def test_many_cases_of_one_pair_are_answered_in_one_call(self):
@@ -160,7 +155,7 @@ class Constraints(unittest.TestCase):
         self.assertTrue(all(row.status == 'ok' for row in rows))
 
 
-class WrongProviders(unittest.TestCase):
+class WrongProviders(Case):
     def stopped(self, providers):
         return refusal(self, 'wrong_providers', constraint_providers=providers)
 
@@ -185,22 +180,13 @@ class WrongProviders(unittest.TestCase):
                 self.assertIn(word, self.stopped(providers))
 
     def test_a_plugin_that_fails_is_told_by_name_and_the_node_serves(self):
-        node = Node('faulty', constraint_providers=[{'name': 'mine', 'type': 'faulty_provider/NoLibrary'}])
-        try:
-            self.assertTrue(Server('/faulty').scene().success)
-            self.assertIn("constraint provider 'mine' (faulty_provider/NoLibrary) failed to load", node.output())
-        finally:
-            node.end()
+        node, server = self.begin('faulty', constraint_providers=[{'name': 'mine', 'type': 'faulty_provider/NoLibrary'}])
+        self.assertTrue(server.scene().success)
+        self.assertIn("constraint provider 'mine' (faulty_provider/NoLibrary) failed to load", node.output())
 
     def test_without_providers_the_service_says_so(self):
-        node = Node('bare', constraint_providers=[])
-        try:
-            rospy.wait_for_service('/bare/evaluate_constraints', 20)
-            response = rospy.ServiceProxy('/bare/evaluate_constraints', EvaluateConstraints)(cases=[query()])
-            self.assertFalse(response.success)
-            self.assertIn('~constraint_providers', response.message)
-        finally:
-            node.end()
+        self.begin('bare', constraint_providers=[])
+        self.assertRefused(service('evaluate_constraints', EvaluateConstraints, '/bare')(cases=[query()]), '~constraint_providers')
 
 
 if __name__ == '__main__':

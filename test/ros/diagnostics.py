@@ -1,24 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What the server tells of itself on /diagnostics, and what may be changed while it runs."""
-import struct
 import time
-import unittest
 
 import rospy
 from curve_proximity.msg import Curve
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamic_reconfigure.client import Client
-from geometry_msgs.msg import TransformStamped
-from helpers import Server, bezier, connected, ring_and_shells, run, sphere, until
-from sensor_msgs.msg import PointCloud2, PointField
+from helpers import Case, Server, bezier, cloud, ring_and_shells, run, sphere, transform, until
+from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 ONLY_OBJECTS = dict(objects=['ball'])
 
 
-class Diagnostics(unittest.TestCase):
+class Diagnostics(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
@@ -64,67 +61,46 @@ class Diagnostics(unittest.TestCase):
         status, values = self.status('queries', lambda s, v: ask() or int(v['undecided rows']) > 0)
         self.assertEqual(status.level, DiagnosticStatus.WARN)
 
+    def say_where(self, frame, parent):
+        """The node hears of a frame that no transform connects with the fixed one."""
+        self.publisher('/tf', TFMessage).publish(TFMessage([transform(parent, frame, stamp=rospy.Time.now())]))
+        time.sleep(0.3)
+
     def test_dropped_messages_are_told(self):
         ring, balls, _ = ring_and_shells(shells=100)
-        publisher = rospy.Publisher('/curve_proximity/curve', Curve, queue_size=200)
-        self.assertTrue(connected(publisher))
-        lost = TransformStamped(child_frame_id='island')
-        lost.header.frame_id, lost.header.stamp, lost.transform.rotation.w = 'sea', rospy.Time.now(), 1.0
-        transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
-        self.assertTrue(connected(transforms))
-        transforms.publish(TFMessage([lost]))
-        time.sleep(0.3)
+        publisher = self.publisher('/curve_proximity/curve', Curve, queue_size=200)
+        self.say_where('island', 'sea')
         for i in range(100):
             publisher.publish(bezier((0, 0, 1), (1, 0, 1), frame='island'))  # each waits ~tf_timeout for that frame
         status, values = self.status('topics', lambda s, v: int(v['dropped']) > 50)
         self.assertEqual(status.level, DiagnosticStatus.WARN)
 
     def test_what_sensors_send_is_counted(self):
-        publisher = rospy.Publisher('/curve_proximity/cloud', PointCloud2, queue_size=100)
-        self.assertTrue(connected(publisher))
+        publisher = self.publisher('/curve_proximity/cloud', PointCloud2, queue_size=100)
         self.addCleanup(self.server.replace)
-        fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate('xyz')]
-
-        def cloud(frame=''):
-            out = PointCloud2(height=1, width=1, point_step=12, row_step=12, fields=fields, data=struct.pack('<fff', 0, 0, 1))
-            out.header.frame_id = frame
-            return out
+        point = [(0, 0, 1)]
         status, values = self.status(
-            'sensors', lambda s, v: publisher.publish(cloud()) or float(v.get('cloud: messages per second', 0)) > 2)
+            'sensors', lambda s, v: publisher.publish(cloud(point)) or float(v.get('cloud: messages per second', 0)) > 2)
         self.assertLess(float(values['cloud: age of the last one used [s]']), 1.0)
         self.assertEqual(values['cloud: refused'], '0')
         before = int(values['cloud: dropped'])
-        lost = TransformStamped(child_frame_id='nowhere')
-        lost.header.frame_id, lost.header.stamp, lost.transform.rotation.w = 'elsewhere', rospy.Time.now(), 1.0
-        transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
-        self.assertTrue(connected(transforms))
-        transforms.publish(TFMessage([lost]))
-        time.sleep(0.3)
+        self.say_where('nowhere', 'elsewhere')
         for _ in range(20):
-            publisher.publish(cloud('nowhere'))  # the first waits ~tf_timeout for that frame; the last one takes the others' place
+            publisher.publish(cloud(point, 'nowhere'))  # the first waits ~tf_timeout for that frame; the last one takes the others' place
         status, values = self.status('sensors', lambda s, v: int(v['cloud: dropped']) >= before + 15)
         self.assertEqual(status.level, DiagnosticStatus.WARN)
         self.assertGreater(int(values['cloud: refused']), 0)
         self.assertIn('unknown', self.status('sensors', lambda s, v: float(v['cloud: messages per second']) == 0)[0].message)
-        status, values = self.status('sensors', lambda s, v: publisher.publish(cloud()) or s.level == DiagnosticStatus.OK)
+        status, values = self.status('sensors', lambda s, v: publisher.publish(cloud(point)) or s.level == DiagnosticStatus.OK)
         self.assertEqual(status.message, 'listening')
 
     def test_the_age_of_transforms_is_told(self):
         status, _ = self.status('transforms', lambda s, v: True)
         self.assertEqual(status.level, DiagnosticStatus.WARN)
         self.assertIn("'arm'", status.message)
-        publisher = rospy.Publisher('/tf', TFMessage, queue_size=10)
-        self.assertTrue(connected(publisher))
         sent = rospy.Time.now()
-
-        def publish():
-            message = TFMessage()
-            for link, parent in (('base', 'world'), ('arm', 'base'), ('slider', 'base')):
-                t = TransformStamped(child_frame_id=link)
-                t.header.frame_id, t.header.stamp, t.transform.rotation.w = parent, sent, 1.0
-                message.transforms.append(t)
-            publisher.publish(message)
-        publish()
+        links = [transform(parent, link, stamp=sent) for link, parent in (('base', 'world'), ('arm', 'base'), ('slider', 'base'))]
+        self.publisher('/tf', TFMessage).publish(TFMessage(links))
         status, values = self.status('transforms', lambda s, v: 'oldest [s]' in v and float(v['oldest [s]']) > 1.0)
         self.assertEqual(status.level, DiagnosticStatus.WARN)
         self.assertLess(abs((rospy.Time.now() - sent).to_sec() - float(values['oldest [s]'])), 1.5)

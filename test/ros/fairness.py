@@ -2,25 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Nothing that one client does makes another one wait: small requests go between large ones, what waits for tf2 holds nobody up,
 budgets count from the arrival, and what cannot be begun in time is told to come back. bench/ros measures the ratios."""
-import array
 import statistics
 import threading
 import time
-import unittest
 
-from helpers import Call, Node, Server, bezier, resident_mb, ring_and_shells, run, sphere, until
+import numpy
+from helpers import Call, Case, Server, bezier, cloud, ring_and_shells, run, sphere, until
 from curve_proximity.msg import Body, CollisionObject
-from sensor_msgs.msg import PointCloud2, PointField
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 
 
-class Fairness(unittest.TestCase):
-    def begin(self, name, **parameters):
-        node = Node(name, **parameters)
-        self.addCleanup(node.end)
-        return Server('/' + name)
-
+class Fairness(Case):
     def times(self, server, count, **fields):
         out = []
         for _ in range(count):
@@ -52,7 +45,7 @@ class Fairness(unittest.TestCase):
 
     def test_a_small_request_goes_between_large_ones_even_with_one_thread(self):
         for name, threads in (('fair_one', 1), ('fair_four', 4)):
-            server = self.begin(name, threads=threads, budget_ms=600)
+            _, server = self.begin(name, threads=threads, budget_ms=600)
             ring, balls, fields = ring_and_shells()
             server.replace(sphere('ball', 0.25), *balls)
             end = self.crowd(name, 6, lambda s: s.distance(ring, **fields))
@@ -68,7 +61,7 @@ class Fairness(unittest.TestCase):
             self.assertTrue(all('budget_ms' in message for message in stopped))
 
     def test_what_waits_for_tf_holds_nobody_up(self):
-        server = self.begin('patient', threads=2, tf_timeout=0.4)
+        _, server = self.begin('patient', threads=2, tf_timeout=0.4)
         server.replace(sphere('ball', 0.25))
         lost = bezier((0, 0, 1), (1, 0, 1), frame='nowhere')
         end = self.crowd('patient', 12, lambda s: s.distance(lost))
@@ -77,7 +70,7 @@ class Fairness(unittest.TestCase):
         self.assertTrue(all(not a.success and "'nowhere'" in a.message for a in end()))
 
     def test_the_budget_counts_from_the_arrival_and_what_waits_too_long_is_busy(self):
-        server = self.begin('hurried', threads=1, budget_ms=400, max_wait_ms=30)
+        _, server = self.begin('hurried', threads=1, budget_ms=400, max_wait_ms=30)
         ring, balls, fields = ring_and_shells()
         server.replace(sphere('ball', 0.25), *balls)
         began = time.monotonic()
@@ -87,7 +80,7 @@ class Fairness(unittest.TestCase):
             self.assertTrue(call.response.success or call.response.status == 'busy', call.response)
             self.assertLess(call.ended - began, 4.0)
         # with so little room, the further ones are turned away
-        full = self.begin('full', threads=1, max_waiting=2, budget_ms=800)
+        _, full = self.begin('full', threads=1, max_waiting=2, budget_ms=800)
         full.replace(sphere('ball', 0.25), *balls)
         calls = [Call(lambda: Server('/full').distance(ring, **fields)) for _ in range(8)]
         for call in calls:
@@ -100,7 +93,7 @@ class Fairness(unittest.TestCase):
         self.assertTrue(full.distance(LINE, objects=['ball']).success)
 
     def test_queries_and_small_changes_do_not_wait_for_a_large_object(self):
-        server = self.begin('building', threads=1)
+        _, server = self.begin('building', threads=1)
         server.replace(sphere('ball', 0.25))
         vertices = [bezier((i % 100, i // 100, 50.0)).points[0] for i in range(150000)]
         large = CollisionObject(id='large')
@@ -115,23 +108,16 @@ class Fairness(unittest.TestCase):
         self.assertLess(max(times), 1.0)
 
     def test_changes_of_the_scene_have_a_budget_too(self):
-        server = self.begin('frugal', scene_budget_ms=5.0)
-        response = server.apply(*[sphere('ball%d' % i, 0.25) for i in range(20000)])
-        self.assertFalse(response.success)
-        self.assertIn('no time left', response.message)
+        _, server = self.begin('frugal', scene_budget_ms=5.0)
+        self.assertRefused(server.apply(*[sphere('ball%d' % i, 0.25) for i in range(20000)]), 'no time left')
         made = len(server.scene().objects)
         self.assertTrue(0 < made < 20000, made)
 
     def test_one_huge_shape_ends_with_the_budget_and_gives_its_memory_back(self):
-        node = Node('hasty', scene_budget_ms=20.0, threads=1)
-        self.addCleanup(node.end)
-        server = Server('/hasty')
+        node, server = self.begin('hasty', scene_budget_ms=20.0, threads=1)
         server.replace(sphere('ball', 0.25))
         count = 2000000  # its BVH takes 300 ms of an idle machine
-        numbers = array.array('f', range(3 * count))
-        points = PointCloud2(height=1, width=count, point_step=12, row_step=12 * count, data=numbers.tobytes())
-        points.fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate('xyz')]
-        huge = CollisionObject(id='huge', bodies=[Body(type=Body.POINTS, cloud=points)])
+        huge = CollisionObject(id='huge', bodies=[Body(type=Body.POINTS, cloud=cloud(numpy.arange(3 * count)))])
 
         # on a busy machine the time may be over before the first shape is begun
         messages = []
@@ -142,7 +128,7 @@ class Fairness(unittest.TestCase):
         self.assertRegex(messages[-1], "^object 'huge': there was no time left to make its shapes: .* BVH of 2000000 elements")
         self.assertEqual([o.id for o in server.scene().objects], ['ball'])
         self.times(server, 5)
-        self.assertTrue(until(lambda: resident_mb(node.process.pid) < 200, 5), resident_mb(node.process.pid))
+        self.assertTrue(until(lambda: node.resident_mb() < 200, 5), node.resident_mb())
 
 
 if __name__ == '__main__':

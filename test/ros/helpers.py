@@ -4,23 +4,26 @@ import io
 import itertools
 import math
 import os
+import re
 import socket
 import struct
 import subprocess
 import sys
 import threading
 import time
+import unittest
 import xmlrpc.client
 
+import numpy
 import rosgraph
 import rospy
 import rostest
 from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric, ProximityQuery
 from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance,
                                  DistanceRequest, GetScene, Tolerance, ToleranceRequest)
-from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Transform
+from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Transform, TransformStamped
 from nav_msgs.msg import Path
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, PointCloud2, PointField
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
 from trajectory_msgs.msg import (JointTrajectory, JointTrajectoryPoint, MultiDOFJointTrajectory,
                                  MultiDOFJointTrajectoryPoint)
@@ -127,6 +130,33 @@ def joints(**positions):
     return JointState(name=list(positions), position=list(positions.values()))
 
 
+def cloud(points, frame='', order='<', kind='f', names='xyz', padding=0, width=None, stamp=None):
+    """A PointCloud2 of rows of `width` points, `padding` bytes behind each point and each row."""
+    size = {'f': 4, 'd': 8}[kind]
+    values = numpy.asarray(points, dtype='%s%s%d' % (order, 'f', size)).reshape(-1, 3)
+    width = width or len(values)
+    step = 3 * size + padding
+    out = PointCloud2(height=len(values) // width if width else 0, width=width, is_bigendian=order == '>', point_step=step,
+                      row_step=step * width + padding, is_dense=False)
+    out.fields = [PointField(name, i * size, PointField.FLOAT32 if kind == 'f' else PointField.FLOAT64, 1) for i, name in enumerate(names)]
+    out.header.frame_id, out.header.stamp = frame, stamp or rospy.Time()
+    data = numpy.full((out.height, out.row_step), 255, numpy.uint8)
+    each = data[:, :step * width].reshape(len(values), step)
+    each[:, :3 * size] = values.view(numpy.uint8).reshape(len(values), 3 * size)
+    data[:, :step * width] = each.reshape(out.height, step * width)
+    out.data = data.tobytes()
+    return out
+
+
+def transform(parent, child, translation=(0, 0, 0), stamp=None, turn=0.0):
+    """turn: about z."""
+    out = TransformStamped(child_frame_id=child)
+    out.header.frame_id, out.header.stamp = parent, stamp or rospy.Time()
+    out.transform.translation.x, out.transform.translation.y, out.transform.translation.z = translation
+    out.transform.rotation.z, out.transform.rotation.w = math.sin(turn / 2), math.cos(turn / 2)
+    return out
+
+
 MASK = 2**64 - 1
 
 
@@ -169,13 +199,17 @@ def free_flight(name, *points, times=None):
     return message
 
 
+def service(name, kind, node='/curve_proximity', persistent=True, timeout=20.0):
+    rospy.wait_for_service(node + '/' + name, timeout)
+    return rospy.ServiceProxy(node + '/' + name, kind, persistent=persistent)
+
+
 class Server:
     """The services of one node, by persistent connections unless told otherwise."""
 
     def __init__(self, name='/curve_proximity', persistent=True, timeout=20.0):
-        def connect(service, kind):
-            rospy.wait_for_service(name + '/' + service, timeout)
-            return rospy.ServiceProxy(name + '/' + service, kind, persistent=persistent)
+        def connect(which, kind):
+            return service(which, kind, name, persistent, timeout)
 
         self._distance = connect('distance', Distance)
         self._tolerance = connect('tolerance', Tolerance)
@@ -275,12 +309,19 @@ def raw_call(service, kind, data, seconds=60):
         client.close()
 
 
+SHADOW = range(0x7fff7000, 0x10007fff8000)  # of AddressSanitizer on x86-64
+
+
 def resident_mb(pid):
-    with open('/proc/%d/status' % pid) as status:
-        for line in status:
-            if line.startswith('VmRSS:'):
-                return int(line.split()[1]) / 1024.0
-    return 0.0
+    """Without AddressSanitizer's shadow: an eighth of each large block that is freed becomes resident there for a moment."""
+    with open('/proc/%d/maps' % pid) as maps:
+        sanitized = '/libasan.so' in maps.read()
+    with open('/proc/%d/%s' % (pid, 'smaps' if sanitized else 'status')) as sizes:
+        text = sizes.read()
+    if not sanitized:
+        return sum(map(int, re.findall(r'VmRSS:\s*(\d+)', text))) / 1024  # none: it has ended
+    mappings = re.findall(r'^([0-9a-f]+)-[0-9a-f]+ .*?^Rss: +(\d+)', text, re.M | re.S)
+    return sum(int(size) for begin, size in mappings if int(begin, 16) not in SHADOW) / 1024
 
 
 def executable(package, name):
@@ -340,6 +381,33 @@ class Node:
         self._log.close()
         os.unlink(self._log.name)
         self.forget()
+
+
+class Case(unittest.TestCase):
+    """Nodes that end with their test, and what tests say of answers."""
+
+    def begin(self, name, environment=None, **parameters):
+        """A node, and its services."""
+        node = Node(name, environment, **parameters)
+        self.addCleanup(node.end)
+        return node, Server('/' + name)
+
+    def publisher(self, topic, kind, **fields):
+        publisher = rospy.Publisher(topic, kind, **dict(dict(queue_size=5), **fields))
+        self.assertTrue(connected(publisher))
+        return publisher
+
+    def assertHolds(self, lower, upper, expected, width=1e-6, slack=1e-12):
+        """The interval is narrow and contains the value, which is known to the slack."""
+        self.assertLessEqual(lower, expected + slack)
+        self.assertGreaterEqual(upper, expected - slack)
+        self.assertLessEqual(upper - lower, width)
+
+    def assertRefused(self, response, *words):
+        self.assertFalse(response.success)
+        for word in words:
+            self.assertIn(word, response.message)
+        self.assertNotIn('\n', response.message)
 
 
 def until(condition, seconds, step=0.02):

@@ -5,44 +5,28 @@ import math
 import os
 import signal
 import statistics
-import struct
 import tempfile
 import time
-import unittest
 
 import moveit_types as moveit
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, ConstraintQuery, ProximityResults
 from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
-from geometry_msgs.msg import TransformStamped
-from helpers import Node, Server, bezier, connected, joint_trajectory, joints, run, sphere, thing, until
-from sensor_msgs.msg import JointState, PointCloud2, PointField
+from helpers import (Case, Node, Server, bezier, cloud, joint_trajectory, joints, run, service, sphere, thing, transform,
+                     until)
+from sensor_msgs.msg import JointState, PointCloud2
 from tf2_msgs.msg import TFMessage
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 ARM = os.path.dirname(os.path.abspath(__file__)) + '/data/arm.urdf'
 
 
-def cloud(*points, stamp=None):
-    message = PointCloud2(height=1, width=len(points), point_step=12, row_step=12 * len(points))
-    message.header.stamp = stamp or rospy.Time.now()
-    message.fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate('xyz')]
-    message.data = b''.join(struct.pack('<3f', *p) for p in points)
-    return message
+def seen(*points, age=0.0, frame=''):
+    return cloud(points, frame, stamp=rospy.Time.now() - rospy.Duration(age))
 
 
-class Known(unittest.TestCase):
-    def begin(self, name, **parameters):
-        node = Node(name, **parameters)
-        self.addCleanup(node.end)
-        return node, Server('/' + name)
-
-    def publisher(self, topic, kind):
-        publisher = rospy.Publisher(topic, kind, queue_size=5)
-        self.assertTrue(connected(publisher))
-        return publisher
-
+class Known(Case):
     def test_every_answer_says_which_scene_it_is_about_and_a_request_may_demand_one(self):
         _, server = self.begin('versions')
         nothing = server.tolerance(LINE, 0.1)
@@ -57,9 +41,7 @@ class Known(unittest.TestCase):
         self.assertLess(abs(answer.scene.epoch.to_sec() - rospy.Time.now().to_sec()), 60)
         for fields, word in ((dict(scene_version=applied.scene.version + 1), 'scene_version'),
                              (dict(scene_epoch=rospy.Time(5)), 'scene_epoch')):
-            refused = server.distance(LINE, **fields)
-            self.assertFalse(refused.success)
-            self.assertIn(word, refused.message)
+            self.assertRefused(server.distance(LINE, **fields), word)
         self.assertEqual(server.scene().scene.version, applied.scene.version)
 
     def test_a_cloud_without_a_point_makes_its_object_unknown_and_an_old_one_stale(self):
@@ -72,10 +54,10 @@ class Known(unittest.TestCase):
             self.assertTrue(response.success, response.message)
             return response.results[0], response
 
-        clouds.publish(cloud((0, 0, -3)))
+        clouds.publish(seen((0, 0, -3)))
         self.assertTrue(until(lambda: server.scene().scene.sensors, 5))
         self.assertEqual(row()[0].verdict, 'clear')
-        clouds.publish(cloud((math.nan, 0, 0)))
+        clouds.publish(seen((math.nan, 0, 0)))
         self.assertTrue(until(lambda: server.scene().scene.sensors[0].unknown, 5))
         unknown, response = row()
         self.assertEqual((unknown.verdict, unknown.status, unknown.lower), ('undecided', 'unknown', 0.0))
@@ -87,13 +69,13 @@ class Known(unittest.TestCase):
         self.assertEqual(row()[0].status, 'unknown')
         distance = server.distance(LINE).results[0]
         self.assertEqual((distance.lower, distance.status), (0.0, 'unknown'))
-        clouds.publish(cloud((0, 0, -3)))
+        clouds.publish(seen((0, 0, -3)))
         self.assertTrue(until(lambda: row()[0].verdict == 'clear', 5))
         self.assertTrue(until(lambda: row()[0].status == 'stale', 5))
         stale = row()[0]
         self.assertEqual((stale.verdict, stale.lower), ('undecided', 0.0))
         self.assertIn('max_age', stale.message)
-        clouds.publish(cloud((0, 0, -3), stamp=rospy.Time.now() - rospy.Duration(100)))  # the stamp counts, too
+        clouds.publish(seen((0, 0, -3), age=100))  # the stamp counts, too
         self.assertTrue(until(lambda: server.scene().scene.sensors[0].age > 99, 5))
         self.assertEqual(row()[0].status, 'stale')
         server.apply(thing('cloud', operation=CollisionObject.REMOVE))  # somebody says so
@@ -102,9 +84,9 @@ class Known(unittest.TestCase):
     def test_with_empty_cloud_clears_the_object_goes(self):
         _, server = self.begin('clearing', empty_cloud_clears=True)
         clouds = self.publisher('/clearing/cloud', PointCloud2)
-        clouds.publish(cloud((0, 0, -3)))
+        clouds.publish(seen((0, 0, -3)))
         self.assertTrue(until(lambda: server.scene().objects, 5))
-        clouds.publish(cloud())
+        clouds.publish(seen())
         self.assertTrue(until(lambda: not server.scene().objects, 5))
         self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'empty')
 
@@ -132,20 +114,13 @@ class Known(unittest.TestCase):
         self.assertTrue(until(lambda: told, 10))
         self.assertEqual({(row.status, row.verdict) for row in told[-1].results}, {('stale', 'undecided')})
 
-    @staticmethod
-    def moving(frame, age):
-        moving = TransformStamped(child_frame_id=frame)
-        moving.header.frame_id, moving.header.stamp = 'world', rospy.Time.now() - rospy.Duration(age)
-        moving.transform.rotation.w = 1.0
-        return moving
-
     def test_transforms_and_their_age(self):
         _, server = self.begin('placed', max_age=0.5)
         server.replace(sphere('ball', 0.25))
         transforms = self.publisher('/tf', TFMessage)
         line = bezier((-1, 0, 1), (1, 0, 1), frame='moving')
 
-        transforms.publish(TFMessage([self.moving('moving', 0.0)]))
+        transforms.publish(TFMessage([transform('world', 'moving', stamp=rospy.Time.now())]))
         fresh = until(lambda: (lambda r: r.success and r)(server.tolerance(line, 0.1)), 5)
         self.assertEqual((fresh.results[0].verdict, fresh.results[0].status), ('clear', 'ok'))
         self.assertLess(fresh.scene.transform_age, 0.5)
@@ -157,13 +132,12 @@ class Known(unittest.TestCase):
 
     def test_constraints_say_what_they_rest_on(self):
         _, server = self.begin('constrained', constraint_providers=['curve_proximity/CurveDistance'], max_age=0.5)
-        rospy.wait_for_service('/constrained/evaluate_constraints', 10)
-        evaluate = rospy.ServiceProxy('/constrained/evaluate_constraints', EvaluateConstraints)
+        evaluate = service('evaluate_constraints', EvaluateConstraints, '/constrained')
         transforms = self.publisher('/tf', TFMessage)
         scene = server.replace(sphere('ball', 0.25)).scene
         cases = [ConstraintQuery(id='fixed', b=CollisionObject(id='ball'), curve=LINE),
                  ConstraintQuery(id='moving', b=CollisionObject(id='ball'), curve=bezier((-1, 0, 1), (1, 0, 1), frame='carried'))]
-        transforms.publish(TFMessage([self.moving('carried', 0.0)]))
+        transforms.publish(TFMessage([transform('world', 'carried', stamp=rospy.Time.now())]))
         demand = dict(scene_epoch=scene.epoch, scene_version=scene.version)
         fresh = until(lambda: (lambda r: r.success and r)(evaluate(cases=cases, **demand)), 5)
         self.assertEqual([(r.id, r.status) for r in fresh.results], [('fixed', 'ok'), ('moving', 'ok')])
@@ -181,7 +155,7 @@ class Known(unittest.TestCase):
         node, server = self.begin('kept', state_file=path)
         clouds = self.publisher('/kept/cloud', PointCloud2)
         before = server.replace(sphere('ball', 0.25), sphere('other', 0.1, (5, 5, 5), padding=0.01)).scene
-        clouds.publish(cloud((0, 0, -3)))
+        clouds.publish(seen((0, 0, -3)))
         self.assertTrue(until(lambda: server.scene().scene.sensors, 5))
         self.assertTrue(until(lambda: self.written(path) and b'cloud' in open(path, 'rb').read(), 5))
         again, server = self.crash(node, 'kept', state_file=path)
@@ -322,17 +296,16 @@ class Known(unittest.TestCase):
         becomes('undecided', 'unknown')
         objects.publish(sphere('post', 0.1, (0, 0, 5)))
         becomes('clear', 'ok')
-        clouds.publish(cloud((0, 0, 1)))
+        clouds.publish(seen((0, 0, 1)))
         becomes('violated', 'ok')
-        clouds.publish(cloud((math.nan, 0, 0)))
+        clouds.publish(seen((math.nan, 0, 0)))
         becomes('undecided', 'unknown')
         server.replace(sphere('post', 0.1, (0, 0, 1)))  # the cloud's last shape is gone: it can only be missing
         becomes('violated', 'unknown')
 
     def test_any_number_of_refused_objects_takes_no_more_room_and_is_no_more_clear(self):
         _, server = self.begin('flooded')
-        objects = rospy.Publisher('/flooded/collision_object', CollisionObject, queue_size=0)
-        self.assertTrue(connected(objects))
+        objects = self.publisher('/flooded/collision_object', CollisionObject, queue_size=0)
         server.replace(sphere('ball', 0.1, (0, 0, 5)))
 
         def send(radius):
@@ -354,8 +327,7 @@ class Known(unittest.TestCase):
 
     def test_objects_that_were_lost_because_too_many_came_at_once_are_unknown(self):
         _, server = self.begin('overrun')
-        objects = rospy.Publisher('/overrun/collision_object', CollisionObject, queue_size=0)
-        self.assertTrue(connected(objects))
+        objects = self.publisher('/overrun/collision_object', CollisionObject, queue_size=0)
         server.replace(sphere('ball', 0.1, (0, 0, 5)))
         for i in range(3000):
             objects.publish(sphere('object %d' % i, 0.1, (0, 0, 5)))
@@ -385,9 +357,9 @@ class Known(unittest.TestCase):
         objects = self.publisher('/pushed/collision_object', CollisionObject)
         clouds = self.publisher('/pushed/cloud', PointCloud2)
         server.replace(sphere('ball', 0.25), sphere('post', 0.1, (0, 0, 4)))
-        clouds.publish(cloud((0, 0, -3)))
+        clouds.publish(seen((0, 0, -3)))
         self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear' and server.scene().scene.sensors, 5))
-        clouds.publish(cloud((math.nan, 0, 0)))
+        clouds.publish(seen((math.nan, 0, 0)))
         objects.publish(sphere('post', 0.1, (0, 0, 1), frame='nowhere'))
         for name, word in (('cloud', 'sensor'), ('post', 'not used')):
             self.assertTrue(until(lambda: word in server.tolerance(LINE, 0.1, objects=[name]).results[0].message, 5))
@@ -398,12 +370,11 @@ class Known(unittest.TestCase):
         _, server = self.begin('frameless', tf_timeout=0.05)
         clouds = self.publisher('/frameless/cloud', PointCloud2)
         server.replace(sphere('ball', 0.25))
-        on_line = cloud((0, 0, 1))
-        on_line.header.frame_id = 'nowhere'
+        on_line = seen((0, 0, 1), frame='nowhere')
         clouds.publish(on_line)
         row = until(lambda: (lambda r: r.status == 'unknown' and r)(server.tolerance(LINE, 0.1).results[0]), 5)
         self.assertEqual(row.verdict, 'undecided')
-        clouds.publish(cloud((0, 0, -3)))
+        clouds.publish(seen((0, 0, -3)))
         self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear', 5))
         clouds.publish(on_line)
         self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].status == 'unknown', 5))
@@ -413,7 +384,7 @@ class Known(unittest.TestCase):
         clouds = self.publisher('/emptied/cloud', PointCloud2)
         for emptied in (lambda: server.replace(sphere('ball', 0.25)),
                         lambda: server.apply(thing('', operation=CollisionObject.REMOVE), sphere('ball', 0.25))):
-            clouds.publish(cloud((0, 0, -3)))
+            clouds.publish(seen((0, 0, -3)))
             self.assertTrue(until(lambda: any(not s.unknown for s in server.scene().scene.sensors), 5))
             self.assertTrue(emptied().success)
             self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')
@@ -422,10 +393,10 @@ class Known(unittest.TestCase):
         _, server = self.begin('covered')
         clouds = self.publisher('/covered/cloud', PointCloud2)
         server.replace(sphere('ball', 0.25))
-        clouds.publish(cloud((0, 0, -30), *[(math.nan, 0, 0)] * 999))
+        clouds.publish(seen((0, 0, -30), *[(math.nan, 0, 0)] * 999))
         self.assertTrue(until(lambda: server.scene().scene.sensors, 5))
         self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')
-        clouds.publish(cloud(*[(0, 0, -30)] * 100, *[(math.nan, 0, 0)] * 900))
+        clouds.publish(seen(*[(0, 0, -30)] * 100, *[(math.nan, 0, 0)] * 900))
         self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].verdict == 'clear', 5))
 
     def test_joints_that_nobody_has_told_are_unknown(self):

@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every way to name a mesh file, and that tests leave no parameters behind."""
 import os
-import unittest
 
 import rospy
-from helpers import Node, Server, bezier, joints, refusal, run
+from helpers import Case, Node, Server, bezier, joints, refusal, run
 
 DATA = os.path.dirname(os.path.abspath(__file__)) + '/../data'
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -15,12 +14,7 @@ ROBOT = '''<robot name="one"><link name="base"/>
 </robot>'''
 
 
-class Limits(unittest.TestCase):
-    def begin(self, name, **parameters):
-        node = Node(name, **parameters)
-        self.addCleanup(node.end)
-        return node
-
+class Limits(Case):
     def test_every_form_of_a_mesh_uri_is_the_same_mesh_and_http_is_none(self):
         folder = os.path.realpath(DATA + '/robots/panda')
         self.addCleanup(rospy.delete_param, '/robot_description')
@@ -29,8 +23,8 @@ class Limits(unittest.TestCase):
                     'package://curve_proximity/test/data/robots/panda/meshes/finger.stl'):
             rospy.set_param('/robot_description', ROBOT % uri)
             name = 'meshes%d' % len(distances)
-            self.begin(name, urdf_dir=folder, fixed_frame='base')
-            row, = Server('/' + name).distance(LINE, links=['finger'], joint_state=joints(slide=0.0)).results
+            _, server = self.begin(name, urdf_dir=folder, fixed_frame='base')
+            row, = server.distance(LINE, links=['finger'], joint_state=joints(slide=0.0)).results
             self.assertEqual(row.status, 'ok', row.message)
             distances.append((row.lower, row.upper))
         self.assertEqual(len(set(distances)), 1)

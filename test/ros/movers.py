@@ -3,13 +3,12 @@
 """Objects and further robots that move: by message, beside each other, in the scene and in pictures. That distances, times and
 profiles are true is held against references of their own by scene.test_movers, cli.test_movers and attack.movers."""
 import math
-import unittest
 
 import rospy
 from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject, LinkPadding, PoseTrajectory, ProximityResults,
                                  RobotTrajectory, Waypoint)
 from curve_proximity.srv import ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest
-from helpers import Server, bezier, box, connected, free_flight, joints, path, pose, query, run, sphere, until
+from helpers import Case, Server, bezier, box, connected, free_flight, joints, path, pose, query, run, service, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -44,13 +43,12 @@ def other(trajectory, x=1.6, robot='other', name='right'):
     return out
 
 
-class Movers(unittest.TestCase):
+class Movers(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        rospy.wait_for_service('/curve_proximity/nearest_pairs', 20)
-        cls.nearest = rospy.ServiceProxy('/curve_proximity/nearest_pairs', NearestPairs)
-        cls.profile = rospy.ServiceProxy('/curve_proximity/clearance_profile', ClearanceProfile)
+        cls.nearest = service('nearest_pairs', NearestPairs)
+        cls.profile = service('clearance_profile', ClearanceProfile)
         until(lambda: cls.server.distance([], robot_state=True, joint_state=joints(**READY)).success, 20)
 
     def setUp(self):
@@ -115,9 +113,7 @@ class Movers(unittest.TestCase):
             return moving(sphere('b', 0.1), waypoint(1, (0, -1, 3)), waypoint(3, (0, 1, 3)), **fields)
         for tolerance, expected in ((0.0, 1.0), (0.25, 0.75), (0.5, 0.5)):
             row = self.least(a, b(start_tolerance=tolerance))
-            self.assertLessEqual(row.lower, expected / math.sqrt(2) - 0.2 + 1e-12)
-            self.assertGreaterEqual(row.upper, expected / math.sqrt(2) - 0.2 - 1e-12)
-            self.assertLess(row.upper - row.lower, 1.01e-6)
+            self.assertHolds(row.lower, row.upper, expected / math.sqrt(2) - 0.2, 1.01e-6)
         self.assertEqual(self.least(a, b(any_time=True)).upper, 0.0)
         kept, = self.server.scene('b').objects
         self.assertTrue(kept.trajectory.any_time)
@@ -136,9 +132,7 @@ class Movers(unittest.TestCase):
             self.assertTrue(response.success, response.message)
             row, = response.results
             self.assertEqual((row.kind, row.a, row.b), ('movers', 'carried', 'ball'))
-            self.assertLessEqual(row.lower, 1.0 - half - 0.25 + 1e-12)
-            self.assertGreaterEqual(row.upper, 1.0 - half - 0.25 - 1e-12)
-            self.assertLess(row.upper - row.lower, 1.01e-6)
+            self.assertHolds(row.lower, row.upper, 1.0 - half - 0.25, 1.01e-6)
         self.assertRefused(self.server.distance(bezier((0, 0, 0), (1, 0, 0)), body=carried), 'body applies to paths')
         file = 'package://curve_proximity/test/data/robots/panda/meshes/link7.stl'
         for resource, found in ((file, True), (file + 'x', False)):
@@ -169,9 +163,7 @@ class Movers(unittest.TestCase):
         self.assertTrue(response.success, response.message)
         row, = response.results
         self.assertEqual((row.a, row.b), (a, 'ball'))
-        self.assertLessEqual(row.lower, expected + 1e-9)
-        self.assertGreaterEqual(row.upper, expected - 1e-9)
-        self.assertLess(row.upper - row.lower, 1.01e-6)
+        self.assertHolds(row.lower, row.upper, expected, 1.01e-6, 1e-9)
         return row
 
     def test_what_a_link_carries_rides_a_path(self):
@@ -281,12 +273,6 @@ class Movers(unittest.TestCase):
         turn = drawn[Marker.CUBE].pose.orientation
         self.assertAlmostEqual(abs(turn.z), math.sin(angle / 2), delta=1e-9)
         self.assertAlmostEqual(abs(turn.w), math.cos(angle / 2), delta=1e-9)
-
-    def assertRefused(self, response, *parts):
-        self.assertFalse(response.success)
-        for part in parts:
-            self.assertIn(part, response.message)
-        self.assertNotIn('\n', response.message)
 
     def test_stamps_that_do_not_overlap_are_refused_by_how_much(self):
         ball = moving(sphere('ball', 0.1), waypoint(0, (2, 2, 0.5)), waypoint(1, (2, 3, 0.5)), start=rospy.Time(990))

@@ -5,8 +5,7 @@ import time
 import unittest
 
 import tf2_ros
-from geometry_msgs.msg import TransformStamped
-from helpers import Server, bezier, run, sphere
+from helpers import Server, bezier, run, sphere, transform
 
 
 class NoClock(unittest.TestCase):
@@ -14,9 +13,7 @@ class NoClock(unittest.TestCase):
         server = Server()
         server.replace(sphere('ball', 0.25))
         fixed = tf2_ros.StaticTransformBroadcaster()
-        island = TransformStamped(child_frame_id='nowhere')
-        island.header.frame_id, island.transform.rotation.w = 'elsewhere', 1.0
-        fixed.sendTransform([island])
+        fixed.sendTransform([transform('elsewhere', 'nowhere')])
         for _ in range(100):  # once the frame has been heard of it may come, and is waited for
             begin = time.monotonic()
             response = server.distance(bezier((0, 0, 1), (1, 0, 1), frame='nowhere'))

@@ -9,7 +9,7 @@ import rospy
 from curve_proximity.msg import CollisionObject, ConstraintQuery, RobotTrajectory, Waypoint
 from curve_proximity.srv import EvaluateConstraints
 from geometry_msgs.msg import Point, Pose, Quaternion
-from helpers import Server, bezier, box, joints, run, sphere
+from helpers import Server, bezier, box, joints, run, service, sphere
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -34,8 +34,7 @@ class Optimise(unittest.TestCase):
     def setUpClass(cls):
         cls.server = Server()
         cls.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
-        rospy.wait_for_service('/curve_proximity/evaluate_constraints', 20)
-        cls.service = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints, persistent=True)
+        cls.service = service('evaluate_constraints', EvaluateConstraints)
 
     def results(self, *cases):
         response = self.service(cases=list(cases))

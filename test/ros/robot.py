@@ -3,25 +3,14 @@
 """Frames and links: what tf2 and joint states say of where things are, and what is told where they say nothing."""
 import math
 import time
-import unittest
 
 import rospy
 import tf2_ros
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, LinkPadding, LinkScale
-from geometry_msgs.msg import TransformStamped
-from helpers import Server, bezier, box, joints, run, sphere, until
+from helpers import Case, Server, bezier, box, joints, run, sphere, transform, until
 from sensor_msgs.msg import JointState
 
 EPSILON = 1e-9  # [m]
-
-
-def transform(parent, child, translation, stamp=None, turn=0.0):
-    t = TransformStamped(child_frame_id=child)
-    t.header.frame_id = parent
-    t.header.stamp = stamp or rospy.Time()
-    t.transform.translation.x, t.transform.translation.y, t.transform.translation.z = translation
-    t.transform.rotation.z, t.transform.rotation.w = math.sin(turn / 2), math.cos(turn / 2)
-    return t
 
 
 def vertical(x, y, **fields):
@@ -29,7 +18,7 @@ def vertical(x, y, **fields):
     return bezier((x, y, 0.4), (x, y, 0.6), **fields)
 
 
-class Robot(unittest.TestCase):
+class Robot(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
@@ -51,9 +40,7 @@ class Robot(unittest.TestCase):
     def assertDistance(self, response, expected, link=None):
         self.assertTrue(response.success, response.message)
         row = response.results[0]
-        self.assertLessEqual(row.lower, expected + 1e-12)
-        self.assertGreaterEqual(row.upper, expected - 1e-12)
-        self.assertLessEqual(row.upper - row.lower, 1e-6)
+        self.assertHolds(row.lower, row.upper, expected)
         if link:
             self.assertEqual(row.b, link)
 
@@ -89,14 +76,10 @@ class Robot(unittest.TestCase):
                  (JointState(name=['turn', 'turn'], position=[0, 0]), "'turn'"),
                  (JointState(name=['turn'], position=[]), '1 names and 0 positions')]
         for state, word in cases:
-            response = self.server.distance(vertical(12, 0), joint_state=state)
-            self.assertFalse(response.success)
-            self.assertIn(word, response.message)
+            self.assertRefused(self.server.distance(vertical(12, 0), joint_state=state), word)
 
     def test_05_unknown_links_are_refused_by_name(self):
-        response = self.server.distance(vertical(12, 0), joint_state=joints(turn=0.0), links=['tail'])
-        self.assertFalse(response.success)
-        self.assertIn("'tail'", response.message)
+        self.assertRefused(self.server.distance(vertical(12, 0), joint_state=joints(turn=0.0), links=['tail']), "'tail'")
 
     def test_06_link_padding_counts_and_is_kept(self):
         self.assertTrue(self.server.apply(link_padding=[LinkPadding('arm', 0.25)]).success)

@@ -17,8 +17,7 @@ import rosgraph
 import rospy
 from curve_proximity.msg import Body, CollisionObject, ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance, DistanceRequest
-from geometry_msgs.msg import TransformStamped
-from helpers import Node, RawClient, Server, bezier, bspline, box, free_port, raw_call, ring_and_shells, serialized, sphere
+from helpers import Node, RawClient, Server, bezier, bspline, box, free_port, raw_call, ring_and_shells, serialized, sphere, transform
 from hostile import Attacker
 from tf2_ros import StaticTransformBroadcaster
 
@@ -298,10 +297,7 @@ class Soak:
 
     def run(self):
         broadcaster = StaticTransformBroadcaster()  # no way leads from it to the node's frame
-        island = TransformStamped(child_frame_id='island')
-        island.header.frame_id = 'elsewhere'
-        island.transform.rotation.w = 1.0
-        broadcaster.sendTransform(island)
+        broadcaster.sendTransform(transform('elsewhere', 'island'))
         waits = dict(idle=self.waits_beside(), lost=self.waits_beside((self.loses_frames, LOST)), heavy=self.waits_beside((self.is_heavy, 1)))
 
         memory = [self.nodes[0].resident_mb()]

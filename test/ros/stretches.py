@@ -3,13 +3,12 @@
 """Nearest pairs, times of contact and clearance profiles by service, against distances that are computed by hand."""
 import copy
 import math
-import unittest
 
 import rospy
 from curve_proximity.msg import Clearance, Curve
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest,
                                  NearestPairs, NearestPairsRequest, TimeOfContact, TimeOfContactRequest)
-from helpers import Server, bezier, connected, joint_trajectory, query, run, sphere, until
+from helpers import Case, Server, bezier, connected, joint_trajectory, query, run, service, sphere, until
 from trajectory_msgs.msg import JointTrajectory
 
 EPSILON = 1e-6  # [m] ~epsilon
@@ -19,15 +18,14 @@ QUARTER = joint_trajectory(['turn'], [0.0], [math.pi / 2])  # in a second
 ONLY = {'objects': ['ball']}  # the arm is not asked about
 
 
-class Stretches(unittest.TestCase):
+class Stretches(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
         cls.services = {}
         for name, kind in (('nearest_pairs', NearestPairs), ('time_of_contact', TimeOfContact), ('clearance_profile', ClearanceProfile),
                            ('violations', ListViolations)):
-            rospy.wait_for_service('/curve_proximity/' + name, 20)
-            cls.services[name] = rospy.ServiceProxy('/curve_proximity/' + name, kind, persistent=True)
+            cls.services[name] = service(name, kind)
         assert until(lambda: cls.server.distance([], trajectory=QUARTER).success, 20)
 
     def setUp(self):
@@ -50,21 +48,11 @@ class Stretches(unittest.TestCase):
         lists = [name for name in ('profiles', 'violations') if hasattr(response, name)]
         return getattr(response, lists[0] if lists else 'results')
 
-    def assertIs(self, lower, upper, expected):
-        self.assertLessEqual(lower, expected + 1e-12)
-        self.assertGreaterEqual(upper, expected - 1e-12)
-        self.assertLessEqual(upper - lower, EPSILON)
-
-    def assertRefused(self, response, *words):
-        self.assertFalse(response.success)
-        for word in words:
-            self.assertIn(word, response.message)
-
     def test_the_pairs_of_a_curve_come_nearest_first(self):
         rows = self.good(self.pairs(query(LINE, objects=['ball', 'far'])))
         self.assertEqual([row.b for row in rows], ['ball', 'far'])
-        self.assertIs(rows[0].lower, rows[0].upper, 0.75)
-        self.assertIs(rows[1].lower, rows[1].upper, 3.9)
+        self.assertHolds(rows[0].lower, rows[0].upper, 0.75)
+        self.assertHolds(rows[1].lower, rows[1].upper, 3.9)
         self.assertAlmostEqual(rows[0].witness_b.z, 0.25, delta=1e-5)
         self.assertTrue(math.isnan(rows[0].t_contact_lower))
         row, = self.good(self.pairs(query(LINE, objects=['ball', 'far']), count=1))
@@ -81,8 +69,8 @@ class Stretches(unittest.TestCase):
         self.assertEqual(kinds, ['environment'] * kinds.count('environment') + ['self'] * kinds.count('self'))
         environment = {row.a: row for row in rows if row.kind == 'environment'}
         self.assertEqual(set(environment), {'arm', 'base', 'slider'})
-        self.assertIs(environment['arm'].lower, environment['arm'].upper, math.sqrt(0.5) - 0.35)
-        self.assertIs(environment['slider'].lower, environment['slider'].upper, 0.5 - 0.3)
+        self.assertHolds(environment['arm'].lower, environment['arm'].upper, math.sqrt(0.5) - 0.35)
+        self.assertHolds(environment['slider'].lower, environment['slider'].upper, 0.5 - 0.3)
         own = [row for row in rows if row.kind == 'self']
         self.assertEqual([{row.a, row.b} for row in own], [{'arm', 'slider'}])
 
@@ -113,10 +101,10 @@ class Stretches(unittest.TestCase):
             profile, = self.good(self.profile(query(LINE, **ONLY), **asked))
             self.assertEqual((list(profile.t0), list(profile.t1)), ([0, 0.25, 0.5, 0.75], [0.25, 0.5, 0.75, 1]))
             for lower, upper, expected in zip(profile.lower, profile.upper, (at(0.5), 0.75, 0.75, at(0.5))):
-                self.assertIs(lower, upper, expected)
+                self.assertHolds(lower, upper, expected)
             self.assertTrue(all(a <= t <= b for a, t, b in zip(profile.t0, profile.t, profile.t1)))
             self.assertEqual((set(profile.b), set(profile.converged), profile.link), ({'ball'}, {True}, ''))
-            self.assertIs(profile.summary.lower, profile.summary.upper, 0.75)
+            self.assertHolds(profile.summary.lower, profile.summary.upper, 0.75)
             self.assertAlmostEqual(profile.summary.witness_a.z, 1.0, delta=1e-9)
             for t, upper, on_line, on_ball in zip(profile.t, profile.upper, profile.witness_a, profile.witness_b):
                 self.assertAlmostEqual(on_line.x, -1 + 2 * t, delta=1e-9)
@@ -137,9 +125,7 @@ class Stretches(unittest.TestCase):
         self.assertEqual(list(found.verdict), ['violated'] * len(intervals))
         for i, (enter, leave) in enumerate(intervals):
             for lower, upper, expected in ((found.enter_lower[i], found.enter_upper[i], enter), (found.leave_lower[i], found.leave_upper[i], leave)):
-                self.assertLessEqual(lower, expected + 1e-12)
-                self.assertGreaterEqual(upper, expected - 1e-12)
-                self.assertLess(upper - lower, 1e-4)
+                self.assertHolds(lower, upper, expected, 1e-4)
 
     def test_violations_begin_and_end_where_the_distance_says_so(self):
         self.server.replace(sphere('ball', 0.25, (-0.5, 0, 0.1)), sphere('other', 0.1, (0.5, 0, 0.1)))
@@ -177,14 +163,14 @@ class Stretches(unittest.TestCase):
             # the arm's ball comes nearer all the time, the slider goes away
             turn = math.pi / 2 - (i + 1) * math.pi / 20
             arm = max(0.0, math.sin(turn / 2) - 0.2)
-            self.assertIs(profiles[0].lower[i], profiles[0].upper[i], arm)
+            self.assertHolds(profiles[0].lower[i], profiles[0].upper[i], arm)
             slider = math.hypot(i * math.pi / 20, math.sqrt(1.25)) - 0.15
-            self.assertIs(profiles[1].lower[i], profiles[1].upper[i], slider)
+            self.assertHolds(profiles[1].lower[i], profiles[1].upper[i], slider)
             self.assertEqual((profiles[1].a[i], profiles[1].b[i]), ('slider', 'ball'))
         together, own = self.good(self.profile(query(trajectory=QUARTER, self_collision=True), intervals=10))
         self.assertEqual([together.summary.kind, own.summary.kind], ['environment', 'self'])
         for i in range(10):
-            self.assertIs(together.lower[i], together.upper[i], min(profiles[0].upper[i], profiles[1].upper[i]))
+            self.assertHolds(together.lower[i], together.upper[i], min(profiles[0].upper[i], profiles[1].upper[i]))
 
     def test_a_profile_comes_as_numbers_that_a_plotter_draws(self):
         self.server.replace(sphere('ball', 0.1, (0, 0.5, 0.5)))
@@ -203,11 +189,11 @@ class Stretches(unittest.TestCase):
             for message, t in zip(arm[2 * i:2 * i + 2], (i / 10, (i + 1) / 10)):
                 self.assertAlmostEqual(message.t, t, delta=1e-9)
                 self.assertAlmostEqual(message.header.stamp.to_sec(), 1000.5 + t, delta=1e-6)
-                self.assertIs(message.lower, message.upper, expected)
+                self.assertHolds(message.lower, message.upper, expected)
                 self.assertEqual((message.id, message.a, message.b), ('trajectory', 'arm', 'ball'))
         self.assertEqual({message.b for message in told['self/arm']}, {'slider'})
         for whole, *links in zip(told['environment'], arm, told['environment/slider']):
-            self.assertIs(whole.lower, whole.upper, min(link.upper for link in links))
+            self.assertHolds(whole.lower, whole.upper, min(link.upper for link in links))
 
         curves.publish(LINE)
         self.assertTrue(until(lambda: len(told['curve']) == 20, 10))
