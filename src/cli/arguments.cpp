@@ -403,6 +403,11 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       required("--trajectory", "T.yaml");
       readTrajectoryWords(words, out);
       break;
+    case Action::ACM:
+      out.robot = required("--robot", "URDF");
+      required("--out", "NEW.srdf");
+      out.srdf = words.text("--srdf");
+      break;
     case Action::SEND:
       if (plain.empty()) throw BadUsage("'send' needs a file: cprox send SCENE.yaml");
       out.scene = plain.front();

@@ -27,6 +27,7 @@ enum class Action {
   PAIRS,
   CONSTRAINTS,
   ROBUST,
+  ACM,
   REPORT,
   SEND,
   CHECK,

@@ -40,6 +40,9 @@ int mergeShards(const Arguments &arguments, Console &console);
 /** robust: the robot along a trajectory, for every execution within bounds of its errors. */
 int answerRobust(const Arguments &arguments, Console &console);
 
+/** acm: which links of a robot can touch each other, and an SRDF that disables the others. */
+int findLinkContacts(const Arguments &arguments, Console &console);
+
 /** report: a page that shows a trajectory, or curves, and what they come close to. */
 int writeReport(const Arguments &arguments, Console &console);
 

@@ -16,6 +16,11 @@ constexpr const char *ROW = CPROX_ROW;
 constexpr const char *ROBUST = CPROX_COLUMNS
     "Also certified_scale, refused_scale: with all bounds times the first, all executions are clear; times the second, "
     "they were not";
+constexpr const char *MATRIX =
+    "a,b,contact,disabled_before,disabled,lower,upper,nodes,distance_queries,posture,message, a row for each pair of "
+    "links with collision geometry. contact: never, possible (they touch at the posture), always (no joint between "
+    "them "
+    "moves) or undecided; disabled: the reason in NEW.srdf, empty: it does not disable the pair";
 constexpr const char *CONTACT = CPROX_ROW ". Also t_contact_lower: there is no contact at any smaller parameter";
 #undef CPROX_ROW
 #undef CPROX_COLUMNS
@@ -127,6 +132,15 @@ const std::vector<Command> &commands() {
        "robust --errors examples/formats/errors.yaml --delta 0.01 --robot examples/formats/arm.urdf --trajectory "
        "examples/formats/trajectory.yaml --self",
        ROBUST},
+      {"acm",
+       Action::ACM,
+       QueryType::COLLISION,
+       {},
+       "--robot URDF [--srdf SRDF] --out NEW.srdf",
+       "which links can touch each other within the limits of the joints, proven; and an SRDF that disables the others",
+       "acm --robot examples/formats/arm.urdf --out new.srdf\n"
+       "acm --robot examples/formats/arm.urdf --srdf examples/formats/arm.srdf --out new.srdf",
+       MATRIX},
       {"report",
        Action::REPORT,
        QueryType::DISTANCE,
@@ -190,7 +204,7 @@ const std::vector<Option> &options() {
        "with --against: both curves are at the same parameter, so that they may cross each other's way"},
       {"--scene", "FILE", "queries report constraints check robust",
        "moveit_msgs/PlanningScene as YAML; may be left out where there is a robot"},
-      {"--robot", "FILE", "queries report constraints check robust",
+      {"--robot", "FILE", "queries report constraints check robust acm",
        "a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)"},
       {"--trajectory", "FILE", "queries report constraints check robust",
        "a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint"},
@@ -211,7 +225,7 @@ const std::vector<Option> &options() {
        "continuous joints turn the shorter way between two waypoints, from 3.1 to -3.1 by 0.083 rad"},
       {"--signed", "", "distance nearest",
        "distances inside a body are negative: minus the deepest penetration (of meshes a bound, by their hulls)"},
-      {"--srdf", "FILE", "queries report constraints check robust",
+      {"--srdf", "FILE", "queries report constraints check robust acm",
        "links that are not checked against each other, and the frame in which the robot stands (its virtual joint's "
        "parent_frame)"},
       {"--state", "TEXT", "queries report constraints check robust",
@@ -230,15 +244,15 @@ const std::vector<Option> &options() {
        "writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near or none. "
        "The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that it "
        "is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs"},
-      {"--epsilon", "E", "queries report pairs certify robust",
+      {"--epsilon", "E", "queries report pairs certify robust acm",
        "width of the intervals asked for, metres, above 0 (default 1e-06)"},
       {"--delta", "D", "tolerance violations report robust",
        "the clearance asked of 'tolerance' and 'violations', of 'robust' (default 0), and of 'report' if its verdict "
        "is wanted, "
        "metres"},
-      {"--max-nodes", "N", "queries report pairs certify robust",
+      {"--max-nodes", "N", "queries report pairs certify robust acm",
        "budget for each result, in distance queries (default 500000: about 1 s)"},
-      {"--threads", "N", "queries pairs constraints certify check",
+      {"--threads", "N", "queries pairs constraints certify check acm",
        "how many rows are worked on at once (default: the machine's cores); the answers do not depend on it"},
       {"--per-object", "", "queries", "rows for each curve and object or link, not for the nearest alone"},
       {"--per-link", "", "queries", "with --trajectory: rows for each link and each object that a link carries"},
@@ -263,7 +277,7 @@ const std::vector<Option> &options() {
       {"--second-opinion", "PEER", "distance tolerance collision nearest time-of-contact pairs",
        "fcl or libccd: the pair of each row is measured again by this library, at the row's t and at both ends; the "
        "columns second_opinion (agrees, disagrees or unknown) and second_distance are added"},
-      {"--max-lod", "R", "queries report pairs certify robust",
+      {"--max-lod", "R", "queries report pairs certify robust acm",
        "the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies by "
        "their bounding spheres); a coarser one is never farther away"},
       {"--dataset", "FILE", "certify",
@@ -275,28 +289,29 @@ const std::vector<Option> &options() {
        "of --shard I: answers no row; each becomes a row 'failed' with this message. For whoever drives shards and has "
        "seen one crash: 'merge' then has no gap"},
       {"--progress", "P", "certify", "line (default, on a terminal) or json, a line a second on standard error"},
-      {"--skipped", "", "queries pairs robust", "tell on standard error what takes no part, and why"},
-      {"--timings", "", "queries robust",
+      {"--skipped", "", "queries pairs robust acm", "tell on standard error what takes no part, and why"},
+      {"--timings", "", "queries robust acm",
        "tell on standard error how long loading the robot and the scene takes, mesh by mesh"},
-      {"--mesh-tolerance", "M", "queries report robust",
+      {"--mesh-tolerance", "M", "queries report robust acm",
        "replace meshes by ones with fewer triangles that contain them: nothing is clear that the mesh would hit; what "
        "is closer than 2 M metres may read as a hit"},
-      {"--allow-missing-geometry", "", "queries report robust",
+      {"--allow-missing-geometry", "", "queries report robust acm",
        "go on without collision elements of the robot that cannot be used; the answers are 'partial', never clear"},
-      {"--package", "LIST", "queries report pairs constraints certify check robust",
+      {"--package", "LIST", "queries report pairs constraints certify check robust acm",
        "folders of packages that package:// names, \"arm=/data/arm, hand=/data/hand\"; they come before the folders "
        "above the URDF, ROS_PACKAGE_PATH, and share/ of CMAKE_PREFIX_PATH and /usr"},
-      {"--out", "FILE", "queries report pairs constraints certify merge robust",
+      {"--out", "FILE", "queries report pairs constraints certify merge robust acm",
        "the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page"},
-      {"--json", "", "queries pairs constraints merge check robust",
+      {"--json", "", "queries pairs constraints merge check robust acm",
        "a JSON object a row, on a line of its own, by the names of the CSV's columns: an infinite number is the text "
        "\"inf\" or \"-inf\", a field without a value is null"},
       {"--strict", "", "queries pairs robust",
        "a row that does not cover all that was given (status partial or rounded) counts as one without an answer: the "
        "exit code is 2, not 3"},
-      {"--quiet", "", "queries report pairs constraints certify merge check robust",
+      {"--quiet", "", "queries report pairs constraints certify merge check robust acm",
        "no warnings and no progress on standard error, only why a run cannot be made"},
-      {"-v", "", "queries pairs robust", "--skipped and --timings, and at the end how many rows there were, and which"},
+      {"-v", "", "queries pairs robust acm",
+       "--skipped and --timings, and at the end how many rows there were, and which"},
       {"--replace", "", "send",
        "the file takes the place of the node's scene (default, unless the file says is_diff: true)"},
       {"--add", "", "send", "the file is added to the node's scene"},

@@ -10,8 +10,6 @@
 #include "packages.h"
 
 namespace curve_proximity::cli {
-namespace {
-
 std::string readText(const std::string &path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw BadUsage(path + ": is a folder, not a file");
@@ -19,8 +17,6 @@ std::string readText(const std::string &path) {
   if (!stream) throw BadUsage(path + ": cannot be read");
   return std::string((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
 }
-
-} // namespace
 
 std::shared_ptr<const Robot> readRobot(const std::string &path, double mesh_tolerance, bool allow_missing_geometry) {
   RobotOptions options;

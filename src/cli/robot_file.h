@@ -14,6 +14,9 @@
 
 namespace curve_proximity::cli {
 
+/** A file's text. Throws BadUsage with the file's name where it cannot be read. */
+std::string readText(const std::string &path);
+
 /** Reads a URDF; mesh files without a scheme are relative to its folder. Throws BadUsage with the file's name. */
 std::shared_ptr<const Robot> readRobot(const std::string &path, double mesh_tolerance = 0.0,
                                        bool allow_missing_geometry = false);

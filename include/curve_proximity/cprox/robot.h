@@ -336,6 +336,34 @@ CPROX_API cprox_status cprox_robot_ask_states(const cprox_robot *robot, const cp
                                               const double *states, size_t n, cprox_workspace *workspace,
                                               cprox_result *results, bool *about_self);
 
+/** All values of the variables of a robot, each from lowest to highest on its own. */
+typedef struct cprox_joint_box {
+  /** [rad or m] of each variable */
+  const double *lowest;
+  /** [rad or m] of each variable, not below lowest */
+  const double *highest;
+  /** that of the robot */
+  size_t n_variables;
+} cprox_joint_box;
+
+/** Do two geometries of a robot touch for any values of its variables in a box? What an allowed collision matrix asks.
+ *
+ *  pairs      n_pairs >= 1 pairs of geometries: all of two links, say
+ *  box        of joints between the two sides: revolute, prismatic and planar. Values of others do not matter
+ *  options    epsilon, max_nodes, stop and max_lod apply; max_nodes is the budget of all
+ *  workspace  not NULL
+ *  result     verdict clear: in no state of the box do the geometries of any pair touch. violated: they do at *state,
+ *             and cprox_robot_ask_states() proves it there. undecided: neither is proven. lower: no pair is ever
+ *             nearer. upper: the distance at *state, the smallest one that was found. There are no witness points
+ *  state      receives the values of all variables of the robot; those that do not matter are in the middle. Or NULL
+ *
+ *  Returns as cprox_distance(). The work grows with the number of joints between the links, and as the clearance falls.
+ *  Source: doc/collision-matrix.md */
+CPROX_API cprox_status cprox_robot_box_collision(const cprox_robot *robot, const cprox_robot_pair *pairs,
+                                                 size_t n_pairs, const cprox_joint_box *box,
+                                                 const cprox_options *options, cprox_workspace *workspace,
+                                                 cprox_result *result, double *state);
+
 #ifdef __cplusplus
 }
 #endif

@@ -3,6 +3,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/bvh.c
   ${CMAKE_CURRENT_LIST_DIR}/distance.c
   ${CMAKE_CURRENT_LIST_DIR}/edges.c
+  ${CMAKE_CURRENT_LIST_DIR}/joint_box.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_gradient.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_rows.c
   ${CMAKE_CURRENT_LIST_DIR}/nearest.c

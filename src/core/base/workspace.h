@@ -50,6 +50,8 @@ typedef enum workspace_buffer {
   WORKSPACE_EDGE_WHOLE,
   WORKSPACE_EDGE_SCENE,
   WORKSPACE_EDGE_OPEN,
+  WORKSPACE_JOINT_BOX,
+  WORKSPACE_JOINT_BOXES,
   WORKSPACE_CALLER, /* cprox_workspace_reserve() */
   WORKSPACE_BUFFERS
 } workspace_buffer;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include <curve_proximity/collision_matrix.hpp>
 #include <curve_proximity/nearest_name.hpp>
 #include <curve_proximity/srdf.hpp>
 
@@ -103,6 +104,54 @@ Srdf parseSrdf(const std::string &xml) {
     out.disabled_by_default.push_back(required(*e, "link"));
   }
   return out;
+}
+
+namespace {
+
+void removeAll(XMLElement &robot, const char *name) {
+  while (XMLElement *element = robot.FirstChildElement(name)) robot.DeleteChild(element);
+}
+
+} // namespace
+
+std::vector<DisabledPair> disabledPairs(const std::string &srdf_xml) {
+  const Srdf srdf = parseSrdf(srdf_xml);
+  std::vector<DisabledPair> out;
+  tinyxml2::XMLDocument document;
+  document.Parse(srdf_xml.data(), srdf_xml.size());
+  const XMLElement *element = document.FirstChildElement("robot")->FirstChildElement("disable_collisions");
+  for (const std::array<std::string, 2> &links : srdf.disabled) {
+    const char *reason = element->Attribute("reason");
+    out.push_back({links, reason ? reason : ""});
+    element = element->NextSiblingElement("disable_collisions");
+  }
+  return out;
+}
+
+std::string withDisabledPairs(const std::string &srdf_xml, const std::string &robot,
+                              const std::vector<DisabledPair> &pairs) {
+  tinyxml2::XMLDocument document;
+  if (srdf_xml.empty()) {
+    document.InsertEndChild(document.NewDeclaration());
+    document.InsertEndChild(document.NewElement("robot"))->ToElement()->SetAttribute("name", robot.c_str());
+  } else {
+    parseSrdf(srdf_xml);
+    document.Parse(srdf_xml.data(), srdf_xml.size());
+  }
+  XMLElement &root = *document.FirstChildElement("robot");
+  const XMLElement *first = root.FirstChildElement("disable_collisions");
+  tinyxml2::XMLNode *before = first ? const_cast<tinyxml2::XMLNode *>(first->PreviousSibling()) : root.LastChild();
+  removeAll(root, "disable_collisions");
+  for (const DisabledPair &pair : pairs) {
+    XMLElement *element = document.NewElement("disable_collisions");
+    element->SetAttribute("link1", pair.links[0].c_str());
+    element->SetAttribute("link2", pair.links[1].c_str());
+    if (!pair.reason.empty()) element->SetAttribute("reason", pair.reason.c_str());
+    before = before ? root.InsertAfterChild(before, element) : root.InsertFirstChild(element);
+  }
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
 }
 
 namespace {
