@@ -29,6 +29,7 @@ typedef struct section {
   uint32_t width;
   const set *set;
   pieces *mover, *target; /* target: of a set that is a curve */
+  double until;           /* the part of the mover that is spoken of, from 0 on, in pieces */
   double balls[3];        /* delta, radius, margin */
   size_t *leaves;
 } section;
@@ -113,11 +114,11 @@ static const char *check_convex(const section *c) {
     const double end = reader_number(c->in);
     reader_normal(c->in, c->width, normal);
     if (c->in->bad) return "it is cut off or not a number";
-    if (!(end > from && end <= (double)c->mover->n)) return "its parts do not follow each other";
+    if (!(end > from && end <= c->until)) return "its parts do not follow each other";
     if (!separates(c, normal, (part){from, end}, NULL)) return "a direction does not separate its part";
     from = end;
   }
-  return from == (double)c->mover->n ? NULL : "its parts do not cover the curve";
+  return from == c->until ? NULL : "its parts do not cover the curve";
 }
 
 /* A tree in preorder: leaves {0, n}; {1 or 2, cut} and two trees for a pair whose first or second part is cut. Parts of
@@ -157,12 +158,13 @@ static const char *read_pieces(reader *in, const curve *c, pieces *p, double **b
 
 static const char *check_section(section *c) {
   const unsigned char wanted = c->set->kind == CURVE ? 2 : c->set->corners > 0 ? 3 : 1;
-  const part all = {0.0, (double)c->mover->n};
+  const part all = {0.0, c->until};
   if (reader_byte(c->in) != wanted) return "it is about another kind of target";
   if (wanted == 1) return check_convex(c);
   if (wanted == 3) {
     const char *broken = check_tree(c, all, (part){0.0, (double)set_elements(c->set)}, 0);
-    if (broken || c->set->kind != SOLID || winding_pieces_begin_outside(c->set, c->mover)) return broken;
+    if (broken || c->set->kind != SOLID || winding_pieces_begin_outside(c->set, c->mover, (size_t)ceil(c->until)))
+      return broken;
     return "the curve does not begin outside the mesh";
   }
   pieces target = {0};
@@ -176,20 +178,45 @@ static const char *check_section(section *c) {
   return fault;
 }
 
-static const char *check_robot(robot *r, reader *in, uint32_t width, claim claimed, size_t pairs, finding *found) {
-  if (pairs != r->n_pairs) return "it is about another number of pairs";
-  return claimed == CLAIM_APART ? robot_apart(r, in, width, found->delta, &found->leaves)
-                                : robot_near(r, in, found->delta);
+/* The parameter at a number of pieces, rounded down. */
+static double parameter_at(const double *breaks, double at) {
+  const size_t i = (size_t)floor(at);
+  if (at == (double)i) return breaks[i];
+  iv *w = iv_new(3);
+  iv_set_d(&w[0], breaks[i]);
+  iv_set_d(&w[1], breaks[i + 1]);
+  iv_set_d(&w[2], at - (double)i);
+  iv_blend(&w[0], &w[1], &w[2]);
+  const double t = mpfr_get_d(w[0].lo, MPFR_RNDD);
+  iv_free(w, 3);
+  return t;
 }
 
-static const char *check_apart(const problem *p, reader *in, uint32_t width, finding *found) {
+/* All pairs of a robot, over all of the motion or, where *before is set, up to a place of it. */
+static const char *check_robot_apart(robot *r, reader *in, uint32_t width, bool before, finding *found) {
+  motion_end end = {.segment = r->n_segments - 1, .u = 1.0};
+  if (before) {
+    end.segment = reader_count(in);
+    end.u = reader_number(in);
+    if (in->bad || end.segment >= r->n_segments || !(end.u > 0.0 && end.u <= 1.0)) return "it ends outside the motion";
+    const double around[2] = {r->times[end.segment], r->times[end.segment + 1]};
+    found->until = parameter_at(around, end.u);
+  }
+  return robot_apart(r, in, width, found->delta, &end, &found->leaves);
+}
+
+static const char *check_apart(const problem *p, reader *in, uint32_t width, bool before, finding *found) {
   pieces path = {0};
   double *breaks = NULL;
+  const double end = before ? reader_number(in) : 0.0;
   const char *fault = read_pieces(in, &p->mover.curve, &path, &breaks);
+  if (!fault && before && !(end > 0.0 && end <= (double)path.n)) fault = "it ends outside the curve";
+  if (!fault && before) found->until = parameter_at(breaks, end);
   for (size_t i = 0; i < p->n_sets && !fault; i++) {
     section c = {.in = in, .width = width, .set = &p->sets[i], .mover = &path, .leaves = &found->leaves};
     const double balls[3] = {found->delta, p->mover.radius, c.set->margin};
     memcpy(c.balls, balls, sizeof balls);
+    c.until = before ? end : (double)path.n;
     fault = check_section(&c);
   }
   pieces_free(&path);
@@ -210,6 +237,46 @@ static const char *check_one_point(const problem *p, reader *in, double delta) {
   return fault;
 }
 
+static const char *check_place(const problem *p, reader *in, double delta) {
+  return p->mover.robot ? robot_near(p->mover.robot, in, delta) : check_one_point(p, in, delta);
+}
+
+/* The parameter of a point that is named, rounded up: of a curve u32, f64; of a robot u32, u32 segment, f64 u. */
+static double parameter_of_place(const problem *p, reader in) {
+  const robot *r = p->mover.robot;
+  reader_count(&in);
+  if (!r) return reader_number(&in);
+  const size_t segment = reader_count(&in);
+  const double u = reader_number(&in);
+  if (in.bad || segment >= r->n_segments || !(u >= 0.0 && u <= 1.0)) return INFINITY;
+  const double back[2] = {-r->times[segment + 1], -r->times[segment]};
+  return u == 0.0 ? r->times[segment] : -parameter_at(back, nextafter(1.0 - u, 0.0));
+}
+
+/* Farther than delta up to a parameter; what follows is near. */
+static const char *check_before(const problem *p, reader *in, uint32_t width, finding *found) {
+  const char *fault = p->mover.robot ? check_robot_apart(p->mover.robot, in, width, true, found)
+                                     : check_apart(p, in, width, true, found);
+  if (fault || in->at == in->end) return fault;
+  found->meets_delta = reader_number(in);
+  found->meets_by = parameter_of_place(p, *in);
+  if (in->bad || !(found->meets_delta >= 0.0)) return "it is cut off or not a number";
+  found->meets = true;
+  return check_place(p, in, found->meets_delta);
+}
+
+static const char *check_claim(const problem *p, reader *in, uint32_t width, uint32_t claimed, size_t sections,
+                               finding *found) {
+  robot *r = p->mover.robot;
+  const bool apart = claimed == CLAIM_APART || claimed == CLAIM_BEFORE;
+  if (!apart && claimed != CLAIM_NEAR) return "it claims nothing that is known";
+  if (r && sections != r->n_pairs) return "it is about another number of pairs";
+  if (!r && apart && sections != p->n_sets) return "it is about another number of targets";
+  if (claimed == CLAIM_NEAR) return check_place(p, in, found->delta);
+  if (claimed == CLAIM_BEFORE) return check_before(p, in, width, found);
+  return r ? check_robot_apart(r, in, width, false, found) : check_apart(p, in, width, false, found);
+}
+
 finding check(const problem *p, const unsigned char *bytes, size_t size) {
   finding found = {0};
   reader in = {.at = bytes, .end = bytes + size};
@@ -228,14 +295,7 @@ finding check(const problem *p, const unsigned char *bytes, size_t size) {
     return found;
   }
 
-  if (p->mover.robot && (claimed == CLAIM_APART || claimed == CLAIM_NEAR))
-    found.fault = check_robot(p->mover.robot, &in, width, (claim)claimed, sections, &found);
-  else if (claimed == CLAIM_APART)
-    found.fault = sections == p->n_sets ? check_apart(p, &in, width, &found) : "it is about another number of targets";
-  else if (claimed == CLAIM_NEAR)
-    found.fault = check_one_point(p, &in, found.delta);
-  else
-    found.fault = "it claims nothing that is known";
+  found.fault = check_claim(p, &in, width, claimed, sections, &found);
   if (!found.fault && in.at != in.end) found.fault = "bytes follow its end";
   if (!found.fault && mpfr_nanflag_p()) found.fault = "its arithmetic broke down";
   if (!found.fault) found.claim = (claim)claimed;

@@ -79,7 +79,13 @@ static bool report(const problem *p, reader *file) {
     return false;
   }
   const finding found = check(p, bytes, size);
-  if (found.claim == CLAIM_APART) {
+  if (found.claim == CLAIM_BEFORE) {
+    printf("%s: proven: farther than %.17g m before %.17g", p->mover.id, found.delta, found.until);
+    if (found.meets) printf(", and by %.17g not farther than %.17g m", found.meets_by, found.meets_delta);
+    printf(" (%u bytes, %zu directions", (unsigned)size, found.leaves);
+    report_hulls(p);
+    puts(")");
+  } else if (found.claim == CLAIM_APART) {
     printf("%s: proven: farther than %.17g m everywhere (%u bytes, %zu directions", p->mover.id, found.delta,
            (unsigned)size, found.leaves);
     report_hulls(p);

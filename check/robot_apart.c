@@ -20,7 +20,8 @@
 #include "trajectory.h"
 #include "winding.h"
 
-enum { MAX_DEPTH = 64, MAX_CUTS = 256 };
+/* Where an interval begins is a double: a sum of powers of 2, exact to this depth. */
+enum { MAX_DEPTH = 50, MAX_CUTS = 256 };
 
 /* Of a direction: far from where squares underflow or overflow. */
 #define SHORTEST 0x1p-100
@@ -30,7 +31,7 @@ typedef struct walk {
   robot *r;
   reader *in;
   uint32_t width;
-  double delta;
+  double delta, end; /* end: of the part of the segment that is spoken of */
   size_t degree, *tries;
   axis_state *states;
   place *places; /* of the bodies */
@@ -249,18 +250,22 @@ static const char *read_directions(const walk *w, size_t count) {
 
 /* ---- intervals ---- */
 
-/* One interval: `open` items, n of them; points are overwritten. NODE: u16 2 × COUNT + (1 where it is cut), the
+/* One interval, which begins at u = `from` and is 2^-depth long: `open` items, n of them; points are overwritten. What
+ * begins at the end or after it is not there. NODE: u16 2 × COUNT + (1 where it is cut), the
  * directions, and where it is cut the left and the right half. */
-static const char *check_interval(walk *w, num *points, const open_item *open, size_t n, int depth) {
+static const char *check_interval(walk *w, num *points, const open_item *open, size_t n, double from, int depth) {
   const robot *r = w->r;
+  if (from >= w->end) return NULL;
   const size_t head = (size_t)reader_bits(w->in, 2), room = r->n_variables * (ROBOT_MAX_DEGREE + 1);
   if (w->in->bad || depth > MAX_DEPTH) return "its tree is broken";
+  const double middle = from + ldexp(0.5, -depth);
   const char *fault = read_directions(w, head / 2);
   if (fault) return fault;
 
   /* where nothing is open any more, what is left is read and not worked out */
   if (n == 0) {
-    for (size_t half = 0; half < head % 2 * 2 && !fault; half++) fault = check_interval(w, points, open, 0, depth + 1);
+    for (int half = 0; half < 2 && head % 2 == 1 && !fault; half++)
+      fault = check_interval(w, points, open, 0, half == 0 ? from : middle, depth + 1);
     return fault;
   }
   kinematics_axes(r, w->degree, points, w->states);
@@ -277,8 +282,8 @@ static const char *check_interval(walk *w, num *points, const open_item *open, s
     for (size_t v = 0; v < r->n_variables; v++)
       if (r->moved[v])
         trajectory_halve(points + v * (ROBOT_MAX_DEGREE + 1), w->degree, left + v * (ROBOT_MAX_DEGREE + 1));
-    fault = check_interval(w, left, left_open.at, left_open.n, depth + 1);
-    if (!fault) fault = check_interval(w, points, left_open.at, left_open.n, depth + 1);
+    fault = check_interval(w, left, left_open.at, left_open.n, from, depth + 1);
+    if (!fault) fault = check_interval(w, points, left_open.at, left_open.n, middle, depth + 1);
   }
   free(left_open.at);
   free(left);
@@ -305,7 +310,7 @@ static const char *check_outside(const walk *w, size_t segment, num *points) {
   return NULL;
 }
 
-const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, size_t *tries) {
+const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, const motion_end *end, size_t *tries) {
   walk w = {.r = r, .in = in, .width = width, .delta = delta, .tries = tries};
   const size_t room = r->n_variables * (ROBOT_MAX_DEGREE + 1);
   w.states = malloc((r->n_axes + 1) * sizeof *w.states);
@@ -322,11 +327,12 @@ const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, size
     p->n_items = 0;
     if (!add_item(p, standing, 0, set_elements(standing->shape), NULL)) fault = "memory is out";
   }
-  for (size_t s = 0; s < r->n_segments && !fault; s++) {
+  for (size_t s = 0; s <= end->segment && !fault; s++) {
+    w.end = s < end->segment ? 1.0 : end->u;
     w.degree = r->degrees[s];
     fault = check_outside(&w, s, points);
     for (size_t i = 0; i < room; i++) points[i] = robot_points(r, s, 0)[i];
-    if (!fault) fault = check_interval(&w, points, all, r->n_pairs, 0);
+    if (!fault) fault = check_interval(&w, points, all, r->n_pairs, 0.0, 0);
   }
   free(w.states);
   free(w.places);

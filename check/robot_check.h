@@ -6,8 +6,15 @@
 #include "bytes.h"
 #include "robot.h"
 
-/* Everywhere the bodies of every pair are farther apart than delta. *tries counts the directions that were tried. */
-const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, size_t *tries);
+/* A place of the motion: u counts from 0 to 1 over the segment. */
+typedef struct motion_end {
+  size_t segment;
+  double u;
+} motion_end;
+
+/* Up to the end, the bodies of every pair are farther apart than delta. *tries counts the directions that were tried.
+ */
+const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, const motion_end *end, size_t *tries);
 
 /* Somewhere the bodies of one pair are no farther apart than delta. */
 const char *robot_near(const robot *r, reader *in, double delta);

@@ -125,9 +125,9 @@ side winding_side(const set *s, const vec *y) {
 
 /* ---- who asks ---- */
 
-bool winding_pieces_begin_outside(const set *s, pieces *p) {
+bool winding_pieces_begin_outside(const set *s, pieces *p, size_t n) {
   const vec centre = vec_of(s->centre);
-  for (size_t i = 0; i < p->n; i++) {
+  for (size_t i = 0; i < n; i++) {
     const pieces_quick *piece = pieces_quick_at(p, i);
     if (!piece) return false;
     vec y = vec_of(piece->points[0]);

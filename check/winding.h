@@ -16,8 +16,8 @@ bool winding_is_closed(const set *s);
  * holds of every point within the radius. */
 side winding_side(const set *s, const vec *y);
 
-/* Whether every piece of a curve begins outside. */
-bool winding_pieces_begin_outside(const set *s, pieces *p);
+/* Whether each of the first n pieces of a curve begins outside. */
+bool winding_pieces_begin_outside(const set *s, pieces *p, size_t n);
 
 /* A ball about a point in intervals. */
 vec winding_ball_of(const iv x[3]);

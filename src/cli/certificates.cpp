@@ -64,6 +64,7 @@ std::string proofOf(const CertificateHandle &certificate) {
   switch (cprox_certificate_get_info(certificate.get()).claim) {
     case CPROX_CLAIM_APART: return "apart";
     case CPROX_CLAIM_NEAR: return "near";
+    case CPROX_CLAIM_BEFORE: return "before";
     case CPROX_CLAIM_NONE: break;
   }
   return "none";

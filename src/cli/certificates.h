@@ -23,7 +23,7 @@ using CertificateHandle = std::unique_ptr<cprox_certificate, decltype(&cprox_cer
 CertificateHandle makeCertificate();
 std::string recordOf(const CertificateHandle &certificate);
 
-/** What it claims, for the column `proof`: "apart", "near", or "none". */
+/** What it claims, for the column `proof`: "apart", "near", "before", or "none". */
 std::string proofOf(const CertificateHandle &certificate);
 
 /** What has no certificates (unprovable() of query.hpp and motion.hpp). */

@@ -12,7 +12,7 @@ import sys
 from copy import copy
 from fractions import Fraction as F
 from itertools import product
-from math import comb, isqrt
+from math import ceil, comb, isqrt
 
 TINY = F(1, 2 ** 250)
 
@@ -408,9 +408,12 @@ def separates(set_, mover, normal, part, gap, target=None, other=None):
     return mover.least(n, *part) - far - gap * norm_up(n) > 0
 
 
-def check_apart(sets, radius, curve, bytes_, width, delta):
+def check_apart(sets, radius, curve, bytes_, width, delta, ends=False):
+    """ends: it speaks of the curve up to a number of pieces, which stands first."""
+    end_of_claim = bytes_.number() if ends else None
     mover = Pieces(curve, bytes_)
-    n = F(len(mover.pieces))
+    n = end_of_claim if ends else F(len(mover.pieces))
+    require(0 < n <= len(mover.pieces), 'it ends outside the curve')
     for set_ in sets:
         gap, kind = delta + radius + set_.margin, bytes_.take('<B')
         require(kind == (2 if set_.kind == 'curve' else 3 if set_.elements else 1), 'another kind of target')
@@ -443,7 +446,7 @@ def check_apart(sets, radius, curve, bytes_, width, delta):
             halves = [(whole[0], cut), (cut, whole[1])]
             for half in reversed(halves):
                 open_.append((half, other, depth + 1) if tag == 1 else (mine, half, depth + 1))
-        for powers, _ in mover.pieces if set_.kind == 'solid' else ():
+        for powers, _ in mover.pieces[:ceil(n)] if set_.kind == 'solid' else ():
             require(set_.winding(set_.point_to_frame(powers[0])) == 0, 'a piece begins inside')
 
 
@@ -500,19 +503,25 @@ def check_near(sets, radius, curve, bytes_, delta):
 
 
 def check(sets, radius, curve, data):
-    """'apart' or 'near', and delta; Refused."""
+    """'apart', 'near', 'before' or 'before and near', and delta; Refused."""
     bytes_ = Bytes(data)
     magic = bytes(bytes_.take('<B') for _ in range(4))
     width, delta, claim, sections = bytes_.count(), bytes_.number(), bytes_.count(), bytes_.count()
     require(magic == b'CPC1' and width in (4, 8) and delta >= 0, 'it is no certificate')
-    if claim == 1:
+    found = {1: 'apart', 2: 'near', 3: 'before'}.get(claim)
+    if claim in (1, 3):
         require(sections == len(sets), 'another number of targets')
-        check_apart(sets, radius, curve, bytes_, width, delta)
+        check_apart(sets, radius, curve, bytes_, width, delta, claim == 3)
+        if claim == 3 and bytes_.at < len(data):
+            meets = bytes_.number()
+            require(meets >= 0, 'it is no distance')
+            check_near(sets, radius, curve, bytes_, meets)
+            found = 'before and near'
     else:
         require(claim == 2, 'it claims nothing that is known')
         check_near(sets, radius, curve, bytes_, delta)
     require(bytes_.at == len(data), 'bytes follow its end')
-    return ('apart' if claim == 1 else 'near'), delta
+    return found, delta
 
 
 def records(path):

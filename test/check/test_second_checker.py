@@ -25,9 +25,9 @@ def by_cprox_check(program, problem, certificates):
         sys.exit(f'{program} ended with {ran.returncode} on {problem}: {ran.stderr}')
     found = []
     for line in ran.stdout.splitlines():
-        apart = re.search(r': proven: farther than (\S+) m', line)
-        near = re.search(r': proven: not farther than (\S+) m', line)
-        found.append(('apart', float(apart[1])) if apart else ('near', float(near[1])) if near else None)
+        line = re.search(r': proven: (not )?farther than (\S+) m(?: everywhere)?( before \S+)?(?: \(|(, and by \S+ not farther))', line)
+        claim = line and ('near' if line[1] else 'apart' if not line[3] else 'before and near' if line[4] else 'before')
+        found.append((claim, float(line[2])) if line else None)
     return found
 
 
@@ -45,7 +45,7 @@ def by_fractions(problem, certificates):
 
 def is_false(finding, lower, upper):
     claim, delta = finding
-    return delta >= upper if claim == 'apart' else delta < lower
+    return delta >= upper if claim == 'apart' else claim == 'near' and delta < lower
 
 
 def main():

@@ -22,7 +22,9 @@ typedef enum cprox_claim {
   /** mover and obstacles are farther apart than delta everywhere */
   CPROX_CLAIM_APART,
   /** somewhere they are no farther apart than delta */
-  CPROX_CLAIM_NEAR
+  CPROX_CLAIM_NEAR,
+  /** they are farther apart than delta before a parameter; the certificate may also prove that they meet thereafter */
+  CPROX_CLAIM_BEFORE
 } cprox_claim;
 
 /** A new, empty certificate, or NULL where memory is out. Owned by the caller: cprox_certificate_free(). It may be used
@@ -83,6 +85,20 @@ CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certific
 CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, double delta,
                                      const cprox_result *answer, const cprox_options *options,
                                      cprox_workspace *workspace, cprox_certificate *certificate);
+
+/** Makes a certificate for an answer to the time of contact.
+ *
+ *  answer      of cprox_time_of_contact(), cprox_obstacles_time_of_contact() or their like with these arguments. Where
+ *              its verdict is clear, claimed is `apart` with delta 0. Else: that nothing is touched before a parameter
+ *              that is t_contact_lower, or less where rounding or the form of the proof need that; and, where that can
+ *              be proven, that by t the distance is no more than upper. The checker tells both parameters.
+ *  others      as of cprox_certify()
+ *
+ *  Returns as cprox_certify(); CPROX_PRECISION where t_contact_lower is at the beginning. Source: doc/certificates.md.
+ */
+CPROX_API cprox_status cprox_certify_contact(cprox_mover mover, const cprox_obstacles *obstacles,
+                                             const cprox_result *answer, const cprox_options *options,
+                                             cprox_workspace *workspace, cprox_certificate *certificate);
 
 /** The obstacle as the checker reads it: lines of text, numbers in hexadecimal without rounding, bodies as the library
  *  holds them.

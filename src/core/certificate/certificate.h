@@ -22,6 +22,9 @@ struct cprox_certificate {
   double delta;
 };
 
+/* Bytes before the substance. */
+enum { CERTIFICATE_HEAD = 24 };
+
 /* Kinds of sections. */
 enum { SECTION_CONVEX = 1, SECTION_CURVE = 2, SECTION_ELEMENTS = 3 };
 

@@ -73,7 +73,7 @@ static leaf *leaves_reserve(const cover *c, size_t n) {
 static cprox_status lay(cover *c, const frame *f, size_t *n) {
   reach_part open[MAX_OPEN];
   size_t n_open = 1;
-  open[0] = (reach_part){0.0, (double)c->curve->n_pieces};
+  open[0] = (reach_part){0.0, c->until};
   const trial witness = try_normal(c, c->normal);
   convex_hint hint = {0};
   *n = 0;

@@ -17,6 +17,7 @@ typedef struct cover {
   reach_set set;   /* the radius of the mover belongs to its offset, and that of elements */
   cprox_pose pose; /* of the set, composed */
   double delta;
+  double until;                   /* the part of the curve that is covered: from 0 to this counting parameter */
   double witness, witness_on_set; /* counting parameters where mover and curve targets are nearest, -1: not known */
   vec3 normal;                    /* unit, from the set to the mover there; (0,0,0): not known */
   uint32_t budget;                /* parts that may be tried */

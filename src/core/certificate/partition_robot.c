@@ -186,6 +186,7 @@ static outcome settle(const robot_cover *c, const item_view *v, double width, ve
     *written = certificate_round(c->certificate, placement_turn_back(&v->standing.side.at, gap.normal));
     if (settles(c, v, *written, 0.0)) return WRITTEN;
   }
+  if (too_near && c->reaches_beyond) return OPEN;
   if (is_to_be_cut(v, too_near, fmax(displacement, moving->radius))) return CUT;
   return too_near ? TOO_NEAR : OPEN;
 }
@@ -261,9 +262,11 @@ static cprox_status certify_open_items(robot_cover *c, size_t from, size_t to, d
 
 /* The interval [a, b] of a segment and the items at from ... to - 1 of the list. Its depth is that of halves of 1. */
 static cprox_status lay(robot_cover *c, size_t segment, double a, double b, size_t from, size_t to) {
+  if (segment == c->last && a >= c->end) return CPROX_OK;
   if (c->budget == 0) return CPROX_BUDGET;
   c->budget--;
   robot_scene_enter(c->scene, segment, a, b);
+  c->reaches_beyond = segment == c->last && b > c->end;
   size_t kept;
   cprox_status status = certify_open_items(c, from, to, b - a, &kept);
   if (status != CPROX_OK || kept == 0) return status;
@@ -279,6 +282,6 @@ cprox_status partition_robot(robot_cover *c) {
   int32_t *open = reserve(c, n);
   if (!open || !begin_items(c)) return CPROX_MEMORY;
   for (size_t i = 0; i < n; i++) open[i] = (int32_t)i;
-  for (size_t s = 0; s < c->scene->motion->n_segments && status == CPROX_OK; s++) status = lay(c, s, 0.0, 1.0, 0, n);
+  for (size_t s = 0; s <= c->last && status == CPROX_OK; s++) status = lay(c, s, 0.0, 1.0, 0, n);
   return status;
 }

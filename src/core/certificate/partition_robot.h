@@ -21,7 +21,10 @@ typedef struct robot_cover {
   size_t n_items;
   double delta;
   uint32_t budget; /* intervals that may be tried */
-  double shortest; /* intervals shorter than this part of a segment are given up */
+  size_t last;     /* the segment that is covered last, up to `end` of it */
+  double end;
+  bool reaches_beyond; /* the interval at hand goes on after the end, where anything may touch */
+  double shortest;     /* intervals shorter than this part of a segment are given up */
   cprox_certificate *certificate;
 } robot_cover;
 

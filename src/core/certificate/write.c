@@ -23,11 +23,15 @@
 /* By how much a claim that is too tight is lowered, in roundings of the sizes. */
 #define LOWERED 64.0
 
+/* Claims about the time before contact end some steps before it: the first one in pieces, and how they grow. */
+#define FINEST_STEP 0x1p-36
+#define STEPS_BACK 16.0
+
 typedef struct task {
   const cprox_mover *mover;
   const cprox_obstacle *targets;
   size_t n;
-  double delta;
+  double delta, before; /* before: INFINITY, or where parameters cease to count */
   const cprox_result *answer;
   const cprox_options *options;
   uint32_t budget;
@@ -56,6 +60,7 @@ static cover cover_of(const task *t, size_t target, size_t part, uint32_t width)
   cover c = {.curve = t->mover->curve,
              .set = {.body = at->body, .curve = at->curve, .pose = {&at->pose}, .poses = 1},
              .pose = at->pose,
+             .until = (double)t->mover->curve->n_pieces,
              .witness = -1.0,
              .witness_on_set = -1.0,
              .budget = t->budget,
@@ -97,16 +102,19 @@ static double size_of_problem(const task *t, const cover *c) {
   return size_of(c->curve, c->pose.position) + of_set + c->set.offset + t->delta;
 }
 
-/* One attempt: the whole certificate, with normals of the width. */
-static cprox_status attempt(const task *t, uint32_t width, double delta) {
+/* One attempt: the whole certificate, with normals of the width. until: 0, or where a claim about a part ends. */
+static cprox_status attempt(const task *t, uint32_t width, double delta, double until) {
   size_t sections = 0;
   for (size_t i = 0; i < t->n; i++) sections += body_n_parts(t->targets[i].body);
-  certificate_begin(t->certificate, width, CPROX_CLAIM_APART, delta, (uint32_t)sections);
+  const cprox_claim claim = until > 0.0 ? CPROX_CLAIM_BEFORE : CPROX_CLAIM_APART;
+  certificate_begin(t->certificate, width, claim, delta, (uint32_t)sections);
+  if (until > 0.0) certificate_number(t->certificate, until);
   certificate_breaks(t->certificate, t->mover->curve->breaks, t->mover->curve->n_pieces);
   for (size_t i = 0; i < t->n; i++) {
     for (size_t part = 0; part < body_n_parts(t->targets[i].body); part++) {
       cover c = cover_of(t, i, part, width);
       c.delta = delta;
+      if (until > 0.0) c.until = until;
       const bool has_elements = c.set.body && c.set.body->tree;
       const cprox_status status = c.set.curve    ? partition_curves(&c)
                                   : has_elements ? partition_elements(&c)
@@ -123,16 +131,29 @@ static bool is_of_distance(const task *t) {
 }
 
 static cprox_status certify_clear(const task *t) {
-  cprox_status status = attempt(t, 4, t->delta);
-  if (status > 0) status = attempt(t, 8, t->delta);
+  cprox_status status = attempt(t, 4, t->delta, 0.0);
+  if (status > 0) status = attempt(t, 8, t->delta, 0.0);
   if (status <= 0 || !t->answer || t->answer->obstacle_index < 0) return status;
 
   /* the search's own bounds, which know tangent balls, may be tighter than planes can be */
   const cover c = cover_of(t, (size_t)t->answer->obstacle_index, (size_t)t->answer->obstacle_part, 8);
   const double rounding = LOWERED * ROUND_U * size_of_problem(t, &c);
-  if (t->delta > rounding) status = attempt(t, 8, t->delta - rounding);
+  if (t->delta > rounding) status = attempt(t, 8, t->delta - rounding, 0.0);
   const double given = fmax(t->epsilon, LOWERED * rounding);
-  if (status > 0 && is_of_distance(t) && t->delta > given) status = attempt(t, 8, t->delta - given);
+  if (status > 0 && is_of_distance(t) && t->delta > given) status = attempt(t, 8, t->delta - given, 0.0);
+  return status;
+}
+
+/* How far before the time it must end is found by steps back from it, each larger than the one before. */
+static cprox_status certify_before(const task *t) {
+  const double end = count_at(t->mover->curve, t->before);
+  cprox_status status = CPROX_PRECISION;
+  for (double back = 0.0; status > 0; back = fmax(STEPS_BACK * back, FINEST_STEP)) {
+    const double until = nextafter(end - back, 0.0);
+    if (!(until > 0.0)) return CPROX_PRECISION;
+    status = attempt(t, 4, t->delta, until);
+    if (status > 0) status = attempt(t, 8, t->delta, until);
+  }
   return status;
 }
 
@@ -166,6 +187,7 @@ static cprox_status certify_curve(const task *t) {
       return workspace_fail(t->workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
                             cprox_body_kind_name(describe_unknown_obstacle(target->body)->kind));
   }
+  if (isfinite(t->before)) return certify_before(t);
   if (!t->answer || t->answer->upper > t->delta) return certify_clear(t);
   const cprox_status status = certify_near(t);
   if (status == CPROX_OK || status == CPROX_MEMORY || !is_of_distance(t) || !(t->delta > 0.0)) return status;
@@ -174,7 +196,8 @@ static cprox_status certify_curve(const task *t) {
 
 static cprox_status prove(const task *t) {
   if (!t->mover->motion) return certify_curve(t);
-  return certify_robot(t->mover, t->targets, t->n, t->delta, t->answer, t->options, t->workspace, t->certificate);
+  const claim_wanted wanted = {t->delta, t->before};
+  return certify_robot(t->mover, t->targets, t->n, wanted, t->answer, t->options, t->workspace, t->certificate);
 }
 
 /* ---- links that are meshes ---- */
@@ -205,21 +228,39 @@ static cprox_status prove_of_hulls(const task *t) {
   return prove(&coarse);
 }
 
-static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
+/* That they are near is proven by itself; its substance follows. Where there is no proof of it, none does. */
+static void add_meeting(const task *t) {
+  cprox_certificate near = {.bytes = NULL};
+  task meeting = *t;
+  meeting.before = INFINITY;
+  meeting.delta = fmax(t->answer->upper, 0.0);
+  meeting.certificate = &near;
+  if (prove(&meeting) == CPROX_OK && near.claim == CPROX_CLAIM_NEAR) {
+    certificate_number(t->certificate, near.delta);
+    for (size_t i = CERTIFICATE_HEAD; i < near.size; i++) certificate_byte(t->certificate, near.bytes[i]);
+  }
+  free(near.bytes);
+}
+
+static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, claim_wanted wanted,
                             const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                             cprox_certificate *certificate) {
   const task t = {.mover = mover,
                   .targets = targets,
                   .n = n,
-                  .delta = delta,
+                  .delta = wanted.delta,
+                  .before = wanted.before,
                   .answer = answer,
                   .options = options,
                   .budget = options->max_nodes,
                   .epsilon = answer ? width_allowed(options->epsilon, options->relative_epsilon, answer->upper) : 0.0,
                   .workspace = workspace,
                   .certificate = certificate};
+  const double delta = t.delta;
   if (!isfinite(delta)) return workspace_fail(workspace, CPROX_INVALID, "there is nothing to measure");
   cprox_status status = prove(&t);
+  if (status == CPROX_OK && isfinite(t.before)) add_meeting(&t);
+  if (status == CPROX_OK && certificate->failed) status = CPROX_MEMORY;
   if (status > 0 && is_of_distance(&t) && delta > 0.0 && has_hulls(&t)) status = prove_of_hulls(&t);
   if (status == CPROX_OK) {
     workspace_clear(workspace);
@@ -242,8 +283,8 @@ static void prove_answer(const query *q, const cprox_result *answer) {
   const double delta = query_wants_verdict(q) ? q->limit
                        : answer->lower > 0.0  ? answer->lower
                                               : fmax(answer->upper, 0.0);
-  const cprox_status status =
-      certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
+  const cprox_status status = certify(&q->mover, q->targets, q->n, (claim_wanted){delta, INFINITY}, answer, &q->options,
+                                      q->workspace, q->options.certificate);
   snprintf(of_proof, sizeof of_proof, "%s", cprox_workspace_error(q->workspace));
   if (status == CPROX_OK)
     workspace_fail(q->workspace, answer->status, "%s", of_answer);
@@ -257,19 +298,42 @@ cprox_certificate *cprox_certificate_create(void) {
   return certificate;
 }
 
+/* What both entry points check. */
+static cprox_status validate(const cprox_mover *mover, const cprox_obstacles *obstacles, const cprox_options *chosen,
+                             cprox_workspace *workspace, cprox_certificate *certificate) {
+  workspace_clear(workspace);
+  cprox_certificate_clear(certificate);
+  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_LOD};
+  const cprox_status status =
+      validate_query(mover, obstacles_list(obstacles), obstacles_count(obstacles), chosen, asked, workspace);
+  if (status == CPROX_OK && !certificate)
+    return workspace_fail(workspace, CPROX_INVALID, "certificate is NULL: nowhere to put the proof");
+  return status;
+}
+
 cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, double delta,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
   WORKSPACE_USE(workspace);
-  const cprox_obstacle *targets = obstacles_list(obstacles);
-  const size_t n = obstacles_count(obstacles);
   const cprox_options chosen = arguments_options(options);
-  workspace_clear(workspace);
-  cprox_certificate_clear(certificate);
-  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_LOD};
-  cprox_status status = validate_query(&mover, targets, n, &chosen, asked, workspace);
+  cprox_status status = validate(&mover, obstacles, &chosen, workspace, certificate);
   if (status == CPROX_OK) status = validate_delta(delta, workspace);
   if (status != CPROX_OK) return status;
-  if (!certificate) return workspace_fail(workspace, CPROX_INVALID, "certificate is NULL: nowhere to put the proof");
-  return certify(&mover, targets, n, delta, answer, &chosen, workspace, certificate);
+  return certify(&mover, obstacles_list(obstacles), obstacles_count(obstacles), (claim_wanted){delta, INFINITY}, answer,
+                 &chosen, workspace, certificate);
+}
+
+cprox_status cprox_certify_contact(cprox_mover mover, const cprox_obstacles *obstacles, const cprox_result *answer,
+                                   const cprox_options *options, cprox_workspace *workspace,
+                                   cprox_certificate *certificate) {
+  WORKSPACE_USE(workspace);
+  const cprox_options chosen = arguments_options(options);
+  const cprox_status status = validate(&mover, obstacles, &chosen, workspace, certificate);
+  if (status != CPROX_OK) return status;
+  if (!answer || answer->status < 0 || isnan(answer->t_contact_lower))
+    return workspace_fail(workspace, CPROX_INVALID, "answer is none to the time of contact");
+  const bool never = answer->verdict == CPROX_VERDICT_CLEAR;
+  const claim_wanted wanted = {0.0, never ? INFINITY : answer->t_contact_lower};
+  return certify(&mover, obstacles_list(obstacles), obstacles_count(obstacles), wanted, answer, &chosen, workspace,
+                 certificate);
 }

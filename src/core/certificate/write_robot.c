@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A certificate for an answer about a robot along a motion. It is about the hulls of links that are meshes. */
+#include <math.h>
+
 #include "base/rounding.h"
 #include "certificate/describe.h"
 #include "certificate/partition_robot.h"
@@ -9,6 +11,10 @@
 #define SHORTEST_SINGLE 0x1p-16
 #define SHORTEST_DOUBLE 0x1p-40
 enum { MOST_PAIRS = 0xffff };
+
+/* Where a claim about the time before contact ends is a multiple of this part of a segment. */
+#define FINEST_END 0x1p-30
+static const double STEPS_BACK = 16.0;
 
 /* CPROX_OK, or what it is that certificates do not know. */
 static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle *targets, size_t n,
@@ -28,11 +34,15 @@ static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle
   return CPROX_OK;
 }
 
-static cprox_status attempt(const robot_cover *of, uint32_t width, double delta) {
+static cprox_status attempt(const robot_cover *of, cprox_claim claim, uint32_t width, double delta) {
   robot_cover cover = *of;
   cover.delta = delta;
   cover.shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE;
-  certificate_begin(of->certificate, width, CPROX_CLAIM_APART, delta, (uint32_t)of->scene->n_pairs);
+  certificate_begin(of->certificate, width, claim, delta, (uint32_t)of->scene->n_pairs);
+  if (claim == CPROX_CLAIM_BEFORE) {
+    certificate_count(of->certificate, (uint32_t)of->last);
+    certificate_number(of->certificate, of->end);
+  }
   const cprox_status status = partition_robot(&cover);
   return status == CPROX_OK && of->certificate->failed ? CPROX_MEMORY : status;
 }
@@ -81,15 +91,36 @@ const robot_cover_elements *partition_robot_begin(robot_scene *s) {
  * away epsilon. */
 static cprox_status certify_clear(const robot_cover *cover, bool distance, double epsilon) {
   const double delta = cover->delta;
-  cprox_status status = attempt(cover, 4, delta);
-  if (status > 0) status = attempt(cover, 8, delta);
-  if (status > 0 && distance && delta > epsilon) status = attempt(cover, 4, delta - epsilon);
+  cprox_status status = attempt(cover, CPROX_CLAIM_APART, 4, delta);
+  if (status > 0) status = attempt(cover, CPROX_CLAIM_APART, 8, delta);
+  if (status > 0 && distance && delta > epsilon) status = attempt(cover, CPROX_CLAIM_APART, 4, delta - epsilon);
   return status;
 }
 
-cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
+/* How far before the time it must end is found by steps back from it, each larger than the one before. */
+static cprox_status certify_before(robot_cover *cover, double t) {
+  const cprox_motion *m = cover->scene->motion;
+  size_t segment = 0;
+  while (segment + 1 < m->n_segments && m->times[segment + 1] <= t) segment++;
+  const double length = m->times[segment + 1] - m->times[segment], u = (t - m->times[segment]) / length;
+  const double at = FINEST_END * floor(fmin(u, 1.0) / FINEST_END);
+  cprox_status status = CPROX_PRECISION;
+  for (double back = 0.0; status > 0; back = fmax(STEPS_BACK * back, FINEST_END)) {
+    cover->last = segment, cover->end = at - back;
+    if (!(cover->end > 0.0)) {
+      if (segment == 0 || back > 1.0) return CPROX_PRECISION;
+      cover->last = segment - 1, cover->end = fmax(1.0 - back, FINEST_END);
+    }
+    status = attempt(cover, CPROX_CLAIM_BEFORE, 4, cover->delta);
+    if (status > 0) status = attempt(cover, CPROX_CLAIM_BEFORE, 8, cover->delta);
+  }
+  return status;
+}
+
+cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, claim_wanted wanted,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
+  const double delta = wanted.delta;
   query q = query_create(*mover, targets, n, delta, false, options, workspace);
   q.options.max_lod = CPROX_LOD_MESH;
   const cprox_status known = check_kinds(mover->motion, targets, n, workspace);
@@ -102,8 +133,14 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
   const double epsilon = answer ? width_allowed(options->epsilon, options->relative_epsilon, answer->upper) : 0.0;
   const robot_cover_elements *elements = partition_robot_begin(&scene);
   if (!elements) return CPROX_MEMORY;
-  const robot_cover cover = {
-      .scene = &scene, .elements = elements, .delta = delta, .budget = options->max_nodes, .certificate = certificate};
+  robot_cover cover = {.scene = &scene,
+                       .elements = elements,
+                       .delta = delta,
+                       .budget = options->max_nodes,
+                       .last = scene.motion->n_segments - 1,
+                       .end = 1.0,
+                       .certificate = certificate};
+  if (isfinite(wanted.before)) return certify_before(&cover, wanted.before);
   const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower;
   if (answer && answer->upper <= delta) {
     const cprox_status status = partition_robot_near(&cover, answer);
