@@ -274,8 +274,11 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   /* another pair wants the node cut: pieces will tell more */
   if (o->cut) return CPROX_OK;
   robot_gap gap;
-  const robot_accuracy accuracy = {ROBOT_GAP_FRACTION * o->goal.epsilon, robot_pruning_bound(o), EXCESS_FRACTION,
-                                   known_normal(o, p.pair), o->goal.is_signed};
+  const robot_accuracy accuracy = {.epsilon = ROBOT_GAP_FRACTION * o->goal.epsilon,
+                                   .floor = robot_pruning_bound(o),
+                                   .fraction = EXCESS_FRACTION,
+                                   .start = known_normal(o, p.pair),
+                                   .depth = o->goal.is_signed};
   const cprox_status status = robot_measure(o, &p, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - displacement);

@@ -153,16 +153,18 @@ cprox_status robot_refine_elements(robot_search *o, robot_refinement *c) {
 
 static cprox_status measure_whole(robot_search *o, const placed_robot_pair *p) {
   robot_gap gap;
-  const double floor = o->goal.is_signed ? robot_pruning_bound(o) : fmax(o->goal.limit, 0.0);
-  const cprox_status status = robot_measure(o, p,
-                                            (robot_accuracy){.epsilon = ROBOT_GAP_FRACTION * o->goal.epsilon,
-                                                             .floor = floor,
-                                                             .fraction = SEED_FRACTION,
-                                                             .depth = o->goal.is_signed},
-                                            &gap);
   /* a verdict is not about what is farther than its limit */
   const bool verdict = o->goal.limit >= 0.0 && o->goal.order != SEARCH_LEFT_TO_RIGHT;
   const double most = verdict ? lesser(o->best_bound.upper, o->goal.limit + o->goal.epsilon) : o->best_bound.upper;
+  const double floor = o->goal.is_signed ? robot_pruning_bound(o) : fmax(o->goal.limit, 0.0);
+  const bool hulls = verdict && !placed_robot_pair_is_convex(p); /* their elements are what is measured */
+  const cprox_status status = robot_measure(o, p,
+                                            (robot_accuracy){.epsilon = ROBOT_GAP_FRACTION * o->goal.epsilon,
+                                                             .floor = hulls ? most : floor,
+                                                             .fraction = SEED_FRACTION,
+                                                             .depth = o->goal.is_signed,
+                                                             .verdict = hulls},
+                                            &gap);
   if (status < 0 || placed_robot_pair_is_convex(p) || gap.lower >= most) return status;
   robot_refinement c = robot_refinement_from(o, p, &gap, most, 0.0);
   return robot_refine_elements(o, &c);

@@ -108,6 +108,8 @@ void robot_pair_measure(const robot_body *moving, const robot_body *standing, ro
   const pair_goal goal = {.epsilon = accuracy.epsilon,
                           .floor = accuracy.floor,
                           .fraction = accuracy.fraction,
+                          .verdict = accuracy.verdict,
+                          .limit = accuracy.floor,
                           .start = vec_neg(accuracy.start),
                           .max_steps = accuracy.depth ? DEPTH_STEPS : GAP_STEPS,
                           .wants_feature = true,

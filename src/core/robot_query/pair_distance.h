@@ -34,8 +34,9 @@ typedef struct robot_gap {
 /* How exactly: within epsilon, or within `fraction` of what the lower end is above `floor`. And where to begin. */
 typedef struct robot_accuracy {
   double epsilon, floor, fraction;
-  vec3 start; /* standing frame, unit: near the normal; (0,0,0): nothing is known */
-  bool depth; /* how deep the two overlap, not only that they do; the points are then the ends of the way out */
+  vec3 start;   /* standing frame, unit: near the normal; (0,0,0): nothing is known */
+  bool depth;   /* how deep the two overlap, not only that they do; the points are then the ends of the way out */
+  bool verdict; /* or on which side of `floor` it is: no more is known then */
 } robot_accuracy;
 
 void robot_pair_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap);

@@ -47,9 +47,10 @@ static void abandon(robot_refinement *c) {
   c->complete = false;
 }
 
-/* The distance of the two, and its normal for those that come next. What is out of reach need not be known well. */
+/* The distance of the two, and its normal for those that come next. What is out of reach need not be known well; of
+ * hulls that have elements, only whether they are. */
 static void ask(robot_refinement *c, const robot_body *const side[2], int level, robot_gap *gap) {
-  robot_accuracy accuracy = {.epsilon = c->accuracy, .floor = c->reach, .fraction = BEYOND};
+  robot_accuracy accuracy = {.epsilon = c->accuracy, .floor = c->reach, .fraction = BEYOND, .verdict = level == 0};
   if (vec_norm2(c->last[level]) > 0.0) accuracy.start = placement_turn_back(&side[STANDING]->side.at, c->last[level]);
   robot_pair_measure(side[MOVING], side[STANDING], accuracy, gap);
   c->gaps++;
