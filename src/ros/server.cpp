@@ -167,14 +167,17 @@ std::shared_ptr<const SecondOpinions> secondOpinions(const Parameters &parameter
 ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters &parameters)
     : parameters_(parameters),
       tuning_(parameters_),
-      handle_(onQueue(handle, queue_)),
+      requests_(pool_, static_cast<std::size_t>(parameters_.max_waiting) + 1),
+      objects_queue_(pool_),
+      control_queue_(pool_),
+      handle_(onQueue(handle, requests_)),
+      objects_handle_(onQueue(handle, objects_queue_)),
       control_handle_(onQueue(handle, control_queue_)),
-      threads_(queue_, static_cast<std::size_t>(parameters_.max_waiting)),
       turns_(parameters_.threads),
       scene_turns_(LARGE_CHANGES),
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
       live_(loadRobot(handle, parameters_), loadSrdf(handle, parameters_), resourceOptions("", parameters_)),
-      state_file_(handle, parameters_, live_),
+      state_file_(handle, parameters_, pool_, live_),
       queries_(parameters_, tuning_, live_, frames_, statistics_, stop_,
                loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf),
                secondOpinions(parameters_)),
@@ -190,7 +193,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   markers_ = std::make_unique<MarkerPublisher>(
       control_handle_, live_.scene, parameters_.fixed_frame,
       MarkerResources{resourceOptions("", parameters_), resourceOptions(parameters_.urdf_dir, parameters_)});
-  sensors_ = std::make_unique<Sensors>(handle, parameters_, live_, frames_);
+  sensors_ = std::make_unique<Sensors>(handle, parameters_, pool_, live_, frames_);
   serveQueries<Distance>("distance", QueryType::DISTANCE);
   serveQueries<Tolerance>("tolerance", QueryType::TOLERANCE);
   serveQueries<Collision>("collision", QueryType::COLLISION);
@@ -198,26 +201,22 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   serveQueries<TimeOfContact>("time_of_contact", QueryType::COLLISION);
   serveQueries<ClearanceProfile>("clearance_profile", QueryType::DISTANCE);
   serveQueries<ListViolations>("violations", QueryType::TOLERANCE);
-  using AtWork = RequestThreads::AtWork;
   serve<ApplyScene>("apply_scene", SCENE_TIMES_WIRE,
-                    [this](const Call &call, const AtWork &at_work, auto &request, auto &response) {
-                      applyScene(call, at_work, request, response);
-                    });
+                    [this](const Call &call, auto &request, auto &response) { applyScene(call, request, response); });
   serve<GetScene>("get_scene", QUERY_TIMES_WIRE,
-                  [this](const Call &, const AtWork &, auto &request, auto &response) { getScene(request, response); });
+                  [this](const Call &, auto &request, auto &response) { getScene(request, response); });
   serve<EvaluateConstraints>("evaluate_constraints", SCENE_TIMES_WIRE,
-                             [this](const Call &call, const AtWork &at_work, auto &request, auto &response) {
-                               Turn turn(turns_, call.client, waitUntil(call, at_work));
+                             [this](const Call &call, auto &request, auto &response) {
+                               Turn turn(turns_, call.client, waitUntil(call));
                                response.frame_id = frames_.fixedFrame();
                                const TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
                                constraints_.answer(request, response, budget, &turn);
                              });
-  serve<MeasurePairs>("measure_pairs", SCENE_TIMES_WIRE,
-                      [this](const Call &call, const AtWork &at_work, auto &request, auto &response) {
-                        Turn turn(turns_, call.client, waitUntil(call, at_work));
-                        TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
-                        pairs_.answer(request, response, budget);
-                      });
+  serve<MeasurePairs>("measure_pairs", SCENE_TIMES_WIRE, [this](const Call &call, auto &request, auto &response) {
+    Turn turn(turns_, call.client, waitUntil(call));
+    TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
+    pairs_.answer(request, response, budget);
+  });
   const auto take_object = [this](const CollisionObjectConstPtr &object) { takeObject(object); };
   const auto count_object = [this](const std::string &publisher, const CollisionObject &object) {
     countObject(publisher, object.header.seq);
@@ -226,9 +225,9 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   ros::SubscribeOptions topics[] = {
       checkedSubscription<CollisionObject>("collision_object", OBJECTS_KEPT, take_object, count_object),
       checkedSubscription<AttachedCollisionObject>("attached_collision_object", OBJECTS_KEPT, take_attached)};
-  for (ros::SubscribeOptions &topic : topics) objects_.push_back(handle_.subscribe(topic));
+  for (ros::SubscribeOptions &topic : topics) objects_.push_back(objects_handle_.subscribe(topic));
   planning_scene_ = std::make_unique<PlanningSceneTopic>(
-      handle, parameters_, live_, frames_,
+      handle, parameters_, pool_, live_, frames_,
       [this](SceneChange &change, const Snapshot &before) { return applyChange(change, before); },
       [this](const std::string &link, const JointPositions &joints, const Snapshot &snapshot, FrameLookup &lookup) {
         sensor_msgs::JointState given;
@@ -238,15 +237,13 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
         }
         return linkPose(link, ros::Time(), given, live_, snapshot, lookup);
       });
-  pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, live_, queries_, *markers_, stop_);
-  batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, turns_, stop_);
+  pipeline_ = std::make_unique<Pipeline>(handle, parameters_, pool_, tuning_, live_, queries_, *markers_, stop_);
+  batches_ = std::make_unique<BatchAction>(control_handle_, pool_, parameters_.fixed_frame, queries_, turns_, stop_);
   diagnostics_ = std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *sensors_,
                                                *planning_scene_, frames_, live_);
   reconfigure_ =
       std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { turns_.setSlots(threads); });
-  control_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &control_queue_);
-  control_spinner_->start();
-  threads_.start();
+  for (PooledQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->start();
   const SnapshotPtr snapshot = live_.scene.snapshot();
   ROS_INFO("ready: %zu links, %zu objects%s%s, %zu services", snapshot->robot() ? snapshot->robot()->links().size() : 0,
            snapshot->objects().size() + snapshot->moving().size(), parameters_.scene_file.empty() ? "" : " of ",
@@ -257,17 +254,16 @@ ProximityServer::~ProximityServer() {
   // Running queries end with what they have; their answers leave while the services still stand.
   stop_ = true;
   local_.end();
-  const bool busy = threads_.atWork() > 0;
+  const bool busy = requests_.running() > 0;
   const auto deadline = std::chrono::steady_clock::now() + FAREWELL;
-  while (threads_.atWork() > 0 && std::chrono::steady_clock::now() < deadline)
+  while (requests_.running() > 0 && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (busy) std::this_thread::sleep_for(LAST_WRITE);
 
   // No new calls, then no thread in a callback, then nothing left that names this object.
   for (ros::ServiceServer &service : services_) service.shutdown();
   for (ros::Subscriber &subscriber : objects_) subscriber.shutdown();
-  control_spinner_->stop();
-  threads_.stop();
+  for (PooledQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->end();
   reconfigure_.reset();
   diagnostics_.reset();
   batches_.reset();
@@ -275,8 +271,6 @@ ProximityServer::~ProximityServer() {
   planning_scene_.reset();
   sensors_.reset();
   markers_.reset();
-  control_queue_.clear();
-  queue_.clear();
 }
 
 /** Everything that a handler does happens in here: what it throws becomes a message. A request that cannot be read
@@ -286,7 +280,6 @@ void ProximityServer::serve(const char *name, std::size_t times_wire, Work work)
   using Helper = ServiceHelper<Service>;
   const auto handler = [this, times_wire, work](const Call &call, const typename Helper::Read &read,
                                                 typename Helper::Response &response) {
-    const RequestThreads::AtWork at_work(threads_);
     std::optional<memory::Share> share;
     bool admitted = false;
     answered(response, [&] {
@@ -297,7 +290,7 @@ void ProximityServer::serve(const char *name, std::size_t times_wire, Work work)
     if (!admitted) return;
     typename Helper::Request request;
     read(request);
-    answered(response, [&] { work(call, at_work, request, response); });
+    answered(response, [&] { work(call, request, response); });
   };
   services_.push_back(advertise<Service>(handle_, name, handler));
   local_.add<Service>(services_.back().getService(), handler);
@@ -307,19 +300,19 @@ std::size_t ProximityServer::requestLimit() const {
   return static_cast<std::size_t>(parameters_.max_request_mb) << 20;
 }
 
-/** How long the request may wait for a turn. */
-Turns::Clock::time_point ProximityServer::waitUntil(const Call &call, const RequestThreads::AtWork &at_work) const {
-  if (at_work.isLast()) return call.arrival;
+/** How long the request may wait for a turn. The last one that may run does not wait: it refuses further ones. */
+Turns::Clock::time_point ProximityServer::waitUntil(const Call &call) {
+  if (!call.in_process && requests_.isFull()) return call.arrival;
   return call.arrival + std::chrono::duration_cast<Turns::Clock::duration>(
                             std::chrono::duration<double, std::milli>(parameters_.max_wait_ms));
 }
 
 template <class Service>
 void ProximityServer::serveQueries(const char *name, QueryType query_type) {
-  const auto work = [this, query_type](const Call &call, const RequestThreads::AtWork &at_work,
-                                       typename Service::Request &asked, typename Service::Response &response) {
+  const auto work = [this, query_type](const Call &call, typename Service::Request &asked,
+                                       typename Service::Response &response) {
     response.frame_id = frames_.fixedFrame();
-    Turn turn(turns_, call.client, waitUntil(call, at_work));
+    Turn turn(turns_, call.client, waitUntil(call));
     QueryRequest request(query_type, deltaOf(asked), asked.query);
     request.question = questionOf(asked);
     request.per_link = isPerLink(asked);
@@ -396,11 +389,10 @@ std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const
   return faults;
 }
 
-void ProximityServer::applyScene(const Call &call, const RequestThreads::AtWork &at_work, ApplyScene::Request &request,
-                                 ApplyScene::Response &response) {
+void ProximityServer::applyScene(const Call &call, ApplyScene::Request &request, ApplyScene::Response &response) {
   // Small changes pass by the large ones.
   std::optional<Turn> turn;
-  if (call.bytes > LARGE_CHANGE) turn.emplace(scene_turns_, call.client, waitUntil(call, at_work));
+  if (call.bytes > LARGE_CHANGE) turn.emplace(scene_turns_, call.client, waitUntil(call));
   const std::vector<std::string> faults = apply(request);
   response.success = faults.empty();
   response.message = boost::algorithm::join(faults, "; ");
@@ -415,7 +407,6 @@ void ProximityServer::changeScene(const char *topic, Fill &&fill) {
     ROS_ERROR("%s: %s", topic, why.c_str());
     live_.refuse(topic, id, about, why, static_cast<std::size_t>(parameters_.max_name_length));
   };
-  const RequestThreads::AtWork at_work(threads_);
   guarded(
       [&] {
         ApplyScene::Request request;

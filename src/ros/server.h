@@ -8,10 +8,8 @@
 #include <curve_proximity/CollisionObject.h>
 #include <curve_proximity/EvaluateConstraints.h>
 #include <curve_proximity/GetScene.h>
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
-#include <ros/spinner.h>
 #include <ros/subscriber.h>
 
 #include <atomic>
@@ -34,9 +32,9 @@
 #include "queries/measure_pairs.h"
 #include "queries/queries.h"
 #include "transport/local_services.h"
-#include "transport/request_threads.h"
 #include "transport/service.h"
 #include "transport/statistics.h"
+#include "transport/thread_pool.h"
 #include "transport/turns.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
@@ -45,7 +43,7 @@
 
 namespace curve_proximity {
 
-/** Serves until it is destroyed. It owns its callback queue and threads: a nodelet manager's own would still be running
+/** Serves until it is destroyed. It owns its callback queues and threads: a nodelet manager's own would still be running
  *  callbacks while the nodelet is being unloaded. */
 class ProximityServer {
  public:
@@ -63,10 +61,9 @@ class ProximityServer {
   void serve(const char *name, std::size_t times_wire, Work work);
   template <class Service>
   void serveQueries(const char *name, QueryType query_type);
-  Turns::Clock::time_point waitUntil(const Call &call, const RequestThreads::AtWork &at_work) const;
+  Turns::Clock::time_point waitUntil(const Call &call);
 
-  void applyScene(const Call &call, const RequestThreads::AtWork &at_work, ApplyScene::Request &request,
-                  ApplyScene::Response &response);
+  void applyScene(const Call &call, ApplyScene::Request &request, ApplyScene::Response &response);
   void getScene(const GetScene::Request &request, GetScene::Response &response);
 
   void countObject(const std::string &publisher, std::uint32_t number);
@@ -84,10 +81,10 @@ class ProximityServer {
   Tuning tuning_;
   Statistics statistics_;
   std::atomic<bool> stop_{false};
-  ros::CallbackQueue queue_, control_queue_; /* of requests; of what watches over them, with a thread of its own */
-  ros::NodeHandle handle_, control_handle_;  /* their callbacks go to these queues */
-  RequestThreads threads_;                   /* of queue_ */
-  Turns turns_, scene_turns_;                /* of queries; of large changes of the scene, which are made beside them */
+  ThreadPool pool_;
+  PooledQueue requests_, objects_queue_, control_queue_;     /* services; ~collision_object; what watches over all */
+  ros::NodeHandle handle_, objects_handle_, control_handle_; /* their callbacks go to these queues */
+  Turns turns_, scene_turns_; /* of queries; of large changes of the scene, which are made beside them */
   Frames frames_;
   LiveScene live_;
   StateFile state_file_;
@@ -105,7 +102,6 @@ class ProximityServer {
   std::unique_ptr<BatchAction> batches_;
   std::unique_ptr<Diagnostics> diagnostics_;
   std::unique_ptr<Reconfigure> reconfigure_;
-  std::unique_ptr<ros::AsyncSpinner> control_spinner_;
 };
 
 } // namespace curve_proximity

@@ -15,7 +15,7 @@ import unittest
 import rospy
 from curve_proximity.msg import CollisionObject
 from helpers import Node, Server, connected, joint_trajectory, joints, run, sphere, thing, until
-from known import ARM, cloud
+from known import ARM, seen
 from sensor_msgs.msg import JointState, PointCloud2
 
 NAME, MAX_AGE, LIMIT, RADIUS, POINT = 'history', 1.0, 0.05, 0.1, 0.01
@@ -135,7 +135,7 @@ class Histories(unittest.TestCase):
         self.world.seen = not fault
 
         def publish():
-            message = cloud(*(self.world.points if fault != 'nan' else [(math.nan,) * 3] * 3))
+            message = seen(*(self.world.points if fault != 'nan' else [(math.nan,) * 3] * 3))
             message.header.frame_id = 'nowhere' if fault == 'frame' else ''
             if fault == 'old':
                 message.header.stamp -= rospy.Duration(50)

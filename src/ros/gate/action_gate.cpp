@@ -4,9 +4,10 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <cstddef>
 #include <utility>
 
+#include "transport/checked_stream.h"
 #include "transport/guard.h"
 
 namespace curve_proximity {
@@ -14,19 +15,19 @@ namespace {
 
 using trajectory_msgs::JointTrajectory;
 
-constexpr std::uint32_t GATE_THREADS = 4;
+constexpr std::size_t AT_ONCE = 4;
 constexpr double LOOK_PERIOD = 0.1; /* [s] between two looks for the controller */
 
 } // namespace
 
-ActionGate::ActionGate(const ros::NodeHandle &handle, const GateParameters &parameters, ros::Publisher refused)
+ActionGate::ActionGate(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters,
+                       ros::Publisher refused)
     : parameters_(parameters),
-      handle_(handle),
+      queue_(pool, AT_ONCE),
+      handle_(onQueue(handle, queue_)),
       refused_(std::move(refused)),
-      calls_(handle, parameters.server, parameters.delta),
-      spinner_(GATE_THREADS, &queue_) {
-  handle_.setCallbackQueue(&queue_);
-  watches_ = std::make_unique<MotionWatches>(handle_, parameters_);
+      calls_(handle, parameters.server, parameters.delta) {
+  watches_ = std::make_unique<MotionWatches>(handle_, pool, parameters_);
   client_ = std::make_unique<Client>(handle_, parameters_.controller, &queue_);
   server_ = std::make_unique<Server>(
       handle_, "follow_joint_trajectory",
@@ -36,20 +37,19 @@ ActionGate::ActionGate(const ros::NodeHandle &handle, const GateParameters &para
   timer_ = handle_.createWallTimer(ros::WallDuration(LOOK_PERIOD), [this](const ros::WallTimerEvent &) {
     guarded([this] { findLost(); }, logGateError);
   });
-  spinner_.start();
+  queue_.start();
 }
 
 ActionGate::~ActionGate() {
   calls_.end();
   timer_.stop();
-  spinner_.stop();
+  queue_.end();
   watches_.reset();
   for (const RunningPointer &running : all()) running->out.cancel(); // nobody would watch it
   for (const RunningPointer &running : all()) running->out.reset();
   running_.clear();
   server_.reset();
   client_.reset();
-  queue_.clear();
 }
 
 void ActionGate::tell(Refusal refusal, const std::string &id, bool cancelled) {

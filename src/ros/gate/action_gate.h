@@ -6,9 +6,7 @@
 #include <actionlib/client/action_client.h>
 #include <actionlib/server/action_server.h>
 #include <curve_proximity/Refusal.h>
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
-#include <ros/spinner.h>
 #include <ros/wall_timer.h>
 
 #include <list>
@@ -21,6 +19,7 @@
 #include "gate/server_calls.h"
 #include "moveit/follow_joint_trajectory.h"
 #include "parameters/parameters.h"
+#include "transport/thread_pool.h"
 
 namespace curve_proximity {
 
@@ -32,7 +31,7 @@ namespace curve_proximity {
 class ActionGate {
  public:
   /** handle: private. refused: where refusals go. */
-  ActionGate(const ros::NodeHandle &handle, const GateParameters &parameters, ros::Publisher refused);
+  ActionGate(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters, ros::Publisher refused);
   ~ActionGate();
 
   ActionGate(const ActionGate &) = delete;
@@ -63,7 +62,7 @@ class ActionGate {
   std::string lostController() const;
 
   const GateParameters parameters_;
-  ros::CallbackQueue queue_;
+  PooledQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher refused_;
   ServerCalls calls_; /* of new goals */
@@ -74,7 +73,6 @@ class ActionGate {
   std::unique_ptr<Client> client_;
   std::unique_ptr<Server> server_;
   ros::WallTimer timer_;
-  ros::AsyncSpinner spinner_;
 };
 
 } // namespace curve_proximity

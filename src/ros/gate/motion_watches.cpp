@@ -101,8 +101,8 @@ void MotionWatch::stop(Refusal refusal) {
 
 /* ---- all ---- */
 
-MotionWatches::MotionWatches(const ros::NodeHandle &handle, const GateParameters &parameters)
-    : parameters_(parameters), calls_(handle, parameters.server, parameters.delta) {
+MotionWatches::MotionWatches(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters)
+    : parameters_(parameters), calls_(handle, parameters.server, parameters.delta), queue_(pool, 2) {
   ros::NodeHandle own = handle;
   states_ = own.subscribe<sensor_msgs::JointState>(
       "joint_states", SCENE_QUEUE,
@@ -113,7 +113,7 @@ MotionWatches::MotionWatches(const ros::NodeHandle &handle, const GateParameters
       own.createWallTimer(period, [this](const ros::WallTimerEvent &) { guarded([&] { look(); }, logGateError); });
   supervising_ =
       own.createWallTimer(period, [this](const ros::WallTimerEvent &) { guarded([&] { supervise(); }, logGateError); });
-  spinner_.start();
+  queue_.start();
 }
 
 MotionWatches::~MotionWatches() {
@@ -121,7 +121,7 @@ MotionWatches::~MotionWatches() {
   calls_.end();
   looking_.stop();
   supervising_.stop();
-  spinner_.stop();
+  queue_.end();
 }
 
 void MotionWatches::add(std::shared_ptr<MotionWatch> watch) {

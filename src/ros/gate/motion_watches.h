@@ -6,9 +6,7 @@
 #include <curve_proximity/ProximityQuery.h>
 #include <curve_proximity/Refusal.h>
 #include <curve_proximity/SceneState.h>
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
-#include <ros/spinner.h>
 #include <ros/subscriber.h>
 #include <ros/time.h>
 #include <ros/wall_timer.h>
@@ -28,6 +26,7 @@
 #include "gate/server_calls.h"
 #include "gate/trajectory_progress.h"
 #include "parameters/parameters.h"
+#include "transport/thread_pool.h"
 
 namespace curve_proximity {
 
@@ -81,14 +80,14 @@ class MotionWatch {
   std::string elsewhere_; /* why the robot is not on the trajectory */
 };
 
-/** Hears ~joint_states for all of them. Looks at all of them 20 times a second, by threads of its own: what else the
+/** Hears ~joint_states for all of them. Looks at all of them 20 times a second, by a queue of its own: what else the
  * gate asks does not wait for it, nor it for that. A second timer ends the motions where the server has kept the first
  * one waiting for ~server_timeout. */
 class MotionWatches {
  public:
   static constexpr double PERIOD = 0.05; /**< [s] between two looks at the scene */
 
-  MotionWatches(const ros::NodeHandle &handle, const GateParameters &parameters);
+  MotionWatches(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters);
 
   /** Nothing is stopped any more. */
   ~MotionWatches();
@@ -119,9 +118,8 @@ class MotionWatches {
   std::list<std::shared_ptr<MotionWatch>> watches_;
   std::map<std::string, std::pair<double, ros::Time>> joints_; /* of ~joint_states: the latest of each, and when */
   std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
-  ros::CallbackQueue queue_; /* of the timers */
+  PooledQueue queue_; /* of the timers, at once */
   ros::WallTimer looking_, supervising_;
-  ros::AsyncSpinner spinner_{2, &queue_}; /* a thread each */
 };
 
 } // namespace curve_proximity

@@ -15,6 +15,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "transport/checked_stream.h"
 #include "transport/guard.h"
 
 namespace curve_proximity {
@@ -72,13 +73,12 @@ bool isClear(const ProximityResults &results, double delta) {
 }
 
 TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters)
-    : parameters_(parameters), handle_(handle), spinner_(1, &queue_) {
-  handle_.setCallbackQueue(&queue_);
+    : parameters_(parameters), queue_(pool_), handle_(onQueue(handle, queue_)) {
   refused_ = handle_.advertise<Refusal>("refused", MOTION_QUEUE);
   if (!parameters_.server.empty())
     calls_ = std::make_unique<ServerCalls>(handle_, parameters_.server, parameters_.delta);
-  if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, parameters_);
-  if (!parameters_.controller.empty()) actions_ = std::make_unique<ActionGate>(handle, parameters_, refused_);
+  if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, pool_, parameters_);
+  if (!parameters_.controller.empty()) actions_ = std::make_unique<ActionGate>(handle, pool_, parameters_, refused_);
   connect<Curve>("curve");
   connect<trajectory_msgs::JointTrajectory>("trajectory");
   connect<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
@@ -86,16 +86,15 @@ TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParamete
   subscribers_.push_back(handle_.subscribe<ProximityResults>(
       "proximity", MOTION_QUEUE,
       [this](const ProximityResultsConstPtr &results) { guarded([&] { answer(results); }, logGateError); }));
-  spinner_.start();
+  queue_.start();
 }
 
 TrajectoryGate::~TrajectoryGate() {
   if (calls_) calls_->end(); // a subscriber that is shut down waits for its callback
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
-  spinner_.stop();
+  queue_.end();
   watches_.reset();
   actions_.reset();
-  queue_.clear();
 }
 
 template <class Message>

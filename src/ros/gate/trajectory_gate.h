@@ -4,9 +4,7 @@
 #define CURVE_PROXIMITY_ROS_TRAJECTORY_GATE_H
 
 #include <curve_proximity/ProximityResults.h>
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
-#include <ros/spinner.h>
 
 #include <cstdint>
 #include <deque>
@@ -21,6 +19,7 @@
 #include "gate/motion_watches.h"
 #include "gate/server_calls.h"
 #include "parameters/parameters.h"
+#include "transport/thread_pool.h"
 
 namespace curve_proximity {
 
@@ -64,17 +63,17 @@ class TrajectoryGate {
   void refuse(Refusal refusal, const ProximityResults &results);
 
   const GateParameters parameters_;
-  std::deque<Waiting> waiting_; /* touched by the one thread of the queue alone */
+  ThreadPool pool_;
+  std::deque<Waiting> waiting_; /* touched by callbacks of the queue alone */
   std::deque<Answered> answered_;
   std::list<std::shared_ptr<MotionWatch>> running_;
-  ros::CallbackQueue queue_;
+  PooledQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher refused_, clear_trajectory_;
   std::unique_ptr<ServerCalls> calls_;     /* null: the scene is not looked at again */
   std::unique_ptr<MotionWatches> watches_; /* null: nothing is watched */
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<ActionGate> actions_;
-  ros::AsyncSpinner spinner_;
 };
 
 } // namespace curve_proximity

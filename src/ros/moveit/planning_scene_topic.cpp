@@ -77,22 +77,24 @@ void checkNames(const moveit::PlanningScene &scene, const NameLimits &limits) {
 
 } // namespace
 
-PlanningSceneTopic::PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live,
-                                       const Frames &frames, Apply apply, LinkPose link_pose)
+PlanningSceneTopic::PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool,
+                                       LiveScene &live, const Frames &frames, Apply apply, LinkPose link_pose)
     : parameters_(parameters),
       live_(live),
       frames_(frames),
       apply_(std::move(apply)),
       link_pose_(std::move(link_pose)),
-      handle_(onQueue(handle, queue_)),
-      spinner_(1, &queue_) {
+      queue_(pool),
+      asking_queue_(pool),
+      handle_(onQueue(handle, queue_)) {
   ros::SubscribeOptions topic = checkedSubscription<moveit::PlanningScene>(
       "planning_scene", SCENES_KEPT,
       [this](const moveit::PlanningSceneConstPtr &message) { take(*message, "~planning_scene"); });
   publishUnknowns();
   subscriber_ = handle_.subscribe(topic);
-  spinner_.start();
-  if (parameters_.ask_planning_scene) asker_ = std::thread([this] { ask(); });
+  queue_.start();
+  asking_queue_.start();
+  if (parameters_.ask_planning_scene) asking_queue_.post([this] { ask(); });
 }
 
 PlanningSceneTopic::~PlanningSceneTopic() {
@@ -102,10 +104,9 @@ PlanningSceneTopic::~PlanningSceneTopic() {
     client_.shutdown(); // a call that nobody answers ends, too
   }
   wake_.notify_all();
-  if (asker_.joinable()) asker_.join();
+  asking_queue_.end();
   subscriber_.shutdown();
-  spinner_.stop();
-  queue_.clear();
+  queue_.end();
 }
 
 PlanningSceneReport PlanningSceneTopic::report() const {

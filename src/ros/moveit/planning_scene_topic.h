@@ -3,10 +3,8 @@
 #ifndef CURVE_PROXIMITY_ROS_PLANNING_SCENE_TOPIC_H
 #define CURVE_PROXIMITY_ROS_PLANNING_SCENE_TOPIC_H
 
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/service_client.h>
-#include <ros/spinner.h>
 #include <ros/subscriber.h>
 
 #include <atomic>
@@ -17,13 +15,13 @@
 #include <functional>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "moveit/moveit_messages.h"
 #include "moveit/planning_scene.h"
 #include "parameters/parameters.h"
 #include "transport/complaints.h"
+#include "transport/thread_pool.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
 
@@ -41,8 +39,8 @@ struct PlanningSceneReport {
   std::uint64_t replaced = 0;           /**< of these taken over, as the scene lacked a diff */
 };
 
-/** ~planning_scene, and ~get_planning_scene as a client. Both have threads of their own: building a scene takes no
- *  thread from the queries, and a move_group that does not answer holds up nothing. A message is applied as one change.
+/** ~planning_scene, and ~get_planning_scene as a client. Both have queues of their own: building a scene takes no
+ *  place from the queries, and a move_group that does not answer holds up nothing. A message is applied as one change.
  */
 class PlanningSceneTopic {
  public:
@@ -53,8 +51,8 @@ class PlanningSceneTopic {
                                                    const Snapshot &snapshot, FrameLookup &lookup)>;
 
   /** handle: private. All references are kept. */
-  PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames,
-                     Apply apply, LinkPose link_pose);
+  PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live,
+                     const Frames &frames, Apply apply, LinkPose link_pose);
 
   /** No callback runs, nor will one begin, when it has ended. */
   ~PlanningSceneTopic();
@@ -84,7 +82,7 @@ class PlanningSceneTopic {
   const Frames &frames_;
   const Apply apply_;
   const LinkPose link_pose_;
-  ros::CallbackQueue queue_;
+  PooledQueue queue_, asking_queue_;
   ros::NodeHandle handle_; /* its callbacks go to queue_ */
   std::mutex taking_;      /* one message at a time: those of the topic, and those of the service */
   PlanningSceneState state_;
@@ -94,12 +92,10 @@ class PlanningSceneTopic {
   std::vector<std::string> beyond_repair_; /* what still differed when the last answer had been taken over */
   Complaints complaints_{std::chrono::seconds(60)};
   ros::Subscriber subscriber_;
-  ros::AsyncSpinner spinner_;
   std::mutex asking_; /* of the client and of ending_ */
   std::condition_variable wake_;
   ros::ServiceClient client_;
   bool ending_ = false;
-  std::thread asker_;
 };
 
 } // namespace curve_proximity

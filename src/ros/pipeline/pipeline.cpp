@@ -18,9 +18,6 @@ namespace {
 
 constexpr std::uint32_t RESULTS_KEPT = 100; /* for subscribers in other processes that are slow */
 
-/** One thread answers, the other takes in what comes meanwhile. */
-constexpr int PIPELINE_THREADS = 2;
-
 /** In the order of Pipeline::Job. */
 constexpr const char *TOPICS[] = {"curve", "trajectory",       "multi_dof_trajectory",
                                   "path",  "robot_trajectory", "display_trajectory"};
@@ -64,8 +61,8 @@ std::string idOf(const Message &) {
 
 } // namespace
 
-Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, LiveScene &live,
-                   Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop)
+Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, const Tuning &tuning,
+                   LiveScene &live, Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop)
     : parameters_(parameters),
       tuning_(tuning),
       live_(live),
@@ -73,12 +70,10 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
       markers_(markers),
       stop_(stop),
       query_type_(*queryTypeFromName(parameters.query_type)),
-      jobs_(static_cast<std::size_t>(parameters.queue_size)),
-      handle_(handle),
-      state_handle_(handle),
-      state_spinner_(1, &state_queue_) {
-  handle_.setCallbackQueue(&queue_);
-  state_handle_.setCallbackQueue(&state_queue_);
+      queue_(pool, 1, [this] { work(); }),
+      handle_(onQueue(handle, queue_)),
+      state_queue_(pool),
+      state_handle_(onQueue(handle, state_queue_)) {
   results_ = handle_.advertise<ProximityResults>("proximity", RESULTS_KEPT);
   contacts_ = handle_.advertise<moveit::ContactInformation>("contacts", RESULTS_KEPT);
   if (parameters_.profile_intervals > 0)
@@ -96,7 +91,7 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
                 [](const std::string &why) { ROS_ERROR("~joint_states: %s", why.c_str()); });
       });
   subscribers_.push_back(handle_.subscribe(joints));
-  for (int i = 0; i < PIPELINE_THREADS; i++) threads_.emplace_back([this] { takeIn(); });
+  queue_.start();
   if (parameters_.state_rate == 0.0) return;
   states_ = state_handle_.advertise<ProximityResults>("state_proximity", 1);
   state_timer_ = state_handle_.createWallTimer(
@@ -104,50 +99,52 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
         guarded([this] { tellState(); },
                 [](const std::string &why) { ROS_ERROR("~state_proximity: %s", why.c_str()); });
       });
-  state_spinner_.start();
+  state_queue_.start();
 }
 
 Pipeline::~Pipeline() {
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
   state_timer_.stop();
-  ending_ = true;
-  for (std::thread &thread : threads_) thread.join();
-  state_spinner_.stop();
-  queue_.clear();
-  state_queue_.clear();
+  queue_.end();
+  state_queue_.end();
 }
 
-/** roscpp's own queue drops what is oldest too, but counts nothing: it is left without a limit, and emptied at once. */
+/** roscpp's own queue drops what is oldest too, but counts nothing: it is left without a limit, and emptied at once: one
+ *  thread answers, and another one takes in what comes meanwhile. */
 template <class Message>
 void Pipeline::listen(const char *topic) {
   using Pointer = boost::shared_ptr<const Message>;
-  ros::SubscribeOptions options = checkedSubscription<Message>(
-      topic, 0, [this](const Pointer &message) { works_ = message && jobs_.push(Job(message)); });
+  ros::SubscribeOptions options = checkedSubscription<Message>(topic, 0, [this](const Pointer &message) {
+    if (message) keep(Job(message));
+  });
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(handle_.subscribe(options));
 }
 
-/** One thread at a time, so that messages are answered in the order in which they came. */
-void Pipeline::takeIn() {
-  while (!ending_) {
-    bool works;
-    {
-      const std::lock_guard<std::mutex> lock(intake_);
-      works_ = false;
-      queue_.callOne(ros::WallDuration(0.1));
-      works = works_;
-    }
-    if (works) work();
+void Pipeline::keep(Job job) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (jobs_.size() == static_cast<std::size_t>(parameters_.queue_size)) {
+    jobs_.pop_front();
+    ++dropped_;
   }
+  jobs_.push_back(std::move(job));
 }
 
+/** The thread that has taken a message in answers all that wait, unless another one does. */
 void Pipeline::work() {
-  Job job;
-  while (jobs_.next(job)) {
-    if (stop_) continue;
-    guarded([&] { handle(job); },
-            [](const std::string &why) { ROS_ERROR("a message is not answered: %s", why.c_str()); });
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (answering_) return;
+  answering_ = true;
+  while (!jobs_.empty()) {
+    const Job job = std::move(jobs_.front());
+    jobs_.pop_front();
+    lock.unlock();
+    if (!stop_)
+      guarded([&] { handle(job); },
+              [](const std::string &why) { ROS_ERROR("a message is not answered: %s", why.c_str()); });
+    lock.lock();
   }
+  answering_ = false;
 }
 
 void Pipeline::handle(const Job &job) {
@@ -167,7 +164,7 @@ void Pipeline::handle(const Job &job) {
   bool published = false;
   const auto publish = [&] {
     published = true;
-    results->dropped = jobs_.dropped();
+    results->dropped = dropped_;
     results_.publish(ProximityResultsPtr(results));
     tellContacts(*results);
     markers_.show(drawing);

@@ -6,21 +6,20 @@
 #include <curve_proximity/Curve.h>
 #include <curve_proximity/ProximityResults.h>
 #include <nav_msgs/Path.h>
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
-#include <ros/spinner.h>
 #include <ros/wall_timer.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
 #include <trajectory_msgs/MultiDOFJointTrajectory.h>
 
 #include <atomic>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <variant>
 #include <vector>
 
@@ -29,8 +28,8 @@
 #include "moveit/moveit_messages.h"
 #include "parameters/parameters.h"
 #include "queries/queries.h"
-#include "transport/bounded_queue.h"
 #include "transport/complaints.h"
+#include "transport/thread_pool.h"
 
 namespace curve_proximity {
 
@@ -43,14 +42,14 @@ namespace curve_proximity {
 class Pipeline {
  public:
   /** handle: the server's private one. All are kept by reference. stop: as that of Queries. */
-  Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, LiveScene &live,
-           Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop);
+  Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, const Tuning &tuning,
+           LiveScene &live, Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop);
 
-  /** Joins the threads; a query that runs must have been told to stop. */
+  /** A query that runs must have been told to stop. */
   ~Pipeline();
 
   std::uint64_t dropped() const {
-    return jobs_.dropped();
+    return dropped_;
   }
 
  private:
@@ -60,7 +59,7 @@ class Pipeline {
 
   template <class Message>
   void listen(const char *topic);
-  void takeIn();
+  void keep(Job job);
   void work();
   void handle(const Job &job);
   void describe(ProximityResults &results) const;
@@ -82,22 +81,20 @@ class Pipeline {
   MarkerPublisher &markers_;
   const std::atomic<bool> &stop_;
   const QueryType query_type_;
-  BoundedQueue<Job> jobs_;
-  std::mutex intake_;
-  bool works_ = false; /* whether who takes in has to work, guarded by intake_ */
-  std::atomic<bool> ending_{false};
-  ros::CallbackQueue queue_;
+  std::mutex mutex_;
+  std::deque<Job> jobs_;   /* that wait to be answered */
+  bool answering_ = false; /* one thread does */
+  std::atomic<std::uint64_t> dropped_{0};
+  PooledQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher results_, states_, contacts_;
   std::unique_ptr<ClearanceTopics> clearance_; /* null: without ~profile_intervals */
   Complaints complaints_{std::chrono::seconds(60)};
-  ros::CallbackQueue state_queue_; /* with a thread of its own: it waits for no message */
+  PooledQueue state_queue_; /* it waits for no message */
   ros::NodeHandle state_handle_;
   ros::WallTimer state_timer_;
   std::uint32_t state_seq_ = 0;
   std::vector<ros::Subscriber> subscribers_;
-  std::vector<std::thread> threads_;
-  ros::AsyncSpinner state_spinner_;
 };
 
 } // namespace curve_proximity

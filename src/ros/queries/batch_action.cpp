@@ -57,23 +57,18 @@ void logQueryError(const std::string &why) {
 
 } // namespace
 
-BatchAction::BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
-                         const std::atomic<bool> &stop)
-    : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle) {
+BatchAction::BatchAction(const ros::NodeHandle &handle, ThreadPool &pool, const std::string &fixed_frame,
+                         Queries &queries, Turns &turns, const std::atomic<bool> &stop)
+    : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle), queue_(pool) {
   server_ = std::make_unique<Server>(
       handle_, "query", [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, logQueryError); },
       [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, logQueryError); }, false);
   server_->start();
-  thread_ = std::thread([this] { work(); });
+  queue_.start();
 }
 
 BatchAction::~BatchAction() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ending_ = true;
-  }
-  changed_.notify_all();
-  thread_.join();
+  queue_.end();
   batches_.clear();
   server_.reset();
 }
@@ -83,9 +78,14 @@ void BatchAction::begin(Server::GoalHandle handle) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (batches_.size() < MOST_BATCHES) {
       handle.setAccepted();
-      batches_.push_back(std::make_shared<Batch>());
-      batches_.back()->handle = std::move(handle);
-      changed_.notify_all();
+      const auto batch = std::make_shared<Batch>();
+      batch->handle = std::move(handle);
+      batches_.push_back(batch);
+      queue_.post([this, batch] {
+        guarded([&] { answer(*batch); }, logQueryError);
+        const std::lock_guard<std::mutex> ending(mutex_);
+        batches_.pop_front();
+      });
       return;
     }
   }
@@ -98,21 +98,6 @@ void BatchAction::cancel(Server::GoalHandle handle) {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (const std::shared_ptr<Batch> &batch : batches_)
     if (batch->handle == handle) batch->cancelled = true;
-}
-
-void BatchAction::work() {
-  while (true) {
-    std::shared_ptr<Batch> batch;
-    {
-      std::unique_lock<std::mutex> lock(mutex_);
-      changed_.wait(lock, [this] { return ending_ || !batches_.empty(); });
-      if (ending_) return;
-      batch = batches_.front();
-    }
-    guarded([&] { answer(*batch); }, logQueryError);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    batches_.pop_front();
-  }
 }
 
 void BatchAction::answer(Batch &batch) {

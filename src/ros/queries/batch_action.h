@@ -8,27 +8,26 @@
 #include <ros/node_handle.h>
 
 #include <atomic>
-#include <condition_variable>
 #include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include "queries/queries.h"
+#include "transport/thread_pool.h"
 
 namespace curve_proximity {
 
-/** One batch is answered at a time, by a thread of its own that takes turns with the requests; a few others wait, in
- * the order in which they came. */
+/** One batch is answered at a time, and takes turns with the requests; a few others wait, in the order in which they
+ * came. */
 class BatchAction {
  public:
   /** handle: private, on the queue that runs goals and cancellations. The others are kept by reference. stop: as that
    * of Queries. */
-  BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
-              const std::atomic<bool> &stop);
+  BatchAction(const ros::NodeHandle &handle, ThreadPool &pool, const std::string &fixed_frame, Queries &queries,
+              Turns &turns, const std::atomic<bool> &stop);
 
-  /** Joins the thread: stop must be set. */
+  /** stop must be set. */
   ~BatchAction();
 
  private:
@@ -40,7 +39,6 @@ class BatchAction {
 
   void begin(Server::GoalHandle handle);
   void cancel(Server::GoalHandle handle);
-  void work();
   void answer(Batch &batch);
 
   const std::string fixed_frame_;
@@ -48,12 +46,10 @@ class BatchAction {
   Turns &turns_;
   const std::atomic<bool> &stop_;
   std::mutex mutex_;
-  std::condition_variable changed_;
   std::deque<std::shared_ptr<Batch>> batches_; /* the first is being answered */
-  bool ending_ = false;
   ros::NodeHandle handle_;
   std::unique_ptr<Server> server_;
-  std::thread thread_;
+  PooledQueue queue_; /* of the batches */
 };
 
 } // namespace curve_proximity

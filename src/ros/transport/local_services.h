@@ -37,6 +37,7 @@ class LocalServices {
       const auto &asked = *static_cast<const Request *>(request);
       Call call;
       call.client = "this process";
+      call.in_process = true;
       call.bytes = ros::serialization::serializationLength(asked);
       Response answer;
       handler(

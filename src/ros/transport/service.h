@@ -23,6 +23,7 @@ struct Call {
   std::string client; /**< who shares one place in the order: the connection, or its node where each call has its own */
   std::size_t bytes = 0; /**< of the request on the wire */
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now();
+  bool in_process = false; /**< by a thread of the caller, not one of the pool */
 };
 
 /** handler(call, read, response): `read(request)` makes the request of its bytes. What handler throws fails the call;

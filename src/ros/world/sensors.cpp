@@ -10,8 +10,9 @@
 #include "transport/guard.h"
 
 namespace curve_proximity {
-Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames)
-    : parameters_(parameters), live_(live), frames_(frames), handle_(onQueue(handle, queue_)), spinner_(1, &queue_) {
+Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live,
+                 const Frames &frames)
+    : parameters_(parameters), live_(live), frames_(frames), queue_(pool), handle_(onQueue(handle, queue_)) {
   ros::SubscribeOptions topics[] = {
       checkedSubscription<sensor_msgs::PointCloud2>(
           "cloud", 1, [this](const sensor_msgs::PointCloud2ConstPtr &message) { takeCloud(message); }),
@@ -19,13 +20,12 @@ Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, Li
                                           [this](const OctomapMessage::ConstPtr &message) { takeOctomap(message); })};
   for (const std::string &id : parameters.expected_sensors) live_.sensors.awaits(id);
   for (ros::SubscribeOptions &topic : topics) subscribers_.push_back(handle_.subscribe(topic));
-  spinner_.start();
+  queue_.start();
 }
 
 Sensors::~Sensors() {
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
-  spinner_.stop();
-  queue_.clear();
+  queue_.end();
 }
 
 SensorCounts Sensors::cloud() const {

@@ -3,9 +3,7 @@
 #ifndef CURVE_PROXIMITY_ROS_SENSORS_H
 #define CURVE_PROXIMITY_ROS_SENSORS_H
 
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
-#include <ros/spinner.h>
 #include <ros/subscriber.h>
 #include <sensor_msgs/PointCloud2.h>
 
@@ -19,6 +17,7 @@
 #include "messages/octomap_message.h"
 #include "parameters/parameters.h"
 #include "transport/complaints.h"
+#include "transport/thread_pool.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
 
@@ -31,7 +30,7 @@ struct SensorCounts {
   std::chrono::steady_clock::time_point last; /**< when the last one was used, where any was */
 };
 
-/** ~cloud and ~octomap. They have a thread of their own, so that what is built at the rate of a sensor takes no thread
+/** ~cloud and ~octomap. They have a queue of their own, so that what is built at the rate of a sensor takes no place
  * from the queries, which work on the snapshot before it. Of messages that come too fast the oldest are dropped.
  *
  *  A cloud without a point makes the object unknown, or with ~empty_cloud_clears takes it away; an octree without an
@@ -41,7 +40,8 @@ struct SensorCounts {
 class Sensors {
  public:
   /** All are kept by reference. handle: private. */
-  Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames);
+  Sensors(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live,
+          const Frames &frames);
 
   /** No callback runs, nor will one begin, when it has ended. */
   ~Sensors();
@@ -65,14 +65,13 @@ class Sensors {
   const Parameters &parameters_;
   LiveScene &live_;
   const Frames &frames_;
-  ros::CallbackQueue queue_;
+  PooledQueue queue_;
   ros::NodeHandle handle_; /* its callbacks go to queue_ */
   std::vector<ros::Subscriber> subscribers_;
   mutable std::mutex mutex_; /* of the counts */
   SensorCounts cloud_, octomap_;
   std::uint32_t cloud_seq_ = 0, octomap_seq_ = 0; /* of the last message */
   Complaints complaints_{std::chrono::seconds(5)};
-  ros::AsyncSpinner spinner_;
 };
 
 } // namespace curve_proximity

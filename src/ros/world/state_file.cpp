@@ -132,10 +132,11 @@ UnknownsBySource fromTable(const std::vector<std::string> &table) {
 
 } // namespace
 
-StateFile::StateFile(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live)
+StateFile::StateFile(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live)
     : live_(live),
       handle_(handle),
-      path_(parameters.state_file == "auto" ? automaticPath(handle.getNamespace()) : parameters.state_file) {
+      path_(parameters.state_file == "auto" ? automaticPath(handle.getNamespace()) : parameters.state_file),
+      queue_(pool) {
   handle_.getParam("/run_id", run_);
   std::string name;
   const std::string description = robotText(handle, parameters, name);
@@ -145,13 +146,13 @@ StateFile::StateFile(const ros::NodeHandle &handle, const Parameters &parameters
 }
 
 StateFile::~StateFile() {
-  if (!thread_.joinable()) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ending_ = true;
   }
   wake_.notify_all();
-  thread_.join();
+  queue_.end();
+  if (watching_ && changed_) writeChanges();
 }
 
 std::optional<KeptScene> StateFile::read() {
@@ -226,48 +227,54 @@ std::string StateFile::behindPath() const {
 }
 
 void StateFile::watch(const std::string &fixed_frame) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    fixed_frame_ = fixed_frame;
-    watching_ = true;
-    if (changed_) markBehind();
-  }
-  thread_ = std::thread([this] { run(); });
+  const std::lock_guard<std::mutex> lock(mutex_);
+  fixed_frame_ = fixed_frame;
+  watching_ = true;
+  queue_.start();
+  if (!changed_) return;
+  markBehind();
+  writeSoon();
 }
 
 void StateFile::changed() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!changed_ && watching_) markBehind();
   changed_ = true;
-  wake_.notify_all();
+  if (watching_) writeSoon();
 }
 
-void StateFile::run() {
-  bool told = false;
-  std::unique_lock<std::mutex> lock(mutex_);
-  while (true) {
-    wake_.wait(lock, [this] { return changed_ || ending_; });
-    if (changed_) {
-      changed_ = false;
-      lock.unlock();
-      guarded(
-          [&] {
-            if (!told && !ending_) handle_.setParam(KEPT_BY_SERVER, run_);
-            told = true;
-            write();
-            lock.lock();
-            if (!changed_) std::filesystem::remove(behindPath());
-            lock.unlock();
-          },
-          [&](const std::string &why) {
-            if (!failed_) ROS_WARN("the scene is not kept: %s", why.c_str());
-            failed_ = true;
-          });
-      lock.lock();
+/** The lock is held. */
+void StateFile::writeSoon() {
+  if (awaits_writing_) return;
+  awaits_writing_ = true;
+  queue_.post([this] {
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      wake_.wait_until(lock, may_write_, [this] { return ending_; });
+      awaits_writing_ = false;
     }
-    if (ending_) return;
-    wake_.wait_for(lock, WRITING_PERIOD, [this] { return ending_; });
+    writeChanges();
+    may_write_ = std::chrono::steady_clock::now() + WRITING_PERIOD;
+  });
+}
+
+void StateFile::writeChanges() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    changed_ = false;
   }
+  guarded(
+      [&] {
+        if (!told_ && !ending_) handle_.setParam(KEPT_BY_SERVER, run_);
+        told_ = true;
+        write();
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (!changed_) std::filesystem::remove(behindPath());
+      },
+      [&](const std::string &why) {
+        if (!failed_) ROS_WARN("the scene is not kept: %s", why.c_str());
+        failed_ = true;
+      });
 }
 
 void StateFile::write() {

@@ -6,14 +6,15 @@
 #include <curve_proximity/ApplyScene.h>
 #include <ros/node_handle.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "parameters/parameters.h"
+#include "transport/thread_pool.h"
 #include "world/live_scene.h"
 
 namespace curve_proximity {
@@ -33,8 +34,8 @@ struct KeptScene {
  * stands a file ".behind" with the run from a change of the scene until it is written. */
 class StateFile {
  public:
-  /** handle: private. live: kept by reference. Writes nothing before watch(). */
-  StateFile(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live);
+  /** handle: private. pool, live: kept by reference. Writes nothing before watch(). */
+  StateFile(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live);
 
   /** Writes what has changed since the last time. */
   ~StateFile();
@@ -54,7 +55,8 @@ class StateFile {
   void changed();
 
  private:
-  void run();
+  void writeSoon();
+  void writeChanges();
   void write();
   std::string behindPath() const;
   bool isKept() const;
@@ -66,8 +68,10 @@ class StateFile {
   std::string run_, beginning_, fixed_frame_;
   std::mutex mutex_;
   std::condition_variable wake_;
-  bool watching_ = false, changed_ = false, ending_ = false, failed_ = false;
-  std::thread thread_;
+  bool watching_ = false, changed_ = false, awaits_writing_ = false, ending_ = false;
+  bool told_ = false, failed_ = false;              /* of the one that writes */
+  std::chrono::steady_clock::time_point may_write_; /* likewise */
+  PooledQueue queue_;
 };
 
 } // namespace curve_proximity

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The pool's threads: none runs a callback before the start of its queue, none after the end; no queue waits for another. */
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "transport/thread_pool.h"
+
+namespace curve_proximity {
+namespace {
+
+constexpr std::chrono::milliseconds A_WHILE{50};
+
+void sleep() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+bool comes(const std::function<bool()> &happens) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (!happens() && std::chrono::steady_clock::now() < deadline) sleep();
+  return happens();
+}
+
+/** A callback that runs until it is let go. */
+struct Slow {
+  std::atomic<int> begun{0};
+  std::atomic<bool> ending{false};
+
+  std::function<void()> work() {
+    return [this] {
+      ++begun;
+      while (!ending) sleep();
+    };
+  }
+};
+
+TEST(ThreadPool, callbacks_wait_until_their_queue_has_started) {
+  ThreadPool pool;
+  PooledQueue queue(pool, 4);
+  std::atomic<int> done{0};
+  for (int i = 0; i < 3; ++i) queue.post([&] { ++done; });
+  std::this_thread::sleep_for(A_WHILE);
+  EXPECT_EQ(done, 0);
+  queue.start();
+  EXPECT_TRUE(comes([&] { return done == 3; }));
+}
+
+TEST(ThreadPool, threads_that_a_burst_has_left_over_end) {
+  ThreadPool pool;
+  PooledQueue queue(pool, 16);
+  Slow slow;
+  queue.start();
+  for (int i = 0; i < 12; ++i) queue.post(slow.work());
+  ASSERT_TRUE(comes([&] { return slow.begun == 12; }));
+  EXPECT_EQ(pool.count(), 12u);
+  slow.ending = true;
+  EXPECT_TRUE(comes([&] { return pool.count() == 1; }));
+  std::atomic<int> done{0};
+  queue.post([&] { ++done; });
+  EXPECT_TRUE(comes([&] { return done == 1; }));
+}
+
+TEST(ThreadPool, a_full_queue_keeps_no_other_one_waiting) {
+  ThreadPool pool;
+  PooledQueue full(pool, 2), other(pool);
+  Slow slow;
+  for (PooledQueue *queue : {&full, &other}) queue->start();
+  for (int i = 0; i < 5; ++i) full.post(slow.work());
+  ASSERT_TRUE(comes([&] { return full.isFull(); }));
+  std::atomic<int> done{0};
+  other.post([&] { ++done; });
+  EXPECT_TRUE(comes([&] { return done == 1; }));
+  std::this_thread::sleep_for(A_WHILE);
+  EXPECT_EQ(slow.begun, 2);
+  slow.ending = true;
+  EXPECT_TRUE(comes([&] { return slow.begun == 5; }));
+}
+
+TEST(ThreadPool, callbacks_of_one_at_once_keep_their_order) {
+  ThreadPool pool;
+  PooledQueue queue(pool), beside(pool, 8);
+  for (PooledQueue *each : {&queue, &beside}) each->start();
+  std::vector<int> order; // no lock: one callback at a time
+  std::atomic<int> done{0};
+  for (int i = 0; i < 1000; ++i) {
+    queue.post([&, i] { order.push_back(i); });
+    beside.post([&] { ++done; });
+  }
+  EXPECT_TRUE(comes([&] { return done == 1000; }));
+  queue.post([&] { ++done; });
+  ASSERT_TRUE(comes([&] { return done == 1001; }));
+  ASSERT_EQ(order.size(), 1000u);
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(order[static_cast<std::size_t>(i)], i);
+}
+
+TEST(ThreadPool, the_next_callback_begins_while_a_thread_does_what_follows_the_last_one) {
+  ThreadPool pool;
+  Slow follows;
+  std::atomic<bool> first{true};
+  PooledQueue queue(pool, 1, [&] {
+    if (first.exchange(false)) follows.work()();
+  });
+  queue.start();
+  std::atomic<int> done{0};
+  queue.post([&] { ++done; });
+  ASSERT_TRUE(comes([&] { return follows.begun == 1; }));
+  queue.post([&] { ++done; });
+  EXPECT_TRUE(comes([&] { return done == 2; }));
+  std::atomic<bool> ended{false};
+  std::thread ending([&] {
+    queue.end();
+    ended = true;
+  });
+  std::this_thread::sleep_for(A_WHILE);
+  EXPECT_FALSE(ended); // it waits for what follows, too
+  follows.ending = true;
+  ending.join();
+}
+
+TEST(ThreadPool, none_runs_after_the_end) {
+  ThreadPool pool;
+  PooledQueue queue(pool, 4);
+  std::atomic<int> done{0};
+  queue.start();
+  queue.post([&] { ++done; });
+  EXPECT_TRUE(comes([&] { return done == 1; }));
+  queue.end();
+  queue.post([&] { ++done; });
+  std::this_thread::sleep_for(A_WHILE);
+  EXPECT_EQ(done, 1);
+  EXPECT_EQ(queue.running(), 0u);
+}
+
+} // namespace
+} // namespace curve_proximity
