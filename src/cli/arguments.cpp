@@ -208,9 +208,12 @@ void readQuestion(const Words &words, const Command &command, Arguments &out) {
   out.has_delta = words.has("--delta");
   if (words.has("--intervals")) {
     constexpr std::uint64_t kMostIntervals = 1000000, kMostDrawn = 2000; /* a chart has no more pixels */
+    constexpr std::uint64_t kMostLimits = 20000;                         /* speed looks from each ahead */
     if (words.has("--breaks")) throw BadUsage("--intervals and --breaks exclude each other");
-    out.profile.intervals = static_cast<std::size_t>(
-        readCount(words, "--intervals", command.action == Action::REPORT ? kMostDrawn : kMostIntervals));
+    out.profile.intervals = static_cast<std::size_t>(readCount(words, "--intervals",
+                                                               command.action == Action::REPORT  ? kMostDrawn
+                                                               : command.action == Action::SPEED ? kMostLimits
+                                                                                                 : kMostIntervals));
   }
   if (words.has("--breaks")) out.profile.breaks = readBreaks(words.text("--breaks"));
   if (words.has("--horizon")) out.profile.horizon = readNumber(words, "--horizon", 0.0, true, "of at least 0 (metres)");
@@ -408,6 +411,20 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       required("--out", "NEW.srdf");
       out.srdf = words.text("--srdf");
       break;
+    case Action::SPEED:
+      out.separation = required("--separation", "SEPARATION.yaml, the speed of persons and how the robot stops");
+      required("--objects", "LIST, the objects in which persons may be");
+      required("--trajectory", "T.yaml");
+      readTrajectoryWords(words, out);
+      break;
+    case Action::MARGINS:
+      if (!words.has("--within")) out.nearest.limits.within = 1.0;
+      if (!(out.nearest.limits.within > 0.0))
+        throw BadUsage("--within is 0: how far objects are moved at most (metres)");
+      required("--scene", "SCENE.yaml");
+      required("--trajectory", "T.yaml");
+      readTrajectoryWords(words, out);
+      break;
     case Action::SEND:
       if (plain.empty()) throw BadUsage("'send' needs a file: cprox send SCENE.yaml");
       out.scene = plain.front();
@@ -425,7 +442,7 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
 void readStandardInput(Arguments &out) {
   bool taken = false;
   for (std::string *path : {&out.curves, &out.against, &out.trajectory, &out.path, &out.body, &out.scene, &out.robot,
-                            &out.srdf, &out.pairs, &out.cases, &out.errors}) {
+                            &out.srdf, &out.pairs, &out.cases, &out.errors, &out.separation}) {
     if (*path != "-") continue;
     if (taken) throw BadUsage("'-', standard input, can be only one of the files");
     taken = true;
@@ -499,8 +516,9 @@ Arguments parseArguments(const std::vector<std::string> &words) {
 }
 
 std::vector<std::string> inputsOf(const Arguments &arguments) {
-  return {arguments.curves, arguments.against, arguments.trajectory, arguments.path,  arguments.body,  arguments.scene,
-          arguments.robot,  arguments.srdf,    arguments.pairs,      arguments.cases, arguments.errors};
+  return {arguments.curves, arguments.against, arguments.trajectory, arguments.path,
+          arguments.body,   arguments.scene,   arguments.robot,      arguments.srdf,
+          arguments.pairs,  arguments.cases,   arguments.errors,     arguments.separation};
 }
 
 } // namespace curve_proximity::cli

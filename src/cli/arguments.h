@@ -28,6 +28,8 @@ enum class Action {
   CONSTRAINTS,
   ROBUST,
   ACM,
+  SPEED,
+  MARGINS,
   REPORT,
   SEND,
   CHECK,
@@ -42,8 +44,8 @@ struct Arguments {
   Query query;       /**< CURVES, AGAINST, PAIRS and REPORT: the command, and how it is to be answered */
   Question question; /**< of CURVES, TRAJECTORY and MOVERS */
 
-  question::Profile profile; /**< REPORT: of each curve or link */
-  question::Nearest nearest; /**< REPORT */
+  question::Profile profile; /**< REPORT: of each curve or link; SPEED: its intervals */
+  question::Nearest nearest; /**< REPORT; MARGINS: how far objects are moved */
 
   std::optional<Peer> second_opinion; /**< CURVES, TRAJECTORY and PAIRS: who measures pairs again */
 
@@ -59,6 +61,7 @@ struct Arguments {
   bool self = false;           /**< with a trajectory, or of MOVERS: ask about the robot itself, too */
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
   std::string errors;          /**< file of ROBUST */
+  std::string separation;      /**< file of SPEED */
   std::string certificate;     /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
   std::string robot, srdf;     /**< files of the robot; empty: none */
   std::string state;           /**< "joint: value, …" */

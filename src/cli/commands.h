@@ -43,6 +43,12 @@ int answerRobust(const Arguments &arguments, Console &console);
 /** acm: which links of a robot can touch each other, and an SRDF that disables the others. */
 int findLinkContacts(const Arguments &arguments, Console &console);
 
+/** speed: how fast the robot may go along a trajectory while a person may walk up to it. */
+int limitSpeeds(const Arguments &arguments, Console &console);
+
+/** margins: how far objects may be moved before a motion is no longer clear of them. */
+int listMargins(const Arguments &arguments, Console &console);
+
 /** report: a page that shows a trajectory, or curves, and what they come close to. */
 int writeReport(const Arguments &arguments, Console &console);
 

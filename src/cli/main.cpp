@@ -39,6 +39,8 @@ int run(const std::vector<std::string> &words, Console &console) {
     case Action::MERGE: return mergeShards(arguments, console);
     case Action::ROBUST: return answerRobust(arguments, console);
     case Action::ACM: return findLinkContacts(arguments, console);
+    case Action::SPEED: return limitSpeeds(arguments, console);
+    case Action::MARGINS: return listMargins(arguments, console);
     case Action::REPORT: return writeReport(arguments, console);
     case Action::SEND: return sendScene(arguments, console);
   }

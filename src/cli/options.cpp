@@ -26,6 +26,14 @@ constexpr const char *CONTACT = CPROX_ROW ". Also t_contact_lower: there is no c
 #undef CPROX_COLUMNS
 constexpr const char *PROFILE =
     "id,kind,status,t0,t1,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,message: a row an interval";
+constexpr const char *SPEED =
+    "id,status,t0,t1,lower,override,constant_override,unwatched_override,a,b,message: a row an interval of trajectory "
+    "time. override: no more times the trajectory's own speed there; constant_override: the least of them; "
+    "unwatched_override: persons whom nobody watches cannot come near at this constant override and above";
+constexpr const char *MARGINS =
+    "id,status,object,direction,x,y,z,free,blocked,t,a,message: a row an object and direction, any or an axis of the "
+    "fixed frame. free: moved by less than this in the direction x,y,z the motion is clear of it; blocked: moved by "
+    "this it is not; t,a: when, and which link";
 constexpr const char *VIOLATIONS =
     "id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message, a row each: farther "
     "than D before enter_lower and after leave_upper, within D from enter_upper to leave_lower; or one row 'clear' "
@@ -141,6 +149,29 @@ const std::vector<Command> &commands() {
        "acm --robot examples/formats/arm.urdf --out new.srdf\n"
        "acm --robot examples/formats/arm.urdf --srdf examples/formats/arm.srdf --out new.srdf",
        MATRIX},
+      {"speed",
+       Action::SPEED,
+       QueryType::DISTANCE,
+       {},
+       "--separation S.yaml --objects LIST --trajectory T.yaml --robot URDF [--srdf SRDF] --scene SCENE.yaml",
+       "how fast the robot may go while persons in the objects of LIST may walk up to it",
+       "speed --separation examples/formats/separation.yaml --objects can --robot examples/formats/arm.urdf "
+       "--trajectory examples/formats/trajectory.yaml --scene examples/formats/scene.yaml\n"
+       "speed --intervals 500 --separation examples/formats/separation.yaml --objects \"can, ramp\" --robot "
+       "examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml --scene examples/formats/scene.yaml "
+       "--json",
+       SPEED},
+      {"margins",
+       Action::MARGINS,
+       QueryType::TOLERANCE,
+       {},
+       "--trajectory T.yaml --robot URDF [--srdf SRDF] --scene SCENE.yaml [--delta D] [--within R]",
+       "how far each object may be moved before the motion is no longer clear of it",
+       "margins --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml --scene "
+       "examples/formats/scene.yaml\n"
+       "margins --delta 0.01 --within 0.3 --objects can --robot examples/formats/arm.urdf --trajectory "
+       "examples/formats/trajectory.yaml --scene examples/formats/scene.yaml",
+       MARGINS},
       {"report",
        Action::REPORT,
        QueryType::DISTANCE,
@@ -202,15 +233,18 @@ const std::vector<Option> &options() {
       {"--against", "FILE", "distance tolerance collision check", "curves, too: instead of a scene"},
       {"--synchronized", "", "distance tolerance collision",
        "with --against: both curves are at the same parameter, so that they may cross each other's way"},
-      {"--scene", "FILE", "queries report constraints check robust",
+      {"--scene", "FILE", "queries report constraints check robust speed margins",
        "moveit_msgs/PlanningScene as YAML; may be left out where there is a robot"},
-      {"--robot", "FILE", "queries report constraints check robust acm",
+      {"--robot", "FILE", "queries report constraints check robust acm speed margins",
        "a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)"},
-      {"--trajectory", "FILE", "queries report constraints check robust",
+      {"--trajectory", "FILE", "queries report constraints check robust speed margins",
        "a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint"},
       {"--errors", "FILE", "robust",
        "bounds of the errors of an execution: every_joint, joints, timing, base, objects, sensor, flex "
        "(doc/robust.md)"},
+      {"--separation", "FILE", "speed",
+       "the constants of ISO/TS 15066: person: {speed, position}, robot: {reaction_time, stopping_time, position, "
+       "speed}, intrusion (doc/separation.md)"},
       {"--movers", "", "queries",
        "what moves in the scene, instead of curves or a robot: against what stands there, and against each other"},
       {"--path", "FILE", "queries",
@@ -221,14 +255,14 @@ const std::vector<Option> &options() {
        "the object of that id that a link of --robot carries, along poses of the link"},
       {"--radius", "R", "queries", "with --path, instead of --body: a ball of R metres (default 0, a point)"},
       {"--self", "", "queries report check robust", "how close the robot comes to itself, too"},
-      {"--shortest-way", "", "queries report check certify constraints robust",
+      {"--shortest-way", "", "queries report check certify constraints robust speed margins",
        "continuous joints turn the shorter way between two waypoints, from 3.1 to -3.1 by 0.083 rad"},
       {"--signed", "", "distance nearest",
        "distances inside a body are negative: minus the deepest penetration (of meshes a bound, by their hulls)"},
-      {"--srdf", "FILE", "queries report constraints check robust acm",
+      {"--srdf", "FILE", "queries report constraints check robust acm speed margins",
        "links that are not checked against each other, and the frame in which the robot stands (its virtual joint's "
        "parent_frame)"},
-      {"--state", "TEXT", "queries report constraints check robust",
+      {"--state", "TEXT", "queries report constraints check robust speed margins",
        "joint values in radians or metres; others as in the scene's robot_state, else 0 (mid-range where 0 is beyond "
        "the limits)"},
       {"--in", "FILE", "pairs constraints",
@@ -244,40 +278,42 @@ const std::vector<Option> &options() {
        "writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near or none. "
        "The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that it "
        "is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs"},
-      {"--epsilon", "E", "queries report pairs certify robust acm",
+      {"--epsilon", "E", "queries report pairs certify robust acm speed margins",
        "width of the intervals asked for, metres, above 0 (default 1e-06)"},
-      {"--delta", "D", "tolerance violations report robust",
-       "the clearance asked of 'tolerance' and 'violations', of 'robust' (default 0), and of 'report' if its verdict "
+      {"--delta", "D", "tolerance violations report robust margins",
+       "the clearance asked of 'tolerance' and 'violations', of 'robust' and 'margins' (default 0), and of 'report' if "
+       "its verdict "
        "is wanted, "
        "metres"},
-      {"--max-nodes", "N", "queries report pairs certify robust acm",
+      {"--max-nodes", "N", "queries report pairs certify robust acm speed margins",
        "budget for each result, in distance queries (default 500000: about 1 s)"},
       {"--threads", "N", "queries pairs constraints certify check acm",
        "how many rows are worked on at once (default: the machine's cores); the answers do not depend on it"},
       {"--per-object", "", "queries", "rows for each curve and object or link, not for the nearest alone"},
       {"--per-link", "", "queries", "with --trajectory: rows for each link and each object that a link carries"},
-      {"--allow-empty", "", "queries report certify robust",
+      {"--allow-empty", "", "queries report certify robust speed margins",
        "nothing to measure is an answer: clear, at an infinite distance. Without it such a row has the status 'empty', "
        "and its verdict is undecided"},
-      {"--objects", "LIST", "queries report robust",
+      {"--objects", "LIST", "queries report robust speed margins",
        "these objects alone, \"shelf, table\"; with --curves and --links also those links"},
-      {"--links", "LIST", "queries report robust",
+      {"--links", "LIST", "queries report robust speed margins",
        "with --curves: these links of --robot alone. With --trajectory: what these links do, or objects that they "
        "carry; with --self pairs of which they are one"},
       {"--moving-links-only", "", "queries report",
        "with --trajectory, --movers: links that the motion does not move are left out, with --self pairs that it does "
        "not move against each other; else all count. The rows' messages say so"},
-      {"--intervals", "N", "profile report", "N intervals of equal length (default 100)"},
+      {"--intervals", "N", "profile report speed", "N intervals of equal length (default 100)"},
       {"--breaks", "LIST", "profile report", "where intervals begin and end instead, \"0, 0.5, 2\""},
       {"--horizon", "H", "profile", "clearance beyond H metres is only bounded: lower > H, which is less work"},
       {"--pairs", "K", "nearest report", "at most K pairs for each curve or trajectory (default 10)"},
       {"--resolution", "R", "violations",
        "how finely the ends are searched, in units of the parameter (default: a thousandth of all of it)"},
-      {"--within", "D", "nearest", "only pairs that come within D metres"},
+      {"--within", "D", "nearest margins",
+       "only pairs that come within D metres; of 'margins': objects are moved by at most D metres (default 1)"},
       {"--second-opinion", "PEER", "distance tolerance collision nearest time-of-contact pairs",
        "fcl or libccd: the pair of each row is measured again by this library, at the row's t and at both ends; the "
        "columns second_opinion (agrees, disagrees or unknown) and second_distance are added"},
-      {"--max-lod", "R", "queries report pairs certify robust acm",
+      {"--max-lod", "R", "queries report pairs certify robust acm speed margins",
        "the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies by "
        "their bounding spheres); a coarser one is never farther away"},
       {"--dataset", "FILE", "certify",
@@ -289,28 +325,28 @@ const std::vector<Option> &options() {
        "of --shard I: answers no row; each becomes a row 'failed' with this message. For whoever drives shards and has "
        "seen one crash: 'merge' then has no gap"},
       {"--progress", "P", "certify", "line (default, on a terminal) or json, a line a second on standard error"},
-      {"--skipped", "", "queries pairs robust acm", "tell on standard error what takes no part, and why"},
-      {"--timings", "", "queries robust acm",
+      {"--skipped", "", "queries pairs robust acm speed margins", "tell on standard error what takes no part, and why"},
+      {"--timings", "", "queries robust acm speed margins",
        "tell on standard error how long loading the robot and the scene takes, mesh by mesh"},
-      {"--mesh-tolerance", "M", "queries report robust acm",
+      {"--mesh-tolerance", "M", "queries report robust acm speed margins",
        "replace meshes by ones with fewer triangles that contain them: nothing is clear that the mesh would hit; what "
        "is closer than 2 M metres may read as a hit"},
-      {"--allow-missing-geometry", "", "queries report robust acm",
+      {"--allow-missing-geometry", "", "queries report robust acm speed margins",
        "go on without collision elements of the robot that cannot be used; the answers are 'partial', never clear"},
-      {"--package", "LIST", "queries report pairs constraints certify check robust acm",
+      {"--package", "LIST", "queries report pairs constraints certify check robust acm speed margins",
        "folders of packages that package:// names, \"arm=/data/arm, hand=/data/hand\"; they come before the folders "
        "above the URDF, ROS_PACKAGE_PATH, and share/ of CMAKE_PREFIX_PATH and /usr"},
-      {"--out", "FILE", "queries report pairs constraints certify merge robust acm",
+      {"--out", "FILE", "queries report pairs constraints certify merge robust acm speed margins",
        "the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page"},
-      {"--json", "", "queries pairs constraints merge check robust acm",
+      {"--json", "", "queries pairs constraints merge check robust acm speed margins",
        "a JSON object a row, on a line of its own, by the names of the CSV's columns: an infinite number is the text "
        "\"inf\" or \"-inf\", a field without a value is null"},
-      {"--strict", "", "queries pairs robust",
+      {"--strict", "", "queries pairs robust speed margins",
        "a row that does not cover all that was given (status partial or rounded) counts as one without an answer: the "
        "exit code is 2, not 3"},
-      {"--quiet", "", "queries report pairs constraints certify merge check robust acm",
+      {"--quiet", "", "queries report pairs constraints certify merge check robust acm speed margins",
        "no warnings and no progress on standard error, only why a run cannot be made"},
-      {"-v", "", "queries pairs robust acm",
+      {"-v", "", "queries pairs robust acm speed margins",
        "--skipped and --timings, and at the end how many rows there were, and which"},
       {"--replace", "", "send",
        "the file takes the place of the node's scene (default, unless the file says is_diff: true)"},

@@ -91,6 +91,13 @@ std::string resultsLine(const ResultRow &row, const Columns &columns) {
   return line + '\n';
 }
 
+/* Why an interval or a margin is not as it should be; "": it is. */
+template <class Row>
+static std::string messageOf(const Row &row) {
+  if (row.gap) return gapText(*row.gap);
+  return row.status == CPROX_OK ? "" : cprox_status_text(row.status);
+}
+
 std::string profileHeader() {
   return "id,kind,status,t0,t1,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,message\n";
 }
@@ -102,15 +109,53 @@ std::string profileLine(const std::string &id, const std::string &kind, const Cl
   appendField(line, interval.t, measured);
   appendPoint(line, interval.witness_a, measured);
   appendPoint(line, interval.witness_b, measured);
-  std::string message = interval.status == CPROX_OK ? "" : cprox_status_text(interval.status);
-  if (interval.gap) message = gapText(*interval.gap);
-  return line + ',' + quotedField(interval.a) + ',' + quotedField(interval.b) + ',' + quotedField(message) + '\n';
+  return line + ',' + quotedField(interval.a) + ',' + quotedField(interval.b) + ',' + quotedField(messageOf(interval)) +
+         '\n';
 }
 
 std::string failedProfileLine(const std::string &id, const std::string &kind, cprox_status status,
                               const std::string &message) {
   return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ",,,,,,,,,,,,,," + quotedField(message) +
          '\n';
+}
+
+std::string speedHeader() {
+  return "id,status,t0,t1,lower,override,constant_override,unwatched_override,a,b,message\n";
+}
+
+std::string speedLine(const std::string &id, const ClearanceInterval &interval, double limit, double constant,
+                      double unwatched) {
+  std::string line = quotedField(id) + ',' + statusOf(interval.status, interval.gap);
+  for (const double value : {interval.t0, interval.t1, interval.lower, limit, constant, unwatched})
+    appendField(line, value);
+  return line + ',' + quotedField(interval.a) + ',' + quotedField(interval.b) + ',' + quotedField(messageOf(interval)) +
+         '\n';
+}
+
+std::string failedSpeedLine(const std::string &id, cprox_status status, const std::string &message) {
+  return quotedField(id) + ',' + cprox_status_name(status) + ",,,,,,,,," + quotedField(message) + '\n';
+}
+
+std::string marginHeader() {
+  return "id,status,object,direction,x,y,z,free,blocked,t,a,message\n";
+}
+
+std::string marginLine(const std::string &id, const ObjectMargin &margin) {
+  std::string line = quotedField(id) + ',' + statusOf(margin.status, margin.gap) + ',' + quotedField(margin.object) +
+                     ',' + margin.direction;
+  for (const double coordinate : {margin.toward.x(), margin.toward.y(), margin.toward.z()})
+    appendField(line, coordinate);
+  appendField(line, margin.free);
+  appendField(line, margin.blocked);
+  appendField(line, margin.t, !margin.a.empty());
+  return line + ',' + quotedField(margin.a) + ',' +
+         quotedField(!margin.gap && margin.status == CPROX_PRECISION ? "the object grazes the way: more is not known"
+                                                                     : messageOf(margin)) +
+         '\n';
+}
+
+std::string failedMarginLine(const std::string &id, cprox_status status, const std::string &message) {
+  return quotedField(id) + ',' + cprox_status_name(status) + ",,,,,,,,,," + quotedField(message) + '\n';
 }
 
 std::string violationsHeader() {

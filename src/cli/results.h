@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <curve_proximity/margins.hpp>
 #include <curve_proximity/query.hpp>
 
 namespace curve_proximity::cli {
@@ -56,6 +57,17 @@ std::string profileLine(const std::string &id, const std::string &kind, const Cl
 /** The line of a profile that there is none of. */
 std::string failedProfileLine(const std::string &id, const std::string &kind, cprox_status status,
                               const std::string &message);
+
+/** The same of limits of the speed: a line an interval. */
+std::string speedHeader();
+std::string speedLine(const std::string &id, const ClearanceInterval &interval, double limit, double constant,
+                      double unwatched);
+std::string failedSpeedLine(const std::string &id, cprox_status status, const std::string &message);
+
+/** The same of margins: a line an object and direction. */
+std::string marginHeader();
+std::string marginLine(const std::string &id, const ObjectMargin &margin);
+std::string failedMarginLine(const std::string &id, cprox_status status, const std::string &message);
 
 /** The same of violations: a line each. Without any: the line that all is clear. */
 std::string violationsHeader();

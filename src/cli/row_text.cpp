@@ -20,8 +20,9 @@ constexpr int DIGITS = 6;
 
 /* Columns whose fields are texts, also where they look like numbers. */
 bool isText(const std::string &column) {
-  static const std::set<std::string> names = {"id",      "kind", "status", "verdict",  "a",          "b",
-                                              "message", "lod",  "proof",  "provider", "derivative", "second_opinion"};
+  static const std::set<std::string> names = {"id",         "kind",           "status", "verdict",  "a",
+                                              "b",          "message",        "lod",    "proof",    "provider",
+                                              "derivative", "second_opinion", "object", "direction"};
   return names.count(column) > 0;
 }
 
@@ -48,8 +49,10 @@ std::string shortened(const std::string &column, const std::string &field) {
     return field;
   const std::optional<double> value = parseFinite(field);
   if (!value) return field;
-  const bool down = endsWith(column, "lower") || column == "certified_scale",
-             up = endsWith(column, "upper") || column == "refused_scale";
+  const bool down = endsWith(column, "lower") || column == "certified_scale" || column == "override" ||
+                    column == "free" || column == "constant_override",
+             up = endsWith(column, "upper") || column == "refused_scale" || column == "blocked" ||
+                  column == "unwatched_override";
   std::string text = withDigits(*value);
   const double shown = std::stod(text);
   if ((down && shown > *value) || (up && shown < *value)) {

@@ -16,8 +16,10 @@ CURVES = ('--curves', 'tool.csv', '--scene', 'formats/scene.yaml')
 COMMANDS = [('distance', *CURVES), ('tolerance', '--delta', '.05', *CURVES), ('collision', *CURVES), ('time-of-contact', *CURVES),
             ('profile', '--intervals', '7', *CURVES), ('violations', '--delta', '.2', *CURVES), ('nearest', '--pairs', '3', *CURVES),
             ('distance', *ARM, '--self', '--per-link'), ('violations', '--delta', '.2', *ARM), ('pairs', '--in', 'formats/pairs.yaml'),
-            ('pairs', '--in', 'formats/pairs.yaml', '--second-opinion', 'fcl'), ('robust', '--errors', 'formats/errors.yaml', *ARM)]
-TEXTS = {'id', 'kind', 'status', 'verdict', 'a', 'b', 'message', 'lod', 'proof', 'second_opinion'}
+            ('pairs', '--in', 'formats/pairs.yaml', '--second-opinion', 'fcl'), ('robust', '--errors', 'formats/errors.yaml', *ARM),
+            ('speed', '--separation', 'formats/separation.yaml', '--objects', 'can', *ARM),
+            ('margins', *ARM)]
+TEXTS = {'id', 'kind', 'status', 'verdict', 'a', 'b', 'message', 'lod', 'proof', 'second_opinion', 'object', 'direction'}
 
 
 def on_terminal(*words, cwd):
