@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include <curve_proximity/motion.hpp>
 
@@ -48,6 +49,23 @@ struct RobustAnswer {
  *  another, a bound that is negative or not finite. Cost: at most ten verdicts. */
 RobustAnswer askRobust(const RobotMotion &motion, bool self, const ErrorBounds &bounds, const Query &query,
                        Workspace &workspace);
+
+/** The clearance of every execution within the bounds, on each interval between two breaks [s], ascending and within
+ *  domain(). lower: every execution keeps this distance while its clock is in the interval. upper: this method
+ *  certifies no more; t, witness points and names say where. Takes and throws what clearanceProfile() does, and
+ *  askRobust() of bounds. Cost: a search an interval. */
+std::vector<ClearanceInterval> robustProfile(const RobotMotion &motion, bool self, const ErrorBounds &bounds,
+                                             const std::vector<double> &breaks, const Query &query,
+                                             Workspace &workspace);
+
+/** The time of contact of every execution within the bounds. result.t_contact_lower: before this time none touches
+ *  anything, each by its own clock, timing errors included. Verdict clear: none does at all. violated: the motion
+ *  itself, without errors, touches at result.t. undecided: neither is proven; t_contact_lower is then within
+ *  `resolution` [s] > 0 of a time that is not certified. The query is COLLISION; takes and throws what timeOfContact()
+ *  does, and askRobust() of bounds. Cost: a robust verdict for each
+ *  halving of the time, and timeOfContact(). */
+Answer robustTimeOfContact(const RobotMotion &motion, bool self, const ErrorBounds &bounds, double resolution,
+                           const Query &query, Workspace &workspace);
 
 } // namespace curve_proximity
 #endif

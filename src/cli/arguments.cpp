@@ -262,10 +262,19 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   out.state = words.text("--state");
 }
 
+/* A robot along a trajectory, for every execution within bounds of its errors. */
+void readErrorsWords(const Words &words, Arguments &out) {
+  for (const char *name : {"--per-link", "--per-object", "--horizon", "--second-opinion", "--moving-links-only"})
+    if (words.has(name)) throw BadUsage("--errors takes no " + std::string(name));
+  out.action = Action::ROBUST;
+  out.errors = words.text("--errors");
+}
+
 /* What moves in the scene, without a robot of the command line. */
 void readMoversWords(const Words &words, Arguments &out) {
-  for (const char *name : {"--curves", "--against", "--trajectory", "--signed", "--robot", "--srdf", "--state",
-                           "--per-object", "--per-link", "--links", "--objects", "--certificate", "--second-opinion"}) {
+  for (const char *name :
+       {"--curves", "--against", "--trajectory", "--signed", "--robot", "--srdf", "--state", "--per-object",
+        "--per-link", "--links", "--objects", "--certificate", "--second-opinion", "--errors"}) {
     if (words.has(name)) throw BadUsage("--movers takes no " + std::string(name));
   }
   if (!words.has("--scene")) throw BadUsage("--movers needs --scene SCENE.yaml: what moves in it is asked about");
@@ -277,7 +286,7 @@ void readMoversWords(const Words &words, Arguments &out) {
 /* A body along a path, or a ball. A robot carries the body where it has no shapes of its own. */
 void readPathWords(const Words &words, Arguments &out) {
   for (const char *name : {"--curves", "--against", "--trajectory", "--movers", "--self", "--signed", "--per-link",
-                           "--links", "--certificate", "--second-opinion"}) {
+                           "--links", "--certificate", "--second-opinion", "--errors"}) {
     if (words.has(name)) throw BadUsage("--path takes no " + std::string(name));
   }
   if (!words.has("--scene")) throw BadUsage("--path needs --scene SCENE.yaml, what it is measured against");
@@ -342,8 +351,10 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       }
       if (words.has("--trajectory")) {
         readTrajectoryWords(words, out);
+        if (words.has("--errors")) readErrorsWords(words, out);
         break;
       }
+      if (words.has("--errors")) throw BadUsage("--errors needs --trajectory T.yaml: the errors are a robot's");
       if (words.has("--self")) throw BadUsage("--self needs --trajectory T.yaml");
       if (words.has("--per-link"))
         throw BadUsage("--per-link needs --trajectory T.yaml; --per-object has a row for each link that a curve meets");
@@ -414,6 +425,7 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
     case Action::SPEED:
       out.separation = required("--separation", "SEPARATION.yaml, the speed of persons and how the robot stops");
       required("--objects", "LIST, the objects in which persons may be");
+      out.errors = words.text("--errors");
       required("--trajectory", "T.yaml");
       readTrajectoryWords(words, out);
       break;

@@ -12,30 +12,73 @@
 namespace curve_proximity::cli {
 namespace {
 
-const Columns COLUMNS = [] {
-  Columns columns;
-  columns.scale = true;
-  return columns;
-}();
+/* Of the duration: how near the time of contact is searched for. */
+constexpr double FINE = 1e-4;
 
-Outcome answerOne(const RobotMotion &motion, bool self, const ErrorBounds &errors, const Arguments &arguments,
-                  const Query &query, Workspace &workspace) {
-  Outcome out;
+Columns columnsOfRobust(const Arguments &arguments) {
+  Columns columns;
+  columns.contact = asksFor<question::Contact>(arguments.question);
+  columns.scale = !columns.contact;
+  return columns;
+}
+
+struct RobustTask {
+  const RobotMotion &motion;
+  bool self;
+  const ErrorBounds &errors;
+  const Arguments &arguments;
+  const Query &query;
+
+  const char *kind() const {
+    return self ? "self" : "environment";
+  }
+};
+
+void addProfile(const RobustTask &task, Workspace &workspace, Outcome &out) {
+  const std::vector<double> breaks =
+      breaksOf(std::get<question::Profile>(task.arguments.question), task.motion.domain());
+  for (const ClearanceInterval &interval :
+       robustProfile(task.motion, task.self, task.errors, breaks, task.query, workspace)) {
+    out.stopped = out.stopped || interval.status == CPROX_STOPPED;
+    noteGap(interval.gap, out);
+    out.text += profileLine(stemOf(task.arguments.trajectory), task.kind(), interval);
+  }
+}
+
+void addRow(const RobustTask &task, Workspace &workspace, Outcome &out) {
   ResultRow row;
-  try {
-    const RobustAnswer found = askRobust(motion, self, errors, query, workspace);
-    row = toRow(found.answer, query.query_type);
+  if (asksFor<question::Contact>(task.arguments.question)) {
+    const std::array<double, 2> domain = task.motion.domain();
+    row = toRow(
+        robustTimeOfContact(task.motion, task.self, task.errors, FINE * (domain[1] - domain[0]), task.query, workspace),
+        task.query.query_type);
+  } else {
+    const RobustAnswer found = askRobust(task.motion, task.self, task.errors, task.query, workspace);
+    row = toRow(found.answer, task.query.query_type);
     row.certified_scale = found.certified, row.refused_scale = found.refused;
-    out.stopped = row.result.status == CPROX_STOPPED;
+  }
+  row.id = stemOf(task.arguments.trajectory);
+  out.stopped = row.result.status == CPROX_STOPPED;
+  out.text = resultsLine(row, columnsOfRobust(task.arguments));
+  noteVerdict(row, out);
+}
+
+Outcome answerOne(const RobustTask &task, Workspace &workspace) {
+  const Arguments &arguments = task.arguments;
+  const bool profile = asksFor<question::Profile>(arguments.question);
+  Outcome out;
+  try {
+    profile ? addProfile(task, workspace, out) : addRow(task, workspace, out);
   } catch (const Error &e) {
-    row.kind = self ? "self" : "environment";
+    ResultRow row;
+    row.id = stemOf(arguments.trajectory);
+    row.kind = task.kind();
     row.result.status = e.status();
     row.message = e.what();
+    out.text = profile ? failedProfileLine(row.id, row.kind, e.status(), e.what())
+                       : resultsLine(row, columnsOfRobust(arguments));
     out.complaints.push_back(arguments.trajectory + ": " + row.kind + ": " + e.what());
   }
-  row.id = stemOf(arguments.trajectory);
-  out.text = resultsLine(row, COLUMNS);
-  noteVerdict(row, out);
   return out;
 }
 
@@ -62,10 +105,11 @@ int answerRobust(const Arguments &arguments, Console &console) {
   for (const bool self : {false, true}) {
     if (self && !arguments.self) continue;
     const Query &asked = self ? query : around;
-    tasks.push_back(
-        [&, self](Workspace &workspace) { return answerOne(motion, self, errors, arguments, asked, workspace); });
+    const RobustTask task{motion, self, errors, arguments, asked};
+    tasks.push_back([task](Workspace &workspace) { return answerOne(task, workspace); });
   }
-  return output.answer(resultsHeader(COLUMNS), tasks, console);
+  const bool profile = asksFor<question::Profile>(arguments.question);
+  return output.answer(profile ? profileHeader() : resultsHeader(columnsOfRobust(arguments)), tasks, console);
 }
 
 } // namespace curve_proximity::cli

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* How fast a robot may go along its trajectory while a person may walk up to it. */
+#include <curve_proximity/robust.hpp>
 #include <curve_proximity/separation.hpp>
 
+#include "../scene/query/question.h"
+#include "../scene/yaml/errors_yaml.h"
 #include "../scene/yaml/separation_yaml.h"
 #include "commands.h"
 #include "csv.h"
@@ -13,12 +16,16 @@
 namespace curve_proximity::cli {
 namespace {
 
-Outcome limitOne(const RobotMotion &motion, const Separation &separation, const Arguments &arguments,
-                 const Query &query, Workspace &workspace) {
+Outcome limitOne(const RobotMotion &motion, const Separation &separation, const std::optional<ErrorBounds> &errors,
+                 const Arguments &arguments, const Query &query, Workspace &workspace) {
   Outcome out;
   const std::string id = stemOf(arguments.trajectory);
   try {
-    const SpeedLimits limits = speedLimits(motion, arguments.profile.intervals, separation, query, workspace);
+    const SpeedLimits limits =
+        errors ? limitSpeed(robustProfile(motion, false, *errors, breaksOf(arguments.profile, motion.domain()), query,
+                                          workspace),
+                            separation)
+               : speedLimits(motion, arguments.profile.intervals, separation, query, workspace);
     for (std::size_t i = 0; i < limits.profile.size(); ++i) {
       const ClearanceInterval &interval = limits.profile[i];
       out.stopped = out.stopped || interval.status == CPROX_STOPPED;
@@ -41,6 +48,8 @@ int limitSpeeds(const Arguments &arguments, Console &console) {
   const RobotMotion motion = readMotion(arguments, world, warnings);
   warnOfMotion(motion, arguments, world, warnings);
   const Separation separation = yaml::readSeparation(arguments.separation);
+  std::optional<ErrorBounds> errors;
+  if (!arguments.errors.empty()) errors = yaml::readErrors(arguments.errors);
   const Query query = queryOf(arguments, world, warnings);
 
   Output output(arguments);
@@ -50,9 +59,10 @@ int limitSpeeds(const Arguments &arguments, Console &console) {
     tellSkipped(world.skipped, console);
     tellSkipped(motion.skipped(), console);
   }
-  return output.answer(
-      speedHeader(), {[&](Workspace &workspace) { return limitOne(motion, separation, arguments, query, workspace); }},
-      console);
+  return output.answer(speedHeader(), {[&](Workspace &workspace) {
+                         return limitOne(motion, separation, errors, arguments, query, workspace);
+                       }},
+                       console);
 }
 
 } // namespace curve_proximity::cli

@@ -46,6 +46,43 @@ class Robust(Case):
         row = self.robust('timing: 1').row('go')
         self.assertEqual((row['verdict'], float(row['certified_scale'])), ('clear', math.inf))
 
+    def asked(self, command, errors, *more, scene=WALL, trajectory=SLIDE):
+        return cprox(command, '--errors', self.file('errors.yaml', errors), '--robot', self.file('robot.urdf', SLIDER),
+                     '--trajectory', self.file('go.yaml', trajectory), '--scene', self.file('scene.yaml', scene), *more)
+
+    def a_profile_is_that_of_all_executions(self):
+        """The cart goes 0.5 m/s from 2.9 m before the wall; what is late or early is where it was or will be."""
+        for errors, loss, timing in (('sensor: 0.25', 0.25, 0), ('joints: {slide: {tracking: 0.1, speed: 0.2}}', 0.2, 0),
+                                     ('{flex: 0.1, timing: 0.3}', 0.1, 0.3)):
+            answer = self.asked('profile', errors, '--intervals', '8', '--objects', 'wall')
+            self.assertEqual((answer.code, answer.err, len(answer.rows)), (0, '', 8))
+            for row in answer.rows:
+                least = 2.9 - 0.5 * min(4, float(row['t1']) + timing) - loss
+                self.assertLessEqual(float(row['lower']), least + 1e-9, row)
+                self.assertGreaterEqual(float(row['lower']), least - 1e-5, row)
+                self.assertEqual(row['b'], 'wall')
+
+    def no_execution_touches_before_the_time_of_contact(self):
+        """At 1 m/s into the wall, at t = 2.9 without errors; at 0.5 m/s the wall is not reached."""
+        crash = SLIDE.replace('[2]', '[4]')
+        for errors, first in (('sensor: 0.25', 2.65), ('joints: {slide: {tracking: 0.1, speed: 0.2}}', 2.6), ('timing: 0.4', 2.5),
+                              ('{base: {position: 0.2}, timing: 0.1}', 2.6)):
+            row = self.asked('time-of-contact', errors, trajectory=crash).row('go')
+            self.assertEqual(row['verdict'], 'violated')
+            self.assertAlmostEqual(float(row['t']), 2.9, places=5)
+            self.assertLessEqual(float(row['t_contact_lower']), first + 1e-9, errors)
+            self.assertGreaterEqual(float(row['t_contact_lower']), first - 1e-3, errors)
+        row = self.asked('time-of-contact', 'sensor: 0.89').row('go')
+        self.assertEqual((row['verdict'], float(row['t_contact_lower'])), ('clear', 4))
+        answer = self.asked('time-of-contact', 'sensor: 0.91')
+        self.assertEqual((answer.code, answer.row('go')['verdict']), (3, 'undecided'))
+        self.assertAlmostEqual(float(answer.row('go')['t_contact_lower']), (2.9 - 0.91) / 0.5, places=3)
+
+    def limits_of_the_speed_hold_for_all_executions(self):
+        separation = self.file('separation.yaml', 'person: {speed: 1.6}\nrobot: {reaction_time: 0.1, stopping_time: 0.5}\n')
+        rows = self.asked('speed', 'sensor: 0.25', '--separation', separation, '--objects', 'wall').rows
+        self.assertAlmostEqual(float(rows[-1]['override']), (0.9 - 0.25 - 0.16) / 0.8, places=3)
+
     def the_robot_itself_has_a_row(self):
         answer = self.robust('every_joint: {tracking: 1e-4}', '--self')
         self.assertEqual([row['kind'] for row in answer.rows], ['environment', 'self'])
@@ -68,3 +105,5 @@ class Robust(Case):
         self.assertRefused(cprox('robust', '--robot', 'r', '--trajectory', 't'), '--errors')
         self.assertRefused(cprox('robust', '--robot', 'r', '--errors', 'e'), '--trajectory')
         self.assertRefused(self.robust('sensor: 1', '--moving-links-only'), '--moving-links-only')
+        self.assertRefused(self.asked('profile', 'sensor: 1', '--per-link'), '--per-link')
+        self.assertRefused(cprox('profile', '--curves', 'c', '--scene', 's', '--errors', 'e'), '--trajectory')
