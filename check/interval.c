@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static mpfr_prec_t precision = 640;
-static double work;
+static _Thread_local mpfr_prec_t precision = 640; /* of the thread that checks */
+static _Thread_local double work;
 
 void iv_precision(int bits) {
   precision = bits;

@@ -18,7 +18,7 @@ static const char *point_at(iv out[3], iv *remainder, const curve *c, double t, 
 }
 
 /* Something was neither so nor not so: more bits may tell. */
-static bool left_open;
+static _Thread_local bool left_open;
 
 bool near_left_open(void) {
   return left_open;

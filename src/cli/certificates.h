@@ -29,14 +29,8 @@ std::string proofOf(const CertificateHandle &certificate);
 /** What has no certificates (unprovable() of query.hpp and motion.hpp). */
 void warnOfUnprovable(const std::vector<std::string> &sentences, Warnings &warnings);
 
-/** Lines of a problem, see doc/certificates.md. */
-std::string problemHead();
-std::string curveTargetLines(const CurveDescription &curve);
-std::string moverLine(const CurveDescription &curve);
-
 /** Throws BadInput for a curve that cprox_check cannot read: bases other than the six of sums, and restrictions. */
 void requireCheckable(const CurveDescription &curve);
-std::string noMoverLine(const std::string &id);
 
 } // namespace curve_proximity::cli
 #endif

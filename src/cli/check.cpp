@@ -20,6 +20,7 @@
 #include <string_view>
 #include <utility>
 
+#include "../scene/query/problem.h"
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"

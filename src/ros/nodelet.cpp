@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "gate/proof_check.h"
 #include "gate/trajectory_gate.h"
 #include "parameters/parameters.h"
 #include "server.h"
@@ -24,9 +25,19 @@ class ProximityServerNodelet : public nodelet::Nodelet {
 class TrajectoryGateNodelet : public nodelet::Nodelet {
  private:
   void onInit() override {
-    gate_ = std::make_unique<TrajectoryGate>(getPrivateNodeHandle(), readGateParameters(getPrivateNodeHandle()));
+    const ros::NodeHandle &handle = getPrivateNodeHandle();
+    const GateParameters parameters = readGateParameters(handle);
+    if (parameters.verify) {
+      const ros::NodeHandle own(handle, READING_OF_GATE);
+      reading_ = std::make_unique<ProximityServer>(own, readParameters(own));
+      proofs_ = std::make_unique<ProofCheck>([this](const ProximityQuery &query) { return reading_->problems(query); },
+                                             [this] { return reading_->version(); });
+    }
+    gate_ = std::make_unique<TrajectoryGate>(handle, parameters, proofs_.get());
   }
 
+  std::unique_ptr<ProximityServer> reading_; /* what the gate reads itself; null: it believes the server */
+  std::unique_ptr<ProofCheck> proofs_;
   std::unique_ptr<TrajectoryGate> gate_;
 };
 

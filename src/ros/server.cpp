@@ -485,4 +485,15 @@ void ProximityServer::getScene(const GetScene::Request &request, GetScene::Respo
   response.success = true;
 }
 
+std::vector<Problem> ProximityServer::problems(const ProximityQuery &query) {
+  std::vector<Problem> out;
+  QueryRequest request(QueryType::TOLERANCE, 0.0, query);
+  request.problems = &out;
+  QueryResponse unused;
+  Drawing drawing;
+  drawing.most_lines = 0;
+  queries_.answer(request, unused, drawing);
+  return out;
+}
+
 } // namespace curve_proximity

@@ -53,6 +53,15 @@ class ProximityServer {
   /** Ends running queries by their stop flag, gives their answers a moment to leave, and joins all threads. */
   ~ProximityServer();
 
+  /** The rows of a query as the checker of certificates reads them, by what this server knows now; nothing is searched.
+   *  Throws Error where nothing can be told at all. By any thread. */
+  std::vector<Problem> problems(const ProximityQuery &query);
+
+  /** The number of changes of its scene. */
+  std::uint64_t version() const {
+    return live_.scene.snapshot()->version();
+  }
+
   ProximityServer(const ProximityServer &) = delete;
   ProximityServer &operator=(const ProximityServer &) = delete;
 

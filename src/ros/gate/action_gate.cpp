@@ -21,13 +21,13 @@ constexpr double LOOK_PERIOD = 0.1; /* [s] between two looks for the controller 
 } // namespace
 
 ActionGate::ActionGate(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters,
-                       ros::Publisher refused)
+                       ros::Publisher refused, const ProofCheck *proofs)
     : parameters_(parameters),
       queue_(pool, AT_ONCE),
       handle_(onQueue(handle, queue_)),
       refused_(std::move(refused)),
-      calls_(handle, parameters.server, parameters.delta) {
-  watches_ = std::make_unique<MotionWatches>(handle_, pool, parameters_);
+      calls_(handle, parameters.server, parameters.delta, proofs) {
+  watches_ = std::make_unique<MotionWatches>(handle_, pool, parameters_, proofs);
   client_ = std::make_unique<Client>(handle_, parameters_.controller, &queue_);
   server_ = std::make_unique<Server>(
       handle_, "follow_joint_trajectory",
@@ -80,14 +80,14 @@ bool ActionGate::forget(const RunningPointer &running) {
 
 /* ---- a new goal ---- */
 
-bool ActionGate::isClear(const JointTrajectory &trajectory, ProximityQuery &query, Refusal &refusal) {
+bool ActionGate::isClear(const JointTrajectory &trajectory, ProximityQuery &query, SeenScene &scene, Refusal &refusal) {
   bool clear = false;
   guarded(
       [&] {
         query.trajectories = {watches_->fromHere(trajectory)};
         query.current_joints = true;
         query.self_collision = parameters_.self_collision;
-        clear = calls_.isClear(query, refusal);
+        clear = calls_.isClear(query, scene, refusal);
       },
       [&](const std::string &why) { refusal.message = why; });
   return clear;
@@ -97,7 +97,8 @@ void ActionGate::begin(Server::GoalHandle goal) {
   const JointTrajectory &trajectory = goal.getGoal()->trajectory;
   Refusal refusal;
   ProximityQuery query;
-  bool passes = trajectory.points.empty() || isClear(trajectory, query, refusal);
+  SeenScene scene;
+  bool passes = trajectory.points.empty() || isClear(trajectory, query, scene, refusal);
   if (passes && !client_->isServerConnected()) {
     refusal = Refusal();
     refusal.message = lostController();
@@ -118,7 +119,7 @@ void ActionGate::begin(Server::GoalHandle goal) {
   if (!trajectory.points.empty()) {
     const std::weak_ptr<Running> weak = running;
     running->watch =
-        std::make_shared<MotionWatch>(std::move(query), refusal.scene, parameters_, [this, weak](Refusal why) {
+        std::make_shared<MotionWatch>(std::move(query), std::move(scene), parameters_, [this, weak](Refusal why) {
           const RunningPointer stopped = weak.lock();
           if (!stopped) return;
           stop(stopped, why.message);

@@ -30,8 +30,9 @@ namespace curve_proximity {
  * cancelling and feedback each have a thread. */
 class ActionGate {
  public:
-  /** handle: private. refused: where refusals go. */
-  ActionGate(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters, ros::Publisher refused);
+  /** handle: private. refused: where refusals go. proofs: as of ServerCalls. */
+  ActionGate(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters, ros::Publisher refused,
+             const ProofCheck *proofs);
   ~ActionGate();
 
   ActionGate(const ActionGate &) = delete;
@@ -50,7 +51,8 @@ class ActionGate {
   using RunningPointer = std::shared_ptr<Running>;
 
   void begin(Server::GoalHandle goal);
-  bool isClear(const trajectory_msgs::JointTrajectory &trajectory, ProximityQuery &query, Refusal &refusal);
+  bool isClear(const trajectory_msgs::JointTrajectory &trajectory, ProximityQuery &query, SeenScene &scene,
+               Refusal &refusal);
   void send(const RunningPointer &running);
   void cancel(const Server::GoalHandle &goal);
   void stop(const RunningPointer &running, const std::string &why);

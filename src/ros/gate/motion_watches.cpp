@@ -26,7 +26,7 @@ constexpr double SERVER_PATIENCE = 0.1; /* [s] with a server that is not there *
 
 /* ---- one ---- */
 
-MotionWatch::MotionWatch(ProximityQuery query, SceneState scene, const GateParameters &parameters, Stop stop)
+MotionWatch::MotionWatch(ProximityQuery query, SeenScene scene, const GateParameters &parameters, Stop stop)
     : began_(std::max(ros::Time::now(), query.trajectories.front().header.stamp)),
       patience_(parameters.feedback_timeout),
       stop_(std::move(stop)),
@@ -101,8 +101,9 @@ void MotionWatch::stop(Refusal refusal) {
 
 /* ---- all ---- */
 
-MotionWatches::MotionWatches(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters)
-    : parameters_(parameters), calls_(handle, parameters.server, parameters.delta), queue_(pool, 2) {
+MotionWatches::MotionWatches(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters,
+                             const ProofCheck *proofs)
+    : parameters_(parameters), calls_(handle, parameters.server, parameters.delta, proofs), queue_(pool, 2) {
   ros::NodeHandle own = handle;
   states_ = own.subscribe<sensor_msgs::JointState>(
       "joint_states", SCENE_QUEUE,

@@ -5,7 +5,6 @@
 
 #include <curve_proximity/ProximityQuery.h>
 #include <curve_proximity/Refusal.h>
-#include <curve_proximity/SceneState.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
 #include <ros/time.h>
@@ -38,7 +37,7 @@ class MotionWatch {
 
   /** query: about one joint trajectory. It begins now or at its stamp, whichever is later. scene: it was clear of this.
    */
-  MotionWatch(ProximityQuery query, SceneState scene, const GateParameters &parameters, Stop stop);
+  MotionWatch(ProximityQuery query, SeenScene scene, const GateParameters &parameters, Stop stop);
 
   const trajectory_msgs::JointTrajectory &trajectory() const {
     return progress_.trajectory();
@@ -72,7 +71,7 @@ class MotionWatch {
   const Stop stop_;
   std::atomic<bool> stopped_{false};
   ProximityQuery query_; /* of the one thread that asks, as are the next two */
-  SceneState scene_;
+  SeenScene scene_;
   std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
   mutable std::mutex mutex_; /* of what follows */
   TrajectoryProgress progress_;
@@ -87,7 +86,9 @@ class MotionWatches {
  public:
   static constexpr double PERIOD = 0.05; /**< [s] between two looks at the scene */
 
-  MotionWatches(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters);
+  /** proofs: as of ServerCalls. */
+  MotionWatches(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters,
+                const ProofCheck *proofs);
 
   /** Nothing is stopped any more. */
   ~MotionWatches();

@@ -55,13 +55,15 @@ SceneState ServerCalls::scene(double patience) {
   return call.response.scene;
 }
 
-bool ServerCalls::isClear(const ProximityQuery &query, Refusal &refusal) {
+bool ServerCalls::isClear(const ProximityQuery &query, SeenScene &scene, Refusal &refusal) {
   Tolerance call;
   call.request.query = query;
+  call.request.query.certificate = proofs_ != nullptr;
   call.request.delta = delta_;
   refusal = Refusal();
   refusal.header.stamp = ros::Time::now();
   refusal.delta = delta_;
+  scene.read = read(); // what comes from now on is looked at again
   if (!tolerance_.call(call, PATIENCE)) {
     refusal.message = "the server does not answer";
     return false;
@@ -71,23 +73,24 @@ bool ServerCalls::isClear(const ProximityQuery &query, Refusal &refusal) {
                      std::all_of(rows.begin(), rows.end(),
                                  [&](const Proximity &r) { return curve_proximity::isClear(r, delta_, true); });
   refusal = refusalOf(rows, delta_, call.response.scene);
+  scene.state = call.response.scene;
   if (!call.response.success) refusal.message = call.response.message;
   refusal.header.frame_id = call.response.frame_id;
-  return clear;
+  if (!clear || !proofs_) return clear;
+  refusal.message = proofs_->doubt(query, rows, delta_);
+  return refusal.message.empty();
 }
 
 bool ServerCalls::isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, double patience,
-                               SceneState &scene, Refusal &refusal) {
+                               SeenScene &scene, Refusal &refusal) {
   bool clear = false;
   guarded(
       [&] {
         const SceneState now = this->scene(patience);
-        clear = recent && now.epoch == scene.epoch && now.version == scene.version;
-        if (clear) return;
-        clear = isClear(query(), refusal);
-        scene = refusal.scene;
+        clear = recent && now.epoch == scene.state.epoch && now.version == scene.state.version && read() == scene.read;
+        if (!clear) clear = isClear(query(), scene, refusal);
       },
-      [&](const std::string &why) { refusal = refusalBecause(why, scene); });
+      [&](const std::string &why) { refusal = refusalBecause(why, scene.state); });
   return clear;
 }
 

@@ -10,10 +10,13 @@
 #include <curve_proximity/Tolerance.h>
 #include <ros/node_handle.h>
 
+#include <cstdint>
 #include <curve_proximity/client.hpp>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "gate/proof_check.h"
 
 namespace curve_proximity {
 
@@ -29,14 +32,20 @@ void logGateError(const std::string &why);
 /** Does this row prove that? decided: its verdict is about a limit of delta at least. */
 bool isClear(const Proximity &row, double delta, bool decided);
 
+/** What all of a motion was clear of. */
+struct SeenScene {
+  SceneState state;       /**< of the server */
+  std::uint64_t read = 0; /**< the version of what the gate reads itself; 0: nothing */
+};
+
 /** For one thread, but for end(). */
 class ServerCalls {
  public:
   static constexpr double PATIENCE = 2.0; /**< [s] with a server that is not there */
 
-  /** server: the namespace of its services. delta [m]. */
-  ServerCalls(const ros::NodeHandle &handle, const std::string &server, double delta)
-      : delta_(delta), tolerance_(handle, server + "/tolerance") {}
+  /** server: the namespace of its services. delta [m]. proofs: checks each answer; null: the server is believed. */
+  ServerCalls(const ros::NodeHandle &handle, const std::string &server, double delta, const ProofCheck *proofs)
+      : delta_(delta), proofs_(proofs), tolerance_(handle, server + "/tolerance") {}
 
   /** Throws Error where the server does not answer for `patience` seconds. */
   SceneState scene(double patience = PATIENCE);
@@ -46,16 +55,21 @@ class ServerCalls {
     tolerance_.end();
   }
 
-  /** True where all of it is clear; else `refusal` says what is not, or why there is no answer. */
-  bool isClear(const ProximityQuery &query, Refusal &refusal);
+  /** True where all of it is clear; else `refusal` says what is not, or why there is no answer. `scene` becomes the one
+   *  of the answer. */
+  bool isClear(const ProximityQuery &query, SeenScene &scene, Refusal &refusal);
 
-  /** The same where the scene is another one than `scene`, or `recent` is false; else all of it was clear of that. `scene`
-   *  becomes the one of the answer. */
+  /** The same where the scene is another one than `scene`, or `recent` is false; else all of it was clear of that. */
   bool isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, double patience,
-                    SceneState &scene, Refusal &refusal);
+                    SeenScene &scene, Refusal &refusal);
 
  private:
+  std::uint64_t read() const {
+    return proofs_ ? proofs_->version() : 0;
+  }
+
   const double delta_;
+  const ProofCheck *const proofs_;
   PersistentClient<Tolerance> tolerance_;
 };
 

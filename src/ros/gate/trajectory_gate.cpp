@@ -72,13 +72,15 @@ bool isClear(const ProximityResults &results, double delta) {
                      [&](const Proximity &row) { return isClear(row, delta, tolerant || apart); });
 }
 
-TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters)
+TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters,
+                               const ProofCheck *proofs)
     : parameters_(parameters), queue_(pool_), handle_(onQueue(handle, queue_)) {
   refused_ = handle_.advertise<Refusal>("refused", MOTION_QUEUE);
   if (!parameters_.server.empty())
-    calls_ = std::make_unique<ServerCalls>(handle_, parameters_.server, parameters_.delta);
-  if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, pool_, parameters_);
-  if (!parameters_.controller.empty()) actions_ = std::make_unique<ActionGate>(handle, pool_, parameters_, refused_);
+    calls_ = std::make_unique<ServerCalls>(handle_, parameters_.server, parameters_.delta, proofs);
+  if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, pool_, parameters_, proofs);
+  if (!parameters_.controller.empty())
+    actions_ = std::make_unique<ActionGate>(handle, pool_, parameters_, refused_, proofs);
   connect<Curve>("curve");
   connect<trajectory_msgs::JointTrajectory>("trajectory");
   connect<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
@@ -141,15 +143,22 @@ void TrajectoryGate::decide(const Waiting &message, const ProximityResults &resu
   query.current_joints = !std::isnan(results.scene.joint_state_age);
   query.self_collision = std::any_of(results.results.begin(), results.results.end(),
                                      [](const Proximity &row) { return row.kind == Proximity::KIND_SELF; });
-  SceneState scene = results.scene;
+  const bool moves = !query.trajectories.empty() || !query.multi_dof_trajectories.empty();
+  if (parameters_.verify && moves) { // the server does not say what is asked
+    query.current_joints = true;
+    query.self_collision = parameters_.self_collision;
+  }
+  SeenScene scene;
+  scene.state = results.scene;
   const auto all = [&]() -> const ProximityQuery & { return query; };
-  if (!calls_->isStillClear(all, true, ServerCalls::PATIENCE, scene, refusal)) // it may have changed since the answer
+  // it may have changed since the answer; and the answer has no certificates
+  if (!calls_->isStillClear(all, !parameters_.verify, ServerCalls::PATIENCE, scene, refusal))
     return refuse(std::move(refusal), results);
   message.pass();
   if (watches_ && !query.trajectories.empty()) watch(std::move(query), results, std::move(scene));
 }
 
-void TrajectoryGate::watch(ProximityQuery query, const ProximityResults &results, SceneState scene) {
+void TrajectoryGate::watch(ProximityQuery query, const ProximityResults &results, SeenScene scene) {
   ProximityResults of; // the head of its answer, without rows
   of.header = results.header;
   of.source = results.source;

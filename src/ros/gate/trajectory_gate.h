@@ -37,7 +37,9 @@ bool isClear(const ProximityResults &results, double delta);
  * once. With ~controller it is also a FollowJointTrajectory action: see ActionGate. */
 class TrajectoryGate {
  public:
-  TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters);
+  /** handle: private. proofs: checks the server's certificates before a message passes, and while it runs; null: the
+   *  server is believed. */
+  TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters, const ProofCheck *proofs);
   ~TrajectoryGate();
 
   TrajectoryGate(const TrajectoryGate &) = delete;
@@ -58,7 +60,7 @@ class TrajectoryGate {
   void receive(Waiting message);
   void answer(const ProximityResultsConstPtr &results);
   void decide(const Waiting &message, const ProximityResults &results);
-  void watch(ProximityQuery query, const ProximityResults &results, SceneState scene);
+  void watch(ProximityQuery query, const ProximityResults &results, SeenScene scene);
   void forget(const std::vector<std::string> &joints);
   void refuse(Refusal refusal, const ProximityResults &results);
 

@@ -88,6 +88,9 @@ struct Range {
 /** What a server leaves on the master for the one that comes after it. */
 constexpr const char *KEPT_BY_SERVER = "last_scene";
 
+/** The namespace, in that of a gate, of what the gate reads itself. */
+constexpr const char *READING_OF_GATE = "reading";
+
 /** Shows every parameter to a visitor: visit(name, value, range) for numbers, visit(name, value) for the others. */
 template <class Fields, class Visitor>
 void visitParameters(Fields &parameters, Visitor &&visit) {
@@ -153,6 +156,7 @@ struct GateParameters {
   double path_tolerance = 0.1;   /**< [rad, m] how far each joint may be from the trajectory that runs */
   double feedback_timeout = 0.5; /**< [s] without a word of the robot; then what runs is stopped */
   double server_timeout = 2.0;   /**< [s] for an answer about what runs; then it is stopped */
+  bool verify = false;           /**< the server's certificates are checked by what the gate reads itself */
 };
 
 template <class Fields, class Visitor>
@@ -166,6 +170,7 @@ void visitGateParameters(Fields &parameters, Visitor &&visit) {
   visit("path_tolerance", parameters.path_tolerance, Range{0.0, true});
   visit("feedback_timeout", parameters.feedback_timeout, Range{0.0, true});
   visit("server_timeout", parameters.server_timeout, Range{0.0, true});
+  visit("verify", parameters.verify);
 }
 
 /** Reads the parameters of a private handle; those that are not set keep their defaults.

@@ -96,19 +96,29 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
     if (!where.coverage.complete()) of_place = work.query, of_place.coverage = where.coverage;
     const Query &query = where.coverage.complete() ? work.query : of_place;
     const Targets &targets = where.stamped->targets;
-    if (asksFor<question::Search>(question) && !query.per_object && TimeBudget::isOver(query.options.stop_user)) {
+    if (!work.request.problems && asksFor<question::Search>(question) && !query.per_object &&
+        TimeBudget::isOver(query.options.stop_user)) {
       fillRow(stoppedSearch(message.id, query).answer, query.query_type, work.response.add());
       ++search.curves;
       return;
     }
     toDescription(message, *where.frame, search.description);
     CompiledCurve curve = make(search.description, targets.boxes(), query.options, *search.workspace);
-    std::vector<Row> rows = curve_proximity::answer(CurveSubject{targets, curve, &search.description}, {}, question,
-                                                    query, Beside::SEARCH, *search.workspace);
+    const CurveSubject subject{targets, curve, &search.description};
+    if (work.request.problems) {
+      work.request.problems->push_back(problemOf(subject, query));
+      ++search.curves;
+      return;
+    }
+    Query bare;
+    if (work.certificate) bare = provable(subject, query);
+    std::vector<Row> rows = curve_proximity::answer(subject, {}, question, work.certificate ? bare : query,
+                                                    Beside::SEARCH, *search.workspace);
     std::vector<Answer> answers;
     for (Row &found : rows) {
       Proximity &row = work.response.add(toMessage(found));
       fillRow(found.answer, question, query.query_type, row);
+      if (work.certificate) addProof(takeProof(subject, query, found.answer), row);
       if (std::isnan(row.lower)) search.failures.count(row, search.curves);
       answers.push_back(std::move(found.answer));
     }
@@ -124,6 +134,7 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
 
 /** The row of what could not be made a curve, or of a curve that cannot be answered. */
 void Queries::refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work) {
+  if (work.request.problems) work.request.problems->push_back(doubtful(why));
   work.response.add() = toFailedRow(id, Proximity::KIND_CURVE, why);
   search.failures.count(work.response.results.back(), search.curves);
   ++search.curves;

@@ -120,6 +120,7 @@ MovingObject Queries::toRider(const ProximityQuery &query, const Snapshot &snaps
 /** What is asked about, and what of it is drawn. */
 struct Queries::Moving {
   std::vector<Row> rows;
+  std::vector<Proof> proofs;                 /**< of the rows, if they are asked for */
   std::string remark;                        /**< of each row that has an answer */
   TrajectoryDescription trajectory;          /**< of gradients */
   std::shared_ptr<const RobotMotion> motion; /**< likewise below: as in Drawing */
@@ -129,12 +130,16 @@ struct Queries::Moving {
 
   /** Adds the rows of all parts of a subject. */
   void ask(const Subject &subject, const Query &query, const QueryRequest &request, Workspace &workspace) {
+    if (request.problems) return request.problems->push_back(problemOf(subject, query));
     const std::vector<Part> parts = partsOf(subject, request.question, query, request.per_link);
-    std::vector<Row> answered = answerParts(subject, parts, request.question, query, Beside::SEARCH, workspace);
+    std::vector<Row> answered =
+        answerParts(subject, parts, request.question, provable(subject, query), Beside::SEARCH, workspace);
     for (Row &row : answered) {
       if (row.answer.a.empty()) row.answer.a = row.part.link; // nothing is near it
       if (row.answer.b.empty()) row.answer.b = row.part.object;
     }
+    if (query.options.certificate) // there is one row
+      for (const Row &row : answered) proofs.push_back(takeProof(subject, query, row.answer));
     if (rows.empty())
       rows = std::move(answered);
     else
@@ -146,6 +151,8 @@ struct Queries::Moving {
 void Queries::answerMoving(const std::string &id, const std::vector<std::string> &kinds, Work &work,
                            const std::function<void(Workspace &, Moving &)> &ask) {
   const std::size_t before = work.response.results.size();
+  std::vector<Problem> *problems = work.request.problems;
+  const std::size_t problems_before = problems ? problems->size() : 0;
   if (work.request.turn) work.request.turn->yield();
   try {
     Moving moving;
@@ -163,6 +170,7 @@ void Queries::answerMoving(const std::string &id, const std::vector<std::string>
       Proximity &row = work.response.add(std::move(details[i]));
       fillRow(answer, work.request.question, work.query.query_type, row);
       if (answer.result.status >= 0) addRemark(moving.remark, row);
+      if (i < moving.proofs.size()) addProof(std::move(moving.proofs[i]), row);
     }
     if (moving.motion || !work.drawing.motion) {
       work.drawing.motion = std::move(moving.motion);
@@ -172,7 +180,11 @@ void Queries::answerMoving(const std::string &id, const std::vector<std::string>
       work.drawing.motion_answers = std::move(answers);
     }
   } catch (const Error &error) {
-    for (const std::string &kind : kinds) work.response.add() = toFailedRow(id, kind, error.what());
+    if (problems) problems->resize(problems_before);
+    for (const std::string &kind : kinds) {
+      if (problems) problems->push_back(doubtful(error.what()));
+      work.response.add() = toFailedRow(id, kind, error.what());
+    }
   }
   tellFailure(id, before, work.response);
 }

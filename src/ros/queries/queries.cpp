@@ -65,6 +65,9 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
     throw Error("body applies to paths and multi_dof_trajectories: there is none");
   if (more.gradient && !asksFor<question::Gradient>(request.question))
     throw Error("gradient does not apply: it is of the service distance");
+  if (more.certificate && (own_rows || more.gradient || more.per_object))
+    throw Error(
+        "certificate does not apply: it is of distance, tolerance and collision, without gradient and per_object");
   if (more.gradient && more.per_object)
     throw Error("gradient does not apply with per_object: there is one for the nearest object");
   if (request.per_link && motions == 0 && !more.robot_state)
@@ -200,7 +203,13 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
             drawing,
             0,
             0,
+            nullptr,
             nullptr};
+  if (request.more.certificate && !request.problems) {
+    work.certificate.reset(cprox_certificate_create());
+    if (!work.certificate) throw std::bad_alloc();
+    work.query.options.certificate = work.certificate.get();
+  }
   if (request.size() == 0 && !request.more.robot_state && !request.more.movers) {
     response.success = false;
     response.message = "nothing is asked: there is no curve, path or trajectory, no robot_state and no movers";

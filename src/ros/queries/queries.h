@@ -25,6 +25,7 @@
 #include <thread>
 #include <vector>
 
+#include "../scene/query/problem.h"
 #include "../scene/query/subject.h"
 #include "parameters/parameters.h"
 #include "parameters/tuning.h"
@@ -67,6 +68,13 @@ class List {
 
 struct QueryResponse;
 
+/** Ends the life of a certificate. */
+struct CertificateEnd {
+  void operator()(cprox_certificate *certificate) const {
+    cprox_certificate_free(certificate);
+  }
+};
+
 /** Told of the rows so far, and how many curves, paths and trajectories are done. */
 using Progress = std::function<void(const QueryResponse &response, std::size_t done)>;
 
@@ -86,7 +94,9 @@ struct QueryRequest {
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
   const std::atomic<bool> *cancelled = nullptr; /**< set, it ends this query; null: nobody can */
   const Progress *progress = nullptr;           /**< called after each curve and trajectory; null: nobody is told */
-  Turn *turn = nullptr;                         /**< given back to others now and then; may be null */
+  std::vector<Problem> *problems =
+      nullptr;          /**< not null: the rows are not answered, but told as the checker reads them */
+  Turn *turn = nullptr; /**< given back to others now and then; may be null */
 
   QueryRequest(QueryType type, double limit, const ProximityQuery &query)
       : query_type(type),
@@ -208,6 +218,7 @@ class Queries {
     std::size_t done;                    /* of the request's curves, paths and trajectories */
     std::size_t trajectories;            /* of the robot, so far */
     std::unique_ptr<CurveSearch> search; /* null as long as there is no curve */
+    std::unique_ptr<cprox_certificate, CertificateEnd> certificate; /* of the latest row; null: none is asked for */
   };
 
   std::size_t mostBytes() const; /* that a request may take */

@@ -2,6 +2,7 @@
 #include "queries/row_message.h"
 
 #include <limits>
+#include <utility>
 
 #include "messages/geometry_message.h"
 #include "messages/gradient_message.h"
@@ -112,6 +113,38 @@ DetailMessage toMessage(const Row &row, const TrajectoryDescription *trajectory)
   Profile profile = toMessage(*intervals);
   profile.link = row.part.link;
   return profile;
+}
+
+Query provable(const Subject &subject, Query query) {
+  if (query.options.certificate && !unprovable(subject).empty()) query.options.certificate = nullptr;
+  return query;
+}
+
+Proof takeProof(const Subject &subject, const Query &query, const Answer &answer) {
+  Proof out;
+  if (answer.result.status < 0) return out;
+  out.unproven = unprovable(subject);
+  if (!out.unproven.empty()) return out;
+  out.unproven = answer.unproven;
+  const cprox_certificate_info info = cprox_certificate_get_info(query.options.certificate);
+  const auto *bytes = static_cast<const std::uint8_t *>(info.bytes);
+  if (info.size == 0) return out;
+  out.certificate.assign(bytes, bytes + info.size);
+  out.fingerprint = problemOf(subject, query).fingerprint;
+  return out;
+}
+
+void addProof(Proof proof, Proximity &row) {
+  row.certificate = std::move(proof.certificate);
+  row.problem_fingerprint = proof.fingerprint;
+  if (proof.unproven.empty() || proof.unproven == row.message) return;
+  row.message += (row.message.empty() ? "no certificate: " : "; no certificate: ") + proof.unproven;
+}
+
+Problem doubtful(const std::string &why) {
+  Problem out;
+  out.doubt = why;
+  return out;
 }
 
 } // namespace curve_proximity

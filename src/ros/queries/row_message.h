@@ -8,10 +8,13 @@
 #include <curve_proximity/Proximity.h>
 #include <curve_proximity/ViolationIntervals.h>
 
+#include <cstdint>
 #include <curve_proximity/query.hpp>
 #include <string>
 #include <variant>
+#include <vector>
 
+#include "../scene/query/problem.h"
 #include "../scene/query/subject.h"
 
 namespace curve_proximity {
@@ -33,6 +36,25 @@ DetailMessage toMessage(const Row &row, const TrajectoryDescription *trajectory 
 
 /** The row of a curve or motion that could not be asked about. */
 Proximity toFailedRow(const std::string &id, const std::string &kind, const std::string &why);
+
+/** A certificate and the fingerprint of what it is about, or why there is none. */
+struct Proof {
+  std::vector<std::uint8_t> certificate;
+  std::uint64_t fingerprint = 0;
+  std::string unproven;
+};
+
+/** The query, without a certificate where the subject has none. */
+Query provable(const Subject &subject, Query query);
+
+/** What query.options.certificate holds of an answer about a subject. */
+Proof takeProof(const Subject &subject, const Query &query, const Answer &answer);
+
+/** Fills in what a row says of it. */
+void addProof(Proof proof, Proximity &row);
+
+/** The problem of a row that could not be asked about. */
+Problem doubtful(const std::string &why);
 
 } // namespace curve_proximity
 #endif

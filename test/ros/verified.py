@@ -1,0 +1,279 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A gate with ~verify believes no server: it reads scene and robot itself and checks each proof. Here the server lies in all the ways
+that one could think of: about the scene, the robot, the motion, the verdict, the proof. Each lie is caught."""
+import copy
+import random
+import struct
+import time
+import unittest
+
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from curve_proximity.msg import AllowedContact, CollisionObject, Proximity, ProximityResults, Refusal
+from curve_proximity.srv import Tolerance, ToleranceResponse
+from gate import Action, Arm, Controller, Goal, actionlib, ends_of, turning
+from helpers import Server, bezier, box, connected, fingerprint, mesh, run, sphere, thing, until
+from sensor_msgs.msg import JointState
+
+APART, NEAR = 1, 2
+DELTA = 0.05
+POST = sphere('post', 0.1, (0, 0.5, 0.5))  # where the arm is after a quarter turn
+FAR = sphere('far', 0.1, (0, 0, 5))
+CLAIM, LIMIT = 16, 8  # where the head of a certificate has its claim and its limit
+
+
+class Liar:
+    """The server that the gate asks. It asks an honest one, and lies as it is told."""
+
+    def __init__(self):
+        self.asks = {name: rospy.ServiceProxy('/%s/tolerance' % name, Tolerance) for name in ('curve_proximity', 'other', 'stranger')}
+        for ask in self.asks.values():
+            ask.wait_for_service(20)
+        self.lie, self.asked, self.frozen = None, 0, None
+        self.service = rospy.Service('/liar/tolerance', Tolerance, self.answer)
+
+    def honest(self, request, server='curve_proximity'):
+        return self.asks[server](request)
+
+    def answer(self, request):
+        nothing = not (request.query.trajectories or request.query.curves)
+        self.asked += not nothing
+        response = self.honest(request) if nothing or self.lie is None else self.lie(request)
+        if self.frozen is not None:  # for ever the scene of then
+            response.scene.version = self.frozen
+        return response
+
+
+def clear(response):
+    """All is well, says every row."""
+    response.success, response.message = True, ''
+    for row in response.results:
+        row.status, row.verdict, row.lower, row.upper, row.message = 'ok', 'clear', 1.0, 2.0, ''
+    return response
+
+
+def proofs(response, change):
+    for row in response.results:
+        row.certificate = change(bytes(row.certificate))
+    return response
+
+
+def put(at, form, value):
+    return lambda proof: proof[:at] + struct.pack(form, value) + proof[at + struct.calcsize(form):]
+
+
+class Verified(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.states = rospy.Publisher('/joint_states', JointState, queue_size=5)
+        cls.arm = Arm(cls.states)
+        cls.liar = Liar()
+        cls.controller, cls.refused = Controller(cls.arm), []
+        cls.reading, cls.server, cls.other, cls.stranger = (
+            Server(name) for name in ('/gate/reading', '/curve_proximity', '/other', '/stranger'))
+        cls.heard = rospy.Subscriber('/gate/refused', Refusal, cls.refused.append)
+        cls.client = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
+        assert cls.client.wait_for_server(rospy.Duration(20))
+        assert connected(cls.states, cls.heard)
+        time.sleep(1.0)  # the gate finds the controller
+
+    def setUp(self):
+        self.arm.rest()
+        self.liar.lie, self.liar.frozen = None, None
+        self.everywhere(FAR)
+
+    def everywhere(self, *objects, **fields):
+        for server in (self.reading, self.server, self.other, self.stranger):
+            server.replace(*objects, **fields)
+
+    def send(self, trajectory=None):
+        """How a goal ends that was sent to the gate, and why; for one that passes at once that it did."""
+        if self.arm.position() != 0.0:
+            self.arm.rest()
+        begun = self.controller.begun
+        self.client.send_goal(Goal(trajectory=trajectory or turning(3.0, 1.5)))
+        state, why = ends_of(self.client)
+        self.assertEqual(self.controller.begun, begun + (state != GoalStatus.REJECTED))
+        return state, why
+
+    def caught(self, lie, name, trajectory=None):
+        self.liar.lie = lie
+        asked = self.liar.asked
+        state, why = self.send(trajectory)
+        self.assertEqual(state, GoalStatus.REJECTED, name)
+        self.assertGreater(self.liar.asked, asked, name)
+        self.assertTrue(why, name)
+        return why
+
+    def asking(self, change=None, server='curve_proximity'):
+        """Asks something else than it is asked, and hands the honest answer to that on as if it were the answer."""
+        def lie(request):
+            other = copy.deepcopy(request)
+            if change:
+                change(other)
+            return clear(self.liar.honest(other, server))
+        return lie
+
+    def test_an_honest_answer_passes_and_an_honest_refusal_names_the_pair(self):
+        self.assertEqual(self.send()[0], GoalStatus.SUCCEEDED)
+        self.everywhere(POST)
+        self.assertEqual(self.send()[0], GoalStatus.REJECTED)
+        self.assertIn("'post'", self.client.get_result().error_string)
+
+    def test_an_honest_answer_passes_among_boxes_meshes_and_what_the_arm_carries(self):
+        corners = [(1, 1, 0), (2, 1, 0), (1, 2, 0), (1, 1, 1)]
+        shape = mesh('tetrahedron', corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+        self.everywhere(FAR, box('table', (1, 1, 0.1), (0, 0, -1)), shape)
+        self.assertEqual(self.send(), (GoalStatus.SUCCEEDED, ''))
+
+    def test_a_lie_about_the_verdict_is_caught(self):
+        self.everywhere(POST)
+        self.assertIn('comes as near', self.caught(self.asking(), 'the proof says the opposite'))
+        bare = self.asking()
+        self.assertIn('no certificate', self.caught(lambda request: proofs(bare(request), lambda _: b''), 'no proof'))
+        self.assertIn('refused', self.caught(lambda request: proofs(bare(request), put(CLAIM, '<I', APART)), 'another claim'))
+
+    def test_a_lie_about_the_scene_is_caught(self):
+        self.everywhere(FAR, POST)
+        for name, others in (
+                ('shifted', [FAR, sphere('post', 0.1, (0, 0.9, 0.5))]), ('smaller', [FAR, sphere('post', 0.001, (0, 0.7, 0.5))]),
+                ('missing', [FAR]), ('another in its place', [FAR, sphere('post', 0.1, (0, 0, 6))]),
+                ('another shape', [FAR, box('post', (0.01, 0.01, 0.01), (0, 0.7, 0.5))])):
+            self.other.replace(*others)
+            self.assertIn('fingerprint', self.caught(self.asking(server='other'), name))
+        self.other.replace(FAR, POST, allowed_contacts=[AllowedContact(first='arm', second='post', allowed=True)])
+        self.caught(self.asking(server='other'), 'a contact that nobody allowed')
+        self.caught(self.asking(lambda request: setattr(request.query, 'objects', ['far'])), 'some objects alone')
+
+    def test_a_lie_about_the_robot_is_caught(self):
+        self.everywhere(sphere('post', 0.1, (0, 0.73, 0.5)))  # the smaller ball passes it by .12
+        self.assertIn('fingerprint', self.caught(self.asking(server='stranger'), 'another robot'))
+        self.caught(self.asking(lambda request: setattr(request.query, 'links', ['base', 'slider'])), 'some links alone')
+
+    def test_a_lie_about_the_motion_is_caught(self):
+        self.everywhere(POST)
+
+        def half(request):
+            del request.query.trajectories[0].points[1:]
+            request.query.trajectories[0].points.append(copy.deepcopy(turning(0.6, 0.1, 1).points[1]))
+
+        def scaled(factor):
+            def change(request):
+                for at in request.query.trajectories[0].points:
+                    at.positions = [factor * at.positions[0]]
+            return change
+
+        def later(request):
+            request.query.trajectories[0].points = [copy.deepcopy(at) for at in turning(3.0, 1.0).points]
+            for at in request.query.trajectories[0].points:
+                at.positions = [at.positions[0] - 3.0]
+        self.caught(self.asking(half), 'a part of it')
+        self.caught(self.asking(scaled(-1.0)), 'the other way round')
+        self.caught(self.asking(scaled(0.1)), 'a shorter way')
+        self.caught(self.asking(later), 'it ends where it began')
+        self.caught(self.asking(lambda request: setattr(request.query, 'self_collision', False)), 'without the robot itself')
+
+    def test_a_lie_about_the_limit_is_caught(self):
+        self.everywhere(sphere('post', 0.1, (0, 0.72, 0.5)))  # passed by .02
+        touching = self.asking(lambda request: setattr(request, 'delta', 0.001))
+        self.assertIn('0.001 m alone', self.caught(touching, 'a smaller limit'))
+        why = self.caught(lambda request: proofs(touching(request), put(LIMIT, '<d', DELTA)), 'a smaller limit, and the proof says the larger one')
+        self.assertIn('refused', why)
+
+    def test_a_proof_of_another_time_is_caught(self):
+        kept = []
+
+        def keep(request):
+            kept.append(self.liar.honest(request))
+            return kept[-1]
+        self.liar.lie = keep
+        self.assertEqual(self.send()[0], GoalStatus.SUCCEEDED)
+        self.arm.rest()
+        self.everywhere(FAR, POST)
+        self.caught(lambda request: kept[0], 'an old answer')
+
+    def test_a_proof_that_is_damaged_is_caught_although_the_motion_is_clear(self):
+        def honest(request):
+            return self.liar.honest(request)
+        for name, change in (('cut', lambda proof: proof[:-1]), ('longer', lambda proof: proof + b'\0'), ('half', lambda proof: proof[:len(proof) // 2]),
+                             ('noise', lambda proof: bytes(len(proof))), ('another format', put(0, '<4s', b'CPC2')),
+                             ('negative limit', put(LIMIT, '<d', -1.0)), ('no number', put(LIMIT, '<d', float('nan')))):
+            self.assertIn('refused', self.caught(lambda request, change=change: proofs(honest(request), change), name))
+
+        def rows(change):
+            def lie(request):
+                response = honest(request)
+                response.results = change(response.results)
+                return response
+            return lie
+        self.assertIn('2 are to be proven', self.caught(rows(lambda all_rows: all_rows[:1]), 'a row is left out'))
+        self.assertIn('2 are to be proven', self.caught(rows(lambda all_rows: all_rows + all_rows[:1]), 'a row comes twice'))
+        self.caught(rows(lambda all_rows: all_rows[::-1]), 'rows change places')
+        self.caught(rows(lambda all_rows: []), 'no rows')
+        self.caught(lambda request: ToleranceResponse(success=True), 'an empty answer')
+
+    def test_no_mutant_of_a_proof_passes_a_motion_that_hits(self):
+        """200 of them, seed 5, of the proof that the motion was clear before the post was there."""
+        kept, chosen = [], random.Random(5)
+        self.liar.lie = lambda request: kept.append(self.liar.honest(request)) or kept[-1]
+        self.assertEqual(self.send()[0], GoalStatus.SUCCEEDED)
+        self.arm.rest()
+        for server in (self.reading, self.server):
+            server.replace(POST)
+
+        def mutant(proof):
+            out = bytearray(proof)
+            for _ in range(chosen.randint(1, 4)):
+                out[chosen.randrange(len(out))] = chosen.randrange(256)
+            return bytes(out[:chosen.randint(1, len(out))] if chosen.random() < 0.2 else out)
+        for number in range(200):
+            self.caught(lambda request: proofs(copy.deepcopy(kept[0]), mutant), 'mutant %d' % number)
+
+    def test_a_server_whose_scene_stands_still_does_not_keep_a_motion_going(self):
+        """What the gate itself reads has changed, so it asks again."""
+        kept = []
+        self.liar.lie = lambda request: kept.append(self.liar.honest(request)) or clear(copy.deepcopy(kept[0]))
+        self.liar.frozen = self.server.scene().scene.version
+        self.client.send_goal(Goal(trajectory=turning(2.0, 20.0)))
+        self.assertTrue(until(self.controller.server.is_active, 5), self.client.get_goal_status_text())
+        self.reading.apply(POST)  # it alone has heard of it
+        begin = time.monotonic()
+        state, why = ends_of(self.client)
+        self.assertEqual(state, GoalStatus.ABORTED)
+        self.assertIn('not proven', why)
+        self.assertLess(time.monotonic() - begin, 5.0)
+
+    def test_an_object_that_the_gate_cannot_use_lets_nothing_pass(self):
+        broken = rospy.Publisher('/gate/reading/collision_object', CollisionObject, queue_size=5)
+        self.assertTrue(connected(broken))
+        broken.publish(sphere('broken', -1.0, (9, 9, 9)))
+        self.assertTrue(until(lambda: "object 'broken' is not used" in self.send()[1], 5))
+        self.assertEqual(self.send()[0], GoalStatus.REJECTED)
+
+    def test_curves_are_proven_too(self):
+        """The answer of ~proximity has no proof: the gate asks for one."""
+        answers = rospy.Publisher('/gate/proximity', ProximityResults, queue_size=5)
+        topic = rospy.Publisher('/gate/curve', type(bezier((0, 0, 0))), queue_size=5)
+        passed, heard = [], None
+        heard = rospy.Subscriber('/gate/clear_curve', type(bezier((0, 0, 0))), passed.append)
+        self.assertTrue(connected(answers, topic, heard))
+        curve = bezier((-1, 0.5, 2), (0, 0.7, 2), (1, 0.5, 2), id='c', radius=0.1)
+        state = self.server.scene().scene
+        row = Proximity(id='c', kind='curve', status='ok', verdict='clear', lower=1.0, upper=1.0)
+        for blocked, lie in ((False, None), (True, None), (True, self.asking())):
+            if blocked:
+                self.everywhere(sphere('post', 0.1, (0, 0.6, 2)))
+            del self.refused[:], passed[:]
+            self.liar.lie = lie
+            topic.publish(curve)
+            state.joint_state_age = 0.1  # of the robot by ~joint_states: here is no tf2
+            answers.publish(ProximityResults(source='curve', id='c', fingerprint=fingerprint(curve), query_type='tolerance', delta=DELTA,
+                                             success=True, scene=state, results=[row]))
+            self.assertTrue(until(lambda: passed or self.refused, 5))
+            self.assertEqual((len(passed), len(self.refused)), (0, 1) if blocked else (1, 0), [r.message for r in self.refused])
+        heard.unregister()
+
+
+if __name__ == '__main__':
+    run('verified')
