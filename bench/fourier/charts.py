@@ -173,10 +173,12 @@ def convergence(rows, save, legend_below):
         return None
     theta = min(key[1] for key in found)
     figure, axes = plt.subplots(figsize=(5.4, 5.4))
-    for k, n in enumerate(sorted({key[0] for key in found} - {0})):
+    samples = sorted({key[0] for key in found} - {0})
+    for k, n in enumerate(samples):
         axes.plot(*found[n, theta], color=plt.cm.viridis(0.15 + 0.2 * k), label=f'n = {n}, V alone')
-        axes.plot(*verdict[n, theta], '--', linewidth=0.9, color=plt.cm.viridis(0.15 + 0.2 * k), label=f'n = {n}, verdict')
     axes.plot(*found[0, theta], color=COLOURS['exact'], label='exact', linewidth=1.2)
+    # the finer ones lie between this one and the exact outline
+    axes.plot(*verdict[samples[0], theta], '--', linewidth=1.2, color='#c2571a', label=f'n = {samples[0]}, verdict')
     axes.set_aspect('equal')
     axes.set_title('Outline of the obstacle of an L and a T, one rotation (certified)')
     legend_below(axes)
