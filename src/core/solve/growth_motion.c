@@ -370,12 +370,17 @@ static bool is_at_waypoint(const robot_growth *o, double t) {
   return false;
 }
 
+static bool is_same_plane(vec3 a, vec3 b) {
+  return vec_norm(vec_sub(a, b)) <= SAME_PLANE * vec_norm(a);
+}
+
 /* Two planes change in the minimiser: the value there is that of both, g1 = g2, so that its derivative is the sum of
  * theirs with the parts that take away the slope. *found: either plane is alone beside it. */
 static cprox_status find_crossing(robot_growth *o, double t0, double t1, double t, motion_spot side[SIDES],
                                   double part[SIDES], bool *found) {
   const double aside = ASIDE * (t1 - t0);
   double slope[2];
+  vec3 plane[2];
   *found = true;
   for (int k = 0; k < 2; k++) {
     place p[2];
@@ -385,11 +390,13 @@ static cprox_status find_crossing(robot_growth *o, double t0, double t1, double 
       if (status < 0) return status;
       *found = *found && there > t0 && there < t1 && !p[i].tie && side[2 * k + i].segment == side[0].segment;
     }
-    *found = *found && vec_norm(vec_sub(p[0].slope, p[1].slope)) <= SAME_PLANE * vec_norm(p[0].slope);
+    *found = *found && is_same_plane(p[0].slope, p[1].slope);
+    plane[k] = p[0].slope;
     slope[k] = 2.0 * side[2 * k].slope - side[2 * k + 1].slope;
   }
-  *found = *found && slope[0] < 0.0 && slope[1] > 0.0;
-  const double before = slope[1] / (slope[1] - slope[0]);
+  const bool kink = slope[0] < 0.0 && slope[1] > 0.0;
+  *found = *found && (kink || is_same_plane(plane[0], plane[1])); /* where one joint moves no slope cancels */
+  const double before = kink ? slope[1] / (slope[1] - slope[0]) : 0.5;
   part[0] = 2.0 * before, part[1] = -before, part[2] = 2.0 * (1.0 - before), part[3] = before - 1.0;
   return CPROX_OK;
 }
