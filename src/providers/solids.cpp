@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ namespace {
 
 using Points = std::vector<cprox_vec3>;
 using Corners = std::vector<std::array<std::uint32_t, 3>>;
+
+constexpr const char *ENDLESS = "it has no end, and a gap is periodic: give a box as large as what comes near it";
 
 /* Of the pyramid round a cone. */
 constexpr int SIDES = 32;
@@ -314,12 +317,8 @@ bool isConvex(const std::vector<Point> &loop) {
   return true;
 }
 
-/* An outline, convex or not, as it is; with padding all within it of a convex one, and capsules along the edges of
- * another. */
-SolidHandle outlineSolid(const ConstraintBody::Part &part, double padding) {
-  std::vector<Point> loop = planarPoints(part.shape.vertices);
-  if (area2(loop) < 0.0) std::reverse(loop.begin(), loop.end());
-  if (isConvex(loop)) return padding > 0.0 ? polygonRound(part.body, padding) : polygonSolid(std::move(loop));
+/* A loop as it is, with padding also capsules along its edges. */
+SolidHandle loopWithRim(const std::vector<Point> &loop, double padding) {
   const SolidHandle inside = loopSolid(loop);
   if (padding == 0.0) return inside;
   Points edges;
@@ -332,6 +331,14 @@ SolidHandle outlineSolid(const ConstraintBody::Part &part, double padding) {
   rim.n = edges.size();
   rim.radius = padding;
   return makeUnion({inside, makeSolid(rim)}, {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY});
+}
+
+/* An outline, convex or not, as it is; with padding all within it of a convex one. */
+SolidHandle outlineSolid(const ConstraintBody::Part &part, double padding) {
+  std::vector<Point> loop = planarPoints(part.shape.vertices);
+  if (area2(loop) < 0.0) std::reverse(loop.begin(), loop.end());
+  if (isConvex(loop)) return padding > 0.0 ? polygonRound(part.body, padding) : polygonSolid(std::move(loop));
+  return loopWithRim(loop, padding);
 }
 
 /* ---- clouds and octrees ---- */
@@ -409,10 +416,9 @@ SolidHandle coneSolid(double height, double radius) {
 }
 
 /* Vertices at one place are one: files of triangles repeat them. */
-SolidHandle meshOf(const ShapeDescription &shape) {
+void weld(const ShapeDescription &shape, Points &vertices, Corners &triangles) {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   if (shape.dimensions.size() == 3) scale = Eigen::Vector3d(shape.dimensions.data());
-  Points vertices;
   std::vector<std::uint32_t> numbers;
   std::map<std::array<double, 3>, std::uint32_t> known;
   for (Eigen::Index i = 0; i < shape.vertices.cols(); ++i) {
@@ -422,13 +428,74 @@ SolidHandle meshOf(const ShapeDescription &shape) {
     if (is_new) vertices.push_back(toVec3(v));
     numbers.push_back(at->second);
   }
-  Corners triangles;
   const bool mirrored = scale.prod() < 0.0;
   for (Eigen::Index i = 0; i < shape.triangles.cols(); ++i) {
     const auto corner = [&](int k) { return numbers[static_cast<std::size_t>(shape.triangles(k, i))]; };
     triangles.push_back({corner(0), corner(mirrored ? 2 : 1), corner(mirrored ? 1 : 2)});
   }
+}
+
+SolidHandle meshOf(const ShapeDescription &shape) {
+  Points vertices;
+  Corners triangles;
+  weld(shape, vertices, triangles);
   return meshSolid(vertices, triangles);
+}
+
+/* What the plane z = 0 cuts out of a closed mesh, counter-clockwise: a vertex at z = 0 counts as above. A triangle that
+ * is cut leads from its edge that goes down to its edge that goes up. */
+std::vector<std::vector<Point>> sectionOf(const ShapeDescription &shape) {
+  Points vertices;
+  Corners triangles;
+  weld(shape, vertices, triangles);
+  using Edge = std::array<std::uint32_t, 2>; // above, below
+  std::map<Edge, Edge> next;
+  for (const auto &t : triangles) {
+    std::optional<Edge> down, up;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
+      const bool above = vertices[from].z >= 0.0;
+      if (above == (vertices[to].z >= 0.0)) continue;
+      if (above)
+        down = Edge{from, to};
+      else
+        up = Edge{to, from};
+    }
+    if (down && !next.emplace(*down, *up).second) throw Error("its surface is not closed");
+  }
+  if (next.empty()) throw Error("it does not meet the plane z = 0");
+  std::vector<std::vector<Point>> out;
+  while (!next.empty()) {
+    std::vector<Point> loop;
+    const Edge begin = next.begin()->first;
+    Edge at = begin;
+    for (auto step = next.begin(); step != next.end(); step = next.find(at)) {
+      const cprox_vec3 &a = vertices[at[0]], &b = vertices[at[1]];
+      const double part = a.z / (a.z - b.z);
+      const Point p = {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y)};
+      if (loop.empty() || loop.back() != p) loop.push_back(p);
+      at = step->second;
+      next.erase(step);
+    }
+    if (at != begin) throw Error("its surface is not closed");
+    if (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+    if (loop.size() < 3 || area2(loop) == 0.0) continue; // it touches the plane
+    out.push_back(std::move(loop));
+  }
+  return out;
+}
+
+/* In the plane a mesh is its section. */
+SolidHandle sectionSolid(const ShapeDescription &shape, double padding) {
+  std::vector<SolidHandle> parts;
+  for (const std::vector<Point> &loop : sectionOf(shape)) {
+    if (area2(loop) < 0.0)
+      throw Error("its section at z = 0 has a hole, or its surface looks inwards: give convex parts");
+    parts.push_back(loopWithRim(loop, padding));
+  }
+  if (parts.empty()) throw Error("it does not meet the plane z = 0");
+  return parts.size() == 1 ? parts.front()
+                           : makeUnion(parts, std::vector<cprox_pose>(parts.size(), CPROX_POSE_IDENTITY));
 }
 
 SolidHandle planarSolid(const ConstraintBody::Part &part, double padding) {
@@ -468,6 +535,8 @@ SolidHandle planarSolid(const ConstraintBody::Part &part, double padding) {
     case ShapeType::SUPERQUADRIC:
       if (shape.deformed) throw Error("FourierGap takes no deformed bodies in the plane");
       return polygonRound(part.body, padding); // its shadow is its section
+    case ShapeType::MESH: return sectionSolid(loadedShape(shape, {}), padding);
+    case ShapeType::HALFSPACE: throw Error(ENDLESS);
     default: throw Error("FourierGap has no solid for it in the plane");
   }
 }
@@ -510,6 +579,7 @@ SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding, const
     case ShapeType::HEIGHT_FIELD: return groundSolid(shape, padding);
     case ShapeType::SUPERQUADRIC: return polytopeRound(part.body, padding);
     case ShapeType::IMPLICIT: return implicitSolid(part, padding);
+    case ShapeType::HALFSPACE: throw Error(ENDLESS);
     default: throw Error("FourierGap has no solid for it in space");
   }
 }

@@ -233,6 +233,62 @@ TEST(Sections, of_bodies_along_z_are_never_clear_in_an_overlap) {
 
 /* Seed 845: a ball over hills with a floor. The truth is the distance of the triangles, by SuperquadricDistance, and the
  * height where the ball's middle is. */
+/* An L that is drawn out along z, its caps at -h and h, turned about x. */
+ShapeDescription prism(double h, double angle) {
+  const double outline[6][2] = {{0, 0}, {1, 0}, {1, 0.4}, {0.4, 0.4}, {0.4, 1}, {0, 1}};
+  ShapeDescription out;
+  out.type = ShapeType::MESH;
+  out.vertices.resize(3, 12);
+  for (int i = 0; i < 12; ++i) out.vertices.col(i) << outline[i % 6][0], outline[i % 6][1], i < 6 ? -h : h;
+  out.vertices = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()).toRotationMatrix() * out.vertices;
+  std::vector<std::array<int, 3>> triangles;
+  for (int i = 1; i < 5; ++i) {
+    triangles.push_back({0, i + 1, i});
+    triangles.push_back({6, 6 + i, 7 + i});
+  }
+  for (int i = 0; i < 6; ++i) {
+    const int j = (i + 1) % 6;
+    triangles.push_back({i, j, 6 + j});
+    triangles.push_back({i, 6 + j, 6 + i});
+  }
+  out.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      out.triangles(k, static_cast<Eigen::Index>(i)) = triangles[i][static_cast<std::size_t>(k)];
+  return out;
+}
+
+std::string refusalOf(const ShapeDescription &s, int dimension) {
+  try {
+    measureOf(s, 0.0, dimension);
+  } catch (const Error &error) {
+    return error.what();
+  }
+  return "";
+}
+
+/* A wall that is cut at an angle has the area of its outline over the cosine; the hull would have .82. */
+TEST(Sections, of_meshes_have_their_area) {
+  for (const double angle : {0.0, 0.3, -0.8})
+    EXPECT_NEAR(measureOf(prism(2.0, angle), 0.0, 2), 0.64 / std::cos(angle), 1e-12);
+  EXPECT_GT(measureOf(prism(2.0, 0.0), 0.1, 2), 0.64 + 0.4);
+  ShapeDescription through_corners = prism(2.0, 0.0); // z = 0 goes through the lower cap
+  through_corners.vertices.row(2).array() += 2.0;
+  EXPECT_EQ(refusalOf(through_corners, 2), "mesh: it does not meet the plane z = 0");
+  through_corners.vertices.row(2).array() -= 4.0;
+  EXPECT_NEAR(measureOf(through_corners, 0.0, 2), 0.64, 1e-12);
+  ShapeDescription open = prism(2.0, 0.3);
+  open.triangles.conservativeResize(3, open.triangles.cols() - 1);
+  EXPECT_EQ(refusalOf(open, 2), "mesh: its surface is not closed");
+  ShapeDescription inward = prism(2.0, 0.3);
+  inward.triangles.row(0).swap(inward.triangles.row(1));
+  EXPECT_EQ(refusalOf(inward, 2),
+            "mesh: its section at z = 0 has a hole, or its surface looks inwards: give convex parts");
+  for (const int dimension : {2, 3})
+    EXPECT_EQ(refusalOf(shape(ShapeType::HALFSPACE, {0, 0, 1, 0}), dimension),
+              "halfspace: it has no end, and a gap is periodic: give a box as large as what comes near it");
+}
+
 TEST(HeightFields, are_never_clear_in_an_overlap) {
   ProviderSet gaps({{"gap", "curve_proximity/FourierGap", {{"samples", 17}}}}),
       distances({{"distance", "curve_proximity/SuperquadricDistance", {{"epsilon", 1e-9}}}});
