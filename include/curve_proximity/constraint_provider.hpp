@@ -131,6 +131,10 @@ struct ConstraintMotion {
   /** Null, or all that moves at the same time: a value is then the clearance from this, too. */
   const Movers *movers = nullptr;
   const MovingRobot *robot = nullptr; /**< with movers: the one of them that moves along the trajectory */
+
+  /** false: the request names no providers, so that one that is second to another for trajectories may throw
+   *  DoesNotApply. */
+  bool is_named = true;
 };
 
 /** One clearance of a robot along its trajectory. Of the members of ConstraintValue, t is in seconds; a is by a rigid

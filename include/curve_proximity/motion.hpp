@@ -221,6 +221,13 @@ struct ClearanceRow {
  *  refuses. Cost: about 1.5 distances. */
 ClearanceRow clearanceGradient(const RobotMotion &motion, RobotPairs pairs, const Query &query, Workspace &workspace);
 
+/** The least growth distance of the robot along its motion and its derivatives (cprox_robot_growth()): 1 is contact,
+ *  below 1 the two overlap. answer.result.lower and upper are bounds of that, without a unit; its witness points are
+ *  where both touch once they are scaled. Meshes have none: with query.options.max_lod of CPROX_LOD_HULL their hulls
+ *  answer, which bound no growth distance of the meshes from above. Throws Error as clearanceGradient(), and for links
+ *  and objects that are not convex, or have padding. */
+ClearanceRow growthGradient(const RobotMotion &motion, RobotPairs pairs, const Query &query, Workspace &workspace);
+
 /** What rows clearanceRows() gives. */
 struct RowLimits {
   double horizon = 0.0;       /**< [m] >= 0, finite: rows of what comes within it */

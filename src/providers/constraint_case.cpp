@@ -196,9 +196,10 @@ void askAboutMotion(const LoadedProvider &loaded, const ConstraintCase &describe
     throw Error("the provider answers for scenes in which nothing moves beside the robot");
   row.motion.emplace();
   const Clock::time_point begin = Clock::now();
-  constraint->evaluate({motion.trajectory, *asked.motion, described.stop, described.stop_user,
-                        asked.movers ? &*asked.movers : nullptr, asked.robot ? &*asked.robot : nullptr},
-                       workspace, *row.motion);
+  constraint->evaluate(
+      {motion.trajectory, *asked.motion, described.stop, described.stop_user, asked.movers ? &*asked.movers : nullptr,
+       asked.robot ? &*asked.robot : nullptr, !described.providers.empty()},
+      workspace, *row.motion);
   row.microseconds = microsecondsSince(begin);
   summarise(row);
 }

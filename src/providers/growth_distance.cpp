@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* curve_proximity/GrowthDistance: by how much convex bodies, each scaled about its centre, may grow until they touch;
- * along a curve that carries one side, the least of that. It is as smooth in contact and deep inside as apart. */
+ * along a curve that carries one side, and of a robot along a joint trajectory, the least of that. It is as smooth in
+ * contact and deep inside as apart. */
 #include <pluginlib/class_list_macros.hpp>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <limits>
 
 #include "distance_constraints.h"
+#include "motion_row.h"
 #include "outline.h"
 
 namespace curve_proximity {
@@ -24,6 +26,7 @@ struct Parameters {
   double level = 1.0;
   double smoothing = 0.0; /* [rad] 0: none */
   Meshes meshes = Meshes::EXACT;
+  RobotPairs against = RobotPairs::WHOLE; /* along a joint trajectory */
 };
 
 /* The axes that b is turned about for a smoothing, in its own frame: the corners of a cube that lies along no face or
@@ -231,6 +234,34 @@ class GrowthConstraint : public Constraint {
   const bool has_hulls_, along_curve_;
 };
 
+class GrowthMotion : public MotionConstraint {
+ public:
+  explicit GrowthMotion(const Parameters &parameters) : parameters_(parameters) {}
+
+  void evaluate(const ConstraintMotion &asked, Workspace &workspace, MotionValue &out) const override {
+    if (!asked.is_named) throw DoesNotApply("RobotDistance answers about joint trajectories");
+    Query query;
+    query.options = parameters_.options;
+    query.options.stop = asked.stop;
+    query.options.stop_user = asked.stop_user;
+    query.options.max_lod = parameters_.meshes == Meshes::HULL ? CPROX_LOD_HULL : CPROX_LOD_MESH;
+    ClearanceRow found = growthGradient(asked.motion, parameters_.against, query, workspace);
+    const cprox_result &result = found.answer.result;
+    out = MotionValue();
+    out.status = result.status;
+    if (out.status != CPROX_OK || found.answer.gap) out.message = found.answer.message;
+    const double value = result.upper < INFINITE ? result.upper : result.lower; // a hull's bounds nothing from above
+    out.rows.push_back(motionRow(std::move(found), value, parameters_.level));
+    out.bounded = true;
+    out.value = out.rows.front().value;
+    out.lower = out.rows.front().lower;
+    out.upper = out.rows.front().upper;
+  }
+
+ private:
+  const Parameters parameters_;
+};
+
 } // namespace
 
 class GrowthDistance : public ConstraintProvider {
@@ -241,6 +272,7 @@ class GrowthDistance : public ConstraintProvider {
     parameters_.level = reader.number("level", 1.0, 0.0);
     parameters_.smoothing = reader.number("smoothing", 0.0, 0.0);
     parameters_.meshes = readMeshes(reader);
+    parameters_.against = readAgainst(reader);
     reader.end();
     if (parameters_.smoothing > 0.1) throw Error("parameter smoothing: it is an angle of at most 0.1 rad");
   }
@@ -250,6 +282,12 @@ class GrowthDistance : public ConstraintProvider {
       throw DoesNotApply(pair.along_curve ? "CurveDistance answers about curves"
                                           : "SuperquadricDistance answers about standing bodies");
     return std::make_unique<GrowthConstraint>(parameters_, pair);
+  }
+
+  std::unique_ptr<const MotionConstraint> prepareMotion(const PreparedRobot & /*robot*/) const override {
+    if (parameters_.smoothing > 0.0)
+      throw Error("parameter smoothing: it is for standing bodies, not for trajectories");
+    return std::make_unique<GrowthMotion>(parameters_);
   }
 
  private:

@@ -7,7 +7,7 @@
 #include <pluginlib/class_list_macros.hpp>
 #include <utility>
 
-#include <curve_proximity/constraint_provider.hpp>
+#include "motion_row.h"
 
 namespace curve_proximity {
 namespace {
@@ -79,35 +79,10 @@ class RobotDistanceConstraint : public MotionConstraint {
 
  private:
   MotionRow toRow(ClearanceRow &&found) const {
-    MotionRow row;
-    const cprox_result &result = found.answer.result;
-    ClearanceGradient &gradient = found.gradient;
-    row.status = result.status;
     /* where meshes overlap the gradient is that of their hulls, and so is the value */
-    row.value = (result.status == CPROX_OVERLAP ? result.lower : result.upper) - parameters_.margin;
-    row.bounded = true;
-    row.lower = result.lower - parameters_.margin;
-    row.upper = result.upper - parameters_.margin;
-    row.valid = gradient.valid;
-    row.reason = std::move(gradient.reason);
-    row.a = {gradient.base_linear, gradient.base_angular};
-    row.b = {gradient.object_linear, gradient.object_angular};
-    row.t = result.t;
-    row.has_points = !found.answer.b.empty();
-    row.witness_a = toEigen(result.witness_mover);
-    row.witness_b = toEigen(result.witness_obstacle);
-    row.normal = toEigen(result.normal);
-    row.kind = std::move(found.answer.kind);
-    row.side_a = std::move(found.answer.a);
-    row.side_b = std::move(found.answer.b);
-    row.t0 = found.t0;
-    row.t1 = found.t1;
-    row.positions = std::move(gradient.positions);
-    row.velocities = std::move(gradient.velocities);
-    row.accelerations = std::move(gradient.accelerations);
-    row.duration = gradient.duration;
-    row.start = gradient.start;
-    return row;
+    const cprox_result &result = found.answer.result;
+    const double value = result.status == CPROX_OVERLAP ? result.lower : result.upper;
+    return motionRow(std::move(found), value, parameters_.margin);
   }
 
   /* A row against all that stands and moves, and one of the robot with itself. */
@@ -219,10 +194,7 @@ class RobotDistance : public ConstraintProvider {
  public:
   void initialise(const ParameterMap &parameters) override {
     ParameterReader reader(parameters);
-    const std::string against = reader.word("against", "whole", {"environment", "self", "whole"});
-    parameters_.against = against == "whole"  ? RobotPairs::WHOLE
-                          : against == "self" ? RobotPairs::SELF
-                                              : RobotPairs::ENVIRONMENT;
+    parameters_.against = readAgainst(reader);
     parameters_.limits.horizon = reader.number("horizon", 0.0, 0.0);
     parameters_.smoothing = reader.number("smoothing", 0.0, 0.0);
     if (parameters_.smoothing > 0.0 && !(parameters_.limits.horizon > 0.0))

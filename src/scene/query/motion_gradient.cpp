@@ -158,6 +158,86 @@ void checkLimits(const RowLimits &limits) {
     throw Error("the horizon is " + std::to_string(limits.horizon) + ": it must be at least 0 and finite");
 }
 
+/* Whether a mesh is asked about, as what it is. */
+void refuseMeshes(const Asked &asked, const Query &query) {
+  if (query.options.max_lod != CPROX_LOD_MESH) return;
+  const auto refuse = [](const std::string &name) {
+    throw Error("'" + name + "' is a mesh, which has no growth distance: ask about its hull (max_lod)");
+  };
+  const std::vector<MovingGeometry> &geometries = asked.data.kinematics->geometries;
+  const auto refuseGeometry = [&](std::int32_t i) {
+    const MovingGeometry &geometry = geometries[static_cast<std::size_t>(i)];
+    if (geometry.is_mesh) refuse(geometry.owner());
+  };
+  for (const std::vector<cprox_robot_pair> *pairs : {&asked.pairs, &asked.self_pairs}) {
+    const bool self = asked.against == RobotPairs::SELF || pairs == &asked.self_pairs;
+    for (const cprox_robot_pair &pair : *pairs) {
+      refuseGeometry(pair.geometry);
+      if (self) refuseGeometry(pair.other);
+      if (self) continue;
+      const Item &item = asked.data.snapshot->world().items()[asked.items[static_cast<std::size_t>(pair.other)]];
+      if (item.shape->is_mesh) refuse(*item.owner);
+    }
+  }
+}
+
+/* The query of the core that gives one row. */
+using AskRow = cprox_status (*)(const Asked &asked, const cprox_options &options, Workspace &workspace,
+                                cprox_result &result, cprox_motion_gradient &gradient, double &steepest);
+
+cprox_status askDistance(const Asked &asked, const cprox_options &options, Workspace &workspace, cprox_result &result,
+                         cprox_motion_gradient &gradient, double & /*steepest*/) {
+  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  return cprox_robot_distance_gradient(obstacles.get(), asked.mover(), &options, workspace.get(), &result, &gradient);
+}
+
+cprox_status askGrowth(const Asked &asked, const cprox_options &options, Workspace &workspace, cprox_result &result,
+                       cprox_motion_gradient &gradient, double &steepest) {
+  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  cprox_motion_growth found{};
+  const cprox_status status =
+      cprox_robot_growth(obstacles.get(), asked.mover(), &options, workspace.get(), &found, &gradient);
+  if (status < 0) return status;
+  result.status = status;
+  result.lower = found.growth.lower;
+  result.upper = found.growth.upper;
+  result.normal = found.growth.normal;
+  result.distance_queries = found.growth.pairs;
+  result.t = found.t;
+  result.mover_part = found.mover_part;
+  result.obstacle_index = found.obstacle_index;
+  result.witness_mover = result.witness_obstacle = found.touch;
+  steepest = found.steepest;
+  return status;
+}
+
+ClearanceRow askRow(const RobotMotion &motion, Asked asked, const cprox_options &options, const Query &query,
+                    AskRow ask, Workspace &workspace) {
+  const Clock::time_point start = Clock::now();
+  const Arrays arrays(asked.data);
+  std::vector<double> memory(arrays.size());
+  cprox_motion_gradient gradient{};
+  arrays.lend(memory.data(), gradient);
+  gradient.t = std::numeric_limits<double>::quiet_NaN();
+  cprox_result result{};
+  result.obstacle_index = -1;
+  std::string reason = "there is nothing to measure against";
+  if (asked.pairs.empty()) {
+    answerNothing(query, result);
+  } else {
+    double steepest = 1.0;
+    const cprox_status status = ask(asked, options, workspace, result, gradient, steepest);
+    if (status < 0) throw Error(workspace.reason(), status);
+    asked.rounding *= steepest; // [m] become what they change of the value
+    reason = workspace.reason();
+  }
+  ClearanceRow row = toRow(asked, result, gradient, reason, query, workspace, start);
+  const std::array<double, 2> domain = motion.domain();
+  row.t0 = domain[0];
+  row.t1 = domain[1];
+  return row;
+}
+
 } // namespace
 
 Eigen::MatrixXd toMatrix(const TrajectoryShape &shape, const double *values) {
@@ -172,32 +252,17 @@ Eigen::MatrixXd toMatrix(const TrajectoryShape &shape, const double *values) {
 
 ClearanceRow clearanceGradient(const RobotMotion &motion, RobotPairs against, const Query &query,
                                Workspace &workspace) {
-  const Clock::time_point start = Clock::now();
   checkDistances(against, query);
   const Asked asked = askedOf(motion, against, query);
-  const Arrays arrays(asked.data);
-  std::vector<double> memory(arrays.size());
-  cprox_motion_gradient gradient{};
-  arrays.lend(memory.data(), gradient);
-  gradient.t = std::numeric_limits<double>::quiet_NaN();
-  cprox_result result{};
-  result.obstacle_index = -1;
-  std::string reason = "there is nothing to measure against";
-  if (asked.pairs.empty()) {
-    answerNothing(query, result);
-  } else {
-    const cprox_options options = withoutRounding(query.options, asked.rounding);
-    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
-    const cprox_status status =
-        cprox_robot_distance_gradient(obstacles.get(), asked.mover(), &options, workspace.get(), &result, &gradient);
-    if (status < 0) throw Error(workspace.reason(), status);
-    reason = workspace.reason();
-  }
-  ClearanceRow row = toRow(asked, result, gradient, reason, query, workspace, start);
-  const std::array<double, 2> domain = motion.domain();
-  row.t0 = domain[0];
-  row.t1 = domain[1];
-  return row;
+  return askRow(motion, asked, withoutRounding(query.options, asked.rounding), query, askDistance, workspace);
+}
+
+ClearanceRow growthGradient(const RobotMotion &motion, RobotPairs against, const Query &query, Workspace &workspace) {
+  checkDistances(against, query);
+  if (query.second_opinion) throw Error("there is no second opinion about growth distances");
+  const Asked asked = askedOf(motion, against, query);
+  refuseMeshes(asked, query);
+  return askRow(motion, asked, query.options, query, askGrowth, workspace);
 }
 
 ClearanceRows clearanceRows(const RobotMotion &motion, RobotPairs against, const RowLimits &limits, const Query &query,
