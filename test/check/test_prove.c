@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The checker as a library: one problem and one certificate in memory, by any number of threads. */
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "prove.h"
+#include "support/cases.h"
+#include "support/of_list.h"
+#include "support/queries.h"
+
+enum { THREADS = 4, QUERIES = 30, MOST = 65536 };
+
+/* A random query that is apart, its text, and a certificate of it. */
+typedef struct sample {
+  char *text;
+  size_t length, size;
+  unsigned char bytes[MOST];
+  double delta;
+} sample;
+
+static char *text_of(const asked *q, int movers, size_t *length) {
+  char *text = NULL;
+  FILE *out = open_memstream(&text, length);
+  asked_write_targets(q, out);
+  for (int i = 0; i < movers; i++) asked_write_mover(q, "curve", out);
+  fclose(out);
+  return text;
+}
+
+static bool make_sample(rng *r, int movers, cprox_workspace *ws, sample *out) {
+  asked q;
+  asked_random(&q, r, (asked_kinds){.elements = true}, 1.0, 2.0, ws);
+  cprox_certificate *c = cprox_certificate_create();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.certificate = c;
+  cprox_result result;
+  const cprox_mover along = cprox_tube_along(q.mover.curve, q.radius);
+  const bool asked_well = distance_of_list(along, q.targets, q.n, &options, ws, &result, NULL) >= 0;
+  const cprox_certificate_info info = cprox_certificate_get_info(c);
+  const bool apart = asked_well && info.claim == CPROX_CLAIM_APART && info.size <= MOST;
+  if (apart) {
+    memcpy(out->bytes, info.bytes, info.size);
+    out->size = info.size;
+    out->delta = info.delta;
+    out->text = text_of(&q, movers, &out->length);
+  }
+  cprox_certificate_free(c);
+  asked_free(&q);
+  return apart;
+}
+
+static sample *next_sample(rng *r, int movers, cprox_workspace *ws) {
+  static sample made;
+  while (!make_sample(r, movers, ws, &made)) {
+  }
+  return &made;
+}
+
+/* Seed 1. */
+CASE(a_certificate_in_memory_proves_what_it_claims) {
+  rng r = rng_seed(1);
+  cprox_workspace *ws = cprox_workspace_create();
+  for (int i = 0; i < QUERIES; i++) {
+    const sample *s = next_sample(&r, 1, ws);
+    const proof found = prove(s->text, s->length, s->bytes, s->size);
+    if (!found.apart) fail_msg("refused: %s", found.fault);
+    assert_true(found.delta == s->delta && !found.near && found.fault[0] == 0);
+    free(s->text);
+  }
+  cprox_workspace_free(ws);
+}
+
+/* Seed 2. */
+CASE(what_is_cut_off_or_about_another_query_proves_nothing) {
+  rng r = rng_seed(2);
+  cprox_workspace *ws = cprox_workspace_create();
+  for (int i = 0; i < QUERIES; i++) {
+    const sample *s = next_sample(&r, 1, ws);
+    for (size_t size = 0; size < s->size; size += 1 + s->size / 20) {
+      const proof cut = prove(s->text, s->length, s->bytes, size);
+      assert_true(!cut.apart && !cut.near && cut.fault[0] != 0);
+    }
+    for (size_t length = 0; length < s->length - 1; length += 1 + s->length / 20) {
+      const proof cut = prove(s->text, length, s->bytes, s->size);
+      assert_true(!cut.apart || cut.delta == s->delta); /* the last number may have lost digits that are 0 */
+      assert_true(cut.apart == (cut.fault[0] == 0));
+    }
+    free(s->text);
+  }
+  const sample *two = next_sample(&r, 2, ws);
+  const proof found = prove(two->text, two->length, two->bytes, two->size);
+  assert_false(found.apart);
+  assert_string_equal(found.fault, "the problem has more than one mover");
+  free(two->text);
+  cprox_workspace_free(ws);
+}
+
+static void *check_often(void *data) {
+  const sample *s = data;
+  size_t *good = calloc(1, sizeof *good);
+  for (int i = 0; i < QUERIES; i++) {
+    const proof found = prove(s->text, s->length, s->bytes, s->size);
+    *good += found.apart && found.delta == s->delta;
+  }
+  return good;
+}
+
+/* Seeds from 3 on: a query a thread. */
+CASE(threads_check_at_the_same_time) {
+  static sample samples[THREADS];
+  pthread_t threads[THREADS];
+  cprox_workspace *ws = cprox_workspace_create();
+  for (unsigned k = 0; k < THREADS; k++) {
+    rng r = rng_seed(3 + k);
+    while (!make_sample(&r, 1, ws, &samples[k])) {
+    }
+  }
+  for (int k = 0; k < THREADS; k++) assert_int_equal(pthread_create(&threads[k], NULL, check_often, &samples[k]), 0);
+  for (int k = 0; k < THREADS; k++) {
+    void *good = NULL;
+    assert_int_equal(pthread_join(threads[k], &good), 0);
+    assert_int_equal(*(size_t *)good, QUERIES);
+    free(good);
+    free(samples[k].text);
+  }
+  cprox_workspace_free(ws);
+}
+
+int main(void) {
+  return cases_run(NULL, NULL);
+}
