@@ -310,7 +310,7 @@ py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool s
 } // namespace
 
 void addMotions(py::module &module) {
-  py::class_<RobotMotion, std::shared_ptr<RobotMotion>> motion(
+  MotionClass motion(
       module, "Motion",
       "The robot of a scene along a joint trajectory, in the scene as it was when the motion was made.\n"
       "links, objects of its queries: of these alone, names of links() and of the scene; with self_collision pairs of "
@@ -436,6 +436,7 @@ void addMotions(py::module &module) {
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
            py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("moving_only") = false,
            "The k pairs that come closest, nearest first; each as distance() gives it.");
+  addRobust(motion);
 }
 
 } // namespace curve_proximity::python

@@ -134,5 +134,10 @@ using SceneClass = py::class_<PythonScene, std::shared_ptr<PythonScene>>;
 /** Its methods that ask about curves. */
 void addCurveQueries(SceneClass &scene);
 
+using MotionClass = py::class_<RobotMotion, std::shared_ptr<RobotMotion>>;
+
+/** Its methods about errors, persons and objects that may be moved. */
+void addRobust(MotionClass &motion);
+
 } // namespace curve_proximity::python
 #endif

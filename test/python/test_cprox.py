@@ -688,6 +688,39 @@ class Robots(unittest.TestCase):
         return cprox.Motion(scene, self.joints, self.times, self.positions, self.velocities,
                             rest=self.file['fixed_joints'])
 
+    def test_errors_persons_and_moved_objects_are_asked_about(self):
+        """A ball: each point of it is off by 1 cm, which costs 1 cm; it may be moved by the distance towards the robot."""
+        scene = cprox.Scene(self.robot)
+        scene.add('ball', 'sphere', [.1], cprox.transform([.6, .5, 1.2]))
+        motion = self.motion(scene)
+        least = motion.distance()['result'].upper
+        robust = motion.robust({'sensor': .01}, delta=.001)
+        self.assertEqual(robust['result'].verdict, 'clear')
+        self.assertLessEqual(robust['certified_scale'], (least - .001) / .01 + 1e-9)
+        self.assertGreater(robust['certified_scale'], .9 * (least - .001) / .01)
+        profile = motion.robust_profile(numpy.linspace(*motion.domain, 5), {'sensor': .01})
+        self.assertAlmostEqual(profile['lower'].min(), least - .01, places=5)
+        for wrong in ({'sensors': 1}, {'every_joint': {'track': 1}}, {'joints': {'elbow': {'tracking': 1}}}):
+            with self.assertRaises(ValueError):
+                motion.robust(wrong)
+
+        separation = {'person': {'speed': 1.6}, 'robot': {'reaction_time': 0, 'stopping_time': 1}, 'intrusion': .02}
+        limits = motion.speed_limits(separation, ['ball'], intervals=200)
+        self.assertEqual(limits['override'].min(), limits['constant_override'])
+        self.assertTrue((limits['override'] <= (limits['lower'] - .02) / 1.6).all())
+        self.assertAlmostEqual(limits['constant_override'], (least - .02) / 1.6, places=3)
+        with self.assertRaisesRegex(ValueError, 'person has no .speed'):
+            motion.speed_limits(dict(separation, person={}), ['ball'])
+
+        margins = {row['direction']: row for row in motion.margins(within=2)}
+        self.assertEqual(len(margins), 7)
+        self.assertAlmostEqual(margins['any']['free'], least, places=5)
+        for row in margins.values():
+            self.assertGreaterEqual(row['free'], margins['any']['free'] - 1e-6)
+            moved = cprox.Scene(self.robot)
+            moved.add('ball', 'sphere', [.1], cprox.transform(numpy.array([.6, .5, 1.2]) + (row['free'] - 1e-6) * row['toward']))
+            self.assertEqual(self.motion(moved).collision()['result'].verdict, 'clear')
+
     def test_the_distance_to_a_ball_is_no_more_than_that_of_any_sample(self):
         scene = cprox.Scene(self.robot)
         scene.add('ball', 'sphere', [.1], cprox.transform([.6, .5, 1.2]))

@@ -208,6 +208,16 @@ class Motion:
     def nearest_pairs(self, k: int = ..., within: float = ..., self_collision: bool = ...,
                       epsilon: float = ..., links: Sequence[str] = ..., objects: Sequence[str] = ...,
                       allow_empty: bool = ..., moving_only: bool = ...) -> List[Dict[str, Any]]: ...
+    def robust(self, errors: Dict[str, Any], delta: float = ..., self_collision: bool = ..., epsilon: float = ...,
+               max_nodes: int = ..., links: Sequence[str] = ..., objects: Sequence[str] = ...,
+               allow_empty: bool = ...) -> Dict[str, Any]: ...
+    def robust_profile(self, breaks: Sequence[float], errors: Dict[str, Any], self_collision: bool = ...,
+                       epsilon: float = ..., links: Sequence[str] = ..., objects: Sequence[str] = ...,
+                       allow_empty: bool = ...) -> Dict[str, Any]: ...
+    def speed_limits(self, separation: Dict[str, Any], objects: Sequence[str], intervals: int = ...,
+                     epsilon: float = ..., links: Sequence[str] = ...) -> Dict[str, Any]: ...
+    def margins(self, within: float = ..., delta: float = ..., epsilon: float = ..., links: Sequence[str] = ...,
+                objects: Sequence[str] = ...) -> List[Dict[str, Any]]: ...
 
 class Movers:
     def __init__(self, scene: Scene, motions: Mapping[str, Motion], starts: Mapping[str, float] = ...,
