@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "curve_query/newton_steps.h"
+
 /* ---- measuring ---- */
 
 /* The nearer one; once there is contact, the earlier one. */
@@ -44,7 +46,7 @@ static double nearest_on(const curve_side *side, const curve_interval *at, vec3 
     const double slope = vec_dot(w, first), speed2 = vec_norm2(first), bend = speed2 + vec_dot(w, second);
     const double step = -slope / (bend > 0.25 * speed2 ? bend : speed2);
     const double next = fmin(fmax(s + step, at->a), at->b);
-    if (!(fabs(next - s) > 1e-15)) break; /* converged, at an end, or a curve that stands still */
+    if (!(fabs(next - s) > NEWTON_STANDS)) break; /* converged, at an end, or a curve that stands still */
     s = next;
   }
   return s;

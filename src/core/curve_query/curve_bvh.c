@@ -422,12 +422,15 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   return CPROX_OK;
 }
 
+/* Of a node: a cut nearer to one of its ends leaves a child that is so many times shorter, and settles nothing. */
+#define WELL_INSIDE 1e-9
+
 /* Where the best point cuts the node's own parameter, or a half where it does not lie well inside. */
 static double cut_of(const curve_tree *o, const search_node *node) {
   const curve_interval *at = &curve_tree_known(node)->at;
   if (!o->found || curve_side_piece(&o->side, at) != o->best.piece) return 0.5;
   const double s = (o->best.s - at->a) / (at->b - at->a);
-  return s > 1e-9 && s < 1.0 - 1e-9 ? s : 0.5;
+  return s > WELL_INSIDE && s < 1.0 - WELL_INSIDE ? s : 0.5;
 }
 
 static int split(void *self, search_node *node, search_node *child) {

@@ -105,12 +105,15 @@ static bool holds_best(const curve_convex *o, const search_node *node) {
          o->best.s <= payload->at.b;
 }
 
+/* Of a node: a cut nearer to one of its ends leaves a child that is so many times shorter, and settles nothing. */
+#define WELL_INSIDE 1e-12
+
 /* Where the best point cuts the node's own parameter, or -1 where it does not lie well inside. */
 static double best_inside(const curve_convex *o, const search_node *node) {
   const curve_convex_node *payload = curve_convex_known(node);
   if (o->incumbent == 0 || !holds_best(o, node)) return -1.0;
   const double s = (o->best.s - payload->at.a) / (payload->at.b - payload->at.a);
-  return s > 1e-12 && s < 1.0 - 1e-12 ? s : -1.0;
+  return s > WELL_INSIDE && s < 1.0 - WELL_INSIDE ? s : -1.0;
 }
 
 /* Of a curve that is known by its arc length, whether the best point, once refined, is an end of the interval: 1 its

@@ -124,8 +124,11 @@ static double best_within(const curve_curve *o, const search_node *node, int k) 
   return s >= 0.0 && s <= 1.0 ? s : -1.0;
 }
 
+/* Of a node: a cut nearer to one of its ends leaves a child that is so many times shorter, and settles nothing. */
+#define WELL_INSIDE 1e-12
+
 static bool is_inner(double s) {
-  return s > 1e-12 && s < 1.0 - 1e-12;
+  return s > WELL_INSIDE && s < 1.0 - WELL_INSIDE;
 }
 
 /* Both points lie in the node, and at least one of them inside: the node is to be cut there. */

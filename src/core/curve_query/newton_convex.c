@@ -1,7 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "curve_query/newton_convex.h"
 
+#include "curve_query/newton_steps.h"
+
 enum { MAX_ROUNDS = 6, MAX_STEPS = 8 };
+
+/* A secant is drawn through points that are farther apart than this: nearer ones differ by the rounding of distances. */
+#define NEWTON_SECANT 1e-10
+
+/* A measured distance this near to the predicted one, by epsilon, is that of the same feature. */
+#define SAME_FEATURE 1e-3
 
 curve_jet newton_jet(const curve_convex *o, const double *points, double s) {
   const size_t degree = o->side.curve->degree;
@@ -73,11 +81,10 @@ static double descend(const curve_convex *o, const double *points, const curve_s
     const double wanted = bend > 0.0 ? -slope / bend : (slope > 0.0 ? -step : step);
     const double next = clamp(clamp(s + wanted, s - step, s + step), o->side.part.a, o->side.part.b);
     const double moved = fabs(next - s);
-    if (moved < 1e-15) break;
+    if (moved < NEWTON_STANDS) break;
     s = next;
     *j = newton_jet(o, points, s);
-    /* quadratic convergence: what such a step leaves is below rounding */
-    if (moved < 1e-9) break;
+    if (moved < NEWTON_CONVERGED) break;
   }
   return s;
 }
@@ -159,7 +166,7 @@ static cprox_status refine_by_secants(curve_convex *o, double longest) {
   for (int i = 0; i < MOST_SECANTS; i++) {
     const double wanted = bend > 0.0 ? -slope / bend : (slope > 0.0 ? -longest : longest), s = sample.s;
     const double next = clamp(s + clamp(wanted, -longest, longest), least, most);
-    if (!(fabs(next - s) > 1e-10)) break; /* also where a slope is not a number */
+    if (!(fabs(next - s) > NEWTON_SECANT)) break; /* also where a slope is not a number */
     const uint32_t before = o->incumbent;
     search_best bound = {.upper = INFINITY};
     const cprox_status status = curve_convex_measure(o, sample.piece, next, curve_side_point(&o->side, next),
@@ -198,7 +205,7 @@ cprox_status newton_refine(curve_convex *o, const double *points, curve_jet *j, 
     if (o->best_bound.upper <= o->effort.good_enough) return CPROX_OK;
 
     /* the feature held on to is the nearest one here too: nothing more to find */
-    const bool same_feature = fabs(sample->near.distance - predicted) <= bound.slack + 1e-3 * o->effort.epsilon;
+    const bool same_feature = fabs(sample->near.distance - predicted) <= bound.slack + SAME_FEATURE * o->effort.epsilon;
     if (same_feature || (!better && round > 0)) return CPROX_OK;
     step *= 0.5;
     from = sample;

@@ -1,7 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "curve_query/newton_curves.h"
 
+#include "curve_query/newton_steps.h"
+
 enum { MAX_STEPS = 16 };
+
+/* The squared sine of an angle below which chords are parallel: less is the rounding of their products. */
+#define PARALLEL 1e-14
+
+/* The square of a gap, by that of the chords' lengths, whose direction is noise: the rounding of points, squared. */
+#define NO_GAP 1e-24
+
+/* Parallel tangents: so much is added to the squares of the speeds that the system stays regular. */
+#define REGULAR 1e-9
 
 static double clamp(double x, double least, double most) {
   return x < least ? least : x > most ? most : x;
@@ -14,7 +25,7 @@ vec3 newton_curves_of_chords(const vec3 first[2], const vec3 second[2], double f
   /* the nearest points of the lines, then of the segments (C. Ericson, Real-Time Collision Detection, 2005, 5.1.9);
    * parallel ones meet at their middle */
   const double determinant = dd * ee - de * de;
-  double s = determinant > 1e-14 * dd * ee ? clamp((de * er - dr * ee) / determinant, 0.0, 1.0) : 0.5;
+  double s = determinant > PARALLEL * dd * ee ? clamp((de * er - dr * ee) / determinant, 0.0, 1.0) : 0.5;
   double t = ee > 0.0 ? (de * s + er) / ee : 0.5;
   if (t < 0.0 || t > 1.0) {
     t = clamp(t, 0.0, 1.0);
@@ -24,7 +35,7 @@ vec3 newton_curves_of_chords(const vec3 first[2], const vec3 second[2], double f
   fraction[1] = t;
 
   vec3 n = vec_sub(vec_axpy(first[0], s, d), vec_axpy(second[0], t, e));
-  if (vec_norm2(n) <= 1e-24 * (dd + ee)) n = vec_cross(d, e);
+  if (vec_norm2(n) <= NO_GAP * (dd + ee)) n = vec_cross(d, e);
   const double length = vec_norm(n);
   return length > 0.0 ? vec_scale(1.0 / length, n) : vec(0, 0, 0);
 }
@@ -132,7 +143,7 @@ static void newton_step(const slopes *k, const double s[2], double step[2]) {
   }
   double hss = k->hss, htt = k->htt, determinant = hss * htt - k->cross * k->cross;
   if (!(hss > 0.0 && determinant > 0.0)) {
-    hss = k->ss * (1.0 + 1e-9), htt = k->tt * (1.0 + 1e-9); /* parallel tangents: kept regular */
+    hss = k->ss * (1.0 + REGULAR), htt = k->tt * (1.0 + REGULAR);
     determinant = hss * htt - k->cross * k->cross;
   }
   if (!(determinant > 0.0)) return;
@@ -165,10 +176,9 @@ bool newton_curves_descend(curve_side side[2], const vec3 *shift, curve_meeting 
       moved = fmax(moved, fabs(next - s[k]));
       s[k] = next;
     }
-    if (moved < 1e-15) break;
+    if (moved < NEWTON_STANDS) break;
     x = jet_at(&side[0], s[0]), y = jet_at(&side[1], s[1]);
-    /* quadratic convergence: what such a step leaves is below rounding */
-    if (moved < 1e-9) break;
+    if (moved < NEWTON_CONVERGED) break;
   }
   if (s[0] == meeting->s[0] && s[1] == meeting->s[1]) return false;
   for (int k = 0; k < 2; k++) {
