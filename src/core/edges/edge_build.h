@@ -40,6 +40,11 @@ static inline void edge_set_point(float *points, size_t i, vec3 p) {
   }
 }
 
+static inline vec3 edge_point(const float *points, size_t i) {
+  const float *p = points + edge_point_place(i);
+  return vec((double)p[0], (double)p[EDGE_BLOCK], (double)p[2 * EDGE_BLOCK]);
+}
+
 /* Arrays in one block; without a block their sizes are added up. */
 typedef struct edge_arena {
   char *at;

@@ -8,12 +8,6 @@
 /* Coordinates in lanes are no larger [m]. */
 #define EDGE_REACH_MOST 1e6
 
-static bool exchanges_axes(const float r[9]) {
-  for (int k = 0; k < 9; k++)
-    if (r[k] != 0.0f && fabsf(r[k]) != 1.0f) return false;
-  return true;
-}
-
 /* Corners that are looked at one by one, at most. */
 enum { MOST_CORNERS = 256 };
 
@@ -92,7 +86,7 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
   }
   int32_t from[3] = {0};
   float sign[3];
-  edge_snap(f.r, o.r, from, sign);
+  const bool exchanges = edge_snap(f.r, o.r, from, sign);
   if (o.shape == EDGE_HALFSPACE) {
     const vec3 n = rotate(f.r, vec(size[0], size[1], size[2]));
     o.r[0] = (float)n.x, o.r[3] = (float)n.y, o.r[6] = (float)n.z;
@@ -109,7 +103,7 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
                             (14.0 * far + 4.0 * (fabs(sizes[0]) + fabs(sizes[1]) + fabs(sizes[2]) + margin)) +
                         ROUND_WORLD * (world + vec_norm(p));
   o.p[0] = (float)seen.x, o.p[1] = (float)seen.y, o.p[2] = (float)seen.z;
-  if (o.shape == EDGE_BOX && exchanges_axes(o.r)) {
+  if (o.shape == EDGE_BOX && exchanges) {
     o.shape = EDGE_ALIGNED_BOX;
     double turned[3] = {0};
     for (int k = 0; k < 3; k++) turned[from[k]] = sizes[k];
