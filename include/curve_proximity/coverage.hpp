@@ -25,7 +25,7 @@ enum class Gap {
 /** Its status: "rounded", "partial", "empty", "unknown", "stale". */
 const char *gapName(Gap gap);
 
-/** A sentence about it for rows that have no message of their own. */
+/** A message about it for rows that have no message of their own. */
 const char *gapText(Gap gap);
 
 /** The gap of a status; none for a status that is none of the above. */
@@ -37,10 +37,10 @@ enum class Missing {
   GEOMETRY  /**< geometry can only be missing: what touches without it touches with it */
 };
 
-/** The gaps of an input, each with a sentence. Without any it is complete. */
+/** The gaps of an input, each with a message. Without any it is complete. */
 class Coverage {
  public:
-  /** Adds a gap; one with the same sentence only once. message: one line without a full stop that names the input. */
+  /** Adds a gap; one with the same message only once. message: one line without a full stop that names the input. */
   void add(Gap gap, const std::string &message, Missing missing = Missing::ANYTHING);
 
   /** Adds all gaps of another one. */
@@ -60,10 +60,10 @@ class Coverage {
   /** False if a gap can move or take away geometry: then a contact is not proven. */
   bool provesContact() const;
 
-  /** The sentences, in the order in which they came. */
+  /** The messages, in the order in which they came. */
   std::vector<std::string> sentences() const;
 
-  /** The first of the sentences as one line, and how many there are more; "" if complete. */
+  /** The first of the messages as one line, and how many there are more; "" if complete. */
   std::string message() const;
 
  private:

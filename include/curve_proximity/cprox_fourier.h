@@ -199,7 +199,7 @@ typedef struct cprox_gap_options {
   uint32_t samples;
   /** [m] L, or 0 for the least that keeps images apart (default); a smaller one is refused */
   double period;
-  /** bytes a gap may hold; beyond it CPROX_INVALID and a sentence with n and the bytes it needs. Default 256 MiB */
+  /** bytes a gap may hold; beyond it CPROX_INVALID; the error message says how many it needs. Default 256 MiB */
   size_t memory_limit;
 } cprox_gap_options;
 

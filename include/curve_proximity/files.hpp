@@ -33,7 +33,7 @@ struct SceneFileContents {
   /** Where robot_state puts the root link, by the SRDF's virtual joint: what placeOf() takes. */
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
   std::vector<MovingRobotFile> moving_robots; /**< further robots, for Movers */
-  std::vector<std::string> warnings;          /**< what was ignored, a sentence each */
+  std::vector<std::string> warnings;          /**< what was ignored, a message each */
 };
 
 /** Reads a scene file (YAML) for a robot, or for none: without a robot what is attached to links stands where it is,
@@ -42,7 +42,7 @@ struct SceneFileContents {
  *  elsewhere. */
 SceneFileContents loadSceneFile(const std::string &path, const Robot *robot = nullptr, const Srdf &srdf = {});
 
-/** Reads a trajectory file (YAML); its id is the file's stem. warnings: what was ignored is added, a sentence each.
+/** Reads a trajectory file (YAML); its id is the file's stem. warnings: what was ignored is added, a message each.
  *  Throws Error, which names the file and the place. */
 TrajectoryDescription loadTrajectoryFile(const std::string &path, std::vector<std::string> *warnings = nullptr);
 

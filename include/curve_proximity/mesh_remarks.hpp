@@ -11,7 +11,7 @@
 
 namespace curve_proximity {
 
-/** A sentence for each mesh file of the object whose unit is not 1 m, or whose polygons cross themselves. Throws Error
+/** A message for each mesh file of the object whose unit is not 1 m, or whose polygons cross themselves. Throws Error
  *  as makeGeometry() does. Cost: none where the meshes are still kept in memory, else they are read again. Thread
  *  safety: any number of threads. */
 std::vector<std::string> meshRemarks(const ObjectDescription &object, const ResourceOptions &options);

@@ -150,7 +150,7 @@ std::vector<std::string> askedNames(const RobotMotion &motion, bool self, bool m
  *  a kind that has no certificates. */
 std::string describeQuery(const RobotMotion &motion, bool self, const Query &query);
 
-/** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */
+/** What has no certificates, with its kind: a message each. Where there is any, no answer can be proven. */
 std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Query &query);
 
 /** The pairs that come closest, nearest first: of a link or carried object and an object (query.objects: only

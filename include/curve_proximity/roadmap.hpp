@@ -44,7 +44,7 @@ struct EdgeList {
   std::size_t n = 0;                                  /**< edges; without ends n_rows */
 };
 
-/** A sentence for each continuous joint that turns by more than half a turn on the first edge that has one; none with
+/** A warning for each continuous joint that turns by more than half a turn on the first edge that has one; none with
  *  shortest_way. As longWays() of a trajectory. */
 std::vector<std::string> longWays(const Robot &robot, const EdgeList &edges);
 

@@ -38,7 +38,7 @@ struct SecondOpinion {
   Verdict verdict = NONE; /**< the outcome */
   /** [m] >= 0, the distance of the pair at the witness time; 0 where they touch or overlap. */
   double distance = std::numeric_limits<double>::quiet_NaN();
-  std::string message; /**< one sentence where the verdict is DISAGREES or UNKNOWN */
+  std::string message; /**< one line where the verdict is DISAGREES or UNKNOWN */
 };
 
 /** "", "agrees", "disagrees", "unknown". */

@@ -75,7 +75,7 @@ void adoptBase(const std::vector<VirtualJoint> &joints, const Robot &robot, Traj
  * is the identity, and the values of the base's variables go to `rest`, for those that the trajectory does not name. */
 Eigen::Isometry3d placeOf(const TrajectoryDescription &trajectory, const Eigen::Isometry3d &base, JointPositions &rest);
 
-/** A sentence for each continuous joint, and each planar joint's angle, that turns by more than half a turn between two
+/** A warning for each continuous joint, and each planar joint's angle, that turns by more than half a turn between two
  *  waypoints: a planner's states mean the short way, and the trajectory goes the long one. None of splines, and none
  * with shortest_way. RobotMotion::warnings() has them. */
 std::vector<std::string> longWays(const Robot &robot, const TrajectoryDescription &trajectory);

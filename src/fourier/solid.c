@@ -124,7 +124,7 @@ cprox_status solid_create_capsule(const cprox_solid_description *d, cprox_worksp
                        workspace, solid);
 }
 
-/* Whether a pose is one of the dimension: NULL, or the fault as part of a sentence. */
+/* Whether a pose is one of the dimension: NULL, or the fault as part of an error message. */
 static const char *pose_error(const cprox_pose *pose, int dimension) {
   const char *support_failed = frame_pose_error(pose);
   if (support_failed || dimension == 3) return support_failed;

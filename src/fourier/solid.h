@@ -28,7 +28,7 @@ solid_constructor solid_create_ball, solid_create_box, solid_create_ellipsoid, s
     solid_create_capsule, solid_create_polygon, solid_create_mesh, solid_create_polyline, solid_create_sweep,
     solid_create_grid, solid_create_union, solid_create_clipped, solid_create_sublevel;
 
-/* The checks that constructors share; CPROX_OK or the failure with its sentence. */
+/* The checks that constructors share; CPROX_OK or the failure with its error message. */
 cprox_status solid_check_length(const char *name, double value, cprox_workspace *workspace);
 cprox_status solid_check_points(const char *name, const vec3 *points, size_t n, int dimension,
                                 cprox_workspace *workspace);

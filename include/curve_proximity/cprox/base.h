@@ -36,7 +36,7 @@ extern "C" {
 /** The version of the library that is loaded, as "MAJOR.MINOR.PATCH". Never NULL. */
 CPROX_API const char *cprox_version(void);
 
-/** Every status: code, value, short name, sentence. status >= 0: the result is valid. status < 0: an error; outputs are
+/** Every status: code, value, short name, text. status >= 0: the result is valid. status < 0: an error; outputs are
  *  unchanged. */
 #define CPROX_STATUS_LIST(X)                                                                      \
   X(CPROX_OK, 0, "ok", "answered to the accuracy asked")                                          \
@@ -50,7 +50,7 @@ CPROX_API const char *cprox_version(void);
 
 typedef enum cprox_status {
 /** Makes an enumerator of a row of CPROX_STATUS_LIST. */
-#define CPROX_STATUS_ENUM(code, value, name, sentence) code = value,
+#define CPROX_STATUS_ENUM(code, value, name, text) code = value,
   CPROX_STATUS_LIST(CPROX_STATUS_ENUM)
 #undef CPROX_STATUS_ENUM
 } cprox_status;
@@ -58,7 +58,7 @@ typedef enum cprox_status {
 /** The short name of a status ("ok", "budget", …); "unknown" for a value that is none. Never NULL. */
 CPROX_API const char *cprox_status_name(cprox_status status);
 
-/** The sentence that belongs to a status. Never NULL. */
+/** The text that belongs to a status. Never NULL. */
 CPROX_API const char *cprox_status_text(cprox_status status);
 
 /** A point or a direction, in metres where it is a point. */

@@ -27,7 +27,7 @@ frame frame_create(const cprox_pose *pose, vec3 centre);
  * rounding. */
 frame frame_create_within(const cprox_pose *outer, const cprox_pose *inner, vec3 centre);
 
-/* Why a pose is not usable, as part of a sentence ("the quaternion's norm is 0"), or NULL if it is. */
+/* Why a pose is not usable, as part of an error message ("the quaternion's norm is 0"), or NULL if it is. */
 const char *frame_pose_error(const cprox_pose *pose);
 
 /* Local coordinates of a world point; *error grows to at least the distance between the computed and the exact ones. */

@@ -13,7 +13,7 @@ const char *cprox_version(void) {
 
 const char *cprox_status_name(cprox_status status) {
   switch (status) {
-#define NAME(code, value, name, sentence) \
+#define NAME(code, value, name, text) \
   case code: return name;
     CPROX_STATUS_LIST(NAME)
 #undef NAME
@@ -23,8 +23,8 @@ const char *cprox_status_name(cprox_status status) {
 
 const char *cprox_status_text(cprox_status status) {
   switch (status) {
-#define TEXT(code, value, name, sentence) \
-  case code: return sentence;
+#define TEXT(code, value, name, text) \
+  case code: return text;
     CPROX_STATUS_LIST(TEXT)
 #undef TEXT
   }

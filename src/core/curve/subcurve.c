@@ -299,7 +299,7 @@ void curve_side_load(curve_side *side, size_t piece) {
 
 /* ---- intervals of curves that are known by their arc length ---- */
 
-/* Whether all went well; else the trouble is kept, with its reason. */
+/* Whether all went well; else the error is kept, with its message. */
 static bool went_well(const curve_side *side, cprox_status status) {
   if (status < 0) side->pool->failure = status;
   return status >= 0;

@@ -11,8 +11,8 @@ static inline bool radius_changes(const cprox_mover *mover, const cprox_obstacle
   return mover->radius_curve || (target && target->radius_curve);
 }
 
-/* CPROX_OK, or CPROX_INVALID with a sentence: its parameters are those of `curve`, and with `constant` added it is
- * never negative. `whose` begins the sentence. */
+/* CPROX_OK, or CPROX_INVALID with an error message that `whose` begins: its parameters are those of `curve`, and with
+ * `constant` added it is never negative. */
 cprox_status radius_check(const char *whose, const cprox_curve *radius, double constant, const cprox_curve *curve,
                           cprox_workspace *workspace);
 

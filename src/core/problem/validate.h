@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The arguments of the queries: defaults, names, and the sentences for those that are unusable. */
+/* The arguments of the queries: defaults, names, and the error messages for those that are unusable. */
 #ifndef CPROX_PROBLEM_VALIDATE_H
 #define CPROX_PROBLEM_VALIDATE_H
 
@@ -26,7 +26,7 @@ typedef struct arguments_query {
   unsigned has;
 } arguments_query;
 
-/* CPROX_OK, or CPROX_INVALID with a sentence that names the argument. */
+/* CPROX_OK, or CPROX_INVALID with an error message that names the argument. */
 /* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default
  * with their size, which validate_options() refuses. */
 cprox_options arguments_options(const cprox_options *options);

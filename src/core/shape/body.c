@@ -20,7 +20,7 @@
 /* Lengths beyond these would lose their squares to underflow or overflow. */
 static const double LEAST_LENGTH = 1e-100, MOST_LENGTH = 1e100;
 
-/* ---- checks: each returns CPROX_OK or fails with a sentence that names the argument and its value ---- */
+/* ---- checks: each returns CPROX_OK or fails with an error message that names the argument and its value ---- */
 
 static cprox_status check_out(cprox_body **body, cprox_workspace *workspace) {
   return body ? CPROX_OK : workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
