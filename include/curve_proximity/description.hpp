@@ -123,6 +123,8 @@ struct ShapeDeformation {
   std::vector<double> exponents; /**< in the place of those of the terms, one each; empty: as they are */
 };
 
+struct Geometry;
+
 /** A shape in the frame of its object. */
 struct ShapeDescription {
   ShapeType type = ShapeType::BOX;              /**< selects the members that are used */
@@ -143,6 +145,9 @@ struct ShapeDescription {
   /** OCTREE: unmeasured cells inside the bounding box of the measured cells count as occupied; otherwise as free. */
   bool unknown_is_occupied = false;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */
+  /** What makeGeometry() has made of this shape before, whatever its pose: it is shared instead of made again, and not
+   *  checked again. Null: it is made. Whoever changes another member of a copy resets this one. */
+  std::shared_ptr<const Geometry> made;
 };
 
 /** A collision object: shapes that move together. */

@@ -89,7 +89,8 @@ struct Geometry {
   }
 };
 
-/** Checks a description and makes its body, in the shape's own frame; shape.pose is not used.
+/** Checks a description and makes its body, in the shape's own frame; shape.pose is not used. With shape.made that is
+ *  returned.
  *
  *  Throws Error: dimensions that are too few or too many, not finite or not positive ("cylinder needs 2 dimensions
  *  [height, radius], got 1"); vertices that are missing or not finite; a mesh without triangles or with an index out of

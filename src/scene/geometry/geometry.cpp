@@ -341,6 +341,7 @@ std::string userCacheDir() {
 }
 
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options, const MeshLoader &loader) {
+  if (shape.made) return *shape.made;
   checkDimensions(shape);
   checkVertices(shape);
   checkConstraints(shape);

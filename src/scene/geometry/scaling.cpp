@@ -42,6 +42,7 @@ ShapeDescription loadedShape(const ShapeDescription &shape, const ResourceOption
 
 ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const ResourceOptions &resources) {
   ShapeDescription out = shape;
+  out.made.reset();
   if (out.deformed) out.deformed->translation *= scale;
   switch (shape.type) {
     case ShapeType::MESH: scaleMesh(out, scale, resources); break;
