@@ -16,6 +16,8 @@ namespace cd = collision_detection;
 constexpr char LOG[] = "collision_detection.curve_proximity";
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 constexpr std::chrono::seconds COMPLAIN_PERIOD{5};
+constexpr std::chrono::milliseconds OCTREE_PERIOD{100};
+constexpr std::size_t KEPT_PREPARED = 4; /* robots: with and without an attached object, and with another matrix */
 
 Workspace &workspace() {
   thread_local Workspace own;
@@ -137,6 +139,10 @@ bool samePoses(const ObjectDescription &object, const cd::World::Object &world) 
   return true;
 }
 
+bool isEmpty(const SceneChange &change) {
+  return change.operations.empty() && change.link_padding.empty() && change.link_scale.empty();
+}
+
 } // namespace
 
 /* ---- the scene ---- */
@@ -151,6 +157,7 @@ CollisionEnvCurveProximity::CollisionEnvCurveProximity(const moveit::core::Robot
       robot_(toRobot(*model)),
       links_(linksInOrder(*robot_, *model)),
       base_(virtualJoints(*model)),
+      shapes_(std::make_shared<KnownShapes>()),
       scene_(std::make_unique<Scene>(robot_)) {
   observe();
   getWorld()->notifyObserverAllObjects(observer_, cd::World::CREATE);
@@ -158,15 +165,25 @@ CollisionEnvCurveProximity::CollisionEnvCurveProximity(const moveit::core::Robot
 
 CollisionEnvCurveProximity::CollisionEnvCurveProximity(const CollisionEnvCurveProximity &other,
                                                        const cd::WorldPtr &world)
-    : CollisionEnv(other, world), robot_(other.robot_), links_(other.links_), base_(other.base_) {
+    : CollisionEnv(other, world),
+      robot_(other.robot_),
+      links_(other.links_),
+      base_(other.base_),
+      shapes_(other.shapes_) {
   {
     const std::lock_guard<std::mutex> lock(other.mutex_);
-    other.applyChanges();
+    other.applyChanges(false);
     scene_ = std::make_unique<Scene>(other.scene_->snapshot());
+    taken_ = other.taken_;
     faults_ = other.faults_;
+    cells_ = other.cells_;
+    octrees_compared_ = other.octrees_compared_;
     resized_ = false;
     standing_ = other.standing_;
+    bodies_ = other.bodies_;
+    prepared_ = other.prepared_;
   }
+  compareWorld(*world);
   observe();
 }
 
@@ -182,22 +199,26 @@ void CollisionEnvCurveProximity::observe() {
   });
 }
 
+/* Objects of MoveIt's world are replaced when they are changed while somebody else has them. */
+void CollisionEnvCurveProximity::compareWorld(const cd::World &world) {
+  for (const auto &[id, object] : taken_)
+    if (world.getObject(id) != object) changed_.insert(id);
+  for (const auto &[id, object] : world) {
+    const auto taken = taken_.find(id);
+    if (taken == taken_.end() || taken->second != object) changed_.insert(id);
+  }
+}
+
 void CollisionEnvCurveProximity::setWorld(const cd::WorldPtr &world) {
   if (world == getWorld()) return;
   getWorld()->removeObserver(observer_);
   CollisionEnv::setWorld(world);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    changed_.clear();
-    moved_.clear();
-    faults_.clear();
-    resized_ = true; // so that a fault of paddings is told again
-    SceneChange none;
-    none.clear_objects = true;
-    scene_->apply(none);
+    compareWorld(*world);
+    if (faults_.count("") > 0) resized_ = true; // so that it is told again
   }
   observe();
-  getWorld()->notifyObserverAllObjects(observer_, cd::World::CREATE);
 }
 
 void CollisionEnvCurveProximity::updatedPaddingOrScaling(const std::vector<std::string> &) {
@@ -205,8 +226,18 @@ void CollisionEnvCurveProximity::updatedPaddingOrScaling(const std::vector<std::
   resized_ = true;
 }
 
+/* Which objects have octrees that were changed in place? */
+void CollisionEnvCurveProximity::compareOctrees(bool now) const {
+  const auto time = std::chrono::steady_clock::now();
+  if (cells_.empty() || (!now && time - octrees_compared_ < OCTREE_PERIOD)) return;
+  octrees_compared_ = time;
+  for (const auto &[id, cells] : cells_)
+    if (cellsOf(*taken_.at(id)) != cells) changed_.insert(id);
+}
+
 /* One change for all that has come since the last query. An object that cannot be taken over leaves a fault. */
-void CollisionEnvCurveProximity::applyChanges() const {
+void CollisionEnvCurveProximity::applyChanges(bool sees_octrees) const {
+  compareOctrees(sees_octrees);
   if (!resized_ && changed_.empty() && moved_.empty()) return;
   const SnapshotPtr before = scene_->snapshot();
   SceneChange change;
@@ -218,7 +249,7 @@ void CollisionEnvCurveProximity::applyChanges() const {
       return false;
     };
     for (const auto &[link, padding] : getLinkPadding())
-      if (knows(link)) change.link_padding[link] = padding;
+      if (knows(link) && padding != before->linkPadding(link)) change.link_padding[link] = padding;
     for (const auto &[link, scale] : getLinkScale()) {
       const auto known = before->linkScales().find(link);
       if (scale == (known == before->linkScales().end() ? 1.0 : known->second)) continue;
@@ -231,7 +262,9 @@ void CollisionEnvCurveProximity::applyChanges() const {
   changed_.clear();
   moved_.clear();
   resized_ = false;
+  if (isEmpty(change)) return;
   standing_.reset();
+  prepared_.clear();
   if (scene_->apply(change).empty()) return;
 
   /* One by one, to tell whose fault it is; what cannot be taken over must not stay as it was before. */
@@ -251,24 +284,32 @@ void CollisionEnvCurveProximity::applyChanges() const {
 
 void CollisionEnvCurveProximity::changeObject(const std::string &id, bool only_moved, const Snapshot &before,
                                               SceneChange &change) const {
-  faults_.erase(id);
+  const bool was_faulty = faults_.erase(id) > 0; // then the scene may have what stood there before
   const cd::World::ObjectConstPtr object = getWorld()->getObject(id);
   const auto known = before.objects().find(id);
   Operation operation;
   operation.object.id = id;
+  if (object) {
+    taken_[id] = object;
+  } else {
+    taken_.erase(id);
+  }
+  if (object && only_moved && !was_faulty && known != before.objects().end() &&
+      samePoses(known->second->description, *object)) {
+    operation.kind = Operation::Kind::MOVE;
+    operation.object.pose = object->pose_;
+    change.operations.push_back(operation);
+    return; // with the cells that it had: if there are others now, that is seen later
+  }
+  cells_.erase(id);
   if (!object || object->shapes_.empty()) {
     operation.kind = Operation::Kind::REMOVE;
     if (known != before.objects().end()) change.operations.push_back(operation);
     return;
   }
-  if (only_moved && known != before.objects().end() && samePoses(known->second->description, *object)) {
-    operation.kind = Operation::Kind::MOVE;
-    operation.object.pose = object->pose_;
-    change.operations.push_back(operation);
-    return;
-  }
+  if (const std::uint64_t cells = cellsOf(*object)) cells_[id] = cells;
   try {
-    operation.object = toObject(*object);
+    operation.object = toObject(*object, *shapes_);
     change.operations.push_back(operation);
   } catch (const Error &error) {
     faults_[id] = "object '" + id + "': " + error.what();
@@ -284,13 +325,13 @@ void CollisionEnvCurveProximity::checkModel(const State &state) const {
     throw Error("a state of robot '" + other->getName() + "' in a scene of robot '" + robot_model_->getName() + "'");
 }
 
-CollisionEnvCurveProximity::Current CollisionEnvCurveProximity::current(const State &state) const {
+CollisionEnvCurveProximity::Current CollisionEnvCurveProximity::current(const State &state, bool sees_octrees) const {
   checkModel(state);
   const std::lock_guard<std::mutex> lock(mutex_);
-  applyChanges();
+  applyChanges(sees_octrees);
   const SnapshotPtr scene = scene_->snapshot();
   if (!standing_) standing_ = std::make_shared<const StandingRobot>(scene);
-  Current out{standing_, bodies_.of(state, *scene), {}};
+  Current out{standing_, bodies_.of(state, *scene, *shapes_), {}};
   for (const auto &[id, fault] : faults_) out.fault += (out.fault.empty() ? "" : "; ") + fault;
   return out;
 }
@@ -314,7 +355,7 @@ std::set<std::string> CollisionEnvCurveProximity::linksOf(const std::string &gro
 void CollisionEnvCurveProximity::check(const Request &req, Result &res, const State &state, const Matrix *acm,
                                        RobotPairs pairs) const {
   try {
-    Current now = current(state);
+    Current now = current(state, false);
     if (!now.fault.empty() && pairs != RobotPairs::SELF) fail(now.fault, res);
     const RobotPlacement robot = placement(state, std::move(now.attached));
     NearPairsQuery query;
@@ -348,7 +389,7 @@ void CollisionEnvCurveProximity::distances(const cd::DistanceRequest &req, cd::D
   const bool global = req.type == cd::DistanceRequestType::GLOBAL;
   const std::size_t of_pair = req.type == cd::DistanceRequestType::SINGLE ? 1 : req.max_contacts_per_body;
   try {
-    Current now = current(state);
+    Current now = current(state, false);
     if (!now.fault.empty() && pairs != RobotPairs::SELF) fail(now.fault, res);
     const RobotPlacement robot = placement(state, std::move(now.attached));
     NearPairsQuery query;
@@ -407,19 +448,26 @@ void CollisionEnvCurveProximity::distanceRobot(const cd::DistanceRequest &req, c
 
 /* ---- motions ---- */
 
-/* Planners ask about many motions in one scene with one matrix: the robot of the last one is kept. */
+/* Planners ask about many motions in one scene with one matrix: the last robots are kept. */
 std::shared_ptr<const PreparedRobot> CollisionEnvCurveProximity::prepared(const Current &now, const Matrix *acm) const {
   const SnapshotPtr &scene = now.robot->snapshot();
-  const std::vector<AllowedPair> allowed = acm ? allowedPairs(*acm, *scene, now.attached) : std::vector<AllowedPair>();
+  std::vector<AllowedPair> allowed;
+  if (acm) allowed = allowedPairs(*acm, *scene, now.attached);
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (prepared_ && prepared_->snapshot()->version() == scene->version() &&
-      &prepared_->snapshot()->world() == &scene->world() && prepared_->snapshot()->attached() == now.attached &&
-      sameAllowed(prepared_allowed_, allowed))
-    return prepared_;
-  prepared_ = std::make_shared<const PreparedRobot>(scene->variant({now.attached, allowed}),
-                                                    std::vector<std::array<std::string, 2>>(), base_);
-  prepared_allowed_ = allowed;
-  return prepared_;
+  const auto known = std::find_if(prepared_.begin(), prepared_.end(), [&](const Prepared &other) {
+    const Snapshot &of_other = *other.robot->snapshot();
+    return &of_other.world() == &scene->world() && of_other.version() == scene->version() &&
+           of_other.attached() == now.attached && sameAllowed(other.allowed, allowed);
+  });
+  if (known != prepared_.end()) {
+    std::rotate(known, known + 1, prepared_.end());
+    return prepared_.back().robot;
+  }
+  if (prepared_.size() == KEPT_PREPARED) prepared_.erase(prepared_.begin());
+  const SnapshotPtr variant = scene->variant({now.attached, allowed});
+  prepared_.push_back(
+      {allowed, std::make_shared<const PreparedRobot>(variant, std::vector<std::array<std::string, 2>>(), base_)});
+  return prepared_.back().robot;
 }
 
 void CollisionEnvCurveProximity::checkMotion(const Request &req, Result &res, const State &from, const State &to,
@@ -429,7 +477,7 @@ void CollisionEnvCurveProximity::checkMotion(const Request &req, Result &res, co
     checkModel(to);
     const TrajectoryDescription path = straight(from, to);
     if (path.joints.empty()) return check(req, res, from, acm, RobotPairs::ENVIRONMENT);
-    const Current now = current(from);
+    const Current now = current(from, false);
     if (!now.fault.empty()) return fail(now.fault, res);
     const std::set<std::string> links = linksOf(req.group_name);
     const RobotMotion motion(*prepared(now, acm), path, jointPositions(from), {links.begin(), links.end()});
@@ -476,7 +524,7 @@ void CollisionEnvCurveProximity::checkRobotCollision(const Request &req, Result 
 
 RobotMotion CollisionEnvCurveProximity::motion(const TrajectoryDescription &trajectory, const State &at,
                                                const Matrix &acm) const {
-  const Current now = current(at);
+  const Current now = current(at, true);
   if (!now.fault.empty()) throw Error(now.fault);
   return RobotMotion(*prepared(now, &acm), trajectory, jointPositions(at));
 }

@@ -3,10 +3,14 @@
 #ifndef CURVE_PROXIMITY_MOVEIT_COLLISION_ENV_H
 #define CURVE_PROXIMITY_MOVEIT_COLLISION_ENV_H
 
+#include <chrono>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <moveit/collision_detection/collision_detector_allocator.h>
 #include <moveit/collision_detection/collision_env.h>
@@ -19,7 +23,10 @@ namespace curve_proximity {
  * object or a shape that has no counterpart, a motion that is not known. The log says why.
  *
  * Any number of threads may ask at a time; changes of the world and of paddings come in between, as MoveIt's other
- * environments want it. They are applied by the next query. */
+ * environments want it. They are applied by the next query. Octrees that are changed in place are compared before each
+ * motion(), and by queries about states ten times a second: a hash of 100,000 cells takes as long as many states.
+ *
+ * A copy shares what it does not change. */
 class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
  public:
   using Matrix = collision_detection::AllowedCollisionMatrix;
@@ -34,6 +41,7 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
   CollisionEnvCurveProximity(const CollisionEnvCurveProximity &other, const collision_detection::WorldPtr &world);
   ~CollisionEnvCurveProximity() override;
 
+  /* Objects that both worlds have stay as they are. */
   void setWorld(const collision_detection::WorldPtr &world) override;
 
   void checkSelfCollision(const Request &req, Result &res, const State &state) const override;
@@ -67,10 +75,18 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
     std::string fault; /* what of the world could not be taken over; "": nothing */
   };
 
+  /* A robot made ready for motions, for as long as attached objects and matrix are these. */
+  struct Prepared {
+    std::vector<AllowedPair> allowed; /* in the order of allowedPairs() */
+    std::shared_ptr<const PreparedRobot> robot;
+  };
+
   void checkModel(const State &state) const;
-  Current current(const State &state) const;
-  void applyChanges() const;
+  Current current(const State &state, bool sees_octrees) const;
+  void applyChanges(bool sees_octrees) const;
+  void compareOctrees(bool now) const;
   void changeObject(const std::string &id, bool only_moved, const Snapshot &before, SceneChange &change) const;
+  void compareWorld(const collision_detection::World &world);
   void observe();
   RobotPlacement placement(const State &state, AttachedObjects attached) const;
   void check(const Request &req, Result &res, const State &state, const Matrix *acm, RobotPairs pairs) const;
@@ -85,16 +101,20 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
   std::vector<VirtualJoint> base_;
   collision_detection::World::ObserverHandle observer_;
 
+  const std::shared_ptr<KnownShapes> shapes_; /* shared by all copies */
+
   mutable std::mutex mutex_; /* of all that follows */
   mutable std::unique_ptr<Scene> scene_;
-  mutable std::set<std::string> changed_;             /* objects that the scene does not have as the world has them, */
-  mutable std::set<std::string> moved_;               /* and those of which only poses have changed */
-  mutable std::map<std::string, std::string> faults_; /* by object: why the scene does not have it; by "": paddings */
-  mutable bool resized_ = true;                       /* paddings or scales have changed */
+  mutable std::map<std::string, collision_detection::World::ObjectConstPtr> taken_; /* what the scene was made of */
+  mutable std::set<std::string> changed_;              /* objects that the scene does not have as the world has them, */
+  mutable std::set<std::string> moved_;                /* and those of which only poses have changed */
+  mutable std::map<std::string, std::string> faults_;  /* by object: why the scene does not have it; by "": paddings */
+  mutable std::map<std::string, std::uint64_t> cells_; /* cellsOf() the objects with octrees */
+  mutable std::chrono::steady_clock::time_point octrees_compared_; /* with cells_ */
+  mutable bool resized_ = true;                                    /* paddings or scales have changed */
   mutable std::shared_ptr<const StandingRobot> standing_;
   mutable AttachedBodies bodies_;
-  mutable std::shared_ptr<const PreparedRobot> prepared_; /* of the last motion */
-  mutable std::vector<AllowedPair> prepared_allowed_;     /* its matrix, in the order of allowedPairs() */
+  mutable std::vector<Prepared> prepared_; /* of the scene as it is, the latest last */
 };
 
 /* What MoveIt's planning scene makes such environments with. */

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <octomap/octomap.h>
 #include <ros/node_handle.h>
 
 #include <moveit/robot_model/planar_joint_model.h>
@@ -28,11 +29,33 @@ bool planesLikeFcl() {
   return ros::NodeHandle("~").param("curve_proximity/planes_like_fcl", false);
 }
 
-ShapeDescription shapeAt(const shapes::Shape &shape, const Eigen::Isometry3d &pose) {
+/* How many attachments are kept: states with and without an object, or at two places, come in turn. */
+std::size_t keptAttachments(std::size_t in_one_state) {
+  return std::max<std::size_t>(16, 4 * in_one_state);
+}
+
+ShapeDescription descriptionOf(const shapes::Shape &shape) {
   ShapeDescription out = fromShape(shape);
   if (shape.type == shapes::PLANE && planesLikeFcl()) out.dimensions[3] = -out.dimensions[3];
-  out.pose = pose;
   return out;
+}
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
+  hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
+  return hash ^ (hash >> 29);
+}
+
+/* Depth first: which children a cell has; of a cell without any whether it is occupied. */
+std::uint64_t mixedCells(const octomap::OcTree &tree, const octomap::OcTreeNode &node, std::uint64_t hash) {
+  unsigned int children = 0;
+  if (tree.nodeHasChildren(&node))
+    for (unsigned int i = 0; i < 8; ++i)
+      if (tree.nodeChildExists(&node, i)) children |= 1u << i;
+  if (children == 0) return mixed(hash, tree.isNodeOccupied(node) ? 257 : 256);
+  hash = mixed(hash, children);
+  for (unsigned int i = 0; i < 8; ++i)
+    if ((children >> i & 1u) != 0) hash = mixedCells(tree, *tree.getNodeChild(&node, i), hash);
+  return hash;
 }
 
 /* A variable of a joint that is an angle without limits; a planar joint has it behind x and y. */
@@ -80,7 +103,8 @@ std::shared_ptr<const Robot> toRobot(const RobotModel &model) {
   for (const LinkModel *link : model.getLinkModels()) {
     std::vector<ShapeDescription> &shapes = options.link_shapes[link->getName()];
     for (std::size_t i = 0; i < link->getShapes().size(); ++i) {
-      shapes.push_back(shapeAt(*link->getShapes()[i], link->getCollisionOriginTransforms()[i]));
+      shapes.push_back(descriptionOf(*link->getShapes()[i]));
+      shapes.back().pose = link->getCollisionOriginTransforms()[i];
       shapes.back().solid = shapes.back().type == ShapeType::MESH; // as of a URDF
     }
   }
@@ -100,12 +124,55 @@ std::vector<VirtualJoint> virtualJoints(const RobotModel &model) {
   return {{root.getName(), type, model.getModelFrame(), model.getRootLinkName()}};
 }
 
-ObjectDescription toObject(const collision_detection::World::Object &object) {
+std::uint64_t cellsOf(const shapes::Shape &shape) {
+  if (shape.type != shapes::OCTREE) return 0;
+  const auto &tree = static_cast<const shapes::OcTree &>(shape).octree;
+  if (!tree) return 0;
+  const std::uint64_t hash = mixed(tree->size(), static_cast<std::uint64_t>(tree->getResolution() * 1e9));
+  return tree->getRoot() ? mixedCells(*tree, *tree->getRoot(), hash) : hash;
+}
+
+std::uint64_t cellsOf(const collision_detection::World::Object &object) {
+  std::uint64_t out = 0;
+  for (const shapes::ShapeConstPtr &shape : object.shapes_)
+    if (shape->type == shapes::OCTREE) out = mixed(out, cellsOf(*shape));
+  return out;
+}
+
+ShapeDescription KnownShapes::at(const shapes::ShapeConstPtr &shape, const Eigen::Isometry3d &pose) {
+  ShapeDescription out;
+  const bool takes_long = shape->type == shapes::MESH || shape->type == shapes::OCTREE;
+  if (takes_long) {
+    const std::uint64_t cells = cellsOf(*shape);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    Known &known = known_[shape.get()];
+    if (known.shape.lock() != shape || known.cells != cells) {
+      known.shape = shape;
+      known.cells = cells;
+      known.description = ShapeDescription();
+    }
+    if (!known.description.made) {
+      known.description = descriptionOf(*shape);
+      known.description.made = std::make_shared<const Geometry>(makeGeometry(known.description));
+    }
+    out = known.description;
+    if (known_.size() > most_) {
+      for (auto it = known_.begin(); it != known_.end();) it = it->second.shape.expired() ? known_.erase(it) : ++it;
+      most_ = 2 * known_.size();
+    }
+  } else {
+    out = descriptionOf(*shape);
+  }
+  out.pose = pose;
+  return out;
+}
+
+ObjectDescription toObject(const collision_detection::World::Object &object, KnownShapes &shapes) {
   ObjectDescription out;
   out.id = object.id_;
   out.pose = object.pose_;
   for (std::size_t i = 0; i < object.shapes_.size(); ++i)
-    out.shapes.push_back(shapeAt(*object.shapes_[i], object.shape_poses_[i]));
+    out.shapes.push_back(shapes.at(object.shapes_[i], object.shape_poses_[i]));
   return out;
 }
 
@@ -116,57 +183,70 @@ bool alwaysAllowed(const AllowedCollisionMatrix &matrix, const std::string &a, c
 
 std::vector<AllowedPair> allowedPairs(const AllowedCollisionMatrix &matrix, const Snapshot &scene,
                                       const AttachedObjects &attached) {
-  std::vector<const std::string *> moving;
+  namespace AllowedCollision = collision_detection::AllowedCollision;
+  std::set<std::string> moving;
   for (const auto &[link, geometries] : scene.robot()->links())
-    if (!geometries.empty()) moving.push_back(&link);
-  for (const auto &[id, object] : attached) moving.push_back(&id);
+    if (!geometries.empty()) moving.insert(link);
+  for (const auto &[id, object] : attached) moving.insert(id);
+
   std::vector<AllowedPair> out;
-  const auto ask = [&](const std::string &a, const std::string &b) {
-    if (alwaysAllowed(matrix, a, b)) out.push_back({a, b, true});
+  AllowedCollision::Type type;
+  std::vector<std::string> names;
+  matrix.getAllEntryNames(names);
+  for (const std::string &a : moving)
+    for (const std::string &b : names) {
+      if ((a < b || moving.count(b) == 0) && matrix.getEntry(a, b, type))
+        out.push_back({a, b, type == AllowedCollision::ALWAYS});
+    }
+  const auto add_default = [&](const std::string &name) {
+    if (matrix.getDefaultEntry(name, type)) out.push_back({name, "", type == AllowedCollision::ALWAYS});
   };
-  for (std::size_t i = 0; i < moving.size(); ++i) {
-    for (std::size_t k = i + 1; k < moving.size(); ++k) ask(*moving[i], *moving[k]);
-    for (const auto &[id, object] : scene.objects()) ask(*moving[i], id);
-  }
+  for (const std::string &name : moving) add_default(name);
+  for (const auto &[id, object] : scene.objects()) add_default(id);
   return out;
 }
 
-AttachedObjects AttachedBodies::of(const RobotState &state, const Snapshot &scene) {
+AttachedObjects AttachedBodies::of(const RobotState &state, const Snapshot &scene, KnownShapes &shapes) {
   std::vector<const moveit::core::AttachedBody *> bodies;
   state.getAttachedBodies(bodies);
-  std::map<std::string, Known> now;
   AttachedObjects out;
   for (const moveit::core::AttachedBody *body : bodies) {
     const std::string &id = body->getName(), &link = body->getAttachedLinkName();
     const auto scale = scene.linkScales().find(link);
-    Known known{link,
-                body->getTouchLinks(),
-                body->getShapes(),
-                body->getShapePosesInLinkFrame(),
-                scale == scene.linkScales().end() ? 1.0 : scale->second,
-                nullptr};
+    Known now{id,
+              link,
+              body->getTouchLinks(),
+              body->getShapes(),
+              body->getShapePosesInLinkFrame(),
+              scale == scene.linkScales().end() ? 1.0 : scale->second,
+              0,
+              nullptr};
+    for (const shapes::ShapeConstPtr &shape : now.shapes)
+      if (shape->type == shapes::OCTREE) now.cells = mixed(now.cells, cellsOf(*shape));
     const auto same_pose = [](const Eigen::Isometry3d &a, const Eigen::Isometry3d &b) {
       return a.matrix() == b.matrix();
     };
-    const auto before = known_.find(id);
-    if (before != known_.end() && before->second.link == link && before->second.touch_links == known.touch_links &&
-        before->second.shapes == known.shapes && before->second.scale == known.scale &&
-        std::equal(known.poses.begin(), known.poses.end(), before->second.poses.begin(), before->second.poses.end(),
-                   same_pose)) {
-      known.object = before->second.object;
-    } else {
-      Attachment given;
-      given.link = link;
-      given.touch_links.assign(known.touch_links.begin(), known.touch_links.end());
-      given.object.id = id;
-      for (std::size_t i = 0; i < known.shapes.size(); ++i)
-        given.object.shapes.push_back(shapeAt(*known.shapes[i], known.poses[i]));
-      known.object = attachedObject(given, known.scale);
+    const auto before = std::find_if(known_.begin(), known_.end(), [&](const Known &other) {
+      return other.id == id && other.link == link && other.touch_links == now.touch_links &&
+             other.shapes == now.shapes && other.scale == now.scale && other.cells == now.cells &&
+             std::equal(now.poses.begin(), now.poses.end(), other.poses.begin(), other.poses.end(), same_pose);
+    });
+    if (before != known_.end()) {
+      out[id] = before->object;
+      std::rotate(before, before + 1, known_.end());
+      continue;
     }
-    out[id] = known.object;
-    now[id] = std::move(known);
+    Attachment given;
+    given.link = link;
+    given.touch_links.assign(now.touch_links.begin(), now.touch_links.end());
+    given.object.id = id;
+    for (std::size_t i = 0; i < now.shapes.size(); ++i)
+      given.object.shapes.push_back(shapes.at(now.shapes[i], now.poses[i]));
+    out[id] = now.object = attachedObject(given, now.scale);
+    known_.push_back(std::move(now));
   }
-  known_ = std::move(now);
+  const std::size_t most = keptAttachments(bodies.size());
+  if (known_.size() > most) known_.erase(known_.begin(), known_.end() - static_cast<std::ptrdiff_t>(most));
   return out;
 }
 
@@ -204,6 +284,7 @@ TrajectoryDescription timed(const robot_trajectory::RobotTrajectory &trajectory)
     joints.push_back(joint);
     appendNames(*joint, out.joints);
   }
+  if (joints.empty()) throw Error("group '" + trajectory.getGroupName() + "' has no joint that can move");
   for (std::size_t i = 0; i < n; ++i) {
     const RobotState &state = trajectory.getWayPoint(i);
     TrajectoryPoint point;
