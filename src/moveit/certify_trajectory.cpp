@@ -3,7 +3,6 @@
  * after it. */
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include <moveit/planning_request_adapter/planning_request_adapter.h>
 #include <moveit/planning_scene/planning_scene.h>
@@ -11,40 +10,38 @@
 #include <ros/ros.h>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "collision_env.h"
+#include "violation_message.h"
 
 namespace curve_proximity {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using planning_interface::MotionPlanRequest;
+using planning_interface::MotionPlanResponse;
+using Trajectory = robot_trajectory::RobotTrajectory;
 
-constexpr char LOG[] = "certify_trajectory";
-constexpr double RESOLUTION = 1000.0; /* parts of a duration: how closely intervals are told */
-constexpr int SHRINK_STEPS = 8;       /* ends that are tried for a shorter plan */
-
-/* Is polled by the search; true: the time is over. */
-bool isOver(void *end) {
-  return Clock::now() >= *static_cast<const Clock::time_point *>(end);
-}
+constexpr char ADAPTER_LOG[] = "certify_trajectory";
+constexpr int SHRINK_STEPS = 8; /* ends that are tried for a shorter plan */
 
 double parameter(const ros::NodeHandle &node, const std::string &name, double otherwise) {
   const double value = node.param("certify_" + name, otherwise);
   if (std::isfinite(value) && value >= 0.0) return value;
-  ROS_ERROR_STREAM_NAMED(LOG, node.resolveName("certify_" + name)
-                                  << " is " << value << ": it must be finite and >= 0; " << otherwise << " is used");
+  ROS_ERROR_STREAM_NAMED(ADAPTER_LOG, node.resolveName("certify_" + name)
+                                          << " is " << value << ": it must be finite and >= 0; " << otherwise
+                                          << " is used");
   return otherwise;
 }
 
-/* "from 1.2 to 1.35 s, from 2 to 2.1 s". */
-std::string textOf(const Violations &violations) {
-  std::string out;
-  for (const Violation &violation : violations.list) {
-    char text[80];
-    std::snprintf(text, sizeof text, "%sfrom %.4g to %.4g s", out.empty() ? "" : ", ", violation.enter_lower,
-                  violation.leave_upper);
-    out += text;
-  }
-  return out;
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/* Does a planner give the same path again? */
+bool isSame(const Trajectory &a, const Trajectory &b) {
+  if (a.getWayPointCount() != b.getWayPointCount()) return false;
+  for (std::size_t i = 0; i < a.getWayPointCount(); ++i)
+    if (a.getWayPoint(i).distance(b.getWayPoint(i)) != 0.0) return false;
+  return true;
 }
 
 } // namespace
@@ -52,11 +49,20 @@ std::string textOf(const Violations &violations) {
 class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapter {
  public:
   void initialize(const ros::NodeHandle &node) override {
-    clearance_ = parameter(node, "clearance", 0.0);
-    epsilon_ = parameter(node, "epsilon", 1e-6);
-    budget_ms_ = parameter(node, "budget_ms", 1000.0);
+    settings_.clearance = parameter(node, "clearance", 0.0);
+    settings_.epsilon = parameter(node, "epsilon", 1e-6);
+    settings_.budget_ms = parameter(node, "budget_ms", 1000.0);
+    attempts_ = node.param("certify_attempts", 3);
+    if (attempts_ < 1) {
+      ROS_ERROR_STREAM_NAMED(ADAPTER_LOG, node.resolveName("certify_attempts")
+                                              << " is " << attempts_ << ": it must be at least 1; 1 is used");
+      attempts_ = 1;
+    }
     reject_ = node.param("certify_reject", true);
     shrink_ = node.param("certify_shrink", false);
+    ros::NodeHandle topics(node, "certify");
+    violations_ = topics.advertise<ViolationIntervals>("violations", 8, true);
+    markers_ = topics.advertise<visualization_msgs::MarkerArray>("markers", 1, true);
   }
 
   std::string getDescription() const override {
@@ -64,122 +70,58 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
   }
 
   bool adaptAndPlan(const PlannerFn &planner, const planning_scene::PlanningSceneConstPtr &scene,
-                    const planning_interface::MotionPlanRequest &req, planning_interface::MotionPlanResponse &res,
-                    std::vector<std::size_t> &) const override {
+                    const MotionPlanRequest &req, MotionPlanResponse &res, std::vector<std::size_t> &) const override {
+    const Clock::time_point begin = Clock::now();
     if (!planner(scene, req, res) || !res.trajectory_) return false;
-    const Finding finding = certify(*scene, *res.trajectory_);
-    if (finding.why.empty()) return true;
+    Finding finding = certifier_.certify(*scene, *res.trajectory_, settings_);
+    int attempts = 1;
+    for (; attempts < attempts_ && !finding.why.empty() && secondsSince(begin) < req.allowed_planning_time; ++attempts)
+      if (!planAgain(planner, scene, req, finding, res)) break;
+    report(*scene, finding);
+    if (finding.why.empty()) {
+      if (attempts > 1)
+        ROS_INFO_STREAM_NAMED(ADAPTER_LOG, "plan " << attempts << " is proven, those before it were not");
+      return true;
+    }
+    if (attempts > 1) finding.why += "; so are " + std::to_string(attempts - 1) + " other plans";
     if (shrink_ && shrink(*scene, req, finding, res)) return true;
     const std::string why = finding.why + (shrink_ ? "; no beginning of it is proven" : "");
     if (!reject_) {
-      ROS_ERROR_STREAM_NAMED(LOG, why << ": the plan is returned as it is, certify_reject is false");
+      ROS_ERROR_STREAM_NAMED(ADAPTER_LOG, why << ": the plan is returned as it is, certify_reject is false");
       return true;
     }
-    ROS_ERROR_STREAM_NAMED(LOG, why << ": the plan is rejected");
+    ROS_ERROR_STREAM_NAMED(ADAPTER_LOG, why << ": the plan is rejected");
     res.error_code_.val = moveit_msgs::MoveItErrorCodes::INVALID_MOTION_PLAN;
     return false;
   }
 
  private:
-  using Env = CollisionEnvCurveProximity;
-  using Trajectory = robot_trajectory::RobotTrajectory;
-
-  /* The scene's own environment where it is one of ours; else one of the same world, whose robot is kept. */
-  std::shared_ptr<const Env> envOf(const planning_scene::PlanningScene &scene) const {
-    if (const auto own = std::dynamic_pointer_cast<const Env>(scene.getCollisionEnv())) return own;
-    const auto world = std::make_shared<collision_detection::World>(*scene.getWorld());
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!robot_ || robot_->getRobotModel() != scene.getRobotModel())
-      robot_ = std::make_shared<Env>(scene.getRobotModel());
-    const auto env = std::make_shared<Env>(*robot_, robot_->getWorld());
-    env->setWorld(world);
-    env->setLinkPadding(scene.getCollisionEnv()->getLinkPadding());
-    env->setLinkScale(scene.getCollisionEnv()->getLinkScale());
-    return env;
+  /* Replaces the plan by one that is proven, or is proven for longer. false: the planner has no other one. */
+  bool planAgain(const PlannerFn &planner, const planning_scene::PlanningSceneConstPtr &scene,
+                 const MotionPlanRequest &req, Finding &finding, MotionPlanResponse &res) const {
+    MotionPlanResponse other;
+    if (!planner(scene, req, other) || !other.trajectory_) return true; // a planner by chance may find one next time
+    if (isSame(*other.trajectory_, *res.trajectory_)) return false;
+    Finding of_other = certifier_.certify(*scene, *other.trajectory_, settings_);
+    other.planning_time_ += res.planning_time_;
+    if (!of_other.why.empty() && of_other.clear_until <= finding.clear_until) {
+      res.planning_time_ = other.planning_time_;
+      return true;
+    }
+    res = other;
+    finding = std::move(of_other);
+    return true;
   }
 
-  /* What is known of a trajectory. */
-  struct Finding {
-    std::string why;          /* why it is not proven to keep the clearance; "": it is */
-    double clear_until = 0.0; /* [s] proven up to here, where `why` is not "" */
-  };
-
-  Finding certify(const planning_scene::PlanningScene &scene, const Trajectory &trajectory) const {
-    try {
-      if (trajectory.getWayPointCount() == 0) throw Error("it has no waypoint");
-      const RobotMotion motion =
-          envOf(scene)->motion(timed(trajectory), trajectory.getFirstWayPoint(), scene.getAllowedCollisionMatrix());
-      Finding out;
-      out.clear_until = motion.domain()[1];
-      for (const bool self : {false, true}) look(motion, self, out);
-      return out;
-    } catch (const std::exception &error) {
-      return {std::string("the trajectory cannot be certified: ") + error.what(), 0.0};
-    }
-  }
-
-  /* Asks about the objects, or about the robot itself; adds to the finding what is not proven, where and by how much.
-   */
-  void look(const RobotMotion &motion, bool self, Finding &out) const {
-    Workspace workspace;
-    Clock::time_point end = Clock::now() + std::chrono::microseconds(std::llround(1e3 * budget_ms_));
-    Query query;
-    query.query_type = clearance_ > 0.0 ? QueryType::TOLERANCE : QueryType::COLLISION;
-    query.delta = clearance_;
-    query.allow_empty = true; // MoveIt's scene is whole
-    query.options.epsilon = epsilon_;
-    query.options.stop = isOver;
-    query.options.stop_user = &end;
-    const auto ask = [&] {
-      return self ? askSelf(motion, query, workspace) : askEnvironment(motion, query, workspace).front();
-    };
-    Answer answer = ask();
-    if (answer.result.status >= 0 && answer.result.verdict == CPROX_VERDICT_CLEAR) return;
-    if (!out.why.empty()) out.why += "; ";
-    out.why += answer.kind + ": ";
-    if (answer.result.status < 0) {
-      out.why += "failed, " + answer.message;
-      out.clear_until = 0.0;
-      return;
-    }
-    out.why += cprox_verdict_name(answer.result.verdict);
-    std::string remark = answer.message.empty() ? "" : " (" + answer.message + ")";
-
-    /* Where? Of a robot that stands: everywhere. */
-    end = Clock::now() + std::chrono::microseconds(std::llround(1e3 * budget_ms_));
-    query.query_type = QueryType::TOLERANCE;
-    const double duration = motion.domain()[1] - motion.domain()[0];
-    Violations where;
-    if (!motion.stands()) where = violations(motion, self, duration / RESOLUTION, query, workspace);
-    const double clear_until = where.list.empty() ? 0.0 : where.list.front().enter_lower;
-    out.clear_until = std::min(out.clear_until, clear_until);
-
-    /* By how much? In contact by the depth, where that is known. */
-    query.query_type = QueryType::DISTANCE;
-    query.delta = 0.0;
-    const Answer distance = ask();
-    if (distance.result.status == CPROX_OK) answer = distance;
-    if (answer.result.upper <= 0.0) {
-      query.options.signed_distance = 1;
-      try {
-        const Answer depth = ask();
-        if (depth.result.status == CPROX_OK) answer = depth;
-      } catch (const Error &) {
-      }
-    }
-    char text[160];
-    std::snprintf(text, sizeof text, ": between %.6g and %.6g m%s at t = %.4g s, up to %.3g m less than asked",
-                  answer.result.lower, answer.result.upper, answer.by_hull ? " of convex hulls" : "", answer.result.t,
-                  std::max(0.0, clearance_ - answer.result.lower));
-    const std::string intervals = textOf(where);
-    out.why += ", " +
-               (answer.b.empty() ? "the nearest pair is not known" : "'" + answer.a + "' and '" + answer.b + "'") +
-               text + (intervals.empty() ? "" : ", not proven " + intervals) + remark;
+  void report(const planning_scene::PlanningScene &scene, const Finding &finding) const {
+    for (const std::string &warning : finding.warnings) ROS_WARN_STREAM_NAMED(ADAPTER_LOG, warning);
+    for (const Doubt &doubt : finding.doubts) violations_.publish(toMessage(doubt));
+    markers_.publish(toMarkers(finding.doubts, scene.getPlanningFrame()));
   }
 
   /* Replaces the plan by a beginning of it that is timed anew, ends at rest and is proven. false: there is none. */
-  bool shrink(const planning_scene::PlanningScene &scene, const planning_interface::MotionPlanRequest &req,
-              const Finding &finding, planning_interface::MotionPlanResponse &res) const {
+  bool shrink(const planning_scene::PlanningScene &scene, const MotionPlanRequest &req, const Finding &finding,
+              MotionPlanResponse &res) const {
     const Trajectory &whole = *res.trajectory_;
     for (int parts = SHRINK_STEPS; parts > 0 && finding.clear_until > 0.0; --parts) {
       const double end = finding.clear_until * parts / SHRINK_STEPS;
@@ -187,19 +129,20 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
       if (!trajectory_processing::IterativeParabolicTimeParameterization().computeTimeStamps(
               *shorter, req.max_velocity_scaling_factor, req.max_acceleration_scaling_factor))
         return false;
-      if (!certify(scene, *shorter).why.empty()) continue;
-      ROS_WARN_STREAM_NAMED(LOG, finding.why << ": the plan is shortened, it ends where it was at t = " << end << " of "
-                                             << whole.getDuration() << " s");
+      if (!certifier_.certify(scene, *shorter, settings_).why.empty()) continue;
+      ROS_WARN_STREAM_NAMED(ADAPTER_LOG, finding.why << ": the plan is shortened, it ends where it was at t = " << end
+                                                     << " of " << whole.getDuration() << " s");
       res.trajectory_ = shorter;
       return true;
     }
     return false;
   }
 
-  double clearance_ = 0.0, epsilon_ = 1e-6, budget_ms_ = 1000.0;
+  CertifySettings settings_;
+  int attempts_ = 3;
   bool reject_ = true, shrink_ = false;
-  mutable std::mutex mutex_; /* of robot_ */
-  mutable std::shared_ptr<Env> robot_;
+  Certifier certifier_;
+  ros::Publisher violations_, markers_;
 };
 
 } // namespace curve_proximity

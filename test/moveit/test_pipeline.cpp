@@ -213,7 +213,7 @@ TEST(Pipeline, is_that_of_the_launch_files) {
   ros::NodeHandle move_group("/move_group");
   const planning_pipeline::PlanningPipeline pipeline(panda(), ros::NodeHandle(move_group, "planning_pipelines/ompl"),
                                                      "planning_plugin", "request_adapters");
-  ASSERT_EQ(pipeline.getAdapterPluginNames().size(), 7u);
+  ASSERT_EQ(pipeline.getAdapterPluginNames().size(), 8u);
   EXPECT_EQ(pipeline.getAdapterPluginNames().front(), OURS);
   for (const double aside : {0.0, 0.3}) {
     const auto scene = sceneWithPost(0.3, aside);

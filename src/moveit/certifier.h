@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Is a timed trajectory proven in one of MoveIt's planning scenes? */
+#ifndef CURVE_PROXIMITY_MOVEIT_CERTIFIER_H
+#define CURVE_PROXIMITY_MOVEIT_CERTIFIER_H
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <moveit/planning_scene/planning_scene.h>
+#include <moveit/robot_trajectory/robot_trajectory.h>
+
+#include "collision_env.h"
+
+namespace curve_proximity {
+
+struct CertifySettings {
+  double clearance = 0.0;    /* [m] to prove; 0: no contact */
+  double epsilon = 1e-6;     /* [m] how close an interval must come to decide */
+  double budget_ms = 1000.0; /* of each query; what is open then is not proven */
+};
+
+/* A query that is not proven: against the objects or of the robot against itself. */
+struct Doubt {
+  Answer answer;    /* the distance where that could be measured */
+  Violations where; /* [s] the intervals that are not proven; none: all of the trajectory */
+};
+
+struct Finding {
+  std::string why;                   /* why the trajectory is not proven, in one line; "": it is */
+  double clear_until = 0.0;          /* [s] proven up to here */
+  std::vector<Doubt> doubts;         /* none although `why` is not "": the trajectory cannot be certified */
+  std::vector<std::string> warnings; /* joints beyond their limits */
+};
+
+/* Any number of threads. What it has taken over of a scene it keeps for the next one. */
+class Certifier {
+ public:
+  Finding certify(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,
+                  const CertifySettings &settings) const;
+
+ private:
+  std::shared_ptr<const CollisionEnvCurveProximity> envOf(const planning_scene::PlanningScene &scene) const;
+
+  mutable std::mutex mutex_; /* of last_ */
+  mutable std::shared_ptr<CollisionEnvCurveProximity> last_;
+};
+
+} // namespace curve_proximity
+#endif
