@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "prove.h"
 
-#include <stdint.h>
 #include <stdio.h>
 
 #include "check.h"
@@ -24,7 +23,7 @@ proof prove(const char *text, size_t length, const unsigned char *certificate, s
   proof out = {0};
   problem p = {0};
   const char *fault = length == 0 ? "the problem is empty" : size == 0 ? "nothing is claimed" : NULL;
-  FILE *in = fault ? NULL : fmemopen((void *)(uintptr_t)text, length, "r");
+  FILE *in = fault ? NULL : fmemopen((void *)text, length, "r");
   if (!in && !fault) fault = "memory is out";
   if (in) {
     if (problem_open(&p, in)) fault = prove_next(&p, certificate, size, &out);
