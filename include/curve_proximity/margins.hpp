@@ -35,8 +35,8 @@ struct ObjectMargin {
  *  query   TOLERANCE, or COLLISION for a delta of 0; takes no certificate. query.links as in askEnvironment().
  *
  *  Every free is certified, and every blocked is proven by a point of the robot and one of the moved object. Throws
- *  Error as askEnvironment() refuses, and where the core refuses. Cost: a distance search an object, and about ten for
- *  each axis along which an object is in the way. */
+ *  Error as askEnvironment() refuses, and where the core refuses. Cost: some distance searches for each
+ *  object and axis, typically 5 to 9. */
 std::vector<ObjectMargin> objectMargins(const RobotMotion &motion, double within, const Query &query,
                                         Workspace &workspace);
 
