@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The least distance of robots along their motions with all its derivatives, in turns with the distance alone. */
+/* The least distance of robots along their motions with all its derivatives, in turns with the distance alone; the least
+ * growth distance with its derivatives, in turns with the distance's. */
 #include <math.h>
 #include <string.h>
 
@@ -43,6 +44,17 @@ static void ask_gradient(const void *problems, size_t i, void *state, bench_answ
                            .failed = status != CPROX_OK};
 }
 
+static void ask_growth(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  method_state *s = state;
+  cprox_motion_growth found;
+  const cprox_status status = cprox_robot_growth(p->obstacles, p->mover, NULL, s->workspace, &found, &s->gradient);
+  *answer = (bench_answer){.lower = found.growth.lower,
+                           .upper = found.growth.upper,
+                           .distance_queries = found.growth.pairs,
+                           .failed = status != CPROX_OK};
+}
+
 /* Motions that stay apart: overlaps have no gradient here. */
 void bench_robot_gradients(const robot_case *cases, size_t n_cases, const bench_size *size, cprox_workspace *ws) {
   if (!bench_wanted(size, "gradient")) return;
@@ -67,5 +79,9 @@ void bench_robot_gradients(const robot_case *cases, size_t n_cases, const bench_
   const bench_workload w = {"robots", "gradient", "value and all derivatives", problems, n, NULL, 0.0};
   const bench_method methods[] = {{"curve_proximity", ask_gradient, &with}, {"distance alone", ask, ws}};
   if (n > 0) bench_measure(&w, size, methods, 2);
+  const bench_workload growth = {"robots", "growth distance", "value and all derivatives", problems, n, NULL, 0.0};
+  const bench_method beside[] = {{"curve_proximity", ask_growth, &with},
+                                 {"distance and derivatives", ask_gradient, &with}};
+  if (n > 0) bench_measure(&growth, size, beside, 2);
   for (size_t i = 0; i < MOST_PROBLEMS; i++) cprox_obstacles_free(obstacles[i]);
 }
