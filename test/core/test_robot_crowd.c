@@ -125,6 +125,64 @@ CASE(a_set_is_answered_as_its_targets_one_by_one) {
   if (test_cases(ROBOTS) >= ROBOTS) assert_true(touching >= 3 && apart >= 3);
 }
 
+static bool count_look(void *user) {
+  ++*(size_t *)user;
+  return false;
+}
+
+/* A chain of 100 balls that swings to and fro under 100 others: 10,000 pairs, which all count as long as the search has
+ * one node. A search that is to stop does not wait for all of them. */
+CASE(the_stop_function_is_asked_within_a_node_of_many_pairs) {
+  enum { LINKS = 100, POINTS = 20 };
+  cprox_body *small = NULL, *large = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.02, ws, &small), CPROX_OK);
+  assert_int_equal(cprox_body_create_sphere(0.1, ws, &large), CPROX_OK);
+  cprox_link links[LINKS];
+  cprox_link_geometry geometries[LINKS];
+  cprox_obstacle targets[LINKS];
+  for (int32_t i = 0; i < LINKS; i++) {
+    links[i] = (cprox_link){.parent = i - 1,
+                            .type = CPROX_JOINT_REVOLUTE,
+                            .origin = {{i ? 0.05 : 0.0, 0, 0}, {1, 0, 0, 0}},
+                            .axis = {0, 0, 1},
+                            .variable = i,
+                            .multiplier = 1.0};
+    geometries[i] = (cprox_link_geometry){.body = small, .pose = {{0, 0, 0}, {1, 0, 0, 0}}, .link = i};
+    targets[i] = cprox_obstacle_at(large, (cprox_pose){{0.05 * i, 0.0, 0.5}, {1, 0, 0, 0}});
+  }
+  cprox_robot *robot = NULL;
+  assert_int_equal(cprox_robot_create(links, LINKS, geometries, LINKS, LINKS, ws, &robot), CPROX_OK);
+  double positions[POINTS];
+  cprox_waypoint points[POINTS];
+  for (size_t i = 0; i < POINTS; i++) {
+    positions[i] = i % 2 ? 1.0 : -1.0;
+    points[i] = (cprox_waypoint){.time = (double)i, .positions = &positions[i]};
+  }
+  const int32_t variable = 1;
+  const double rest[LINKS] = {0};
+  const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                      .variables = &variable,
+                                      .n_variables = 1,
+                                      .waypoints = points,
+                                      .n_waypoints = POINTS,
+                                      .rest = rest};
+  cprox_motion *motion = NULL;
+  assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
+  cprox_obstacles *list = NULL;
+  assert_int_equal(cprox_obstacles_create(targets, LINKS, CPROX_INDEX_NONE, ws, &list), CPROX_OK);
+  size_t looks = 0;
+  cprox_options o = accurate(1e-5);
+  o.max_nodes = 1, o.stop = count_look, o.stop_user = &looks;
+  cprox_result result;
+  assert_true(cprox_obstacles_tolerance(list, cprox_robot_along(motion, NULL, 0), 0.37, &o, ws, &result, NULL) >= 0);
+  assert_true(looks >= 30);
+  cprox_obstacles_free(list);
+  cprox_motion_free(motion);
+  cprox_robot_free(robot);
+  cprox_body_free(large);
+  cprox_body_free(small);
+}
+
 /* Never later than the earliest contact with a single target, and no earlier than epsilon away from one. */
 CASE(time_of_contact_with_a_set_is_the_earliest_of_its_targets) {
   rng r = rng_seed(6602);

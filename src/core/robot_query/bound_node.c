@@ -437,7 +437,18 @@ static bool other_moves_farther(robot_search *o) {
          motion_time(s->motion, s->over.last - 1, s->over.b) - motion_time(s->motion, s->over.first, s->over.a);
 }
 
-/* Balls and boxes of all pairs of a node; those that still matter are kept. */
+/* A node of a robot of a thousand links has a hundred thousand pairs: the stop function is asked between them, too. One
+ * distance is measured all the same (robot_must_end). */
+static bool is_stopped(robot_search *o) {
+  enum { BALLS_BETWEEN_LOOKS = 256 };
+  search_goal *goal = &o->goal;
+  const bool looks = goal->stop && o->balls % BALLS_BETWEEN_LOOKS == BALLS_BETWEEN_LOOKS - 1;
+  if (looks && goal->ended == CPROX_OK && goal->stop(goal->stop_user)) goal->ended = CPROX_STOPPED;
+  return goal->ended == CPROX_STOPPED;
+}
+
+/* Balls and boxes of all pairs of a node; those that still matter are kept. What is not bounded yet when the search must
+ * stop stays as it is. */
 static cprox_status bound_roughly(robot_search *o, const search_node *node, int32_t list) {
   const size_t n = lists_count(&o->lists, list);
   const bool sweeps = o->scene.motion->sweeps != NULL;
@@ -454,7 +465,7 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node, int3
       status = open_groups_of(o, node, &entry);
     } else {
       if (sweeps) entry.lower = greater(robot_scene_swept_apart(&o->scene, &o->scene.pairs[entry.pair]), entry.lower);
-      if (!sweeps || !robot_is_pruned(o, entry.lower)) bound_pair_roughly(o, node, &entry);
+      if ((!sweeps || !robot_is_pruned(o, entry.lower)) && !is_stopped(o)) bound_pair_roughly(o, node, &entry);
       status = keep_open(o, &entry);
     }
   }
