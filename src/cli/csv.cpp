@@ -75,42 +75,12 @@ std::size_t count(const std::vector<std::string> &fields, std::size_t column) {
 
 /* The points, knots and parameters that basis and degree ask for; what is wrong with the degree is said here. */
 CurveCounts needed(const CurveDescription &curve, std::size_t n) {
-  if (isNamedBasis(curve.basis) || isRationalBasis(curve.basis)) {
-    const CurveCounts counts = countsOf(curve.basis, curve.degree, n);
-    if (counts.points != n) {
-      throw BadInput("a " + curve.basis + " curve has " + std::to_string(counts.points) + " points; n is " +
-                     std::to_string(n));
-    }
-    return counts;
-  }
-  if (curve.basis == "bezier") {
-    if (curve.degree < 1) throw BadInput("a curve of degree 0 is a point; the degree of a bezier is at least 1");
-    if (n != curve.degree + 1) {
-      throw BadInput("a bezier of degree " + std::to_string(curve.degree) + " has " + std::to_string(curve.degree + 1) +
-                     " points; n is " + std::to_string(n));
-    }
-    return {n, 0, 0};
-  }
-  if (curve.basis == "bspline") {
-    if (curve.degree < 1) throw BadInput("the degree of a bspline is at least 1");
-    if (n <= curve.degree) {
-      throw BadInput("a bspline of degree " + std::to_string(curve.degree) + " needs at least " +
-                     std::to_string(curve.degree + 1) + " points; n is " + std::to_string(n));
-    }
-    return {n, n + curve.degree + 1, 0};
-  }
-  const bool trigonometric = curve.basis == "trigonometric", lagrange = curve.basis == "lagrange";
-  if (!trigonometric && !lagrange && curve.basis != "polynomial" && curve.basis != "legendre") {
-    throw BadInput("column 2 (basis) is " + shown(curve.basis) +
-                   "; it must be bezier, bspline, polynomial, legendre, lagrange, trigonometric, rational_bezier, "
-                   "nurbs, clothoid, dubins, involute, pythagorean_hodograph or piecewise");
-  }
-  const std::size_t points = trigonometric ? 2 * curve.degree + 1 : curve.degree + 1;
-  if (n != points) {
-    throw BadInput("a " + curve.basis + " curve of degree " + std::to_string(curve.degree) + " has " +
-                   std::to_string(points) + " points; n is " + std::to_string(n));
-  }
-  return {n, lagrange ? n : 0, 0};
+  if (curve.basis == "bezier" && curve.degree < 1)
+    throw BadInput("a curve of degree 0 is a point; the degree of a bezier is at least 1");
+  const CurveCounts counts = countsOf(curve.basis, curve.degree, n);
+  if (counts.points == n) return counts;
+  throw BadInput("a " + curve.basis + " curve of degree " + std::to_string(curve.degree) + " has " +
+                 std::to_string(counts.points) + " points; n is " + std::to_string(n));
 }
 
 /* n of a row `id,piecewise,…,n,…`: the next n rows are its pieces. 0 for other rows, and for those that cannot be read.

@@ -424,7 +424,7 @@ TEST(Contact, no_sampled_contact_comes_before_the_time) {
 TEST(Compile, curves_that_are_none_are_told_in_a_sentence) {
   CurveDescription curve = UPRIGHT;
   curve.basis = "fourier";
-  EXPECT_EQ(refusal(curve), "basis 'fourier' is not available");
+  expectContains(refusal(curve), "basis 'fourier' is not available");
   curve = UPRIGHT;
   curve.degree = 3;
   expectContains(refusal(curve), "degree 3");
@@ -463,7 +463,7 @@ TEST(Compile, a_bad_curve_is_an_answer) {
   const Answer answer = askOne(scene, {}, curve, Query());
   EXPECT_EQ(answer.status, "invalid");
   EXPECT_EQ(answer.id, "line");
-  EXPECT_EQ(answer.message, "basis 'fourier' is not available");
+  expectContains(answer.message, "basis 'fourier' is not available");
 }
 
 /* One parabola, (t, t², 0) on [-1, 2], as every basis says it, and a circle: the nearest point to (0, -1, 0) is known.

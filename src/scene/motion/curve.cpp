@@ -111,49 +111,27 @@ std::vector<Eigen::AlignedBox3d> splineBoxes(const CurveDescription &description
   return cutBoxes(curve, breaks, parts);
 }
 
-/* As many points, and nodes in the knots' place, as basis and degree ask for. */
-void checkCounts(const CurveDescription &curve, std::size_t points, std::size_t knots) {
-  if (curve.degree > CPROX_MAX_DEGREE) {
-    throw Error("the degree is " + std::to_string(curve.degree) + ", above " + std::to_string(CPROX_MAX_DEGREE));
-  }
-  if (static_cast<std::size_t>(curve.points.cols()) != points) {
-    throw Error("a " + curve.basis + " curve of degree " + std::to_string(curve.degree) + " has " +
-                std::to_string(points) + " points, got " + std::to_string(curve.points.cols()));
-  }
-  if (curve.knots.size() != knots) {
-    throw Error("a " + curve.basis + " curve " +
-                (knots ? "of degree " + std::to_string(curve.degree) + " takes " + std::to_string(knots) + " nodes"
-                       : std::string("takes no knots")) +
-                ", got " + std::to_string(curve.knots.size()));
-  }
-}
-
 /* A curve of one of the bases that take coefficients or values. */
 CurveHandle makeSeries(const CurveDescription &curve) {
-  if (curve.basis == "trigonometric") {
-    checkCounts(curve, 2 * curve.degree + 1, 0);
-    return makeTrigonometric(curve.points, curve.t0, curve.t1);
-  }
-  const bool lagrange = curve.basis == "lagrange", legendre = curve.basis == "legendre";
-  if (!lagrange && !legendre && curve.basis != "polynomial") {
-    throw Error("basis '" + curve.basis + "' is not available");
-  }
-  checkCounts(curve, curve.degree + 1, lagrange ? curve.degree + 1 : 0);
-  if (lagrange) return makeLagrange(curve.points, curve.knots, curve.t0, curve.t1);
-  return legendre ? makeLegendre(curve.points, curve.t0, curve.t1) : makePolynomial(curve.points, curve.t0, curve.t1);
+  if (curve.basis == "trigonometric") return makeTrigonometric(curve.points, curve.t0, curve.t1);
+  if (curve.basis == "lagrange") return makeLagrange(curve.points, curve.knots, curve.t0, curve.t1);
+  if (curve.basis == "legendre") return makeLegendre(curve.points, curve.t0, curve.t1);
+  return makePolynomial(curve.points, curve.t0, curve.t1);
 }
 
 /* As many points, knots and parameters as the basis takes. */
 void checkCounts(const CurveDescription &curve) {
-  const CurveCounts needed = countsOf(curve.basis, curve.degree, static_cast<std::size_t>(curve.points.cols()));
-  const auto check = [&](const char *what, std::size_t wanted, std::size_t got) {
-    if (got != wanted)
-      throw Error("a " + curve.basis + " curve takes " + std::to_string(wanted) + " " + what + ", got " +
-                  std::to_string(got));
+  const auto n = static_cast<std::size_t>(curve.points.cols());
+  const CurveCounts needed = countsOf(curve.basis, curve.degree, n);
+  const auto check = [&](const std::string &verb, const std::string &what, std::size_t wanted, std::size_t got) {
+    if (got == wanted) return;
+    const std::string degree = wanted > 0 && curve.degree > 0 ? " of degree " + std::to_string(curve.degree) : "";
+    throw Error("a " + curve.basis + " curve" + degree + " " + verb + " " +
+                (wanted > 0 ? std::to_string(wanted) : "no") + " " + what + ", got " + std::to_string(got));
   };
-  check("points", needed.points, static_cast<std::size_t>(curve.points.cols()));
-  check("knots", needed.knots, curve.knots.size());
-  check("parameters", needed.parameters, curve.parameters.size());
+  check("has", "points", needed.points, n);
+  check("takes", curve.basis == "lagrange" ? "nodes" : "knots", needed.knots, curve.knots.size());
+  check("takes", "parameters", needed.parameters, curve.parameters.size());
 }
 
 cprox_dubins_word dubinsWordOf(const std::string &basis) {
@@ -169,7 +147,6 @@ cprox_dubins_word dubinsWordOf(const std::string &basis) {
 /* A curve that start, headings and lengths describe. */
 CurveHandle makeNamed(const CurveDescription &curve) {
   const cprox_dubins_word word = hasOwnRange(curve.basis) ? dubinsWordOf(curve.basis) : CPROX_DUBINS_SHORTEST;
-  checkCounts(curve);
   const Eigen::Vector3d start = curve.points.col(0);
   const std::vector<double> &p = curve.parameters;
   if (curve.basis == "clothoid") return makeClothoid(start, p[0], p[1], p[2], curve.t0, curve.t1);
@@ -209,22 +186,6 @@ CurveHandle joinPieces(const CurveDescription &curve, Workspace &workspace) {
   return makePiecewise(handles, {}, curve.parameters.empty() ? 0.0 : curve.parameters.front());
 }
 
-void checkNoParameters(const CurveDescription &curve) {
-  if (!curve.parameters.empty())
-    throw Error("a " + curve.basis + " curve takes no parameters, got " + std::to_string(curve.parameters.size()));
-}
-
-CurveHandle makeBezier(const CurveDescription &curve, Workspace &workspace) {
-  checkNoParameters(curve);
-  const auto n = static_cast<std::size_t>(curve.points.cols());
-  if (curve.degree != 0 && curve.degree + 1 != n) {
-    throw Error("a bezier curve of degree " + std::to_string(curve.degree) + " has " +
-                std::to_string(curve.degree + 1) + " points, got " + std::to_string(n));
-  }
-  if (!curve.knots.empty()) throw Error("a bezier curve takes no knots, got " + std::to_string(curve.knots.size()));
-  return detail::createCurve(detail::describe(CPROX_CURVE_BEZIER, curve.points, curve.t0, curve.t1), workspace);
-}
-
 /* A B-spline, or with weights a NURBS curve. */
 CurveHandle makeSpline(const CurveDescription &curve, Workspace &workspace) {
   const bool rational = curve.basis == "nurbs";
@@ -240,16 +201,12 @@ CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
   if (curve.basis == "piecewise") return joinPieces(curve, workspace);
   if (!curve.pieces.empty())
     throw Error("a " + curve.basis + " curve has no pieces, got " + std::to_string(curve.pieces.size()));
-  if (curve.basis == "bezier") return makeBezier(curve, workspace);
-  if (isNamedBasis(curve.basis)) return makeNamed(curve);
-  if (isRationalBasis(curve.basis)) {
-    checkCounts(curve);
-    if (curve.basis == "nurbs") return makeSpline(curve, workspace);
-    return makeRationalBezier(curve.points, curve.parameters, curve.t0, curve.t1);
-  }
-  checkNoParameters(curve);
-  if (curve.basis == "bspline") return makeSpline(curve, workspace);
-  return makeSeries(curve);
+  checkCounts(curve);
+  if (curve.basis == "bezier")
+    return detail::createCurve(detail::describe(CPROX_CURVE_BEZIER, curve.points, curve.t0, curve.t1), workspace);
+  if (curve.basis == "bspline" || curve.basis == "nurbs") return makeSpline(curve, workspace);
+  if (curve.basis == "rational_bezier") return makeRationalBezier(curve.points, curve.parameters, curve.t0, curve.t1);
+  return isNamedBasis(curve.basis) ? makeNamed(curve) : makeSeries(curve);
 }
 
 /* What a radius that changes adds: a polynomial over the range of the curve, as the x of a curve. */

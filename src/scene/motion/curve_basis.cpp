@@ -16,10 +16,6 @@ bool isNamedBasis(const std::string &basis) {
   return basis == "clothoid" || isDubins(basis) || basis == "involute" || basis == "pythagorean_hodograph";
 }
 
-bool isRationalBasis(const std::string &basis) {
-  return basis == "rational_bezier" || basis == "nurbs";
-}
-
 bool hasOwnRange(const std::string &basis) {
   return isDubins(basis) || basis == "piecewise";
 }
@@ -43,20 +39,27 @@ void takeWholeRange(CurveDescription &curve) {
 CurveCounts countsOf(const std::string &basis, std::size_t degree, std::size_t n) {
   if (degree > CPROX_MAX_DEGREE)
     throw Error("the degree is " + std::to_string(degree) + ", above " + std::to_string(CPROX_MAX_DEGREE));
-  if (basis == "nurbs") {
-    if (degree < 1) throw Error("the degree of a nurbs is at least 1");
+  if (basis == "bspline" || basis == "nurbs") {
+    if (degree < 1) throw Error("the degree of a " + basis + " is at least 1");
     if (n <= degree)
-      throw Error("a nurbs of degree " + std::to_string(degree) + " needs at least " + std::to_string(degree + 1) +
-                  " points, got " + std::to_string(n));
-    return {n, n + degree + 1, n};
+      throw Error("a " + basis + " of degree " + std::to_string(degree) + " needs at least " +
+                  std::to_string(degree + 1) + " points, got " + std::to_string(n));
+    return {n, n + degree + 1, basis == "nurbs" ? n : 0};
   }
-  if (basis == "rational_bezier") return degree == 0 ? CurveCounts{n, 0, n} : CurveCounts{degree + 1, 0, degree + 1};
-  if (basis == "pythagorean_hodograph") return {1, 0, 4 * (degree + 1)};
+  const std::size_t most = degree + 1;
+  if (basis == "bezier") return {degree == 0 ? n : most, 0, 0};
+  if (basis == "rational_bezier") return degree == 0 ? CurveCounts{n, 0, n} : CurveCounts{most, 0, most};
+  if (basis == "polynomial" || basis == "legendre") return {most, 0, 0};
+  if (basis == "lagrange") return {most, most, 0};
+  if (basis == "trigonometric") return {2 * degree + 1, 0, 0};
+  if (basis == "pythagorean_hodograph") return {1, 0, 4 * most};
+  if (!isNamedBasis(basis))
+    throw Error("basis '" + basis +
+                "' is not available: it must be bezier, bspline, polynomial, legendre, lagrange, trigonometric, "
+                "rational_bezier, nurbs, clothoid, dubins, involute, pythagorean_hodograph or piecewise");
   if (degree != 0) throw Error("a " + basis + " curve has no degree: it must be 0, got " + std::to_string(degree));
   if (basis == "clothoid") return {1, 0, 3};
-  if (basis == "involute") return {1, 0, 2};
-  if (isDubins(basis)) return {2, 0, 3};
-  return {};
+  return basis == "involute" ? CurveCounts{1, 0, 2} : CurveCounts{2, 0, 3};
 }
 
 } // namespace curve_proximity

@@ -15,16 +15,13 @@ struct CurveCounts {
   std::size_t points = 0, knots = 0, parameters = 0;
 };
 
-/** Of a basis that is known by more than control points, or is rational; n: the number of points that it has. Throws
- *  Error: a degree that the basis cannot have. All counts 0 for `piecewise`. */
+/** Of any basis but `piecewise`; n: the number of points that it has. Throws Error: a basis that there is not, a degree
+ *  that it cannot have. */
 CurveCounts countsOf(const std::string &basis, std::size_t degree, std::size_t n);
 
 /** clothoid, dubins (with a word or without), involute, pythagorean_hodograph: start, headings and lengths say where it
  *  is. A frame moves such a curve, and piecewise ones, as a whole. */
 bool isNamedBasis(const std::string &basis);
-
-/** rational_bezier or nurbs. */
-bool isRationalBasis(const std::string &basis);
 
 /** A range [0, 0] becomes that of the whole curve: [0, 1], or of a bspline and nurbs that of its knots. Throws Error
  * for a range of a basis that has its own. */
