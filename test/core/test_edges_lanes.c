@@ -268,6 +268,68 @@ CASE(accelerations_alone_are_bounded) {
   }
 }
 
+/* Chains in a plane whose joints turn by up to 60 rad (1,000 edges, seed 407), at eight random times: orientations, places,
+ * rotation rates and velocities of all frames are within what their bounds say of single precision, against long double. */
+CASE(frames_that_turn_fast_are_within_their_own_errors) {
+  enum { JOINTS = 4 };
+  static lane_memory memory;
+  rng r = rng_seed(407);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
+  const cprox_obstacle target = cprox_obstacle_at(ball, CPROX_POSE_IDENTITY);
+  cprox_obstacles *set = NULL;
+  assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_NONE, ws, &set), CPROX_OK);
+  for (size_t i = 0; i < test_cases(1000); i++) {
+    cprox_link links[JOINTS];
+    double length[JOINTS], from[JOINTS], to[JOINTS];
+    for (int k = 0; k < JOINTS; k++) {
+      length[k] = k > 0 ? rng_uniform(&r, 0.1, 2) : 0.0;
+      from[k] = rng_uniform(&r, -3, 3), to[k] = from[k] + rng_uniform(&r, -1, 1) * rng_log_uniform(&r, 0.1, 60);
+      links[k] = (cprox_link){.parent = k - 1,
+                              .type = CPROX_JOINT_REVOLUTE,
+                              .origin = {.position = {length[k], 0, 0}, .orientation = {.w = 1}},
+                              .axis = {0, 0, 1},
+                              .variable = k,
+                              .multiplier = 1.0};
+    }
+    const cprox_link_geometry geometry = {.body = ball, .pose = CPROX_POSE_IDENTITY, .link = JOINTS - 1};
+    cprox_robot *robot = NULL;
+    assert_int_equal(cprox_robot_create(links, JOINTS, &geometry, 1, JOINTS, ws, &robot), CPROX_OK);
+    cprox_edge_checker *c = edge_world_checker(robot, &(cprox_edge_query){.obstacles = set});
+    edge_motion motion = edge_motion_in(c, memory.motion);
+    assert_true(c->n_frames == JOINTS + 1 && edge_motion_fill(c, from, to, &motion));
+    lane_batch batch = {.c = c, .motion = &motion};
+    batch.frames = (lane_frame *)(void *)memory.lanes;
+    memset(&batch.frames[0], 0, sizeof batch.frames[0]);
+    for (int k = 0; k < 9; k += 4) batch.frames[0].r[k] = lane_all(1.0f);
+    for (int l = 0; l < EDGE_LANES; l++) batch.middle[l] = (float)rng_uniform(&r, -0.5, 0.5);
+    for (size_t k = 1; k < c->n_frames; k++) place_frame(&batch, k), move_frame(&batch, k);
+    for (int l = 0; l < EDGE_LANES; l++) {
+      long double angle = 0.0L, spin = 0.0L, x = 0.0L, y = 0.0L, vx = 0.0L, vy = 0.0L;
+      for (int k = 0; k < JOINTS; k++) {
+        const lane_frame *f = &batch.frames[k + 1];
+        const edge_frame_bound *b = &motion.bounds[k + 1];
+        const long double ahead = (long double)length[k], across = cosl(angle) * ahead, up = sinl(angle) * ahead;
+        x += across, y += up, vx -= spin * up, vy += spin * across;
+        const long double rate = (long double)to[k] - (long double)from[k];
+        angle += (long double)from[k] + (0.5L + (long double)batch.middle[l]) * rate, spin += rate;
+        const lane3 turn = {f->r[0], f->r[3], f->r[6]};
+        const long double off[4] = {ref_norm(ref_sub(lane_of(turn, l), (vec3l){cosl(angle), sinl(angle), 0.0L})),
+                                    ref_norm(ref_sub(lane_of(f->spin, l), (vec3l){0.0L, 0.0L, spin})),
+                                    ref_norm(ref_sub(lane_of(f->o, l), (vec3l){x, y, 0.0L})),
+                                    ref_norm(ref_sub(lane_of(f->speed, l), (vec3l){vx, vy, 0.0L}))};
+        const double bound[4] = {b->turn_error, b->spin_error, b->place_error, b->speed_error};
+        for (int e = 0; e < 4; e++)
+          if (!(off[e] <= (long double)bound[e])) fail_msg("frame %d, error %d: %Lg, not %g", k, e, off[e], bound[e]);
+      }
+    }
+    cprox_edge_checker_free(c);
+    cprox_robot_free(robot);
+  }
+  cprox_obstacles_free(set);
+  cprox_body_free(ball);
+}
+
 /* Sine and cosine of lanes at 4 million angles up to 40, against long double: within 4 u. */
 CASE(lanes_know_sine_and_cosine) {
   rng r = rng_seed(402);
@@ -332,6 +394,43 @@ CASE(lanes_know_how_far_obstacles_are) {
   cprox_robot_free(robot);
   cprox_body_free(ball);
 }
+
+/* Points beside a face of a box that is up to 10,000 times as large as they are away from it: what single precision does
+ * to the box counts, not what it does to the points (10,000 boxes, seed 408, as above). */
+CASE(large_boxes_are_no_farther_than_they_are) {
+  rng r = rng_seed(408);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
+  const cprox_link link = {
+      .parent = -1, .type = CPROX_JOINT_PRISMATIC, .origin = CPROX_POSE_IDENTITY, .axis = {0, 0, 1}, .multiplier = 1.0};
+  const cprox_link_geometry g = {.body = ball, .pose = CPROX_POSE_IDENTITY};
+  cprox_robot *robot = NULL;
+  assert_int_equal(cprox_robot_create(&link, 1, &g, 1, 1, ws, &robot), CPROX_OK);
+  for (size_t i = 0; i < test_cases(10000); i++) {
+    const double size = rng_log_uniform(&r, 1, 1e3), away = rng_uniform(&r, 0, 0.1);
+    cprox_body *box = NULL;
+    assert_int_equal(cprox_body_create_box(vec(2 * size, 2 * size, 2 * size), ws, &box), CPROX_OK);
+    cprox_pose pose = {.orientation = rng_quat(&r)};
+    if (i % 2) pose.orientation = (cprox_quat){.w = 1};
+    const frame turn = frame_create(&pose, vec(0, 0, 0));
+    pose.position = rotate(turn.r, vec(size + away, 0.5 * size, 0));
+    const cprox_obstacle target = cprox_obstacle_at(box, pose);
+    cprox_obstacles *set = NULL;
+    assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_NONE, ws, &set), CPROX_OK);
+    cprox_edge_checker *c = edge_world_checker(robot, &(cprox_edge_query){.obstacles = set});
+    const lane origin = lane_all(0.0f);
+    const double lanes = sqrt((double)distance2_from(&c->obstacles[0], (lane3){origin, origin, origin})[0]);
+    const double room = EDGE_GROW * away + 1e-12 * size;
+    if (!(lanes <= away + room)) fail_msg("box of %g: %.9g is more than %.9g", size, lanes, away);
+    if (!(lanes >= away - room - (double)c->obstacles[0].grown)) fail_msg("%.9g is less than %.9g", lanes, away);
+    cprox_edge_checker_free(c);
+    cprox_obstacles_free(set);
+    cprox_body_free(box);
+  }
+  cprox_robot_free(robot);
+  cprox_body_free(ball);
+}
+
 /* The plain kernel and that of the machine give the same results, bit by bit (300 worlds, seed 406). */
 CASE(all_instruction_sets_find_the_same) {
   static lane_memory memory;
