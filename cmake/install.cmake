@@ -78,7 +78,8 @@ if(CPROX_ROS)
   catkin_install_python(PROGRAMS nodes/play_trajectory.py nodes/stand_still.py nodes/urdf_for_rviz.py
     nodes/keep_running.py nodes/show_in_rviz.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   install(DIRECTORY launch config rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-  install(FILES collision_plugins.xml constraint_provider_plugins.xml nodelet_plugins.xml planning_request_adapter_plugins.xml
+  install(FILES collision_plugins.xml constraint_provider_plugins.xml move_group_capability_plugins.xml nodelet_plugins.xml
+                planning_request_adapter_plugins.xml
           DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
   # The demo's robot and scenes, so that demo.launch works from the install space too.
   install(DIRECTORY test/data/robots test/data/scenes test/data/trajectories

@@ -31,6 +31,7 @@ set(CURVE_PROXIMITY_MESSAGES
 )
 set(CURVE_PROXIMITY_SERVICES
   ApplyScene.srv
+  CertifyPath.srv
   ClearanceProfile.srv
   Collision.srv
   Distance.srv

@@ -105,7 +105,7 @@ TEST(Pipeline, accepts_what_is_proven_free_and_keeps_the_clearance_asked_for) {
   const auto scene = sceneWithPost(0.3, 0.3);
   planning_interface::MotionPlanResponse res;
   EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.0, res));
-  EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.05, res));
+  EXPECT_TRUE(plans(scene, {OURS, TIMING}, 0.02, res));
   EXPECT_FALSE(plans(scene, {OURS, TIMING}, 0.5, res)) << "the post stands .3 m beside the hand's middle";
 }
 

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The service CertifyPath: trajectories beside an object that a waypoint does not touch. */
+#include <gtest/gtest.h>
+#include <moveit/utils/robot_model_test_utils.h>
+
+#include <limits>
+
+#include "certify_path.h"
+
+namespace {
+
+using curve_proximity::CertifyPath;
+
+/* A Panda, and a post that its hand passes when joint 1 turns through .3 rad. */
+class Path : public testing::Test {
+ protected:
+  Path() : scene_(std::make_shared<planning_scene::PlanningScene>(moveit::core::loadTestingRobotModel("panda"))) {
+    moveit::core::RobotState &state = scene_->getCurrentStateNonConst();
+    state.setToDefaultValues();
+    state.setToDefaultValues(scene_->getRobotModel()->getJointModelGroup("panda_arm"), "ready");
+    state.setVariablePosition("panda_joint1", 0.3);
+    state.update();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = state.getGlobalLinkTransform("panda_hand").translation();
+    scene_->getWorldNonConst()->addToObject("post", std::make_shared<shapes::Box>(0.01, 0.01, 0.3), pose);
+    state.setVariablePosition("panda_joint1", -0.8);
+    state.update();
+    scene_->setName("yard");
+  }
+
+  /* Joint 1 alone, from -.8 rad at 0 s to `angle` at 2 s. */
+  static CertifyPath::Request turnTo(double angle) {
+    CertifyPath::Request req;
+    req.joint_trajectory.joint_names = {"panda_joint1"};
+    req.joint_trajectory.points.resize(2);
+    req.joint_trajectory.points[0].positions = {-0.8};
+    req.joint_trajectory.points[1].positions = {angle};
+    req.joint_trajectory.points[1].time_from_start = ros::Duration(2.0);
+    return req;
+  }
+
+  CertifyPath::Response ask(const CertifyPath::Request &req) {
+    CertifyPath::Response res;
+    curve_proximity::certifyPath(req, *scene_, certifier_, res);
+    EXPECT_EQ(res.scene, "yard");
+    EXPECT_EQ(res.frame_id, scene_->getPlanningFrame());
+    EXPECT_EQ(res.certified, res.message.empty());
+    return res;
+  }
+
+  void refuses(const CertifyPath::Request &req, const std::string &why) {
+    const CertifyPath::Response res = ask(req);
+    EXPECT_FALSE(res.certified);
+    EXPECT_NE(res.message.find(why), std::string::npos) << res.message;
+    EXPECT_EQ(res.clear_until, 0.0);
+  }
+
+  planning_scene::PlanningScenePtr scene_;
+  curve_proximity::Certifier certifier_;
+};
+
+} // namespace
+
+TEST_F(Path, is_certified_where_it_keeps_the_clearance) {
+  EXPECT_TRUE(ask(turnTo(-0.4)).certified);
+  CertifyPath::Request req = turnTo(-0.4);
+  req.clearance = 0.02; // two links are .022 m from each other
+  EXPECT_TRUE(ask(req).certified);
+  req.clearance = 2.0;
+  EXPECT_FALSE(ask(req).certified);
+}
+
+TEST_F(Path, through_an_object_is_not_and_the_answer_names_it) {
+  const CertifyPath::Response res = ask(turnTo(1.2));
+  EXPECT_FALSE(res.certified);
+  ASSERT_EQ(res.violations.size(), 1u);
+  EXPECT_EQ(res.violations[0].summary.b, "post");
+  ASSERT_FALSE(res.violations[0].t.empty());
+  EXPECT_GT(res.clear_until, 0.5) << "from -.8 rad at 1 rad/s to the post at .3 rad";
+  EXPECT_LT(res.clear_until, 1.1);
+  EXPECT_EQ(res.clear_until, res.violations[0].enter_lower[0]);
+  scene_->getAllowedCollisionMatrixNonConst().setDefaultEntry("post", true);
+  EXPECT_TRUE(ask(turnTo(1.2)).certified);
+}
+
+TEST_F(Path, begins_where_start_state_says) {
+  CertifyPath::Request req = turnTo(1.2);
+  req.start_state.name = {"panda_joint4"};
+  req.start_state.position = {-0.2}; // stretched out: above the post
+  EXPECT_TRUE(ask(req).certified);
+}
+
+TEST_F(Path, that_cannot_be_used_is_refused_in_one_line) {
+  CertifyPath::Request req = turnTo(-0.4);
+  req.clearance = -1.0;
+  refuses(req, "the clearance is -1");
+  req.clearance = std::numeric_limits<double>::quiet_NaN();
+  refuses(req, "must be finite");
+  req = turnTo(-0.4);
+  req.joint_trajectory.joint_names = {"elbow"};
+  refuses(req, "has no joint 'elbow'");
+  req = turnTo(-0.4);
+  req.joint_trajectory.points[1].positions.clear();
+  refuses(req, "a point has 0 positions of 1 joints");
+  req = turnTo(-0.4);
+  req.joint_trajectory.points[1].time_from_start = ros::Duration(0.0);
+  refuses(req, "not timed");
+  refuses(CertifyPath::Request(), "no waypoint");
+  req = turnTo(-0.4);
+  req.start_state.name = {"panda_joint4"};
+  refuses(req, "1 names and 0 positions");
+  req.start_state.name = {"elbow"};
+  req.start_state.position = {0.0};
+  refuses(req, "elbow");
+}
+
+int main(int argc, char **argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::Time::init();
+  return RUN_ALL_TESTS();
+}
