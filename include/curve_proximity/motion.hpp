@@ -114,8 +114,8 @@ class RobotMotion {
  *  points and gradient are those of the hulls, upper is 0 or what convex bodies prove, and Answer::by_hull says so.
  *  Points, boxes and meshes without a hull are refused with it. All others refuse signed_distance. askSelf(),
  * nearestPairs(), clearanceProfile() and timeOfContact() take no per_object, none about the robot itself takes
- * query.objects. nearestPairs() and clearanceProfile() take no other query than DISTANCE, timeOfContact() none but
- * COLLISION, and these three no certificate.
+ * query.objects. nearestPairs() and clearanceProfile() take no other query than DISTANCE and no certificate,
+ * timeOfContact() none but COLLISION.
  *
  *  query.links restricts all of these queries to pairs of the links or attached objects that it names (of the robot
  *  itself: either of the pair). Here a link does not stand for what it carries: an attached object has a name of its

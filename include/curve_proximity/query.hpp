@@ -290,7 +290,8 @@ Violations violations(const Targets &targets, const CompiledCurve &curve, double
 /** The time of contact: where the curve first touches what it is tested against. The query is COLLISION.
  *  result.t_contact_lower: no contact at any smaller parameter, the rounding outside the core included. Verdict
  *  violated: contact at result.t, within that rounding. clear: no contact at all. undecided: closer than epsilon at
- *  result.t. Refuses per_object, signed_distance and certificates as ask() refuses. */
+ *  result.t. Refuses per_object and signed_distance as ask() refuses. A certificate is that of
+ *  cprox_certify_contact(). */
 Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace);
 
 /** The same as ask() in one step. An error of compile() or Targets becomes the only answer, with status "invalid". */

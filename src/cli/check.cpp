@@ -93,7 +93,11 @@ std::string jsonLine(const std::string &line) {
     return textOfJson(row);
   }
   row["id"] = found[1].str();
-  row["proof"] = found[6].matched ? "refused" : !found[2].matched ? "none" : found[4].matched ? "near" : "apart";
+  row["proof"] = found[6].matched                                       ? "refused"
+                 : !found[2].matched                                    ? "none"
+                 : found[4].matched                                     ? "near"
+                 : found[3].str().find(" before ") != std::string::npos ? "before"
+                                                                        : "apart";
   row["delta"] = found[5].matched ? Json(std::stod(found[5])) : Json();
   row["message"] = found[2].matched ? found[3].str() : found[6].matched ? found[7].str() : found[8].str();
   return textOfJson(row);

@@ -85,6 +85,26 @@ class CertificateTest(Case):
         self.assertEqual(checked.code, 0, checked.out + checked.err)
         self.assertIn('through: proven: not farther than 0 m', checked.out)
 
+    def times_of_contact_are_proven_from_both_sides(self):
+        rows = [PASSING, bezier('through', (-3, 0, 0), (3, 0.1, 0)), bezier('tube', (-3, 0, 3), (3, 0, 3), radius=0.1)]
+        answer = self.write('time-of-contact', rows, SCENE)
+        self.assertEqual([row['proof'] for row in answer.rows], ['apart', 'before', 'before'], answer.err)
+        self.assertEqual(without_proof(answer), without_proof(self.ask('time-of-contact', rows, SCENE)))
+        checked = self.check()
+        self.assertEqual(checked.code, 0, checked.out + checked.err)
+        self.assertIn('passing: proven: farther than 0 m everywhere', checked.out)
+        for name in ('through', 'tube'):
+            line = next(line for line in checked.out.splitlines() if line.startswith(name + ': proven: farther than 0 m before '))
+            before, by = float(line.split(' before ')[1].split(',')[0]), float(line.split(' by ')[1].split()[0])
+            row = answer.row(name)
+            self.assertAlmostEqual(before, float(row['t_contact_lower']), delta=1e-9)
+            self.assertAlmostEqual(by, float(row['t']), delta=1e-9)
+            self.assertLessEqual(before, by)
+        self.assertEqual([json.loads(line)['proof'] for line in self.check('--json').out.splitlines()], ['apart', 'before', 'before'])
+        self.file('nearer.yaml', SCENE.replace('[2, 2, 2]', '[2.001, 2, 2]').replace('[0.5]', '[0.501]'))
+        checked = self.check(scene='nearer.yaml')
+        self.assertEqual((checked.code, checked.out.count('refused')), (1, 2), checked.out)
+
     def a_certificate_of_another_query_is_refused(self):
         self.write('distance', [PASSING], BOX_SCENE)
         self.file('larger.yaml', BOX_SCENE.replace('[2, 2, 2]', '[2.001, 2, 2]'))

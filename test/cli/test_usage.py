@@ -121,7 +121,7 @@ ask cprox distance --curves a.c
                      (command, start + ['--trajectory', 't', '--robot', 'r'], run | own | {
                          '--scene', '--srdf', '--state', '--certificate', '--per-object', '--per-link', '--max-lod', '--skipped', '--self', '--second-opinion',
                          '--links', '--objects', '--allow-empty', '--moving-links-only'})]
-        for command, own in (('profile', {'--intervals', '--breaks', '--horizon'}), ('nearest', {'--pairs', '--within', '--signed'}), ('time-of-contact', set())):
+        for command, own in (('profile', {'--intervals', '--breaks', '--horizon'}), ('nearest', {'--pairs', '--within', '--signed'}), ('time-of-contact', {'--certificate'})):
             both = run | (set() if command == 'profile' else {'--second-opinion'}) | own | {
                 '--scene', '--srdf', '--state', '--per-object', '--max-lod', '--skipped', '--links', '--objects', '--allow-empty'}
             rows += [(command, ['--curves', 'c', '--robot', 'r'], both),

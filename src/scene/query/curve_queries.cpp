@@ -7,6 +7,7 @@
 #include <curve_proximity/query.hpp>
 
 #include "answering.h"
+#include "proving.h"
 #include "second_opinion.h"
 #include "targets.h"
 
@@ -104,6 +105,7 @@ std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const Co
 
 Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
   const Clock::time_point start = Clock::now();
+  cprox_certificate_clear(query.options.certificate);
   std::string fault = faultOfContact(query);
   if (fault.empty() && query.per_object) fault = "per_object does not apply: there is no answer for each object here";
   if (fault.empty()) fault = faultOf(query);
@@ -129,6 +131,8 @@ Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Q
   }
   finishAnswer(workspace, answer);
   applyCoverage(coverageOf(query, targets), query, answer);
+  if (query.options.certificate)
+    leaveContactProof(query, moverOf(curve), coreTargets(targets), result, workspace, answer);
   addSecondOpinion(targets.data(), curve, query, answer);
   return answer;
 }

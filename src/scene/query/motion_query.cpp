@@ -42,6 +42,7 @@ double beforeRounding(const Asked &asked, double t, const cprox_options &options
     cprox_options fine = options;
     fine.epsilon = asked.rounding;
     fine.relative_epsilon = 0.5;
+    fine.certificate = nullptr;
     const std::array<double, 2> breaks{start, t - step};
     cprox_profile_interval interval{};
     const cprox_status status =
@@ -101,6 +102,7 @@ Answer askSelf(const RobotMotion &motion, const Query &query, Workspace &workspa
 
 Answer timeOfContact(const RobotMotion &motion, bool self, const Query &query, Workspace &workspace) {
   const Clock::time_point start = Clock::now();
+  cprox_certificate_clear(query.options.certificate);
   std::string fault = faultOfContact(query);
   if (fault.empty()) fault = faultInAll(againstOf(self), query);
   if (!fault.empty()) return refusal(motion.data().id, self ? "self" : "environment", fault);
@@ -113,7 +115,10 @@ Answer timeOfContact(const RobotMotion &motion, bool self, const Query &query, W
   } else {
     searchContact(asked, query, workspace, result);
   }
-  return toAnswer(asked, result, query, workspace, start);
+  Answer answer = toAnswer(asked, result, query, workspace, start);
+  if (query.options.certificate && !asked.pairs.empty())
+    leaveContactProof(query, asked.mover(), asked.targets, result, workspace, answer);
+  return answer;
 }
 
 std::vector<std::string> movingNames(const RobotMotion &motion) {

@@ -17,30 +17,46 @@ double claimOf(const Query &query, const cprox_result &result) {
   return result.lower > 0.0 ? result.lower : std::max(result.upper, 0.0);
 }
 
+/* Whether there is an answer to be proven; then of the options what is of its proof. */
+bool beginProof(const Query &query, const cprox_result &result, cprox_options &options, Answer &answer) {
+  cprox_certificate_clear(query.options.certificate);
+  if (result.status < 0) return false; // the answer says why
+  if (answer.gap) answer.unproven = answer.message;
+  options = query.options; // what is of the query alone is not of its proof
+  options.certificate = nullptr;
+  options.signed_distance = false;
+  options.stop = nullptr;
+  return !answer.gap;
+}
+
 } // namespace
 
 void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
                 const cprox_result &result, Workspace &workspace, Answer &answer) {
-  cprox_certificate *certificate = query.options.certificate;
-  cprox_certificate_clear(certificate);
-  if (result.status < 0) return; // the answer says why
-  if (answer.gap) {
-    answer.unproven = answer.message;
-    return;
-  }
+  cprox_options options;
+  if (!beginProof(query, result, options, answer)) return;
   const double delta = claimOf(query, result);
   if (!std::isfinite(delta)) {
     answer.unproven = "there is nothing to measure";
     return;
   }
-  cprox_options options = query.options; // what is of the query alone is not of its proof
-  options.certificate = nullptr;
-  options.signed_distance = false;
-  options.stop = nullptr;
   ObstaclesHandle obstacles;
   cprox_status status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
   if (status == CPROX_OK)
-    status = cprox_certify(mover, obstacles.get(), delta, &result, &options, workspace.get(), certificate);
+    status =
+        cprox_certify(mover, obstacles.get(), delta, &result, &options, workspace.get(), query.options.certificate);
+  if (status != CPROX_OK) answer.unproven = workspace.reason();
+}
+
+void leaveContactProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+                       const cprox_result &result, Workspace &workspace, Answer &answer) {
+  cprox_options options;
+  if (!beginProof(query, result, options, answer)) return;
+  ObstaclesHandle obstacles;
+  cprox_status status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
+  if (status == CPROX_OK)
+    status =
+        cprox_certify_contact(mover, obstacles.get(), &result, &options, workspace.get(), query.options.certificate);
   if (status != CPROX_OK) answer.unproven = workspace.reason();
 }
 

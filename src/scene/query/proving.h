@@ -16,6 +16,10 @@ namespace curve_proximity {
 void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
                 const cprox_result &result, Workspace &workspace, Answer &answer);
 
+/* The same of the time of contact: `result` is the core's, of these targets or of larger ones. */
+void leaveContactProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+                       const cprox_result &result, Workspace &workspace, Answer &answer);
+
 /* Why nothing at all can be proven where this body takes part; empty where it can. `who`: "object 'can'". moves: it
  * is a link, or attached. */
 std::string unprovable(const std::string &who, const cprox_obstacle &target, bool moves = false);
