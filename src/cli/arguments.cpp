@@ -367,8 +367,11 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       break;
     case Action::REPORT:
       required("--out", "REPORT.html");
+      if (words.has("--errors") && (!words.has("--trajectory") || words.has("--moving-links-only")))
+        throw BadUsage("--errors needs --trajectory T.yaml and takes no --moving-links-only");
       if (words.has("--trajectory")) {
         readTrajectoryWords(words, out);
+        out.errors = words.text("--errors");
         break;
       }
       if (words.has("--self")) throw BadUsage("--self needs --trajectory T.yaml");

@@ -239,7 +239,7 @@ const std::vector<Option> &options() {
        "a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)"},
       {"--trajectory", "FILE", "queries report constraints check robust speed margins",
        "a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint"},
-      {"--errors", "FILE", "robust profile time-of-contact speed",
+      {"--errors", "FILE", "robust profile time-of-contact speed report",
        "bounds of the errors of an execution: every_joint, joints, timing, base, objects, sensor, flex "
        "(doc/robust.md)"},
       {"--separation", "FILE", "speed",

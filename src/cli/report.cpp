@@ -10,7 +10,10 @@
 #include <filesystem>
 #include <set>
 
+#include <curve_proximity/robust.hpp>
+
 #include "../scene/base/digest.h"
+#include "../scene/yaml/errors_yaml.h"
 #include "../scene/yaml/numbers.h"
 #include "answers.h"
 #include "certificates.h"
@@ -36,6 +39,7 @@ class Report {
  public:
   Report(const Arguments &arguments, const Warnings &warnings, Console &console)
       : arguments_(arguments), warnings_(warnings), console_(console) {
+    if (!arguments.errors.empty()) errors_ = yaml::readErrors(arguments.errors);
     for (const char *list : {"verdicts", "profiles", "pairs", "curves", "notes"}) data_[list] = Json::listOf({});
   }
 
@@ -166,6 +170,7 @@ class Report {
       if (interval.status != CPROX_OK) ended = cprox_status_text(interval.status);
     }
     t.push_back(profile.breaks.back());
+    if (errors_) lowerByErrors(std::get<MotionSubject>(asked.subject), part, profile.breaks, workspace, lower);
     const std::string name = part.link.empty() ? asked.id : part.link;
     if (!ended.empty()) note(asked.place + ": " + name + ": the profile is wider than epsilon: " + ended);
     data_["profiles"].items.push_back(Json::mapOf({{"name", name},
@@ -174,6 +179,16 @@ class Report {
                                                    {"lower", lower},
                                                    {"upper", upper},
                                                    {"against", Json::listOf(std::move(against))}}));
+  }
+
+  /* The band of a link goes down to what is certified for every execution. */
+  void lowerByErrors(const MotionSubject &subject, const Part &part, const std::vector<double> &breaks,
+                     Workspace &workspace, std::vector<double> &lower) const {
+    Query query = plainQuery();
+    query.links = {part.link};
+    const std::vector<ClearanceInterval> robust =
+        robustProfile(subject.motion, subject.self, *errors_, breaks, query, workspace);
+    for (std::size_t i = 0; i < lower.size(); ++i) lower[i] = std::min(lower[i], robust[i].lower);
   }
 
   void addPair(const Asked &asked, const Answer &answer) {
@@ -202,6 +217,7 @@ class Report {
   const Arguments &arguments_;
   const Warnings &warnings_;
   Console &console_;
+  std::optional<ErrorBounds> errors_;
   Json data_ = Json::mapOf({});
   std::string certificates_;
   std::set<double> witnesses_;
@@ -263,13 +279,12 @@ void addBasis(const Arguments &arguments, const World &world, Report &report) {
   data["delta"] = arguments.has_delta ? Json(arguments.query.delta) : Json();
   data["unit"] = arguments.trajectory.empty() ? "" : "s";
   data["self"] = arguments.self;
+  data["errors"] = !arguments.errors.empty();
   data["objects"] = world.snapshot->objects().size() + world.snapshot->moving().size();
   data["inputs"] = Json::listOf({});
-  const std::pair<const char *, const std::string *> inputs[] = {{"robot", &arguments.robot},
-                                                                 {"SRDF", &arguments.srdf},
-                                                                 {"trajectory", &arguments.trajectory},
-                                                                 {"curves", &arguments.curves},
-                                                                 {"scene", &arguments.scene}};
+  const std::pair<const char *, const std::string *> inputs[] = {
+      {"robot", &arguments.robot},   {"SRDF", &arguments.srdf},   {"trajectory", &arguments.trajectory},
+      {"curves", &arguments.curves}, {"scene", &arguments.scene}, {"errors", &arguments.errors}};
   for (const auto &[what, path] : inputs) {
     if (path->empty()) continue;
     data["inputs"].items.push_back(
@@ -332,8 +347,10 @@ void askCurves(const Arguments &arguments, const World &world, Report &report) {
 
 int writeReport(const Arguments &arguments, Console &console) {
   Warnings warnings;
-  const bool standing = arguments.trajectory.empty() || !arguments.certificate.empty();
-  const char *what = arguments.trajectory.empty() ? "a report of curves" : "--certificate";
+  const bool standing = arguments.trajectory.empty() || !arguments.certificate.empty() || !arguments.errors.empty();
+  const char *what = arguments.trajectory.empty()    ? "a report of curves"
+                     : arguments.certificate.empty() ? "--errors"
+                                                     : "--certificate";
   const World world = standing ? readStandingWorld(arguments, what, warnings) : readWorld(arguments, warnings);
   reportPage("", ""); /* before any search: is all there that the page needs? */
   ResultsFile page(arguments.out, inputsOf(arguments));

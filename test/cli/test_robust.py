@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """cprox robust: a cart on a slide in front of a wall, whose losses are known in closed form."""
+import json
 import math
+import os
+import re
 
 from support import Case, cprox
 from test_trajectory import SLIDE, SLIDER, WALL
@@ -77,6 +80,19 @@ class Robust(Case):
         answer = self.asked('time-of-contact', 'sensor: 0.91')
         self.assertEqual((answer.code, answer.row('go')['verdict']), (3, 'undecided'))
         self.assertAlmostEqual(float(answer.row('go')['t_contact_lower']), (2.9 - 0.91) / 0.5, places=3)
+
+    def a_report_has_bands_down_to_what_is_certified(self):
+        """Each link's band: above the profile without errors, below what the errors leave of it."""
+        page = os.path.join(self.folder, 'page.html')
+        self.assertEqual(self.asked('report', 'sensor: 0.25', '--intervals', '8', '--objects', 'wall', '--out', page).code, 0)
+        with open(page, encoding='utf-8') as file:
+            data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', file.read(), re.S).group(1))
+        self.assertTrue(data['errors'])
+        self.assertIn('errors.yaml', data['inputs'][-1]['file'])
+        bands = {profile['name']: profile for profile in data['profiles']}
+        for lower, upper, end in zip(bands['cart']['lower'], bands['cart']['upper'], bands['cart']['t'][1:]):
+            self.assertAlmostEqual(upper, 2.9 - 0.5 * end, places=5)
+            self.assertAlmostEqual(lower, upper - 0.25, places=5)
 
     def limits_of_the_speed_hold_for_all_executions(self):
         separation = self.file('separation.yaml', 'person: {speed: 1.6}\nrobot: {reaction_time: 0.1, stopping_time: 0.5}\n')

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shows the data of a report. They are what src/cli/report.cpp and report_drawing.cpp gather:
-//   title, version, epsilon, delta (or null), unit of t ("s" or ""), self, objects (how many), domain [t0, t1]
+//   title, version, epsilon, delta (or null), unit of t ("s" or ""), self, objects (how many), domain [t0, t1], errors
+//   (true: lower of the profiles is that of every execution within bounds of its errors)
 //   date (UTC), host, command
 //   inputs    [{what, file, digest}]
 //   notes     [sentence]
@@ -159,6 +160,7 @@ function ticks(low, high, count) {
 let cursor = null, timeToX = null;
 
 function showChart() {
+  document.getElementById('executions').hidden = !data.errors;
   const least = profile => Math.min(...profile.upper.filter(x => x !== null), Infinity);
   const profiles = data.profiles.filter(profile => profile.upper.some(x => x !== null)).sort((x, y) => least(x) - least(y));
   const place = document.getElementById('chart'), legend = document.getElementById('legend');
