@@ -264,7 +264,8 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
 
 /* A robot along a trajectory, for every execution within bounds of its errors. */
 void readErrorsWords(const Words &words, Arguments &out) {
-  for (const char *name : {"--per-link", "--per-object", "--horizon", "--second-opinion", "--moving-links-only"})
+  for (const char *name :
+       {"--per-link", "--per-object", "--horizon", "--second-opinion", "--moving-links-only", "--certificate"})
     if (words.has(name)) throw BadUsage("--errors takes no " + std::string(name));
   out.action = Action::ROBUST;
   out.errors = words.text("--errors");

@@ -122,4 +122,5 @@ class Robust(Case):
         self.assertRefused(cprox('robust', '--robot', 'r', '--errors', 'e'), '--trajectory')
         self.assertRefused(self.robust('sensor: 1', '--moving-links-only'), '--moving-links-only')
         self.assertRefused(self.asked('profile', 'sensor: 1', '--per-link'), '--per-link')
+        self.assertRefused(self.asked('time-of-contact', 'sensor: 1', '--certificate', 'p'), '--errors', '--certificate')
         self.assertRefused(cprox('profile', '--curves', 'c', '--scene', 's', '--errors', 'e'), '--trajectory')
