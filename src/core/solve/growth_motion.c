@@ -313,7 +313,8 @@ static cprox_status find_root(robot_growth *o, double left, double right, double
 static cprox_status refine(robot_growth *o, double t0, double t1, double *t) {
   place p;
   motion_spot before, behind;
-  for (double step = 1e-8 * (t1 - t0); step < 0.05 * (t1 - t0); step *= 8.0) {
+  double step = 1e-8 * (t1 - t0);
+  while (step < 0.05 * (t1 - t0)) {
     const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
     cprox_status status = look_at(o, left, false, &p, &before, NULL);
     if (status >= 0) status = look_at(o, right, true, &p, &behind, NULL);
@@ -321,6 +322,7 @@ static cprox_status refine(robot_growth *o, double t0, double t1, double *t) {
     if (left == t0 && before.slope >= 0.0 && behind.slope >= 0.0) return *t = t0, CPROX_OK;
     if (right == t1 && before.slope <= 0.0 && behind.slope <= 0.0) return *t = t1, CPROX_OK;
     if (before.slope < 0.0 && behind.slope > 0.0) return find_root(o, left, right, t);
+    step *= 8.0;
   }
   return CPROX_OK;
 }
