@@ -30,6 +30,8 @@ using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
  *    ELLIPSOID  [x, y, z] semi-axes
  *    HALFSPACE  [a, b, c, d]: ax + by + cz + d <= 0
  *    SUPERQUADRIC  [a1, a2, a3, n1, n2, n3]: sum |x_i/a_i|^n_i <= 1, exponents 1 … 1000
+ *    SUPERELLIPSOID  [a1, a2, a3, e1, e2] (Barr): (|x/a1|^(2/e2) + |y/a2|^(2/e2))^(e2/e1) + |z/a3|^(2/e1) <= 1,
+ *               exponents 0.002 … 2: convex
  *    IMPLICIT   none; the intersection of `hyperquadrics`, `planes` and `quadrics`, bounded and with an interior
  *    POLYTOPE   none; the convex hull of `vertices`, solid, of any dimension
  *    POLYGON    none; a convex polygon in the plane z = 0 of its frame; `vertices` in order, with z = 0. For a curve in
@@ -58,6 +60,7 @@ enum class ShapeType {
   POLYGON,
   MESH,
   SUPERQUADRIC,
+  SUPERELLIPSOID,
   IMPLICIT,
   POINTS,
   OCTREE,

@@ -123,8 +123,10 @@ class Others(Case):
             barr = self.ask('distance', [PASSING], SCENE.format(f'superquadric, dimensions: [.5, .4, .3, {e}, {e}]'))
             sums = self.ask('distance', [PASSING], SCENE.format('superquadric, dimensions: [.5, .4, .3, {0}, {0}, {0}]'.format(2 / e)))
             self.assertEqual((barr.code, same(barr.rows[0])), (0, same(sums.rows[0])))
-        self.assertRefused(self.ask('distance', [PASSING], SCENE.format('superquadric, dimensions: [.5, .4, .3, .5, 1]')), 'exponents are the same')
-        self.assertRefused(self.ask('distance', [PASSING], SCENE.format('superquadric, dimensions: [.5, .4, .3, 0, 0]')), '6 dimensions')
+        two = [self.ask('distance', [PASSING], SCENE.format(f'{kind}, dimensions: [.5, .4, .3, .5, 1]')) for kind in ('superquadric', 'superellipsoid')]
+        self.assertEqual((two[0].code, same(two[0].rows[0])), (0, same(two[1].rows[0])))
+        self.assertEqual(self.ask('distance', [PASSING], SCENE.format('superquadric, dimensions: [.5, .4, .3, .5, 2.5]')).code, 2)
+        self.assertEqual(self.ask('distance', [PASSING], SCENE.format('superquadric, dimensions: [.5, .4, .3, 0, 0]')).code, 2)
         self.assertEqual(self.ask('distance', [PASSING], SCENE.format('superquadric, dimensions: [.5, .4, .3, 2.5, 2.5]')).code, 2)
 
     def robots_of_other_formats_are_named(self):

@@ -95,6 +95,54 @@ TEST(Shapes, dimensions_mean_what_the_header_says) {
   EXPECT_NEAR(distanceTo(shape(ShapeType::HALFSPACE, {0, 0, 2, -2}), {7, 7, 3.0}), 2.0, 1e-14);
 }
 
+/* Held against points of the surface that the inequality itself gives: none is nearer than the distance, and a search
+ * among them finds one as near. Exponents to both ends of their range, those of an octahedron and a box among them. */
+TEST(Shapes, a_superellipsoid_is_that_of_barr) {
+  Random random(31);
+  const auto norm = [](double x, double y, double p) {
+    const double most = std::max(x, y);
+    return most > 0.0 ? most * std::pow(std::pow(x / most, p) + std::pow(y / most, p), 1.0 / p) : 0.0;
+  };
+  for (int i = 0; i < 40; ++i) {
+    const auto exponent = [&] {
+      const int kind = static_cast<int>(random.uniform(0, 6));
+      return kind == 0 ? 2.0 : kind == 1 ? 1.0 : kind == 2 ? 0.01 : random.uniform(0.1, 1.95);
+    };
+    const Eigen::Vector3d a(random.uniform(.1, 1), random.uniform(.1, 1), random.uniform(.1, 1));
+    const double e1 = exponent(), e2 = exponent();
+    const auto surface =
+        [&](const Eigen::Vector3d &direction) { /* the left side is a power of a norm */
+                                                const Eigen::Vector3d x = direction.cwiseAbs().cwiseQuotient(a);
+                                                return Eigen::Vector3d(direction /
+                                                                       norm(norm(x.x(), x.y(), 2 / e2), x.z(), 2 / e1));
+        };
+    const Eigen::Vector3d p = 2.0 * Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(1, 2));
+    const double distance = cprox_body_nearest(
+        makeGeometry(shape(ShapeType::SUPERELLIPSOID, {a.x(), a.y(), a.z(), e1, e2})).body.get(), toVec3(p), nullptr);
+    double nearest = INFINITY;
+    Eigen::Vector3d best = Eigen::Vector3d::UnitZ();
+    const auto look = [&](const Eigen::Vector3d &direction) {
+      const double d = (surface(direction) - p).norm();
+      if (d < nearest) nearest = d, best = direction.normalized();
+    };
+    for (int k = 0; k < 20000; ++k) {
+      const double z = random.uniform(-1, 1), turn = random.uniform(-M_PI, M_PI), r = std::sqrt(1 - z * z);
+      look({r * std::cos(turn), r * std::sin(turn), z});
+    }
+    for (double reach = 0.1; reach > 1e-10; reach *= 0.98)
+      for (int k = 0; k < 20; ++k)
+        look(best + reach * Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+    EXPECT_LE(distance, nearest + 1e-9) << i << ": " << e1 << " " << e2;
+    EXPECT_GE(distance, nearest - 1e-4) << i << ": " << e1 << " " << e2; /* the search stops at ridges */
+  }
+  EXPECT_NEAR(cprox_body_nearest(makeGeometry(shape(ShapeType::SUPERELLIPSOID, {1, 1, 1, 2, 1})).body.get(), {0, 2, 1},
+                                 nullptr),
+              std::sqrt(2.0), 1e-9); /* a double cone */
+  for (const double e : {0.0, 0.001, 2.1})
+    expectContains(refusal(shape(ShapeType::SUPERELLIPSOID, {1, 1, 1, e, 1})),
+                   e > 0.0 ? "from 0.002 to 2" : "dimension 3");
+}
+
 TEST(Shapes, wrong_dimensions_are_told_in_a_sentence) {
   EXPECT_EQ(refusal(shape(ShapeType::CYLINDER, {1.0})), "cylinder needs 2 dimensions [height, radius], got 1");
   EXPECT_EQ(refusal(shape(ShapeType::SPHERE, {})), "sphere needs 1 dimension [radius], got 0");

@@ -7,7 +7,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr std::array<std::pair<ShapeType, const char *>, 18> SHAPE_TYPES = {
+constexpr std::array<std::pair<ShapeType, const char *>, 19> SHAPE_TYPES = {
     {{ShapeType::POINT, "point"},
      {ShapeType::SPHERE, "sphere"},
      {ShapeType::BOX, "box"},
@@ -20,6 +20,7 @@ constexpr std::array<std::pair<ShapeType, const char *>, 18> SHAPE_TYPES = {
      {ShapeType::POLYGON, "polygon"},
      {ShapeType::MESH, "mesh"},
      {ShapeType::SUPERQUADRIC, "superquadric"},
+     {ShapeType::SUPERELLIPSOID, "superellipsoid"},
      {ShapeType::IMPLICIT, "implicit"},
      {ShapeType::POINTS, "points"},
      {ShapeType::OCTREE, "octree"},

@@ -9,6 +9,7 @@
 
 #include "mesh.h"
 #include "octree.h"
+#include "superellipsoid.h"
 
 namespace curve_proximity {
 namespace {
@@ -32,6 +33,7 @@ Expected expectedDimensions(ShapeType type) {
     case ShapeType::ELLIPSOID: return {3, "[x, y, z] (semi-axes)"};
     case ShapeType::HALFSPACE: return {4, "[a, b, c, d]", Expected::ANY};
     case ShapeType::SUPERQUADRIC: return {6, "[a1, a2, a3, n1, n2, n3]"};
+    case ShapeType::SUPERELLIPSOID: return {5, "[a1, a2, a3, e1, e2]"};
     case ShapeType::MESH: return {3, "[x, y, z] (the scale)", Expected::ANY, true};
     case ShapeType::POINTS: return {1, "[radius]", Expected::NOT_NEGATIVE, true};
     case ShapeType::POINT:
@@ -221,6 +223,7 @@ BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &option
     case ShapeType::POLYTOPE: return makePolytope(shape.vertices);
     case ShapeType::POLYGON: return makePolygon(shape.vertices.topRows<2>());
     case ShapeType::SUPERQUADRIC: return makeSuperquadric({d[0], d[1], d[2]}, {d[3], d[4], d[5]});
+    case ShapeType::SUPERELLIPSOID: return makeSuperellipsoid({d[0], d[1], d[2]}, {d[3], d[4]});
     case ShapeType::IMPLICIT: return makeImplicit(shape.hyperquadrics, shape.planes, shape.quadrics);
     case ShapeType::POINTS:
       return makePoints(shape.vertices, d.empty() ? 0.0 : d[0], options.memory_limit, options.stop);

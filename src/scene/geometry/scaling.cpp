@@ -62,7 +62,8 @@ ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const 
     case ShapeType::HALFSPACE: /* [a, b, c, d] */
       if (out.dimensions.size() == 4) out.dimensions[3] *= scale;
       break;
-    case ShapeType::SUPERQUADRIC: /* [a1, a2, a3, n1, n2, n3] */
+    case ShapeType::SUPERQUADRIC:   /* [a1, a2, a3, n1, n2, n3] */
+    case ShapeType::SUPERELLIPSOID: /* [a1, a2, a3, e1, e2] */
       for (std::size_t i = 0; i < 3 && i < out.dimensions.size(); ++i) out.dimensions[i] *= scale;
       break;
     default:

@@ -81,20 +81,15 @@ void readGrid(const YamlValue &value, ShapeDescription &shape, Warnings &warning
   shape.values = value.at("values").numbers();
 }
 
-/* Barr's superquadric [a1, a2, a3, e1, e2]: ((x/a1)^(2/e2) + (y/a2)^(2/e2))^(e2/e1) + (z/a3)^(2/e1) <= 1. */
-void readBarr(const YamlValue &place, ShapeDescription &shape) {
+/* Five dimensions [a1, a2, a3, e1, e2] are Barr's. With e1 = e2 it is a sum of three powers. */
+void readBarr(ShapeDescription &shape) {
   constexpr std::size_t BARR = 5;
   std::vector<double> &d = shape.dimensions;
   if (d.size() != BARR) return;
-  const auto convex = [](double e) { return e > 0.0 && e <= 2.0; };
-  if (!convex(d[3]) || !convex(d[4]))
-    place.fail(
-        "superquadric needs 6 dimensions [a1, a2, a3, n1, n2, n3], or 5 [a1, a2, a3, e, e] with e above 0 and "
-        "at most 2");
-  if (d[3] != d[4])
-    place.fail(
-        "of a superquadric [a1, a2, a3, e1, e2] the exponents are the same, or it is no sum of three powers: "
-        "enclose it in a mesh or a polytope");
+  if (d[3] != d[4]) {
+    shape.type = ShapeType::SUPERELLIPSOID;
+    return;
+  }
   d[3] = d[4] = 2.0 / d[3];
   d.push_back(d[3]);
 }
@@ -147,7 +142,8 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   const std::optional<ShapeType> known = shapeTypeFromName(name);
   if (!known) {
     type.fail("type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
-              "halfspace, polytope, polygon, mesh, points, octree, superquadric, implicit, height_field, distance_grid "
+              "halfspace, polytope, polygon, mesh, points, octree, superquadric, superellipsoid, implicit, "
+              "height_field, distance_grid "
               "or curve");
   }
   shape.type = *known;
@@ -191,7 +187,7 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   value.warnOfOthers({"type", "dimensions", "vertices", "deform", "pose"}, warnings);
   readDeformation(value, shape, warnings);
   if (const auto dimensions = value.find("dimensions")) shape.dimensions = dimensions->numbers();
-  if (shape.type == ShapeType::SUPERQUADRIC) readBarr(*value.find("type"), shape);
+  if (shape.type == ShapeType::SUPERQUADRIC) readBarr(shape);
   shape.vertices = readVertices(value);
   const bool by_vertices = shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POLYGON ||
                            shape.type == ShapeType::POINT || shape.type == ShapeType::POINTS;
