@@ -486,9 +486,10 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   }
 
   if (words.front() == "completion") {
-    if (words != std::vector<std::string>{"completion", "bash"})
-      throw BadUsage("completion: for bash alone, 'completion bash'");
+    if (words.size() != 2 || (words[1] != "bash" && words[1] != "zsh"))
+      throw BadUsage("completion: 'completion bash' or 'completion zsh'");
     out.action = Action::COMPLETION;
+    out.topic = words[1];
     return out;
   }
 

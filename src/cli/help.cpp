@@ -107,9 +107,9 @@ std::string helpText(const std::string &command) {
     out += "                    " + std::string(each.help) + "\n";
   }
   out +=
-      "cprox completion bash\n                    for source <(cprox completion bash): the shell completes commands "
-      "and "
-      "options\n\n";
+      "cprox completion SHELL\n                    for source <(cprox completion SHELL), bash or zsh: the shell "
+      "completes "
+      "commands and options\n\n";
   out += std::string(INPUTS) + "\n";
   for (const Option &option : options()) addOption(option, out);
   out += std::string("  --help, --version\n\n") + RESULTS;
@@ -172,7 +172,8 @@ std::string manualPage() {
          ".SH SEE ALSO\n.BR cprox_check (1)\n";
 }
 
-std::string bashCompletion() {
+/* zsh runs the script of bash. */
+std::string completion(const std::string &shell) {
   std::string words, cases;
   for (const Command &command : commands()) {
     words += std::string(command.word) + " ";
@@ -181,7 +182,9 @@ std::string bashCompletion() {
       if (takes(command, option)) cases += std::string(" ") + option.name;
     cases += "' ;;\n";
   }
-  return "_cprox() {\n"
+  const std::string before = shell == "zsh" ? "autoload -Uz compinit bashcompinit && compinit && bashcompinit\n" : "";
+  return before +
+         "_cprox() {\n"
          "  local words word=${COMP_WORDS[COMP_CWORD]}\n"
          "  case ${COMP_WORDS[1]} in\n" +
          cases + "    *) words='--help --version' ;;\n  esac\n  [ \"$COMP_CWORD\" -gt 1 ] || words='" + words +

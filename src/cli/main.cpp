@@ -25,7 +25,7 @@ int run(const std::vector<std::string> &words, Console &console) {
   namePackages(arguments.packages);
   switch (arguments.action) {
     case Action::HELP: std::fputs(helpText(arguments.topic).c_str(), stdout); return kAllAnswered;
-    case Action::COMPLETION: std::fputs(bashCompletion().c_str(), stdout); return kAllAnswered;
+    case Action::COMPLETION: std::fputs(completion(arguments.topic).c_str(), stdout); return kAllAnswered;
     case Action::MANUAL: std::fputs(manualPage().c_str(), stdout); return kAllAnswered;
     case Action::VERSION: std::puts("cprox " CPROX_VERSION); return kAllAnswered;
     case Action::CURVES: return answerCurves(arguments, console);

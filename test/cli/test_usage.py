@@ -57,6 +57,19 @@ ask cprox distance --curves a.c
         self.assertEqual(done.stdout.decode(), 'time-of-contact\n--within\n\n\n')
         self.assertRefused(cprox('completion', 'fish'), 'bash')
 
+    def zsh_completes_commands_and_options(self):
+        """In a terminal of its own: its completion answers to keys alone."""
+        script, asks = self.file('complete.zsh', cprox('completion', 'zsh').out), self.file('keys.zsh', '''
+zmodload zsh/zpty && zpty shell zsh -f -i
+type() { zpty -w -n shell "$1"; sleep 1; }
+type $'PS1=; source "'$1$'"\\n'
+type $'cprox time-o\\t --curv\\t'
+zpty -w shell ''
+while zpty -r -t shell line; do print -rn -- $line; done
+''')
+        done = subprocess.run(['zsh', '-f', asks, script], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=True, timeout=60)
+        self.assertRegex(re.sub(r'\x1b\[[0-9;?]*[a-zA-Z]|.\x08', '', done.stdout.decode(errors='replace')), 'time-of-contact *--curves')
+
     def help_wins_over_everything_else(self):
         self.assertEqual(cprox('distance', '--nonsense', '--help').code, 0)
 
