@@ -21,7 +21,7 @@ namespace {
 using Value = rapidjson::Value;
 
 /* Nodes in nodes: a scene that contains itself has no end. */
-constexpr int DEEPEST = 200;
+constexpr int DEEPEST_SCENE = 200;
 
 /* ---- JSON ---- */
 
@@ -170,7 +170,7 @@ class Gltf {
 
   void readNodes(const Value &list, const std::string &of, const Pose &pose, int depth) {
     if (!list.IsArray()) throw Fault(of + ": its nodes are no list");
-    if (depth > DEEPEST) throw Fault("more than " + std::to_string(DEEPEST) + " nodes in each other");
+    if (depth > DEEPEST_SCENE) throw Fault("more than " + std::to_string(DEEPEST_SCENE) + " nodes in each other");
     for (const Value &number : list.GetArray()) {
       if (!number.IsUint()) throw Fault(of + ": the number of a node is no integer from 0 on");
       readNode(number.GetUint(), pose, depth);
