@@ -224,7 +224,7 @@ void readQuestion(const Words &words, const Command &command, Arguments &out) {
   out.question = command.question;
   if (asksFor<question::Profile>(out.question)) out.question = out.profile;
   if (asksFor<question::Nearest>(out.question)) out.question = out.nearest;
-  if (words.has("--resolution"))
+  if (words.has("--resolution") && command.action == Action::CURVES)
     out.question =
         question::Violations{readNumber(words, "--resolution", 0.0, false, "above 0, in units of the parameter")};
 }
@@ -420,6 +420,13 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       out.errors = required("--errors", "ERRORS.yaml, bounds of the errors of an execution");
       required("--trajectory", "T.yaml");
       readTrajectoryWords(words, out);
+      break;
+    case Action::SWEEP:
+      required("--trajectory", "T.yaml");
+      required("--out", "FILE.bt or FILE.stl");
+      readTrajectoryWords(words, out);
+      if (words.has("--resolution")) out.resolution = readNumber(words, "--resolution", 0.0, false, "above 0 (metres)");
+      out.inside = words.text("--inside");
       break;
     case Action::ACM:
       out.robot = required("--robot", "URDF");

@@ -30,6 +30,7 @@ enum class Action {
   ACM,
   SPEED,
   MARGINS,
+  SWEEP,
   REPORT,
   SEND,
   CHECK,
@@ -62,6 +63,8 @@ struct Arguments {
   bool per_link = false;       /**< with a trajectory: for each link and attached object */
   std::string errors;          /**< file of ROBUST */
   std::string separation;      /**< file of SPEED */
+  double resolution = 0.01;    /**< [m] SWEEP: the edge of a cell */
+  std::string inside;          /**< file of SWEEP: the cells inside; empty: they are not wanted */
   std::string certificate;     /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
   std::string robot, srdf;     /**< files of the robot; empty: none */
   std::string state;           /**< "joint: value, …" */

@@ -49,6 +49,9 @@ int limitSpeeds(const Arguments &arguments, Console &console);
 /** margins: how far objects may be moved before a motion is no longer clear of them. */
 int listMargins(const Arguments &arguments, Console &console);
 
+/** sweep: what a robot passes through along a trajectory, as cells of a grid. */
+int sweepVolume(const Arguments &arguments, Console &console);
+
 /** report: a page that shows a trajectory, or curves, and what they come close to. */
 int writeReport(const Arguments &arguments, Console &console);
 

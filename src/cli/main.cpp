@@ -41,6 +41,7 @@ int run(const std::vector<std::string> &words, Console &console) {
     case Action::ACM: return findLinkContacts(arguments, console);
     case Action::SPEED: return limitSpeeds(arguments, console);
     case Action::MARGINS: return listMargins(arguments, console);
+    case Action::SWEEP: return sweepVolume(arguments, console);
     case Action::REPORT: return writeReport(arguments, console);
     case Action::SEND: return sendScene(arguments, console);
   }

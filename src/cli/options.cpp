@@ -21,6 +21,9 @@ constexpr const char *MATRIX =
     "links with collision geometry. contact: never, possible (they touch at the posture), always (no joint between "
     "them "
     "moves) or undecided; disabled: the reason in NEW.srdf, empty: it does not disable the pair";
+constexpr const char *SWEPT =
+    "id,cells,inside,volume,volume_inside,gap,poses: how many cells, and of them inside; m3; every point of a cell is "
+    "within gap of a point that the robot passes through";
 constexpr const char *CONTACT = CPROX_ROW ". Also t_contact_lower: there is no contact at any smaller parameter";
 #undef CPROX_ROW
 #undef CPROX_COLUMNS
@@ -172,6 +175,17 @@ const std::vector<Command> &commands() {
        "margins --delta 0.01 --within 0.3 --objects can --robot examples/formats/arm.urdf --trajectory "
        "examples/formats/trajectory.yaml --scene examples/formats/scene.yaml",
        MARGINS},
+      {"sweep",
+       Action::SWEEP,
+       QueryType::COLLISION,
+       {},
+       "--robot URDF --trajectory T.yaml [--srdf SRDF] [--resolution R] --out FILE.bt [--inside FILE.bt]",
+       "the cells of a grid that the robot can touch along a trajectory, as an octree or a mesh; it touches no other",
+       "sweep --resolution 0.02 --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml --out "
+       "swept.bt\n"
+       "sweep --resolution 0.02 --robot examples/formats/arm.urdf --trajectory examples/formats/trajectory.yaml --out "
+       "swept.stl --inside core.stl",
+       SWEPT},
       {"report",
        Action::REPORT,
        QueryType::DISTANCE,
@@ -233,11 +247,11 @@ const std::vector<Option> &options() {
       {"--against", "FILE", "distance tolerance collision check", "curves, too: instead of a scene"},
       {"--synchronized", "", "distance tolerance collision",
        "with --against: both curves are at the same parameter, so that they may cross each other's way"},
-      {"--scene", "FILE", "queries report constraints check robust speed margins",
+      {"--scene", "FILE", "queries report constraints check robust speed margins sweep",
        "moveit_msgs/PlanningScene as YAML; may be left out where there is a robot"},
-      {"--robot", "FILE", "queries report constraints check robust acm speed margins",
+      {"--robot", "FILE", "queries report constraints check robust acm speed margins sweep",
        "a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)"},
-      {"--trajectory", "FILE", "queries report constraints check robust speed margins",
+      {"--trajectory", "FILE", "queries report constraints check robust speed margins sweep",
        "a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint"},
       {"--errors", "FILE", "robust profile time-of-contact speed report",
        "bounds of the errors of an execution: every_joint, joints, timing, base, objects, sensor, flex "
@@ -255,14 +269,14 @@ const std::vector<Option> &options() {
        "the object of that id that a link of --robot carries, along poses of the link"},
       {"--radius", "R", "queries", "with --path, instead of --body: a ball of R metres (default 0, a point)"},
       {"--self", "", "queries report check robust", "how close the robot comes to itself, too"},
-      {"--shortest-way", "", "queries report check certify constraints robust speed margins",
+      {"--shortest-way", "", "queries report check certify constraints robust speed margins sweep",
        "continuous joints turn the shorter way between two waypoints, from 3.1 to -3.1 by 0.083 rad"},
       {"--signed", "", "distance nearest",
        "distances inside a body are negative: minus the deepest penetration (of meshes a bound, by their hulls)"},
-      {"--srdf", "FILE", "queries report constraints check robust acm speed margins",
+      {"--srdf", "FILE", "queries report constraints check robust acm speed margins sweep",
        "links that are not checked against each other, and the frame in which the robot stands (its virtual joint's "
        "parent_frame)"},
-      {"--state", "TEXT", "queries report constraints check robust speed margins",
+      {"--state", "TEXT", "queries report constraints check robust speed margins sweep",
        "joint values in radians or metres; others as in the scene's robot_state, else 0 (mid-range where 0 is beyond "
        "the limits)"},
       {"--in", "FILE", "pairs constraints",
@@ -288,7 +302,7 @@ const std::vector<Option> &options() {
        "metres"},
       {"--max-nodes", "N", "queries report pairs certify robust acm speed margins",
        "budget for each result, in distance queries (default 500000: about 1 s)"},
-      {"--threads", "N", "queries pairs constraints certify check acm",
+      {"--threads", "N", "queries pairs constraints certify check acm sweep",
        "how many rows are worked on at once (default: the machine's cores); the answers do not depend on it"},
       {"--per-object", "", "queries", "rows for each curve and object or link, not for the nearest alone"},
       {"--per-link", "", "queries", "with --trajectory: rows for each link and each object that a link carries"},
@@ -297,7 +311,7 @@ const std::vector<Option> &options() {
        "and its verdict is undecided"},
       {"--objects", "LIST", "queries report robust speed margins",
        "these objects alone, \"shelf, table\"; with --curves and --links also those links"},
-      {"--links", "LIST", "queries report robust speed margins",
+      {"--links", "LIST", "queries report robust speed margins sweep",
        "with --curves: these links of --robot alone. With --trajectory: what these links do, or objects that they "
        "carry; with --self pairs of which they are one"},
       {"--moving-links-only", "", "queries report",
@@ -307,8 +321,10 @@ const std::vector<Option> &options() {
       {"--breaks", "LIST", "profile report", "where intervals begin and end instead, \"0, 0.5, 2\""},
       {"--horizon", "H", "profile", "clearance beyond H metres is only bounded: lower > H, which is less work"},
       {"--pairs", "K", "nearest report", "at most K pairs for each curve or trajectory (default 10)"},
-      {"--resolution", "R", "violations",
-       "how finely the ends are searched, in units of the parameter (default: a thousandth of all of it)"},
+      {"--resolution", "R", "violations sweep",
+       "of 'violations' how finely the ends are searched, in units of the parameter (default: a thousandth of all of "
+       "it); of 'sweep' the edge of a cell in metres (default 0.01)"},
+      {"--inside", "FILE", "sweep", "the cells that the robot fills at some time, too: several times the work"},
       {"--within", "D", "nearest margins",
        "only pairs that come within D metres; of 'margins': objects are moved by at most D metres (default 1)"},
       {"--second-opinion", "PEER", "distance tolerance collision nearest time-of-contact pairs",
@@ -326,28 +342,29 @@ const std::vector<Option> &options() {
        "of --shard I: answers no row; each becomes a row 'failed' with this message. For whoever drives shards and has "
        "seen one crash: 'merge' then has no gap"},
       {"--progress", "P", "certify", "line (default, on a terminal) or json, a line a second on standard error"},
-      {"--skipped", "", "queries pairs robust acm speed margins", "tell on standard error what takes no part, and why"},
-      {"--timings", "", "queries robust acm speed margins",
+      {"--skipped", "", "queries pairs robust acm speed margins sweep",
+       "tell on standard error what takes no part, and why"},
+      {"--timings", "", "queries robust acm speed margins sweep",
        "tell on standard error how long loading the robot and the scene takes, mesh by mesh"},
-      {"--mesh-tolerance", "M", "queries report robust acm speed margins",
+      {"--mesh-tolerance", "M", "queries report robust acm speed margins sweep",
        "replace meshes by ones with fewer triangles that contain them: nothing is clear that the mesh would hit; what "
        "is closer than 2 M metres may read as a hit"},
-      {"--allow-missing-geometry", "", "queries report robust acm speed margins",
+      {"--allow-missing-geometry", "", "queries report robust acm speed margins sweep",
        "go on without collision elements of the robot that cannot be used; the answers are 'partial', never clear"},
-      {"--package", "LIST", "queries report pairs constraints certify check robust acm speed margins",
+      {"--package", "LIST", "queries report pairs constraints certify check robust acm speed margins sweep",
        "folders of packages that package:// names, \"arm=/data/arm, hand=/data/hand\"; they come before the folders "
        "above the URDF, ROS_PACKAGE_PATH, and share/ of CMAKE_PREFIX_PATH and /usr"},
-      {"--out", "FILE", "queries report pairs constraints certify merge robust acm speed margins",
+      {"--out", "FILE", "queries report pairs constraints certify merge robust acm speed margins sweep",
        "the results, instead of standard output; of 'certify' the folder of the shards, of 'report' the page"},
-      {"--json", "", "queries pairs constraints merge check robust acm speed margins",
+      {"--json", "", "queries pairs constraints merge check robust acm speed margins sweep",
        "a JSON object a row, on a line of its own, by the names of the CSV's columns: an infinite number is the text "
        "\"inf\" or \"-inf\", a field without a value is null"},
       {"--strict", "", "queries pairs robust speed margins",
        "a row that does not cover all that was given (status partial or rounded) counts as one without an answer: the "
        "exit code is 2, not 3"},
-      {"--quiet", "", "queries report pairs constraints certify merge check robust acm speed margins",
+      {"--quiet", "", "queries report pairs constraints certify merge check robust acm speed margins sweep",
        "no warnings and no progress on standard error, only why a run cannot be made"},
-      {"-v", "", "queries pairs robust acm speed margins",
+      {"-v", "", "queries pairs robust acm speed margins sweep",
        "--skipped and --timings, and at the end how many rows there were, and which"},
       {"--replace", "", "send",
        "the file takes the place of the node's scene (default, unless the file says is_diff: true)"},

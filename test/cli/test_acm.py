@@ -5,6 +5,7 @@ import io
 import math
 import os
 import xml.etree.ElementTree as ElementTree
+from random import Random
 
 from support import DATA, Case, cprox
 
@@ -87,6 +88,24 @@ class Acm(Case):
             there = cprox('nearest', '--robot', panda + '.urdf', '--trajectory', trajectory, '--self', '--links', row['a'], '--within', 0,
                           '--pairs', 100, '--allow-empty')
             self.assertIn({row['a'], row['b']}, [{pair['a'], pair['b']} for pair in there.rows], row)
+
+    def no_motion_through_random_states_brings_links_together_that_never_touch(self):
+        # seed 46: 200 states within the limits, straight from one to the next; proven by the search along motions, which is another
+        panda = os.path.join(DATA, 'robots/panda/panda')
+        answer = cprox('acm', '--robot', panda + '.urdf', '--out', os.path.join(self.folder, 'new.srdf'), '--max-nodes', 3000, '--quiet')
+        rows = list(csv.DictReader(io.StringIO(answer.out)))
+        never = {frozenset((row['a'], row['b'])) for row in rows if row['contact'] == 'never'}
+        self.assertGreater(len(never), 12)
+        limits = {e.get('name'): [float(e.find('limit').get(side)) for side in ('lower', 'upper')]
+                  for e in ElementTree.parse(panda + '.urdf').findall('joint') if e.get('type') in ('revolute', 'prismatic')}
+        random = Random(46)
+        points = ', '.join(f'{{positions: [{", ".join(str(random.uniform(*limit)) for limit in limits.values())}], time_from_start: {t}}}'
+                           for t in range(200))
+        trajectory = self.file('go.yaml', f'joint_trajectory: {{joint_names: [{", ".join(limits)}], points: [{points}]}}')
+        met = cprox('nearest', '--robot', panda + '.urdf', '--trajectory', trajectory, '--self', '--within', 0, '--pairs', 5000, '--max-nodes', 100000000)
+        touched = {frozenset((row['a'], row['b'])) for row in met.rows if row['kind'] == 'self' and float(row['upper']) <= 0}
+        self.assertGreater(len(touched), 10, met.err)
+        self.assertFalse(touched & never)
 
     def what_is_wrong_is_said_in_one_line(self):
         self.assertRefused(cprox('acm', '--out', 'new.srdf'), '--robot')

@@ -19,7 +19,7 @@ class Usage(Case):
             self.assertIn(word, answer.out)
 
     COMMANDS = ('distance', 'tolerance', 'collision', 'time-of-contact', 'profile', 'violations', 'nearest', 'pairs', 'constraints',
-                'robust', 'acm', 'speed', 'margins', 'report', 'send', 'check', 'certify', 'merge')
+                'robust', 'acm', 'sweep', 'speed', 'margins', 'report', 'send', 'check', 'certify', 'merge')
 
     def each_command_has_a_page_whose_examples_run(self):
         os.symlink(os.path.join(os.path.dirname(os.path.dirname(HERE)), 'examples'), os.path.join(self.folder, 'examples'))

@@ -336,6 +336,34 @@ CPROX_API cprox_status cprox_robot_ask_states(const cprox_robot *robot, const cp
                                               const double *states, size_t n, cprox_workspace *workspace,
                                               cprox_result *results, bool *about_self);
 
+/** Where a geometry of a robot is over an interval of its motion. */
+typedef struct cprox_swept_pose {
+  /** the geometry */
+  int32_t geometry;
+  /** in the middle of the interval, world frame */
+  cprox_pose pose;
+  /** [m] over the interval no point of the geometry is farther from where the pose has it, rounding included */
+  double displacement;
+  /** [s] the interval */
+  double t0;
+  /** [s] its end */
+  double t1;
+} cprox_swept_pose;
+
+/** Cuts a motion into intervals over each of which a geometry moves by at most so far from their middle: what its
+ *  bodies at the poses, each grown by its displacement, cover contains all that it passes through.
+ *
+ *  motion        not a joined one
+ *  displacement  [m] > 0
+ *  workspace     not NULL
+ *  room, poses   receives the first `room` intervals, in the order of time; may be 0 and NULL
+ *  n             receives how many there are
+ *
+ *  Returns CPROX_OK; CPROX_PRECISION: no interval is short enough; CPROX_INVALID and CPROX_MEMORY as elsewhere. The
+ *  cost is that of a few forward kinematics an interval. Source: doc/swept-volume.md */
+CPROX_API cprox_status cprox_motion_sweep(const cprox_motion *motion, int32_t geometry, double displacement,
+                                          cprox_workspace *workspace, size_t room, cprox_swept_pose *poses, size_t *n);
+
 /** All values of the variables of a robot, each from lowest to highest on its own. */
 typedef struct cprox_joint_box {
   /** [rad or m] of each variable */

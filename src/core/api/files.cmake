@@ -12,6 +12,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/profile.c
   ${CMAKE_CURRENT_LIST_DIR}/robust.c
   ${CMAKE_CURRENT_LIST_DIR}/states.c
+  ${CMAKE_CURRENT_LIST_DIR}/sweep.c
   ${CMAKE_CURRENT_LIST_DIR}/time_of_contact.c
   ${CMAKE_CURRENT_LIST_DIR}/violations.c
 )

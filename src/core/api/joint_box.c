@@ -61,23 +61,6 @@ typedef struct box_node {
 
 /* ---- where both sides are ---- */
 
-static placement placement_of_pose(const cprox_pose *pose) {
-  const frame f = frame_create(pose, vec(0, 0, 0));
-  placement at = {.p = pose->position};
-  memcpy(at.r, f.r, sizeof at.r);
-  return at;
-}
-
-/* By the largest of the four numbers. */
-static cprox_quat quaternion_of(const double r[9]) {
-  const double w = 1.0 + r[0] + r[4] + r[8], x = 1.0 + r[0] - r[4] - r[8], y = 1.0 - r[0] + r[4] - r[8],
-               z = 1.0 - r[0] - r[4] + r[8];
-  if (w >= x && w >= y && w >= z) return (cprox_quat){w, r[7] - r[5], r[2] - r[6], r[3] - r[1]};
-  if (x >= y && x >= z) return (cprox_quat){r[7] - r[5], x, r[1] + r[3], r[2] + r[6]};
-  if (y >= z) return (cprox_quat){r[2] - r[6], r[1] + r[3], y, r[5] + r[7]};
-  return (cprox_quat){r[3] - r[1], r[2] + r[6], r[5] + r[7], z};
-}
-
 static double value_of(const box_search *s, const robot_axis *axis) {
   return axis->multiplier * s->state[axis->variable] + axis->offset;
 }
@@ -101,7 +84,7 @@ static int32_t own_axis(const box_pair *pair, int k) {
 
 static cprox_obstacle placed_side(const box_search *s, const box_pair *pair, int k) {
   const placement at = placement_under(s->frames, own_axis(pair, k), &pair->side[k].at);
-  const cprox_pose pose = {.position = at.p, .orientation = quaternion_of(at.r)};
+  const cprox_pose pose = placement_pose(&at);
   return cprox_with_margin(cprox_obstacle_at(pair->side[k].geometry->body, pose), pair->side[k].geometry->margin);
 }
 
@@ -398,8 +381,7 @@ static void begin_side(box_search *s, int32_t index, int32_t common, box_side *s
   const cprox_robot *robot = s->robot;
   const cprox_link_geometry *g = &robot->given_geometries[index];
   const robot_link *link = &robot->links[g->link];
-  const placement pose = placement_of_pose(&g->pose);
-  *side = (box_side){.geometry = g, .at = placement_compose(&link->at, &pose)};
+  *side = (box_side){.geometry = g, .at = robot_geometry_place(robot, index)};
   while (side->first < robot->n_parts && robot->parts[side->first].geometry != index) side->first++;
   side->last = side->first;
   while (side->last < robot->n_parts && robot->parts[side->last].geometry == index) {

@@ -52,6 +52,7 @@ typedef enum workspace_buffer {
   WORKSPACE_EDGE_OPEN,
   WORKSPACE_JOINT_BOX,
   WORKSPACE_JOINT_BOXES,
+  WORKSPACE_SWEEP,
   WORKSPACE_CALLER, /* cprox_workspace_reserve() */
   WORKSPACE_BUFFERS
 } workspace_buffer;

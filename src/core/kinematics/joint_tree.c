@@ -82,6 +82,28 @@ void robot_place_axes(const cprox_robot *robot, const double *variables, placeme
   }
 }
 
+placement robot_geometry_place(const cprox_robot *robot, int32_t geometry) {
+  const cprox_link_geometry *g = &robot->given_geometries[geometry];
+  const frame f = frame_create(&g->pose, vec(0, 0, 0));
+  placement inner = {.p = g->pose.position};
+  for (int i = 0; i < 9; i++) inner.r[i] = f.r[i];
+  return placement_compose(&robot->links[g->link].at, &inner);
+}
+
+/* By the largest of the four numbers. */
+static cprox_quat quaternion_of(const double r[9]) {
+  const double w = 1.0 + r[0] + r[4] + r[8], x = 1.0 + r[0] - r[4] - r[8], y = 1.0 - r[0] + r[4] - r[8],
+               z = 1.0 - r[0] - r[4] + r[8];
+  if (w >= x && w >= y && w >= z) return (cprox_quat){w, r[7] - r[5], r[2] - r[6], r[3] - r[1]};
+  if (x >= y && x >= z) return (cprox_quat){r[7] - r[5], x, r[1] + r[3], r[2] + r[6]};
+  if (y >= z) return (cprox_quat){r[2] - r[6], r[1] + r[3], y, r[5] + r[7]};
+  return (cprox_quat){r[3] - r[1], r[2] + r[6], r[5] + r[7], z};
+}
+
+cprox_pose placement_pose(const placement *at) {
+  return (cprox_pose){.position = at->p, .orientation = quaternion_of(at->r)};
+}
+
 void cprox_robot_link_frame(const cprox_robot *robot, const double *variables, size_t link, cprox_vec3 *position,
                             double rotation[9]) {
   /* up from the link: only the axes that carry it */

@@ -111,6 +111,12 @@ static inline placement placement_under(const placement *frames, int32_t axis, c
   return axis < 0 ? *at : placement_compose(&frames[axis], at);
 }
 
+/* Where a geometry stands in the moved frame of the axis that carries it. */
+placement robot_geometry_place(const cprox_robot *robot, int32_t geometry);
+
+/* As a pose: its quaternion is rounded once more. */
+cprox_pose placement_pose(const placement *at);
+
 /* Is the axis (-1: the world) above the other one, or the same? */
 static inline bool robot_axis_carries(const cprox_robot *robot, int32_t axis, int32_t other) {
   if (axis < 0) return true;

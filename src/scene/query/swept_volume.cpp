@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Bodies at poses, grown by how far they move, are drawn into blocks of cells. doc/swept-volume.md */
+#include <curve_proximity/swept_volume.hpp>
+
+#include <octomap/OcTree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <sstream>
+
+#include <curve_proximity/parallel.hpp>
+
+#include "motion/motion_data.h"
+
+namespace curve_proximity {
+namespace {
+
+using Cell = std::array<std::int32_t, 3>;
+
+constexpr int LEVELS = 5; /* a block has 2^5 cells a side */
+constexpr std::int32_t SIDE = 1 << LEVELS;
+
+/* A body at a pose, and the ball round all that it passes through there. */
+struct SweptBody {
+  cprox_obstacle placed;
+  const cprox_body *surface; /* null: its depth is known */
+  double displacement;
+  Eigen::Vector3d centre;
+  double radius;
+};
+
+std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, double displacement, Workspace &workspace) {
+  std::vector<SweptBody> out;
+  const Kinematics &kinematics = *data.kinematics;
+  for (std::size_t i = 0; i < kinematics.geometries.size(); ++i) {
+    const MovingGeometry &geometry = kinematics.geometries[i];
+    if (!data.wanted[i] || geometry.within) continue;
+    const auto &shapes = geometry.attached ? geometry.attached->shapes : data.snapshot->linkGeometry(*geometry.link);
+    const Geometry &shape = shapes.at(static_cast<std::size_t>(geometry.part)).geometry;
+    std::vector<cprox_swept_pose> poses;
+    for (std::size_t n = 0, room = 64;; room = n) {
+      poses.resize(room);
+      const cprox_status status = cprox_motion_sweep(data.core.get(), static_cast<std::int32_t>(i), displacement,
+                                                     workspace.get(), room, poses.data(), &n);
+      if (status != CPROX_OK) throw Error(workspace.reason(), status);
+      if (n > room) continue;
+      poses.resize(n);
+      break;
+    }
+    const double margin = shape.margin + geometry.excess + data.snapshot->linkPadding(*geometry.link) +
+                          (geometry.attached ? geometry.attached->description.padding : 0.0);
+    const cprox_body_info info = cprox_body_get_info(geometry.body);
+    const Eigen::Vector3d middle(info.centre.x, info.centre.y, info.centre.z);
+    for (const cprox_swept_pose &pose : poses) {
+      const Eigen::Quaterniond turn = Eigen::Quaterniond(pose.pose.orientation.w, pose.pose.orientation.x,
+                                                         pose.pose.orientation.y, pose.pose.orientation.z)
+                                          .normalized();
+      const Eigen::Vector3d at(pose.pose.position.x, pose.pose.position.y, pose.pose.position.z);
+      out.push_back({cprox_with_margin(cprox_obstacle_at(geometry.body, pose.pose), margin),
+                     geometry.is_mesh ? shape.surface.get() : nullptr, pose.displacement, at + turn * middle,
+                     (info.radius + margin + pose.displacement) * (1.0 + 1e-9)});
+    }
+  }
+  return out;
+}
+
+/* Cells of a block, and of the blocks of 2³, 4³, … of them; level 0 are the cells. */
+class Block {
+ public:
+  Block(const Cell &first, const SweepOptions &options, const std::vector<BodyHandle> &boxes)
+      : first_(first), resolution_(options.resolution), wants_inside_(options.inside), boxes_(boxes) {
+    for (int level = 0; level <= LEVELS; ++level) full_[level].assign(std::size_t{1} << 3 * (LEVELS - level), false);
+    inside_.assign(std::size_t{1} << 3 * LEVELS, false);
+  }
+
+  bool isFull() const {
+    return full_[LEVELS][0];
+  }
+
+  /* Every cell that the body may touch over its interval. */
+  void draw(const SweptBody &body, Workspace &workspace) {
+    draw(body, LEVELS, {0, 0, 0}, workspace);
+  }
+
+  void take(std::vector<std::pair<Cell, bool>> &out) const {
+    for (std::int32_t x = 0; x < SIDE; ++x)
+      for (std::int32_t y = 0; y < SIDE; ++y)
+        for (std::int32_t z = 0; z < SIDE; ++z) {
+          const std::size_t i = index(0, {x, y, z});
+          if (full_[0][i]) out.push_back({{first_[0] + x, first_[1] + y, first_[2] + z}, inside_[i]});
+        }
+  }
+
+ private:
+  static std::size_t index(int level, const Cell &at) {
+    const int bits = LEVELS - level;
+    return static_cast<std::size_t>((at[0] << 2 * bits) + (at[1] << bits) + at[2]);
+  }
+
+  Eigen::Vector3d centreOf(int level, const Cell &at) const {
+    Eigen::Vector3d out;
+    const double side = 1 << level;
+    for (int i = 0; i < 3; ++i) out[i] = resolution_ * (first_[i] + (at[i] + 0.5) * side);
+    return out;
+  }
+
+  /* Whether the body may touch the block of that level. */
+  bool touches(const SweptBody &body, int level, const Eigen::Vector3d &centre, Workspace &workspace) const {
+    const double half = 0.5 * resolution_ * (1 << level);
+    if ((body.centre - centre).norm() > body.radius + 1.7320508075688774 * half * (1.0 + 1e-9)) return false;
+    const cprox_obstacle box =
+        cprox_obstacle_at(boxes_[static_cast<std::size_t>(level)].get(), {toVec3(centre), {1, 0, 0, 0}});
+    cprox_result result{};
+    const cprox_status status =
+        cprox_pair_tolerance(box, body.placed, body.displacement, nullptr, workspace.get(), &result);
+    if (status < 0) throw Error(workspace.reason(), status);
+    return result.verdict != CPROX_VERDICT_CLEAR;
+  }
+
+  /* Whether the body, in the middle of its interval, fills the ball round the cell: it has the ball's centre, and its
+   * surface is no nearer than the radius. 1e-9 m is a million times what its place there is off. */
+  bool fills(const SweptBody &body, const Eigen::Vector3d &centre, Workspace &workspace) const {
+    const double radius = 0.8660254037844387 * resolution_ * (1.0 + 1e-9) + 1e-9;
+    cprox_obstacle at = cprox_obstacle_at(boxes_.back().get(), {toVec3(centre), {1, 0, 0, 0}});
+    cprox_result result{};
+    cprox_status status = cprox_pair(at, body.placed, nullptr, workspace.get(), &result);
+    if (status < 0) throw Error(workspace.reason(), status);
+    if (result.upper <= -radius) return true;
+    if (!body.surface || result.upper > 0.0) return false;
+    const cprox_obstacle surface = cprox_obstacle_at(body.surface, body.placed.pose);
+    status = cprox_pair_tolerance(at, surface, radius, nullptr, workspace.get(), &result);
+    if (status < 0) throw Error(workspace.reason(), status);
+    if (result.verdict != CPROX_VERDICT_CLEAR) return false;
+    at.margin = 0.0;
+    cprox_obstacle bare = body.placed;
+    bare.margin = 0.0;
+    status = cprox_pair_tolerance(at, bare, 0.0, nullptr, workspace.get(), &result);
+    return status >= 0 && result.verdict == CPROX_VERDICT_VIOLATED;
+  }
+
+  void draw(const SweptBody &body, int level, const Cell &at, Workspace &workspace) {
+    const std::size_t i = index(level, at);
+    const Eigen::Vector3d centre = centreOf(level, at);
+    if (level == 0) {
+      if (done(0, i) || (!full_[0][i] && !touches(body, 0, centre, workspace))) return;
+      full_[0][i] = true;
+      inside_[i] = wants_inside_ && fills(body, centre, workspace);
+      return;
+    }
+    if (done(level, i) || !touches(body, level, centre, workspace)) return;
+    bool full = true;
+    for (int k = 0; k < 8; ++k) {
+      const Cell child = {2 * at[0] + (k & 1), 2 * at[1] + (k >> 1 & 1), 2 * at[2] + (k >> 2)};
+      draw(body, level - 1, child, workspace);
+      full = full && done(level - 1, index(level - 1, child));
+    }
+    full_[level][i] = full;
+  }
+
+  /* Nothing more can be learned of it. */
+  bool done(int level, std::size_t i) const {
+    return level == 0 && wants_inside_ ? inside_[i] : full_[level][i];
+  }
+
+  const Cell first_;
+  const double resolution_;
+  const bool wants_inside_;
+  const std::vector<BodyHandle> &boxes_;
+  std::vector<bool> full_[LEVELS + 1]; /* of level 0: in the cover; above: all its cells are done */
+  std::vector<bool> inside_;
+};
+
+void append(std::string &out, const void *bytes, std::size_t n) {
+  out.append(static_cast<const char *>(bytes), n);
+}
+
+bool isWanted(const SweptVolume &volume, std::size_t i, bool inside_only) {
+  return !inside_only || volume.inside[i];
+}
+
+} // namespace
+
+SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) {
+  const double r = options.resolution;
+  if (!(r > 0.0 && std::isfinite(r)))
+    throw Error("the resolution is " + std::to_string(r) + ", must be above 0 (metres)");
+  Workspace workspace;
+  SweptVolume out;
+  out.resolution = r;
+  const double displacement = 0.5 * r;
+
+  /* the blocks that the bodies may reach; all memory is known before the work begins */
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
+  const std::vector<SweptBody> bodies = bodiesAlong(motion.data(), displacement, workspace);
+  out.n_poses = bodies.size();
+  if (bodies.empty()) throw Error("the motion has no collision geometry");
+  for (const SweptBody &body : bodies) {
+    low = low.cwiseMin((body.centre.array() - body.radius).matrix());
+    high = high.cwiseMax((body.centre.array() + body.radius).matrix());
+  }
+  std::array<std::int32_t, 3> first{}, n{};
+  double cells = 1.0;
+  for (int i = 0; i < 3; ++i) {
+    const double from = std::floor(low[i] / (r * SIDE)), to = std::floor(high[i] / (r * SIDE)) + 1.0;
+    cells *= (to - from) * SIDE;
+    if (!(std::fabs(from) * SIDE < 1e9 && std::fabs(to) * SIDE < 1e9)) cells = INFINITY;
+    if (!std::isfinite(cells)) break;
+    first[i] = static_cast<std::int32_t>(from), n[i] = static_cast<std::int32_t>(to - from);
+  }
+  constexpr double BYTES = 16.0; /* of a cell in the lists */
+  if (!(cells * BYTES <= static_cast<double>(options.memory_limit)))
+    throw Error("a resolution of " + std::to_string(r) + " m takes up to " + std::to_string(cells * BYTES / 1e9) +
+                    " GB, the limit is " + std::to_string(static_cast<double>(options.memory_limit) / 1e9) + " GB",
+                CPROX_MEMORY);
+
+  std::vector<BodyHandle> boxes;
+  for (int level = 0; level <= LEVELS; ++level) boxes.push_back(makeBox(Eigen::Vector3d::Constant(r * (1 << level))));
+  boxes.push_back(makePoint(Eigen::Vector3d::Zero()));
+  std::vector<std::pair<Cell, bool>> found;
+  std::mutex mutex;
+  Pool pool(options.threads);
+  const std::size_t blocks =
+      static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
+  pool.run(blocks, 1, [&](std::size_t from, std::size_t to, Workspace &own) {
+    for (std::size_t i = from; i < to; ++i) {
+      const auto at = static_cast<std::int32_t>(i);
+      const Cell corner = {SIDE * (first[0] + at / (n[1] * n[2])), SIDE * (first[1] + at / n[2] % n[1]),
+                           SIDE * (first[2] + at % n[2])};
+      Block block(corner, options, boxes);
+      for (const SweptBody &body : bodies) {
+        if (options.stop && options.stop(nullptr)) throw Error("stopped", CPROX_STOPPED);
+        if (!block.isFull()) block.draw(body, own);
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      block.take(found);
+    }
+  });
+  std::sort(found.begin(), found.end());
+  for (const auto &[cell, inside] : found) out.cells.push_back(cell), out.inside.push_back(inside);
+  /* a cell's farthest corner, where it touches the grown body, and back to the body */
+  out.gap = (1.7320508075688774 * r + displacement) * (1.0 + 1e-9) + 1e-6;
+  return out;
+}
+
+std::string toStl(const SweptVolume &volume, bool inside_only) {
+  std::vector<Cell> cells;
+  for (std::size_t i = 0; i < volume.cells.size(); ++i)
+    if (isWanted(volume, i, inside_only)) cells.push_back(volume.cells[i]);
+  std::string facets;
+  std::uint32_t n = 0;
+  for (const Cell &cell : cells) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int side = 0; side < 2; ++side) {
+        Cell beside = cell;
+        beside[axis] += side ? 1 : -1;
+        if (std::binary_search(cells.begin(), cells.end(), beside)) continue;
+        /* counter-clockwise, seen from outside */
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        float corner[4][3], normal[3] = {0, 0, 0};
+        for (int k = 0; k < 4; ++k) {
+          std::array<std::int32_t, 3> at = cell;
+          at[axis] += side;
+          at[side ? u : v] += k == 1 || k == 2;
+          at[side ? v : u] += k >= 2;
+          for (int i = 0; i < 3; ++i) corner[k][i] = static_cast<float>(at[i] * volume.resolution);
+        }
+        normal[axis] = side ? 1.0F : -1.0F;
+        for (int half = 0; half < 2; ++half) {
+          append(facets, normal, sizeof normal);
+          for (const int k : {0, half + 1, half + 2}) append(facets, corner[k], sizeof corner[k]);
+          facets.append(2, '\0');
+          ++n;
+        }
+      }
+    }
+  }
+  std::string out(80, ' ');
+  append(out, &n, sizeof n);
+  return out + facets;
+}
+
+std::string toOctomap(const SweptVolume &volume, bool inside_only) {
+  octomap::OcTree tree(volume.resolution);
+  for (std::size_t i = 0; i < volume.cells.size(); ++i) {
+    if (!isWanted(volume, i, inside_only)) continue;
+    octomap::OcTreeKey key;
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t place = volume.cells[i][k] + (1 << 15);
+      if (place < 0 || place >= 1 << 16) throw Error("the swept volume is larger than an octree of this resolution");
+      key[static_cast<unsigned>(k)] = static_cast<octomap::key_type>(place);
+    }
+    tree.updateNode(key, true, true);
+  }
+  tree.updateInnerOccupancy();
+  tree.toMaxLikelihood();
+  tree.prune();
+  /* octomap's own header is written with a message on the console, and six digits */
+  std::ostringstream out;
+  out.precision(17);
+  out << "# Octomap OcTree binary file\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
+      << volume.resolution << "\ndata\n";
+  tree.writeBinaryData(out);
+  return out.str();
+}
+
+} // namespace curve_proximity
