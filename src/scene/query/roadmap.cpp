@@ -12,8 +12,15 @@
 namespace curve_proximity {
 namespace {
 
-/** Edges that a thread takes at a time: each takes some microseconds, or some hundred where it needs a motion. */
-constexpr std::size_t A_PART = 16;
+/** Edges that a thread takes at a time, at most: each takes some microseconds, or some hundred where it needs a motion,
+ *  and a call of the core costs as much as two of them. */
+constexpr std::size_t LEAST_PART = 16, LARGEST_PART = 256;
+
+/* Each thread takes several parts, so that all end at about the same time. */
+std::size_t partOf(std::size_t n, unsigned threads) {
+  constexpr std::size_t PARTS = 8;
+  return std::clamp(n / (PARTS * threads), LEAST_PART, LARGEST_PART);
+}
 
 const double *beginOf(const EdgeList &edges, std::size_t i) {
   return edges.from + (edges.ends ? edges.ends[i][0] : i) * edges.joints.size();
@@ -87,15 +94,15 @@ class Lanes {
     return model_.asked.pairs.empty();
   }
 
-  /* The verdicts of those of edges first … last - 1 whose verdict is clear so far, at most A_PART; undecided where that
-   * is not the verdict of its motion as well: what is clear of all pairs is; else its motion must have all pairs, as it
-   * has where all joints move. */
+  /* The verdicts of those of edges first … last - 1 whose verdict is clear so far, at most LARGEST_PART; undecided
+   * where that is not the verdict of its motion as well: what is clear of all pairs is; else its motion must have all
+   * pairs, as it has where all joints move. */
   void ask(std::size_t first, std::size_t last, const std::vector<cprox_verdict> &so_far, std::uint8_t *verdicts,
            Workspace &workspace) const {
     std::vector<double> rows = model_.rowsFor(last - first);
-    std::array<std::size_t, A_PART> which;
-    std::array<bool, A_PART> all_move;
-    std::array<std::uint8_t, A_PART> found;
+    std::array<std::size_t, LARGEST_PART> which;
+    std::array<bool, LARGEST_PART> all_move;
+    std::array<std::uint8_t, LARGEST_PART> found;
     std::size_t n = 0;
     for (std::size_t i = first; i < last; ++i)
       if (so_far[i] == CPROX_VERDICT_CLEAR) all_move[n] = fill(i, n, rows), which[n++] = i - first;
@@ -178,8 +185,8 @@ std::vector<cprox_verdict> edgeVerdicts(const PreparedRobot &robot, const EdgeLi
         edgeVerdicts(robot, edges, RobotPairs::ENVIRONMENT, query, known, pool);
     return edgeVerdicts(robot, edges, RobotPairs::SELF, query, of_objects, pool);
   }
-  pool.run(edges.n, A_PART, [&](std::size_t first, std::size_t last, Workspace &workspace) {
-    std::array<std::uint8_t, A_PART> found;
+  pool.run(edges.n, partOf(edges.n, pool.threads()), [&](std::size_t first, std::size_t last, Workspace &workspace) {
+    std::array<std::uint8_t, LARGEST_PART> found;
     found.fill(CPROX_VERDICT_UNDECIDED);
     const bool stops = query.options.stop && query.options.stop(query.options.stop_user);
     if (lanes && !stops) lanes->ask(first, last, verdicts, found.data(), workspace);
