@@ -26,7 +26,7 @@ class Formats(Case):
         with open(os.path.join(REPO, 'doc/formats.md'), encoding='utf-8') as page:
             text = page.read().replace('\\\n', ' ')
         commands = re.findall(r'^    cprox (.*)$', text, re.M)
-        self.assertEqual(len(commands), 18)
+        self.assertEqual(len(commands), 19)
         for command in commands:
             with self.subTest(command=command):
                 answer = run(*shlex.split(command.replace('/tmp/', self.folder + '/')))

@@ -115,7 +115,7 @@ class Pairs(Case):
     def a_bad_pair_fails_alone(self):
         good = f'{{type: point, {at(3)}}}'
         bad = {
-            '{type: superquadric, dimensions: [1, 1, 1, 4, 4]}': ['superquadric', '6 dimensions'],
+            '{type: superquadric, dimensions: [1, 1, 1, 4, 4]}': ['superellipsoid', '6 dimensions'],
             '{type: superquadric, dimensions: [1, 1, 1, 4, 0.5, 4]}': ['exponents.y is 0.5'],
             '{type: implicit, planes: [[1, 0, 0, -1]]}': ['unbounded'],
             '{type: implicit, planes: [[1, 0, 0]]}': ['[b1, b2, b3, c]'],

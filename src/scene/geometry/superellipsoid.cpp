@@ -64,10 +64,11 @@ double slackOf(const Superellipsoid &body, double radius) {
 } // namespace
 
 BodyHandle makeSuperellipsoid(const Eigen::Vector3d &semi_axes, const Eigen::Vector2d &exponents) {
-  if (exponents[0] == exponents[1]) return makeSuperquadric(semi_axes, Eigen::Vector3d::Constant(2.0 / exponents[0]));
   for (const double e : exponents)
     if (!(e >= LEAST_EXPONENT && e <= LARGEST_EXPONENT))
-      throw Error("superellipsoid: the exponents e1, e2 are from 0.002 to 2");
+      throw Error(
+          "superellipsoid: the exponents e1, e2 are from 0.002 to 2; a superquadric of powers has 6 dimensions");
+  if (exponents[0] == exponents[1]) return makeSuperquadric(semi_axes, Eigen::Vector3d::Constant(2.0 / exponents[0]));
   const auto shape = std::make_shared<const Superellipsoid>(Superellipsoid{semi_axes, exponents});
   const double radius = semi_axes.norm();
   return detail::makeBody(

@@ -81,12 +81,12 @@ void readGrid(const YamlValue &value, ShapeDescription &shape, Warnings &warning
   shape.values = value.at("values").numbers();
 }
 
-/* Five dimensions [a1, a2, a3, e1, e2] are Barr's. With e1 = e2 it is a sum of three powers. */
+/* Five dimensions [a1, a2, a3, e1, e2] are Barr's. With e1 = e2 it is a sum of three powers, where it is convex. */
 void readBarr(ShapeDescription &shape) {
   constexpr std::size_t BARR = 5;
   std::vector<double> &d = shape.dimensions;
   if (d.size() != BARR) return;
-  if (d[3] != d[4]) {
+  if (d[3] != d[4] || !(d[3] > 0.0 && d[3] <= 2.0)) {
     shape.type = ShapeType::SUPERELLIPSOID;
     return;
   }
