@@ -412,8 +412,10 @@ static box_axis *begin_pair(box_search *s, size_t index, box_axis *chain, bool *
 
 static cprox_status box_check(const cprox_robot *robot, const cprox_robot_pair *pairs, size_t n_pairs,
                               const cprox_joint_box *box, const cprox_options *options, cprox_workspace *workspace) {
-  if (!robot || !pairs || !box || n_pairs == 0)
-    return workspace_fail(workspace, CPROX_INVALID, "robot, pairs and box are needed, and at least one pair");
+  if (!robot || !pairs || !box || n_pairs == 0) {
+    workspace_fail(workspace, CPROX_INVALID, "robot, pairs and box are needed, and at least one pair");
+    return CPROX_INVALID;
+  }
   if (!box->lowest || !box->highest || box->n_variables != robot->n_variables)
     return workspace_fail(workspace, CPROX_INVALID, "the box has %zu variables, the robot %zu", box->n_variables,
                           robot->n_variables);
@@ -439,7 +441,10 @@ static cprox_status box_begin(box_search *s, const cprox_joint_box *box) {
   const size_t bytes = s->n_pairs * (sizeof *s->pairs + 2 * robot->n_axes * sizeof(box_axis)) +
                        (robot->n_axes + 1) * sizeof(placement) + (n + 1) * (5 * sizeof(double) + sizeof(int32_t) + 1);
   char *memory = workspace_reserve(s->workspace, WORKSPACE_JOINT_BOX, bytes);
-  if (!memory) return workspace_fail(s->workspace, CPROX_MEMORY, "no memory for %zu pairs", s->n_pairs);
+  if (!memory) {
+    workspace_fail(s->workspace, CPROX_MEMORY, "no memory for %zu pairs", s->n_pairs);
+    return CPROX_MEMORY;
+  }
   memset(memory, 0, bytes);
   s->pairs = (box_pair *)(void *)memory;
   box_axis *chain = (box_axis *)(void *)(s->pairs + s->n_pairs);
