@@ -50,9 +50,8 @@ EdgeModel::EdgeModel(const PreparedRobot &robot, const std::vector<std::string> 
 }
 
 std::vector<double> EdgeModel::rowsFor(std::size_t n) const {
-  std::vector<double> rows;
-  rows.reserve(2 * n * rest.size());
-  for (std::size_t i = 0; i < 2 * n; ++i) rows.insert(rows.end(), rest.begin(), rest.end());
+  std::vector<double> rows(2 * n * rest.size());
+  for (auto row = rows.begin(); row != rows.end();) row = std::copy(rest.begin(), rest.end(), row);
   return rows;
 }
 

@@ -114,13 +114,13 @@ class Lanes {
  private:
   /* Whether all joints move on the edge. */
   bool fill(std::size_t i, std::size_t row, std::vector<double> &rows) const {
-    const double *from = beginOf(edges_, i), *to = endOf(edges_, i);
-    TrajectoryDescription motion;
-    if (robot_) {
-      motion = straight(edges_, i);
-      takeShortWays(*robot_, motion);
-      from = motion.points[0].positions.data(), to = motion.points[1].positions.data();
-    }
+    if (!robot_) return fill(beginOf(edges_, i), endOf(edges_, i), row, rows);
+    TrajectoryDescription motion = straight(edges_, i);
+    takeShortWays(*robot_, motion);
+    return fill(motion.points[0].positions.data(), motion.points[1].positions.data(), row, rows);
+  }
+
+  bool fill(const double *from, const double *to, std::size_t row, std::vector<double> &rows) const {
     double *begin = rows.data() + row * model_.rest.size();
     model_.fill(from, begin);
     model_.fill(to, begin + rows.size() / 2);
