@@ -14,7 +14,7 @@ namespace {
 
 /** Edges that a thread takes at a time, at most: each takes some microseconds, or some hundred where it needs a motion,
  *  and a call of the core costs as much as two of them. */
-constexpr std::size_t LEAST_PART = 16, LARGEST_PART = 256;
+constexpr std::size_t LEAST_PART = 16, LARGEST_PART = 1024;
 
 /* Each thread takes several parts, so that all end at about the same time. */
 std::size_t partOf(std::size_t n, unsigned threads) {
