@@ -182,7 +182,8 @@ std::string completion(const std::string &shell) {
       if (takes(command, option)) cases += std::string(" ") + option.name;
     cases += "' ;;\n";
   }
-  const std::string before = shell == "zsh" ? "autoload -Uz compinit bashcompinit && compinit && bashcompinit\n" : "";
+  const std::string before =
+      shell == "zsh" ? "autoload -Uz compinit bashcompinit && compinit -i && bashcompinit\n" : "";
   return before +
          "_cprox() {\n"
          "  local words word=${COMP_WORDS[COMP_CWORD]}\n"

@@ -61,11 +61,19 @@ ask cprox distance --curves a.c
         """In a terminal of its own: its completion answers to keys alone."""
         script, asks = self.file('complete.zsh', cprox('completion', 'zsh').out), self.file('keys.zsh', '''
 zmodload zsh/zpty && zpty shell zsh -f -i
-type() { zpty -w -n shell "$1"; sleep 1; }
-type $'PS1=; source "'$1$'"\\n'
-type $'cprox time-o\\t --curv\\t'
-zpty -w shell ''
-while zpty -r -t shell line; do print -rn -- $line; done
+out=
+reach() { # reads until the word has come, half a minute at most
+  for i in {1..300}; do
+    while zpty -r -t shell line; do out+=$line; done
+    [[ $out != *$1* ]] || return
+    sleep 0.1
+  done
+}
+zpty -w -n shell $'PS1=; source "'$1$'"; print re""ady\\n'
+reach ready
+zpty -w -n shell $'cprox time-o\\t --curv\\t'
+reach --curves
+print -rn -- $out
 ''')
         done = subprocess.run(['zsh', '-f', asks, script], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=True, timeout=60)
         self.assertRegex(re.sub(r'\x1b\[[0-9;?]*[a-zA-Z]', '', done.stdout.decode(errors='replace')), 'time-of-contact[ \x08]*--curves')
