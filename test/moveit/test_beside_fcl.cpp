@@ -4,8 +4,7 @@
  *
  * FCL is wrong by up to NEAR where bodies touch. It pads by moving faces, so that corners stand out further than by a
  * ball: with a padding p what is closer than CORNER p may differ. Its meshes are surfaces: what is wholly inside a link
- * is free for it. States that are in collision for ours alone are counted, and must be few; a state that is free for ours
- * alone is an error. */
+ * is free for it. A difference that none of these explains is an error. */
 #include <gtest/gtest.h>
 #include <moveit/planning_scene/planning_scene.h>
 #include <moveit/utils/robot_model_test_utils.h>
@@ -170,7 +169,6 @@ class Beside : public testing::TestWithParam<const char *> {
     std::cout << GetParam() << ": " << states << " states, " << hits_ << " in collision with objects, " << self_hits_
               << " with the robot itself; different because near " << near_ << ", because of a padding's corners "
               << corners_ << ", because inside " << inside_ << "\n";
-    EXPECT_LT(inside_, 5 + states / 200) << "FCL is free and ours is not";
     EXPECT_GT(hits_, states / 50);
     EXPECT_GT(self_hits_, states / 50);
   }
@@ -194,7 +192,7 @@ class Beside : public testing::TestWithParam<const char *> {
       ++near_;
     } else if (padding_ > 0.0 && std::abs(distance) < CORNER * padding_) {
       ++corners_;
-    } else if (by_us && distance < 0.0) {
+    } else if (by_us && distance < 0.0 && distanceByFcl() > NEAR) {
       ++inside_;
     } else {
       ADD_FAILURE() << "state " << number << ": FCL " << by_fcl << ", ours " << by_us << ", distance " << distance
@@ -209,10 +207,6 @@ class Beside : public testing::TestWithParam<const char *> {
     const auto &env = dynamic_cast<const curve_proximity::CollisionEnvCurveProximity &>(*ours_.getCollisionEnv());
     if (by_fcl != by_us) {
       const double distance = ours_.getCollisionEnv()->distanceSelf(stateOf(ours_), ours_.getAllowedCollisionMatrix());
-      if (by_us && std::abs(distance) >= NEAR) {
-        ++inside_;
-        return;
-      }
       EXPECT_LT(std::abs(distance), NEAR)
           << "state " << number << ": FCL " << by_fcl << ", ours " << by_us << ", padding " << padding_;
       ++near_;
