@@ -41,8 +41,8 @@ struct Json {
   Json &operator[](const std::string &name);
 };
 
-/** The whole text as one value; its places have no lines. Throws BadInput: what is wrong, and at which character; a name that comes twice; more
- *  than 64 lists and maps in each other. */
+/** The whole text as one value; its places have no lines. Throws BadInput: what is wrong, and at which character; a
+ *  name that comes twice; more than 64 lists and maps in each other. */
 YamlValue parseJson(std::string_view text);
 
 /** The same without what the lists and maps inside hold: of {"a": 1, "b": {"c": [2]}} it is {"a": 1, "b": {}}. What is

@@ -91,7 +91,7 @@ CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *o
  *  answer      of cprox_time_of_contact(), cprox_obstacles_time_of_contact() or their like with these arguments. Where
  *              its verdict is clear, claimed is `apart` with delta 0. Else: that nothing is touched before a parameter
  *              that is t_contact_lower, or less where rounding or the form of the proof need that; and, where that can
- *              be proven, that by t the distance is no more than upper. The checker tells both parameters.
+ *              be proven, that by t the distance is no more than upper. The checker prints both parameters.
  *  others      as of cprox_certify()
  *
  *  Returns as cprox_certify(); CPROX_PRECISION where t_contact_lower is at the beginning. Source: doc/certificates.md.
