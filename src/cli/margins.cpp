@@ -41,11 +41,7 @@ int listMargins(const Arguments &arguments, Console &console) {
 
   Output output(arguments);
   console.warn(warnings);
-  if (arguments.timings) tellTimings(world.timings, console);
-  if (arguments.skipped) {
-    tellSkipped(world.skipped, console);
-    tellSkipped(motion.skipped(), console);
-  }
+  tellOfReading(world, motion, arguments, console);
   return output.answer(marginHeader(),
                        {[&](Workspace &workspace) { return marginsOf(motion, arguments, query, workspace); }}, console);
 }

@@ -96,11 +96,7 @@ int answerRobust(const Arguments &arguments, Console &console) {
 
   Output output(arguments);
   console.warn(warnings);
-  if (arguments.timings) tellTimings(world.timings, console);
-  if (arguments.skipped) {
-    tellSkipped(world.skipped, console);
-    tellSkipped(motion.skipped(), console);
-  }
+  tellOfReading(world, motion, arguments, console);
   std::vector<Task> tasks;
   for (const bool self : {false, true}) {
     if (self && !arguments.self) continue;

@@ -54,11 +54,7 @@ int limitSpeeds(const Arguments &arguments, Console &console) {
 
   Output output(arguments);
   console.warn(warnings);
-  if (arguments.timings) tellTimings(world.timings, console);
-  if (arguments.skipped) {
-    tellSkipped(world.skipped, console);
-    tellSkipped(motion.skipped(), console);
-  }
+  tellOfReading(world, motion, arguments, console);
   return output.answer(speedHeader(), {[&](Workspace &workspace) {
                          return limitOne(motion, separation, errors, arguments, query, workspace);
                        }},

@@ -43,8 +43,7 @@ int sweepVolume(const Arguments &arguments, Console &console) {
   of_rows.out.clear();
   Output rows(of_rows);
   console.warn(warnings);
-  if (arguments.timings) tellTimings(world.timings, console);
-  if (arguments.skipped) tellSkipped(motion.skipped(), console);
+  tellOfReading(world, motion, arguments, console);
 
   SweptVolume volume;
   const auto work = [&](Workspace &) {

@@ -59,6 +59,13 @@ Asked askedAlong(const RobotMotion &motion, bool self, const Arguments &argument
   return {MotionSubject{motion, self}, stemOf(arguments.trajectory), kind, arguments.trajectory + ": " + kind, {}};
 }
 
+void tellOfReading(const World &world, const RobotMotion &motion, const Arguments &arguments, Console &console) {
+  if (arguments.timings) tellTimings(world.timings, console);
+  if (!arguments.skipped) return;
+  tellSkipped(world.skipped, console);
+  tellSkipped(motion.skipped(), console);
+}
+
 int answerTrajectory(const Arguments &arguments, Console &console) {
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
@@ -75,11 +82,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
     if (arguments.self) warnOfUnprovable(unprovable(motion, true, query), warnings);
   }
   console.warn(warnings);
-  if (arguments.timings) tellTimings(world.timings, console);
-  if (arguments.skipped) {
-    tellSkipped(world.skipped, console);
-    tellSkipped(motion.skipped(), console);
-  }
+  tellOfReading(world, motion, arguments, console);
   std::vector<Task> tasks;
   for (const bool self : {false, true}) {
     if (self && !arguments.self) continue;

@@ -16,6 +16,9 @@ RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings 
 /** Warns of joints beyond their limits, and of links of the SRDF that the robot does not have. */
 void warnOfMotion(const RobotMotion &motion, const Arguments &arguments, const World &world, Warnings &warnings);
 
+/** What --timings and --skipped ask for: how long reading took, and what of world and motion takes no part. */
+void tellOfReading(const World &world, const RobotMotion &motion, const Arguments &arguments, Console &console);
+
 /** Reads --trajectory, for the world's robot. Throws BadUsage with one line. */
 TrajectoryDescription readOwnTrajectory(const Arguments &arguments, const World &world, Warnings &warnings);
 
