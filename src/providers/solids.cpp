@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "solids.h"
 
-#include <geometric_shapes/bodies.h>
-#include <geometric_shapes/shapes.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,12 +14,13 @@
 #include <curve_proximity/geometry.hpp>
 #include <curve_proximity/superquadric_fit.hpp>
 
+#include "../scene/geometry/hull.h"
 #include "../scene/geometry/scaling.h"
 
 namespace curve_proximity {
 namespace {
 
-using Points = std::vector<cprox_vec3>;
+using Vertices = std::vector<cprox_vec3>;
 using Corners = std::vector<std::array<std::uint32_t, 3>>;
 
 constexpr const char *ENDLESS = "it has no end, and a gap is periodic: give a box as large as what comes near it";
@@ -30,7 +28,7 @@ constexpr const char *ENDLESS = "it has no end, and a gap is periodic: give a bo
 /* Of the pyramid round a cone. */
 constexpr int SIDES = 32;
 
-SolidHandle meshSolid(const Points &vertices, const Corners &triangles) {
+SolidHandle meshSolid(const Vertices &vertices, const Corners &triangles) {
   cprox_solid_description solid{};
   solid.kind = CPROX_SOLID_MESH;
   solid.points = vertices.data();
@@ -41,7 +39,7 @@ SolidHandle meshSolid(const Points &vertices, const Corners &triangles) {
 }
 
 /* Turns each triangle so that it looks away from a point inside a convex hull. */
-void lookOutward(const Points &vertices, const Eigen::Vector3d &inside, Corners &triangles) {
+void lookOutward(const Vertices &vertices, const Eigen::Vector3d &inside, Corners &triangles) {
   for (auto &t : triangles) {
     const Eigen::Vector3d a = toEigen(vertices[t[0]]), b = toEigen(vertices[t[1]]), c = toEigen(vertices[t[2]]);
     if ((b - a).cross(c - a).dot(a - inside) < 0.0) std::swap(t[1], t[2]);
@@ -50,7 +48,7 @@ void lookOutward(const Points &vertices, const Eigen::Vector3d &inside, Corners 
 
 /* A convex polytope. */
 struct Hull {
-  Points vertices;
+  Vertices vertices;
   Corners triangles;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero(); /* inside */
 };
@@ -58,18 +56,19 @@ struct Hull {
 /* The hull of points with an interior. What the hull's computation dropped is taken in again: all is scaled about the
  * middle until every point is behind every face. Cost: points times faces. */
 Hull hullOf(const Eigen::Matrix3Xd &points, const Stop &stop = {}) {
-  shapes::Mesh mesh(static_cast<unsigned>(points.cols()), 0);
-  Eigen::Map<Eigen::Matrix3Xd>(mesh.vertices, 3, points.cols()) = points;
-  const bodies::ConvexMesh hull(&mesh);
-  const std::vector<unsigned> &corners = hull.getTriangles();
-  if (corners.size() < 12) throw Error("the hull of its vertices has no interior");
+  Points given;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) given.emplace_back(points.col(i));
+  const HullSurface hull = hullSurfaceOf(given, stop);
+  if (hull.facets.size() < 4) throw Error("the hull of its vertices has no interior");
   Hull out;
-  for (const Eigen::Vector3d &v : hull.getVertices()) {
+  for (const Eigen::Vector3d &v : hull.points) {
     out.vertices.push_back(toVec3(v));
-    out.middle += v / static_cast<double>(hull.getVertices().size());
+    out.middle += v / static_cast<double>(hull.points.size());
   }
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
-    out.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  for (const HullFacet &corners : hull.facets) {
+    const auto number = [&](std::size_t k) { return static_cast<std::uint32_t>(corners[k]); };
+    out.triangles.push_back({number(0), number(1), number(2)});
+  }
   lookOutward(out.vertices, out.middle, out.triangles);
 
   double scale = 1.0;
@@ -321,7 +320,7 @@ bool isConvex(const std::vector<Point> &loop) {
 SolidHandle loopWithRim(const std::vector<Point> &loop, double padding) {
   const SolidHandle inside = loopSolid(loop);
   if (padding == 0.0) return inside;
-  Points edges;
+  Vertices edges;
   for (std::size_t i = 0; i <= loop.size(); ++i)
     edges.push_back({loop[i % loop.size()][0], loop[i % loop.size()][1], 0.0});
   cprox_solid_description rim{};
@@ -416,7 +415,7 @@ SolidHandle coneSolid(double height, double radius) {
 }
 
 /* Vertices at one place are one: files of triangles repeat them. */
-void weld(const ShapeDescription &shape, Points &vertices, Corners &triangles) {
+void weld(const ShapeDescription &shape, Vertices &vertices, Corners &triangles) {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   if (shape.dimensions.size() == 3) scale = Eigen::Vector3d(shape.dimensions.data());
   std::vector<std::uint32_t> numbers;
@@ -436,7 +435,7 @@ void weld(const ShapeDescription &shape, Points &vertices, Corners &triangles) {
 }
 
 SolidHandle meshOf(const ShapeDescription &shape) {
-  Points vertices;
+  Vertices vertices;
   Corners triangles;
   weld(shape, vertices, triangles);
   return meshSolid(vertices, triangles);
@@ -445,7 +444,7 @@ SolidHandle meshOf(const ShapeDescription &shape) {
 /* What the plane z = 0 cuts out of a closed mesh, counter-clockwise: a vertex at z = 0 counts as above. A triangle that
  * is cut leads from its edge that goes down to its edge that goes up. */
 std::vector<std::vector<Point>> sectionOf(const ShapeDescription &shape) {
-  Points vertices;
+  Vertices vertices;
   Corners triangles;
   weld(shape, vertices, triangles);
   using Edge = std::array<std::uint32_t, 2>; // above, below

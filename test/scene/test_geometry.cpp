@@ -261,6 +261,27 @@ TEST(Meshes, vertices_that_were_dropped_are_covered_or_taken_back) {
   }
 }
 
+/* Counts, not times: each report of qhull asks once. */
+TEST(Meshes, hulls_of_many_points_can_be_stopped) {
+  Random random(43);
+  Points points;
+  for (int k = 0; k < 20000; ++k) points.push_back(random.vector(1.0).normalized());
+  int asked = 0, most = 0;
+  const auto stop = [&] { return ++asked == most; };
+  EXPECT_EQ(hullSurfaceOf(points, stop).facets.size(), 2 * points.size() - 4); // Euler: all of them are vertices
+  EXPECT_GT(asked, 50);
+  for (const int at : {1, 2, asked / 2, asked}) {
+    asked = 0, most = at;
+    try {
+      hullSurfaceOf(points, stop);
+      ADD_FAILURE() << at;
+    } catch (const Error &error) {
+      EXPECT_EQ(error.status(), CPROX_STOPPED);
+    }
+    EXPECT_EQ(asked, at);
+  }
+}
+
 TEST(Meshes, only_vertices_of_triangles_count) {
   Eigen::Matrix3Xd vertices(3, 4);
   vertices << 0, 1, 0, 100, /**/ 0, 0, 1, 100, /**/ 0, 0, 0, 100;

@@ -96,9 +96,10 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
     if (!where.coverage.complete()) of_place = work.query, of_place.coverage = where.coverage;
     const Query &query = where.coverage.complete() ? work.query : of_place;
     const Targets &targets = where.stamped->targets;
-    if (!work.request.problems && asksFor<question::Search>(question) && !query.per_object &&
+    if (!work.request.problems && asksFor<question::Search, question::Gradient>(question) && !query.per_object &&
         TimeBudget::isOver(query.options.stop_user)) {
-      fillRow(stoppedSearch(message.id, query).answer, query.query_type, work.response.add());
+      const Row row = stoppedCurve(message.id, question, query);
+      fillRow(row.answer, query.query_type, work.response.add(toMessage(row)));
       ++search.curves;
       return;
     }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <new>
 #include <tuple>
 #include <utility>
 
@@ -63,50 +64,40 @@ bool isFlat(const Points &points) {
 
 /* ---- qhull ---- */
 
-/* What qhull finds: extreme points, and the surface as triangles of their numbers. Empty where it gives up. */
-struct Facets {
-  Points points;
-  std::vector<HullFacet> facets;
-};
-
-/* Qhull's own check of its result (option Tv) takes a hundred times as long as its work. coveringPoints() proves what
- * is needed of the result instead. */
-Facets surfaceOf(const Points &points) {
-  Facets out;
-  const std::unique_ptr<FILE, int (*)(FILE *)> nowhere(std::fopen("/dev/null", "w"), std::fclose);
-  const auto memory = std::make_unique<qhT>();
-  qhT *qh = memory.get();
-  qh_zero(qh, nowhere.get());
-  Points copy = points; /* qhull may change its input */
-  char command[] = "qhull Qt";
-  const int failed = qh_new_qhull(qh, 3, static_cast<int>(copy.size()), copy.front().data(), False, command,
-                                  nowhere.get(), nowhere.get());
-  if (failed == 0) {
-    std::vector<int> number(points.size(), -1);
-    vertexT *vertex = nullptr, **vertexp = nullptr;
-    facetT *facet = nullptr;
-    FORALLvertices {
-      const auto id = static_cast<std::size_t>(qh_pointid(qh, vertex->point));
-      if (id >= points.size()) continue;
-      number[id] = static_cast<int>(out.points.size());
-      out.points.push_back(points[id]);
-    }
-    FORALLfacets {
-      HullFacet corners{-1, -1, -1};
-      std::size_t n = 0;
-      FOREACHvertex_(facet->vertices) {
-        const auto id = static_cast<std::size_t>(qh_pointid(qh, vertex->point));
-        if (n < 3 && id < points.size()) corners[n] = number[id];
-        ++n;
-      }
-      if (n == 3 && *std::min_element(corners.begin(), corners.end()) >= 0) out.facets.push_back(corners);
-    }
+/* Qhull has no stop function. It reports its progress to a file, though (option TF), and stops by itself after so many
+ * vertices (qh->STOPadd): so the file asks the stop function, and then takes that number down. */
+class Progress {
+ public:
+  Progress(qhT *qh, const std::function<bool()> &stop) : qh_(qh), stop_(stop) {
+    cookie_io_functions_t functions{};
+    functions.write = write;
+    file_.reset(fopencookie(this, "w", functions));
+    if (!file_) throw std::bad_alloc();
+    std::setvbuf(file_.get(), nullptr, _IONBF, 0);
   }
-  int blocks = 0, bytes = 0;
-  qh_freeqhull(qh, !qh_ALL);
-  qh_memfreeshort(qh, &blocks, &bytes);
-  return out;
-}
+  Progress(const Progress &) = delete;
+  Progress &operator=(const Progress &) = delete;
+
+  FILE *file() const {
+    return file_.get();
+  }
+
+  bool isStopped() const {
+    return stopped_;
+  }
+
+ private:
+  static ssize_t write(void *self, const char *, std::size_t size) {
+    Progress &own = *static_cast<Progress *>(self);
+    if (!own.stopped_ && own.stop_ && own.stop_()) own.stopped_ = true, own.qh_->STOPadd = 1;
+    return static_cast<ssize_t>(size);
+  }
+
+  qhT *const qh_;
+  const std::function<bool()> &stop_;
+  bool stopped_ = false;
+  std::unique_ptr<FILE, int (*)(FILE *)> file_{nullptr, std::fclose};
+};
 
 /* ---- the proof that points are covered ---- */
 
@@ -217,6 +208,47 @@ Eigen::Vector3d meanOf(const Points &points) {
 
 } // namespace
 
+/* Qhull's own check of its result (option Tv) takes a hundred times as long as its work. coveringPoints() proves what
+ * is needed of the result instead. */
+HullSurface hullSurfaceOf(const Points &points, const std::function<bool()> &stop) {
+  HullSurface out;
+  if (points.size() < 4) return out;
+  const auto memory = std::make_unique<qhT>();
+  qhT *qh = memory.get();
+  const Progress progress(qh, stop);
+  qh_zero(qh, progress.file());
+  Points copy = points; /* qhull may change its input */
+  char command[] = "qhull Qt TF500";
+  const int failed = qh_new_qhull(qh, 3, static_cast<int>(copy.size()), copy.front().data(), False, command,
+                                  progress.file(), progress.file());
+  if (failed == 0 && !progress.isStopped()) {
+    std::vector<int> number(points.size(), -1);
+    vertexT *vertex = nullptr, **vertexp = nullptr;
+    facetT *facet = nullptr;
+    FORALLvertices {
+      const auto id = static_cast<std::size_t>(qh_pointid(qh, vertex->point));
+      if (id >= points.size()) continue;
+      number[id] = static_cast<int>(out.points.size());
+      out.points.push_back(points[id]);
+    }
+    FORALLfacets {
+      HullFacet corners{-1, -1, -1};
+      std::size_t n = 0;
+      FOREACHvertex_(facet->vertices) {
+        const auto id = static_cast<std::size_t>(qh_pointid(qh, vertex->point));
+        if (n < 3 && id < points.size()) corners[n] = number[id];
+        ++n;
+      }
+      if (n == 3 && *std::min_element(corners.begin(), corners.end()) >= 0) out.facets.push_back(corners);
+    }
+  }
+  int blocks = 0, bytes = 0;
+  qh_freeqhull(qh, !qh_ALL);
+  qh_memfreeshort(qh, &blocks, &bytes);
+  if (progress.isStopped()) throw Error("stopped while its hull was made", CPROX_STOPPED);
+  return out;
+}
+
 BodyHandle polytopeOf(const Points &points) {
   return makePolytope(
       Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3, static_cast<Eigen::Index>(points.size())));
@@ -256,7 +288,7 @@ HullPoints coveringPoints(const Points &all, Points kept, const std::vector<Hull
 
 HullPoints hullPointsOf(const Points &all) {
   if (all.size() > FEW_POINTS && !isFlat(all)) {
-    Facets surface = surfaceOf(all);
+    HullSurface surface = hullSurfaceOf(all);
     if (surface.points.size() >= 4) return coveringPoints(all, std::move(surface.points), surface.facets);
   }
   return {all, 0.0};

@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_SCENE_HULL_H
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include <curve_proximity/core.hpp>
@@ -20,6 +21,16 @@ struct HullPoints {
 
 /* A triangle of a hull's surface: numbers of points. */
 using HullFacet = std::array<int, 3>;
+
+/* A hull's extreme points, and its surface as triangles of their numbers. */
+struct HullSurface {
+  Points points;
+  std::vector<HullFacet> facets;
+};
+
+/* The hull's surface as qhull finds it, each triangle either way round. Empty where qhull gives up: of fewer than four
+ * points, or of flat ones. stop: asked some hundred times a second; once it holds, Error with CPROX_STOPPED is thrown. */
+HullSurface hullSurfaceOf(const Points &points, const std::function<bool()> &stop = {});
 
 /* The extreme points of `all`, or all of them where they are few or flat. `all`: at least one, finite, each once. */
 HullPoints hullPointsOf(const Points &all);

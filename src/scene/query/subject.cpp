@@ -245,10 +245,14 @@ std::vector<Part> partsOf(const Subject &subject, const Question &question, cons
   return out;
 }
 
-Row stoppedSearch(const std::string &curve, const Query &query) {
+Row stoppedCurve(const std::string &curve, const Question &question, const Query &query) {
   Row row{{}, unasked(curve, "curve", query), {}};
   row.answer.a = curve;
   applyCoverage(query.coverage, query, row.answer);
+  if (!asksFor<question::Gradient>(question)) return row;
+  CurveGradient none;
+  none.reason = row.answer.message;
+  row.detail = std::move(none);
   return row;
 }
 

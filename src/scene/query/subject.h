@@ -77,8 +77,8 @@ enum class Beside {
 std::vector<Row> answerParts(const Subject &subject, const std::vector<Part> &parts, const Question &question,
                              const Query &query, Beside beside, Workspace &workspace);
 
-/** The row of a curve whose search does not begin, since the stop function has ended the query before. */
-Row stoppedSearch(const std::string &curve, const Query &query);
+/** The row of a curve whose search or gradient does not begin, since the stop function has ended the query before. */
+Row stoppedCurve(const std::string &curve, const Question &question, const Query &query);
 
 /** The rows of one part. Throws Error as the function that answers the question for the subject does, and where the
  *  subject has no answer to it. Cost: that of the function. */
