@@ -234,24 +234,35 @@ static bool are_alike(const cprox_edge_checker *c, size_t i, size_t k) {
          memcmp(edge_row_of(rows, i), edge_row_of(rows, k), rows->words * sizeof *rows->bits) == 0;
 }
 
+static int32_t frame_of_geometry(const cprox_edge_checker *c, size_t i) {
+  const int32_t axis = c->robot->links[c->robot->given_geometries[i].link].axis;
+  return axis < 0 ? 0 : c->frame_of[axis];
+}
+
+/* The part of a geometry and of all like it that come after it. */
+static void add_part(cprox_edge_checker *c, const robot_covers *covers, size_t i) {
+  edge_part part = {.frame = frame_of_geometry(c, i),
+                    .first_member = (uint32_t)c->n_members,
+                    .first = (uint32_t)c->n_balls,
+                    .first_hull = (uint32_t)c->n_hulls};
+  for (size_t k = i; k < c->robot->n_geometries; k++)
+    if (are_alike(c, i, k)) add_geometry(c, covers, (int32_t)k);
+  part.n_members = (uint32_t)c->n_members - part.first_member, part.n = (uint32_t)c->n_balls - part.first;
+  part.end_hull = (uint32_t)c->n_hulls, part.by_hulls = part.end_hull - part.first_hull > part.n;
+  enclose(c, &part);
+  c->parts[c->n_parts++] = part;
+}
+
+/* From the base to the tips, in whatever order a robot's file lists its links: pairs are asked in this order, so that
+ * contact is found as soon. */
 static void fill_parts(cprox_edge_checker *c, const robot_covers *covers) {
-  const cprox_robot *robot = c->robot;
-  for (size_t i = 0; i < robot->n_geometries; i++) {
-    const int32_t axis = robot->links[robot->given_geometries[i].link].axis;
-    bool taken = !is_asked(&c->rows, i); /* by the part of one before it */
-    for (size_t k = 0; k < i && !taken; k++) taken = are_alike(c, i, k);
-    if (taken) continue;
-    edge_part part = {.frame = axis < 0 ? 0 : c->frame_of[axis],
-                      .first_member = (uint32_t)c->n_members,
-                      .first = (uint32_t)c->n_balls,
-                      .first_hull = (uint32_t)c->n_hulls};
-    for (size_t k = i; k < robot->n_geometries; k++)
-      if (are_alike(c, i, k)) add_geometry(c, covers, (int32_t)k);
-    part.n_members = (uint32_t)c->n_members - part.first_member, part.n = (uint32_t)c->n_balls - part.first;
-    part.end_hull = (uint32_t)c->n_hulls, part.by_hulls = part.end_hull - part.first_hull > part.n;
-    enclose(c, &part);
-    c->parts[c->n_parts++] = part;
-  }
+  for (size_t f = 0; f < c->n_frames; f++)
+    for (size_t i = 0; i < c->robot->n_geometries; i++) {
+      if (!is_asked(&c->rows, i) || frame_of_geometry(c, i) != (int32_t)f) continue;
+      bool taken = false; /* by the part of one before it */
+      for (size_t k = 0; k < i && !taken; k++) taken = are_alike(c, i, k);
+      if (!taken) add_part(c, covers, i);
+    }
 }
 
 /* ---- pairs ---- */
