@@ -45,18 +45,18 @@ static inline double reader_number(reader *r) {
   return x;
 }
 
+/* Of 4 or 8 bytes. */
+static inline double reader_real(reader *r, uint32_t width) {
+  if (width == 8) return reader_number(r);
+  const uint32_t bits = (uint32_t)reader_bits(r, 4);
+  float x;
+  memcpy(&x, &bits, sizeof x);
+  if (!isfinite(x)) r->bad = true;
+  return (double)x;
+}
+
 static inline void reader_normal(reader *r, uint32_t width, double n[3]) {
-  for (int k = 0; k < 3; k++) {
-    if (width == 8) {
-      n[k] = reader_number(r);
-      continue;
-    }
-    const uint32_t bits = (uint32_t)reader_bits(r, 4);
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    n[k] = (double)x;
-    if (!isfinite(x)) r->bad = true;
-  }
+  for (int k = 0; k < 3; k++) n[k] = reader_real(r, width);
 }
 
 #endif

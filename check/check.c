@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "bytes.h"
+#include "inequalities.h"
 #include "near.h"
 #include "pieces.h"
 #include "quick.h"
@@ -38,6 +39,21 @@ typedef struct part {
   double from, to;
 } part;
 
+/* As a leaf has it: n, or of a body by inequalities where the multipliers stand that make n. */
+typedef struct direction {
+  double n[3];
+  reader multipliers;
+} direction;
+
+static direction read_direction(const section *c) {
+  direction d = {.multipliers = *c->in};
+  if (c->set->kind == IMPLICIT)
+    inequalities_skip(c->set, c->width, c->in);
+  else
+    reader_normal(c->in, c->width, d.n);
+  return d;
+}
+
 /* What a number that is known within an interval is. */
 typedef enum sign { NOT_POSITIVE, POSITIVE, OPEN } sign;
 
@@ -47,16 +63,19 @@ static sign sign_of(const iv *a) {
 }
 
 /* Is what the two are apart along n more than n makes of the balls? Of all of the set, or of a part of a curve. */
-static sign separation(const section *c, int level, const double normal[3], part mine, const part *theirs) {
+static sign separation(const section *c, int level, const direction *along, part mine, const part *theirs) {
   iv *n = iv_new(3), *own = iv_new(3), *w = iv_new(3), *gap = iv_new(1);
-  for (int k = 0; k < 3; k++) iv_set_d(&n[k], normal[k]);
-  if (c->set->kind == HALFSPACE) support_halfspace_normal(n, c->set); /* it has no other */
+  const bool flat = c->set->kind == HALFSPACE, implicit = c->set->kind == IMPLICIT; /* a halfspace has one direction */
+  reader multipliers = along->multipliers;
+  const bool known = !implicit || inequalities_reach(n, &w[1], c->set, c->width, &multipliers);
+  for (int k = 0; k < 3 && !implicit; k++) iv_set_d(&n[k], flat ? c->set->size[k] : along->n[k]);
+  if (flat || implicit) support_to_world(n, c->set);
   support_of_frame(&w[0], own, c->set, n);
   if (theirs) {
     for (int k = 0; k < 3; k++) iv_neg(&own[k], &own[k]);
     pieces_least(&w[1], c->target, level, own, theirs->from, theirs->to);
     iv_neg(&w[1], &w[1]);
-  } else {
+  } else if (!implicit) {
     support_of_body(&w[1], c->set, own);
   }
   iv_add(&w[0], &w[0], &w[1]);
@@ -75,12 +94,12 @@ static sign separation(const section *c, int level, const double normal[3], part
   iv_free(own, 3);
   iv_free(w, 3);
   iv_free(gap, 1);
-  return proper == POSITIVE ? apart : proper;
+  return !known ? NOT_POSITIVE : proper == POSITIVE ? apart : proper;
 }
 
 /* One leaf. More bits are for what fewer leave open, and for nothing else: to refuse it needs no more than to accept.
  */
-static bool separates(const section *c, const double normal[3], part mine, const part *theirs) {
+static bool separates(const section *c, const direction *along, part mine, const part *theirs) {
   const set group =
       theirs && c->set->corners > 0 ? set_group(c->set, (size_t)theirs->from, (size_t)theirs->to) : (set){.corners = 0};
   section of_group = *c;
@@ -94,12 +113,12 @@ static bool separates(const section *c, const double normal[3], part mine, const
     quick.theirs[0] = theirs->from;
     quick.theirs[1] = theirs->to;
   }
-  memcpy(quick.normal, normal, sizeof quick.normal);
+  memcpy(quick.normal, along->n, sizeof quick.normal);
   memcpy(quick.balls, c->balls, sizeof quick.balls);
   sign found = quick_separates(&quick) ? POSITIVE : OPEN;
   for (int level = 0; level < PIECES_LEVELS && found == OPEN; level++) {
     iv_precision(BITS[level]);
-    found = separation(c, level, normal, mine, theirs);
+    found = separation(c, level, along, mine, theirs);
   }
   iv_precision(BITS[0]);
   ++*c->leaves;
@@ -109,13 +128,13 @@ static bool separates(const section *c, const double normal[3], part mine, const
 /* m leaves {end, n}, the ends ascending from 0 to the number of pieces. */
 static const char *check_convex(const section *c) {
   const uint32_t m = reader_count(c->in);
-  double from = 0.0, normal[3];
+  double from = 0.0;
   for (uint32_t i = 0; i < m; i++) {
     const double end = reader_number(c->in);
-    reader_normal(c->in, c->width, normal);
+    const direction along = read_direction(c);
     if (c->in->bad) return "it is cut off or not a number";
     if (!(end > from && end <= c->until)) return "its parts do not follow each other";
-    if (!separates(c, normal, (part){from, end}, NULL)) return "a direction does not separate its part";
+    if (!separates(c, &along, (part){from, end}, NULL)) return "a direction does not separate its part";
     from = end;
   }
   return from == c->until ? NULL : "its parts do not cover the curve";
@@ -127,10 +146,9 @@ static const char *check_tree(const section *c, part mine, part theirs, int dept
   const unsigned char tag = reader_byte(c->in);
   if (c->in->bad || tag > 2 || depth > MAX_DEPTH) return "its tree is broken";
   if (tag == 0) {
-    double normal[3];
-    reader_normal(c->in, c->width, normal);
+    const direction along = read_direction(c);
     if (c->in->bad) return "it is cut off or not a number";
-    return separates(c, normal, mine, &theirs) ? NULL : "a direction does not separate its parts";
+    return separates(c, &along, mine, &theirs) ? NULL : "a direction does not separate its parts";
   }
   const double at = reader_number(c->in);
   part *whole = tag == 1 ? &mine : &theirs;

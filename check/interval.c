@@ -21,7 +21,7 @@ static void count(int products) {
   work += products * words * words;
 }
 
-/* Sines, cosines, roots, quotients: about so many products. */
+/* Sines, cosines, powers, roots, quotients: about so many products. */
 enum { TRIGONOMETRIC_WORK = 60, ROOT_WORK = 4, QUOTIENT_WORK = 4 };
 
 iv *iv_new(size_t n) {
@@ -137,6 +137,21 @@ void iv_sqrt(iv *out, const iv *a) {
   else
     mpfr_sqrt(out->lo, a->lo, MPFR_RNDD);
   mpfr_sqrt(out->hi, a->hi, MPFR_RNDU);
+}
+
+void iv_exp(iv *out, const iv *a) {
+  count(2 * TRIGONOMETRIC_WORK);
+  mpfr_exp(out->lo, a->lo, MPFR_RNDD);
+  mpfr_exp(out->hi, a->hi, MPFR_RNDU);
+}
+
+void iv_log(iv *out, const iv *a) {
+  count(2 * TRIGONOMETRIC_WORK);
+  if (mpfr_sgn(a->lo) <= 0)
+    mpfr_set_inf(out->lo, -1);
+  else
+    mpfr_log(out->lo, a->lo, MPFR_RNDD);
+  mpfr_log(out->hi, a->hi, MPFR_RNDU);
 }
 
 /* Both are within 1 of their slope: f(a) lies within the width of a of its value at one end. */

@@ -34,6 +34,8 @@ void iv_mul(iv *out, const iv *a, const iv *b);
 void iv_mul_d(iv *out, const iv *a, double b);
 void iv_div(iv *out, const iv *a, const iv *b); /* everything, where b may be 0 */
 void iv_sqrt(iv *out, const iv *a);             /* of the part that is not negative */
+void iv_exp(iv *out, const iv *a);
+void iv_log(iv *out, const iv *a); /* of the part that is not negative */
 void iv_cos(iv *out, const iv *a);
 void iv_sin(iv *out, const iv *a);
 void iv_max(iv *out, const iv *a, const iv *b);

@@ -7,6 +7,7 @@
 #include "near.h"
 
 #include "check.h"
+#include "inequalities.h"
 #include "pieces.h"
 #include "support.h"
 #include "winding.h"
@@ -167,6 +168,10 @@ static bool contains(const set *s, const iv *y) {
       for (int k = 0; k < 3; k++) iv_set_d(&w[k], size[k]);
       iv_dot(&w[3], w, y);
       inside = at_most_d(&w[3], -size[3]);
+      break;
+    case IMPLICIT:
+      inequalities_value(&w[3], s, y);
+      inside = at_most_d(&w[3], 0.0);
       break;
     default: break;
   }

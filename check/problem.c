@@ -106,6 +106,10 @@ static void free_curve(curve *c) {
 
 void set_free(set *s) {
   free(s->vertices);
+  free(s->rows.planes);
+  free(s->rows.quadrics);
+  free(s->rows.terms);
+  free(s->rows.sum_of);
   free_curve(&s->curve);
 }
 
@@ -146,11 +150,30 @@ static void read_elements(words *w, set *s) {
   if (s->kind == SOLID && !w->wrong && !winding_is_closed(s)) w->wrong = true;
 }
 
+/* PLANES (4 numbers)×PLANES QUADRICS (10)×QUADRICS SUMS TERMS (sum, 5)×TERMS */
+static void read_inequalities(words *w, inequalities *r) {
+  r->n_planes = words_count(w);
+  r->planes = words_room(w, r->n_planes, sizeof *r->planes);
+  for (size_t i = 0; i < r->n_planes && !w->wrong; i++) words_numbers(w, 4, r->planes[i]);
+  r->n_quadrics = words_count(w);
+  r->quadrics = words_room(w, r->n_quadrics, sizeof *r->quadrics);
+  for (size_t i = 0; i < r->n_quadrics && !w->wrong; i++) words_numbers(w, 10, r->quadrics[i]);
+  r->n_sums = words_count(w);
+  r->n_terms = words_count(w);
+  r->terms = words_room(w, r->n_terms, sizeof *r->terms);
+  r->sum_of = words_room(w, r->n_terms, sizeof *r->sum_of);
+  for (size_t i = 0; i < r->n_terms && !w->wrong; i++) {
+    r->sum_of[i] = words_size(w);
+    words_numbers(w, 5, r->terms[i]);
+    if (r->sum_of[i] >= r->n_sums || !(r->terms[i][4] >= 1.0)) w->wrong = true;
+  }
+}
+
 void words_set(words *w, set *s) {
-  static const char *const names[] = {"point", "sphere",    "box",       "capsule",  "cylinder",
-                                      "cone",  "ellipsoid", "halfspace", "polytope", "hull",
-                                      "curve", "triangles", "solid",     "points",   "cells"};
-  static const size_t sizes[] = {0, 1, 3, 2, 2, 2, 3, 4, 0, 1, 0, 0, 0, 1, 0};
+  static const char *const names[] = {"point",     "sphere",    "box",      "capsule", "cylinder", "cone",
+                                      "ellipsoid", "halfspace", "polytope", "hull",    "implicit", "curve",
+                                      "triangles", "solid",     "points",   "cells"};
+  static const size_t sizes[] = {0, 1, 3, 2, 2, 2, 3, 4, 0, 1, 0, 0, 0, 0, 1, 0};
   s->margin = words_number(w);
   s->n_poses = words_count(w);
   if (!(s->margin >= 0.0) || s->n_poses > 2) w->wrong = true;
@@ -165,7 +188,9 @@ void words_set(words *w, set *s) {
   for (size_t i = 0; s->kind != HALFSPACE && i < sizes[s->kind]; i++)
     if (!(s->size[i] >= 0.0)) w->wrong = true;
   const bool elements = s->kind > CURVE;
-  if (s->kind == POINT || s->kind == POLYTOPE || s->kind == HULL || elements) words_numbers(w, 3, s->centre);
+  const bool centred = s->kind == POINT || s->kind == POLYTOPE || s->kind == HULL || s->kind == IMPLICIT || elements;
+  if (centred) words_numbers(w, 3, s->centre);
+  if (s->kind == IMPLICIT) read_inequalities(w, &s->rows);
   if (s->kind == POLYTOPE || s->kind == HULL) {
     s->n = words_count(w);
     if (s->n == 0) w->wrong = true;

@@ -29,6 +29,7 @@ typedef enum kind {
   HALFSPACE,
   POLYTOPE,
   HULL,
+  IMPLICIT,
   CURVE,
   /* unions of elements: triangles without or with the inside, balls about points, boxes along the axes */
   TRIANGLES,
@@ -36,6 +37,13 @@ typedef enum kind {
   POINTS,
   CELLS
 } kind;
+
+/* What a body satisfies, about its centre; sum_of: of each term the sum that it is part of. */
+typedef struct inequalities {
+  size_t n_planes, n_quadrics, n_sums, n_terms;
+  double (*planes)[4], (*quadrics)[10], (*terms)[5];
+  size_t *sum_of;
+} inequalities;
 
 /* position x y z, quaternion w x y z of any norm */
 typedef struct pose {
@@ -49,13 +57,14 @@ typedef struct set {
   size_t n_poses;
   pose poses[2];
   double size[4];   /* as the text has them */
-  double centre[3]; /* POINT, POLYTOPE, HULL, elements */
+  double centre[3]; /* POINT, POLYTOPE, HULL, IMPLICIT, elements */
   size_t n;
   double (*vertices)[3];  /* about the centre; of elements `corners` each, in a row */
   size_t corners;         /* 0: it is no union of elements */
   double low[3], high[3]; /* of elements, a box round all vertices */
   curve curve;
-  char name[64]; /* whose it is, or "" */
+  inequalities rows; /* IMPLICIT */
+  char name[64];     /* whose it is, or "" */
 } set;
 
 static inline size_t set_elements(const set *s) {

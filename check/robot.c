@@ -83,7 +83,7 @@ static void read_part(words *w, robot *r) {
   const size_t on = words_size(w);
   set *s = &r->parts[r->n_parts++];
   words_set(w, s);
-  if (on >= r->n_links || s->kind == HALFSPACE || s->kind >= CURVE) w->wrong = true;
+  if (on >= r->n_links || s->kind == HALFSPACE || s->kind >= IMPLICIT) w->wrong = true;
   if (!w->wrong) add_body(r, s, &r->links[on]);
 }
 

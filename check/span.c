@@ -13,6 +13,7 @@ static double along(const set *s, const double n[3]) {
     case CONE: return fmax(a[0] * n[2], a[1] * across - a[0] * n[2]);
     case HALFSPACE: return -a[3];
     case POINT: return 0.0;
+    case IMPLICIT:
     case CURVE: return INFINITY;
     default: { /* of vertices */
       double most = -INFINITY;
@@ -41,6 +42,7 @@ double span_radius(const set *s) {
     case CONE: most = length_of((const double[3]){a[0], a[1], 0.0}); break;
     case HALFSPACE: most = fabs(a[3]); break;
     case POINT: break;
+    case IMPLICIT:
     case CURVE: most = INFINITY; break;
     default:
       for (size_t i = 0; i < s->n; i++) most = fmax(most, length_of(s->vertices[i]));

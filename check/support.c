@@ -66,8 +66,7 @@ void support_point_to_frame(iv own[3], const set *s, const iv p[3]) {
   iv_free(w, 1);
 }
 
-void support_halfspace_normal(iv n[3], const set *s) {
-  for (int k = 0; k < 3; k++) iv_set_d(&n[k], s->size[k]);
+void support_to_world(iv n[3], const set *s) {
   for (size_t i = s->n_poses; i-- > 0;)
     if (turns(&s->poses[i])) turn(n, s->poses[i].q, false);
 }

@@ -12,8 +12,8 @@ void support_of_frame(iv *far, iv own[3], const set *s, const iv n[3]);
 /* max n·x over the body in its own frame, without margin. */
 void support_of_body(iv *out, const set *s, const iv n[3]);
 
-/* The normal of a halfspace, in the world. */
-void support_halfspace_normal(iv n[3], const set *s);
+/* A direction of the set's own frame in the world. */
+void support_to_world(iv n[3], const set *s);
 
 /* A world point in the set's own frame. */
 void support_point_to_frame(iv own[3], const set *s, const iv p[3]);

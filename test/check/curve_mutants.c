@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* curve_mutants QUERIES MUTANTS SEED: random curves beside meshes, points, cells and convex bodies with genuine
+/* curve_mutants QUERIES MUTANTS SEED: random curves beside meshes, points, cells, convex bodies and bodies by inequalities with genuine
  * certificates and tampered ones, and with genuine ones held against targets that came nearer. Judged by the distance,
  * known within 1e-12 of the sizes. */
 #include <inttypes.h>
@@ -93,7 +93,8 @@ int main(int argc, char **argv) {
   mutants_tally sum = {0};
   for (size_t i = 0; i < queries;) {
     asked q;
-    asked_random(&q, &r, (asked_kinds){.meshes = true, .elements = true, .bezier_only = i % 2 == 0}, 1.0, 1.0, ws);
+    const asked_kinds kinds = {.meshes = i % 5 > 1, .elements = true, .implicit = true, .bezier_only = i % 2 == 0};
+    asked_random(&q, &r, kinds, 1.0, 1.0, ws);
     for (size_t k = 0; k < q.n && i % 3 == 0; k++)
       q.targets[k].pose.position = vec_add(q.mover.points[0], rng_in_cube(&r, 0.3));
     double interval[2];

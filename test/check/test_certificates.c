@@ -97,6 +97,10 @@ CASE(every_basis_and_every_convex_kind_leave_certificates_that_hold) {
   examine_many(2, 200, (asked_kinds){0}, "all kinds");
 }
 
+CASE(bodies_by_inequalities_leave_certificates_that_hold) {
+  examine_many(5, 100, (asked_kinds){.implicit = true}, "inequalities");
+}
+
 CASE(curves_against_curves_leave_certificates_that_hold) {
   examine_many(3, 60, (asked_kinds){.curve_target = true}, "curve, curve");
 }

@@ -33,8 +33,9 @@ static size_t breaks_of(const curve *c, double *breaks) {
  * left out. Two doubles that contain it. */
 static void proven(const quick_query *q, double *low, double *high) {
   iv *n = iv_new(3), *own = iv_new(3), *w = iv_new(3);
-  for (int k = 0; k < 3; k++) iv_set_d(&n[k], q->normal[k]);
-  if (q->set->kind == HALFSPACE) support_halfspace_normal(n, q->set);
+  const bool flat = q->set->kind == HALFSPACE;
+  for (int k = 0; k < 3; k++) iv_set_d(&n[k], flat ? q->set->size[k] : q->normal[k]);
+  if (flat) support_to_world(n, q->set);
   support_of_frame(&w[0], own, q->set, n);
   if (q->set->kind == CURVE) {
     for (int k = 0; k < 3; k++) iv_neg(&own[k], &own[k]);

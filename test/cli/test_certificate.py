@@ -198,10 +198,16 @@ class CertificateTest(Case):
         self.assertEqual([row['proof'] for row in answer.rows][1], 'near', answer.err)
         self.assertIn('other: proven: not farther than', self.check().out)
 
+    def superquadrics_are_near_and_apart(self):
+        scene = BOX_SCENE + '    - {id: odd, bodies: [{type: superquadric, dimensions: [1, 1, 1, 3, 3, 1.5], pose: [8, 0, 1]}]}\n'
+        answer = self.write('distance', [PASSING, bezier('other', (8, -4, 1), (8, 4, 1))], scene)
+        self.assertEqual([row['proof'] for row in answer.rows], ['apart', 'near'], answer.err)
+        self.assertEqual(self.check().code, 0)
+
     def what_has_no_certificates_is_named(self):
         rows = [PASSING, bezier('other', (3, -4, 1), (3, 4, 1))]
-        for body, kind in (('{type: superquadric, dimensions: [1, 1, 1, 2, 2, 2]}', 'superquadric'),
-                           ('{type: superquadric, dimensions: [1, 2, 1, 3, 3, 3]}', 'superquadric')):
+        for body, kind in (('{type: superellipsoid, dimensions: [1, 1, 1, 1, 2]}', 'support'),
+                           ('{type: superellipsoid, dimensions: [1, 2, 1, 0.5, 1]}', 'support')):
             scene = BOX_SCENE + f'    - {{id: odd, bodies: [{body}]}}\n'
             plain = self.ask('distance', rows, scene)
             answer = self.write('distance', rows, scene)

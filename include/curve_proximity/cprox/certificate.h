@@ -75,9 +75,9 @@ CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certific
  *          CPROX_BUDGET    max_nodes were not enough
  *          CPROX_PRECISION the distance is too close to delta
  *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks,
- *                          superquadrics and other implicit bodies, carried bodies, movers synchronized, links of
- *                          points and octrees, links of meshes without a hull; or the nearest link is a mesh, and
- *                          `near` was to be claimed
+ *                          implicit bodies beside robots, carried bodies, movers synchronized, links of points and
+ *                          octrees, links of meshes without a hull; or the nearest link is a mesh, and `near` was to
+ *                          be claimed
  *          CPROX_MEMORY    an allocation failed
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.

@@ -99,14 +99,17 @@ static void put_float(cprox_certificate *c, float value) {
   put(c, bits, 4);
 }
 
+void certificate_real(cprox_certificate *c, double value) {
+  if (c->width == 4)
+    put_float(c, (float)value);
+  else
+    certificate_number(c, value);
+}
+
 void certificate_normal(cprox_certificate *c, vec3 n) {
-  const double k[3] = {n.x, n.y, n.z};
-  for (int i = 0; i < 3; i++) {
-    if (c->width == 4)
-      put_float(c, (float)k[i]);
-    else
-      certificate_number(c, k[i]);
-  }
+  certificate_real(c, n.x);
+  certificate_real(c, n.y);
+  certificate_real(c, n.z);
 }
 
 void certificate_breaks(cprox_certificate *c, const double *breaks, size_t pieces) {

@@ -45,6 +45,9 @@ void certificate_number(cprox_certificate *c, double value);
 void certificate_vector(cprox_certificate *c, vec3 v);
 void certificate_normal(cprox_certificate *c, vec3 n);
 
+/* A number of the width. */
+void certificate_real(cprox_certificate *c, double value);
+
 /* How a curve falls into pieces: their number, and the parameters at which they join. */
 void certificate_breaks(cprox_certificate *c, const double *breaks, size_t pieces);
 

@@ -8,6 +8,7 @@
 
 #include "certificate/elements.h"
 #include "curve_proximity/cprox/certificate.h"
+#include "implicit/implicit.h"
 #include "shape/kinds.h"
 
 void say(text *t, const char *format, ...) {
@@ -42,7 +43,7 @@ static bool is_known(const cprox_body *body) {
 }
 
 static bool is_known_obstacle(const cprox_body *body) {
-  return elements_body(body) || is_known(body);
+  return elements_body(body) || body->shape.implicit || is_known(body);
 }
 
 static const cprox_body *unknown_part(const cprox_body *body, bool (*known)(const cprox_body *body)) {
@@ -116,6 +117,32 @@ static bool describe_elements(text *t, const cprox_body *body) {
   return true;
 }
 
+/* ---- inequalities ---- */
+
+static void describe_inequalities(text *t, const cprox_body *body) {
+  const implicit *shape = body->shape.implicit;
+  say(t, " implicit");
+  describe_vector(t, body->centre);
+  say(t, " %d", (int)shape->n_planes);
+  for (int32_t i = 0; i < shape->n_planes; i++) {
+    describe_vector(t, shape->plane[i].b);
+    say(t, " %a", shape->plane[i].c);
+  }
+  say(t, " %d", (int)shape->n_quadrics);
+  for (int32_t i = 0; i < shape->n_quadrics; i++) {
+    for (int k = 0; k < 6; k++) say(t, " %a", shape->quadric[i].q[k]);
+    describe_vector(t, shape->quadric[i].b);
+    say(t, " %a", shape->quadric[i].c);
+  }
+  say(t, " %d %d", (int)shape->n_powers, (int)shape->n_terms);
+  for (int32_t k = 0; k < shape->n_powers; k++)
+    for (int32_t i = shape->power[k].first; i < shape->power[k].first + shape->power[k].n; i++) {
+      say(t, " %d", (int)k);
+      describe_vector(t, shape->term[i].a);
+      say(t, " %a %a", shape->term[i].d, shape->term[i].p);
+    }
+}
+
 /* ---- obstacles ---- */
 
 static bool describe_one(text *t, const cprox_obstacle *target, const cprox_body *body, const cprox_pose *inner) {
@@ -124,7 +151,10 @@ static bool describe_one(text *t, const cprox_obstacle *target, const cprox_body
   if (inner) describe_pose(t, inner);
   const cprox_body *elements = elements_body(body);
   if (elements && !describe_elements(t, elements)) return false;
-  if (!elements) describe_body(t, body);
+  if (body->shape.implicit)
+    describe_inequalities(t, body);
+  else if (!elements)
+    describe_body(t, body);
   say(t, "\n");
   return true;
 }

@@ -38,6 +38,14 @@ double partition_cut(const cover *c, reach_part part, double witness) {
 
 static trial try_normal(const cover *c, vec3 n) {
   trial t = {.n = n};
+  if (c->set.body->shape.implicit) {
+    const frame f = frame_create(&c->pose, c->set.body->centre);
+    implicit_dual dual;
+    t.direction = reach_along(vec(0, 0, 0));
+    if (vec_norm2(n) > 0.0 && multipliers_find(c, frame_turn_to_local(&f, n), &dual))
+      t.reach = reach_of_multipliers(&c->set, &dual, &t.direction);
+    return t;
+  }
   if (c->set.body->kind == CPROX_BODY_HALFSPACE) {
     /* it has one normal, which the checker knows */
     t.n = vec(0, 0, 0);
@@ -147,7 +155,13 @@ cprox_status partition_convex(cover *c) {
   certificate_count(c->certificate, (uint32_t)n);
   for (size_t i = 0; i < n; i++) {
     certificate_number(c->certificate, leaves[i].end);
-    certificate_normal(c->certificate, leaves[i].n);
+    if (!c->set.body->shape.implicit) {
+      certificate_normal(c->certificate, leaves[i].n);
+      continue;
+    }
+    implicit_dual dual;
+    if (!multipliers_find(c, frame_turn_to_local(&f, leaves[i].n), &dual)) return CPROX_MEMORY;
+    multipliers_write(c, &dual);
   }
   return CPROX_OK;
 }

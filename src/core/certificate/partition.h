@@ -29,6 +29,11 @@ typedef struct cover {
 /* The world point of a curve at its counting parameter. */
 vec3 partition_point(const cprox_curve *curve, double sigma);
 
+/* Multipliers that separate along a direction in the frame of a body by inequalities, rounded to the width; false:
+ * none were found. They are in the workspace until the next call. */
+bool multipliers_find(const cover *c, vec3 own, implicit_dual *dual);
+void multipliers_write(const cover *c, const implicit_dual *dual);
+
 /* Where to cut a part: at the witness where it lies inside, at a joint of pieces, or in the middle. NaN where it is too
  * short. */
 double partition_cut(const cover *c, reach_part part, double witness);

@@ -117,11 +117,14 @@ reach_direction reach_along(vec3 n) {
   return (reach_direction){{dd_from(n.x), dd_from(n.y), dd_from(n.z)}};
 }
 
-reach_direction reach_of_halfspace(const reach_set *set) {
-  const double *size = set->body->shape.size;
-  reach_direction n = reach_along(vec(size[0], size[1], size[2]));
+static reach_direction to_world(const reach_set *set, reach_direction n) {
   for (int i = set->poses - 1; i >= 0; i--) n = turn(set->pose[i]->orientation, set->pose[i]->orientation.w, &n);
   return n;
+}
+
+reach_direction reach_of_halfspace(const reach_set *set) {
+  const double *size = set->body->shape.size;
+  return to_world(set, reach_along(vec(size[0], size[1], size[2])));
 }
 
 reach_value reach_of_body(const reach_set *set, const reach_direction *n) {
@@ -146,6 +149,67 @@ reach_value reach_of_elements(const reach_set *set, const reach_direction *n, co
   far.value = dd_add(far.value, dd_add(dot(&own, set->body->centre), most));
   far.value = dd_add(far.value, dd_scale(length(n), set->offset));
   far.size += vec_norm(set->body->centre) + scale;
+  return far;
+}
+
+/* ---- bodies by inequalities ---- */
+
+/* What multipliers make: a direction, a bound, and how large the numbers were that made the bound. */
+typedef struct multiplied {
+  reach_direction n;
+  dd most;
+  double sizes, unsure;
+} multiplied;
+
+static void add_linear(multiplied *m, vec3 b, double c, double l) {
+  const double k[3] = {b.x, b.y, b.z};
+  for (int i = 0; i < 3; i++) m->n.k[i] = dd_add(m->n.k[i], dd_product(k[i], l));
+  m->most = dd_add(m->most, dd_product(-c, l));
+  m->sizes += fabs(c * l);
+}
+
+/* g·z <= x'Qx - c, g = 2Qx + b */
+static void add_quadric(multiplied *m, const implicit_quadric *quadric, vec3 x, double l) {
+  const double *q = quadric->q, rows[3][3] = {{q[0], q[1], q[2]}, {q[1], q[3], q[4]}, {q[2], q[4], q[5]}};
+  const double at[3] = {x.x, x.y, x.z};
+  for (int i = 0; i < 3; i++) {
+    dd turned = dd_from(0.0);
+    for (int k = 0; k < 3; k++) turned = dd_add(turned, dd_product(rows[i][k], at[k]));
+    m->n.k[i] = dd_add(m->n.k[i], dd_scale(turned, 2.0 * l));
+    m->most = dd_add(m->most, dd_scale(dd_scale(turned, at[i]), l));
+    m->sizes += fabs(turned.high * at[i] * l);
+  }
+  add_linear(m, quadric->b, quadric->c, l);
+}
+
+/* The most that w u - mu u^p can be for 0 <= u <= 1, within the roundings of powers. */
+static void add_term(multiplied *m, const implicit_term *term, double mu, double l) {
+  const double w = fabs(l), u = term->p > 1.0 && mu > 0.0 ? fmin(pow(w / (mu * term->p), term->slope), 1.0) : 1.0;
+  m->most = dd_add(m->most, dd_from(fmax(fmax(w * u - mu * pow(u, term->p), w - mu), 0.0)));
+  m->unsure += 16.0 * ROUND_U * (w + mu);
+  add_linear(m, term->a, term->d, l);
+}
+
+reach_value reach_of_multipliers(const reach_set *set, const implicit_dual *dual, reach_direction *n) {
+  const implicit *body = set->body->shape.implicit;
+  const double *row = dual->row, *mu = row + body->n_planes + body->n_quadrics;
+  multiplied m = {.n = reach_along(vec(0, 0, 0))};
+  for (int32_t i = 0; i < body->n_planes; i++) add_linear(&m, body->plane[i].b, body->plane[i].c, row[i]);
+  for (int32_t i = 0; i < body->n_quadrics; i++)
+    if (row[body->n_planes + i] > 0.0) add_quadric(&m, &body->quadric[i], dual->x, row[body->n_planes + i]);
+  for (int32_t k = 0; k < body->n_powers; k++) {
+    m.most = dd_add(m.most, dd_from(mu[k]));
+    const implicit_power *power = &body->power[k];
+    for (int32_t i = power->first; i < power->first + power->n; i++)
+      add_term(&m, &body->term[i], mu[k], mu[body->n_powers + i]);
+  }
+  *n = to_world(set, m.n);
+  reach_value far;
+  const reach_direction own = to_own_frame(set, n, &far);
+  far.value = dd_add(far.value, dd_add(dot(&own, set->body->centre), m.most));
+  far.value = dd_add(far.value, dd_scale(length(n), set->offset));
+  far.value = dd_add(far.value, dd_from(m.unsure + MARGIN * m.sizes));
+  far.size += vec_norm(set->body->centre) + set->body->shape.scale;
   return far;
 }
 

@@ -9,6 +9,7 @@
 #include "base/double_double.h"
 #include "certificate/elements.h"
 #include "curve/curve.h"
+#include "implicit/implicit.h"
 #include "shape/body.h"
 
 /* A direction that turns without rounding to a double. */
@@ -42,6 +43,10 @@ reach_direction reach_along(vec3 n);
 
 /* The direction of the only normal that a halfspace has, in the world. */
 reach_direction reach_of_halfspace(const reach_set *set);
+
+/* Of a body by inequalities: the direction that multipliers make becomes *n, in the world, and what they prove of how
+ * far the body reaches along it is returned. */
+reach_value reach_of_multipliers(const reach_set *set, const implicit_dual *dual, reach_direction *n);
 
 /* max n·x over the body, its offset included. */
 reach_value reach_of_body(const reach_set *set, const reach_direction *n);

@@ -5,6 +5,7 @@
 #include "bvh/winding.h"
 #include "certificate/partition.h"
 #include "convex/gjk.h"
+#include "implicit/implicit.h"
 #include "shape/kinds.h"
 
 /* Room for the rounding of points, of their turns, and of nearest points: near_rounding is at most 64. */
@@ -21,7 +22,9 @@ static vec3 local_point(const cover *c, const frame *f, vec3 world, double *erro
 
 bool cover_draw_in(const cprox_body *body, const convex_near *near, double by, vec3 *drawn) {
   const body_kind *kind = body_kind_of(body->kind);
-  const double inner = kind->inner_radius ? kind->inner_radius(&body->shape) : 0.0;
+  const double inner = kind->inner_radius     ? kind->inner_radius(&body->shape)
+                       : body->shape.implicit ? body->shape.implicit->inner
+                                              : 0.0;
   if (!(by < 0.5 * inner)) return false;
   *drawn = vec_scale(1.0 - by / inner, near->point);
   return true;

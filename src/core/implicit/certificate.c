@@ -65,8 +65,9 @@ static vec3 power_left(const implicit *body, const implicit_power *power, const 
   return left;
 }
 
-static void height_power(height *h, const barrier *b, const implicit_power *power, double l, double share,
-                         barrier_reading reading, bool takes_rest) {
+/* dual: of the power's terms, or NULL. Returns the multiplier of the power itself. */
+static double height_power(height *h, const barrier *b, const implicit_power *power, double l, double share,
+                           barrier_reading reading, bool takes_rest, double *dual) {
   enum { REFINEMENTS = 2, NEWTON = 4 };
   const implicit *body = b->body;
   const implicit_term *term = body->term + power->first;
@@ -80,6 +81,7 @@ static void height_power(height *h, const barrier *b, const implicit_power *powe
     height_take(h, w[i], term[i].a);
     offset += w[i] * term[i].d;
     h->sizes += fabs(w[i] * term[i].d);
+    if (dual) dual[i] = w[i];
     w[i] = fabs(w[i]);
     weights += w[i];
   }
@@ -88,6 +90,7 @@ static void height_power(height *h, const barrier *b, const implicit_power *powe
   /* each term of the reach is computed within 6 u w_i: a power whose exponent is off by u, of a number that is off by 2
    * u */
   h->sizes += reach + 8.0 * weights;
+  return mu;
 }
 
 /* The sum, what is left of the direction, and rounding. */
@@ -102,10 +105,18 @@ double implicit_quadric_height(const implicit *body, vec3 n, vec3 x, double mult
   return height_end(&h, body, n);
 }
 
-double barrier_height(const barrier *b, vec3 n, double share, barrier_reading reading) {
+/* The multipliers of planes and quadrics as the barrier has them; no power pulls yet. */
+static void dual_begin(const barrier *b, double share, implicit_dual *dual) {
+  const int32_t rows = implicit_count(b->body), linear = rows - b->body->n_powers;
+  dual->x = b->z;
+  for (int32_t k = 0; k < rows + b->body->n_terms; k++) dual->row[k] = k < linear ? b->row[k].l * share : 0.0;
+}
+
+double barrier_height(const barrier *b, vec3 n, double share, barrier_reading reading, implicit_dual *dual) {
   const implicit *body = b->body;
   const int32_t first_power = body->n_planes + body->n_quadrics;
   height h = {.left = n};
+  if (dual) dual_begin(b, share, dual);
   for (int32_t k = 0; k < body->n_planes; k++) height_plane(&h, &body->plane[k], b->row[k].l * share);
   for (int32_t k = 0; k < body->n_quadrics; k++)
     height_quadric(&h, &body->quadric[k], b->row[body->n_planes + k].l * share, b->z);
@@ -116,9 +127,12 @@ double barrier_height(const barrier *b, vec3 n, double share, barrier_reading re
   for (int32_t k = 0; k < body->n_powers; k++)
     if (body->power[k].spans && (last < 0 || b->row[first_power + k].l > b->row[first_power + last].l)) last = k;
   const double least = last >= 0 ? HEIGHT_SLIGHT * b->row[first_power + last].l : 0.0;
-  for (int32_t k = 0; k < body->n_powers; k++)
-    if (k != last && b->row[first_power + k].l >= least)
-      height_power(&h, b, &body->power[k], b->row[first_power + k].l, share, reading, false);
-  if (last >= 0) height_power(&h, b, &body->power[last], b->row[first_power + last].l, share, reading, true);
+  for (int32_t i = 0; i <= body->n_powers; i++) {
+    const int32_t k = i < body->n_powers ? i : last; /* the last one last */
+    if (k < 0 || (i == last) || (i != body->n_powers && b->row[first_power + k].l < least)) continue;
+    double *terms = dual ? dual->row + implicit_count(body) + body->power[k].first : NULL;
+    const double mu = height_power(&h, b, &body->power[k], b->row[first_power + k].l, share, reading, k == last, terms);
+    if (dual) dual->row[first_power + k] = mu;
+  }
   return height_end(&h, body, n);
 }

@@ -6,6 +6,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/certificate.c
   ${CMAKE_CURRENT_LIST_DIR}/closed.c
   ${CMAKE_CURRENT_LIST_DIR}/constraint.c
+  ${CMAKE_CURRENT_LIST_DIR}/dual.c
   ${CMAKE_CURRENT_LIST_DIR}/ellipsoid.c
   ${CMAKE_CURRENT_LIST_DIR}/power.c
   ${CMAKE_CURRENT_LIST_DIR}/separate.c

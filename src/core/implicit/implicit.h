@@ -159,6 +159,13 @@ typedef struct implicit_warm {
   vec3 apart; /* x - y in a's frame */
 } implicit_warm;
 
+/* Multipliers that prove an upper bound of the support function (doc/implicit.md): row holds one of each plane, quadric
+ * and power, then one of each term; quadrics are touched at x. The direction is what the multipliers make. */
+typedef struct implicit_dual {
+  vec3 x;
+  double *row;
+} implicit_dual;
+
 /* What is asked: the point x of a nearest to the point y0 (b NULL), or x of a and y of b with x - (M y + t) shortest,
  * or with b moving by `velocity` for a time in [0, duration]; or, `b` NULL and `far`, the x extreme along the unit
  * vector t. */
@@ -169,6 +176,7 @@ typedef struct implicit_query {
   vec3 t;
   vec3 velocity;
   double duration;
+  implicit_dual *dual; /* far: receives the multipliers of the best bound; or NULL */
 } implicit_query;
 
 /* The interval asked for: epsilon or relative_epsilon times upper wide. */
@@ -190,6 +198,10 @@ typedef struct implicit_answer {
   uint32_t steps;    /* Newton steps, over all attempts */
   int attempt;       /* which level of detail of the level-of-detail body of settings answered, 0 the first */
 } implicit_answer;
+
+/* Multipliers of a bound along the direction n, or nearly so; `memory` of implicit_memory(body, NULL). False: none were
+ * found. */
+bool implicit_dual_along(const implicit *body, vec3 n, void *memory, implicit_dual *dual);
 
 /* The nearest point of an orthogonal body to a point outside, in a fraction of the time; false where it could not be
  * found to within the width: then implicit_solve() does. The bounds are without give and rounding. */

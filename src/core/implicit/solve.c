@@ -310,10 +310,10 @@ static double solve_asked(const solve *s, double d) {
 static void certify_along(solve *s, vec3 n, double share, barrier_reading reading) {
   const implicit_query *q = s->q;
   implicit_answer *answer = s->answer;
-  const double ha = barrier_height(&s->side[0], n, share, reading);
+  const double ha = barrier_height(&s->side[0], n, share, reading, NULL);
   double apart = vec_dot(n, q->t), others = 0.0;
   if (q->moving) apart += fmin(0.0, vec_dot(n, q->velocity) * q->duration);
-  if (s->sides == 2) others = barrier_height(&s->side[1], vec_neg(rotate_back(q->m, n)), share, reading);
+  if (s->sides == 2) others = barrier_height(&s->side[1], vec_neg(rotate_back(q->m, n)), share, reading, NULL);
   const double sizes = vec_norm(q->t) + fabs(ha) + fabs(others) + (s->sides == 2 ? q->b->radius : 0.0) +
                        (q->moving ? vec_norm(q->velocity) * q->duration : 0.0);
   const double lower = apart - ha - others - ROUND_UP * 8.0 * ROUND_U * sizes;
@@ -329,7 +329,8 @@ static bool solve_certify(solve *s, barrier_reading reading) {
   implicit_answer *answer = s->answer;
   const double d = solve_distance(s), share = solve_share(s);
   if (q->far) {
-    const double height = barrier_height(&s->side[0], q->t, share, reading);
+    const double height = barrier_height(&s->side[0], q->t, share, reading, NULL);
+    if (q->dual && height < answer->upper) barrier_height(&s->side[0], q->t, share, reading, q->dual);
     const double attained = vec_dot(q->t, s->side[0].z);
     if (attained > answer->lower) {
       answer->lower = attained;

@@ -140,6 +140,58 @@ cprox_body *query_body(rng *r, double scale, bool polytope_only, cprox_workspace
   return body;
 }
 
+/* 1: corners; 2: round; between: edges; 30: all but flat. */
+static double exponent_random(rng *r) {
+  static const double some[] = {1.0, 1.05, 1.5, 2.0, 2.0, 3.0, 4.5, 8.0, 30.0};
+  return some[rng_index(r, 9)];
+}
+
+static cprox_status create_intersection(rng *r, double scale, cprox_workspace *ws, cprox_body **body) {
+  double planes[3][4], quadrics[2][10] = {{0}}, terms[4][5];
+  for (int i = 0; i < 3; i++) {
+    const vec3 n = rng_unit(r);
+    planes[i][0] = n.x, planes[i][1] = n.y, planes[i][2] = n.z;
+    planes[i][3] = -rng_uniform(r, 0.2, 0.6) * scale;
+  }
+  for (int i = 0; i < 2; i++) {
+    double *q = quadrics[i];
+    q[0] = q[3] = q[5] = 1.0;
+    if (rng_index(r, 2)) q[0] = 3.0, q[1] = rng_uniform(r, -0.5, 0.5);
+    if (rng_index(r, 3) == 0) q[5] = 0.0; /* a cylinder */
+    for (int k = 6; k < 9; k++) q[k] = rng_uniform(r, -0.2, 0.2) * scale;
+    q[9] = -0.2 * scale * scale;
+  }
+  for (int i = 0; i < 4; i++) {
+    const vec3 a = vec_scale(rng_uniform(r, 1.0, 3.0) / scale, rng_unit(r));
+    terms[i][0] = a.x, terms[i][1] = a.y, terms[i][2] = a.z;
+    terms[i][3] = rng_uniform(r, -0.1, 0.1);
+    terms[i][4] = exponent_random(r);
+  }
+  const cprox_hyperquadric power = {(const double(*)[5])terms, 4};
+  cprox_implicit_description d = {.hyperquadrics = &power, .n_hyperquadrics = 1};
+  if (rng_index(r, 3)) d.planes = (const double(*)[4])planes, d.n_planes = rng_index(r, 4);
+  if (rng_index(r, 3)) d.quadrics = (const double(*)[10])quadrics, d.n_quadrics = rng_index(r, 3);
+  if (d.n_quadrics > 0 && rng_index(r, 3) == 0) {
+    quadrics[0][5] = 1.0; /* bounded by itself */
+    d.n_hyperquadrics = 0;
+  }
+  return cprox_body_create_implicit(&d, NULL, ws, body);
+}
+
+cprox_body *query_implicit(rng *r, double scale, cprox_workspace *ws) {
+  cprox_body *body = NULL;
+  for (int tries = 0; tries < 100 && !body; tries++) {
+    const vec3 axes = vec(rng_uniform(r, 0.1, 0.6) * scale, rng_uniform(r, 0.1, 0.6) * scale, 0.3 * scale);
+    const vec3 exponents = vec(exponent_random(r), exponent_random(r), exponent_random(r));
+    if (rng_index(r, 2))
+      cprox_body_create_superquadric(axes, exponents, ws, &body);
+    else
+      create_intersection(r, scale, ws, &body); /* it may be empty */
+  }
+  assert_non_null(body);
+  return body;
+}
+
 /* A torus with bumps, or triangles anywhere; the hull may be smaller than it by what it is told to be. */
 query_mesh query_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws) {
   const double size = rng_uniform(r, 0.2, 0.5) * scale;
@@ -268,7 +320,9 @@ void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away
       continue;
     }
     const bool compound = !kinds.polytope_only && q->n_bodies == 0 && rng_index(r, 5) == 0;
-    const cprox_body *body = compound ? compound_random(q, r, ws) : body_random(q, r, kinds.polytope_only, ws);
+    const cprox_body *body = compound ? compound_random(q, r, ws) : NULL;
+    if (!body && kinds.implicit && rng_index(r, 2)) body = q->bodies[q->n_bodies++] = query_implicit(r, scale, ws);
+    if (!body) body = body_random(q, r, kinds.polytope_only, ws);
     *t = cprox_obstacle_at(body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
     if (rng_index(r, 3) == 0) t->pose.orientation = (cprox_quat){1, 0, 0, 0};
     if (rng_index(r, 3) == 0) *t = cprox_with_margin(*t, 0.05 * scale);

@@ -51,10 +51,14 @@ typedef struct asked_kinds {
   bool curve_target;
   bool meshes;   /* half of the targets */
   bool elements; /* those of any kind, too */
+  bool implicit; /* half of the other bodies */
 } asked_kinds;
 
 /* Of any convex kind. */
 cprox_body *query_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws);
+
+/* A superquadric, a hyperquadric, or an intersection of inequalities. */
+cprox_body *query_implicit(rng *r, double scale, cprox_workspace *ws);
 
 query_mesh query_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws);
 /* A mesh without a hull, points, or cells. */
