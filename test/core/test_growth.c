@@ -222,7 +222,7 @@ CASE(hessians_are_differences_of_gradients) {
         const vec3 seen = vec_scale(0.5 / step, vec_sub(side[0].a_position, side[1].a_position));
         least = fmin(least, vec_norm(vec_sub(seen, told)) / (1.0 + vec_norm(told)));
       }
-      assert_true(least <= 1e-4);
+      if (!(least <= 1e-4)) fail_msg("%.3e: %zu %zu", least, kind[0], kind[1]);
     } else {
       assert_true(isnan(d.hessian[0]));
     }
@@ -230,6 +230,46 @@ CASE(hessians_are_differences_of_gradients) {
   }
   /* callbacks (15 of 64 pairs) have none */
   assert_true((double)known >= 0.7 * (double)asked && (double)known <= 0.8 * (double)asked);
+}
+
+/* Seed 37, 20 places for each pair of nine kinds, turned and placed as parts on a table are: the frames turned by a
+ * quarter, about an axis, or not at all, the centres apart along an axis or a diagonal, so that the ray leaves the
+ * Minkowski difference through a corner, an edge or the middle of a face. Found to the last digits, but for one in
+ * 10,000; callbacks and the solver's supports are left out. */
+CASE(optima_are_found_along_axes_and_diagonals) {
+  enum { EXACT = N_KINDS - 2 };
+  cprox_workspace *workspace = *state;
+  rng r = rng_seed(37);
+  size_t asked = 0, missed = 0;
+  for (size_t i = 0; i < test_cases(20) * EXACT * EXACT; i++) {
+    const size_t pair = i % (EXACT * EXACT), of[2] = {pair % EXACT, pair / EXACT};
+    const vec3 along[5] = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 1}},
+               quarter = vec(0, 0, 1.5707963267948966);
+    const cprox_pose at = rng_uniform(&r, 0, 1) < 0.5 ? CPROX_POSE_IDENTITY : rng_pose(&r, 2.0);
+    test_shape shape[2];
+    cprox_obstacle x[2];
+    vec3 centre[2];
+    for (int k = 0; k < 2; k++) {
+      make_body(&r, of[k] < N_SHAPES - 1 ? of[k] : of[k] + 1, workspace, &shape[k]); /* not SUPPORT */
+      x[k] = cprox_obstacle_at(shape[k].body, at);
+      const double turn = k ? rng_uniform(&r, 0.0, 3.0) : 3.0;
+      if (turn < 2.0) x[k].pose = stepped(at, vec(0, 0, 0), turn < 1.0 ? quarter : vec(turn, 0, 0));
+      const frame f = frame_create(&x[k].pose, vec(0, 0, 0));
+      centre[k] = frame_to_world(&f, cprox_body_get_info(shape[k].body).centre);
+    }
+    const frame f = frame_create(&at, vec(0, 0, 0));
+    const vec3 apart = frame_turn_to_world(&f, along[(int)rng_uniform(&r, 0.0, 4.999)]);
+    const double far = rng_log_uniform(&r, 0.05, 20.0);
+    x[1].pose.position = vec_add(x[1].pose.position, vec_sub(vec_axpy(centre[0], far, apart), centre[1]));
+    cprox_growth growth;
+    cprox_growth_derivatives d;
+    assert_true(cprox_growth_gradient(x[0], x[1], NULL, workspace, &growth, &d) >= 0);
+    const char *why = cprox_workspace_error(workspace);
+    asked++, missed += strstr(why, "not found") || strstr(why, "coincide");
+    for (int k = 0; k < 2; k++) cprox_body_free(shape[k].body);
+  }
+  printf("%zu of %zu not found\n", missed, asked);
+  assert_true(10000 * missed <= asked);
 }
 
 static cprox_growth_derivatives derivatives_of(cprox_obstacle a, cprox_obstacle b, const char *why,

@@ -29,6 +29,9 @@ static const double CLOSED = 4e-15;
 /* Where no curvature is known, or it changes too fast for Newton's method, a portal with bounds as close will do. */
 static const double NARROW = 1e-10;
 
+/* The rounding of a product of three vectors, in parts of their lengths. */
+static const double ROUND_TRIPLE = 8.0 * ROUND_U;
+
 /* What a tilted direction must lose for the best one to be alone. */
 static const double LOSS = 2e-14;
 
@@ -80,9 +83,16 @@ static double triple(vec3 x, vec3 y, vec3 z) {
   return vec_dot(x, vec_cross(y, z));
 }
 
-/* Three extreme points whose cone contains the ray; the normal (v2 - v1) x (v3 - v1) points outwards. */
-static bool portal_open(ray *p, ray_vertex v[RAY_CORNERS]) {
-  ray_extreme(p, p->d, &v[0]);
+/* Whether d is beyond the plane through 0, x and y, by more than rounding: where the ray passes through a corner or an
+ * edge, a sign that rounding makes would turn the search in a circle. */
+static bool is_beyond(vec3 x, vec3 y, vec3 d) {
+  return triple(x, y, d) < -ROUND_TRIPLE * vec_norm(x) * vec_norm(y);
+}
+
+/* Three extreme points whose cone contains the ray; the normal (v2 - v1) x (v3 - v1) points outwards. `height`: M's
+ * support function along the ray. */
+static bool portal_open(ray *p, ray_vertex v[RAY_CORNERS], double *height) {
+  *height = ray_extreme(p, p->d, &v[0]);
   vec3 aside = vec_axpy(v[0].w, -vec_dot(v[0].w, p->d), p->d), e, f;
   feature_tangents(p->d, &e, &f);
   if (!(vec_norm(aside) > 1e-12)) aside = e;
@@ -98,12 +108,14 @@ static bool portal_open(ray *p, ray_vertex v[RAY_CORNERS]) {
       across = vec_neg(across);
     }
     ray_extreme(p, across, &v[2]);
-    if (triple(v[1].w, v[2].w, p->d) < 0.0)
+    if (is_beyond(v[1].w, v[2].w, p->d))
       v[0] = v[2];
-    else if (triple(v[2].w, v[0].w, p->d) < 0.0)
+    else if (is_beyond(v[2].w, v[0].w, p->d))
       v[1] = v[2];
+    else if (triple(v[0].w, v[1].w, v[2].w) > 0.0)
+      return true;
     else
-      return triple(v[0].w, v[1].w, v[2].w) > 0.0;
+      v[1] = v[2]; /* the two were opposite each other */
   }
   return false;
 }
@@ -117,13 +129,18 @@ static bool portal_weights(const ray_vertex v[RAY_CORNERS], vec3 d, double weigh
   return true;
 }
 
-/* Which of the three triangles at x the ray pierces. */
+/* Which of the three triangles at x the ray pierces: the one in which it is farthest from both edges at x. Signs alone
+ * may contradict each other where it passes through a corner or an edge. */
 static void portal_replace(ray_vertex v[RAY_CORNERS], const ray_vertex *x, vec3 d) {
   const vec3 c = vec_cross(d, x->w);
-  if (vec_dot(v[0].w, c) > 0.0)
-    v[vec_dot(v[1].w, c) > 0.0 ? 0 : 2] = *x;
-  else
-    v[vec_dot(v[2].w, c) > 0.0 ? 1 : 0] = *x;
+  const double side[RAY_CORNERS] = {vec_dot(v[0].w, c), vec_dot(v[1].w, c), vec_dot(v[2].w, c)};
+  double most = -INFINITY;
+  int out = 0;
+  for (int i = 0; i < RAY_CORNERS; i++) {
+    const double room = fmin(side[(i + 1) % RAY_CORNERS], -side[(i + 2) % RAY_CORNERS]);
+    if (room > most) most = room, out = i;
+  }
+  v[out] = *x;
 }
 
 /* ---- Newton's method ---- */
@@ -274,11 +291,16 @@ static bool ray_newton(ray *p, ray_optimum *o, double hessian[6]) {
     const int right = 3 + o->n;
     const vec3 n = vec_scale(1.0 / o->height, o->u), by = vec(m[0][right], m[1][right], m[2][right]);
     const double length = vec_norm(by) / vec_norm(n);
-    if (!(length < 1.0) || (step > 4 && !(length < before))) return false;
+    if (!(length < 1.0) || (step > 4 && length > SMALL_STEP && !(length < before))) return false;
     before = length;
     feature_unit(vec_add(n, by), &o->u);
-    for (int i = 0; i < o->n; i++) o->weight[i] = fmax(m[3 + i][right], 0.0);
-    if (length > SMALL_STEP) continue;
+    double shifted = 0.0; /* the curvatures are weighted: the hessian is no nearer than the weights */
+    for (int i = 0; i < o->n; i++) {
+      const double weight = fmax(m[3 + i][right], 0.0);
+      shifted = fmax(shifted, o->height * fabs(weight - o->weight[i]));
+      o->weight[i] = weight;
+    }
+    if (length > SMALL_STEP || shifted > SMALL_STEP) continue;
 
     for (int i = 0, at = 0; i < 3; i++)
       for (int j = i; j < 3; j++) hessian[at++] = m[i][right + 1 + j];
@@ -300,10 +322,11 @@ typedef enum ray_end { RAY_OPEN, RAY_NARROW, RAY_SOLVED } ray_end;
  * Open: likewise, but for that, if it has corners. */
 static ray_end ray_search(ray *p, ray_optimum *o, double hessian[6]) {
   ray_vertex v[RAY_CORNERS];
-  o->n = 0;
-  if (!portal_open(p, v)) return RAY_OPEN;
+  *o =
+      (ray_optimum){.n = 0, .u = p->d}; /* where the ray leaves M by its extreme point, portals turn round that point */
+  if (!portal_open(p, v, &o->height)) return RAY_OPEN;
   const bool curved = p->a->ops->curvature || p->b->ops->curvature || p->margin_a + p->margin_b > 0.0;
-  double most = INFINITY, next = curved ? NEWTON_FROM : 0.0, last = INFINITY;
+  double most = o->height, next = curved ? NEWTON_FROM : 0.0, last = INFINITY;
   int stalled = 0;
   for (int i = 0; i < PORTAL_STEPS && !p->support_failed; i++) {
     vec3 u;
@@ -313,7 +336,7 @@ static ray_end ray_search(ray *p, ray_optimum *o, double hessian[6]) {
     ray_optimum now = {.n = RAY_CORNERS, .corner = {v[0], v[1], v[2]}, .u = u};
     if (!(along > 0.0) || !portal_weights(v, p->d, now.weight)) break;
     now.height = ray_extreme(p, u, &x);
-    if (now.height / along < most || o->n == 0) {
+    if (now.height / along < most) {
       most = fmin(now.height / along, most);
       *o = now;
     } else {
@@ -323,7 +346,7 @@ static ray_end ray_search(ray *p, ray_optimum *o, double hessian[6]) {
     }
     const double g = now.weight[0] + now.weight[1] + now.weight[2], width = 1.0 - 1.0 / (g * most);
     if (width <= next) {
-      ray_optimum solved = now;
+      ray_optimum solved = *o;
       if (ray_newton(p, &solved, hessian)) {
         *o = solved;
         return RAY_SOLVED;
