@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "ball.h"
 
-#include <mpfr.h>
+#include "interval.h"
 
 /* R = 1 + s (w [v] + [v]²), s = 2/q·q; [v]² = v vᵀ - v·v, of the four middles. Unit quaternions that are d apart make
  * rotations that are at most 2 d apart. */
@@ -28,15 +28,21 @@ rot rot_of_quaternion(const num given[4]) {
   return r;
 }
 
-/* By MPFR; both have slopes of at most 1. */
+/* A number in the interval, which is narrower than 4 roundings of 1; slopes are at most 1. */
+static num num_of_interval(const iv *a, double slope) {
+  const double low = mpfr_get_d(a->lo, MPFR_RNDD), high = mpfr_get_d(a->hi, MPFR_RNDU);
+  return (num){low, GROW(high - low + slope)};
+}
+
 static void sine_and_cosine(num angle, num *sine, num *cosine) {
-  MPFR_DECL_INIT(x, 64);
-  MPFR_DECL_INIT(s, 64);
-  MPFR_DECL_INIT(c, 64);
-  mpfr_set_d(x, angle.m, MPFR_RNDN);
-  mpfr_sin_cos(s, c, x, MPFR_RNDN);
-  *sine = (num){mpfr_get_d(s, MPFR_RNDN), GROW(angle.e + 4.0 * BALL_U)};
-  *cosine = (num){mpfr_get_d(c, MPFR_RNDN), GROW(angle.e + 4.0 * BALL_U)};
+  const int before = iv_precision(64);
+  iv *w = iv_new(3);
+  iv_set_d(&w[0], angle.m);
+  iv_turn(&w[1], &w[2], &w[0]);
+  *cosine = num_of_interval(&w[1], angle.e);
+  *sine = num_of_interval(&w[2], angle.e);
+  iv_free(w, 3);
+  iv_precision(before);
 }
 
 /* cos + sin [z] + (1 - cos) z zᵀ */

@@ -295,7 +295,7 @@ static const char *check_claim(const problem *p, reader *in, uint32_t width, uin
   return r ? check_robot_apart(r, in, width, false, found) : check_apart(p, in, width, false, found);
 }
 
-finding check(const problem *p, const unsigned char *bytes, size_t size) {
+static finding find(const problem *p, const unsigned char *bytes, size_t size) {
   finding found = {0};
   reader in = {.at = bytes, .end = bytes + size};
   const double before = iv_work();
@@ -319,4 +319,11 @@ finding check(const problem *p, const unsigned char *bytes, size_t size) {
   if (!found.fault) found.claim = (claim)claimed;
   found.work = iv_work() - before;
   return found;
+}
+
+finding check(const problem *p, const unsigned char *bytes, size_t size) {
+  finding found = {.fault = "memory is out"};
+  if (!iv_begin()) return found;
+  found = find(p, bytes, size);
+  return iv_end() ? found : (finding){.fault = "memory is out"};
 }

@@ -1,14 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "interval.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 static _Thread_local mpfr_prec_t precision = 640; /* of the thread that checks */
 static _Thread_local double work;
 
-void iv_precision(int bits) {
+/* Stands in for all intervals that there is no memory for. */
+static _Thread_local iv *spare;
+static _Thread_local bool spare_used;
+
+int iv_precision(int bits) {
+  const int before = (int)precision;
   precision = bits;
+  return before;
 }
 
 double iv_work(void) {
@@ -21,29 +26,55 @@ static void count(int products) {
   work += products * words * words;
 }
 
-/* Sines, cosines, powers, roots, quotients: about so many products. */
-enum { TRIGONOMETRIC_WORK = 60, ROOT_WORK = 4, QUOTIENT_WORK = 4 };
+/* Powers, roots, quotients: about so many products. */
+enum { POWER_WORK = 60, ROOT_WORK = 4, QUOTIENT_WORK = 4 };
+
+/* ---- memory: MPFR's own ends the program where there is none ---- */
+
+enum { MOST_BITS = 4352 };
+
+static size_t size_of(size_t n, mpfr_prec_t bits) {
+  return n * (sizeof(iv) + 2 * mpfr_custom_get_size(bits));
+}
+
+/* Numbers behind each other, after the n intervals. */
+static void make_zeros(iv *a, size_t n, mpfr_prec_t bits) {
+  char *limbs = (char *)(a + n);
+  for (size_t i = 0; i < n; i++) {
+    mpfr_ptr ends[2] = {a[i].lo, a[i].hi};
+    for (int k = 0; k < 2; k++, limbs += mpfr_custom_get_size(bits)) {
+      mpfr_custom_init(limbs, bits);
+      mpfr_custom_init_set(ends[k], MPFR_ZERO_KIND, 0, bits, limbs);
+    }
+  }
+}
+
+bool iv_begin(void) {
+  spare_used = false;
+  spare = malloc(size_of(IV_MOST, MOST_BITS));
+  return spare != NULL;
+}
+
+bool iv_end(void) {
+  free(spare);
+  spare = NULL;
+  return !spare_used;
+}
 
 iv *iv_new(size_t n) {
-  iv *a = malloc((n ? n : 1) * sizeof *a);
-  if (!a) {
-    fputs("cprox_check: out of memory\n", stderr);
-    exit(2);
+  iv *a = malloc(size_of(n ? n : 1, precision));
+  if (a) {
+    make_zeros(a, n, precision);
+    return a;
   }
-  for (size_t i = 0; i < n; i++) {
-    mpfr_init2(a[i].lo, precision);
-    mpfr_init2(a[i].hi, precision);
-    iv_set_d(&a[i], 0.0);
-  }
-  return a;
+  if (!spare_used) make_zeros(spare, IV_MOST, MOST_BITS);
+  spare_used = true;
+  return spare;
 }
 
 void iv_free(iv *a, size_t n) {
-  for (size_t i = 0; i < n; i++) {
-    mpfr_clear(a[i].lo);
-    mpfr_clear(a[i].hi);
-  }
-  free(a);
+  (void)n;
+  if (a != spare) free(a);
 }
 
 void iv_set(iv *out, const iv *a) {
@@ -93,6 +124,14 @@ void iv_sub(iv *out, const iv *a, const iv *b) {
 /* Least and greatest of the four products of ends. */
 void iv_mul(iv *out, const iv *a, const iv *b) {
   iv *product = iv_new(2);
+  if (mpfr_sgn(a->lo) >= 0 && mpfr_sgn(b->lo) >= 0) {
+    count(2);
+    mpfr_mul(product->lo, a->lo, b->lo, MPFR_RNDD);
+    mpfr_mul(product->hi, a->hi, b->hi, MPFR_RNDU);
+    iv_set(out, product);
+    iv_free(product, 2);
+    return;
+  }
   mpfr_srcptr ends[4][2] = {{a->lo, b->lo}, {a->lo, b->hi}, {a->hi, b->lo}, {a->hi, b->hi}};
   const int n = mpfr_equal_p(a->lo, a->hi) && mpfr_equal_p(b->lo, b->hi) ? 1 : 4;
   count(2 * n);
@@ -140,13 +179,13 @@ void iv_sqrt(iv *out, const iv *a) {
 }
 
 void iv_exp(iv *out, const iv *a) {
-  count(2 * TRIGONOMETRIC_WORK);
+  count(2 * POWER_WORK);
   mpfr_exp(out->lo, a->lo, MPFR_RNDD);
   mpfr_exp(out->hi, a->hi, MPFR_RNDU);
 }
 
 void iv_log(iv *out, const iv *a) {
-  count(2 * TRIGONOMETRIC_WORK);
+  count(2 * POWER_WORK);
   if (mpfr_sgn(a->lo) <= 0)
     mpfr_set_inf(out->lo, -1);
   else
@@ -154,27 +193,85 @@ void iv_log(iv *out, const iv *a) {
   mpfr_log(out->hi, a->hi, MPFR_RNDU);
 }
 
-/* Both are within 1 of their slope: f(a) lies within the width of a of its value at one end. */
-static void around(iv *out, const iv *a, int (*f)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t)) {
-  iv *value = iv_new(1);
-  count(2 * TRIGONOMETRIC_WORK);
-  mpfr_t width;
-  mpfr_init2(width, precision);
-  mpfr_sub(width, a->hi, a->lo, MPFR_RNDU);
-  f(value->lo, a->lo, MPFR_RNDD);
-  f(value->hi, a->lo, MPFR_RNDU);
-  mpfr_sub(out->lo, value->lo, width, MPFR_RNDD);
-  mpfr_add(out->hi, value->hi, width, MPFR_RNDU);
-  mpfr_clear(width);
-  iv_free(value, 1);
+/* ---- cosine and sine: MPFR's would take memory of its own ---- */
+
+/* HALVINGS: of an angle below 1; LARGEST: exponent of the largest angle that something is said of. */
+enum { HALVINGS = 12, LARGEST = 64, MOST_HALVINGS = HALVINGS + LARGEST };
+
+/* More bits for the work than for what comes of it. Let v = 2^-bits, and e what cosine and sine are off by. The series
+ * has bits / 24 < 190 sums of at most 1 + 2^-20, and ends below v: e < 2^8 v. A doubling makes it at most 4.01 e + 4 v:
+ * after h of them it is below 2^(2.1 h + 9) v, less than one of the bits that are wanted. */
+static int bits_more(int halvings) {
+  return 3 * halvings + 16;
 }
 
-void iv_cos(iv *out, const iv *a) {
-  around(out, a, mpfr_cos);
+/* sum (-1)^k x^(2k + first) / (2k + first)!, first 0 or 1, of 0 <= x <= 2^-12. */
+static void series(mpfr_ptr sum, mpfr_srcptr x, mpfr_srcptr square, mpfr_ptr term, int first, mpfr_prec_t bits) {
+  if (first == 1)
+    mpfr_set(term, x, MPFR_RNDN);
+  else
+    mpfr_set_ui(term, 1, MPFR_RNDN);
+  mpfr_set_ui(sum, 0, MPFR_RNDN);
+  bool minus = false;
+  for (int k = first; (k - first) * HALVINGS <= bits; k += 2, minus = !minus) {
+    if (minus)
+      mpfr_sub(sum, sum, term, MPFR_RNDN);
+    else
+      mpfr_add(sum, sum, term, MPFR_RNDN);
+    mpfr_mul(term, term, square, MPFR_RNDN);
+    mpfr_div_ui(term, term, (unsigned long)(k + 1) * (unsigned long)(k + 2), MPFR_RNDN);
+    count(1);
+  }
 }
 
-void iv_sin(iv *out, const iv *a) {
-  around(out, a, mpfr_sin);
+/* By halves until the series ends soon, and doubles again: sin 2x = 2 sin x cos x, cos 2x = 1 - 2 sin² x. */
+static void turn_within(mpfr_ptr cosine, mpfr_ptr sine, mpfr_srcptr angle, int halvings, mpfr_prec_t bits) {
+  iv *w = iv_new(2);
+  mpfr_ptr x = w[0].lo, square = w[0].hi, other = w[1].lo;
+  mpfr_div_2si(x, angle, halvings, MPFR_RNDN);
+  mpfr_abs(x, x, MPFR_RNDN);
+  mpfr_mul(square, x, x, MPFR_RNDN);
+  series(cosine, x, square, other, 0, bits);
+  series(sine, x, square, other, 1, bits);
+  for (int i = 0; i < halvings; i++) {
+    mpfr_mul(other, sine, sine, MPFR_RNDN);
+    mpfr_mul_2ui(other, other, 1, MPFR_RNDN);
+    mpfr_mul(sine, sine, cosine, MPFR_RNDN);
+    mpfr_mul_2ui(sine, sine, 1, MPFR_RNDN);
+    mpfr_ui_sub(cosine, 1, other, MPFR_RNDN);
+    count(2);
+  }
+  if (mpfr_sgn(angle) < 0) mpfr_neg(sine, sine, MPFR_RNDN);
+  iv_free(w, 2);
+}
+
+/* Both are within 1 of their slope: they lie within the width of the angle of their values at one end. */
+void iv_turn(iv *cosine, iv *sine, const iv *angle) {
+  const mpfr_prec_t wanted = precision;
+  iv *off = iv_new(1);
+  const bool known = mpfr_number_p(angle->lo) && mpfr_number_p(angle->hi);
+  const mpfr_exp_t size = known && mpfr_sgn(angle->lo) != 0 ? mpfr_get_exp(angle->lo) : 0;
+  if (known && size <= LARGEST) {
+    mpfr_sub(off->hi, angle->hi, angle->lo, MPFR_RNDU);
+    mpfr_set_ui_2exp(off->lo, 1, -wanted, MPFR_RNDU);
+    mpfr_add(off->hi, off->hi, off->lo, MPFR_RNDU);
+    const int halvings = HALVINGS + (size > 0 ? (int)size : 0);
+    precision = wanted + bits_more(halvings);
+    iv *found = iv_new(1);
+    turn_within(found->lo, found->hi, angle->lo, halvings, precision);
+    mpfr_sub(cosine->lo, found->lo, off->hi, MPFR_RNDD);
+    mpfr_add(cosine->hi, found->lo, off->hi, MPFR_RNDU);
+    mpfr_sub(sine->lo, found->hi, off->hi, MPFR_RNDD);
+    mpfr_add(sine->hi, found->hi, off->hi, MPFR_RNDU);
+    iv_free(found, 1);
+    precision = wanted;
+  } else {
+    mpfr_set_si(off->lo, -1, MPFR_RNDD);
+    mpfr_set_si(off->hi, 1, MPFR_RNDU);
+    iv_set(cosine, off);
+    iv_set(sine, off);
+  }
+  iv_free(off, 1);
 }
 
 void iv_max(iv *out, const iv *a, const iv *b) {

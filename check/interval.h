@@ -13,14 +13,20 @@ typedef struct iv {
   mpfr_t lo, hi;
 } iv;
 
-/* Bits of every number made from now on. */
-void iv_precision(int bits);
+/* Bits of every number made from now on; the number of bits before. */
+int iv_precision(int bits);
+
+/* Around all that a check does with intervals. Where memory is out, intervals go on with numbers that mean nothing, and
+ * iv_end() returns false: then nothing is proven. False, where memory is out at once; then there is no end. */
+bool iv_begin(void);
+bool iv_end(void);
 
 /* What has been done since the program began, in products of two words of 64 bits: a measure that is the same on all
  * machines. */
 double iv_work(void);
 
-/* n intervals, all [0, 0]; ends the program where memory is out. iv_free() takes the same n. */
+/* n <= IV_MOST intervals, all [0, 0]; between iv_begin() and iv_end(). iv_free() takes the same n. */
+enum { IV_MOST = 256 };
 iv *iv_new(size_t n);
 void iv_free(iv *a, size_t n);
 
@@ -32,12 +38,11 @@ void iv_add(iv *out, const iv *a, const iv *b);
 void iv_sub(iv *out, const iv *a, const iv *b);
 void iv_mul(iv *out, const iv *a, const iv *b);
 void iv_mul_d(iv *out, const iv *a, double b);
-void iv_div(iv *out, const iv *a, const iv *b); /* everything, where b may be 0 */
-void iv_sqrt(iv *out, const iv *a);             /* of the part that is not negative */
-void iv_exp(iv *out, const iv *a);
-void iv_log(iv *out, const iv *a); /* of the part that is not negative */
-void iv_cos(iv *out, const iv *a);
-void iv_sin(iv *out, const iv *a);
+void iv_div(iv *out, const iv *a, const iv *b);      /* everything, where b may be 0 */
+void iv_sqrt(iv *out, const iv *a);                  /* of the part that is not negative */
+void iv_exp(iv *out, const iv *a);                   /* in memory of MPFR's own */
+void iv_log(iv *out, const iv *a);                   /* of the part that is not negative; likewise */
+void iv_turn(iv *cosine, iv *sine, const iv *angle); /* neither is the angle */
 void iv_max(iv *out, const iv *a, const iv *b);
 void iv_min(iv *out, const iv *a, const iv *b);
 

@@ -298,8 +298,7 @@ static void series_jet(iv jet[9], const curve *c, double t) {
   iv *w = iv_new(6), *angle = w, *once = w + 2;
   for (size_t i = 0; i < 9; i++) iv_set_d(&jet[i], i < 3 ? c->points[0][i] : 0.0);
   iv_set_d(&w[4], t);
-  iv_cos(&once[0], &w[4]);
-  iv_sin(&once[1], &w[4]);
+  iv_turn(&once[0], &once[1], &w[4]);
   iv_set_d(&angle[0], 1.0);
   for (size_t m = 1; m <= c->degree; m++) {
     const double f = (double)m;

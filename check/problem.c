@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interval.h"
 #include "robot.h"
 #include "winding.h"
 #include "words.h"
@@ -44,7 +45,7 @@ void words_numbers(words *w, size_t n, double *x) {
 
 void *words_room(words *w, size_t n, size_t size) {
   void *memory = calloc(n ? n : 1, size);
-  if (!memory) w->wrong = true;
+  if (!memory) w->wrong = w->starved = true;
   return memory;
 }
 
@@ -147,7 +148,10 @@ static void read_elements(words *w, set *s) {
   }
   s->n = w->wrong ? 0 : n * s->corners;
   set_box(s, 0, set_elements(s), s->low, s->high);
-  if (s->kind == SOLID && !w->wrong && !winding_is_closed(s)) w->wrong = true;
+  if (s->kind != SOLID || w->wrong) return;
+  winding_edge *edges = words_room(w, s->n, sizeof *edges);
+  if (!edges || !winding_is_closed(s, edges)) w->wrong = true;
+  free(edges);
 }
 
 /* PLANES (4 numbers)×PLANES QUADRICS (10)×QUADRICS SUMS TERMS (sum, 5)×TERMS */
@@ -159,6 +163,7 @@ static void read_inequalities(words *w, inequalities *r) {
   r->quadrics = words_room(w, r->n_quadrics, sizeof *r->quadrics);
   for (size_t i = 0; i < r->n_quadrics && !w->wrong; i++) words_numbers(w, 10, r->quadrics[i]);
   r->n_sums = words_count(w);
+  if (r->n_sums > IV_MOST) w->wrong = true;
   r->n_terms = words_count(w);
   r->terms = words_room(w, r->n_terms, sizeof *r->terms);
   r->sum_of = words_room(w, r->n_terms, sizeof *r->sum_of);
@@ -205,7 +210,7 @@ void words_set(words *w, set *s) {
 
 const char *words_line(problem *p, words *w) {
   const char *found = NULL;
-  w->wrong = false;
+  w->wrong = w->starved;
   p->first = NULL;
   while (!found) {
     if (getline(&p->line, &p->capacity, p->in) < 0) return NULL;
@@ -218,7 +223,9 @@ const char *words_line(problem *p, words *w) {
 
 bool words_end(problem *p, words *w) {
   if (words_optional(w)) w->wrong = true;
-  if (w->wrong && !p->first)
+  if (w->starved)
+    snprintf(p->fault, sizeof p->fault, "memory is out");
+  else if (w->wrong && !p->first)
     snprintf(p->fault, sizeof p->fault, "the problem ends too early, after line %zu", p->number);
   else if (w->wrong)
     snprintf(p->fault, sizeof p->fault, "line %zu of the problem, '%.40s ...', is not understood", p->number, p->first);
@@ -267,6 +274,7 @@ static bool read_sets(problem *p, words *w) {
   if (!words_end(p, w)) return false;
   free_sets(p);
   p->sets = words_room(w, n, sizeof *p->sets);
+  if (w->wrong) return words_end(p, w);
   while (!w->wrong && p->n_sets < n) {
     words_begin(p, w, "target");
     set *s = &p->sets[p->n_sets++];

@@ -9,12 +9,6 @@
 
 /* ---- closed meshes ---- */
 
-/* An edge from its lesser vertex to the greater one; the sign says which way it is run through. */
-typedef struct edge {
-  const double *end[2];
-  int sign;
-} edge;
-
 static int compare_vertices(const double *a, const double *b) {
   for (int k = 0; k < 3; k++)
     if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
@@ -22,18 +16,16 @@ static int compare_vertices(const double *a, const double *b) {
 }
 
 static int compare_edges(const void *a, const void *b) {
-  const edge *first = a, *second = b;
+  const winding_edge *first = a, *second = b;
   const int order = compare_vertices(first->end[0], second->end[0]);
   return order != 0 ? order : compare_vertices(first->end[1], second->end[1]);
 }
 
-bool winding_is_closed(const set *s) {
-  edge *edges = malloc((s->n + 1) * sizeof *edges);
-  if (!edges) return false;
+bool winding_is_closed(const set *s, winding_edge *edges) {
   for (size_t i = 0; i < s->n; i++) {
     const double *from = s->vertices[i], *to = s->vertices[i % 3 == 2 ? i - 2 : i + 1];
     const int order = compare_vertices(from, to); /* 0: the edge is a point, and cancels itself */
-    edges[i] = order <= 0 ? (edge){{from, to}, -order} : (edge){{to, from}, -1};
+    edges[i] = order <= 0 ? (winding_edge){{from, to}, -order} : (winding_edge){{to, from}, -1};
   }
   qsort(edges, s->n, sizeof *edges, compare_edges);
   long sum = 0;
@@ -45,7 +37,6 @@ bool winding_is_closed(const set *s) {
     }
     sum += edges[i].sign;
   }
-  free(edges);
   return closed && sum == 0;
 }
 

@@ -9,8 +9,15 @@
 
 typedef enum side { OUTSIDE, INSIDE, UNKNOWN_SIDE } side;
 
-/* Every edge is run through as often one way as the other; vertices with equal coordinates are one. */
-bool winding_is_closed(const set *s);
+/* An edge from its lesser vertex to the greater one; the sign says which way it is run through. */
+typedef struct winding_edge {
+  const double *end[2];
+  int sign;
+} winding_edge;
+
+/* Every edge is run through as often one way as the other; vertices with equal coordinates are one. edges: room for as
+ * many as there are vertices. */
+bool winding_is_closed(const set *s, winding_edge *edges);
 
 /* Where a point is that is seen from the centre of a closed mesh: INSIDE, if the mesh winds round it. What is said
  * holds of every point within the radius. */

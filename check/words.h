@@ -7,7 +7,7 @@
 
 typedef struct words {
   char *rest;
-  bool wrong;
+  bool wrong, starved; /* starved: memory was out */
 } words;
 
 /* The first word of the next line that is not empty, or NULL. */
