@@ -6,6 +6,7 @@
 
 #include "geometry/hull.h"
 #include "geometry/mesh.h"
+#include "geometry/surface.h"
 #include "support.h"
 
 using namespace curve_proximity;
@@ -364,6 +365,26 @@ TEST(Resources, a_mesh_has_a_file_or_vertices_not_both) {
 
 static double distanceFrom(const ShapeDescription &s, const Eigen::Vector3d &p) {
   return cprox_body_nearest(makeGeometry(s).body.get(), toVec3(p), nullptr);
+}
+
+TEST(Surfaces, a_height_field_is_drawn_by_its_heights) {
+  ShapeDescription field = shape(ShapeType::HEIGHT_FIELD, {0.5, 2.0, 4, 3});
+  for (int k = 0; k < 12; ++k) field.values.push_back(0.1 * (k * k % 7));
+  const Surface found = surfaceOf(field, nullptr, {}, 100, 1.0);
+  ASSERT_EQ(found.triangles.cols(), 12);
+  std::set<int> seen;
+  for (Eigen::Index i = 0; i < found.triangles.cols(); ++i) {
+    const Eigen::Vector3d a = found.vertices.col(found.triangles(0, i)), b = found.vertices.col(found.triangles(1, i)),
+                          c = found.vertices.col(found.triangles(2, i));
+    EXPECT_NEAR((b - a).cross(c - a).z(), 0.5 * 2.0, 1e-12); // half a cell each, and it looks up
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d p = found.vertices.col(found.triangles(k, i));
+      const int at = static_cast<int>(std::lround(p.x() / 0.5) + 4 * std::lround(p.y() / 2.0));
+      EXPECT_EQ(p.z(), field.values.at(static_cast<std::size_t>(at)));
+      seen.insert(at);
+    }
+  }
+  EXPECT_EQ(seen.size(), 12u);
 }
 
 TEST(Grids, ground_is_as_far_as_its_triangles) {

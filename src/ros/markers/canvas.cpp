@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "../../scene/geometry/surface.h"
 #include "messages/geometry_message.h"
 
 namespace curve_proximity {
@@ -15,43 +16,10 @@ namespace {
 using visualization_msgs::Marker;
 
 constexpr double GREEN_CLEARANCE = 0.3; /* [m] from here on there is room to spare */
-constexpr double HALFSPACE_SIZE = 4.0;  /* [m] of the slab that stands for a halfspace */
-constexpr Eigen::Index MOST_TRIANGLES = 20000, MOST_POINTS = 20000, MOST_CELLS = 50000;
+constexpr double HALFSPACE_SIZE = 4.0;  /* [m] of the square that stands for a halfspace */
+constexpr std::size_t MOST_TRIANGLES = 20000;
+constexpr Eigen::Index MOST_POINTS = 20000, MOST_CELLS = 50000;
 constexpr double POINT_SIZE = 0.005; /* [m] at least */
-
-using Outline = std::vector<std::pair<double, double>>;
-
-/** Two triangles over the corners of a quadrilateral. */
-void addQuad(Marker &marker, const geometry_msgs::Point (&corners)[4]) {
-  for (const int c : {0, 1, 2, 0, 2, 3}) marker.points.push_back(corners[c]);
-}
-
-/** The surface of a solid of revolution about z, as triangles: `profile` is a list of (radius, z) from bottom to top.
- */
-void addLathe(Marker &marker, const Outline &profile) {
-  constexpr int SIDES = 24;
-  const auto at = [](const std::pair<double, double> &p, int k) {
-    const double angle = 2.0 * M_PI * k / SIDES;
-    return toPointMessage(cprox_vec3{p.first * std::cos(angle), p.first * std::sin(angle), p.second});
-  };
-  for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
-    for (int k = 0; k < SIDES; ++k)
-      addQuad(marker, {at(profile[i], k), at(profile[i], k + 1), at(profile[i + 1], k + 1), at(profile[i + 1], k)});
-  }
-}
-
-/** The outline of a capsule: two half circles. */
-Outline capsuleProfile(double height, double radius) {
-  constexpr int STEPS = 8;
-  Outline profile;
-  for (const double side : {-1.0, 1.0}) {
-    for (int k = 0; k <= STEPS; ++k) {
-      const double angle = 0.5 * M_PI * (side < 0 ? k - STEPS : k) / STEPS;
-      profile.emplace_back(radius * std::cos(angle), side * height / 2 + radius * std::sin(angle));
-    }
-  }
-  return profile;
-}
 
 /** A finite point in every coordinate. */
 bool isFinite(const Marker &marker) {
@@ -131,51 +99,6 @@ visualization_msgs::MarkerArray Canvas::take() {
 
 /* ---- bodies ---- */
 
-/** The support points of a grid of directions are corners of the body's hull. */
-void Canvas::addConvex(const std::string &space, const cprox_body *body, const Eigen::Isometry3d &pose,
-                       const std_msgs::ColorRGBA &tint) {
-  constexpr int RINGS = 24, SIDES = 48;
-  Marker &marker = add(space, Marker::TRIANGLE_LIST, pose);
-  marker.color = tint;
-  const auto at = [body](int ring, int side) {
-    const double latitude = M_PI * (static_cast<double>(ring) / RINGS - 0.5), longitude = 2.0 * M_PI * side / SIDES;
-    const bool is_pole = ring == 0 || ring == RINGS; // one point: 0 must not have a sign there
-    const double x = is_pole ? 0.0 : std::cos(latitude) * std::cos(longitude),
-                 y = is_pole ? 0.0 : std::cos(latitude) * std::sin(longitude);
-    cprox_vec3 point{};
-    cprox_body_support(body, {x, y, std::sin(latitude)}, &point);
-    return toPointMessage(point);
-  };
-  for (int ring = 0; ring < RINGS; ++ring) {
-    for (int side = 0; side < SIDES; ++side)
-      addQuad(marker, {at(ring, side), at(ring, side + 1), at(ring + 1, side + 1), at(ring + 1, side)});
-  }
-}
-
-/** A fan of triangles, seen from both sides. */
-void Canvas::addPolygon(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
-                        const std_msgs::ColorRGBA &tint) {
-  Marker &marker = add(space, Marker::TRIANGLE_LIST, pose);
-  marker.color = tint;
-  const auto corner = [&](Eigen::Index i) { marker.points.push_back(toPointMessage(toVec3(shape.vertices.col(i)))); };
-  for (Eigen::Index i = 1; i + 1 < shape.vertices.cols(); ++i) {
-    for (const Eigen::Index k : {Eigen::Index{0}, i, i + 1, Eigen::Index{0}, i + 1, i}) corner(k);
-  }
-}
-
-/** A slab whose upper face is the halfspace's boundary near the origin of its frame. */
-void Canvas::addHalfspace(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
-                          const std_msgs::ColorRGBA &tint) {
-  const Eigen::Vector3d normal(shape.dimensions[0], shape.dimensions[1], shape.dimensions[2]);
-  constexpr double THICKNESS = 0.02;
-  Eigen::Isometry3d local = Eigen::Isometry3d::Identity();
-  local.linear() = rotationBetween(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix();
-  local.translation() = -normal * (shape.dimensions[3] / normal.squaredNorm()) - normal.normalized() * (THICKNESS / 2);
-  Marker &marker = add(space, Marker::CUBE, pose * local);
-  setScale(marker, HALFSPACE_SIZE, HALFSPACE_SIZE, THICKNESS);
-  marker.color = tint;
-}
-
 /** Not more of them than RViz can turn. */
 void Canvas::addPoints(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
                        const std_msgs::ColorRGBA &tint) {
@@ -219,81 +142,62 @@ void Canvas::addOctree(const std::string &space, const ShapeDescription &shape, 
   }
 }
 
-/** As it is: by its file, which RViz reads itself, or by its triangles. False where that is not to be had. */
-bool Canvas::addMesh(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
+/** A mesh by its file, which RViz reads itself. False where the file has gone since the body was made. */
+bool Canvas::addFile(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
                      const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint) {
+  std::string file;
+  try {
+    file = resolveResource(shape.resource, resources);
+  } catch (const Error &) {
+    return false;
+  }
   const Eigen::Vector3d scale =
       shape.dimensions.size() == 3 ? Eigen::Vector3d(shape.dimensions.data()) : Eigen::Vector3d::Ones();
-  if (!shape.resource.empty()) {
-    try {
-      const std::string file = resolveResource(shape.resource, resources);
-      Marker &marker = add(space, Marker::MESH_RESOURCE, pose);
-      marker.mesh_resource = "file://" + file;
-      marker.color = tint;
-      setScale(marker, scale.x(), scale.y(), scale.z());
-      return true;
-    } catch (const Error &) {
-      return false; // the file has gone since the body was made
-    }
-  }
-  if (shape.triangles.cols() == 0 || shape.triangles.cols() > MOST_TRIANGLES) return false;
-  Marker &marker = add(space, Marker::TRIANGLE_LIST, pose);
+  Marker &marker = add(space, Marker::MESH_RESOURCE, pose);
+  marker.mesh_resource = "file://" + file;
   marker.color = tint;
   setScale(marker, scale.x(), scale.y(), scale.z());
-  for (Eigen::Index i = 0; i < shape.triangles.size(); ++i)
-    marker.points.push_back(toPointMessage(toVec3(shape.vertices.col(shape.triangles(i)))));
   return true;
 }
 
-/** The heights of a height field as a mesh. */
-static ShapeDescription surfaceOf(const ShapeDescription &field) {
-  ShapeDescription out;
-  out.type = ShapeType::MESH;
-  const auto wide = static_cast<Eigen::Index>(field.dimensions[2]),
-             deep = static_cast<Eigen::Index>(field.dimensions[3]);
-  out.vertices.resize(3, wide * deep);
-  for (Eigen::Index i = 0; i < wide * deep; ++i)
-    out.vertices.col(i) << field.dimensions[0] * static_cast<double>(i % wide),
-        field.dimensions[1] * static_cast<double>(i / wide), field.values[static_cast<std::size_t>(i)];
-  out.triangles.resize(3, 2 * (wide - 1) * (deep - 1));
-  for (Eigen::Index k = 0; k < (wide - 1) * (deep - 1); ++k) {
-    const int at = static_cast<int>(k / (wide - 1) * wide + k % (wide - 1)), above = at + static_cast<int>(wide);
-    out.triangles.col(2 * k) << at, at + 1, above + 1;
-    out.triangles.col(2 * k + 1) << at, above + 1, above;
-  }
-  return out;
+/** By its triangles, or where these are too many or not to be had by its convex hull. What is flat is seen from both
+ *  sides. */
+void Canvas::addSurface(const std::string &space, const ShapeDescription &shape, const BodyHandle &body,
+                        const ResourceOptions &resources, const Eigen::Isometry3d &pose,
+                        const std_msgs::ColorRGBA &tint) {
+  const ShapeDescription convex;
+  const std::size_t triangles = std::max(static_cast<std::size_t>(shape.triangles.cols()), 2 * shape.values.size());
+  Surface surface =
+      surfaceOf(triangles <= MOST_TRIANGLES ? shape : convex, body, resources, MOST_TRIANGLES, HALFSPACE_SIZE);
+  if (surface.triangles.cols() == 0) surface = surfaceOf(convex, body, resources, MOST_TRIANGLES, HALFSPACE_SIZE);
+  Marker &marker = add(space, Marker::TRIANGLE_LIST, pose);
+  marker.color = tint;
+  for (Eigen::Index i = 0; i < surface.triangles.size(); ++i)
+    marker.points.push_back(toPointMessage(toVec3(surface.vertices.col(surface.triangles(i)))));
+  if (shape.type == ShapeType::POLYGON || shape.type == ShapeType::HALFSPACE)
+    for (std::size_t i = marker.points.size(); i-- > 0;)
+      marker.points.push_back(geometry_msgs::Point(marker.points[i]));
 }
 
 void Canvas::addShape(const std::string &space, const ShapeDescription &shape, const BodyHandle &body,
                       const ResourceOptions &resources, const Eigen::Isometry3d &pose,
                       const std_msgs::ColorRGBA &tint) {
   const std::vector<double> &d = shape.dimensions;
-  const auto solid = [&](int type, double x, double y, double z) -> Marker & {
+  const auto solid = [&](int type, double x, double y, double z) {
     Marker &marker = add(space, type, pose);
     marker.color = tint;
     setScale(marker, x, y, z);
-    return marker;
   };
   switch (shape.type) {
-    case ShapeType::HALFSPACE: addHalfspace(space, shape, pose, tint); break;
     case ShapeType::BOX: solid(Marker::CUBE, d[0], d[1], d[2]); break;
     case ShapeType::SPHERE: solid(Marker::SPHERE, 2 * d[0], 2 * d[0], 2 * d[0]); break;
     case ShapeType::ELLIPSOID: solid(Marker::SPHERE, 2 * d[0], 2 * d[1], 2 * d[2]); break;
     case ShapeType::CYLINDER: solid(Marker::CYLINDER, 2 * d[1], 2 * d[1], d[0]); break;
-    case ShapeType::CONE:
-      addLathe(solid(Marker::TRIANGLE_LIST, 1, 1, 1), {{0.0, -d[0] / 2}, {d[1], -d[0] / 2}, {0.0, d[0] / 2}});
-      break;
-    case ShapeType::CAPSULE: addLathe(solid(Marker::TRIANGLE_LIST, 1, 1, 1), capsuleProfile(d[0], d[1])); break;
-    case ShapeType::MESH:
-      if (!addMesh(space, shape, resources, pose, tint)) addConvex(space, body.get(), pose, tint);
-      break;
-    case ShapeType::HEIGHT_FIELD:
-      if (!addMesh(space, surfaceOf(shape), resources, pose, tint)) addConvex(space, body.get(), pose, tint);
-      break;
-    case ShapeType::POLYGON: addPolygon(space, shape, pose, tint); break;
     case ShapeType::POINTS: addPoints(space, shape, pose, tint); break;
     case ShapeType::OCTREE: addOctree(space, shape, resources, pose, tint); break;
-    default: addConvex(space, body.get(), pose, tint); break;
+    default:
+      if (shape.resource.empty() || !addFile(space, shape, resources, pose, tint))
+        addSurface(space, shape, body, resources, pose, tint);
   }
 }
 

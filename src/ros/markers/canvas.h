@@ -5,6 +5,7 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
+#include <array>
 #include <curve_proximity/geometry.hpp>
 #include <string>
 #include <utility>
@@ -21,6 +22,12 @@ std_msgs::ColorRGBA clearanceColour(double clearance, double alpha = 1.0);
  * vertices. */
 std_msgs::ColorRGBA shaded(std_msgs::ColorRGBA tint, const Eigen::Vector3d &normal);
 
+/** The i-th of n + 1 times from the beginning of a domain to its end. */
+inline double sampleAt(const std::array<double, 2> &domain, std::size_t i, std::size_t n) {
+  const double part = static_cast<double>(i) / static_cast<double>(n);
+  return domain[0] * (1.0 - part) + domain[1] * part;
+}
+
 void setScale(visualization_msgs::Marker &marker, double x, double y, double z);
 
 /** Gathers markers that share a frame, and numbers them. The first one takes away what was shown before. */
@@ -36,24 +43,18 @@ class Canvas {
   void addShape(const std::string &space, const ShapeDescription &shape, const BodyHandle &body,
                 const ResourceOptions &resources, const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint);
 
-  /** A convex body by its support function. */
-  void addConvex(const std::string &space, const cprox_body *body, const Eigen::Isometry3d &pose,
-                 const std_msgs::ColorRGBA &tint);
-
   /** All markers; those with a coordinate that is not finite are left out, for RViz takes none of them. */
   visualization_msgs::MarkerArray take();
 
  private:
-  void addPolygon(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
-                  const std_msgs::ColorRGBA &tint);
-  void addHalfspace(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
-                    const std_msgs::ColorRGBA &tint);
   void addPoints(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
                  const std_msgs::ColorRGBA &tint);
   void addOctree(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
                  const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint);
-  bool addMesh(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
+  bool addFile(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
                const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint);
+  void addSurface(const std::string &space, const ShapeDescription &shape, const BodyHandle &body,
+                  const ResourceOptions &resources, const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint);
 
   const std::string frame_;
   visualization_msgs::MarkerArray array_;

@@ -34,6 +34,19 @@ std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> framesAlong(const std::
   return frames;
 }
 
+/** So many points of a curve, both ends among them. */
+std::vector<Eigen::Vector3d> samplesOf(const cprox_curve *curve, std::size_t n) {
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  std::vector<Eigen::Vector3d> out;
+  for (std::size_t i = 0; i < n; ++i) {
+    cprox_vec3 point;
+    if (cprox_curve_evaluate(curve, sampleAt({info.t0, info.t1}, i, n - 1), nullptr, &point, nullptr, nullptr) ==
+        CPROX_OK)
+      out.push_back(toEigen(point));
+  }
+  return out;
+}
+
 /** Appends the control points of [a, b], where joints of pieces lie inside those of halves without one. What is left
  * about a joint after so many halvings is too short to be seen. */
 void addControlPoints(const cprox_curve *curve, double a, double b, int halvings, std::size_t degree,
@@ -57,7 +70,9 @@ void addHull(Canvas &canvas, const std::vector<cprox_vec3> &points, double radiu
       for (const double side : {-r, r}) all.col(column++) = toEigen(p) + side * Eigen::Vector3d::Unit(axis);
     }
   }
-  canvas.addConvex("open", makePolytope(all).get(), Eigen::Isometry3d::Identity(), colour(0.95, 0.55, 0.1, 0.35));
+  ShapeDescription hull;
+  hull.type = ShapeType::POLYTOPE;
+  canvas.addShape("open", hull, makePolytope(all), {}, Eigen::Isometry3d::Identity(), colour(0.95, 0.55, 0.1, 0.35));
 }
 
 } // namespace
@@ -108,34 +123,18 @@ void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::
 }
 
 void addObstacleCurve(Canvas &canvas, const Geometry &geometry, const Eigen::Isometry3d &pose, double padding) {
-  constexpr std::size_t SAMPLES = 100;
-  const cprox_curve_info info = cprox_curve_get_info(geometry.curve.get());
-  std::vector<Eigen::Vector3d> points;
-  for (std::size_t i = 0; i <= SAMPLES; ++i) {
-    const double s = static_cast<double>(i) / static_cast<double>(SAMPLES);
-    cprox_vec3 point;
-    if (cprox_curve_evaluate(geometry.curve.get(), i == SAMPLES ? info.t1 : info.t0 + s * (info.t1 - info.t0), nullptr,
-                             &point, nullptr, nullptr) == CPROX_OK)
-      points.push_back(pose * toEigen(point));
-  }
+  constexpr std::size_t SAMPLES = 101;
+  std::vector<Eigen::Vector3d> points = samplesOf(geometry.curve.get(), SAMPLES);
+  for (Eigen::Vector3d &point : points) point = pose * point;
   const std::vector<std_msgs::ColorRGBA> tints(points.size(), colour(0.55, 0.6, 0.66, 1.0));
   addTube(canvas, "scene", points, tints, geometry.radius + padding);
 }
 
 void addCurve(Canvas &canvas, const CompiledCurve &curve, const StandingBodies &placed, std::size_t samples) {
-  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
-  const double t0 = info.t0, t1 = info.t1;
-  std::vector<Eigen::Vector3d> points;
+  const std::vector<Eigen::Vector3d> points = samplesOf(curve.curve.get(), samples);
   std::vector<std_msgs::ColorRGBA> tints;
-  for (std::size_t i = 0; i < samples; ++i) {
-    const double s = static_cast<double>(i) / static_cast<double>(samples - 1);
-    cprox_vec3 point;
-    if (cprox_curve_evaluate(curve.curve.get(), i + 1 == samples ? t1 : t0 + s * (t1 - t0), nullptr, &point, nullptr,
-                             nullptr) != CPROX_OK)
-      continue;
-    points.push_back(toEigen(point));
-    tints.push_back(clearanceColour(clearance(point, curve.reach, placed)));
-  }
+  for (const Eigen::Vector3d &point : points)
+    tints.push_back(clearanceColour(clearance(toVec3(point), curve.reach, placed)));
   addTube(canvas, "curves", points, tints, curve.reach);
 }
 
@@ -187,10 +186,8 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
   constexpr std::uint32_t NODES = 4; /* for each of them and each target */
   const Targets all(drawing.snapshot, drawing.links, Query{});
   const std::vector<cprox_obstacle> targets = coreTargets(all);
-  const double t0 = info.t0, t1 = info.t1;
-  std::vector<double> breaks(INTERVALS + 1);
-  for (std::size_t i = 0; i <= INTERVALS; ++i)
-    breaks[i] = i == INTERVALS ? t1 : t0 + (t1 - t0) * static_cast<double>(i) / INTERVALS;
+  std::vector<double> breaks;
+  for (std::size_t i = 0; i <= INTERVALS; ++i) breaks.push_back(sampleAt({info.t0, info.t1}, i, INTERVALS));
 
   Workspace workspace;
   std::vector<cprox_profile_interval> intervals(INTERVALS);

@@ -8,9 +8,9 @@
 namespace curve_proximity {
 namespace {
 
-constexpr int ROBOT_GHOSTS = 6;        /* poses of the robot on its way */
-constexpr int SWEEP_SAMPLES = 60;      /* of the way of its closest point */
-constexpr double SWEEP_RADIUS = 0.008; /* [m] as it is drawn */
+constexpr std::size_t ROBOT_GHOSTS = 6;   /* poses of the robot on its way */
+constexpr std::size_t SWEEP_SAMPLES = 60; /* of the way of its closest point */
+constexpr double SWEEP_RADIUS = 0.008;    /* [m] as it is drawn */
 
 /** A collision element of a link, or of what it carries. */
 struct ShownPart {
@@ -71,12 +71,10 @@ const Answer *nearestOf(const std::vector<Answer> &answers) {
 void addSweep(Canvas &canvas, const Snapshot &scene, const RobotMotion &motion, const std::string &link,
               const Eigen::Vector3d &point, const StandingBodies &objects, Workspace &workspace) {
   const Parts parts = partsOf(scene, link);
-  const std::array<double, 2> domain = motion.domain();
   std::vector<Eigen::Vector3d> points;
   std::vector<std_msgs::ColorRGBA> tints;
-  for (int i = 0; i <= SWEEP_SAMPLES; ++i) {
-    const double t = i == SWEEP_SAMPLES ? domain[1] : domain[0] + (domain[1] - domain[0]) * i / SWEEP_SAMPLES;
-    const Eigen::Isometry3d pose = motion.linkPoses(t).at(link);
+  for (std::size_t i = 0; i <= SWEEP_SAMPLES; ++i) {
+    const Eigen::Isometry3d pose = motion.linkPoses(sampleAt(motion.domain(), i, SWEEP_SAMPLES)).at(link);
     points.push_back(pose * point);
     tints.push_back(clearanceColour(linkClearance(parts, pose, objects, workspace)));
   }
@@ -105,10 +103,8 @@ void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
 
   // On its way, faintly.
   std::vector<LinkPoses> ghosts;
-  for (int i = 0; i < ROBOT_GHOSTS; ++i) {
-    const double t = i + 1 == ROBOT_GHOSTS ? domain[1] : domain[0] + (domain[1] - domain[0]) * i / (ROBOT_GHOSTS - 1);
-    ghosts.push_back(motion.linkPoses(t));
-  }
+  for (std::size_t i = 0; i < ROBOT_GHOSTS; ++i)
+    ghosts.push_back(motion.linkPoses(sampleAt(domain, i, ROBOT_GHOSTS - 1)));
   const bool moves = std::any_of(ghosts.begin(), ghosts.end(), [&](const LinkPoses &poses) {
     return std::any_of(poses.begin(), poses.end(),
                        [&](const auto &link) { return !link.second.isApprox(ghosts.front().at(link.first), 0.0); });

@@ -9,9 +9,9 @@
 namespace curve_proximity {
 namespace {
 
-constexpr int WAY_SAMPLES = 60;
-constexpr int OBJECT_GHOSTS = 5;     /* poses of an object on its way */
-constexpr double WAY_RADIUS = 0.005; /* [m] as it is drawn */
+constexpr std::size_t WAY_SAMPLES = 60;
+constexpr std::size_t OBJECT_GHOSTS = 5; /* poses of an object on its way */
+constexpr double WAY_RADIUS = 0.005;     /* [m] as it is drawn */
 
 const std_msgs::ColorRGBA OBJECT = colour(0.9, 0.6, 0.2, 1.0), GHOST = colour(0.9, 0.6, 0.2, 0.12);
 const std_msgs::ColorRGBA ROBOT = colour(0.72, 0.68, 0.86, 1.0);
@@ -39,15 +39,13 @@ void addObject(Canvas &canvas, const std::string &space, const DrawnObject &obje
 
 /** The way of the origin, and the object on it. */
 void addWay(Canvas &canvas, const DrawnObject &object, const Movers &movers, const ResourceOptions &resources) {
-  const std::array<double, 2> domain = movers.domain();
-  const auto poseAt = [&](int i, int n) {
-    const double part = static_cast<double>(i) / n;
-    return movers.objectPose(object.description.id, domain[0] * (1.0 - part) + domain[1] * part);
+  const auto poseAt = [&](std::size_t i, std::size_t n) {
+    return movers.objectPose(object.description.id, sampleAt(movers.domain(), i, n));
   };
   std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i <= WAY_SAMPLES; ++i) points.push_back(poseAt(i, WAY_SAMPLES).translation());
+  for (std::size_t i = 0; i <= WAY_SAMPLES; ++i) points.push_back(poseAt(i, WAY_SAMPLES).translation());
   addTube(canvas, "movers_way", points, std::vector<std_msgs::ColorRGBA>(points.size(), OBJECT), WAY_RADIUS);
-  for (int i = 0; i <= OBJECT_GHOSTS; ++i)
+  for (std::size_t i = 0; i <= OBJECT_GHOSTS; ++i)
     addObject(canvas, "movers_way", object, poseAt(i, OBJECT_GHOSTS), resources, GHOST);
 }
 

@@ -128,6 +128,24 @@ Surface polygonSurface(const ShapeDescription &shape) {
   return sheet.take();
 }
 
+/* The heights of a height field, joined by triangles. */
+Surface groundSurface(const ShapeDescription &field) {
+  const auto wide = static_cast<Eigen::Index>(field.dimensions[2]),
+             deep = static_cast<Eigen::Index>(field.dimensions[3]);
+  Surface out;
+  out.vertices.resize(3, wide * deep);
+  for (Eigen::Index i = 0; i < wide * deep; ++i)
+    out.vertices.col(i) << field.dimensions[0] * static_cast<double>(i % wide),
+        field.dimensions[1] * static_cast<double>(i / wide), field.values[static_cast<std::size_t>(i)];
+  out.triangles.resize(3, 2 * (wide - 1) * (deep - 1));
+  for (Eigen::Index k = 0; k < (wide - 1) * (deep - 1); ++k) {
+    const int at = static_cast<int>(k / (wide - 1) * wide + k % (wide - 1)), above = at + static_cast<int>(wide);
+    out.triangles.col(2 * k) << at, at + 1, above + 1;
+    out.triangles.col(2 * k + 1) << at, above + 1, above;
+  }
+  return out;
+}
+
 Surface planeSurface(const ShapeDescription &shape, double size) {
   const Eigen::Vector3d normal(shape.dimensions[0], shape.dimensions[1], shape.dimensions[2]);
   const Eigen::Matrix3d axes = rotationBetween(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix();
@@ -231,6 +249,7 @@ Surface surfaceOf(const ShapeDescription &shape, const BodyHandle &body, const R
                   std::size_t most, double plane_size) {
   switch (shape.type) {
     case ShapeType::MESH: return decimated(meshSurface(shape, resources), most);
+    case ShapeType::HEIGHT_FIELD: return decimated(groundSurface(shape), most);
     case ShapeType::POLYGON: return polygonSurface(shape);
     case ShapeType::HALFSPACE: return planeSurface(shape, plane_size);
     case ShapeType::POINTS: return pointsSurface(shape, most);
