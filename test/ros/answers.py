@@ -133,16 +133,6 @@ class Answers(TestCase):
         self.assertEqual(self.distance(objects=['far']).b, 'far')
         self.assertContains(self.distance(objects=['far']), 1.75)
 
-    def test_nothing_to_measure_is_no_answer(self):
-        self.server.replace()
-        row = self.distance()
-        self.assertEqual((row.lower, row.upper, row.b, row.status), (0, math.inf, '', 'empty'))
-
-    def test_no_curves_get_no_results(self):
-        response = self.server.distance([])
-        self.assertEqual((response.success, response.results), (False, []))
-        self.assertIn('nothing is asked', response.message)
-
 
 class Scene(TestCase):
     def test_objects_are_added_moved_appended_and_removed(self):

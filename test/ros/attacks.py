@@ -10,9 +10,9 @@ import unittest
 
 import numpy
 import rosgraph
-from curve_proximity.msg import Body, CollisionObject, ProximityQuery
+from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, DistanceRequest, Distance
-from helpers import Call, Node, Server, bezier, handshake, raw_call, ring_and_shells, run, serialized, sphere, until
+from helpers import Call, Node, Server, bezier, handshake, raw_call, request_of_points, ring_and_shells, run, serialized, sphere, until
 
 LIMIT_MB = 300
 ROOM_MB = 64
@@ -78,10 +78,7 @@ class Attacks(unittest.TestCase):
 
     def test_millions_of_points_in_one_body(self):
         for copies, points in ((1, 5000000), (4, 1500000)):
-            request = ApplySceneRequest(objects=[CollisionObject(id='big', bodies=[Body(type='points')])])
-            data = serialized(request)
-            at = self.vertices_at()
-            data = data[:at] + struct.pack('<I', points) + numpy.random.default_rng(1).random((points, 3)).tobytes() + data[at + 4:]
+            data = request_of_points(numpy.random.default_rng(1).random((points, 3)).tobytes())
             answers = self.send_bytes('apply_scene', ApplyScene, data, copies)
             for answer in answers:
                 if answer is not None:
@@ -89,16 +86,6 @@ class Attacks(unittest.TestCase):
                     self.assertRegex(answer.message, 'too large|busy|memory')
             self.assertTrue(any(answers) or copies > 1)
         self.assertHeld()
-
-    @staticmethod
-    def vertices_at():
-        """Where the count of a body's vertices stands: what one vertex more changes first."""
-        texts = []
-        for n in (0, 1):
-            body = Body(type='points')
-            body.vertices = [bezier((0, 0, 0)).points[0]] * n
-            texts.append(serialized(ApplySceneRequest(objects=[CollisionObject(id='big', bodies=[body])])))
-        return next(i for i, (a, b) in enumerate(zip(*texts)) if a != b)
 
     def test_a_flood_of_small_strings_and_claimed_counts(self):
         # two million empty names take 8 MB on the wire and 64 MB as strings

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The gate as an action between a planner and a controller: what is clear passes, what is not is refused with its reason, and what
-stops being clear while it runs is cancelled. The types are made of control_msgs' published definition."""
+stops being clear while it runs is cancelled."""
 import math
 import signal
 import threading
@@ -9,45 +9,16 @@ import time
 import unittest
 
 import actionlib
-import genpy.dynamic
+import foreign_types
 import rospy
-from actionlib_msgs.msg import GoalID, GoalStatus
+from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import CollisionObject, PoseTrajectory, Proximity, ProximityResults, Refusal, SceneState, Waypoint
 from helpers import Node, Server, bezier, connected, fingerprint, free_flight, joints, path, pose, run, sphere, thing, until
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-TOLERANCE = 'string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration\n'
-GOAL = ('trajectory_msgs/JointTrajectory trajectory\nJointTolerance[] path_tolerance\nJointTolerance[] goal_tolerance\n'
-        'duration goal_time_tolerance\n')
-RESULT = ('int32 error_code\nint32 SUCCESSFUL = 0\nint32 INVALID_GOAL = -1\nint32 INVALID_JOINTS = -2\n'
-          'int32 OLD_HEADER_TIMESTAMP = -3\nint32 PATH_TOLERANCE_VIOLATED = -4\nint32 GOAL_TOLERANCE_VIOLATED = -5\nstring error_string\n')
-POINT = 'trajectory_msgs/JointTrajectoryPoint '
-FEEDBACK = 'Header header\nstring[] joint_names\n%sdesired\n%sactual\n%serror\n' % (POINT, POINT, POINT)
-PARTS = {'FollowJointTrajectoryGoal': GOAL, 'FollowJointTrajectoryResult': RESULT, 'FollowJointTrajectoryFeedback': FEEDBACK,
-         'FollowJointTrajectoryActionGoal': 'Header header\nactionlib_msgs/GoalID goal_id\nFollowJointTrajectoryGoal goal\n',
-         'FollowJointTrajectoryActionResult': 'Header header\nactionlib_msgs/GoalStatus status\nFollowJointTrajectoryResult result\n',
-         'FollowJointTrajectoryActionFeedback': 'Header header\nactionlib_msgs/GoalStatus status\nFollowJointTrajectoryFeedback feedback\n',
-         'FollowJointTrajectoryAction': 'FollowJointTrajectoryActionGoal action_goal\nFollowJointTrajectoryActionResult action_result\n'
-                                        'FollowJointTrajectoryActionFeedback action_feedback\n'}
-
-
-def types():
-    """The classes of the action."""
-    line = '\n' + '=' * 80 + '\nMSG: '
-    others = {'control_msgs/' + name: text for name, text in PARTS.items()}
-    others.update({'control_msgs/JointTolerance': TOLERANCE, 'std_msgs/Header': Header._full_text, 'actionlib_msgs/GoalID': GoalID._full_text,
-                   'actionlib_msgs/GoalStatus': GoalStatus._full_text.split(line.strip('\n').split('\n')[0])[0],
-                   'trajectory_msgs/JointTrajectoryPoint': JointTrajectoryPoint._full_text,
-                   'trajectory_msgs/JointTrajectory': JointTrajectory._full_text.split('=' * 80)[0]})
-    top = 'control_msgs/FollowJointTrajectoryAction'
-    text = others.pop(top) + ''.join(line + name + '\n' + definition for name, definition in others.items())
-    return genpy.dynamic.generate_dynamic(top, text)
-
-
-TYPES = types()
-Action, Goal, Result, Feedback = (TYPES['control_msgs/FollowJointTrajectory' + name] for name in ('Action', 'Goal', 'Result', 'Feedback'))
+_, TYPES = foreign_types.message('control_msgs/FollowJointTrajectoryAction')
+Action, Goal, Result, Feedback = (TYPES['FollowJointTrajectory' + name] for name in ('Action', 'Goal', 'Result', 'Feedback'))
 
 
 class Arm:

@@ -324,6 +324,22 @@ def resident_mb(pid):
     return sum(int(size) for begin, size in mappings if int(begin, 16) not in SHADOW) / 1024
 
 
+def request_of_points(data):
+    """The bytes of a request of ~apply_scene for one body of points; data: theirs, 24 each. No message of all of them is made."""
+    texts = [serialized(ApplySceneRequest(objects=[body('big', 'points', vertices=[(0, 0, 0)] * n)])) for n in (0, 1)]
+    at = next(i for i, (a, b) in enumerate(zip(*texts)) if a != b)  # where their count stands: what one more changes first
+    return texts[0][:at] + struct.pack('<I', len(data) // 24) + data + texts[0][at + 4:]
+
+
+def start_master(port):
+    """A master of its own on that port, which answers."""
+    uri = 'http://localhost:%d' % port
+    process = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], env=dict(os.environ, ROS_MASTER_URI=uri), stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    assert until(rosgraph.Master('/test', uri).is_online, 20)
+    return process
+
+
 def executable(package, name):
     """The path of a node's program."""
     import roslib.packages

@@ -9,9 +9,9 @@ from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rospy
-from curve_proximity.msg import Body, CollisionObject, Curve, Proximity, ProximityResults
-from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance, Tolerance, ToleranceResponse
-from helpers import Call, Server, bezier, connected, fingerprint, raw_call, resident_mb, ring_and_shells, run, serialized, sphere
+from curve_proximity.msg import Curve, Proximity, ProximityResults
+from curve_proximity.srv import ApplyScene, Distance, Tolerance, ToleranceResponse
+from helpers import Call, Server, bezier, connected, fingerprint, raw_call, request_of_points, resident_mb, ring_and_shells, run, sphere
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -75,10 +75,7 @@ class Nodelet(unittest.TestCase):
         for count in (1 << 20, 1 << 26, (1 << 32) - 1):  # a count of curves that no bytes follow
             self.assertIsNone(raw_call('/bounded/distance', Distance, struct.pack('<I', count) + b'\0' * 60))
         for points, word in ((2000000, 'too large'), (1000, None)):
-            body = Body(type=Body.POINTS, vertices=[bezier((0, 0, 0)).points[0]] * 2)
-            data = serialized(ApplySceneRequest(objects=[CollisionObject(id='points', bodies=[body])]))
-            at = data.index(struct.pack('<I', 2) + b'\0' * 48)
-            data = data[:at] + struct.pack('<I', points) + b'\0' * (24 * points) + data[at + 4 + 48:]
+            data = request_of_points(bytes(24 * points))
             answer = raw_call('/bounded/apply_scene', ApplyScene, data)
             self.assertEqual(answer.success, word is None, answer.message)
             self.assertIn(word or '', answer.message)

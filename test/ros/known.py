@@ -8,7 +8,7 @@ import statistics
 import tempfile
 import time
 
-import moveit_types as moveit
+import foreign_types as moveit
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, ConstraintQuery, ProximityResults
 from curve_proximity.srv import EvaluateConstraints

@@ -3,12 +3,11 @@
 """How the node ends, what it holds while it lives, and that it notices a master that has forgotten it."""
 import os
 import signal
-import subprocess
 import time
 import unittest
 
 import rosgraph
-from helpers import Call, Node, Server, bezier, free_port, ring_and_shells, run, sphere, until
+from helpers import Call, Node, Server, bezier, free_port, ring_and_shells, run, sphere, start_master, until
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 CALLS = int(os.environ.get('CURVE_PROXIMITY_CALLS', 20000))  # of the memory test
@@ -57,10 +56,8 @@ class Lifetime(unittest.TestCase):
         environment = dict(os.environ, ROS_MASTER_URI='http://localhost:%d' % port)
 
         def master():
-            process = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], env=environment,
-                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            process = start_master(port)
             self.addCleanup(lambda: (process.kill(), process.wait()))
-            self.assertTrue(until(rosgraph.Master('/test', environment['ROS_MASTER_URI']).is_online, 20))
             return process
         first = master()
         node = Node('forgotten', environment)

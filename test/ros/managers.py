@@ -12,7 +12,7 @@ import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import Curve, QueryAction, QueryGoal
-from helpers import Call, Server, bezier, connected, executable, free_port, query, ring_and_shells, run, until
+from helpers import Call, Server, bezier, connected, executable, free_port, query, ring_and_shells, run, start_master, until
 
 LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
 
@@ -75,10 +75,8 @@ class Managers(unittest.TestCase):
         graph = rosgraph.Master('/test', environment['ROS_MASTER_URI'])
 
         def master():
-            process = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], env=environment, stdout=subprocess.DEVNULL,
-                                       stderr=subprocess.DEVNULL)
+            process = start_master(port)
             self.addCleanup(lambda: (process.kill(), process.wait()))
-            self.assertTrue(until(graph.is_online, 20))
             return process
         first = master()
         manager = self.manager(environment)

@@ -7,7 +7,6 @@ import json
 import os
 import random
 import statistics
-import struct
 import subprocess
 import sys
 import threading
@@ -15,9 +14,9 @@ import time
 
 import rosgraph
 import rospy
-from curve_proximity.msg import Body, CollisionObject, ProximityQuery
-from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance, DistanceRequest
-from helpers import Node, RawClient, Server, bezier, bspline, box, free_port, raw_call, ring_and_shells, serialized, sphere, transform
+from curve_proximity.msg import ProximityQuery
+from curve_proximity.srv import ApplyScene, Distance, DistanceRequest
+from helpers import Node, RawClient, Server, bezier, bspline, box, free_port, raw_call, request_of_points, ring_and_shells, serialized, sphere, start_master, transform
 from hostile import Attacker
 from tf2_ros import StaticTransformBroadcaster
 
@@ -253,19 +252,12 @@ class Soak:
     def is_large(self, seed):
         """Long names, millions of points, many empty strings, in turn."""
         r = random.Random(seed)
-        body = CollisionObject(id='huge', bodies=[Body(type='points')])
-        texts = []
-        for n in (0, 1):
-            body.bodies[0].vertices = [bezier((0, 0, 0)).points[0]] * n
-            texts.append(serialized(ApplySceneRequest(objects=[body])))
-        at = next(i for i, (a, b) in enumerate(zip(*texts)) if a != b)
 
         def request():
             kind = r.randrange(3)
             if kind == 0:
                 points = r.choice([1000000, 5000000, LARGEST])
-                data = texts[0][:at] + struct.pack('<I', points) + os.urandom(24 << 10) * (points // 1024) + b'\0' * (
-                    24 * (points % 1024)) + texts[0][at + 4:]
+                data = request_of_points(os.urandom(24 << 10) * (points // 1024) + b'\0' * (24 * (points % 1024)))
                 return 'apply_scene', ApplyScene, data
             query = ProximityQuery(curves=[bezier((-1, 0, 1), (1, 0, 1), id='x' * 900000)], per_object=True) if kind == 1 else \
                 ProximityQuery(objects=[''] * 3000000)
@@ -377,10 +369,8 @@ def main():
             int(seed), float(end), lambda *report: print(json.dumps(report), flush=True), *map(int, more))
     port = free_port()
     os.environ.update(ROS_MASTER_URI='http://localhost:%d' % port, ROS_HOSTNAME='localhost')
-    master = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    master = start_master(port)
     try:
-        while not rosgraph.Master('/soak').is_online():
-            time.sleep(0.1)
         rospy.init_node('soak', disable_signals=True)
         good, text = Soak(60 * options.minutes, options.cgroup).run()
     finally:

@@ -13,7 +13,7 @@ from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import AllowedContact, CollisionObject, Proximity, ProximityResults, Refusal
 from curve_proximity.srv import Tolerance, ToleranceResponse
 from gate import Action, Arm, Controller, Goal, actionlib, ends_of, turning
-from helpers import Server, bezier, box, connected, fingerprint, mesh, run, sphere, thing, until
+from helpers import Server, bezier, box, connected, fingerprint, mesh, run, sphere, until
 from sensor_msgs.msg import JointState
 
 APART, NEAR = 1, 2

@@ -5,7 +5,7 @@ import struct
 import threading
 import time
 
-import genpy.dynamic
+import foreign_types
 import numpy
 import rospy
 from curve_proximity.msg import Body, Octree
@@ -21,18 +21,7 @@ RADIUS = 0.25                                    # [m] ~cloud_radius of the laun
 ABOVE = bezier((0, 0, 1), (2, 0, 1), id='above')  # a straight line one metre up, middle over (1, 0, 0)
 PATIENCE = 20                                    # seconds for a message to arrive; a failure takes that long
 
-# octomap_msgs/Octomap as octomap_msgs publishes it, which need not be installed here.
-OCTOMAP = genpy.dynamic.generate_dynamic('octomap_msgs/Octomap', '''Header header
-bool binary
-string id
-float64 resolution
-int8[] data
-================================================================================
-MSG: std_msgs/Header
-uint32 seq
-time stamp
-string frame_id
-''')['octomap_msgs/Octomap']
+OCTOMAP, _ = foreign_types.message('octomap_msgs/Octomap')
 
 # One cell of 0.5 m at the origin's corner, occupied: from the root the last child, then always the first, two bits each.
 CELL = b'\x00\xc0' + b'\x03\x00' * 14 + b'\x02\x00'

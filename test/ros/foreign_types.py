@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Classes of moveit_msgs 0.11 for tests, made by genpy of their fields: moveit_msgs itself need not be installed."""
+"""Classes of moveit_msgs 0.11, control_msgs and octomap_msgs for tests, made by genpy of their fields: none of these need be installed."""
 import hashlib
 
 import genpy.dynamic
@@ -78,6 +78,23 @@ uint32 ROBOT_ATTACHED=2''',
             'OBJECT_COLORS'))] + ['uint32 components']),
     'moveit_msgs/GetPlanningSceneRequest': 'moveit_msgs/PlanningSceneComponents components',
     'moveit_msgs/GetPlanningSceneResponse': 'moveit_msgs/PlanningScene scene',
+    'control_msgs/JointTolerance': 'string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration',
+    'control_msgs/FollowJointTrajectoryGoal': '''trajectory_msgs/JointTrajectory trajectory
+control_msgs/JointTolerance[] path_tolerance
+control_msgs/JointTolerance[] goal_tolerance
+duration goal_time_tolerance''',
+    'control_msgs/FollowJointTrajectoryResult': '\n'.join(
+        ['int32 error_code'] + ['int32 %s = %d' % (name, -i) for i, name in enumerate((
+            'SUCCESSFUL', 'INVALID_GOAL', 'INVALID_JOINTS', 'OLD_HEADER_TIMESTAMP', 'PATH_TOLERANCE_VIOLATED',
+            'GOAL_TOLERANCE_VIOLATED'))] + ['string error_string']),
+    'control_msgs/FollowJointTrajectoryFeedback': '\n'.join(
+        ['Header header', 'string[] joint_names'] + ['trajectory_msgs/JointTrajectoryPoint ' + name for name in ('desired', 'actual', 'error')]),
+    **{'control_msgs/FollowJointTrajectoryAction' + part: '''Header header
+actionlib_msgs/%s
+control_msgs/FollowJointTrajectory%s %s''' % (head, part, part.lower()) for part, head in (
+        ('Goal', 'GoalID goal_id'), ('Result', 'GoalStatus status'), ('Feedback', 'GoalStatus status'))},
+    'control_msgs/FollowJointTrajectoryAction': '\n'.join(
+        'control_msgs/FollowJointTrajectoryAction%s action_%s' % (part, part.lower()) for part in ('Goal', 'Result', 'Feedback')),
 }
 
 
@@ -111,16 +128,15 @@ def _definition(name):
 
 
 def message(name):
-    """The class of moveit_msgs/NAME, and those of its parts."""
-    whole = 'moveit_msgs/' + name
-    classes = genpy.dynamic.generate_dynamic(whole, _definition(whole))
-    return classes[whole], {kind.split('/')[1]: made for kind, made in classes.items()}
+    """The class of a message, and those of its parts."""
+    classes = genpy.dynamic.generate_dynamic(name, _definition(name))
+    return classes[name], {kind.split('/')[1]: made for kind, made in classes.items()}
 
 
-PlanningScene, PARTS = message('PlanningScene')
-DisplayTrajectory, _ = message('DisplayTrajectory')
-RobotTrajectory, _ = message('RobotTrajectory')
-ContactInformation, _ = message('ContactInformation')
+PlanningScene, PARTS = message('moveit_msgs/PlanningScene')
+DisplayTrajectory, _ = message('moveit_msgs/DisplayTrajectory')
+RobotTrajectory, _ = message('moveit_msgs/RobotTrajectory')
+ContactInformation, _ = message('moveit_msgs/ContactInformation')
 CollisionObject, AttachedCollisionObject = PARTS['CollisionObject'], PARTS['AttachedCollisionObject']
 LinkPadding, LinkScale, AllowedCollisionEntry = PARTS['LinkPadding'], PARTS['LinkScale'], PARTS['AllowedCollisionEntry']
 
@@ -128,8 +144,8 @@ LinkPadding, LinkScale, AllowedCollisionEntry = PARTS['LinkPadding'], PARTS['Lin
 class GetPlanningScene:
     """The service, for rospy.Service."""
     _type = 'moveit_msgs/GetPlanningScene'
-    _request_class, _ = message('GetPlanningSceneRequest')
-    _response_class, _ = message('GetPlanningSceneResponse')
+    _request_class, _ = message('moveit_msgs/GetPlanningSceneRequest')
+    _response_class, _ = message('moveit_msgs/GetPlanningSceneResponse')
     # what gentools takes the sum of: the request's text, then the response's, parts by their own sums
-    _md5sum = hashlib.md5(('%s components%s scene' % (message('PlanningSceneComponents')[0]._md5sum,
+    _md5sum = hashlib.md5(('%s components%s scene' % (message('moveit_msgs/PlanningSceneComponents')[0]._md5sum,
                                                       PlanningScene._md5sum)).encode()).hexdigest()
