@@ -23,7 +23,7 @@
 #include "transport/checked_stream.h"
 #include "transport/guard.h"
 #include "transport/memory_account.h"
-#include "transport/name_limits.h"
+#include "transport/request_limits.h"
 #include "world/robot_description.h"
 
 namespace curve_proximity {

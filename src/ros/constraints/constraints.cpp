@@ -13,9 +13,10 @@
 #include "messages/gradient_message.h"
 #include "messages/scene_message.h"
 #include "messages/trajectory_message.h"
+#include "queries/row_message.h"
 #include "queries/time_budget.h"
 #include "transport/memory_account.h"
-#include "transport/name_limits.h"
+#include "transport/request_limits.h"
 #include "transport/turns.h"
 #include "world/doubts.h"
 #include "world/robot_description.h"
@@ -155,11 +156,6 @@ std::size_t countDerivatives(const ConstraintRow &row) {
   return static_cast<std::size_t>(count);
 }
 
-void limit(const char *parameter, int most, std::size_t count, const char *what) {
-  if (count <= static_cast<std::size_t>(most)) return;
-  throw Error(std::to_string(count) + " " + what + " are more than ~" + parameter + " = " + std::to_string(most));
-}
-
 } // namespace
 
 Constraints::Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames,
@@ -185,7 +181,7 @@ std::vector<std::string> Constraints::failures() const {
 
 /** Throws Error for what is beyond a limit; how many bytes the largest case takes, about. */
 std::size_t Constraints::checkLimits(const EvaluateConstraints::Request &request) const {
-  limit("max_curves", parameters_.max_curves, request.cases.size(), "cases");
+  demandAtMost("max_curves", parameters_.max_curves, request.cases.size(), "cases");
   NameLimits(parameters_.max_name_length).check(request);
   std::size_t points = 0, values = 0, results = 0, bytes = 0;
   for (const ConstraintQuery &asked : request.cases) {
@@ -197,9 +193,9 @@ std::size_t Constraints::checkLimits(const EvaluateConstraints::Request &request
     bytes = std::max(bytes, (points - points_before) * memory::OF_POINT + (values - values_before) * memory::OF_VALUE);
     results += asked.providers.empty() ? providers_->all().size() : asked.providers.size();
   }
-  limit("max_control_points", parameters_.max_control_points, points, "control points");
-  limit("max_control_points", parameters_.max_control_points, values, "joint values");
-  limit("max_results", parameters_.max_results, results, "results");
+  demandAtMost("max_control_points", parameters_.max_control_points, points, "control points");
+  demandAtMost("max_control_points", parameters_.max_control_points, values, "joint values");
+  demandAtMost("max_results", parameters_.max_results, results, "results");
   return bytes;
 }
 
@@ -311,7 +307,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
   const WorkspacePool::Lease workspace(workspaces_);
   Work work{snapshot, budget, FrameLookup(frames_, turn)};
   Doubts doubts(parameters_.max_age, snapshot, response.scene.sensors, live_.unknowns.all());
-  std::size_t failed = 0;
+  Failures failures;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
     const ConstraintQuery &asked = request.cases[i];
     if (turn) turn->yield();
@@ -327,7 +323,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
           described = toCase(asked, work);
           rows = answerCase(*providers_, described, resources, *workspace);
           for (const ConstraintRow &row : rows) work.derivatives += countDerivatives(row);
-          limit("max_control_points", parameters_.max_control_points, work.derivatives, "derivatives");
+          demandAtMost("max_control_points", parameters_.max_control_points, work.derivatives, "derivatives");
         },
         &fault);
     if (fault < 0) rows = {failedRow(asked.id, why, fault)};
@@ -339,21 +335,18 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
     doubts.ages(work.lookup.age(), work.joints_age);
     response.scene.joint_state_age = std::fmax(response.scene.joint_state_age, work.joints_age);
 
-    // The first row that failed is told.
     for (const ConstraintRow &row : rows) {
-      if (row.status < 0 && failed++ == 0)
-        response.message = "case " + std::to_string(i) + " ('" + row.id + "')" +
-                           (row.provider.empty() ? "" : ", provider '" + row.provider + "'") + ": " + row.message;
+      if (row.status < 0)
+        failures.count("case " + std::to_string(i) + " ('" + row.id + "')" +
+                       (row.provider.empty() ? "" : ", provider '" + row.provider + "'") + ": " + row.message);
       response.results.push_back(constraintMessage(row, described));
       doubts.apply(response.results.back());
     }
   }
   response.scene.transform_age = work.lookup.oldest();
   doubts.tell(response.warnings);
-  response.success = failed == 0;
-  if (failed)
-    response.message =
-        std::to_string(failed) + " of " + std::to_string(response.results.size()) + " rows failed; " + response.message;
+  response.success = true;
+  failures.tell(response);
 }
 
 } // namespace curve_proximity

@@ -14,13 +14,20 @@ geometry_msgs::Point pointMessage(const Eigen::Vector3d &point) {
   return message;
 }
 
+template <class Position>
+Eigen::Isometry3d isometry(const Position &p, const geometry_msgs::Quaternion &q) {
+  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) throw Error("the position is not finite");
+  return toIsometry(cprox_pose{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
+}
+
 } // namespace
 
 Eigen::Isometry3d toIsometry(const geometry_msgs::Pose &pose) {
-  const geometry_msgs::Point &p = pose.position;
-  const geometry_msgs::Quaternion &q = pose.orientation;
-  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) throw Error("the position is not finite");
-  return toIsometry(cprox_pose{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
+  return isometry(pose.position, pose.orientation);
+}
+
+Eigen::Isometry3d toIsometry(const geometry_msgs::Transform &transform) {
+  return isometry(transform.translation, transform.rotation);
 }
 
 std::string withoutSlash(const std::string &frame) {

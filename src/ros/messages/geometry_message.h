@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_ROS_GEOMETRY_MESSAGE_H
 
 #include <geometry_msgs/Pose.h>
+#include <geometry_msgs/Transform.h>
 
 #include <curve_proximity/core.hpp>
 #include <Eigen/Geometry>
@@ -14,6 +15,7 @@ namespace curve_proximity {
 
 /** Throws Error for a quaternion of norm 0 or a number that is not finite. */
 Eigen::Isometry3d toIsometry(const geometry_msgs::Pose &pose);
+Eigen::Isometry3d toIsometry(const geometry_msgs::Transform &transform);
 geometry_msgs::Pose toMessage(const Eigen::Isometry3d &pose);
 
 /** A message that nobody filled in has zeros everywhere. */

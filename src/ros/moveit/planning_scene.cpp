@@ -196,14 +196,9 @@ class SceneReader {
     for (const geometry_msgs::TransformStamped &given : message_.fixed_frame_transforms) {
       const std::string child = withoutSlash(given.child_frame_id), parent = withoutSlash(given.header.frame_id);
       if (child == parent) continue;
-      geometry_msgs::Pose pose;
-      pose.position.x = given.transform.translation.x;
-      pose.position.y = given.transform.translation.y;
-      pose.position.z = given.transform.translation.z;
-      pose.orientation = given.transform.rotation;
       try {
         if (child.empty()) throw Error("it has no name");
-        out_.state.transforms[child] = {parent, toIsometry(pose)};
+        out_.state.transforms[child] = {parent, toIsometry(given.transform)};
       } catch (const Error &error) {
         complain("fixed_frame_transforms, frame '" + child + "': " + error.what());
       }

@@ -12,7 +12,7 @@
 #include "transport/checked_stream.h"
 #include "transport/guard.h"
 #include "transport/memory_account.h"
-#include "transport/name_limits.h"
+#include "transport/request_limits.h"
 
 namespace curve_proximity {
 namespace {
@@ -150,7 +150,7 @@ void PlanningSceneTopic::use(const moveit::PlanningScene &message) {
   for (std::string &fault : apply_(change.change, *before)) wrong.push_back(std::move(fault));
   state_ = std::move(change.state);
   if (message.is_diff == 0 && wrong.empty()) live_.unknowns.forget(LOST_SCENE);
-  live_.joints.suggest(message.robot_state.joint_state, before->robot().get());
+  live_.joints.take(message.robot_state.joint_state, before->robot().get(), false);
 
   {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -120,7 +120,7 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
       Proximity &row = work.response.add(toMessage(found));
       fillRow(found.answer, question, query.query_type, row);
       if (work.certificate) addProof(takeProof(subject, query, found.answer), row);
-      if (std::isnan(row.lower)) search.failures.count(row, search.curves);
+      if (std::isnan(row.lower)) search.fail(row);
       answers.push_back(std::move(found.answer));
     }
     if (work.drawing.hasRoom()) {
@@ -137,7 +137,7 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
 void Queries::refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work) {
   if (work.request.problems) work.request.problems->push_back(doubtful(why));
   work.response.add() = toFailedRow(id, Proximity::KIND_CURVE, why);
-  search.failures.count(work.response.results.back(), search.curves);
+  search.fail(work.response.results.back());
   ++search.curves;
 }
 

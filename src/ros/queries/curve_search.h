@@ -80,26 +80,6 @@ class StampedTargets {
   std::map<ros::Time, Stamped> stamped_;
 };
 
-/** Counts the rows that have no answer and keeps the first one's reason. */
-class Failures {
- public:
-  /** number: of the curve, in the order of the request. */
-  void count(const Proximity &row, std::size_t number) {
-    if (failed_++ == 0) first_ = "curve " + std::to_string(number) + " ('" + row.id + "'): " + row.message;
-  }
-
-  void tell(QueryResponse &response) const {
-    if (failed_ == 0) return;
-    response.success = false;
-    response.message =
-        std::to_string(failed_) + " of " + std::to_string(response.results.size()) + " rows failed; " + first_;
-  }
-
- private:
-  std::size_t failed_ = 0;
-  std::string first_;
-};
-
 /* What all curves of a request share. */
 struct Queries::CurveSearch {
   StampedTargets targets;
@@ -108,6 +88,10 @@ struct Queries::CurveSearch {
   std::size_t curves;           /* so far */
   Failures failures;
   const LinkPoses *drawn; /* the robot of the last curve that is drawn; null: none is */
+
+  void fail(const Proximity &row) {
+    failures.count("curve " + std::to_string(curves) + " ('" + row.id + "'): " + row.message);
+  }
 };
 
 } // namespace curve_proximity

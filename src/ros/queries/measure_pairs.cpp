@@ -10,7 +10,7 @@
 #include "messages/shape_message.h"
 #include "queries/row_message.h"
 #include "queries/time_budget.h"
-#include "transport/name_limits.h"
+#include "transport/request_limits.h"
 #include "world/robot_description.h"
 
 namespace curve_proximity {
@@ -67,9 +67,7 @@ Pairs::Pairs(const Parameters &parameters, const Tuning &tuning, Statistics &sta
 
 void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response &response, TimeBudget &budget) {
   const TimeBudget::Clock::time_point begin = TimeBudget::Clock::now();
-  if (request.pairs.size() > static_cast<std::size_t>(parameters_.max_curves))
-    throw Error(std::to_string(request.pairs.size()) +
-                " pairs are more than ~max_curves = " + std::to_string(parameters_.max_curves));
+  demandAtMost("max_curves", parameters_.max_curves, request.pairs.size(), "pairs");
   NameLimits(parameters_.max_name_length).check(request);
   if (!(request.epsilon >= 0.0) || !std::isfinite(request.epsilon))
     throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be finite and at least 0");
@@ -85,7 +83,7 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
   resources.stop = [&budget] { return TimeBudget::isOver(&budget); };
   const WorkspacePool::Lease workspace(workspaces_);
 
-  std::size_t failed = 0;
+  Failures failures;
   for (std::size_t i = 0; i < request.pairs.size(); ++i) {
     const PairQuery &asked = request.pairs[i];
     Proximity row;
@@ -97,14 +95,12 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
     if (!why.empty()) {
       row = toFailedRow(asked.id, asked.ask.empty() || asked.ask == PairQuery::DISTANCE ? "pair" : asked.ask, why);
       row.b = asked.id;
-      if (failed++ == 0) response.message = "pair " + std::to_string(i) + " ('" + asked.id + "'): " + why;
+      failures.count("pair " + std::to_string(i) + " ('" + asked.id + "'): " + why);
     }
     response.results.push_back(std::move(row));
   }
-  response.success = failed == 0;
-  if (failed > 0)
-    response.message =
-        std::to_string(failed) + " of " + std::to_string(request.pairs.size()) + " rows failed; " + response.message;
+  response.success = true;
+  failures.tell(response);
   statistics_.record(TimeBudget::Clock::now() - begin, response.success != 0, response.results);
 }
 

@@ -7,18 +7,13 @@
 #include "queries/curve_search.h"
 #include "queries/time_budget.h"
 #include "transport/memory_account.h"
-#include "transport/name_limits.h"
+#include "transport/request_limits.h"
 
 namespace curve_proximity {
 namespace {
 
 /** Of a row: itself, its answer in the scene's form, its bytes on the wire, names of usual length. */
 constexpr std::size_t ROW_BYTES = 2 * sizeof(Proximity) + sizeof(Answer) + 512;
-
-void limit(const char *parameter, std::size_t most, std::size_t count, const char *what) {
-  if (count <= most) return;
-  throw Error(std::to_string(count) + " " + what + " are more than ~" + parameter + " = " + std::to_string(most));
-}
 
 } // namespace
 
@@ -118,19 +113,18 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
     curves += trajectory.joint_names.size();
     for (const auto &point : trajectory.points) points += point.transforms.size();
   }
-  limit("max_curves", static_cast<std::size_t>(parameters_.max_curves), curves + request.trajectories.size(), "curves");
-  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), points, "control points");
+  demandAtMost("max_curves", parameters_.max_curves, curves + request.trajectories.size(), "curves");
+  demandAtMost("max_control_points", parameters_.max_control_points, points, "control points");
   for (const auto &trajectory : request.trajectories) {
     names.check(trajectory);
     values += trajectory.points.size() * trajectory.joint_names.size();
   }
-  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), values, "joint values");
+  demandAtMost("max_control_points", parameters_.max_control_points, values, "joint values");
 
   for (const RobotTrajectory &robot : request.more.moving_robots)
     values += robot.trajectory.points.size() * robot.trajectory.joint_names.size();
-  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), values, "joint values");
-  limit("max_curves", static_cast<std::size_t>(parameters_.max_curves), request.more.moving_robots.size(),
-        "moving robots");
+  demandAtMost("max_control_points", parameters_.max_control_points, values, "joint values");
+  demandAtMost("max_curves", parameters_.max_curves, request.more.moving_robots.size(), "moving robots");
 
   // With per_object the answer may be far larger than the query.
   std::size_t targets = 1;
@@ -147,7 +141,7 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   if (const auto *profile = std::get_if<question::Profile>(&request.question))
     targets = std::max(profile->intervals, profile->breaks.size());
   if (asksFor<question::Violations>(request.question)) targets = MOST_VIOLATIONS;
-  limit("max_results", static_cast<std::size_t>(parameters_.max_results), targets, "results");
+  demandAtMost("max_results", parameters_.max_results, targets, "results");
   const bool often = !asksFor<question::Search, question::Gradient>(request.question) &&
                      request.more.self_collision; // as many rows of kind self
   const std::size_t profiles =
@@ -155,7 +149,7 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
       (often ? 2 : 1);
   const std::size_t movers = request.more.movers ? 1 : 0;
   const std::size_t rows = (curves + motions * profiles + movers) * targets + motions + movers;
-  limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
+  demandAtMost("max_results", parameters_.max_results, rows, "results");
   constexpr std::size_t VECTOR = 3 * sizeof(double), COPIES = 2, KINDS = 2, DERIVATIVES = 3;
   std::size_t bytes = rows * ROW_BYTES + points * memory::OF_POINT + values * memory::OF_VALUE;
   if (asksFor<question::Gradient>(request.question))

@@ -37,6 +37,26 @@ DetailMessage toMessage(const Row &row, const TrajectoryDescription *trajectory 
 /** The row of a curve or motion that could not be asked about. */
 Proximity toFailedRow(const std::string &id, const std::string &kind, const std::string &why);
 
+/** Counts the rows that have no answer, and keeps why the first one has none. */
+class Failures {
+ public:
+  void count(const std::string &what) {
+    if (failed_++ == 0) first_ = what;
+  }
+
+  template <class Response>
+  void tell(Response &response) const {
+    if (failed_ == 0) return;
+    response.success = false;
+    response.message =
+        std::to_string(failed_) + " of " + std::to_string(response.results.size()) + " rows failed; " + first_;
+  }
+
+ private:
+  std::size_t failed_ = 0;
+  std::string first_;
+};
+
 /** A certificate and the fingerprint of what it is about, or why there is none. */
 struct Proof {
   std::vector<std::uint8_t> certificate;

@@ -20,12 +20,6 @@ constexpr std::chrono::seconds SETTLED{3};
 /** A wait looks again this often, even where no transform has come: the stop flag is nobody's signal. */
 constexpr std::chrono::milliseconds LOOK_AGAIN{20};
 
-Eigen::Isometry3d toIsometry(const geometry_msgs::Transform &transform) {
-  const geometry_msgs::Vector3 &p = transform.translation;
-  const geometry_msgs::Quaternion &q = transform.rotation;
-  return curve_proximity::toIsometry(cprox_pose{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
-}
-
 } // namespace
 
 Frames::Frames(const std::string &fixed_frame, double timeout, const std::atomic<bool> &stop)

@@ -25,25 +25,17 @@ class JointBoard {
     Age age;
   };
 
-  /** Takes in a message. Joints that the robot does not have are ignored, and so are values that are not finite. */
-  void take(const sensor_msgs::JointState &state, const Robot *robot) {
+  /** Takes in a message. Joints that the robot does not have are ignored, and so are values that are not finite. told:
+   *  false: of somebody else than the robot; then joints that it has told of stay as they are. */
+  void take(const sensor_msgs::JointState &state, const Robot *robot, bool told = true) {
     const Age age(state.header.stamp);
     const std::lock_guard<std::mutex> lock(mutex_);
     for (std::size_t i = 0; i < state.name.size() && i < state.position.size(); ++i) {
-      const bool known = robot && robot->hasJoint(state.name[i]);
-      if (!known || !std::isfinite(state.position[i])) continue;
-      joints_[state.name[i]] = {state.position[i], age};
-      told_.insert(state.name[i]);
-    }
-  }
-
-  /** The same, only for joints that no message of take() has told. */
-  void suggest(const sensor_msgs::JointState &state, const Robot *robot) {
-    const Age age(state.header.stamp);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    for (std::size_t i = 0; i < state.name.size() && i < state.position.size(); ++i) {
-      const bool known = robot && robot->hasJoint(state.name[i]) && std::isfinite(state.position[i]);
-      if (known && told_.count(state.name[i]) == 0) joints_[state.name[i]] = {state.position[i], age};
+      const std::string &name = state.name[i];
+      const bool known = robot && robot->hasJoint(name) && std::isfinite(state.position[i]);
+      if (!known || (!told && told_.count(name) > 0)) continue;
+      joints_[name] = {state.position[i], age};
+      if (told) told_.insert(name);
     }
   }
 
@@ -55,7 +47,7 @@ class JointBoard {
  private:
   mutable std::mutex mutex_;
   std::map<std::string, Joint> joints_;
-  std::set<std::string> told_; /* by take() */
+  std::set<std::string> told_; /* by the robot */
 };
 
 } // namespace curve_proximity

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** No id or name of a request is longer than ~max_name_length: answers repeat them once a row. */
-#ifndef CURVE_PROXIMITY_ROS_NAME_LIMITS_H
-#define CURVE_PROXIMITY_ROS_NAME_LIMITS_H
+/** What a request may hold: so much of each thing, and no id or name longer than ~max_name_length. */
+#ifndef CURVE_PROXIMITY_ROS_REQUEST_LIMITS_H
+#define CURVE_PROXIMITY_ROS_REQUEST_LIMITS_H
 
 #include <curve_proximity/Body.h>
 #include <ros/message_traits.h>
@@ -15,7 +15,13 @@
 
 namespace curve_proximity {
 
-/** Visits all texts of a message, as its serializer does. A body may name a file, so its texts may be as long as a
+/** Throws Error for more of something than a parameter allows. */
+inline void demandAtMost(const char *parameter, int most, std::size_t count, const char *what) {
+  if (count <= static_cast<std::size_t>(most)) return;
+  throw Error(std::to_string(count) + " " + what + " are more than ~" + parameter + " = " + std::to_string(most));
+}
+
+/** Answers repeat ids and names once a row. Visits all texts of a message, as its serializer does. A body may name a file, so its texts may be as long as a
  *  path. */
 class NameLimits {
  public:
