@@ -252,28 +252,31 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
 }
 
 /* They are within epsilon at free_until. A little later they may certainly touch: by their speed, as deep as rounding
- * could hide it. Then that is where p->last is asked, and *at. */
+ * could hide it. Whether they do is asked, and not how deep: no distance changes by more than they move. Then *at is that
+ * time, and p->last holds what is known there. */
 static cprox_status approach_prove(approach *p, const cprox_options *options, cprox_workspace *workspace, double *at) {
   enum { MOST_STEPS = 12 };
   cprox_options fine = *options;
   fine.epsilon = fmin(0.25 * options->epsilon, 1e-3 * fabs(p->last.upper));
   fine.relative_epsilon = 0.0;
   cprox_result r = p->last;
-  double t = p->free_until,
-         hidden = 128.0 * ROUND_U *
-                  (vec_norm(p->b.pose.position) + vec_norm(p->a.pose.position) + vec_norm(p->velocity) * p->duration +
-                   p->a.body->ball_radius + p->b.body->ball_radius);
-  for (int i = 0; i < MOST_STEPS && t < p->duration && r.upper > 0.0; i++, hidden *= 8.0) {
-    const double towards = vec_dot(r.normal, p->velocity);
-    if (!(towards > 0.0)) break;
+  const double speed = vec_norm(p->velocity), towards = vec_dot(r.normal, p->velocity),
+               rounded = 16.0 * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
+  double t = p->free_until, hidden = 128.0 * ROUND_U *
+                                     (vec_norm(p->b.pose.position) + vec_norm(p->a.pose.position) +
+                                      speed * p->duration + p->a.body->ball_radius + p->b.body->ball_radius);
+  for (int i = 0; i < MOST_STEPS && t < p->duration && r.upper > 0.0 && towards > 0.0; i++, hidden *= 8.0) {
     const double next = fmin(t + (r.upper + hidden) / towards * (1.0 + 1e-12), p->duration);
     if (!(next > t)) break;
     t = next;
-    const cprox_status status = WORKSPACE_LEND(workspace, cprox_pair(p->a, approach_at(p, t), &fine, workspace, &r));
+    const cprox_status status =
+        WORKSPACE_LEND(workspace, cprox_pair_tolerance(p->a, approach_at(p, t), 0.0, &fine, workspace, &r));
     if (status < 0) return status;
     p->pairs++;
   }
   if (r.upper > 0.0) return CPROX_OK;
+  r.lower = fmin(p->last.lower - ROUND_UP * (speed * (t - p->free_until) + rounded), 0.0);
+  r.normal = p->last.normal;
   p->last = r;
   *at = t;
   return CPROX_OK;
