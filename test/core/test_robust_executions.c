@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Executions of a motion within bounds of their errors: certified clearances against random executions in long double. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "curve_proximity/cprox.h"
+#include "support/builders.h"
+#include "support/cases.h"
+#include "support/robots.h"
+
+enum { TARGETS = 3, EXECUTIONS = 400 };
+
+typedef struct world {
+  test_robot t;
+  vec3 points[TARGETS]; /* in the frames of their poses */
+  cprox_obstacle targets[TARGETS];
+  double tracking[TEST_MAX_VARIABLES], speed[TEST_MAX_VARIABLES], acceleration[TEST_MAX_VARIABLES];
+  cprox_error_bounds bounds;
+} world;
+
+static bool is_free_of_errors(const test_robot *t, size_t variable) {
+  for (size_t i = 0; i < t->n_links; i++) {
+    const size_t first = (size_t)t->links[i].variable;
+    if (t->links[i].type == CPROX_JOINT_FLOATING && variable >= first && variable < first + 7) return true;
+  }
+  return false;
+}
+
+static double some(rng *r, double most) {
+  return rng_index(r, 3) ? rng_log_uniform(r, 1e-5, most) : 0.0;
+}
+
+static void make_world(rng *r, world *w) {
+  robot_make(r, rng_log_uniform(r, 0.1, 2), &w->t);
+  for (size_t i = 0; i < TARGETS; i++) {
+    cprox_body *body;
+    w->points[i] = rng_in_cube(r, 0.5);
+    assert_int_equal(cprox_body_create_point(w->points[i], ws, &body), CPROX_OK);
+    w->targets[i] = cprox_obstacle_at(body, rng_pose(r, 2.0));
+  }
+  const double most = rng_log_uniform(r, 1e-4, 0.2);
+  for (size_t v = 0; v < w->t.n_variables; v++) {
+    const bool none = is_free_of_errors(&w->t, v);
+    w->tracking[v] = none ? 0.0 : some(r, most), w->speed[v] = none ? 0.0 : some(r, most);
+    w->acceleration[v] = none ? 0.0 : some(r, most);
+  }
+  w->bounds = (cprox_error_bounds){.tracking = w->tracking,
+                                   .speed = w->speed,
+                                   .acceleration = w->acceleration,
+                                   .n_variables = w->t.n_variables,
+                                   .timing = some(r, 0.3),
+                                   .base_position = some(r, most),
+                                   .base_rotation = some(r, most),
+                                   .base_origin = rng_in_cube(r, 1.0),
+                                   .object_position = some(r, most),
+                                   .object_rotation = some(r, most),
+                                   .sensor = some(r, most),
+                                   .flex = some(r, most)};
+}
+
+static void free_world(world *w) {
+  for (size_t i = 0; i < TARGETS; i++) cprox_body_free((cprox_body *)w->targets[i].body);
+  robot_free(&w->t);
+}
+
+/* -1, 1, or between: the ends are what bounds are about. */
+static double part(rng *r) {
+  return rng_index(r, 4) ? (rng_index(r, 2) ? 1.0 : -1.0) : rng_uniform(r, -1, 1);
+}
+
+static vec3l turned(rng *r, double angle, vec3l about, vec3l x) {
+  const vec3 axis = rng_unit(r);
+  const double half = 0.5 * angle * part(r);
+  const long double q[4] = {axis.x * sin(half), axis.y * sin(half), axis.z * sin(half), cos(half)};
+  return ref_add(ref_turn(q, ref_sub(x, about)), about);
+}
+
+static vec3l shifted(rng *r, double by, vec3l x) {
+  return ref_add(x, ref_scale(by * fabs(part(r)), ref_vec(rng_unit(r))));
+}
+
+/* The variables at a time, and how far each may be off, by difference quotients of the reference. */
+static void draw_values(rng *r, const world *w, double from, double to, long double *values) {
+  const cprox_error_bounds *b = &w->bounds;
+  double time = from + (to - from) * (rng_index(r, 8) ? rng_uniform(r, 0, 1) : (double)rng_index(r, 2));
+  time = fmin(fmax(time + b->timing * part(r), w->t.spline ? w->t.times[TEST_SPLINE_DEGREE] : w->t.times[0]),
+              w->t.spline ? w->t.times[w->t.n_points] : w->t.times[w->t.n_points - 1]);
+  robot_ref_values(&w->t, time, values);
+  const long double h = 1e-5L;
+  long double before[TEST_MAX_VARIABLES + 1], after[TEST_MAX_VARIABLES + 1];
+  robot_ref_values(&w->t, (long double)time - h, before);
+  robot_ref_values(&w->t, (long double)time + h, after);
+  for (size_t v = 0; v < w->t.n_variables; v++) {
+    /* both sides of a waypoint are polynomials of their own: there the quotients are not taken */
+    bool smooth = true;
+    for (size_t k = 0; k < w->t.n_points + (w->t.spline ? TEST_SPLINE_DEGREE + 1 : 0); k++)
+      smooth = smooth && fabs(time - w->t.times[k]) > 2e-5;
+    const double rate = smooth ? (double)fabsl((after[v] - before[v]) / (2 * h)) * (1 - 1e-6) : 0.0;
+    const double second = smooth ? (double)fabsl((after[v] - 2 * values[v] + before[v]) / (h * h)) * (1 - 1e-3) : 0.0;
+    const double most =
+        b->tracking[v] + b->speed[v] * fmax(rate - 1e-6, 0.0) + b->acceleration[v] * fmax(second - 1e-3, 0.0);
+    values[v] += most * part(r);
+  }
+}
+
+static size_t first_moving_link(const test_robot *t, size_t link) {
+  for (int32_t i = (int32_t)link; i >= 0; i = t->links[i].parent)
+    if (t->links[i].type != CPROX_JOINT_FIXED) return 1;
+  return 0;
+}
+
+/* The least distance of one execution from all points, at one time. Flex is left to the sum of all shifts: it moves a
+ * link as a whole. */
+static long double execution(rng *r, const world *w, double from, double to) {
+  const cprox_error_bounds *b = &w->bounds;
+  long double values[TEST_MAX_VARIABLES + 1], least = HUGE_VALL;
+  ref_pose links[TEST_MAX_LINKS];
+  draw_values(r, w, from, to, values);
+  robot_ref_links(&w->t, values, links);
+  const vec3l nowhere = {0, 0, 0};
+  const rng base = *r;
+  for (size_t g = 0; g < w->t.n_links; g++) {
+    vec3l exact[TEST_VERTICES];
+    vec3 v[TEST_VERTICES];
+    robot_ref_vertices(&w->t, links, g, exact);
+    const vec3l bent = first_moving_link(&w->t, g) ? shifted(r, b->flex, nowhere) : nowhere;
+    for (size_t k = 0; k < TEST_VERTICES; k++) {
+      rng same = base; /* the base is where it is for all links */
+      const vec3l at = shifted(&same, b->base_position,
+                               turned(&same, b->base_rotation, ref_vec(b->base_origin), ref_add(exact[k], bent)));
+      v[k] = vec((double)at.x, (double)at.y, (double)at.z);
+    }
+    for (size_t i = 0; i < TARGETS; i++) {
+      const cprox_pose *pose = &w->targets[i].pose;
+      vec3l point = ref_to_world(pose, shifted(r, b->sensor, ref_vec(w->points[i])));
+      point = shifted(r, b->object_position, turned(r, b->object_rotation, ref_vec(pose->position), point));
+      least = fminl(least, fmaxl(ref_point_hull(point, v, TEST_VERTICES) - w->t.margin, 0.0L));
+    }
+  }
+  return least;
+}
+
+CASE(no_execution_comes_nearer_than_is_certified) {
+  rng r = rng_seed(4601);
+  size_t executions = 0, tight = 0, worlds = 0;
+  for (size_t i = 0; i < test_cases(250); i++) {
+    world w;
+    make_world(&r, &w);
+    cprox_obstacles *obstacles = NULL;
+    const cprox_obstacle_index index = rng_index(&r, 2) ? CPROX_INDEX_BVH : CPROX_INDEX_NONE;
+    assert_int_equal(cprox_obstacles_create(w.targets, TARGETS, index, ws, &obstacles), CPROX_OK);
+    const cprox_motion_info info = cprox_motion_get_info(w.t.motion);
+    const double length = info.t1 - info.t0;
+    const double interval[2] = {info.t0 + rng_uniform(&r, 0, 0.4) * length, info.t1 - rng_uniform(&r, 0, 0.4) * length};
+    const bool all = rng_index(&r, 2);
+    cprox_options options = accurate(1e-5);
+    if (!all) options.interval = interval;
+    cprox_result d, verdict;
+    const cprox_mover mover = cprox_robot_along(w.t.motion, NULL, 0);
+    const cprox_status status = cprox_robust_distance(obstacles, mover, &w.bounds, &options, ws, &d);
+    if (status != CPROX_OK) fail_msg("world %zu: %s", i, cprox_workspace_error(ws));
+    if (d.lower > 0.0) {
+      const double delta = 0.9 * d.lower;
+      assert_int_equal(cprox_robust_tolerance(obstacles, mover, delta, &w.bounds, &options, ws, &verdict), CPROX_OK);
+      assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
+      assert_true(verdict.lower > delta);
+      worlds++;
+      /* near where it is least, and anywhere */
+      for (size_t k = 0; k < EXECUTIONS; k++) {
+        const double at = fmin(fmax(d.t, all ? info.t0 : interval[0]), all ? info.t1 : interval[1]);
+        const bool near = k % 2;
+        const long double least = execution(&r, &w,
+                                            near  ? at
+                                            : all ? info.t0
+                                                  : interval[0],
+                                            near  ? at
+                                            : all ? info.t1
+                                                  : interval[1]);
+        if (least < d.lower) fail_msg("world %zu: %.12Lg, certified %.12g", i, least, d.lower);
+        tight += least < d.lower + 0.003;
+        executions++;
+      }
+    }
+    cprox_obstacles_free(obstacles);
+    free_world(&w);
+  }
+  print_message("%zu executions of %zu motions, none nearer than certified; %zu within 3 mm of it\n", executions,
+                worlds, tight);
+  if (worlds >= 50) assert_true(worlds > test_cases(50) && tight > 0);
+}
+
+/* The robot with itself: links are drawn from the same values, and bent each by itself. */
+CASE(no_execution_brings_two_links_nearer_than_is_certified) {
+  rng r = rng_seed(4602);
+  size_t asked = 0;
+  for (size_t i = 0; i < test_cases(120); i++) {
+    world w;
+    make_world(&r, &w);
+    for (int32_t a = 1; a < (int32_t)w.t.n_links; a++) {
+      const cprox_robot_pair pair = {a, (int32_t)rng_index(&r, (size_t)a)};
+      if (cprox_motion_get_link_info(w.t.motion, pair.geometry, pair.other).n_joints < 2) continue;
+      cprox_options options = accurate(1e-5);
+      cprox_result d;
+      const cprox_mover self = cprox_robot_self(w.t.motion, &pair, 1);
+      const cprox_status status = cprox_robust_distance(NULL, self, &w.bounds, &options, ws, &d);
+      if (status != CPROX_OK) fail_msg("world %zu: %s", i, cprox_workspace_error(ws));
+      if (!(d.lower > 0.0)) continue;
+      asked++;
+      const cprox_motion_info info = cprox_motion_get_info(w.t.motion);
+      for (int k = 0; k < 40; k++) {
+        long double values[TEST_MAX_VARIABLES + 1];
+        ref_pose links[TEST_MAX_LINKS];
+        draw_values(&r, &w, k % 2 ? d.t : info.t0, k % 2 ? d.t : info.t1, values);
+        robot_ref_links(&w.t, values, links);
+        cprox_obstacle side[2];
+        for (int s = 0; s < 2; s++) {
+          const int32_t geometry = s ? pair.other : pair.geometry;
+          const cprox_link_geometry *g = &w.t.geometries[geometry];
+          const ref_pose *l = &links[g->link];
+          vec3l p = l->p;
+          if (first_moving_link(&w.t, (size_t)g->link)) p = shifted(&r, w.bounds.flex, p);
+          const cprox_pose link = {.position = {(double)p.x, (double)p.y, (double)p.z},
+                                   .orientation = {(double)l->q[3], (double)l->q[0], (double)l->q[1], (double)l->q[2]}};
+          side[s] = cprox_with_margin(cprox_obstacle_at(g->body, frame_compose(&link, &g->pose)), g->margin);
+        }
+        cprox_result at;
+        assert_true(cprox_pair(side[0], side[1], NULL, ws, &at) >= 0);
+        if (at.upper < d.lower - 1e-12) fail_msg("world %zu: %.12g, certified %.12g", i, at.upper, d.lower);
+      }
+    }
+    free_world(&w);
+  }
+  print_message("%zu pairs of links\n", asked);
+  if (test_cases(120) >= 60) assert_true(asked > test_cases(60));
+}
+
+int main(void) {
+  return cases_run(workspace_setup, workspace_teardown);
+}
