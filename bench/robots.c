@@ -268,6 +268,7 @@ int main(int argc, char **argv) {
   bench_robot_scale(&cases[0], &size, ws);
   bench_robot_links(&size, ws);
   bench_robot_states(cases, n_cases, &size, ws);
+  bench_robot_errors(cases, n_cases, &size, ws);
   bench_robot_edges(cases, n_cases, &size, ws);
   for (size_t i = 0; i < n_cases; i++) {
     robot_fcl_free(fcl[i]);

@@ -24,6 +24,9 @@ void bench_robot_links(const bench_size *size, cprox_workspace *workspace);
 /* States without a motion, beside FCL. */
 void bench_robot_states(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
 
+/* Verdicts and scales for all executions within bounds of their errors, beside plain verdicts. */
+void bench_robot_errors(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
+
 /* Straight edges, beside samples by the same lanes. */
 void bench_robot_edges(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
 
