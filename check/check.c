@@ -19,7 +19,7 @@
 #include "support.h"
 #include "winding.h"
 
-enum { MAX_DEPTH = 256 };
+enum { MAX_DEPTH = 256, BALLS = 4 };
 
 /* Bits of the arithmetic: few at first, many for what the few leave open. Doubles with radii come before (quick.h). */
 static const int BITS[PIECES_LEVELS] = {640, 4096};
@@ -30,8 +30,10 @@ typedef struct section {
   uint32_t width;
   const set *set;
   pieces *mover, *target; /* target: of a set that is a curve */
+  pieces *clock[3];       /* NULL, or what else is at the mover's parameter: its growth; the set's ride and growth */
+  const set *carried;     /* by the mover, or NULL */
   double until;           /* the part of the mover that is spoken of, from 0 on, in pieces */
-  double balls[3];        /* delta, radius, margin */
+  double balls[BALLS];    /* delta, radius, margin, that of what is carried */
   size_t *leaves;
 } section;
 
@@ -62,6 +64,35 @@ static sign sign_of(const iv *a) {
   return mpfr_number_p(a->hi) && mpfr_sgn(a->hi) <= 0 ? NOT_POSITIVE : OPEN;
 }
 
+/* out = max n·x over the posed set, without margin; n becomes that of its own frame. */
+static void reach_along(iv *out, const set *s, iv n[3]) {
+  iv *w = iv_new(1), *own = iv_new(3);
+  support_of_frame(out, own, s, n);
+  support_of_body(w, s, own);
+  iv_add(out, out, w);
+  iv_free(w, 1);
+  iv_free(own, 3);
+}
+
+/* The least height along n of what moves over the set, of all that is at one parameter: the mover's curve; less the
+ * set's, seen as its first pose turns it; less |n| times what both grow. */
+static void least_height(iv *out, const section *c, int level, const iv n[3], part mine) {
+  iv *own = iv_new(3), *far = iv_new(1), *thick = iv_new(3);
+  const set outer = support_outermost(c->set);
+  support_of_frame(far, own, &outer, n);
+  for (int k = 0; k < 3; k++) iv_neg(&own[k], &own[k]);
+  iv_norm(&thick[0], n);
+  iv_neg(&thick[0], &thick[0]);
+  pieces_share shares[4] = {{c->mover, n}};
+  size_t n_shares = 1;
+  for (int i = 0; i < 3; i++)
+    if (c->clock[i]) shares[n_shares++] = (pieces_share){c->clock[i], i == 1 ? own : thick};
+  pieces_least(out, shares, n_shares, level, mine.from, mine.to);
+  iv_free(own, 3);
+  iv_free(far, 1);
+  iv_free(thick, 3);
+}
+
 /* Is what the two are apart along n more than n makes of the balls? Of all of the set, or of a part of a curve. */
 static sign separation(const section *c, int level, const direction *along, part mine, const part *theirs) {
   iv *n = iv_new(3), *own = iv_new(3), *w = iv_new(3), *gap = iv_new(1);
@@ -73,13 +104,18 @@ static sign separation(const section *c, int level, const direction *along, part
   support_of_frame(&w[0], own, c->set, n);
   if (theirs) {
     for (int k = 0; k < 3; k++) iv_neg(&own[k], &own[k]);
-    pieces_least(&w[1], c->target, level, own, theirs->from, theirs->to);
+    pieces_least(&w[1], &(pieces_share){c->target, own}, 1, level, theirs->from, theirs->to);
     iv_neg(&w[1], &w[1]);
   } else if (!implicit) {
     support_of_body(&w[1], c->set, own);
   }
   iv_add(&w[0], &w[0], &w[1]);
-  for (int i = 0; i < 3; i++) {
+  if (c->carried) {
+    for (int k = 0; k < 3; k++) iv_neg(&own[k], &n[k]);
+    reach_along(&w[1], c->carried, own);
+    iv_add(&w[0], &w[0], &w[1]);
+  }
+  for (int i = 0; i < BALLS; i++) {
     iv_set_d(&w[1], c->balls[i]);
     iv_add(gap, gap, &w[1]);
   }
@@ -87,7 +123,7 @@ static sign separation(const section *c, int level, const direction *along, part
   const sign proper = sign_of(&w[1]);
   iv_mul(&w[1], &w[1], gap);
   iv_add(&w[0], &w[0], &w[1]);
-  pieces_least(&w[2], c->mover, level, n, mine.from, mine.to);
+  least_height(&w[2], c, level, n, mine);
   iv_sub(&w[2], &w[2], &w[0]);
   const sign apart = sign_of(&w[2]);
   iv_free(n, 3);
@@ -115,7 +151,8 @@ static bool separates(const section *c, const direction *along, part mine, const
   }
   memcpy(quick.normal, along->n, sizeof quick.normal);
   memcpy(quick.balls, c->balls, sizeof quick.balls);
-  sign found = quick_separates(&quick) ? POSITIVE : OPEN;
+  const bool simple = !c->carried && !c->clock[0] && !c->clock[1] && !c->clock[2];
+  sign found = simple && quick_separates(&quick) ? POSITIVE : OPEN;
   for (int level = 0; level < PIECES_LEVELS && found == OPEN; level++) {
     iv_precision(BITS[level]);
     found = separation(c, level, along, mine, theirs);
@@ -179,6 +216,7 @@ static const char *check_section(section *c) {
   const part all = {0.0, c->until};
   if (reader_byte(c->in) != wanted) return "it is about another kind of target";
   if (wanted == 1) return check_convex(c);
+  if (c->set->kind == SOLID && (c->carried || c->clock[1])) return "what is inside a mesh that moves is not known";
   if (wanted == 3) {
     const char *broken = check_tree(c, all, (part){0.0, (double)set_elements(c->set)}, 0);
     if (broken || c->set->kind != SOLID || winding_pieces_begin_outside(c->set, c->mover, (size_t)ceil(c->until)))
@@ -223,21 +261,44 @@ static const char *check_robot_apart(robot *r, reader *in, uint32_t width, bool 
   return robot_apart(r, in, width, found->delta, &end, &found->leaves);
 }
 
+/* All sets against one body that is carried, or the curve alone. clock: that of the mover's own growth. */
+static const char *check_sets(const problem *p, section *c, pieces *growth, double delta) {
+  const char *fault = NULL;
+  for (size_t i = 0; i < p->n_sets && !fault; i++) {
+    c->set = &p->sets[i];
+    const double balls[BALLS] = {delta, p->mover.radius, c->set->margin, c->carried ? c->carried->margin : 0.0};
+    memcpy(c->balls, balls, sizeof balls);
+    pieces made[2] = {{0}, {0}};
+    const curve *given[2] = {&c->set->ride, &c->set->growth};
+    c->clock[0] = growth->n > 0 ? growth : NULL;
+    for (int k = 0; k < 2; k++) {
+      const bool there = curve_is_there(given[k]);
+      if (there && !fault) fault = pieces_make(&made[k], given[k], c->mover->breaks, c->mover->n);
+      c->clock[1 + k] = there ? &made[k] : NULL;
+    }
+    if (!fault) fault = check_section(c);
+    for (int k = 0; k < 2; k++) pieces_free(&made[k]);
+  }
+  return fault;
+}
+
 static const char *check_apart(const problem *p, reader *in, uint32_t width, bool before, finding *found) {
-  pieces path = {0};
+  const mover *m = &p->mover;
+  pieces path = {0}, growth = {0};
   double *breaks = NULL;
   const double end = before ? reader_number(in) : 0.0;
-  const char *fault = read_pieces(in, &p->mover.curve, &path, &breaks);
+  const char *fault = read_pieces(in, &m->curve, &path, &breaks);
+  if (!fault && curve_is_there(&m->growth)) fault = pieces_make(&growth, &m->growth, breaks, path.n);
   if (!fault && before && !(end > 0.0 && end <= (double)path.n)) fault = "it ends outside the curve";
   if (!fault && before) found->until = parameter_at(breaks, end);
-  for (size_t i = 0; i < p->n_sets && !fault; i++) {
-    section c = {.in = in, .width = width, .set = &p->sets[i], .mover = &path, .leaves = &found->leaves};
-    const double balls[3] = {found->delta, p->mover.radius, c.set->margin};
-    memcpy(c.balls, balls, sizeof balls);
-    c.until = before ? end : (double)path.n;
-    fault = check_section(&c);
+  section c = {.in = in, .width = width, .mover = &path, .leaves = &found->leaves};
+  c.until = before ? end : (double)path.n;
+  for (size_t i = 0; (i == 0 || i < m->n_carried) && !fault; i++) {
+    c.carried = m->n_carried > 0 ? &m->carried[i] : NULL;
+    fault = check_sets(p, &c, &growth, found->delta);
   }
   pieces_free(&path);
+  pieces_free(&growth);
   free(breaks);
   return fault;
 }
@@ -289,7 +350,8 @@ static const char *check_claim(const problem *p, reader *in, uint32_t width, uin
   const bool apart = claimed == CLAIM_APART || claimed == CLAIM_BEFORE;
   if (!apart && claimed != CLAIM_NEAR) return "it claims nothing that is known";
   if (r && sections != r->n_pairs) return "it is about another number of pairs";
-  if (!r && apart && sections != p->n_sets) return "it is about another number of targets";
+  const size_t loads = p->mover.n_carried > 0 ? p->mover.n_carried : 1;
+  if (!r && apart && sections != loads * p->n_sets) return "it is about another number of targets";
   if (claimed == CLAIM_NEAR) return check_place(p, in, found->delta);
   if (claimed == CLAIM_BEFORE) return check_before(p, in, width, found);
   return r ? check_robot_apart(r, in, width, false, found) : check_apart(p, in, width, false, found);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "interval.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static _Thread_local mpfr_prec_t precision = 640; /* of the thread that checks */
@@ -26,8 +27,8 @@ static void count(int products) {
   work += products * words * words;
 }
 
-/* Powers, roots, quotients: about so many products. */
-enum { POWER_WORK = 60, ROOT_WORK = 4, QUOTIENT_WORK = 4 };
+/* Roots, quotients: about so many products. */
+enum { ROOT_WORK = 4, QUOTIENT_WORK = 4 };
 
 /* ---- memory: MPFR's own ends the program where there is none ---- */
 
@@ -178,19 +179,109 @@ void iv_sqrt(iv *out, const iv *a) {
   mpfr_sqrt(out->hi, a->hi, MPFR_RNDU);
 }
 
+/* ---- exponential and logarithm ---- */
+
+/* SMALL: the series is of an argument below 2^-SMALL; HUGE: exponent of the largest that something is said of. */
+enum { SMALL = 12, HUGE_ARGUMENT = 40, POWER_BITS = SMALL + HUGE_ARGUMENT + 24 };
+
+/* e^x, |x| < 2^HUGE_ARGUMENT, within 2^-precision of itself: the square of a square and so on of a series. Let v =
+ * 2^-bits. The series has bits / 12 < 400 sums and as many products: it is off by 2^10 v of itself at most, a square by
+ * twice as much and v. After h <= 52 squares that is below 2^(h + 12) v, less than 2^-(precision + 12). */
+static void power_of_e(mpfr_ptr out, mpfr_srcptr x) {
+  const mpfr_prec_t wanted = precision, bits = wanted + POWER_BITS;
+  const mpfr_exp_t size = mpfr_sgn(x) != 0 ? mpfr_get_exp(x) : -SMALL;
+  const int halvings = size > -SMALL ? (int)size + SMALL : 0;
+  precision = bits;
+  iv *w = iv_new(2);
+  mpfr_ptr y = w[0].lo, term = w[0].hi, sum = w[1].lo;
+  mpfr_div_2si(y, x, halvings, MPFR_RNDN);
+  mpfr_set_ui(term, 1, MPFR_RNDN);
+  mpfr_set_ui(sum, 1, MPFR_RNDN);
+  for (int k = 1; (k - 1) * SMALL <= bits; k++) {
+    mpfr_mul(term, term, y, MPFR_RNDN);
+    mpfr_div_ui(term, term, (unsigned long)k, MPFR_RNDN);
+    mpfr_add(sum, sum, term, MPFR_RNDN);
+    count(1);
+  }
+  for (int i = 0; i < halvings; i++) mpfr_mul(sum, sum, sum, MPFR_RNDN);
+  count(halvings);
+  precision = wanted;
+  mpfr_set(out, sum, MPFR_RNDN);
+  iv_free(w, 2);
+}
+
+/* One end, rounded down or up. */
+static void exponential(mpfr_ptr out, mpfr_srcptr x, mpfr_rnd_t to) {
+  const bool up = to == MPFR_RNDU, less = !mpfr_nan_p(x) && mpfr_sgn(x) < 0;
+  if (mpfr_number_p(x) && (mpfr_zero_p(x) || mpfr_get_exp(x) <= HUGE_ARGUMENT)) {
+    iv *w = iv_new(1);
+    power_of_e(w->lo, x);
+    mpfr_set_ui_2exp(w->hi, 1, 2 - precision, MPFR_RNDU);
+    if (up)
+      mpfr_add_ui(w->hi, w->hi, 1, MPFR_RNDU);
+    else
+      mpfr_ui_sub(w->hi, 1, w->hi, MPFR_RNDD);
+    mpfr_mul(out, w->lo, w->hi, to);
+    iv_free(w, 1);
+  } else if (up && less) {
+    mpfr_set_ui_2exp(out, mpfr_inf_p(x) ? 0 : 1, -(1L << (HUGE_ARGUMENT - 20)), MPFR_RNDU);
+  } else if (up) {
+    mpfr_set_inf(out, 1);
+  } else {
+    mpfr_set_ui(out, mpfr_nan_p(x) || less ? 0 : 1, MPFR_RNDD);
+  }
+}
+
 void iv_exp(iv *out, const iv *a) {
-  count(2 * POWER_WORK);
-  mpfr_exp(out->lo, a->lo, MPFR_RNDD);
-  mpfr_exp(out->hi, a->hi, MPFR_RNDU);
+  iv *w = iv_new(1);
+  exponential(w->lo, a->lo, MPFR_RNDD);
+  exponential(w->hi, a->hi, MPFR_RNDU);
+  iv_set(out, w);
+  iv_free(w, 1);
+}
+
+/* Of a positive number: y by Halley's steps, each of which has three times as many bits. Then with x = (1 + t) e^y,
+ * t/(1 + t) <= log(1 + t) <= t, whatever y is. */
+static void logarithm(iv *out, mpfr_srcptr x) {
+  enum { DOUBLE_BITS = 40 };
+  long exponent;
+  const double m = mpfr_get_d_2exp(&exponent, x, MPFR_RNDN);
+  iv *w = iv_new(3);
+  mpfr_ptr y = w[0].lo, e = w[0].hi, up = w[1].lo, down = w[1].hi;
+  mpfr_set_d(y, log(m) + 0.69314718055994531 * (double)exponent, MPFR_RNDN);
+  for (long bits = DOUBLE_BITS; bits < precision; bits *= 3) { /* y += 2 (x - e^y) / (x + e^y) */
+    power_of_e(e, y);
+    mpfr_sub(up, x, e, MPFR_RNDN);
+    mpfr_add(down, x, e, MPFR_RNDN);
+    mpfr_div(up, up, down, MPFR_RNDN);
+    mpfr_mul_2ui(up, up, 1, MPFR_RNDN);
+    mpfr_add(y, y, up, MPFR_RNDN);
+  }
+  exponential(w[2].lo, y, MPFR_RNDD);
+  exponential(w[2].hi, y, MPFR_RNDU);
+  mpfr_div(up, x, w[2].lo, MPFR_RNDU); /* at least 1 + t */
+  mpfr_sub_ui(up, up, 1, MPFR_RNDU);
+  mpfr_div(down, w[2].hi, x, MPFR_RNDU); /* at least 1/(1 + t) = 1 - t/(1 + t) */
+  mpfr_ui_sub(down, 1, down, MPFR_RNDD);
+  mpfr_add(out->lo, y, down, MPFR_RNDD);
+  mpfr_add(out->hi, y, up, MPFR_RNDU);
+  iv_free(w, 3);
 }
 
 void iv_log(iv *out, const iv *a) {
-  count(2 * POWER_WORK);
-  if (mpfr_sgn(a->lo) <= 0)
-    mpfr_set_inf(out->lo, -1);
-  else
-    mpfr_log(out->lo, a->lo, MPFR_RNDD);
-  mpfr_log(out->hi, a->hi, MPFR_RNDU);
+  iv *w = iv_new(2);
+  for (int k = 0; k < 2; k++) {
+    mpfr_srcptr end = k == 0 ? a->lo : a->hi;
+    const bool usual = mpfr_number_p(end) && mpfr_sgn(end) > 0;
+    if (usual) logarithm(&w[k], end);
+    if (!usual) {
+      mpfr_set_inf(w[k].lo, -1);
+      mpfr_set_inf(w[k].hi, !mpfr_nan_p(end) && mpfr_sgn(end) <= 0 ? -1 : 1);
+    }
+  }
+  mpfr_set(out->lo, w[0].lo, MPFR_RNDD);
+  mpfr_set(out->hi, w[1].hi, MPFR_RNDU);
+  iv_free(w, 2);
 }
 
 /* ---- cosine and sine: MPFR's would take memory of its own ---- */

@@ -241,19 +241,51 @@ const char *near_check_point(const set *s, iv *y, iv *apart, reader *in, bool le
   return fault;
 }
 
-/* With the limits from the left or from the right, of mover and target, where they jump. */
+/* What is added to the balls at t: the growth, as little as it can be. */
+static const char *add_growth(iv *balls, const curve *growth, double t, bool left) {
+  if (!curve_is_there(growth)) return NULL;
+  iv *x = iv_new(3), *w = iv_new(1);
+  const char *fault = point_at(x, w, growth, t, left);
+  iv_add(balls, balls, &x[0]);
+  iv_sub(balls, balls, w);
+  iv_free(x, 3);
+  iv_free(w, 1);
+  return fault;
+}
+
+/* The point of a body that is carried by a curve's point y, which becomes it. */
+static const char *add_carried(iv y[3], const set *carried, reader *in) {
+  iv *x = iv_new(3), *n = iv_new(3);
+  const char *fault = near_read_point(n, carried, in) ? NULL : "the point it names is not in what is carried";
+  support_point_to_world(x, carried, n);
+  for (int k = 0; k < 3; k++) iv_add(&y[k], &y[k], &x[k]);
+  iv_free(x, 3);
+  iv_free(n, 3);
+  return fault;
+}
+
+/* With the limits from the left or from the right, of all that is at the mover's parameter and of a target, where they
+ * jump. */
 static const char *check_limits(const problem *p, reader *in, double delta, int limits) {
+  const mover *m = &p->mover;
   const uint32_t index = reader_count(in);
   const double t = reader_number(in);
-  if (in->bad || index >= p->n_sets) return "it is about no target of these";
-  const set *s = &p->sets[index];
-  iv *y = iv_new(3), *own = iv_new(3), *w = iv_new(2);
-  const char *fault = point_at(y, &w[0], &p->mover.curve, t, (limits & 1) != 0);
+  if (in->bad || p->n_sets == 0 || index / p->n_sets >= (m->n_carried > 0 ? m->n_carried : 1))
+    return "it is about no target of these";
+  const set *s = &p->sets[index % p->n_sets], *carried = m->n_carried > 0 ? &m->carried[index / p->n_sets] : NULL;
+  const bool left = (limits & 1) != 0, rides = curve_is_there(&s->ride);
+  iv *y = iv_new(3), *own = iv_new(3), *ride = iv_new(3), *w = iv_new(3);
+  const char *fault = point_at(y, &w[0], &m->curve, t, left);
+  if (!fault && rides) fault = point_at(ride, &w[2], &s->ride, t, left);
+  if (!fault && carried) fault = add_carried(y, carried, in);
+  iv_add(&w[0], &w[0], &w[2]);
+  iv_neg(&w[0], &w[0]); /* remainders take from the balls */
+  if (!fault) fault = add_growth(&w[0], &m->growth, t, left);
+  if (!fault) fault = add_growth(&w[0], &s->growth, t, left);
   if (!fault) {
-    support_point_to_frame(own, s, y);
-    const double balls[3] = {delta, p->mover.radius, s->margin};
-    iv_neg(&w[0], &w[0]); /* the mover's remainder takes from the balls */
-    for (int i = 0; i < 3; i++) {
+    support_point_to_frame(own, s, y, rides ? ride : NULL);
+    const double balls[4] = {delta, m->radius, s->margin, carried ? carried->margin : 0.0};
+    for (int i = 0; i < 4; i++) {
       iv_set_d(&w[1], balls[i]);
       iv_add(&w[0], &w[0], &w[1]);
     }
@@ -261,7 +293,8 @@ static const char *check_limits(const problem *p, reader *in, double delta, int 
   }
   iv_free(y, 3);
   iv_free(own, 3);
-  iv_free(w, 2);
+  iv_free(ride, 3);
+  iv_free(w, 3);
   return fault;
 }
 
@@ -271,11 +304,14 @@ const char *check_near(const problem *p, reader *in, double delta) {
   const reader start = *in;
   reader ahead = start;
   const uint32_t index = reader_count(&ahead);
-  const bool known = !ahead.bad && index < p->n_sets;
+  if (ahead.bad || p->n_sets == 0) return "it is about no target of these";
 
   /* splines alone can jump: of other curves both limits are one */
-  int jumps = p->mover.curve.basis == BSPLINE ? 1 : 0;
-  if (known && p->sets[index].kind == CURVE && p->sets[index].curve.basis == BSPLINE) jumps |= 2;
+  const set *s = &p->sets[index % p->n_sets];
+  const curve *clock[4] = {&p->mover.curve, &p->mover.growth, &s->ride, &s->growth};
+  int jumps = s->kind == CURVE && s->curve.basis == BSPLINE ? 2 : 0;
+  for (int i = 0; i < 4; i++)
+    if (curve_is_there(clock[i]) && clock[i]->basis == BSPLINE) jumps |= 1;
   for (int limits = 0; limits < 4; limits++) {
     if ((limits & ~jumps) != 0) continue;
     *in = start;

@@ -510,33 +510,69 @@ const pieces_quick *pieces_quick_at(pieces *p, size_t i) {
   return q;
 }
 
-void pieces_least(iv *out, pieces *p, int level, const iv n[3], double from, double to) {
-  iv *a = iv_new(p->degree + 1), *s = iv_new(3), *length = iv_new(1);
-  iv_norm(length, n);
-  bool first = true;
-  for (size_t i = (size_t)floor(from); i < (size_t)ceil(to) && i < p->n; i++) {
+/* Bernstein numbers of one degree more: b_j = j/m b_(j-1) + (1 - j/m) b_j. */
+static void raise_degree(iv *b, size_t degree) {
+  const size_t m = degree + 1;
+  iv *w = iv_new(2);
+  iv_set(&b[m], &b[degree]);
+  iv_set_d(&w[1], (double)m);
+  for (size_t j = degree; j > 0; j--) {
+    iv_mul_d(&w[0], &b[j - 1], (double)j);
+    iv_mul_d(&b[j], &b[j], (double)(m - j));
+    iv_add(&b[j], &b[j], &w[0]);
+    iv_div(&b[j], &b[j], &w[1]);
+  }
+  iv_free(w, 2);
+}
+
+/* The Bernstein numbers of the sum over piece i, less the remainders. */
+static void add_shares(iv *a, const pieces_share *shares, size_t n_shares, const iv *lengths, int level, size_t i,
+                       size_t degree) {
+  iv *b = iv_new(degree + 1), *moved = iv_new(1);
+  for (size_t k = 0; k < n_shares; k++) {
+    pieces *p = shares[k].of;
     const iv *piece = piece_at(p, &p->at[level], i);
+    for (size_t j = 0; j <= p->degree; j++) iv_dot(&b[j], shares[k].n, piece + 3 * j);
+    for (size_t d = p->degree; d < degree; d++) raise_degree(b, d);
+    iv_mul(moved, &lengths[k], &piece[numbers_of(p)]);
+    for (size_t j = 0; j <= degree; j++) {
+      iv_sub(&b[j], &b[j], moved);
+      if (k == 0)
+        iv_set(&a[j], &b[j]);
+      else
+        iv_add(&a[j], &a[j], &b[j]);
+    }
+  }
+  iv_free(b, degree + 1);
+  iv_free(moved, 1);
+}
+
+void pieces_least(iv *out, const pieces_share *shares, size_t n_shares, int level, double from, double to) {
+  size_t degree = 0;
+  for (size_t k = 0; k < n_shares; k++) degree = shares[k].of->degree > degree ? shares[k].of->degree : degree;
+  iv *a = iv_new(degree + 1), *s = iv_new(3), *lengths = iv_new(n_shares);
+  for (size_t k = 0; k < n_shares; k++) iv_norm(&lengths[k], shares[k].n);
+  bool first = true;
+  for (size_t i = (size_t)floor(from); i < (size_t)ceil(to) && i < shares[0].of->n; i++) {
     const double k = (double)i, s0 = fmax(from - k, 0.0), s1 = fmin(to - k, 1.0);
-    for (size_t j = 0; j <= p->degree; j++) iv_dot(&a[j], n, piece + 3 * j);
+    add_shares(a, shares, n_shares, lengths, level, i, degree);
     iv_set_d(&s[0], s0);
-    if (s0 > 0.0) cut(a, p->degree, &s[0], false);
+    if (s0 > 0.0) cut(a, degree, &s[0], false);
     if (s1 < 1.0) { /* (s1 - s0) / (1 - s0) of what is left */
       iv_set_d(&s[1], s1);
       iv_set_d(&s[2], 1.0);
       iv_sub(&s[1], &s[1], &s[0]);
       iv_sub(&s[2], &s[2], &s[0]);
       iv_div(&s[1], &s[1], &s[2]);
-      cut(a, p->degree, &s[1], true);
+      cut(a, degree, &s[1], true);
     }
-    iv_mul(&s[0], length, &piece[numbers_of(p)]);
-    for (size_t j = 0; j <= p->degree; j++) {
-      iv_sub(&a[j], &a[j], &s[0]);
+    for (size_t j = 0; j <= degree; j++) {
       if (first) iv_set(out, &a[j]);
       iv_min(out, out, &a[j]);
       first = false;
     }
   }
-  iv_free(a, p->degree + 1);
+  iv_free(a, degree + 1);
   iv_free(s, 3);
-  iv_free(length, 1);
+  iv_free(lengths, n_shares);
 }

@@ -39,9 +39,15 @@ typedef struct pieces {
 const char *pieces_make(pieces *p, const curve *c, const double *breaks, size_t n);
 void pieces_free(pieces *p);
 
-/* min n·x over the part [from, to] of the pieces, counted from 0 to their number. The level's bits are those of the
- * arithmetic. */
-void pieces_least(iv *out, pieces *p, int level, const iv n[3], double from, double to);
+/* A curve and the direction that its points are seen along. */
+typedef struct pieces_share {
+  pieces *of;
+  const iv *n;
+} pieces_share;
+
+/* The least of the sum of all n·x at one parameter, over the part [from, to] of the pieces, counted from 0 to their
+ * number; all shares have the same breaks. The level's bits are those of the arithmetic. */
+void pieces_least(iv *out, const pieces_share *shares, size_t n_shares, int level, double from, double to);
 
 /* Piece i in doubles, by few bits; NULL where memory is out. The bits of the arithmetic are those of level 0. */
 const pieces_quick *pieces_quick_at(pieces *p, size_t i);

@@ -112,6 +112,8 @@ void set_free(set *s) {
   free(s->rows.terms);
   free(s->rows.sum_of);
   free_curve(&s->curve);
+  free_curve(&s->ride);
+  free_curve(&s->growth);
 }
 
 /* ---- targets ---- */
@@ -260,12 +262,25 @@ bool words_begin(problem *p, words *w, const char *first) {
   return !w->wrong;
 }
 
-/* [called NAME] */
-static void read_name(words *w, set *s) {
-  const char *word = words_optional(w);
-  if (!word) return;
-  if (strcmp(word, "called") != 0) w->wrong = true;
-  snprintf(s->name, sizeof s->name, "%s", words_next(w));
+static void read_once(words *w, curve *c) {
+  if (curve_is_there(c))
+    w->wrong = true;
+  else
+    read_curve(w, c);
+}
+
+/* [riding CURVE] [growing CURVE] [called NAME] */
+static void read_more(words *w, set *s) {
+  for (const char *word = words_optional(w); word; word = words_optional(w)) {
+    if (strcmp(word, "riding") == 0)
+      read_once(w, &s->ride);
+    else if (strcmp(word, "growing") == 0)
+      read_once(w, &s->growth);
+    else if (strcmp(word, "called") == 0)
+      snprintf(s->name, sizeof s->name, "%s", words_next(w));
+    else
+      w->wrong = true;
+  }
 }
 
 /* The N lines of targets, "targets" being read. */
@@ -279,7 +294,7 @@ static bool read_sets(problem *p, words *w) {
     words_begin(p, w, "target");
     set *s = &p->sets[p->n_sets++];
     words_set(w, s);
-    read_name(w, s);
+    read_more(w, s);
     if (!words_end(p, w)) return false;
   }
   return !w->wrong;
@@ -287,8 +302,36 @@ static bool read_sets(problem *p, words *w) {
 
 static void free_mover(mover *m) {
   free_curve(&m->curve);
+  free_curve(&m->growth);
+  for (size_t i = 0; i < m->n_carried; i++) set_free(&m->carried[i]);
+  free(m->carried);
+  m->carried = NULL;
+  m->n_carried = 0;
   robot_forget(m->robot);
   m->robot = NULL;
+}
+
+/* [growing CURVE] [carrying N], and N lines `carried PADDING P POSE×P KIND SIZES`, convex and bounded. */
+static bool read_load(problem *p, words *w, mover *m) {
+  size_t n = 0;
+  for (const char *word = words_optional(w); word; word = words_optional(w)) {
+    if (strcmp(word, "growing") == 0)
+      read_once(w, &m->growth);
+    else if (strcmp(word, "carrying") == 0 && n == 0)
+      n = words_size(w);
+    else
+      w->wrong = true;
+  }
+  if (!words_end(p, w)) return false;
+  if (n == 0) return true;
+  m->carried = words_room(w, n, sizeof *m->carried);
+  while (!w->wrong && m->n_carried < n) {
+    set *s = &m->carried[m->n_carried++];
+    if (words_begin(p, w, "carried")) words_set(w, s);
+    if (s->kind == HALFSPACE || s->kind >= IMPLICIT) w->wrong = true;
+    if (!words_end(p, w)) return false;
+  }
+  return !w->wrong || words_end(p, w);
 }
 
 /* The line of a mover, its first word being read. */
@@ -306,6 +349,7 @@ static bool read_mover(problem *p, words *w, const char *first) {
     m->radius = words_number(w);
     if (!(m->radius >= 0.0)) w->wrong = true;
     read_curve(w, &m->curve);
+    return read_load(p, w, m);
   }
   return words_end(p, w);
 }

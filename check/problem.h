@@ -64,11 +64,17 @@ typedef struct set {
   double low[3], high[3]; /* of elements, a box round all vertices */
   curve curve;
   inequalities rows; /* IMPLICIT */
+  curve ride;        /* within the first pose, all of it is moved by this at the mover's parameter; n 0: it stands */
+  curve growth;      /* its x at the mover's parameter is added to the margin; n 0: nothing is */
   char name[64];     /* whose it is, or "" */
 } set;
 
 static inline size_t set_elements(const set *s) {
   return s->corners > 0 ? s->n / s->corners : 0;
+}
+
+static inline bool curve_is_there(const curve *c) {
+  return c->n > 0;
 }
 
 /* The box round the vertices of the elements begin ... end - 1. */
@@ -81,7 +87,9 @@ typedef struct mover {
   char id[256];
   bool none; /* there is no curve of this name to be asked about */
   double radius;
-  curve curve;
+  curve curve, growth; /* growth: as of a set, of the radius */
+  set *carried;        /* what is moved by the curve without turning; none: a point */
+  size_t n_carried;
   struct robot *robot; /* or NULL: then it is the curve that moves */
 } mover;
 

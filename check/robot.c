@@ -125,7 +125,13 @@ static bool read_all(problem *p, words *w, robot *r) {
   if (w->wrong || !read_lines(p, w, r, "link", links, read_link) || !read_lines(p, w, r, "part", parts, read_part))
     return false;
   const hook world = {.axis = -1, .at = HERE};
-  for (size_t i = 0; i < p->n_sets; i++) add_body(r, &p->sets[i], &world);
+  for (size_t i = 0; i < p->n_sets; i++) {
+    const set *s = &p->sets[i];
+    if (curve_is_there(&s->ride) || curve_is_there(&s->growth))
+      w->wrong = true; /* robots are held against what stands */
+    add_body(r, s, &world);
+  }
+  if (w->wrong) return words_end(p, w);
   if (!read_pairs(p, w, r)) return false;
   r->rest = words_room(w, r->n_variables, sizeof *r->rest);
   r->moved = words_room(w, r->n_variables, sizeof *r->moved);

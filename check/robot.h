@@ -47,7 +47,8 @@ typedef struct item {
   double middle[3], half[3], low[3], high[3]; /* boxes, about the body's centre: to choose by; of all vertices */
   int depth;                                  /* of cuts */
   size_t inner;                               /* the first of the two that it is cut into; 0: it is not */
-  double normal[3];                           /* the last one given, in the frame of what stands */
+  vec normal;                                 /* the last one given, in the frame of what stands */
+  num reach;                                  /* of a body by inequalities along it, about its centre */
   bool given;
 } item;
 

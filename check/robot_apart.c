@@ -15,6 +15,7 @@
 
 #include <stdlib.h>
 
+#include "inequalities.h"
 #include "kinematics.h"
 #include "span.h"
 #include "trajectory.h"
@@ -67,6 +68,7 @@ typedef struct open_list {
 /* max n·(x - centre) over what stands. */
 static num highest(const view *v, const vec *n) {
   const set *s = v->standing->shape;
+  if (s->kind == IMPLICIT) return v->item->reach; /* along no other direction it is known */
   if (v->shape) return span_along(v->shape, v->standing->radius, n);
   double most = s->size[0] * length_of(n->m);
   for (int k = 0; k < 3; k++) most += fmax(n->m[k] * v->item->low[k], n->m[k] * v->item->high[k]);
@@ -86,10 +88,10 @@ static bool is_beyond(num f, double rest) {
   return num_bottom(f) > rest;
 }
 
-static bool settles(const walk *w, const view *v, const double own[3]) {
-  const vec n_own = vec_of(own), n = rot_turn(&v->from->r, &n_own, false);
-  const double size = vec_top(&n_own), moving_pad = v->moving->shape->margin, standing_pad = v->standing->shape->margin;
-  const num start = num_sub(vec_dot(&n, &v->apart), highest(v, &n_own));
+static bool settles(const walk *w, const view *v, const vec *own) {
+  const vec n = rot_turn(&v->from->r, own, false);
+  const double size = vec_top(own), moving_pad = v->moving->shape->margin, standing_pad = v->standing->shape->margin;
+  const num start = num_sub(vec_dot(&n, &v->apart), highest(v, own));
   const double limit = GROW((w->delta + standing_pad) * size);
   ++*w->tries;
   if (!(size > SHORTEST && size < LONGEST)) return false;
@@ -138,10 +140,13 @@ static void default_normal(const view *v, double n[3]) {
 
 /* By the last direction given, then by the one that needs not be given. */
 static bool is_settled_by(const walk *w, const view *v) {
+  const kind standing = v->standing->shape->kind;
+  if (v->item->given && standing != HALFSPACE && settles(w, v, &v->item->normal)) return true;
+  if (standing == IMPLICIT) return false;
   double n[3];
   default_normal(v, n);
-  const bool flat = v->standing->shape->kind == HALFSPACE;
-  return (v->item->given && !flat && settles(w, v, v->item->normal)) || settles(w, v, n);
+  const vec own = vec_of(n);
+  return settles(w, v, &own);
 }
 
 static bool push(open_list *list, size_t pair_index, size_t item_index) {
@@ -207,7 +212,7 @@ static bool add_item(pair *p, const body *standing, size_t begin, size_t end, co
   if (outer) {
     one->given = outer->given;
     one->depth = outer->depth + 1;
-    for (int k = 0; k < 3; k++) one->normal[k] = outer->normal[k];
+    one->normal = outer->normal;
   }
   const set *s = standing->shape;
   for (int k = 0; k < 3; k++) one->middle[k] = standing->middle[k], one->half[k] = standing->half[k];
@@ -218,6 +223,23 @@ static bool add_item(pair *p, const body *standing, size_t begin, size_t end, co
     one->half[k] = 0.5 * (one->high[k] - one->low[k]);
   }
   return true;
+}
+
+/* The direction that multipliers make, and what they prove along it. */
+static bool read_multipliers(const walk *w, const set *s, item *one) {
+  iv *n = iv_new(4), *centre = iv_new(3);
+  const bool known = inequalities_reach(n, &n[3], s, w->width, w->in);
+  for (int k = 0; k < 3; k++) iv_set_d(&centre[k], s->centre[k]);
+  one->normal = winding_ball_of(n);
+  iv_dot(&centre[0], n, centre);
+  iv_sub(&n[0], &n[3], &centre[0]);
+  iv_set_d(&n[1], 0.0);
+  iv_set_d(&n[2], 0.0);
+  const vec high = winding_ball_of(n);
+  one->reach = (num){high.m[0], high.e};
+  iv_free(n, 4);
+  iv_free(centre, 3);
+  return known;
 }
 
 /* COUNT × {u16 pair, ENTRY}: from here on these are the directions of those pairs. ENTRY is n[3]; of elements u32 2 ×
@@ -241,7 +263,11 @@ static const char *read_directions(const walk *w, size_t count) {
       continue;
     }
     item *one = &p->items[code / 2];
-    reader_normal(w->in, w->width, one->normal);
+    double n[3] = {0.0, 0.0, 0.0};
+    const bool implicit = standing->shape->kind == IMPLICIT;
+    if (implicit && !read_multipliers(w, standing->shape, one)) return "its multipliers prove nothing";
+    if (!implicit) reader_normal(w->in, w->width, n);
+    if (!implicit) one->normal = vec_of(n);
     if (w->in->bad) return "it is cut off, or not a number";
     one->given = true;
   }

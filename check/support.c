@@ -53,7 +53,13 @@ void support_of_frame(iv *far, iv own[3], const set *s, const iv n[3]) {
   iv_free(w, 4);
 }
 
-void support_point_to_frame(iv own[3], const set *s, const iv p[3]) {
+set support_outermost(const set *s) {
+  set outer = *s;
+  outer.n_poses = s->n_poses > 0;
+  return outer;
+}
+
+void support_point_to_frame(iv own[3], const set *s, const iv p[3], const iv *ride) {
   iv *w = iv_new(1);
   for (int k = 0; k < 3; k++) iv_set(&own[k], &p[k]);
   for (size_t i = 0; i < s->n_poses; i++) {
@@ -62,13 +68,28 @@ void support_point_to_frame(iv own[3], const set *s, const iv p[3]) {
       iv_sub(&own[k], &own[k], w);
     }
     if (turns(&s->poses[i])) turn(own, s->poses[i].q, true);
+    for (int k = 0; k < 3 && ride && i == 0; k++) iv_sub(&own[k], &own[k], &ride[k]);
   }
+  for (int k = 0; k < 3 && ride && s->n_poses == 0; k++) iv_sub(&own[k], &own[k], &ride[k]);
   iv_free(w, 1);
 }
 
 void support_to_world(iv n[3], const set *s) {
   for (size_t i = s->n_poses; i-- > 0;)
     if (turns(&s->poses[i])) turn(n, s->poses[i].q, false);
+}
+
+void support_point_to_world(iv p[3], const set *s, const iv own[3]) {
+  iv *w = iv_new(1);
+  for (int k = 0; k < 3; k++) iv_set(&p[k], &own[k]);
+  for (size_t i = s->n_poses; i-- > 0;) {
+    if (turns(&s->poses[i])) turn(p, s->poses[i].q, false);
+    for (int k = 0; k < 3; k++) {
+      iv_set_d(w, s->poses[i].x[k]);
+      iv_add(&p[k], &p[k], w);
+    }
+  }
+  iv_free(w, 1);
 }
 
 /* max n·v over the vertices, the centre added. */

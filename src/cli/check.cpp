@@ -235,12 +235,12 @@ std::string moverOf(const CsvRow &row) {
 }
 
 /* A row of either file; the other curve is the target. */
-std::string pairOf(const std::optional<CsvRow> &first, const std::optional<CsvRow> &second) {
+std::string pairOf(const std::optional<CsvRow> &first, const std::optional<CsvRow> &second, bool synchronized) {
   if (!first || !second) return noMoverLine(first ? rowId(first->text) : "");
   try {
     const CurveDescription target = parseCurve(second->text);
     compile(target);
-    return curveTargetLines(target) + moverOf(*first);
+    return curveTargetLines(target, synchronized) + moverOf(*first);
   } catch (const std::bad_alloc &) {
     throw;
   } catch (const std::exception &) {
@@ -282,7 +282,7 @@ void tellPairs(const Arguments &arguments, Checkers &checkers) {
   while (true) {
     const std::optional<CsvRow> a = first.next(), b = second.next();
     if (!a && !b) return;
-    checkers.add(pairOf(a, b));
+    checkers.add(pairOf(a, b, arguments.synchronized));
   }
 }
 

@@ -245,7 +245,7 @@ const std::vector<Option> &options() {
        "doc/formats.md has them all. A radius that changes has the coefficients of 1, t, t², ..., separated by blanks. "
        "Lines that begin with # and a header row are skipped"},
       {"--against", "FILE", "distance tolerance collision check", "curves, too: instead of a scene"},
-      {"--synchronized", "", "distance tolerance collision",
+      {"--synchronized", "", "distance tolerance collision check",
        "with --against: both curves are at the same parameter, so that they may cross each other's way"},
       {"--scene", "FILE", "queries report constraints check robust speed margins sweep",
        "moveit_msgs/PlanningScene as YAML; may be left out where there is a robot"},

@@ -26,8 +26,7 @@ static bool is_bounded(size_t size, const finding *found) {
 static bool distance(const asked *q, cprox_options options, cprox_workspace *ws, double interval[2]) {
   cprox_result result;
   options.certificate = NULL;
-  if (distance_of_list(cprox_tube_along(q->mover.curve, q->radius), q->targets, q->n, &options, ws, &result, NULL) < 0)
-    return false;
+  if (distance_of_list(asked_mover(q), q->targets, q->n, &options, ws, &result, NULL) < 0) return false;
   interval[0] = result.lower, interval[1] = result.upper;
   return isfinite(result.upper);
 }
@@ -37,7 +36,7 @@ static bool ask(const asked *q, rng *r, cprox_workspace *ws, cprox_certificate *
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-12 * q->scale;
   if (!distance(q, options, ws, interval)) return false;
-  const cprox_mover along = cprox_tube_along(q->mover.curve, q->radius);
+  const cprox_mover along = asked_mover(q);
   cprox_result result;
   options.certificate = c;
   const double delta = interval[0] > 0.0 ? interval[0] * rng_uniform(r, 0.3, 1.3) : rng_uniform(r, 0.0, 0.1);
@@ -93,7 +92,9 @@ int main(int argc, char **argv) {
   mutants_tally sum = {0};
   for (size_t i = 0; i < queries;) {
     asked q;
-    const asked_kinds kinds = {.meshes = i % 5 > 1, .elements = true, .implicit = true, .bezier_only = i % 2 == 0};
+    asked_kinds kinds = {.meshes = i % 5 > 1, .elements = true, .implicit = true, .bezier_only = i % 2 == 0};
+    if (i % 5 == 0) kinds = (asked_kinds){.clock = true, .bezier_only = i % 2 == 0};
+    if (i % 5 == 1 && i % 2) kinds = (asked_kinds){.carried = true};
     asked_random(&q, &r, kinds, 1.0, 1.0, ws);
     for (size_t k = 0; k < q.n && i % 3 == 0; k++)
       q.targets[k].pose.position = vec_add(q.mover.points[0], rng_in_cube(&r, 0.3));

@@ -39,13 +39,13 @@ static void proven(const quick_query *q, double *low, double *high) {
   support_of_frame(&w[0], own, q->set, n);
   if (q->set->kind == CURVE) {
     for (int k = 0; k < 3; k++) iv_neg(&own[k], &own[k]);
-    pieces_least(&w[1], q->target, 0, own, q->theirs[0], q->theirs[1]);
+    pieces_least(&w[1], &(pieces_share){q->target, own}, 1, 0, q->theirs[0], q->theirs[1]);
     iv_neg(&w[1], &w[1]);
   } else {
     support_of_body(&w[1], q->set, own);
   }
   iv_add(&w[0], &w[0], &w[1]);
-  pieces_least(&w[1], q->mover, 0, n, q->from, q->to);
+  pieces_least(&w[1], &(pieces_share){q->mover, n}, 1, 0, q->from, q->to);
   iv_sub(&w[0], &w[1], &w[0]);
   iv_norm(&w[1], n);
   iv_div(&w[0], &w[0], &w[1]);

@@ -162,6 +162,22 @@ class CertificateTest(Case):
         self.assertEqual(checked.code, 0, checked.out + checked.err)
         self.assertEqual(checked.out.count('proven'), 2)
 
+    def what_moves_on_one_clock_and_grows_is_proven(self):
+        self.certificates = os.path.join(self.folder, 'pairs.cpc')
+        grows = 'g,bezier,1,0,1,0.1 0.2 -0.1,2,0,0,2,4,0,2'
+        first = self.file('curves.csv', PASSING + '\n' + grows + '\n')
+        second = self.file('b.csv', bezier('c', (0, -4, 1), (1, 4, 0)) + '\n' + grows.replace('4,0,2', '4,0,-2') + '\n')
+        query = ['--curves', first, '--against', second, '--synchronized']
+        asked = cprox('distance', *query, '--certificate', self.certificates)
+        self.assertEqual([row['proof'] for row in asked.rows], ['apart', 'near'], asked.err)
+        checked = cprox('check', self.certificates, *query)
+        self.assertEqual((checked.code, checked.out.count('proven')), (0, 2), checked.out + checked.err)
+        apart = cprox('check', self.certificates, *query[:-1])
+        self.assertEqual(apart.code, 1, apart.out)
+        answer = self.write('tolerance', [grows], BOX_SCENE, '--delta', '0.1')
+        self.assertEqual(answer.rows[0]['proof'], 'apart', answer.err)
+        self.assertEqual(self.check().code, 0)
+
     def a_proof_changes_no_answer(self):
         """40 curves (seed 11) about and through a ring, as a surface and as a solid, every query and model."""
         chance = random.Random(11)

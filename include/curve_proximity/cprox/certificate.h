@@ -75,9 +75,8 @@ CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certific
  *          CPROX_BUDGET    max_nodes were not enough
  *          CPROX_PRECISION the distance is too close to delta
  *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks,
- *                          implicit bodies beside robots, carried bodies, movers synchronized, links of points and
- *                          octrees, links of meshes without a hull; or the nearest link is a mesh, and `near` was to
- *                          be claimed
+ *                          implicit bodies as links or carried, links of points and octrees, links of meshes
+ *                          without a hull; or the nearest link is a mesh, and `near` was to be claimed
  *          CPROX_MEMORY    an allocation failed
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.
@@ -105,7 +104,8 @@ CPROX_API cprox_status cprox_certify_contact(cprox_mover mover, const cprox_obst
  *
  *  text   receives the lines, cut to size - 1 characters and ended by 0; NULL with size 0: only their length is asked.
  *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, for curves, and where
- *  memory is out. Meshes are there by their triangles, in the order that certificates count them in.
+ *  memory is out. Meshes are there by their triangles, in the order that certificates count them in. What is
+ *  synchronized is described as if it stood: the caller adds the curve to each line.
  */
 CPROX_API size_t cprox_obstacle_describe(const cprox_obstacle *obstacle, char *text, size_t size);
 

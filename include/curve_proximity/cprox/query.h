@@ -87,8 +87,8 @@ typedef struct cprox_mover {
   size_t n_self_pairs;
   /** a radius that changes: at each parameter the x of this curve is added to radius [m]. It has the domain of `curve`,
    *  and the sum is 0 or more. NULL: nothing is added. Distances (signed or not), verdicts, profiles, the nearest
-   *  obstacles, gradients and the time of contact take it, against all obstacles but curves that are known by their arc
-   *  length alone. Certificates, violations and the nearest pairs refuse it. doc/curve-bound.md */
+   *  obstacles, gradients, the time of contact and certificates take it, against all obstacles but curves that are
+   *  known by their arc length alone. Violations and the nearest pairs refuse it. doc/curve-bound.md */
   const cprox_curve *radius_curve;
 } cprox_mover;
 

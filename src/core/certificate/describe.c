@@ -9,6 +9,7 @@
 #include "certificate/elements.h"
 #include "curve_proximity/cprox/certificate.h"
 #include "implicit/implicit.h"
+#include "problem/minkowski.h"
 #include "shape/kinds.h"
 
 void say(text *t, const char *format, ...) {
@@ -160,8 +161,8 @@ static bool describe_one(text *t, const cprox_obstacle *target, const cprox_body
 }
 
 size_t cprox_obstacle_describe(const cprox_obstacle *target, char *out, size_t size) {
-  const cprox_body *body = target->body;
-  if (!body || target->synchronized || describe_unknown_obstacle(body)) return 0;
+  const cprox_body *body = target->synchronized && !target->body ? &carried_point : target->body;
+  if (!body || describe_unknown_obstacle(body)) return 0;
   text t = {.at = out, .size = out ? size : 0};
   const bool compound = body->kind == CPROX_BODY_COMPOUND;
   for (size_t i = 0; i < body_n_parts(body); i++)

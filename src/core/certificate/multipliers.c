@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Multipliers of bodies by inequalities: a leaf has them in place of its normal. */
-#include "certificate/partition.h"
+#include "certificate/multipliers.h"
+
 #include "shape/body.h"
 
 /* Rows that pull less than this part of the direction are left out: the others make a direction of their own. */
@@ -38,11 +38,11 @@ static int32_t rows_of(const implicit *body) {
   return implicit_count(body) + body->n_terms;
 }
 
-bool multipliers_find(const cover *c, vec3 own, implicit_dual *dual) {
-  const implicit *body = c->set.body->shape.implicit;
-  const size_t solver = (implicit_memory(body, NULL) + 7) / 8;
-  double *memory =
-      workspace_reserve(c->workspace, WORKSPACE_COVER_ELEMENTS, (solver + (size_t)rows_of(body)) * sizeof *memory);
+bool multipliers_find(const cprox_body *body_of, vec3 own, const cprox_certificate *certificate,
+                      cprox_workspace *workspace, implicit_dual *dual) {
+  const implicit *body = body_of->shape.implicit;
+  const size_t solver = (implicit_memory(body, NULL) + 7) / 8, rows = (size_t)rows_of(body);
+  double *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, (solver + rows) * sizeof *memory);
   if (!memory) return false;
   dual->row = memory + solver;
   for (int32_t i = 0; i < rows_of(body); i++) dual->row[i] = 0.0;
@@ -52,24 +52,34 @@ bool multipliers_find(const cover *c, vec3 own, implicit_dual *dual) {
     const double pull = pull_of(body, dual, i);
     if (pull < SLIGHT) dual->row[i] = 0.0;
     if (isfinite(pull)) most += pull;
-    dual->row[i] = certificate_round(c->certificate, vec(dual->row[i], 0.0, 0.0)).x;
+    dual->row[i] = certificate_round(certificate, vec(dual->row[i], 0.0, 0.0)).x;
     const int32_t quadric = i - body->n_planes;
     const bool bent = quadric >= 0 && quadric < body->n_quadrics && dual->row[i] > 0.0;
     if (bent && !is_convex(body->quadric[quadric].q)) return false;
   }
-  dual->x = certificate_round(c->certificate, dual->x);
+  dual->x = certificate_round(certificate, dual->x);
   return most < 1e3;
 }
 
-void multipliers_write(const cover *c, const implicit_dual *dual) {
-  const implicit *body = c->set.body->shape.implicit;
-  if (body->n_quadrics > 0) certificate_normal(c->certificate, dual->x);
+void multipliers_write(const cprox_body *body_of, cprox_certificate *certificate, const implicit_dual *dual) {
+  const implicit *body = body_of->shape.implicit;
+  if (body->n_quadrics > 0) certificate_normal(certificate, dual->x);
   uint16_t n = 0;
   for (int32_t i = 0; i < rows_of(body); i++) n = (uint16_t)(n + (dual->row[i] != 0.0));
-  certificate_short(c->certificate, n);
+  certificate_short(certificate, n);
   for (int32_t i = 0; i < rows_of(body); i++) {
     if (dual->row[i] == 0.0) continue;
-    certificate_short(c->certificate, (uint16_t)i);
-    certificate_real(c->certificate, dual->row[i]);
+    certificate_short(certificate, (uint16_t)i);
+    certificate_real(certificate, dual->row[i]);
   }
+}
+
+vec3 multipliers_direction(const cprox_body *body, const implicit_dual *dual, double *height) {
+  const reach_set set = {.body = body};
+  reach_direction n;
+  const reach_value reach = reach_of_multipliers(&set, dual, &n);
+  const vec3 own = vec(n.k[0].high, n.k[1].high, n.k[2].high);
+  const double length = vec_norm(own);
+  *height = (reach.value.high - vec_dot(own, body->centre)) / length;
+  return vec_scale(1.0 / length, own);
 }

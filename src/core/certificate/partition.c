@@ -42,7 +42,8 @@ static trial try_normal(const cover *c, vec3 n) {
     const frame f = frame_create(&c->pose, c->set.body->centre);
     implicit_dual dual;
     t.direction = reach_along(vec(0, 0, 0));
-    if (vec_norm2(n) > 0.0 && multipliers_find(c, frame_turn_to_local(&f, n), &dual))
+    if (vec_norm2(n) > 0.0 &&
+        multipliers_find(c->set.body, frame_turn_to_local(&f, n), c->certificate, c->workspace, &dual))
       t.reach = reach_of_multipliers(&c->set, &dual, &t.direction);
     return t;
   }
@@ -59,12 +60,18 @@ static trial try_normal(const cover *c, vec3 n) {
 }
 
 static bool separates(const cover *c, const trial *t, reach_part part) {
-  return reach_separates(c->curve, part, &t->direction, &t->reach, c->delta);
+  return reach_separates(c->curve, c->radius, part, &t->direction, &t->reach, c->delta);
+}
+
+const convex *cover_shape(const cover *c, frame *placed) {
+  *placed = c->carried.body ? c->joined.placed : frame_create(&c->pose, c->set.body->centre);
+  return c->carried.body ? &c->joined.shape : &c->set.body->shape;
 }
 
 /* The direction away from the body at a point of the curve; (0,0,0) inside, where there may be none. */
 static vec3 normal_at(const cover *c, const frame *f, double sigma, convex_hint *hint) {
-  const convex *shape = &c->set.body->shape;
+  frame unused;
+  const convex *shape = cover_shape(c, &unused);
   double error = 0.0;
   convex_near near;
   shape->ops->nearest(shape, frame_to_local(f, partition_point(c->curve, sigma), &error), hint, &near);
@@ -144,7 +151,8 @@ static void join_neighbours(const cover *c, const frame *f, size_t *n) {
 }
 
 cprox_status partition_convex(cover *c) {
-  const frame f = frame_create(&c->pose, c->set.body->centre);
+  frame f;
+  cover_shape(c, &f);
   size_t n;
   const cprox_status status = lay(c, &f, &n);
   if (status != CPROX_OK) return status;
@@ -159,9 +167,11 @@ cprox_status partition_convex(cover *c) {
       certificate_normal(c->certificate, leaves[i].n);
       continue;
     }
+    const frame own = frame_create(&c->pose, c->set.body->centre);
     implicit_dual dual;
-    if (!multipliers_find(c, frame_turn_to_local(&f, leaves[i].n), &dual)) return CPROX_MEMORY;
-    multipliers_write(c, &dual);
+    if (!multipliers_find(c->set.body, frame_turn_to_local(&own, leaves[i].n), c->certificate, c->workspace, &dual))
+      return CPROX_MEMORY;
+    multipliers_write(c->set.body, c->certificate, &dual);
   }
   return CPROX_OK;
 }

@@ -9,13 +9,19 @@
 #include "base/frame.h"
 #include "base/workspace.h"
 #include "certificate/certificate.h"
-#include "certificate/reach.h"
+#include "certificate/multipliers.h"
+#include "problem/minkowski.h"
 
-/* What is to be proven, and what may help. */
+/* What is to be proven, and what may help. It refers to itself. */
 typedef struct cover {
-  const cprox_curve *curve;
-  reach_set set;   /* the radius of the mover belongs to its offset, and that of elements */
-  cprox_pose pose; /* of the set, composed */
+  const cprox_curve *curve;  /* of the mover; seen from what rides the same parameter */
+  const cprox_curve *radius; /* NULL, or with the same pieces what both radii add there */
+  reach_set set;             /* the radius of the mover belongs to its offset, and that of elements */
+  cprox_pose pose;           /* of the set, composed */
+  reach_set carried;         /* body NULL: nothing */
+  carried_shape joined;      /* then the set and what is carried as one shape */
+  cprox_pose outer;          /* of what rides, turned alone */
+  cprox_curve made[2];       /* the two curves, where they were made for this cover */
   double delta;
   double until;                   /* the part of the curve that is covered: from 0 to this counting parameter */
   double witness, witness_on_set; /* counting parameters where mover and curve targets are nearest, -1: not known */
@@ -29,14 +35,12 @@ typedef struct cover {
 /* The world point of a curve at its counting parameter. */
 vec3 partition_point(const cprox_curve *curve, double sigma);
 
-/* Multipliers that separate along a direction in the frame of a body by inequalities, rounded to the width; false:
- * none were found. They are in the workspace until the next call. */
-bool multipliers_find(const cover *c, vec3 own, implicit_dual *dual);
-void multipliers_write(const cover *c, const implicit_dual *dual);
-
 /* Where to cut a part: at the witness where it lies inside, at a joint of pieces, or in the middle. NaN where it is too
  * short. */
 double partition_cut(const cover *c, reach_part part, double witness);
+
+/* The shape that the curve keeps away from, and where it stands. */
+const convex *cover_shape(const cover *c, frame *placed);
 
 /* Writes the section: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
 cprox_status partition_convex(cover *c);
@@ -56,7 +60,12 @@ double partition_near_point(const cprox_body *body, cprox_certificate *certifica
 double partition_near_element(const cprox_body *body, const uint32_t *first, cprox_certificate *certificate, vec3 y,
                               double error);
 
-/* Writes that at the witness of the answer the distance is at most delta. */
-cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer);
+/* Writes the point of a body that is nearest to y, drawn in; both are seen from the body's centre. NaN where there is
+ * none. */
+vec3 partition_point_of(const cprox_body *body, cprox_certificate *certificate, vec3 y);
+
+/* Writes that at the witness of the answer the distance is at most delta; carrier: where the mover's own curve is, and
+ * radius: of the mover alone. */
+cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer, vec3 carrier, double radius);
 
 #endif

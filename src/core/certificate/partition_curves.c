@@ -21,7 +21,7 @@ static bool separates(const cover *c, const pair *p, vec3 n) {
   if (vec_norm2(n) == 0.0) return false;
   const reach_direction direction = reach_along(n);
   const reach_value reach = reach_of_curve(&c->set, &direction, p->part[1]);
-  return reach_separates(c->curve, p->part[0], &direction, &reach, c->delta);
+  return reach_separates(c->curve, c->radius, p->part[0], &direction, &reach, c->delta);
 }
 
 static void write_leaf(cover *c, vec3 n) {

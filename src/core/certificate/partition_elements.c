@@ -28,7 +28,7 @@ static bool separates(const elements_cover *e, const pair *p, vec3 n) {
   if (vec_norm2(n) == 0.0) return false;
   const reach_direction direction = reach_along(n);
   const reach_value reach = reach_of_elements(&e->c->set, &direction, &e->order, &p->range);
-  return reach_separates(e->c->curve, p->part, &direction, &reach, e->c->delta);
+  return reach_separates(e->c->curve, e->c->radius, p->part, &direction, &reach, e->c->delta);
 }
 
 static proven write_leaf(const elements_cover *e, vec3 n) {

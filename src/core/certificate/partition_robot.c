@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "base/rounding.h"
+#include "certificate/multipliers.h"
 
 enum { MOST_WRITTEN = 0x7fff };
 
@@ -34,7 +35,8 @@ typedef struct cover_item {
   int32_t inner;       /* the first of the two that it was cut into; 0: it was not */
   element_range range; /* of elements */
   element_box box;
-  vec3 normal; /* that was written last, in the frame of what stands */
+  vec3 normal;   /* that was written last, in the frame of what stands */
+  double height; /* of a body by inequalities along it, about the centre */
   bool normal_known;
 } cover_item;
 
@@ -45,7 +47,10 @@ typedef struct item_view {
   const robot_cover_elements *elements; /* NULL: what stands is convex */
   robot_body standing;                  /* of elements: the hull of the range about the tree's origin */
   element_hull hull;
-  bool by_box; /* the item was cut: it is as large as its box */
+  bool by_box;                /* the item was cut: it is as large as its box */
+  const cprox_body *implicit; /* what stands by inequalities, or NULL; then */
+  implicit_dual dual;         /* what was found last, */
+  double height;              /* and how far it reaches along the normal that is tried */
 } item_view;
 
 static cover_item *items_reserve(const robot_cover *c, size_t n) {
@@ -91,6 +96,14 @@ static bool cut_item(robot_cover *c, int32_t index) {
   return true;
 }
 
+/* What stands by inequalities, or NULL. */
+static const cprox_body *implicit_of(const robot_cover *c, const robot_pair *pair) {
+  if (pair->self) return NULL;
+  const robot_body *o = &c->scene->obstacles[pair->standing];
+  const cprox_body *body = body_part_at(c->scene->q->targets[o->index].body, (size_t)o->part);
+  return body->shape.implicit ? body : NULL;
+}
+
 static void place_item(const robot_cover *c, int32_t index, item_view *v) {
   const cover_item *item = workspace_filled(c->scene->q->workspace, WORKSPACE_COVER_ITEMS);
   v->item = item + index;
@@ -98,6 +111,8 @@ static void place_item(const robot_cover *c, int32_t index, item_view *v) {
   placed_robot_pair_move(&v->pair);
   v->elements = elements_of(c, v->pair.pair);
   v->by_box = v->item->inner > 0;
+  v->implicit = implicit_of(c, v->pair.pair);
+  v->height = v->item->height;
   if (!v->elements) {
     v->standing = *v->pair.standing;
     return;
@@ -115,6 +130,7 @@ static bool is_halfspace(const item_view *v) {
 
 /* How far what stands reaches along a unit normal of the world, seen from its own origin. */
 static double height_of(const item_view *v, vec3 n) {
+  if (v->implicit) return v->height + v->standing.side.margin;
   if (!v->elements) return robot_pair_height(&v->standing, n);
   const vec3 own = placement_turn_back(&v->standing.side.at, n);
   const double height = v->by_box ? element_box_reach(&v->item->box, own)
@@ -167,12 +183,21 @@ static bool is_to_be_cut(const item_view *v, bool too_near, double way) {
   return too_near || vec_norm(element_box_half(&v->item->box)) > way;
 }
 
-static outcome settle(const robot_cover *c, const item_view *v, double width, vec3 *written) {
-  if (v->item->normal_known && settles(c, v, v->item->normal, 0.0)) return SETTLED;
+/* The normal as it is written; false where there are no multipliers for it. */
+static bool round_normal(const robot_cover *c, item_view *v, vec3 own, vec3 *written) {
+  *written = certificate_round(c->certificate, own);
+  if (!v->implicit) return true;
+  if (!multipliers_find(v->implicit, own, c->certificate, c->scene->q->workspace, &v->dual)) return false;
+  *written = multipliers_direction(v->implicit, &v->dual, &v->height);
+  return true;
+}
+
+static outcome settle(const robot_cover *c, item_view *v, double width, vec3 *written) {
+  if (v->item->normal_known && settles(c, v, v->item->normal, v->implicit ? UNSURE : 0.0)) return SETTLED;
   double unsure;
   const vec3 out = default_normal(v, &unsure);
   const double length = vec_norm(out), displacement = v->pair.motion->displacement;
-  if (length > 0.0 && settles(c, v, out, unsure)) return SETTLED;
+  if (length > 0.0 && !v->implicit && settles(c, v, out, unsure)) return SETTLED;
   if (v->by_box) return OPEN;
 
   const robot_body *moving = v->pair.moving;
@@ -183,8 +208,8 @@ static outcome settle(const robot_cover *c, const item_view *v, double width, ve
   robot_pair_measure(moving, &v->standing, accuracy, &gap);
   const bool too_near = gap.support_failed || !(gap.upper > c->delta) || !(vec_norm2(gap.normal) > 0.0);
   if (!too_near) {
-    *written = certificate_round(c->certificate, placement_turn_back(&v->standing.side.at, gap.normal));
-    if (settles(c, v, *written, 0.0)) return WRITTEN;
+    const vec3 own = placement_turn_back(&v->standing.side.at, gap.normal);
+    if (round_normal(c, v, own, written) && settles(c, v, *written, v->implicit ? UNSURE : 0.0)) return WRITTEN;
   }
   if (too_near && c->reaches_beyond) return OPEN;
   if (is_to_be_cut(v, too_near, fmax(displacement, moving->radius))) return CUT;
@@ -221,9 +246,13 @@ static cprox_status try_item(robot_cover *c, int32_t index, open_list *list) {
   cover_item *items = workspace_filled(c->scene->q->workspace, WORKSPACE_COVER_ITEMS);
   if (out == WRITTEN) {
     items[index].normal = written;
+    items[index].height = v.height;
     items[index].normal_known = true;
     write_entry(c, &items[index], false);
-    certificate_normal(c->certificate, written);
+    if (v.implicit)
+      multipliers_write(v.implicit, c->certificate, &v.dual);
+    else
+      certificate_normal(c->certificate, written);
     list->count++;
     return CPROX_OK;
   }

@@ -127,6 +127,14 @@ reach_direction reach_of_halfspace(const reach_set *set) {
   return to_world(set, reach_along(vec(size[0], size[1], size[2])));
 }
 
+/* Adds how far the opposite of what is carried reaches. */
+static reach_value with_carried(const reach_set *set, const reach_direction *n, reach_value far) {
+  if (!set->carried) return far;
+  const reach_direction back = {{negate(n->k[0]), negate(n->k[1]), negate(n->k[2])}};
+  const reach_value more = reach_of_body(set->carried, &back);
+  return (reach_value){dd_add(far.value, more.value), far.size + more.size};
+}
+
 reach_value reach_of_body(const reach_set *set, const reach_direction *n) {
   const cprox_body *body = set->body;
   reach_value far;
@@ -136,7 +144,7 @@ reach_value reach_of_body(const reach_set *set, const reach_direction *n) {
   far.value = dd_add(far.value, dd_add(dot(&own, body->centre), height_of_core(&body->shape, &own)));
   far.value = dd_add(far.value, dd_multiply(length(n), dd_sum(ball, margin)));
   far.size += vec_norm(body->centre) + body->shape.scale;
-  return far;
+  return with_carried(set, n, far);
 }
 
 reach_value reach_of_elements(const reach_set *set, const reach_direction *n, const element_order *order,
@@ -210,7 +218,7 @@ reach_value reach_of_multipliers(const reach_set *set, const implicit_dual *dual
   far.value = dd_add(far.value, dd_scale(length(n), set->offset));
   far.value = dd_add(far.value, dd_from(m.unsure + MARGIN * m.sizes));
   far.size += vec_norm(set->body->centre) + set->body->shape.scale;
-  return far;
+  return with_carried(set, n, far);
 }
 
 /* ---- curves ---- */
@@ -227,20 +235,24 @@ static void cut(dd *a, size_t degree, dd s, bool left) {
 }
 
 /* The least ordinate n·P of a part of one piece, less what its conversion may have moved it. */
-static dd least_of_piece(const cprox_curve *curve, size_t piece, double s0, double s1, const reach_direction *n,
-                         double *size) {
+static dd least_of_piece(const cprox_curve *curve, const cprox_curve *radius, size_t piece, double s0, double s1,
+                         const reach_direction *n, double *size) {
   dd a[CPROX_MAX_DEGREE + 1];
   const vec3 *p = curve_piece(curve, piece);
   for (size_t i = 0; i <= curve->degree; i++) {
     a[i] = dot(n, p[i]);
     *size = fmax(*size, vec_norm(p[i]));
+    if (!radius) continue;
+    const double thick = curve_piece(radius, piece)[i].x;
+    a[i] = subtract(a[i], dd_scale(length(n), thick));
+    *size = fmax(*size, fabs(thick));
   }
   if (s0 > 0.0) cut(a, curve->degree, dd_from(s0), false);
   if (s1 < 1.0) cut(a, curve->degree, s0 > 0.0 ? dd_divide(dd_sum(s1, -s0), dd_sum(1.0, -s0)) : dd_from(s1), true);
   dd least = a[0];
   for (size_t i = 1; i <= curve->degree; i++)
     if (is_less(a[i], least)) least = a[i];
-  const dd moved = dd_scale(length(n), curve->error[piece]);
+  const dd moved = dd_scale(length(n), curve->error[piece] + (radius ? ROUND_UP * radius->error[piece] : 0.0));
   return subtract(least, moved);
 }
 
@@ -252,9 +264,10 @@ static piece_range pieces_of(reach_part part) {
   return (piece_range){(size_t)floor(part.from), (size_t)ceil(part.to)};
 }
 
-static dd least_of(const cprox_curve *curve, reach_part part, size_t piece, const reach_direction *n, double *size) {
+static dd least_of(const cprox_curve *curve, const cprox_curve *radius, reach_part part, size_t piece,
+                   const reach_direction *n, double *size) {
   const double k = (double)piece;
-  return least_of_piece(curve, piece, fmax(part.from - k, 0.0), fmin(part.to - k, 1.0), n, size);
+  return least_of_piece(curve, radius, piece, fmax(part.from - k, 0.0), fmin(part.to - k, 1.0), n, size);
 }
 
 reach_value reach_of_curve(const reach_set *set, const reach_direction *n, reach_part part) {
@@ -265,22 +278,22 @@ reach_value reach_of_curve(const reach_set *set, const reach_direction *n, reach
   double size = 0.0;
   const piece_range range = pieces_of(part);
   for (size_t piece = range.first; piece < range.end; piece++) {
-    const dd h = negate(least_of(set->curve, part, piece, &back, &size));
+    const dd h = negate(least_of(set->curve, NULL, part, piece, &back, &size));
     if (is_less(most, h)) most = h;
   }
   far.value = dd_add(dd_add(far.value, most), dd_scale(length(n), set->offset));
   far.size += size;
-  return far;
+  return with_carried(set, n, far);
 }
 
-bool reach_separates(const cprox_curve *curve, reach_part part, const reach_direction *n, const reach_value *reach,
-                     double delta) {
+bool reach_separates(const cprox_curve *curve, const cprox_curve *radius, reach_part part, const reach_direction *n,
+                     const reach_value *reach, double delta) {
   const dd long_n = length(n), limit = dd_add(reach->value, dd_scale(long_n, delta));
   if (!(long_n.high > 0.0) || !isfinite(limit.high)) return false;
   const piece_range range = pieces_of(part);
   for (size_t piece = range.first; piece < range.end; piece++) {
     double size = 0.0;
-    const dd least = least_of(curve, part, piece, n, &size);
+    const dd least = least_of(curve, radius, part, piece, n, &size);
     const double margin = MARGIN * long_n.high * (size + reach->size + delta);
     if (!(subtract(least, limit).high > margin)) return false;
   }

@@ -24,6 +24,7 @@ typedef struct reach_set {
   const cprox_pose *pose[2];
   int poses;
   double offset;
+  const struct reach_set *carried; /* by what moves, NULL: nothing; the set grows by its opposite */
 } reach_set;
 
 /* How far something reaches along a direction, and the size of what entered. */
@@ -58,8 +59,9 @@ reach_value reach_of_elements(const reach_set *set, const reach_direction *n, co
 /* max n·x over a part of the posed curve, its offset included. */
 reach_value reach_of_curve(const reach_set *set, const reach_direction *n, reach_part part);
 
-/* min n·psi over the part less `reach` is more than delta |n|. */
-bool reach_separates(const cprox_curve *curve, reach_part part, const reach_direction *n, const reach_value *reach,
-                     double delta);
+/* min n·psi over the part less `reach` is more than delta |n|; radius: NULL, or a curve with the same pieces and of the
+ * same degree, whose x takes from the height. */
+bool reach_separates(const cprox_curve *curve, const cprox_curve *radius, reach_part part, const reach_direction *n,
+                     const reach_value *reach, double delta);
 
 #endif

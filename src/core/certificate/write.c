@@ -11,8 +11,11 @@
 #include "base/workspace.h"
 #include "certificate/describe.h"
 #include "certificate/partition.h"
+#include "curve/relative_curve.h"
 #include "kinematics/motion.h"
+#include "problem/minkowski.h"
 #include "problem/obstacles.h"
+#include "problem/radius.h"
 #include "problem/validate.h"
 #include "solve/solve.h"
 
@@ -35,7 +38,8 @@ typedef struct task {
   const cprox_result *answer;
   const cprox_options *options;
   uint32_t budget;
-  double epsilon; /* what a distance may give away */
+  double epsilon;   /* what a distance may give away */
+  cprox_curve like; /* n_pieces 0, or its breaks are those of all that is on the mover's clock */
   cprox_workspace *workspace;
   cprox_certificate *certificate;
 } task;
@@ -54,39 +58,154 @@ static double sum_up(double a, double b) {
   return sum.low > 0.0 ? nextafter(sum.high, INFINITY) : sum.high;
 }
 
-/* The set that part of a target is, with the mover's ball, and what the answer knows of it. */
-static cover cover_of(const task *t, size_t target, size_t part, uint32_t width) {
-  const cprox_obstacle *at = &t->targets[target];
-  cover c = {.curve = t->mover->curve,
-             .set = {.body = at->body, .curve = at->curve, .pose = {&at->pose}, .poses = 1},
-             .pose = at->pose,
-             .until = (double)t->mover->curve->n_pieces,
-             .witness = -1.0,
-             .witness_on_set = -1.0,
-             .budget = t->budget,
-             .shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE,
-             .workspace = t->workspace,
-             .certificate = t->certificate};
-  c.set.offset = sum_up(t->mover->radius, at->margin);
+/* ---- one parameter for all that moves ---- */
+
+static bool is_on_clock(const task *t) {
+  bool is_so = t->mover->radius_curve != NULL;
+  for (size_t i = 0; i < t->n; i++) is_so = is_so || t->targets[i].synchronized || t->targets[i].radius_curve;
+  return is_so;
+}
+
+static int compare_numbers(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Every joint of a curve that is on the clock, of the mover and of all targets, begins a piece; false where memory is
+ * out. */
+static bool gather_breaks(const task *t, cprox_curve *like) {
+  size_t n = 0;
+  double *breaks = NULL;
+  for (size_t i = 0; i <= t->n; i++) {
+    const bool own = i == t->n;
+    const cprox_curve *of[2] = {own                          ? t->mover->curve
+                                : t->targets[i].synchronized ? t->targets[i].curve
+                                                             : NULL,
+                                own ? t->mover->radius_curve : t->targets[i].radius_curve};
+    for (int k = 0; k < 2; k++) {
+      if (!of[k]) continue;
+      breaks = workspace_reserve(t->workspace, WORKSPACE_COVER_ITEMS, (n + of[k]->n_pieces + 1) * sizeof *breaks);
+      if (!breaks) return false;
+      for (size_t j = 0; j <= of[k]->n_pieces; j++) breaks[n++] = of[k]->breaks[j];
+    }
+  }
+  qsort(breaks, n, sizeof *breaks, compare_numbers);
+  size_t kept = 1;
+  for (size_t j = 1; j < n; j++)
+    if (breaks[j] > breaks[kept - 1]) breaks[kept++] = breaks[j];
+  *like = (cprox_curve){.n_pieces = (uint32_t)(kept - 1), .degree = 1, .breaks = breaks};
+  return true;
+}
+
+/* The curve whose x is what both radii add; NULL: nothing, or memory is out. */
+static const cprox_curve *radius_of(const task *t, const cprox_obstacle *at, cprox_curve *sum) {
+  static const cprox_pose HALF_TURN = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  const cprox_curve *own = t->mover->radius_curve, *other = at->radius_curve;
+  if (!own || !other) return own ? own : other;
+  const double from = t->like.breaks[0], to = t->like.breaks[t->like.n_pieces];
+  return relative_create(own, other, &HALF_TURN, from, to, t->workspace, WORKSPACE_RADII, sum) ? sum : NULL;
+}
+
+/* The curve as it is seen from what rides, and the radius, with the pieces of all; false where memory is out. */
+static bool put_on_clock(const task *t, const cprox_obstacle *at, cover *c) {
+  cprox_curve relative, sum, like = t->like;
+  const double from = like.breaks[0], to = like.breaks[like.n_pieces];
+  const cprox_curve *seen = t->mover->curve;
+  if (at->synchronized) {
+    if (!relative_create(seen, at->curve, &at->pose, from, to, t->workspace, WORKSPACE_RELATIVE, &relative))
+      return false;
+    seen = &relative;
+  }
+  const bool grows = t->mover->radius_curve || at->radius_curve;
+  const cprox_curve *radius = radius_of(t, at, &sum);
+  if (grows && !radius) return false;
+  if (seen->degree > like.degree) like.degree = seen->degree;
+  if (radius && radius->degree > like.degree) like.degree = radius->degree;
+  c->curve = &c->made[0];
+  if (!relative_align(seen, &like, from, to, t->workspace, WORKSPACE_ALIGNED, &c->made[0])) return false;
+  if (!radius) return true;
+  c->radius = &c->made[1];
+  return relative_align(radius, &like, from, to, t->workspace, WORKSPACE_ALIGNED_RADII, &c->made[1]);
+}
+
+/* The pieces that certificates count. */
+static const cprox_curve *pieces_of(const task *t) {
+  return t->like.n_pieces > 0 ? &t->like : t->mover->curve;
+}
+
+/* ---- covers ---- */
+
+/* The part of what the mover carries, and the two as one shape; false where a support function misbehaved. */
+static bool carry(const cprox_body *whole, size_t part, cover *c) {
+  if (!whole) return true;
+  const bool compound = whole->kind == CPROX_BODY_COMPOUND;
+  c->carried = (reach_set){.body = body_part_at(whole, part), .poses = compound};
+  if (compound) c->carried.pose[0] = &whole->parts[part].pose;
+  c->set.carried = &c->carried;
+  if (!c->set.body || c->set.body->tree) return true;
+  const cprox_pose *own = compound ? c->carried.pose[0] : &CPROX_POSE_IDENTITY;
+  return minkowski_join(c->set.body, &c->pose, c->carried.body, own, &c->joined);
+}
+
+/* A part of a target and one of what is carried. */
+typedef struct section_place {
+  size_t target, part, load;
+} section_place;
+
+/* The set that part of a target is, with the mover's ball, and what the answer knows of it; false where memory is out.
+ */
+static bool cover_begin(const task *t, section_place of, uint32_t width, cover *c) {
+  const cprox_obstacle *at = &t->targets[of.target];
+  *c = (cover){.curve = t->mover->curve,
+               .set = {.body = at->body, .curve = at->synchronized ? NULL : at->curve, .poses = 1},
+               .outer = at->pose,
+               .witness = -1.0,
+               .witness_on_set = -1.0,
+               .budget = t->budget,
+               .shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE,
+               .workspace = t->workspace,
+               .certificate = t->certificate};
+  if (at->synchronized) c->outer.position = vec(0, 0, 0);
+  if (at->synchronized && !at->body) c->set.body = &carried_point;
+  c->pose = c->outer;
+  c->set.pose[0] = &c->outer;
+  c->set.offset = sum_up(t->mover->radius, at->margin);
   if (at->body && at->body->kind == CPROX_BODY_COMPOUND) {
-    const body_part *inner = &at->body->parts[part];
-    c.set.body = inner->body;
-    c.set.pose[1] = &inner->pose;
-    c.set.poses = 2;
-    c.pose = frame_compose(&at->pose, &inner->pose);
+    const body_part *inner = &at->body->parts[of.part];
+    c->set.body = inner->body;
+    c->set.pose[1] = &inner->pose;
+    c->set.poses = 2;
+    c->pose = frame_compose(&c->outer, &inner->pose);
   }
-  const cprox_body *elements = elements_body(c.set.body);
+  const cprox_body *elements = elements_body(c->set.body);
   if (elements) {
-    c.set.offset = sum_up(c.set.offset, elements->shape.margin);
-    c.set.body = elements;
+    c->set.offset = sum_up(c->set.offset, elements->shape.margin);
+    c->set.body = elements;
   }
+  if (t->like.n_pieces > 0 && !put_on_clock(t, at, c)) return false;
+  c->until = (double)c->curve->n_pieces;
   const cprox_result *r = t->answer;
-  if (r && r->obstacle_index == (int32_t)target && r->obstacle_part == (int32_t)part && isfinite(r->t)) {
-    c.witness = count_at(c.curve, r->t);
-    if (at->curve && isfinite(r->t_obstacle)) c.witness_on_set = count_at(at->curve, r->t_obstacle);
-    c.normal = r->normal;
+  const bool found = r && r->obstacle_index == (int32_t)of.target && r->obstacle_part == (int32_t)of.part;
+  if (found && isfinite(r->t) && (!t->mover->body || r->mover_part == (int32_t)of.load)) {
+    c->witness = count_at(c->curve, r->t);
+    if (c->set.curve && isfinite(r->t_obstacle)) c->witness_on_set = count_at(c->set.curve, r->t_obstacle);
+    c->normal = r->normal;
   }
-  return c;
+  return carry(t->mover->body, of.load, c);
+}
+
+/* Those that the answer names. */
+static section_place nearest_section(const task *t) {
+  const cprox_result *r = t->answer;
+  return (section_place){(size_t)r->obstacle_index, (size_t)r->obstacle_part,
+                         t->mover->body ? (size_t)r->mover_part : 0};
+}
+
+/* The number of parts of all targets before one. */
+static size_t sections_before(const task *t, size_t target) {
+  size_t sections = 0;
+  for (size_t i = 0; i < target; i++) sections += body_n_parts(t->targets[i].body);
+  return sections;
 }
 
 static double size_of(const cprox_curve *curve, vec3 centre) {
@@ -99,29 +218,35 @@ static double size_of(const cprox_curve *curve, vec3 centre) {
 /* What the rounding of the search is relative to, for the nearest target. */
 static double size_of_problem(const task *t, const cover *c) {
   const double of_set = c->set.curve ? size_of(c->set.curve, c->set.curve->points[0]) : c->set.body->shape.scale;
-  return size_of(c->curve, c->pose.position) + of_set + c->set.offset + t->delta;
+  const double carried = c->carried.body ? c->carried.body->shape.scale : 0.0;
+  const double grown = c->radius ? c->radius->largest : 0.0;
+  return size_of(c->curve, c->pose.position) + of_set + carried + grown + c->set.offset + t->delta;
 }
 
-/* One attempt: the whole certificate, with normals of the width. until: 0, or where a claim about a part ends. */
+/* until: 0, or where a claim about a part ends. */
+static cprox_status attempt_section(const task *t, section_place of, uint32_t width, double delta, double until) {
+  cover c;
+  if (!cover_begin(t, of, width, &c)) return CPROX_MEMORY;
+  c.delta = delta;
+  if (until > 0.0) c.until = until;
+  const bool has_elements = c.set.body && c.set.body->tree;
+  return c.set.curve ? partition_curves(&c) : has_elements ? partition_elements(&c) : partition_convex(&c);
+}
+
+/* One attempt: the whole certificate, with normals of the width. */
 static cprox_status attempt(const task *t, uint32_t width, double delta, double until) {
-  size_t sections = 0;
-  for (size_t i = 0; i < t->n; i++) sections += body_n_parts(t->targets[i].body);
+  const size_t loads = body_n_parts(t->mover->body), sections = loads * sections_before(t, t->n);
   const cprox_claim claim = until > 0.0 ? CPROX_CLAIM_BEFORE : CPROX_CLAIM_APART;
   certificate_begin(t->certificate, width, claim, delta, (uint32_t)sections);
   if (until > 0.0) certificate_number(t->certificate, until);
-  certificate_breaks(t->certificate, t->mover->curve->breaks, t->mover->curve->n_pieces);
-  for (size_t i = 0; i < t->n; i++) {
-    for (size_t part = 0; part < body_n_parts(t->targets[i].body); part++) {
-      cover c = cover_of(t, i, part, width);
-      c.delta = delta;
-      if (until > 0.0) c.until = until;
-      const bool has_elements = c.set.body && c.set.body->tree;
-      const cprox_status status = c.set.curve    ? partition_curves(&c)
-                                  : has_elements ? partition_elements(&c)
-                                                 : partition_convex(&c);
-      if (status != CPROX_OK) return status;
-    }
-  }
+  certificate_breaks(t->certificate, pieces_of(t)->breaks, pieces_of(t)->n_pieces);
+  section_place of = {0, 0, 0};
+  for (of.load = 0; of.load < loads; of.load++)
+    for (of.target = 0; of.target < t->n; of.target++)
+      for (of.part = 0; of.part < body_n_parts(t->targets[of.target].body); of.part++) {
+        const cprox_status status = attempt_section(t, of, width, delta, until);
+        if (status != CPROX_OK) return status;
+      }
   return t->certificate->failed ? CPROX_MEMORY : CPROX_OK;
 }
 
@@ -136,8 +261,10 @@ static cprox_status certify_clear(const task *t) {
   if (status <= 0 || !t->answer || t->answer->obstacle_index < 0) return status;
 
   /* the search's own bounds, which know tangent balls, may be tighter than planes can be */
-  const cover c = cover_of(t, (size_t)t->answer->obstacle_index, (size_t)t->answer->obstacle_part, 8);
-  const double rounding = LOWERED * ROUND_U * size_of_problem(t, &c);
+  cover c;
+  if (!cover_begin(t, nearest_section(t), 8, &c)) return CPROX_MEMORY;
+  const double moved = c.radius ? curve_error(c.curve) + curve_error(c.radius) : curve_error(c.curve);
+  const double rounding = LOWERED * ROUND_U * size_of_problem(t, &c) + 2.0 * moved;
   if (t->delta > rounding) status = attempt(t, 8, t->delta - rounding, 0.0);
   const double given = fmax(t->epsilon, LOWERED * rounding);
   if (status > 0 && is_of_distance(t) && t->delta > given) status = attempt(t, 8, t->delta - given, 0.0);
@@ -146,7 +273,7 @@ static cprox_status certify_clear(const task *t) {
 
 /* How far before the time it must end is found by steps back from it, each larger than the one before. */
 static cprox_status certify_before(const task *t) {
-  const double end = count_at(t->mover->curve, t->before);
+  const double end = count_at(pieces_of(t), t->before);
   cprox_status status = CPROX_PRECISION;
   for (double back = 0.0; status > 0; back = fmax(STEPS_BACK * back, FINEST_STEP)) {
     const double until = nextafter(end - back, 0.0);
@@ -161,32 +288,50 @@ static cprox_status certify_before(const task *t) {
 static cprox_status certify_near(const task *t) {
   const cprox_result *r = t->answer;
   if (r->obstacle_index < 0 || (size_t)r->obstacle_index >= t->n || !isfinite(r->t)) return CPROX_PRECISION;
-  size_t section = (size_t)r->obstacle_part;
-  for (size_t i = 0; i < (size_t)r->obstacle_index; i++) section += body_n_parts(t->targets[i].body);
-  cover c = cover_of(t, (size_t)r->obstacle_index, (size_t)r->obstacle_part, 8);
+  const section_place of = nearest_section(t);
+  const size_t section = sections_before(t, of.target) + of.part + of.load * sections_before(t, t->n);
+  cover c;
+  if (!cover_begin(t, of, 8, &c)) return CPROX_MEMORY;
   c.delta = t->delta;
   certificate_begin(t->certificate, 8, CPROX_CLAIM_NEAR, t->delta, 1);
-  return cover_near(&c, (uint32_t)section, r);
+  const vec3 carrier = partition_point(t->mover->curve, count_at(t->mover->curve, r->t));
+  const double radius = t->mover->radius + radius_at(t->mover->radius_curve, r->t, false, t->workspace);
+  return cover_near(&c, (uint32_t)section, r, carrier, radius);
 }
 
-static cprox_status certify_curve(const task *t) {
+/* CPROX_OK, or what it is that certificates do not know. */
+static cprox_status check_kinds(const task *t) {
   const cprox_mover *mover = t->mover;
-  if (mover->body || !mover->curve)
-    return workspace_fail(t->workspace, CPROX_INVALID, "bodies that move have no certificates");
+  const cprox_body *odd = mover->body ? describe_unknown_kind(mover->body) : NULL;
+  if (!odd && mover->body && describe_has_mesh(mover->body)) odd = mover->body;
+  if (odd)
+    return workspace_fail(t->workspace, CPROX_INVALID, "what is carried is of a kind that has no certificates: %s",
+                          cprox_body_kind_name(odd->kind));
   if (mover->curve->arcs)
     return workspace_fail(t->workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
   for (size_t i = 0; i < t->n; i++) {
     const cprox_obstacle *target = &t->targets[i];
-    if (target->synchronized)
-      return workspace_fail(t->workspace, CPROX_INVALID, "obstacle %zu is on the mover's clock: it has no certificates",
-                            i);
-    if (!target->body && target->curve->arcs)
+    if (target->curve && target->curve->arcs)
       return workspace_fail(t->workspace, CPROX_INVALID,
                             "obstacle %zu is known by its arc length alone: it has no certificates", i);
     if (target->body && describe_unknown_obstacle(target->body))
       return workspace_fail(t->workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
                             cprox_body_kind_name(describe_unknown_obstacle(target->body)->kind));
+    for (size_t k = 0; k < body_n_parts(target->body) && target->synchronized && target->body; k++) {
+      const cprox_body *elements = elements_body(body_part_at(target->body, k));
+      if (elements && elements->winding)
+        return workspace_fail(t->workspace, CPROX_INVALID,
+                              "obstacle %zu is a closed mesh that moves: it has no certificates", i);
+    }
   }
+  return CPROX_OK;
+}
+
+static cprox_status certify_curve(const task *of) {
+  task own = *of, *t = &own;
+  const cprox_status known = check_kinds(t);
+  if (known != CPROX_OK) return known;
+  if (is_on_clock(t) && !gather_breaks(t, &t->like)) return CPROX_MEMORY;
   if (isfinite(t->before)) return certify_before(t);
   if (!t->answer || t->answer->upper > t->delta) return certify_clear(t);
   const cprox_status status = certify_near(t);
@@ -303,7 +448,7 @@ static cprox_status validate(const cprox_mover *mover, const cprox_obstacles *ob
                              cprox_workspace *workspace, cprox_certificate *certificate) {
   workspace_clear(workspace);
   cprox_certificate_clear(certificate);
-  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_LOD};
+  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_LOD | ARGUMENTS_RADIUS};
   const cprox_status status =
       validate_query(mover, obstacles_list(obstacles), obstacles_count(obstacles), chosen, asked, workspace);
   if (status == CPROX_OK && !certificate)

@@ -88,6 +88,35 @@ double partition_near_point(const cprox_body *body, cprox_certificate *certifica
   return vec_norm(v);
 }
 
+vec3 partition_point_of(const cprox_body *body, cprox_certificate *c, vec3 y) {
+  const convex *shape = &body->shape;
+  convex_hint hint = {0};
+  if (body->kind == CPROX_BODY_POINT) return vec(0, 0, 0);
+  if (body->kind == CPROX_BODY_POLYTOPE || body->kind == CPROX_BODY_POLYGON) {
+    gjk_answer answer;
+    gjk_nearest(shape, y, &hint, &answer);
+    vec3 mean = vec(0, 0, 0);
+    double sum = 0.0;
+    for (int i = 0; i < 4; i++) {
+      const bool used = i < answer.feature.n;
+      const int32_t id = answer.feature.vertex[used ? i : 0].id;
+      const double weight = used ? answer.feature.weight[i] : 0.0;
+      certificate_count(c, (uint32_t)id);
+      certificate_number(c, weight);
+      mean = vec_axpy(mean, weight, vec(shape->x[id], shape->y[id], shape->z[id]));
+      sum += weight;
+    }
+    return vec_scale(1.0 / sum, mean);
+  }
+  convex_near near;
+  shape->ops->nearest(shape, y, &hint, &near);
+  const double drawn = ROOM * ROUND_U * (vec_norm(y) + shape->scale);
+  vec3 x = y;
+  if (near.distance >= -drawn && !cover_draw_in(body, &near, drawn, &x)) return vec(NAN, NAN, NAN);
+  certificate_vector(c, x);
+  return x;
+}
+
 double partition_near_element(const cprox_body *body, const uint32_t *first, cprox_certificate *certificate, vec3 y,
                               double error) {
   const tree *t = body->tree;
@@ -120,10 +149,26 @@ static vec3 point_by(const cprox_curve *curve, double sigma, vec3 by) {
   return vec_norm2(vec_sub(left, by)) < vec_norm2(vec_sub(right, by)) ? left : right;
 }
 
-cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer) {
-  const vec3 world = point_by(c->curve, c->witness, answer->witness_mover);
+/* The point of what is carried that is nearest to the answer's, added to a point of the curve. */
+static vec3 add_carried(const cover *c, const cprox_result *answer, vec3 carrier, double radius, vec3 world) {
+  if (!c->carried.body) return world;
+  const cprox_body *body = c->carried.body;
+  const frame f = frame_create(c->carried.poses > 0 ? c->carried.pose[0] : &CPROX_POSE_IDENTITY, body->centre);
+  double error = 0.0;
+  const double out = answer->upper > 0.0 ? radius : 0.0;
+  const vec3 core = vec_axpy(answer->witness_mover, out, answer->normal);
+  const vec3 x = partition_point_of(body, c->certificate, frame_to_local(&f, vec_sub(core, carrier), &error));
+  return vec_add(world, frame_to_world(&f, x));
+}
+
+cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer, vec3 carrier, double radius) {
   certificate_count(c->certificate, section);
   certificate_number(c->certificate, answer->t);
+  const bool moved = c->carried.body || c->curve == &c->made[0];
+  const vec3 bare =
+      moved ? partition_point(c->curve, c->witness) : point_by(c->curve, c->witness, answer->witness_mover);
+  const vec3 world = add_carried(c, answer, carrier, radius, bare);
+  if (!vec_finite(world)) return CPROX_PRECISION;
 
   double apart, error, size;
   if (c->set.curve) {
@@ -139,13 +184,20 @@ cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *an
   } else {
     const frame f = frame_create(&c->pose, c->set.body->centre);
     const vec3 y = local_point(c, &f, world, &error);
+    if (c->carried.body) error += ROOM * ROUND_U * (vec_norm(carrier) + c->carried.body->shape.scale);
     apart = c->set.body->tree ? near_element(c, y, error) : partition_near_point(c->set.body, c->certificate, y, error);
     size = vec_norm(y) + c->set.body->shape.scale;
   }
 
   /* a claim that is too tight is lifted by what rounding may have cost */
-  const double room = error + ROOM * ROUND_U * (size + c->set.offset + c->delta);
-  const double needed = apart > 0.0 ? apart * (1.0 + 16.0 * ROUND_U) - c->set.offset : 0.0;
+  double balls = c->set.offset;
+  if (c->radius) { /* as little as it can be */
+    const double unsure = curve_error(c->radius) + 64.0 * ROUND_U * (balls + c->radius->largest);
+    balls += partition_point(c->radius, c->witness).x - unsure;
+    error += unsure;
+  }
+  const double room = error + ROOM * ROUND_U * (size + balls + c->delta);
+  const double needed = apart > 0.0 ? apart * (1.0 + 16.0 * ROUND_U) - balls : 0.0;
   if (needed > c->delta - room && apart > 0.0) {
     if (!(needed <= c->delta + 16.0 * room)) return CPROX_PRECISION;
     certificate_restate(c->certificate, fmax(c->delta, needed + room));

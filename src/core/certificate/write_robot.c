@@ -28,11 +28,6 @@ static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu is of a kind that has no certificates: %s", geometry,
                           cprox_body_kind_name(describe_unknown_kind(robot->given_geometries[geometry].body)->kind));
   for (size_t i = 0; i < n; i++)
-    for (size_t k = 0; k < body_n_parts(targets[i].body); k++)
-      if (body_part_at(targets[i].body, k)->shape.implicit)
-        return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
-                              cprox_body_kind_name(body_part_at(targets[i].body, k)->kind));
-  for (size_t i = 0; i < n; i++)
     if (describe_unknown_obstacle(targets[i].body))
       return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
                             cprox_body_kind_name(describe_unknown_obstacle(targets[i].body)->kind));

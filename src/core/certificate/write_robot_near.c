@@ -8,7 +8,6 @@
 #include "certificate/partition.h"
 #include "certificate/partition_robot.h"
 #include "certificate/write.h"
-#include "convex/gjk.h"
 
 /* Of the errors of places here: the checker's own are up to ten times as large. */
 static const double ERRORS = 64.0;
@@ -51,39 +50,6 @@ static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_ga
   return found;
 }
 
-/* ---- points ---- */
-
-/* Writes the point of a part of a robot that is nearest to y, drawn in; both are seen from the body's centre. NaN where
- * there is none. */
-static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y) {
-  const convex *shape = &body->shape;
-  convex_hint hint = {0};
-  if (body->kind == CPROX_BODY_POINT) return vec(0, 0, 0);
-  if (body->kind == CPROX_BODY_POLYTOPE || body->kind == CPROX_BODY_POLYGON) {
-    gjk_answer answer;
-    gjk_nearest(shape, y, &hint, &answer);
-    vec3 mean = vec(0, 0, 0);
-    double sum = 0.0;
-    for (int i = 0; i < 4; i++) {
-      const bool used = i < answer.feature.n;
-      const int32_t id = answer.feature.vertex[used ? i : 0].id;
-      const double weight = used ? answer.feature.weight[i] : 0.0;
-      certificate_count(c, (uint32_t)id);
-      certificate_number(c, weight);
-      mean = vec_axpy(mean, weight, vec(shape->x[id], shape->y[id], shape->z[id]));
-      sum += weight;
-    }
-    return vec_scale(1.0 / sum, mean);
-  }
-  convex_near near;
-  shape->ops->nearest(shape, y, &hint, &near);
-  const double drawn = ROOM * ROUND_U * (vec_norm(y) + shape->scale);
-  vec3 x = y;
-  if (near.distance >= -drawn && !cover_draw_in(body, &near, drawn, &x)) return vec(NAN, NAN, NAN);
-  certificate_vector(c, x);
-  return x;
-}
-
 /* ---- the claim ---- */
 
 cprox_status partition_robot_near(const robot_cover *c, const cprox_result *answer) {
@@ -119,7 +85,7 @@ cprox_status partition_robot_near(const robot_cover *c, const cprox_result *answ
   certificate_count(to, (uint32_t)segment);
   certificate_number(to, at);
   const vec3 x =
-      write_point_of(part, to, placement_turn_back(&moving->side.at, vec_sub(gap.on_moving, moving->side.at.p)));
+      partition_point_of(part, to, placement_turn_back(&moving->side.at, vec_sub(gap.on_moving, moving->side.at.p)));
   const vec3 world = placement_apply(&moving->side.at, x);
   const double sizes = vec_norm(vec_sub(world, standing->side.at.p)) + moving->radius +
                        (elements ? elements->order.t->scale : standing->side.shape->scale);

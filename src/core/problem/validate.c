@@ -210,31 +210,26 @@ static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle
 }
 
 /* A radius that changes is an affair of queries that know it. */
-static cprox_status check_radius_applies(const cprox_options *options, arguments_query asked,
-                                         cprox_workspace *workspace) {
+static cprox_status check_radius_applies(arguments_query asked, cprox_workspace *workspace) {
   if (!(asked.has & ARGUMENTS_RADIUS))
     return workspace_fail(workspace, CPROX_INVALID,
                           "a radius that changes does not apply to %s: ask for a distance, a verdict, a profile or a "
                           "time of contact",
                           asked.name);
-  if (options->certificate)
-    return workspace_fail(workspace, CPROX_INVALID, "a radius that changes: there is no certificate for it");
   return CPROX_OK;
 }
 
-static cprox_status check_own_radius(const cprox_mover *mover, const cprox_options *options, arguments_query asked,
-                                     cprox_workspace *workspace) {
+static cprox_status check_own_radius(const cprox_mover *mover, arguments_query asked, cprox_workspace *workspace) {
   if (!mover->radius_curve) return CPROX_OK;
-  const cprox_status applies = check_radius_applies(options, asked, workspace);
+  const cprox_status applies = check_radius_applies(asked, workspace);
   if (applies != CPROX_OK) return applies;
   return radius_check("the mover's radius", mover->radius_curve, mover->radius, mover->curve, workspace);
 }
 
 static cprox_status check_radius_against(const cprox_mover *mover, const cprox_obstacle *target, size_t index,
-                                         const cprox_options *options, arguments_query asked,
-                                         cprox_workspace *workspace) {
+                                         arguments_query asked, cprox_workspace *workspace) {
   if (!radius_changes(mover, target)) return CPROX_OK;
-  const cprox_status applies = check_radius_applies(options, asked, workspace);
+  const cprox_status applies = check_radius_applies(asked, workspace);
   if (applies != CPROX_OK) return applies;
   if (target->curve && target->curve->arcs)
     return workspace_fail(workspace, CPROX_INVALID,
@@ -314,12 +309,12 @@ cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targ
   checked = check_robot(mover, n, workspace);
   if (checked == CPROX_OK) checked = check_part(mover, options, workspace);
   if (checked == CPROX_OK) checked = check_ride(mover, options->max_lod, workspace);
-  if (checked == CPROX_OK) checked = check_own_radius(mover, options, asked, workspace);
+  if (checked == CPROX_OK) checked = check_own_radius(mover, asked, workspace);
   if (checked == CPROX_OK) checked = validate_targets(targets, n, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)
     checked = check_against(mover, &targets[i], i, options->max_lod, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)
-    checked = check_radius_against(mover, &targets[i], i, options, asked, workspace);
+    checked = check_radius_against(mover, &targets[i], i, asked, workspace);
   if (checked == CPROX_OK && mover->motion && options->signed_distance)
     checked = check_depths(mover, targets, n, workspace);
   return checked;

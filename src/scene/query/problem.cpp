@@ -34,6 +34,20 @@ std::string curveWords(const CurveDescription &curve) {
   return line;
 }
 
+/* What a radius that changes adds. */
+std::string growthWords(const CurveDescription &curve) {
+  if (curve.radius_polynomial.empty()) return {};
+  CurveDescription growth;
+  growth.basis = "polynomial";
+  growth.degree = curve.radius_polynomial.size();
+  growth.t0 = curve.t0;
+  growth.t1 = curve.t1;
+  growth.points = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(growth.degree) + 1);
+  for (std::size_t i = 0; i < growth.degree; ++i)
+    growth.points(0, static_cast<Eigen::Index>(i) + 1) = curve.radius_polynomial[i];
+  return " growing" + curveWords(growth);
+}
+
 /* What is said of the coverage, and of bodies without certificates. */
 void addDoubts(const Coverage &coverage, const std::vector<std::string> &unprovable, Problem &out) {
   if (!coverage.complete())
@@ -74,16 +88,17 @@ std::string problemHead() {
   return "cprox-problem 1\n";
 }
 
-std::string curveTargetLines(const CurveDescription &curve) {
+std::string curveTargetLines(const CurveDescription &curve, bool synchronized) {
   std::string line = "targets 1\ntarget";
   appendExactly(line, curve.radius);
+  if (synchronized) return line + " 0 point 0 0 0 riding" + curveWords(curve) + growthWords(curve) + "\n";
   return line + " 0 curve" + curveWords(curve) + "\n";
 }
 
 std::string moverLine(const CurveDescription &curve) {
   std::string line = "mover " + wordOf(curve.id);
   appendExactly(line, curve.radius);
-  return line + curveWords(curve) + "\n";
+  return line + curveWords(curve) + growthWords(curve) + "\n";
 }
 
 std::string noMoverLine(const std::string &id) {
@@ -95,7 +110,6 @@ std::string unprovable(const CurveDescription &curve) {
                                                         "legendre", "lagrange", "trigonometric"};
   if (curve.restrict_t0 != 0.0 || curve.restrict_t1 != 0.0)
     return "a curve that is restricted has no certificate; cut it by its t0 and t1 or its control points";
-  if (!curve.radius_polynomial.empty()) return "a curve whose radius changes has no certificate";
   for (const char *basis : bases)
     if (curve.basis == basis) return {};
   return "a " + curve.basis + " curve has no certificate";

@@ -15,7 +15,7 @@ namespace curve_proximity {
 /** Lines of a problem. */
 std::string problemHead();
 std::string moverLine(const CurveDescription &curve);
-std::string curveTargetLines(const CurveDescription &curve);
+std::string curveTargetLines(const CurveDescription &curve, bool synchronized = false);
 std::string noMoverLine(const std::string &id);
 
 /** Why nothing can be proven of a curve: its basis is none of the six of sums, it is restricted, or its radius changes.

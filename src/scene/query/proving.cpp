@@ -63,7 +63,7 @@ void leaveContactProof(const Query &query, const cprox_mover &mover, const std::
 std::string unprovable(const std::string &who, const cprox_obstacle &target, bool moves) {
   const cprox_body_kind kind = target.body ? cprox_body_get_info(target.body).kind : CPROX_BODY_POINT;
   const bool elements = kind == CPROX_BODY_MESH || kind == CPROX_BODY_POINTS || kind == CPROX_BODY_OCTREE;
-  if (!(moves && elements) && cprox_obstacle_describe(&target, nullptr, 0) > 0) return {};
+  if (!(moves && elements) && !target.curve && cprox_obstacle_describe(&target, nullptr, 0) > 0) return {};
   return who + " is of a kind that has no certificates: " +
          (target.body ? cprox_body_kind_name(cprox_body_get_info(target.body).kind) : "curve");
 }
@@ -80,7 +80,7 @@ std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::v
   std::size_t count = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     std::string lines(cprox_obstacle_describe(&targets[i], nullptr, 0) + 1, '\0');
-    if (lines.size() == 1) return {};
+    if (lines.size() == 1 || targets[i].curve) return {};
     cprox_obstacle_describe(&targets[i], lines.data(), lines.size());
     lines.pop_back();
     for (const char c : lines) {

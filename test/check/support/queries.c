@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -102,6 +103,32 @@ static void curve_random(given_curve *g, rng *r, bool bezier_only, double scale,
   g->t1 = rng_index(r, 2) ? g->t0 + 1.0 : g->t0 + rng_uniform(r, 0.5, 3.0);
   const size_t choice = bezier_only ? 0 : rng_index(r, 7);
   if (make[choice](g, r, scale, middle, ws) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
+}
+
+/* Over the same parameters as another, with its knots or of another basis. */
+static void curve_beside(given_curve *g, rng *r, const given_curve *like, double scale, cprox_workspace *ws) {
+  *g = *like;
+  g->curve = NULL;
+  if (strcmp(like->basis, "bspline") != 0 || rng_index(r, 2)) {
+    g->basis = "bezier";
+    g->degree = 1 + rng_index(r, 6);
+    g->n = g->degree + 1;
+    g->n_knots = 0;
+  }
+  for (size_t i = 0; i < g->n; i++) g->points[i] = rng_in_cube(r, scale);
+  const cprox_status status =
+      g->n_knots > 0
+          ? curve_from(describe_bspline(g->points, g->n, g->degree, g->knots, g->n_knots, g->t0, g->t1), ws, &g->curve)
+          : curve_from(describe_bezier(g->points, g->n, g->t0, g->t1), ws, &g->curve);
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
+}
+
+static void growth_random(given_curve *g, rng *r, const given_curve *like, double scale, cprox_workspace *ws) {
+  *g = (given_curve){.basis = "bezier", .degree = 1 + rng_index(r, 4), .t0 = like->t0, .t1 = like->t1};
+  g->n = g->degree + 1;
+  for (size_t i = 0; i < g->n; i++) g->points[i] = vec(rng_uniform(r, 0.0, 0.1 * scale), rng_uniform(r, 0.0, 1.0), 0.0);
+  if (curve_from(describe_bezier(g->points, g->n, g->t0, g->t1), ws, &g->curve) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
 }
 
 static void curve_write(const given_curve *g, FILE *out) {
@@ -295,6 +322,26 @@ static cprox_body *compound_random(asked *q, rng *r, cprox_workspace *ws) {
   return body;
 }
 
+/* What moves beside the curve. */
+static void clock_random(asked *q, rng *r, cprox_workspace *ws) {
+  if (rng_index(r, 2)) growth_random(&q->growth, r, &q->mover, q->scale, ws);
+  cprox_obstacle *first = &q->targets[0];
+  if (rng_index(r, 3)) {
+    curve_beside(&q->ride, r, &q->mover, q->scale, ws);
+    first->curve = q->ride.curve;
+    first->synchronized = true;
+    if (rng_index(r, 4) == 0) first->body = NULL;
+    if (rng_index(r, 3) == 0) growth_random(&q->swell, r, &q->mover, q->scale, ws);
+    first->radius_curve = q->swell.curve;
+  }
+}
+
+static bool is_carried(const cprox_body *body) {
+  for (size_t i = 0; i < body->n_parts; i++)
+    if (!is_carried(body->parts[i].body)) return false;
+  return isfinite(cprox_body_get_info(body).radius);
+}
+
 void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away, cprox_workspace *ws) {
   *q = (asked){.scale = scale};
   const vec3 middle = rng_in_cube(r, away);
@@ -327,6 +374,20 @@ void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away
     if (rng_index(r, 3) == 0) t->pose.orientation = (cprox_quat){1, 0, 0, 0};
     if (rng_index(r, 3) == 0) *t = cprox_with_margin(*t, 0.05 * scale);
   }
+  if (kinds.carried) {
+    const cprox_body *body = q->n_bodies == 0 && rng_index(r, 3) == 0 ? compound_random(q, r, ws) : NULL;
+    while (!body || !is_carried(body)) body = body_random(q, r, false, ws);
+    q->carried = body;
+  }
+  if (kinds.clock) clock_random(q, r, ws);
+}
+
+cprox_mover asked_mover(const asked *q) {
+  cprox_mover m =
+      q->carried ? cprox_body_along(q->carried, q->mover.curve) : cprox_tube_along(q->mover.curve, q->radius);
+  m.radius = q->radius;
+  m.radius_curve = q->growth.curve;
+  return m;
 }
 
 void query_mesh_free(query_mesh *mesh) {
@@ -341,12 +402,36 @@ void asked_free(asked *q) {
   for (size_t i = 0; i < q->n_bodies; i++) cprox_body_free(q->bodies[i]);
   cprox_curve_free(q->mover.curve);
   cprox_curve_free(q->target_curve.curve);
+  cprox_curve_free(q->growth.curve);
+  cprox_curve_free(q->ride.curve);
+  cprox_curve_free(q->swell.curve);
 }
 
 /* ---- text ---- */
 
+static void write_curve_as(const char *word, const given_curve *g, FILE *out) {
+  if (!g->curve) return;
+  fprintf(out, " %s", word);
+  curve_write(g, out);
+}
+
+/* Lines of the body, the first word of each being another, and what the first target rides behind them. */
+static void write_lines(const asked *q, const cprox_obstacle *t, const char *word, FILE *out) {
+  const size_t size = cprox_obstacle_describe(t, NULL, 0) + 1;
+  char *text = malloc(size), *rest = text;
+  assert_non_null(text);
+  cprox_obstacle_describe(t, text, size);
+  for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+    fprintf(out, "%s%s", word, strchr(line, ' '));
+    if (t->synchronized) write_curve_as("riding", &q->ride, out);
+    if (t->radius_curve) write_curve_as("growing", &q->swell, out);
+    fputs("\n", out);
+  }
+  free(text);
+}
+
 static void write_target(const asked *q, const cprox_obstacle *t, FILE *out) {
-  if (t->curve) {
+  if (t->curve && !t->synchronized) {
     const cprox_quat o = t->pose.orientation;
     fprintf(out, "target %a 1 %a %a %a %a %a %a %a curve", t->margin, t->pose.position.x, t->pose.position.y,
             t->pose.position.z, o.w, o.x, o.y, o.z);
@@ -354,12 +439,7 @@ static void write_target(const asked *q, const cprox_obstacle *t, FILE *out) {
     fputs("\n", out);
     return;
   }
-  const size_t size = cprox_obstacle_describe(t, NULL, 0) + 1;
-  char *text = malloc(size);
-  assert_non_null(text);
-  cprox_obstacle_describe(t, text, size);
-  fputs(text, out);
-  free(text);
+  write_lines(q, t, "target", out);
 }
 
 static size_t sections_of(const cprox_obstacle *t) {
@@ -376,7 +456,11 @@ void asked_write_targets(const asked *q, FILE *out) {
 void asked_write_mover(const asked *q, const char *id, FILE *out) {
   fprintf(out, "mover %s %a", id, q->radius);
   curve_write(&q->mover, out);
+  write_curve_as("growing", &q->growth, out);
+  if (q->carried) fprintf(out, " carrying %zu", q->carried->n_parts > 0 ? q->carried->n_parts : 1);
   fputs("\n", out);
+  const cprox_obstacle load = cprox_obstacle_at(q->carried, CPROX_POSE_IDENTITY);
+  if (q->carried) write_lines(q, &load, "carried", out);
 }
 
 asked_text asked_text_of(const asked *q) {

@@ -10,7 +10,7 @@
 #include "support/meshes.h"
 #include "support/random.h"
 
-enum { QUERY_MAX_POINTS = 40, QUERY_MAX_TARGETS = 3, QUERY_MAX_BODIES = 12 };
+enum { QUERY_MAX_POINTS = 40, QUERY_MAX_TARGETS = 3, QUERY_MAX_BODIES = 24 };
 
 /* A curve as it was given. */
 typedef struct given_curve {
@@ -38,6 +38,9 @@ typedef struct asked {
   size_t n;
   cprox_obstacle targets[QUERY_MAX_TARGETS];
   given_curve target_curve; /* of a target that is a curve, curve NULL: none */
+  given_curve growth;       /* of the mover's radius, likewise; */
+  given_curve ride, swell;  /* what the first target rides, and its growth */
+  const cprox_body *carried;
   cprox_body *bodies[QUERY_MAX_BODIES];
   size_t n_bodies;
   query_mesh mesh[QUERY_MAX_TARGETS]; /* of a target that is a mesh; body NULL: it is none */
@@ -52,6 +55,8 @@ typedef struct asked_kinds {
   bool meshes;   /* half of the targets */
   bool elements; /* those of any kind, too */
   bool implicit; /* half of the other bodies */
+  bool clock;    /* radii that change, and a first target on the mover's clock */
+  bool carried;  /* bodies that are carried */
 } asked_kinds;
 
 /* Of any convex kind. */
@@ -76,6 +81,8 @@ void asked_free(asked *q);
 /* The head and the targets, then the mover under a name. */
 void asked_write_targets(const asked *q, FILE *out);
 void asked_write_mover(const asked *q, const char *id, FILE *out);
+
+cprox_mover asked_mover(const asked *q);
 
 /* A query that the checker has read. */
 typedef struct asked_text {

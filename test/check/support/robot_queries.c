@@ -64,6 +64,14 @@ void robot_query_random(robot_query *q, rng *r, double speed, double apart, bool
   q->n = 0;
 }
 
+void robot_query_inequalities(robot_query *q, rng *r, cprox_workspace *ws) {
+  for (size_t i = 0; i < q->n; i++) {
+    if (rng_index(r, 2)) continue;
+    cprox_body_free((cprox_body *)q->targets[i].body);
+    q->targets[i].body = query_implicit(r, 0.5, ws);
+  }
+}
+
 void robot_query_free(robot_query *q) {
   for (size_t i = 0; i < q->n; i++) cprox_body_free((cprox_body *)q->targets[i].body);
   robot_free(&q->robot);

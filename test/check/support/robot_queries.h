@@ -32,6 +32,9 @@ typedef struct robot_query {
 void robot_query_random(robot_query *q, rng *r, double speed, double apart, bool meshes, cprox_workspace *ws);
 void robot_query_free(robot_query *q);
 
+/* Bodies by inequalities take the place of half of the targets. */
+void robot_query_inequalities(robot_query *q, rng *r, cprox_workspace *ws);
+
 /* The head and the targets; then a robot. */
 void robot_write_targets(const cprox_obstacle *targets, size_t n, FILE *out);
 void robot_write_mover(const cprox_mover *along, const cprox_obstacle *targets, size_t n, const char *id,
