@@ -21,9 +21,8 @@
 #include <ros/time.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <curve_proximity/files.hpp>
-
 #include "collision_env.h"
+#include "worlds.h"
 
 namespace cd = collision_detection;
 namespace cp = curve_proximity;
@@ -47,30 +46,6 @@ moveit::core::RobotModelPtr panda() {
   auto srdf = std::make_shared<srdf::Model>();
   srdf->initString(*urdf, readText(folder + "panda.srdf"));
   return std::make_shared<moveit::core::RobotModel>(urdf, srdf);
-}
-
-shapes::ShapeConstPtr toShape(const cp::ShapeDescription &shape) {
-  const std::vector<double> &d = shape.dimensions;
-  if (shape.type == cp::ShapeType::BOX) return std::make_shared<shapes::Box>(d[0], d[1], d[2]);
-  if (shape.type == cp::ShapeType::CYLINDER) return std::make_shared<shapes::Cylinder>(d[1], d[0]);
-  if (shape.type == cp::ShapeType::SPHERE) return std::make_shared<shapes::Sphere>(d[0]);
-  throw cp::Error("the scenes of this bench have boxes, cylinders and spheres");
-}
-
-cd::WorldPtr worldOf(const std::string &path) {
-  cp::Scene scene;
-  scene.apply(cp::loadSceneFile(path).change);
-  auto out = std::make_shared<cd::World>();
-  for (const auto &[id, object] : scene.snapshot()->objects()) {
-    std::vector<shapes::ShapeConstPtr> all;
-    EigenSTL::vector_Isometry3d poses;
-    for (const cp::ShapeDescription &shape : object->description.shapes) {
-      all.push_back(toShape(shape));
-      poses.push_back(shape.pose);
-    }
-    out->addToObject(id, object->description.pose, all, poses);
-  }
-  return out;
 }
 
 double now() {

@@ -277,7 +277,7 @@ class Files(Case):
     def every_scene_of_the_data_is_read(self):
         scenes = sorted(glob.glob(DATA + '/scenes/mbm/*/scene*.yaml') + glob.glob(DATA + '/scenes/converted/*.yaml')
                         + glob.glob(DATA + '/scenes/robowflex_box/scene*.yaml'))
-        self.assertEqual(len(scenes), 25)
+        self.assertEqual(len(scenes), 32)
         curves = self.file('curves.csv', bezier('c', (0.2, -1, 0.3), (1, 1, 0.5), (0.5, 1, 0.7)))
         for scene in scenes:
             with self.subTest(scene=scene):
