@@ -127,7 +127,10 @@ int main(int argc, char **argv) {
   for (size_t i = 0; i < queries;) {
     robot_query q;
     robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), i % 3 == 2, ws);
-    if (i % 3 == 1 && argc == 4) robot_query_inequalities(&q, &r, ws); /* the program in Python knows none */
+    if (argc == 4) { /* the program in Python knows neither */
+      if (i % 3 == 1) robot_query_inequalities(&q, &r, ws);
+      robot_query_whole(&q, &r);
+    }
     double interval[2];
     if (ask(&q, &r, ws, c, interval, &genuine)) {
       const files f = open_files(argc == 5 ? argv[4] : NULL, i, &q);

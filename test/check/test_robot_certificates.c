@@ -141,7 +141,7 @@ CASE(random_robots_leave_certificates_that_hold) {
   cprox_certificate_free(c);
 }
 
-/* 30 robots beside superquadrics and intersections of inequalities, seed 8. */
+/* 30 robots beside superquadrics and intersections of inequalities, seed 8; some are asked about themselves, too. */
 CASE(robots_beside_bodies_by_inequalities_leave_certificates_that_hold) {
   static tally sum[3];
   cprox_certificate *c = cprox_certificate_create();
@@ -150,6 +150,7 @@ CASE(robots_beside_bodies_by_inequalities_leave_certificates_that_hold) {
     robot_query q;
     robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
     robot_query_inequalities(&q, &r, ws);
+    robot_query_whole(&q, &r);
     char name[40];
     snprintf(name, sizeof name, "robot %zu", i);
     ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);

@@ -288,7 +288,7 @@ CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_
 CPROX_API cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 /** The robot against obstacles and itself at once: one search begins with the nearest pair of both kinds. It answers
- *  distance, tolerance, collision and time of contact, without `each` and without certificate. obstacle_index is that
+ *  distance, tolerance, collision and time of contact, with certificates and without `each`. obstacle_index is that
  *  of an obstacle, or the number of obstacles plus that of the other geometry.
  *
  *  along         the robot against obstacles, by cprox_robot_along()

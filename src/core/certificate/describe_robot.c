@@ -89,7 +89,8 @@ size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obs
   query q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
   if (!mover->motion || !motion_is_described(mover->motion) ||
       describe_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
-      validate_query(mover, targets, n, &q.options, (arguments_query){"a description", 0}, workspace) != CPROX_OK)
+      validate_query(mover, targets, n, &q.options, (arguments_query){"a description", ARGUMENTS_WHOLE}, workspace) !=
+          CPROX_OK)
     return 0;
   robot_scene scene;
   if (!robot_scene_begin(&scene, &q, NULL, 0, n, SIZE_MAX, INFINITY)) return 0;
@@ -101,7 +102,7 @@ size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obs
   say(&t, "pairs %zu", scene.n_pairs);
   for (size_t i = 0; i < scene.n_pairs; i++)
     say(&t, " %d %zu", (int)scene.pairs[i].moving,
-        (size_t)scene.pairs[i].standing + (mover_is_self(mover) ? 0 : robot->n_parts));
+        (size_t)scene.pairs[i].standing + (scene.pairs[i].self ? 0 : robot->n_parts));
   say(&t, "\n");
   describe_motion(&t, mover->motion);
   return t.length;

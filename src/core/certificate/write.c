@@ -448,7 +448,8 @@ static cprox_status validate(const cprox_mover *mover, const cprox_obstacles *ob
                              cprox_workspace *workspace, cprox_certificate *certificate) {
   workspace_clear(workspace);
   cprox_certificate_clear(certificate);
-  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_LOD | ARGUMENTS_RADIUS};
+  const arguments_query asked = {"a certificate for an answer",
+                                 ARGUMENTS_RELATIVE | ARGUMENTS_LOD | ARGUMENTS_RADIUS | ARGUMENTS_WHOLE};
   const cprox_status status =
       validate_query(mover, obstacles_list(obstacles), obstacles_count(obstacles), chosen, asked, workspace);
   if (status == CPROX_OK && !certificate)

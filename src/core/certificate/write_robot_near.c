@@ -32,13 +32,19 @@ static const cprox_body *body_of_obstacle(const robot_scene *s, int32_t obstacle
   return body_part_at(s->q->targets[o->index].body, (size_t)o->part);
 }
 
+/* What stands in a pair, as answers number it: geometries of the robot itself come after the obstacles. */
+static int32_t number_of_standing(const robot_scene *s, const robot_pair *pair) {
+  if (!pair->self) return s->obstacles[pair->standing].index;
+  return s->parts[pair->standing].body.index + (mover_is_whole(&s->q->mover) ? (int32_t)s->q->n : 0);
+}
+
 /* The nearest pair of the two that the answer names, -1: there is none. The scene is at the place. */
 static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_gap *nearest) {
   int32_t found = -1;
   for (size_t i = 0; i < s->n_pairs; i++) {
     const robot_pair *pair = &s->pairs[i];
-    const int32_t other = pair->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
-    if (s->parts[pair->moving].body.index != answer->mover_part || other != answer->obstacle_index) continue;
+    if (s->parts[pair->moving].body.index != answer->mover_part) continue;
+    if (number_of_standing(s, pair) != answer->obstacle_index) continue;
     robot_gap gap;
     placed_robot_pair p;
     placed_robot_pair_at(s, (int32_t)i, &p);
@@ -77,7 +83,7 @@ cprox_status partition_robot_near(const robot_cover *c, const cprox_result *answ
   if (!part || !other)
     return workspace_fail(s->q->workspace, CPROX_INVALID,
                           "geometry %d is a mesh: its convex hull cannot prove that it is near",
-                          (int)(part ? answer->obstacle_index : answer->mover_part));
+                          (int)s->parts[part ? pair->standing : pair->moving].body.index);
 
   cprox_certificate *to = c->certificate;
   certificate_begin(to, 8, CPROX_CLAIM_NEAR, c->delta, (uint32_t)s->n_pairs);

@@ -297,10 +297,10 @@ cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targ
   if (checked == CPROX_OK) checked = validate_length("radius", mover->radius, workspace);
   if (checked == CPROX_OK) checked = validate_options(options, asked, workspace);
   if (checked != CPROX_OK) return checked;
-  if (mover->kind == CPROX_MOVER_ROBOT_WHOLE && (!(asked.has & ARGUMENTS_WHOLE) || options->certificate))
+  if (mover->kind == CPROX_MOVER_ROBOT_WHOLE && !(asked.has & ARGUMENTS_WHOLE))
     return workspace_fail(workspace, CPROX_INVALID,
                           "%s: a robot against obstacles and itself at once has a distance, verdicts and a time of "
-                          "contact, and no certificate",
+                          "contact, and their certificates",
                           asked.name);
   if (!mover->motion && (mover->pairs || mover->n_pairs > 0 || mover->self_pairs || mover->n_self_pairs > 0))
     return workspace_fail(

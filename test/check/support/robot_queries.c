@@ -64,6 +64,10 @@ void robot_query_random(robot_query *q, rng *r, double speed, double apart, bool
   q->n = 0;
 }
 
+void robot_query_whole(robot_query *q, rng *r) {
+  if (q->n > 0 && rng_index(r, 3) == 0) q->mover = cprox_robot_whole(q->mover, NULL, 0);
+}
+
 void robot_query_inequalities(robot_query *q, rng *r, cprox_workspace *ws) {
   for (size_t i = 0; i < q->n; i++) {
     if (rng_index(r, 2)) continue;

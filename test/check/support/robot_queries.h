@@ -32,6 +32,9 @@ typedef struct robot_query {
 void robot_query_random(robot_query *q, rng *r, double speed, double apart, bool meshes, cprox_workspace *ws);
 void robot_query_free(robot_query *q);
 
+/* One in three that has obstacles is asked about both at once. */
+void robot_query_whole(robot_query *q, rng *r);
+
 /* Bodies by inequalities take the place of half of the targets. */
 void robot_query_inequalities(robot_query *q, rng *r, cprox_workspace *ws);
 
