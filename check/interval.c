@@ -184,15 +184,22 @@ void iv_sqrt(iv *out, const iv *a) {
 /* SMALL: the series is of an argument below 2^-SMALL; HUGE: exponent of the largest that something is said of. */
 enum { SMALL = 12, HUGE_ARGUMENT = 40, POWER_BITS = SMALL + HUGE_ARGUMENT + 24 };
 
+/* Room for the work: with more bits. */
+static iv *power_room(size_t n) {
+  const mpfr_prec_t wanted = precision;
+  precision += POWER_BITS;
+  iv *w = iv_new(n);
+  precision = wanted;
+  return w;
+}
+
 /* e^x, |x| < 2^HUGE_ARGUMENT, within 2^-precision of itself: the square of a square and so on of a series. Let v =
  * 2^-bits. The series has bits / 12 < 400 sums and as many products: it is off by 2^10 v of itself at most, a square by
  * twice as much and v. After h <= 52 squares that is below 2^(h + 12) v, less than 2^-(precision + 12). */
-static void power_of_e(mpfr_ptr out, mpfr_srcptr x) {
-  const mpfr_prec_t wanted = precision, bits = wanted + POWER_BITS;
+static void power_of_e(mpfr_ptr out, mpfr_srcptr x, iv w[2]) {
+  const mpfr_prec_t bits = precision + POWER_BITS;
   const mpfr_exp_t size = mpfr_sgn(x) != 0 ? mpfr_get_exp(x) : -SMALL;
   const int halvings = size > -SMALL ? (int)size + SMALL : 0;
-  precision = bits;
-  iv *w = iv_new(2);
   mpfr_ptr y = w[0].lo, term = w[0].hi, sum = w[1].lo;
   mpfr_div_2si(y, x, halvings, MPFR_RNDN);
   mpfr_set_ui(term, 1, MPFR_RNDN);
@@ -205,24 +212,21 @@ static void power_of_e(mpfr_ptr out, mpfr_srcptr x) {
   }
   for (int i = 0; i < halvings; i++) mpfr_mul(sum, sum, sum, MPFR_RNDN);
   count(halvings);
-  precision = wanted;
   mpfr_set(out, sum, MPFR_RNDN);
-  iv_free(w, 2);
 }
 
 /* One end, rounded down or up. */
-static void exponential(mpfr_ptr out, mpfr_srcptr x, mpfr_rnd_t to) {
+static void exponential(mpfr_ptr out, mpfr_srcptr x, mpfr_rnd_t to, iv w[3]) {
   const bool up = to == MPFR_RNDU, less = !mpfr_nan_p(x) && mpfr_sgn(x) < 0;
   if (mpfr_number_p(x) && (mpfr_zero_p(x) || mpfr_get_exp(x) <= HUGE_ARGUMENT)) {
-    iv *w = iv_new(1);
-    power_of_e(w->lo, x);
-    mpfr_set_ui_2exp(w->hi, 1, 2 - precision, MPFR_RNDU);
+    mpfr_ptr around = w[2].lo, off = w[2].hi;
+    power_of_e(around, x, w);
+    mpfr_set_ui_2exp(off, 1, 2 - precision, MPFR_RNDU);
     if (up)
-      mpfr_add_ui(w->hi, w->hi, 1, MPFR_RNDU);
+      mpfr_add_ui(off, off, 1, MPFR_RNDU);
     else
-      mpfr_ui_sub(w->hi, 1, w->hi, MPFR_RNDD);
-    mpfr_mul(out, w->lo, w->hi, to);
-    iv_free(w, 1);
+      mpfr_ui_sub(off, 1, off, MPFR_RNDD);
+    mpfr_mul(out, around, off, to);
   } else if (up && less) {
     mpfr_set_ui_2exp(out, mpfr_inf_p(x) ? 0 : 1, -(1L << (HUGE_ARGUMENT - 20)), MPFR_RNDU);
   } else if (up) {
@@ -233,55 +237,53 @@ static void exponential(mpfr_ptr out, mpfr_srcptr x, mpfr_rnd_t to) {
 }
 
 void iv_exp(iv *out, const iv *a) {
-  iv *w = iv_new(1);
-  exponential(w->lo, a->lo, MPFR_RNDD);
-  exponential(w->hi, a->hi, MPFR_RNDU);
-  iv_set(out, w);
-  iv_free(w, 1);
+  iv *w = power_room(4);
+  exponential(w[3].lo, a->lo, MPFR_RNDD, w);
+  exponential(w[3].hi, a->hi, MPFR_RNDU, w);
+  iv_set(out, &w[3]);
+  iv_free(w, 4);
 }
 
 /* Of a positive number: y by Halley's steps, each of which has three times as many bits. Then with x = (1 + t) e^y,
  * t/(1 + t) <= log(1 + t) <= t, whatever y is. */
-static void logarithm(iv *out, mpfr_srcptr x) {
+static void logarithm(iv *out, mpfr_srcptr x, iv w[6]) {
   enum { DOUBLE_BITS = 40 };
   long exponent;
   const double m = mpfr_get_d_2exp(&exponent, x, MPFR_RNDN);
-  iv *w = iv_new(3);
-  mpfr_ptr y = w[0].lo, e = w[0].hi, up = w[1].lo, down = w[1].hi;
+  mpfr_ptr y = w[3].lo, e = w[3].hi, up = w[4].lo, down = w[4].hi;
   mpfr_set_d(y, log(m) + 0.69314718055994531 * (double)exponent, MPFR_RNDN);
   for (long bits = DOUBLE_BITS; bits < precision; bits *= 3) { /* y += 2 (x - e^y) / (x + e^y) */
-    power_of_e(e, y);
+    power_of_e(e, y, w);
     mpfr_sub(up, x, e, MPFR_RNDN);
     mpfr_add(down, x, e, MPFR_RNDN);
     mpfr_div(up, up, down, MPFR_RNDN);
     mpfr_mul_2ui(up, up, 1, MPFR_RNDN);
     mpfr_add(y, y, up, MPFR_RNDN);
   }
-  exponential(w[2].lo, y, MPFR_RNDD);
-  exponential(w[2].hi, y, MPFR_RNDU);
-  mpfr_div(up, x, w[2].lo, MPFR_RNDU); /* at least 1 + t */
+  exponential(w[5].lo, y, MPFR_RNDD, w);
+  exponential(w[5].hi, y, MPFR_RNDU, w);
+  mpfr_div(up, x, w[5].lo, MPFR_RNDU); /* at least 1 + t */
   mpfr_sub_ui(up, up, 1, MPFR_RNDU);
-  mpfr_div(down, w[2].hi, x, MPFR_RNDU); /* at least 1/(1 + t) = 1 - t/(1 + t) */
+  mpfr_div(down, w[5].hi, x, MPFR_RNDU); /* at least 1/(1 + t) = 1 - t/(1 + t) */
   mpfr_ui_sub(down, 1, down, MPFR_RNDD);
   mpfr_add(out->lo, y, down, MPFR_RNDD);
   mpfr_add(out->hi, y, up, MPFR_RNDU);
-  iv_free(w, 3);
 }
 
 void iv_log(iv *out, const iv *a) {
-  iv *w = iv_new(2);
+  iv *w = power_room(8), *end = w + 6;
   for (int k = 0; k < 2; k++) {
-    mpfr_srcptr end = k == 0 ? a->lo : a->hi;
-    const bool usual = mpfr_number_p(end) && mpfr_sgn(end) > 0;
-    if (usual) logarithm(&w[k], end);
-    if (!usual) {
-      mpfr_set_inf(w[k].lo, -1);
-      mpfr_set_inf(w[k].hi, !mpfr_nan_p(end) && mpfr_sgn(end) <= 0 ? -1 : 1);
+    mpfr_srcptr x = k == 0 ? a->lo : a->hi;
+    if (mpfr_number_p(x) && mpfr_sgn(x) > 0) {
+      logarithm(&end[k], x, w);
+    } else {
+      mpfr_set_inf(end[k].lo, -1);
+      mpfr_set_inf(end[k].hi, !mpfr_nan_p(x) && mpfr_sgn(x) <= 0 ? -1 : 1);
     }
   }
-  mpfr_set(out->lo, w[0].lo, MPFR_RNDD);
-  mpfr_set(out->hi, w[1].hi, MPFR_RNDU);
-  iv_free(w, 2);
+  mpfr_set(out->lo, end[0].lo, MPFR_RNDD);
+  mpfr_set(out->hi, end[1].hi, MPFR_RNDU);
+  iv_free(w, 8);
 }
 
 /* ---- cosine and sine: MPFR's would take memory of its own ---- */
@@ -339,30 +341,28 @@ static void turn_within(mpfr_ptr cosine, mpfr_ptr sine, mpfr_srcptr angle, int h
 /* Both are within 1 of their slope: they lie within the width of the angle of their values at one end. */
 void iv_turn(iv *cosine, iv *sine, const iv *angle) {
   const mpfr_prec_t wanted = precision;
-  iv *off = iv_new(1);
   const bool known = mpfr_number_p(angle->lo) && mpfr_number_p(angle->hi);
   const mpfr_exp_t size = known && mpfr_sgn(angle->lo) != 0 ? mpfr_get_exp(angle->lo) : 0;
+  const int halvings = HALVINGS + (size > 0 && size <= LARGEST ? (int)size : 0);
+  precision = wanted + bits_more(halvings);
+  iv *off = iv_new(2), *found = &off[1];
   if (known && size <= LARGEST) {
     mpfr_sub(off->hi, angle->hi, angle->lo, MPFR_RNDU);
     mpfr_set_ui_2exp(off->lo, 1, -wanted, MPFR_RNDU);
     mpfr_add(off->hi, off->hi, off->lo, MPFR_RNDU);
-    const int halvings = HALVINGS + (size > 0 ? (int)size : 0);
-    precision = wanted + bits_more(halvings);
-    iv *found = iv_new(1);
     turn_within(found->lo, found->hi, angle->lo, halvings, precision);
     mpfr_sub(cosine->lo, found->lo, off->hi, MPFR_RNDD);
     mpfr_add(cosine->hi, found->lo, off->hi, MPFR_RNDU);
     mpfr_sub(sine->lo, found->hi, off->hi, MPFR_RNDD);
     mpfr_add(sine->hi, found->hi, off->hi, MPFR_RNDU);
-    iv_free(found, 1);
-    precision = wanted;
   } else {
     mpfr_set_si(off->lo, -1, MPFR_RNDD);
     mpfr_set_si(off->hi, 1, MPFR_RNDU);
     iv_set(cosine, off);
     iv_set(sine, off);
   }
-  iv_free(off, 1);
+  iv_free(off, 2);
+  precision = wanted;
 }
 
 void iv_max(iv *out, const iv *a, const iv *b) {
