@@ -32,7 +32,7 @@ typedef struct section {
   pieces *mover, *target; /* target: of a set that is a curve */
   pieces *clock[3];       /* NULL, or what else is at the mover's parameter: its growth; the set's ride and growth */
   const set *carried;     /* by the mover, or NULL */
-  double until;           /* the part of the mover that is spoken of, from 0 on, in pieces */
+  double from, until;     /* the part of the mover that is spoken of, in pieces */
   double balls[BALLS];    /* delta, radius, margin, that of what is carried */
   size_t *leaves;
 } section;
@@ -165,7 +165,7 @@ static bool separates(const section *c, const direction *along, part mine, const
 /* m leaves {end, n}, the ends ascending from 0 to the number of pieces. */
 static const char *check_convex(const section *c) {
   const uint32_t m = reader_count(c->in);
-  double from = 0.0;
+  double from = c->from;
   for (uint32_t i = 0; i < m; i++) {
     const double end = reader_number(c->in);
     const direction along = read_direction(c);
@@ -213,13 +213,13 @@ static const char *read_pieces(reader *in, const curve *c, pieces *p, double **b
 
 static const char *check_section(section *c) {
   const unsigned char wanted = c->set->kind == CURVE ? 2 : c->set->corners > 0 ? 3 : 1;
-  const part all = {0.0, c->until};
+  const part all = {c->from, c->until};
   if (reader_byte(c->in) != wanted) return "it is about another kind of target";
   if (wanted == 1) return check_convex(c);
   if (c->set->kind == SOLID && (c->carried || c->clock[1])) return "what is inside a mesh that moves is not known";
   if (wanted == 3) {
     const char *broken = check_tree(c, all, (part){0.0, (double)set_elements(c->set)}, 0);
-    if (broken || c->set->kind != SOLID || winding_pieces_begin_outside(c->set, c->mover, (size_t)ceil(c->until)))
+    if (broken || c->set->kind != SOLID || winding_pieces_begin_outside(c->set, c->mover, c->from, c->until))
       return broken;
     return "the curve does not begin outside the mesh";
   }
@@ -234,8 +234,8 @@ static const char *check_section(section *c) {
   return fault;
 }
 
-/* The parameter at a number of pieces, rounded down. */
-static double parameter_at(const double *breaks, double at) {
+/* The parameter at a number of pieces, rounded down, or up. */
+static double parameter_at(const double *breaks, double at, mpfr_rnd_t rounding) {
   const size_t i = (size_t)floor(at);
   if (at == (double)i) return breaks[i];
   iv *w = iv_new(3);
@@ -243,22 +243,28 @@ static double parameter_at(const double *breaks, double at) {
   iv_set_d(&w[1], breaks[i + 1]);
   iv_set_d(&w[2], at - (double)i);
   iv_blend(&w[0], &w[1], &w[2]);
-  const double t = mpfr_get_d(w[0].lo, MPFR_RNDD);
+  const double t = mpfr_get_d(rounding == MPFR_RNDD ? w[0].lo : w[0].hi, rounding);
   iv_free(w, 3);
   return t;
 }
 
-/* All pairs of a robot, over all of the motion or, where *before is set, up to a place of it. */
-static const char *check_robot_apart(robot *r, reader *in, uint32_t width, bool before, finding *found) {
-  motion_end end = {.segment = r->n_segments - 1, .u = 1.0};
-  if (before) {
-    end.segment = reader_count(in);
-    end.u = reader_number(in);
-    if (in->bad || end.segment >= r->n_segments || !(end.u > 0.0 && end.u <= 1.0)) return "it ends outside the motion";
-    const double around[2] = {r->times[end.segment], r->times[end.segment + 1]};
-    found->until = parameter_at(around, end.u);
-  }
-  return robot_apart(r, in, width, found->delta, &end, &found->leaves);
+/* A place of a robot's motion. */
+static bool read_place(const robot *r, reader *in, motion_place *at) {
+  at->segment = reader_count(in);
+  at->u = reader_number(in);
+  return !in->bad && at->segment < r->n_segments && at->u >= 0.0 && at->u <= 1.0;
+}
+
+/* All pairs of a robot, over all of the motion, or up to a place of it, or from one to another. */
+static const char *check_robot_apart(robot *r, reader *in, uint32_t width, claim of, finding *found) {
+  motion_place from = {0, 0.0}, until = {r->n_segments - 1, 1.0};
+  const bool good =
+      (of != CLAIM_DURING || read_place(r, in, &from)) && (of == CLAIM_APART || read_place(r, in, &until));
+  if (!good || from.segment > until.segment || (from.segment == until.segment && !(from.u < until.u)))
+    return "it ends outside the motion";
+  found->from = parameter_at(r->times + from.segment, from.u, MPFR_RNDU);
+  found->until = parameter_at(r->times + until.segment, until.u, MPFR_RNDD);
+  return robot_apart(r, in, width, found->delta, &from, &until, &found->leaves);
 }
 
 /* All sets against one body that is carried, or the curve alone. clock: that of the mover's own growth. */
@@ -282,17 +288,19 @@ static const char *check_sets(const problem *p, section *c, pieces *growth, doub
   return fault;
 }
 
-static const char *check_apart(const problem *p, reader *in, uint32_t width, bool before, finding *found) {
+static const char *check_apart(const problem *p, reader *in, uint32_t width, claim of, finding *found) {
   const mover *m = &p->mover;
   pieces path = {0}, growth = {0};
   double *breaks = NULL;
-  const double end = before ? reader_number(in) : 0.0;
+  const double from = of == CLAIM_DURING ? reader_number(in) : 0.0, end = of != CLAIM_APART ? reader_number(in) : 0.0;
   const char *fault = read_pieces(in, &m->curve, &path, &breaks);
   if (!fault && curve_is_there(&m->growth)) fault = pieces_make(&growth, &m->growth, breaks, path.n);
-  if (!fault && before && !(end > 0.0 && end <= (double)path.n)) fault = "it ends outside the curve";
-  if (!fault && before) found->until = parameter_at(breaks, end);
+  const double until = of != CLAIM_APART ? end : (double)path.n;
+  if (!fault && !(from >= 0.0 && from < until && until <= (double)path.n)) fault = "it ends outside the curve";
+  if (!fault) found->from = parameter_at(breaks, from, MPFR_RNDU);
+  if (!fault) found->until = parameter_at(breaks, until, MPFR_RNDD);
   section c = {.in = in, .width = width, .mover = &path, .leaves = &found->leaves};
-  c.until = before ? end : (double)path.n;
+  c.from = from, c.until = until;
   for (size_t i = 0; (i == 0 || i < m->n_carried) && !fault; i++) {
     c.carried = m->n_carried > 0 ? &m->carried[i] : NULL;
     fault = check_sets(p, &c, &growth, found->delta);
@@ -329,13 +337,13 @@ static double parameter_of_place(const problem *p, reader in) {
   const double u = reader_number(&in);
   if (in.bad || segment >= r->n_segments || !(u >= 0.0 && u <= 1.0)) return INFINITY;
   const double back[2] = {-r->times[segment + 1], -r->times[segment]};
-  return u == 0.0 ? r->times[segment] : -parameter_at(back, nextafter(1.0 - u, 0.0));
+  return u == 0.0 ? r->times[segment] : -parameter_at(back, nextafter(1.0 - u, 0.0), MPFR_RNDD);
 }
 
 /* Farther than delta up to a parameter; what follows is near. */
 static const char *check_before(const problem *p, reader *in, uint32_t width, finding *found) {
-  const char *fault = p->mover.robot ? check_robot_apart(p->mover.robot, in, width, true, found)
-                                     : check_apart(p, in, width, true, found);
+  const char *fault = p->mover.robot ? check_robot_apart(p->mover.robot, in, width, CLAIM_BEFORE, found)
+                                     : check_apart(p, in, width, CLAIM_BEFORE, found);
   if (fault || in->at == in->end) return fault;
   found->meets_delta = reader_number(in);
   found->meets_by = parameter_of_place(p, *in);
@@ -347,14 +355,15 @@ static const char *check_before(const problem *p, reader *in, uint32_t width, fi
 static const char *check_claim(const problem *p, reader *in, uint32_t width, uint32_t claimed, size_t sections,
                                finding *found) {
   robot *r = p->mover.robot;
-  const bool apart = claimed == CLAIM_APART || claimed == CLAIM_BEFORE;
+  const bool apart = claimed == CLAIM_APART || claimed == CLAIM_BEFORE || claimed == CLAIM_DURING;
   if (!apart && claimed != CLAIM_NEAR) return "it claims nothing that is known";
   if (r && sections != r->n_pairs) return "it is about another number of pairs";
   const size_t loads = p->mover.n_carried > 0 ? p->mover.n_carried : 1;
   if (!r && apart && sections != loads * p->n_sets) return "it is about another number of targets";
   if (claimed == CLAIM_NEAR) return check_place(p, in, found->delta);
   if (claimed == CLAIM_BEFORE) return check_before(p, in, width, found);
-  return r ? check_robot_apart(r, in, width, false, found) : check_apart(p, in, width, false, found);
+  const claim of = (claim)claimed;
+  return r ? check_robot_apart(r, in, width, of, found) : check_apart(p, in, width, of, found);
 }
 
 static finding find(const problem *p, const unsigned char *bytes, size_t size) {

@@ -64,6 +64,48 @@ static void report_hulls(const problem *p) {
   if (parts > 0) printf("%s%zu of the robot's %zu bodies", before, parts, r->n_parts);
 }
 
+/* What is proven, to be followed by "(". */
+static void say(const finding *f) {
+  if (f->claim == CLAIM_NEAR) printf("not farther than %.17g m", f->delta);
+  if (f->claim == CLAIM_APART) printf("farther than %.17g m everywhere", f->delta);
+  if (f->claim == CLAIM_BEFORE) printf("farther than %.17g m before %.17g", f->delta, f->until);
+  if (f->claim == CLAIM_DURING) printf("farther than %.17g m from %.17g to %.17g", f->delta, f->from, f->until);
+  if (f->meets) printf(", and by %.17g not farther than %.17g m", f->meets_by, f->meets_delta);
+}
+
+/* Several certificates of one mover: "CPCP", u32 n, n × {u32 length, certificate}. All must hold. */
+static bool report_parts(const problem *p, const unsigned char *bytes, size_t size) {
+  reader in = {.at = bytes + 4, .end = bytes + size};
+  const uint32_t n = reader_count(&in);
+  size_t leaves = 0;
+  for (int pass = 0; pass < 2; pass++) { /* the first one finds out whether all hold */
+    reader part = in;
+    if (pass == 1) printf("%s: proven: ", p->mover.id);
+    for (uint32_t i = 0; i < n; i++) {
+      const uint32_t length = reader_count(&part);
+      const bool cut_off = part.bad || length > reader_left(&part);
+      const finding found = cut_off ? (finding){.fault = "it is cut off"} : check(p, part.at, length);
+      if (found.fault) {
+        printf("%s: refused: part %u of %u: %s\n", p->mover.id, (unsigned)i + 1, (unsigned)n, found.fault);
+        return false;
+      }
+      part.at += length;
+      leaves += found.leaves;
+      if (pass == 0) continue;
+      if (i > 0) printf("; ");
+      say(&found);
+    }
+    if (pass == 0 && (n == 0 || part.bad || part.at != part.end)) {
+      printf("%s: refused: %s\n", p->mover.id, n == 0 ? "it has no parts" : "bytes follow its end");
+      return false;
+    }
+  }
+  printf(" (%u bytes, %u parts, %zu directions", (unsigned)size, (unsigned)n, leaves / 2);
+  report_hulls(p);
+  puts(")");
+  return true;
+}
+
 /* One certificate and its line of the report; whether it proves anything. */
 static bool report(const problem *p, reader *file) {
   const uint32_t size = reader_count(file);
@@ -78,23 +120,21 @@ static bool report(const problem *p, reader *file) {
     printf("%s: nothing is claimed\n", p->mover.id);
     return false;
   }
+  if (size >= 4 && memcmp(bytes, "CPCP", 4) == 0) return report_parts(p, bytes, size);
   const finding found = check(p, bytes, size);
-  if (found.claim == CLAIM_BEFORE) {
-    printf("%s: proven: farther than %.17g m before %.17g", p->mover.id, found.delta, found.until);
-    if (found.meets) printf(", and by %.17g not farther than %.17g m", found.meets_by, found.meets_delta);
-    printf(" (%u bytes, %zu directions", (unsigned)size, found.leaves);
-    report_hulls(p);
-    puts(")");
-  } else if (found.claim == CLAIM_APART) {
-    printf("%s: proven: farther than %.17g m everywhere (%u bytes, %zu directions", p->mover.id, found.delta,
-           (unsigned)size, found.leaves);
-    report_hulls(p);
-    puts(")");
-  } else if (found.claim == CLAIM_NEAR)
-    printf("%s: proven: not farther than %.17g m (%u bytes)\n", p->mover.id, found.delta, (unsigned)size);
-  else
+  if (found.claim == CLAIM_NONE) {
     printf("%s: refused: %s\n", p->mover.id, found.fault);
-  return found.claim != CLAIM_NONE;
+    return false;
+  }
+  printf("%s: proven: ", p->mover.id);
+  say(&found);
+  printf(" (%u bytes", (unsigned)size);
+  if (found.claim != CLAIM_NEAR) {
+    printf(", %zu directions", found.leaves);
+    report_hulls(p);
+  }
+  puts(")");
+  return true;
 }
 
 int main(int argc, char **argv) {

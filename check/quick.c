@@ -27,6 +27,21 @@ static void cut(num *a, size_t degree, num s, bool left) {
     }
 }
 
+bool quick_point(pieces *p, size_t i, double s, vec *point) {
+  const pieces_quick *piece = pieces_quick_at(p, i);
+  if (!piece || p->degree + 1 > MOST_POINTS) return false;
+  *point = (vec){.e = piece->radius + piece->remainder};
+  for (int k = 0; k < 3; k++) {
+    num a[MOST_POINTS];
+    for (size_t j = 0; j <= p->degree; j++) a[j] = num_of(piece->points[j][k]);
+    if (s > 0.0) cut(a, p->degree, num_of(s), false);
+    point->m[k] = a[0].m;
+    point->e += a[0].e;
+  }
+  point->e = GROW(point->e);
+  return true;
+}
+
 /* A lower bound of n·x over the part [from, to] of the pieces; -infinity where there is none. */
 static double least_of(pieces *p, const vec *n, double from, double to) {
   double least = INFINITY;

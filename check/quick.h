@@ -19,6 +19,9 @@ typedef struct quick_query {
 /* True: the direction separates, as separates() of check.c means it. False: nothing is known. */
 bool quick_separates(const quick_query *q);
 
+/* The point of the curve at s of piece i, 0 <= s < 1; false where memory is out. */
+bool quick_point(pieces *p, size_t i, double s, struct vec *point);
+
 /* A world point in the set's own frame; of ball.h. */
 struct vec quick_to_frame(const set *s, const struct vec *p);
 

@@ -32,7 +32,7 @@ typedef struct walk {
   robot *r;
   reader *in;
   uint32_t width;
-  double delta, end; /* end: of the part of the segment that is spoken of */
+  double delta, begin, end; /* of the part of the segment that is spoken of */
   size_t degree, *tries;
   axis_state *states;
   place *places; /* of the bodies */
@@ -277,11 +277,11 @@ static const char *read_directions(const walk *w, size_t count) {
 /* ---- intervals ---- */
 
 /* One interval, which begins at u = `from` and is 2^-depth long: `open` items, n of them; points are overwritten. What
- * begins at the end or after it is not there. NODE: u16 2 × COUNT + (1 where it is cut), the
+ * lies outside of the part that is spoken of is not there. NODE: u16 2 × COUNT + (1 where it is cut), the
  * directions, and where it is cut the left and the right half. */
 static const char *check_interval(walk *w, num *points, const open_item *open, size_t n, double from, int depth) {
   const robot *r = w->r;
-  if (from >= w->end) return NULL;
+  if (from >= w->end || from + ldexp(1.0, -depth) <= w->begin) return NULL;
   const size_t head = (size_t)reader_bits(w->in, 2), room = r->n_variables * (ROBOT_MAX_DEGREE + 1);
   if (w->in->bad || depth > MAX_DEPTH) return "its tree is broken";
   const double middle = from + ldexp(0.5, -depth);
@@ -316,7 +316,7 @@ static const char *check_interval(walk *w, num *points, const open_item *open, s
   return fault;
 }
 
-/* Where a segment begins nothing is inside of a closed mesh. Then it comes in nowhere, being apart from the triangles.
+/* Where the part of a segment begins nothing is inside of a closed mesh. Then it comes in nowhere, being apart from the triangles.
  */
 static const char *check_outside(const walk *w, size_t segment, num *points) {
   const robot *r = w->r;
@@ -324,7 +324,7 @@ static const char *check_outside(const walk *w, size_t segment, num *points) {
   for (size_t i = 0; i < r->n_pairs; i++) {
     const body *moving = &r->bodies[r->pairs[i].moving], *standing = &r->bodies[r->pairs[i].standing];
     if (standing->shape->kind != SOLID) continue;
-    if (!placed) kinematics_hold(r, segment, 0.0, points, w->states, w->places);
+    if (!placed) kinematics_hold(r, segment, w->begin, points, w->states, w->places);
     placed = true;
     const double *vertex = moving->shape->n > 0 ? moving->shape->vertices[0] : NULL;
     vec x = vertex ? vec_of(vertex) : (vec){.e = 0.0}; /* a point of it, about the centre */
@@ -336,7 +336,8 @@ static const char *check_outside(const walk *w, size_t segment, num *points) {
   return NULL;
 }
 
-const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, const motion_end *end, size_t *tries) {
+const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, const motion_place *from,
+                        const motion_place *until, size_t *tries) {
   walk w = {.r = r, .in = in, .width = width, .delta = delta, .tries = tries};
   const size_t room = r->n_variables * (ROBOT_MAX_DEGREE + 1);
   w.states = malloc((r->n_axes + 1) * sizeof *w.states);
@@ -353,8 +354,9 @@ const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, cons
     p->n_items = 0;
     if (!add_item(p, standing, 0, set_elements(standing->shape), NULL)) fault = "memory is out";
   }
-  for (size_t s = 0; s <= end->segment && !fault; s++) {
-    w.end = s < end->segment ? 1.0 : end->u;
+  for (size_t s = from->segment; s <= until->segment && !fault; s++) {
+    w.begin = s > from->segment ? 0.0 : from->u;
+    w.end = s < until->segment ? 1.0 : until->u;
     w.degree = r->degrees[s];
     fault = check_outside(&w, s, points);
     for (size_t i = 0; i < room; i++) points[i] = robot_points(r, s, 0)[i];

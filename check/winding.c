@@ -116,13 +116,11 @@ side winding_side(const set *s, const vec *y) {
 
 /* ---- who asks ---- */
 
-bool winding_pieces_begin_outside(const set *s, pieces *p, size_t n) {
+bool winding_pieces_begin_outside(const set *s, pieces *p, double from, double until) {
   const vec centre = vec_of(s->centre);
-  for (size_t i = 0; i < n; i++) {
-    const pieces_quick *piece = pieces_quick_at(p, i);
-    if (!piece) return false;
-    vec y = vec_of(piece->points[0]);
-    y.e = GROW(piece->radius + piece->remainder);
+  for (size_t i = (size_t)floor(from); (double)i < until; i++) {
+    vec y;
+    if (!quick_point(p, i, fmax(from - (double)i, 0.0), &y)) return false;
     y = quick_to_frame(s, &y);
     y = vec_sub(&y, &centre);
     if (winding_side(s, &y) != OUTSIDE) return false;

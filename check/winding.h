@@ -23,8 +23,8 @@ bool winding_is_closed(const set *s, winding_edge *edges);
  * holds of every point within the radius. */
 side winding_side(const set *s, const vec *y);
 
-/* Whether each of the first n pieces of a curve begins outside. */
-bool winding_pieces_begin_outside(const set *s, pieces *p, size_t n);
+/* Whether the part of a curve, and each of the pieces in it, begins outside. */
+bool winding_pieces_begin_outside(const set *s, pieces *p, double from, double until);
 
 /* A ball about a point in intervals. */
 vec winding_ball_of(const iv x[3]);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* contact_mutants QUERIES MUTANTS SEED: random curves and robots that meet something, with genuine certificates of the
- * time of contact and tampered ones, and with genuine ones held against targets that came nearer. Judged by the time of
- * contact with targets that are larger by the limit that was accepted. */
+ * time of contact and of parts of the parameter range, and tampered ones. Judged by the time of contact with targets
+ * that are larger by the limit that was accepted, and by the clearance on the part. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,7 +30,7 @@ typedef struct subject {
 } subject;
 
 typedef struct tally {
-  size_t genuine, meets, none, tampered, accepted, failed;
+  size_t genuine, meets, parts, none, tampered, accepted, failed;
   double bytes, late; /* sums: of genuine ones; how much earlier than the answer they end, of the parameter's length */
 } tally;
 
@@ -60,12 +60,29 @@ static bool know(const subject *s, double delta, cprox_workspace *ws, truth *out
   return true;
 }
 
+/* The distance between two parameters: at least, at most. */
+static bool know_part(const subject *s, const double part[2], cprox_workspace *ws, cprox_profile_interval *out) {
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = 1e-10 * s->scale;
+  cprox_obstacles *all = NULL;
+  if (cprox_obstacles_create(s->targets, s->n, CPROX_INDEX_NONE, ws, &all) != CPROX_OK) return false;
+  const cprox_status status = cprox_obstacles_profile(all, s->mover, part, 1, INFINITY, &options, ws, out);
+  cprox_obstacles_free(all);
+  return status >= 0;
+}
+
 /* What an accepted claim says must be so. */
 static bool is_true(const subject *s, const finding *found, cprox_workspace *ws) {
   const double room = TOLERANCE * s->scale, later = TOLERANCE * s->length;
   truth t;
   if (found->claim == CLAIM_NONE) return true;
   const double most = 1e3 * s->scale; /* the reach of all queries */
+  if (found->claim == CLAIM_DURING) {
+    const double part[2] = {found->from, found->until};
+    cprox_profile_interval known;
+    if (!(part[0] < part[1])) return true;
+    return know_part(s, part, ws, &known) && found->delta < known.upper + room;
+  }
   if (found->claim == CLAIM_NEAR && found->delta > most) return true;
   if (found->delta > most || !know(s, found->delta, ws, &t)) return false;
   if (found->claim == CLAIM_APART) return found->delta < t.distance[1] + room;
@@ -89,12 +106,13 @@ static void judge(const subject *s, const finding *found, const char *done, size
   }
 }
 
-/* The first of its numbers, where what is claimed ends. */
+/* The first of its numbers, where what is claimed ends, or begins and ends. */
 static const char *tamper_end(bytes *b, const subject *s, rng *r) {
-  const size_t place = s->mover.motion ? HEAD + 4 : HEAD;
+  size_t place = s->mover.motion ? HEAD + 4 : HEAD;
+  if (b->at[16] == CLAIM_DURING && rng_uniform(r, 0.0, 1.0) < 0.5) place += s->mover.motion ? 12 : 8;
   double end;
   memcpy(&end, b->at + place, sizeof end);
-  end *= 1.0 + rng_log_uniform(r, 1e-12, 0.5);
+  end *= 1.0 + (rng_uniform(r, 0.0, 1.0) < 0.7 ? 1.0 : -1.0) * rng_log_uniform(r, 1e-12, 0.5);
   memcpy(b->at + place, &end, sizeof end);
   return "later";
 }
@@ -131,11 +149,50 @@ static bool ask(const subject *s, cprox_workspace *ws, cprox_certificate *c, byt
   return true;
 }
 
+/* A certificate of a part of the range; false where there is none. Half claim the distance there, as a profile does,
+ * and half less. */
+static bool ask_part(const subject *s, size_t number, rng *r, cprox_workspace *ws, cprox_certificate *c, bytes *genuine,
+                     tally *sum) {
+  const double a = rng_uniform(r, 0.0, 1.0), b = rng_uniform(r, 0.0, 1.0);
+  const double part[2] = {s->begin + fmin(a, b) * s->length, s->begin + fmax(a, b) * s->length};
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  cprox_profile_interval known;
+  if (!(part[1] - part[0] > 0.01 * s->length) || !know_part(s, part, ws, &known) || !(known.lower > 0.0)) return false;
+  cprox_obstacles *all = NULL;
+  if (cprox_obstacles_create(s->targets, s->n, CPROX_INDEX_NONE, ws, &all) != CPROX_OK) return false;
+  options.epsilon = 1e-6 * s->scale;
+  options.interval = part;
+  const bool distance = number % 4 < 2;
+  const double delta = distance ? known.lower : (1.0 - rng_log_uniform(r, 1e-6, 1.0)) * known.lower;
+  const cprox_result answer = {
+      .lower = known.lower, .upper = known.upper, .t = known.t, .obstacle_index = -1, .mover_part = -1};
+  const cprox_status status = cprox_certify(s->mover, all, delta, distance ? &answer : NULL, &options, ws, c);
+  cprox_obstacles_free(all);
+  const cprox_certificate_info info = cprox_certificate_get_info(c);
+  sum->none += status != CPROX_OK;
+  if (status != CPROX_OK || info.size + 16 > MOST_BYTES) return false;
+  genuine->n = info.size;
+  memset(genuine->at, 0, sizeof genuine->at);
+  memcpy(genuine->at, info.bytes, info.size);
+  const finding found = check(s->read, genuine->at, genuine->n);
+  const double lost = fmax(found.from - part[0], part[1] - found.until) / s->length;
+  if (found.claim != CLAIM_DURING || lost > 1e-3) {
+    printf("FAILED: a genuine certificate of a part was refused: %s, %g of the range is left out\n",
+           found.fault ? found.fault : "no", lost);
+    sum->failed++;
+    return false;
+  }
+  sum->parts++;
+  sum->bytes += (double)info.size;
+  return true;
+}
+
 /* False where there is nothing to try. */
 static bool try_subject(const subject *s, size_t number, size_t mutants, rng *r, cprox_workspace *ws,
                         cprox_certificate *c, bytes *other, tally *sum) {
   static bytes genuine, mutant;
-  if (!ask(s, ws, c, &genuine, sum)) return false;
+  const bool whole = number % 2 == 0;
+  if (!(whole ? ask(s, ws, c, &genuine, sum) : ask_part(s, number, r, ws, c, &genuine, sum))) return false;
   if (other->n == 0) *other = genuine;
   for (size_t k = 0; k <= mutants; k++) {
     mutant = genuine;
@@ -204,10 +261,11 @@ int main(int argc, char **argv) {
       i += robots ? try_robot(&r, i, mutants, ws, c, &others[1], &sum)
                   : try_curve(&r, i, mutants, ws, c, &others[0], &sum);
     printf(
-        "%s: %zu genuine certificates (%.0f bytes, %zu with contact, ending %.1e of the range before the answer), "
+        "%s: %zu genuine certificates (%.0f bytes, %zu with contact, ending %.1e of the range before the answer; %zu "
+        "of parts), "
         "%zu without; %zu mutants, of which %zu prove something true\n",
         robots ? "robots" : "curves", sum.genuine, sum.bytes / (double)sum.genuine, sum.meets,
-        sum.late / (double)sum.genuine, sum.none, sum.tampered, sum.accepted);
+        sum.late / (double)sum.genuine, sum.parts, sum.none, sum.tampered, sum.accepted);
     printf("%zu passed, %zu failed\n", sum.genuine + sum.tampered - sum.failed, sum.failed);
     failed |= sum.failed > 0;
   }

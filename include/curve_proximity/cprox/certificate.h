@@ -24,7 +24,9 @@ typedef enum cprox_claim {
   /** somewhere they are no farther apart than delta */
   CPROX_CLAIM_NEAR,
   /** they are farther apart than delta before a parameter; the certificate may also prove that they meet thereafter */
-  CPROX_CLAIM_BEFORE
+  CPROX_CLAIM_BEFORE,
+  /** between two parameters they are farther apart than delta */
+  CPROX_CLAIM_DURING
 } cprox_claim;
 
 /** A new, empty certificate, or NULL where memory is out. Owned by the caller: cprox_certificate_free(). It may be used
@@ -58,7 +60,10 @@ CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certific
  *  answer      of a query with these arguments; its witness is used, its bounds are not trusted. delta <= its upper
  *              bound.
  *  delta       [m] >= 0. Claimed is `near` where answer->upper <= delta, else `apart`.
- *  options     max_nodes bounds the parts of the cover that are tried, for each obstacle; NULL: the default.
+ *  options     max_nodes bounds the parts of the cover that are tried, for each obstacle; NULL: the default. With an
+ *              interval, here of curves, too, the claim is `during`: that the distance is greater than delta in it.
+ *              With an answer to a query for the distance in the interval, delta may be lowered by epsilon; else
+ *              the claim may begin later and end earlier, by as little as the form of the proof needs.
  *  certificate receives the proof. It is empty (CPROX_CLAIM_NONE) where none was found, and where the call failed.
  *
  *  Obstacles that are meshes, points or boxes are taken by their triangles, points and boxes. A robot's link that is a

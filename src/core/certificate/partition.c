@@ -88,7 +88,7 @@ static leaf *leaves_reserve(const cover *c, size_t n) {
 static cprox_status lay(cover *c, const frame *f, size_t *n) {
   reach_part open[MAX_OPEN];
   size_t n_open = 1;
-  open[0] = (reach_part){0.0, c->until};
+  open[0] = (reach_part){c->from, c->until};
   const trial witness = try_normal(c, c->normal);
   convex_hint hint = {0};
   *n = 0;
@@ -135,7 +135,7 @@ static void join_neighbours(const cover *c, const frame *f, size_t *n) {
   leaf *leaves = leaves_reserve(c, *n);
   for (int pass = 0; pass < MAX_PASSES; pass++) {
     size_t kept = 0;
-    double from = 0.0;
+    double from = c->from;
     for (size_t i = 1; i < *n; i++) {
       vec3 normal;
       if (join(c, f, (reach_part){from, leaves[i].end}, &leaves[kept], &leaves[i], &normal)) {

@@ -23,7 +23,7 @@ typedef struct cover {
   cprox_pose outer;          /* of what rides, turned alone */
   cprox_curve made[2];       /* the two curves, where they were made for this cover */
   double delta;
-  double until;                   /* the part of the curve that is covered: from 0 to this counting parameter */
+  double from, until;             /* the part of the curve that is covered: counting parameters */
   double witness, witness_on_set; /* counting parameters where mover and curve targets are nearest, -1: not known */
   vec3 normal;                    /* unit, from the set to the mover there; (0,0,0): not known */
   uint32_t budget;                /* parts that may be tried */

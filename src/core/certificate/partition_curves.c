@@ -105,6 +105,6 @@ cprox_status partition_curves(cover *c) {
   certificate_byte(c->certificate, SECTION_CURVE);
   certificate_breaks(c->certificate, target->breaks, target->n_pieces);
   c->normal = certificate_round(c->certificate, c->normal);
-  const pair whole = {{{0.0, c->until}, {0.0, (double)target->n_pieces}}};
+  const pair whole = {{{c->from, c->until}, {0.0, (double)target->n_pieces}}};
   return prove(c, &placed, &whole, vec(0, 0, 0), 0).status;
 }

@@ -118,6 +118,6 @@ cprox_status partition_elements(cover *c) {
   const elements_cover e = {c, elements_order(t, first), frame_create(&c->pose, c->set.body->centre)};
   certificate_byte(c->certificate, SECTION_ELEMENTS);
   c->normal = certificate_round(c->certificate, c->normal);
-  const pair whole = {{0.0, c->until}, elements_all(&e.order)};
+  const pair whole = {{c->from, c->until}, elements_all(&e.order)};
   return prove(&e, &whole, vec(0, 0, 0), 0).status;
 }

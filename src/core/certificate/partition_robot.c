@@ -291,11 +291,11 @@ static cprox_status certify_open_items(robot_cover *c, size_t from, size_t to, d
 
 /* The interval [a, b] of a segment and the items at from ... to - 1 of the list. Its depth is that of halves of 1. */
 static cprox_status lay(robot_cover *c, size_t segment, double a, double b, size_t from, size_t to) {
-  if (segment == c->last && a >= c->end) return CPROX_OK;
+  if ((segment == c->last && a >= c->end) || (segment == c->first && b <= c->begin)) return CPROX_OK;
   if (c->budget == 0) return CPROX_BUDGET;
   c->budget--;
   robot_scene_enter(c->scene, segment, a, b);
-  c->reaches_beyond = segment == c->last && b > c->end;
+  c->reaches_beyond = (segment == c->last && b > c->end) || (segment == c->first && a < c->begin);
   size_t kept;
   cprox_status status = certify_open_items(c, from, to, b - a, &kept);
   if (status != CPROX_OK || kept == 0) return status;
@@ -311,6 +311,6 @@ cprox_status partition_robot(robot_cover *c) {
   int32_t *open = reserve(c, n);
   if (!open || !begin_items(c)) return CPROX_MEMORY;
   for (size_t i = 0; i < n; i++) open[i] = (int32_t)i;
-  for (size_t s = 0; s <= c->last && status == CPROX_OK; s++) status = lay(c, s, 0.0, 1.0, 0, n);
+  for (size_t s = c->first; s <= c->last && status == CPROX_OK; s++) status = lay(c, s, 0.0, 1.0, 0, n);
   return status;
 }

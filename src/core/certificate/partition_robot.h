@@ -20,10 +20,10 @@ typedef struct robot_cover {
   const robot_cover_elements *elements; /* of each obstacle */
   size_t n_items;
   double delta;
-  uint32_t budget; /* intervals that may be tried */
-  size_t last;     /* the segment that is covered last, up to `end` of it */
-  double end;
-  bool reaches_beyond; /* the interval at hand goes on after the end, where anything may touch */
+  uint32_t budget;    /* intervals that may be tried */
+  size_t first, last; /* the segments that are covered first, from `begin` of it on, and last, up to `end` of it */
+  double begin, end;
+  bool reaches_beyond; /* the interval at hand goes on outside of these, where anything may touch */
   double shortest;     /* intervals shorter than this part of a segment are given up */
   cprox_certificate *certificate;
 } robot_cover;

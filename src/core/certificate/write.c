@@ -34,7 +34,8 @@ typedef struct task {
   const cprox_mover *mover;
   const cprox_obstacle *targets;
   size_t n;
-  double delta, before; /* before: INFINITY, or where parameters cease to count */
+  claim_wanted wanted;
+  double delta;
   const cprox_result *answer;
   const cprox_options *options;
   uint32_t budget;
@@ -223,28 +224,28 @@ static double size_of_problem(const task *t, const cover *c) {
   return size_of(c->curve, c->pose.position) + of_set + carried + grown + c->set.offset + t->delta;
 }
 
-/* until: 0, or where a claim about a part ends. */
-static cprox_status attempt_section(const task *t, section_place of, uint32_t width, double delta, double until) {
+static cprox_status attempt_section(const task *t, section_place of, uint32_t width, double delta, reach_part part) {
   cover c;
   if (!cover_begin(t, of, width, &c)) return CPROX_MEMORY;
   c.delta = delta;
-  if (until > 0.0) c.until = until;
+  c.from = part.from, c.until = part.to;
   const bool has_elements = c.set.body && c.set.body->tree;
   return c.set.curve ? partition_curves(&c) : has_elements ? partition_elements(&c) : partition_convex(&c);
 }
 
-/* One attempt: the whole certificate, with normals of the width. */
-static cprox_status attempt(const task *t, uint32_t width, double delta, double until) {
+/* One attempt: the whole certificate, with normals of the width; of a part of the curve, unless all is claimed. */
+static cprox_status attempt(const task *t, uint32_t width, double delta, reach_part part) {
   const size_t loads = body_n_parts(t->mover->body), sections = loads * sections_before(t, t->n);
-  const cprox_claim claim = until > 0.0 ? CPROX_CLAIM_BEFORE : CPROX_CLAIM_APART;
+  const cprox_claim claim = t->wanted.apart;
   certificate_begin(t->certificate, width, claim, delta, (uint32_t)sections);
-  if (until > 0.0) certificate_number(t->certificate, until);
+  if (claim == CPROX_CLAIM_DURING) certificate_number(t->certificate, part.from);
+  if (claim != CPROX_CLAIM_APART) certificate_number(t->certificate, part.to);
   certificate_breaks(t->certificate, pieces_of(t)->breaks, pieces_of(t)->n_pieces);
   section_place of = {0, 0, 0};
   for (of.load = 0; of.load < loads; of.load++)
     for (of.target = 0; of.target < t->n; of.target++)
       for (of.part = 0; of.part < body_n_parts(t->targets[of.target].body); of.part++) {
-        const cprox_status status = attempt_section(t, of, width, delta, until);
+        const cprox_status status = attempt_section(t, of, width, delta, part);
         if (status != CPROX_OK) return status;
       }
   return t->certificate->failed ? CPROX_MEMORY : CPROX_OK;
@@ -255,9 +256,9 @@ static bool is_of_distance(const task *t) {
   return t->answer && t->answer->verdict == CPROX_VERDICT_UNDECIDED && t->delta == t->answer->lower;
 }
 
-static cprox_status certify_clear(const task *t) {
-  cprox_status status = attempt(t, 4, t->delta, 0.0);
-  if (status > 0) status = attempt(t, 8, t->delta, 0.0);
+static cprox_status certify_clear(const task *t, reach_part part) {
+  cprox_status status = attempt(t, 4, t->delta, part);
+  if (status > 0) status = attempt(t, 8, t->delta, part);
   if (status <= 0 || !t->answer || t->answer->obstacle_index < 0) return status;
 
   /* the search's own bounds, which know tangent balls, may be tighter than planes can be */
@@ -265,21 +266,25 @@ static cprox_status certify_clear(const task *t) {
   if (!cover_begin(t, nearest_section(t), 8, &c)) return CPROX_MEMORY;
   const double moved = c.radius ? curve_error(c.curve) + curve_error(c.radius) : curve_error(c.curve);
   const double rounding = LOWERED * ROUND_U * size_of_problem(t, &c) + 2.0 * moved;
-  if (t->delta > rounding) status = attempt(t, 8, t->delta - rounding, 0.0);
+  if (t->delta > rounding) status = attempt(t, 8, t->delta - rounding, part);
   const double given = fmax(t->epsilon, LOWERED * rounding);
-  if (status > 0 && is_of_distance(t) && t->delta > given) status = attempt(t, 8, t->delta - given, 0.0);
+  if (status > 0 && is_of_distance(t) && t->delta > given) status = attempt(t, 8, t->delta - given, part);
   return status;
 }
 
-/* How far before the time it must end is found by steps back from it, each larger than the one before. */
-static cprox_status certify_before(const task *t) {
-  const double end = count_at(pieces_of(t), t->before);
+/* How far before the time it must end, and after the one where it begins, is found by steps, each larger than the one
+ * before. */
+static cprox_status certify_part(const task *t) {
+  const bool begins = t->wanted.apart == CPROX_CLAIM_DURING;
+  const double begin = begins ? count_at(pieces_of(t), t->wanted.t0) : 0.0;
+  const double end = count_at(pieces_of(t), t->wanted.t1);
+  if (begins && is_of_distance(t)) return certify_clear(t, (reach_part){begin, end});
   cprox_status status = CPROX_PRECISION;
   for (double back = 0.0; status > 0; back = fmax(STEPS_BACK * back, FINEST_STEP)) {
-    const double until = nextafter(end - back, 0.0);
-    if (!(until > 0.0)) return CPROX_PRECISION;
-    status = attempt(t, 4, t->delta, until);
-    if (status > 0) status = attempt(t, 8, t->delta, until);
+    const reach_part part = {begins ? begin + back : 0.0, nextafter(end - back, 0.0)};
+    if (!(part.to > part.from) || (begins && back > CLAIM_MOST_BACK)) return CPROX_PRECISION;
+    status = attempt(t, 4, t->delta, part);
+    if (status > 0) status = attempt(t, 8, t->delta, part);
   }
   return status;
 }
@@ -332,16 +337,18 @@ static cprox_status certify_curve(const task *of) {
   const cprox_status known = check_kinds(t);
   if (known != CPROX_OK) return known;
   if (is_on_clock(t) && !gather_breaks(t, &t->like)) return CPROX_MEMORY;
-  if (isfinite(t->before)) return certify_before(t);
-  if (!t->answer || t->answer->upper > t->delta) return certify_clear(t);
+  const reach_part all = {0.0, (double)pieces_of(t)->n_pieces};
+  if (t->wanted.apart != CPROX_CLAIM_APART) return certify_part(t);
+  if (!t->answer || t->answer->upper > t->delta) return certify_clear(t, all);
   const cprox_status status = certify_near(t);
   if (status == CPROX_OK || status == CPROX_MEMORY || !is_of_distance(t) || !(t->delta > 0.0)) return status;
-  return certify_clear(t); /* a distance that is known exactly: it is no less, either */
+  return certify_clear(t, all); /* a distance that is known exactly: it is no less, either */
 }
 
 static cprox_status prove(const task *t) {
   if (!t->mover->motion) return certify_curve(t);
-  const claim_wanted wanted = {t->delta, t->before};
+  claim_wanted wanted = t->wanted;
+  wanted.delta = t->delta;
   return certify_robot(t->mover, t->targets, t->n, wanted, t->answer, t->options, t->workspace, t->certificate);
 }
 
@@ -377,7 +384,7 @@ static cprox_status prove_of_hulls(const task *t) {
 static void add_meeting(const task *t) {
   cprox_certificate near = {.bytes = NULL};
   task meeting = *t;
-  meeting.before = INFINITY;
+  meeting.wanted.apart = CPROX_CLAIM_APART;
   meeting.delta = fmax(t->answer->upper, 0.0);
   meeting.certificate = &near;
   if (prove(&meeting) == CPROX_OK && near.claim == CPROX_CLAIM_NEAR) {
@@ -393,8 +400,8 @@ static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targ
   const task t = {.mover = mover,
                   .targets = targets,
                   .n = n,
+                  .wanted = wanted,
                   .delta = wanted.delta,
-                  .before = wanted.before,
                   .answer = answer,
                   .options = options,
                   .budget = options->max_nodes,
@@ -404,9 +411,10 @@ static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targ
   const double delta = t.delta;
   if (!isfinite(delta)) return workspace_fail(workspace, CPROX_INVALID, "there is nothing to measure");
   cprox_status status = prove(&t);
-  if (status == CPROX_OK && isfinite(t.before)) add_meeting(&t);
+  if (status == CPROX_OK && wanted.apart == CPROX_CLAIM_BEFORE) add_meeting(&t);
   if (status == CPROX_OK && certificate->failed) status = CPROX_MEMORY;
-  if (status > 0 && is_of_distance(&t) && delta > 0.0 && has_hulls(&t)) status = prove_of_hulls(&t);
+  const bool whole = wanted.apart == CPROX_CLAIM_APART;
+  if (status > 0 && whole && is_of_distance(&t) && delta > 0.0 && has_hulls(&t)) status = prove_of_hulls(&t);
   if (status == CPROX_OK) {
     workspace_clear(workspace);
     return status;
@@ -428,8 +436,8 @@ static void prove_answer(const query *q, const cprox_result *answer) {
   const double delta = query_wants_verdict(q) ? q->limit
                        : answer->lower > 0.0  ? answer->lower
                                               : fmax(answer->upper, 0.0);
-  const cprox_status status = certify(&q->mover, q->targets, q->n, (claim_wanted){delta, INFINITY}, answer, &q->options,
-                                      q->workspace, q->options.certificate);
+  const cprox_status status = certify(&q->mover, q->targets, q->n, (claim_wanted){CPROX_CLAIM_APART, delta, 0.0, 0.0},
+                                      answer, &q->options, q->workspace, q->options.certificate);
   snprintf(of_proof, sizeof of_proof, "%s", cprox_workspace_error(q->workspace));
   if (status == CPROX_OK)
     workspace_fail(q->workspace, answer->status, "%s", of_answer);
@@ -457,16 +465,44 @@ static cprox_status validate(const cprox_mover *mover, const cprox_obstacles *ob
   return status;
 }
 
+/* The interval of the options, and a claim without one. */
+static cprox_status take_interval(const cprox_mover *mover, cprox_options *options, claim_wanted *wanted,
+                                  cprox_workspace *workspace) {
+  const double *interval = options->interval;
+  options->interval = NULL;
+  if (!interval || (!mover->motion && !mover->curve)) return CPROX_OK;
+  double whole[2];
+  if (mover->motion) {
+    const cprox_motion_info info = cprox_motion_get_info(mover->motion);
+    whole[0] = info.t0, whole[1] = info.t1;
+  } else {
+    const cprox_curve_info info = cprox_curve_get_info(mover->curve);
+    whole[0] = info.t0, whole[1] = info.t1;
+  }
+  if (!(interval[0] >= whole[0] && interval[1] <= whole[1] && interval[0] < interval[1]))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "interval is [%.17g, %.17g], must ascend within the mover's [%.17g, %.17g]", interval[0],
+                          interval[1], whole[0], whole[1]);
+  wanted->apart = CPROX_CLAIM_DURING;
+  wanted->t0 = interval[0], wanted->t1 = interval[1];
+  return CPROX_OK;
+}
+
 cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, double delta,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
   WORKSPACE_USE(workspace);
-  const cprox_options chosen = arguments_options(options);
+  cprox_options chosen = arguments_options(options);
+  claim_wanted wanted = {CPROX_CLAIM_APART, delta, 0.0, 0.0};
+  const double *interval = chosen.interval;
+  chosen.interval = NULL;
   cprox_status status = validate(&mover, obstacles, &chosen, workspace, certificate);
+  chosen.interval = interval;
   if (status == CPROX_OK) status = validate_delta(delta, workspace);
+  if (status == CPROX_OK) status = take_interval(&mover, &chosen, &wanted, workspace);
   if (status != CPROX_OK) return status;
-  return certify(&mover, obstacles_list(obstacles), obstacles_count(obstacles), (claim_wanted){delta, INFINITY}, answer,
-                 &chosen, workspace, certificate);
+  return certify(&mover, obstacles_list(obstacles), obstacles_count(obstacles), wanted, answer, &chosen, workspace,
+                 certificate);
 }
 
 cprox_status cprox_certify_contact(cprox_mover mover, const cprox_obstacles *obstacles, const cprox_result *answer,
@@ -479,7 +515,7 @@ cprox_status cprox_certify_contact(cprox_mover mover, const cprox_obstacles *obs
   if (!answer || answer->status < 0 || isnan(answer->t_contact_lower))
     return workspace_fail(workspace, CPROX_INVALID, "answer is none to the time of contact");
   const bool never = answer->verdict == CPROX_VERDICT_CLEAR;
-  const claim_wanted wanted = {0.0, never ? INFINITY : answer->t_contact_lower};
+  const claim_wanted wanted = {never ? CPROX_CLAIM_APART : CPROX_CLAIM_BEFORE, 0.0, 0.0, answer->t_contact_lower};
   return certify(&mover, obstacles_list(obstacles), obstacles_count(obstacles), wanted, answer, &chosen, workspace,
                  certificate);
 }

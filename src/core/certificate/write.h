@@ -6,9 +6,13 @@
 #include "certificate/certificate.h"
 #include "curve_proximity/cprox/robot.h"
 
-/* Parameters from here on do not count: INFINITY for all. */
+/* A claim about a part of the range gives away at most this much of a piece or a segment at an end. */
+#define CLAIM_MOST_BACK 0x1p-10
+
+/* What is claimed apart: all parameters, those before t1, or those of [t0, t1]. */
 typedef struct claim_wanted {
-  double delta, before;
+  cprox_claim apart; /* APART, BEFORE or DURING */
+  double delta, t0, t1;
 } claim_wanted;
 
 /* Proves an answer of a robot along a motion whose arguments were checked; the reason is told of CPROX_INVALID alone,

@@ -39,7 +39,11 @@ static cprox_status attempt(const robot_cover *of, cprox_claim claim, uint32_t w
   cover.delta = delta;
   cover.shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE;
   certificate_begin(of->certificate, width, claim, delta, (uint32_t)of->scene->n_pairs);
-  if (claim == CPROX_CLAIM_BEFORE) {
+  if (claim == CPROX_CLAIM_DURING) {
+    certificate_count(of->certificate, (uint32_t)of->first);
+    certificate_number(of->certificate, of->begin);
+  }
+  if (claim == CPROX_CLAIM_BEFORE || claim == CPROX_CLAIM_DURING) {
     certificate_count(of->certificate, (uint32_t)of->last);
     certificate_number(of->certificate, of->end);
   }
@@ -97,13 +101,19 @@ static cprox_status certify_clear(const robot_cover *cover, bool distance, doubl
   return status;
 }
 
-/* How far before the time it must end is found by steps back from it, each larger than the one before. */
-static cprox_status certify_before(robot_cover *cover, double t) {
-  const cprox_motion *m = cover->scene->motion;
+/* The place of the motion at t, on the grid of ends; *u may be 1. */
+static size_t place_at(const cprox_motion *m, double t, double (*rounded)(double), double *u) {
   size_t segment = 0;
   while (segment + 1 < m->n_segments && m->times[segment + 1] <= t) segment++;
-  const double length = m->times[segment + 1] - m->times[segment], u = (t - m->times[segment]) / length;
-  const double at = FINEST_END * floor(fmin(u, 1.0) / FINEST_END);
+  const double length = m->times[segment + 1] - m->times[segment];
+  *u = FINEST_END * rounded(fmin(fmax((t - m->times[segment]) / length, 0.0), 1.0) / FINEST_END);
+  return segment;
+}
+
+/* How far before the time it must end is found by steps back from it, each larger than the one before. */
+static cprox_status certify_before(robot_cover *cover, double t) {
+  double at;
+  const size_t segment = place_at(cover->scene->motion, t, floor, &at);
   cprox_status status = CPROX_PRECISION;
   for (double back = 0.0; status > 0; back = fmax(STEPS_BACK * back, FINEST_END)) {
     cover->last = segment, cover->end = at - back;
@@ -113,6 +123,28 @@ static cprox_status certify_before(robot_cover *cover, double t) {
     }
     status = attempt(cover, CPROX_CLAIM_BEFORE, 4, cover->delta);
     if (status > 0) status = attempt(cover, CPROX_CLAIM_BEFORE, 8, cover->delta);
+  }
+  return status;
+}
+
+/* Both ends alike; of a distance the interval stays, and epsilon is given away. */
+static cprox_status certify_during(robot_cover *cover, const claim_wanted *wanted, bool distance, double epsilon) {
+  const cprox_motion *m = cover->scene->motion;
+  double from, to;
+  const size_t first = place_at(m, wanted->t0, distance ? floor : ceil, &from);
+  const size_t last = place_at(m, wanted->t1, distance ? ceil : floor, &to);
+  cprox_status status = CPROX_PRECISION;
+  for (double back = 0.0; status > 0; back = fmax(STEPS_BACK * back, FINEST_END)) {
+    cover->first = first, cover->begin = from + back, cover->last = last, cover->end = to - back;
+    if (cover->begin >= 1.0 && first < last) cover->first++, cover->begin = fmin(back, 1.0);
+    if (!(cover->end > 0.0) && cover->first < cover->last) cover->last--, cover->end = fmax(1.0 - back, FINEST_END);
+    if (back > CLAIM_MOST_BACK || cover->begin > 1.0 || !(cover->end > 0.0) ||
+        (cover->first == cover->last && !(cover->begin < cover->end)))
+      return CPROX_PRECISION;
+    status = attempt(cover, CPROX_CLAIM_DURING, 4, cover->delta);
+    if (status > 0) status = attempt(cover, CPROX_CLAIM_DURING, 8, cover->delta);
+    if (status <= 0 || !distance) continue;
+    return cover->delta > epsilon ? attempt(cover, CPROX_CLAIM_DURING, 4, cover->delta - epsilon) : status;
   }
   return status;
 }
@@ -140,8 +172,9 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
                        .last = scene.motion->n_segments - 1,
                        .end = 1.0,
                        .certificate = certificate};
-  if (isfinite(wanted.before)) return certify_before(&cover, wanted.before);
+  if (wanted.apart == CPROX_CLAIM_BEFORE) return certify_before(&cover, wanted.t1);
   const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower;
+  if (wanted.apart == CPROX_CLAIM_DURING) return certify_during(&cover, &wanted, distance, epsilon);
   if (answer && answer->upper <= delta) {
     const cprox_status status = partition_robot_near(&cover, answer);
     if (status == CPROX_OK || status == CPROX_MEMORY || !distance || !(delta > 0.0)) return status;
