@@ -176,12 +176,39 @@ static void nested_parabolas(rng *r, hard *h) {
   shift_middle(r, h);
 }
 
+/* The same curve by polynomials of the degree 45. */
+static void order_45(rng *r, hard *h) {
+  near_tangent(r, h);
+  for (; h->degree < MAX_POINTS - 1; h->degree++) {
+    const double n = (double)h->degree + 1.0;
+    h->points[h->degree + 1] = h->points[h->degree];
+    for (size_t i = h->degree; i > 0; i--)
+      h->points[i] = vec_add(vec_scale((double)i / n, h->points[i - 1]), vec_scale(1.0 - (double)i / n, h->points[i]));
+  }
+}
+
+/* Chebyshev's polynomial of the degree 16, which is as low at eight places; its control points are up to 5e4 times as
+ * high. Its Bernstein coefficients are (-1)^(n - i) C(2n, 2i)/C(n, i). */
+static void eight_minima(rng *r, hard *h) {
+  square_below(h);
+  h->degree = 16;
+  h->truth = rng_uniform(r, 0.05, 0.2);
+  const double c = rng_uniform(r, 0.01, 0.1), n = 16.0;
+  double coefficient = 1.0;
+  for (size_t i = 0; i <= h->degree; i++) {
+    const double k = (double)i;
+    h->points[i] = vec(1.8 * k / n - 0.9, c * ((i % 2 == 0 ? coefficient : -coefficient) + 1.0) + h->truth, 0.0);
+    coefficient *= (2.0 * n - 2.0 * k - 1.0) / (2.0 * k + 1.0);
+  }
+}
+
 const family FAMILIES[] = {{"parallel to a side", parallel_to_side}, {"near tangent at 1e-9", near_tangent},
                            {"eightfold contact", eightfold_contact}, {"touching", touching},
                            {"its end touches", end_touches},         {"cusp", cusp},
                            {"constant curve", constant_curve},       {"through the point", through_the_point},
                            {"about its centre", about_the_centre},   {"1e-6 m at 1e6 m", far_away},
                            {"the same curve twice", same_twice},     {"crossing curves", crossing},
-                           {"parallel lines", parallel_lines},       {"nested parabolas", nested_parabolas}};
+                           {"parallel lines", parallel_lines},       {"nested parabolas", nested_parabolas},
+                           {"near tangent of order 45", order_45},   {"eight minima of order 16", eight_minima}};
 
 const size_t N_FAMILIES = sizeof FAMILIES / sizeof *FAMILIES;

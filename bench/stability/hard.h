@@ -42,6 +42,9 @@ typedef struct tools {
 /* One family, by all methods: what is right, wrong (column unsound) and given up (column failures). */
 void stability_family(const bench_size *size, const family *f, uint64_t seed, tools *t);
 
+/* Curves that are absolutely continuous and no smoother, known by points and lengths. */
+void stability_rough(const bench_size *size, uint64_t seed, tools *t);
+
 /* Collisions that are true by a witness: thin plates and grazes; a collision that a method does not see counts as
  * wrong. */
 void stability_plates(const bench_size *size, uint64_t seed, tools *t);

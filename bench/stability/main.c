@@ -4,7 +4,8 @@
 
 #include "stability/hard.h"
 
-enum { SEED = 20260611 };
+/* Seeds of the families, and of what was there before families were added. */
+enum { SEED = 20260611, PLATES = SEED + 14, GAPS = SEED + 114, ROUGH = SEED + 200 };
 
 int main(int argc, char **argv) {
   bench_size size = bench_arguments(argc, argv);
@@ -13,8 +14,9 @@ int main(int argc, char **argv) {
   if (!t.workspace || !t.heap) return 1;
   for (size_t i = 0; i < N_FAMILIES; i++)
     if (bench_wanted(&size, FAMILIES[i].name)) stability_family(&size, &FAMILIES[i], SEED + i, &t);
-  stability_plates(&size, SEED + N_FAMILIES, &t);
-  stability_gaps(&size, SEED + N_FAMILIES + 100, &t);
+  stability_rough(&size, ROUGH, &t);
+  stability_plates(&size, PLATES, &t);
+  stability_gaps(&size, GAPS, &t);
   free(t.heap);
   cprox_workspace_free(t.workspace);
   return 0;
