@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Row-major rotation matrices and vectors. */
+/* Row-major rotation matrices and vectors, and where something stands. */
 #ifndef CPROX_BASE_ROTATION_H
 #define CPROX_BASE_ROTATION_H
 
@@ -20,6 +20,24 @@ static inline vec3 rotate_back(const double r[9], vec3 v) {
 static inline void rotation_compose(const double a[9], const double b[9], double out[9]) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+/* Where something is: x_world = r x + p. */
+typedef struct placement {
+  double r[9]; /* row-major */
+  vec3 p;
+} placement;
+
+static inline vec3 placement_turn(const placement *at, vec3 v) {
+  return rotate(at->r, v);
+}
+
+static inline vec3 placement_turn_back(const placement *at, vec3 v) {
+  return rotate_back(at->r, v);
+}
+
+static inline vec3 placement_apply(const placement *at, vec3 v) {
+  return vec_add(placement_turn(at, v), at->p);
 }
 
 #endif

@@ -728,14 +728,14 @@ static void pair_go_inside(pair *p, double margin_a, double margin_b, double siz
   if (!p->nearest.inside) answer->normal = p->u;
 }
 
-void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
+void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *place,
                    const pair_goal *goal, pair_answer *answer) {
   *answer = (pair_answer){0};
-  pair p = {.a = a, .b = b, .r = placement->r, .t = placement->t, .lower = -INFINITY};
+  pair p = {.a = a, .b = b, .r = place->r, .t = place->t, .lower = -INFINITY};
   p.curved = a->ops->curvature || b->ops->curvature;
   const double margins = margin_a + margin_b, distance = vec_norm(p.t);
   const double size = a->scale + b->scale + distance + margins;
-  const double rounding = PAIR_ROUNDING * ROUND_U * size + placement->error;
+  const double rounding = PAIR_ROUNDING * ROUND_U * size + place->error;
   p.rounding = ROUND_UP * (rounding + 2.0 * (a->slack + b->slack));
   p.contact_tolerance = 4.0 * ROUND_U * size;
   if (goal->plain) p.rounding = p.contact_tolerance + 2.0 * (a->slack + b->slack);

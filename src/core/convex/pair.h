@@ -67,7 +67,7 @@ typedef struct pair_answer {
 } pair_answer;
 
 /* The shapes are a and b grown by margin_a and margin_b, which take the place of their own. Neither is a halfspace. */
-void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
+void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *place,
                    const pair_goal *goal, pair_answer *answer);
 
 /* Whether bounds on the cores' distance, without margins and rounding (each end's), are as close as the goal asks. */

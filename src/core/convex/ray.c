@@ -440,10 +440,10 @@ static void ray_alone(ray *p, const ray_optimum *o, ray_answer *answer) {
 }
 
 void ray_leave(const convex *a, double margin_a, double inner_a, const convex *b, double margin_b, double inner_b,
-               const pair_placement *placement, bool wants_derivatives, ray_answer *answer) {
-  ray p = {.a = a, .b = b, .margin_a = margin_a, .margin_b = margin_b, .r = placement->r};
+               const pair_placement *place, bool wants_derivatives, ray_answer *answer) {
+  ray p = {.a = a, .b = b, .margin_a = margin_a, .margin_b = margin_b, .r = place->r};
   p.unit = a->scale + b->scale + margin_a + margin_b;
-  const double far = feature_unit(placement->t, &p.d);
+  const double far = feature_unit(place->t, &p.d);
   *answer = (ray_answer){.found = false};
   ray_optimum o;
   const ray_end end = ray_search(&p, &o, answer->hessian);
@@ -452,7 +452,7 @@ void ray_leave(const convex *a, double margin_a, double inner_a, const convex *b
     /* from below by the direction: n·t over the support value; from above by the corners: their weighted mean misses
      * the ray by e, and a ball of the inner radii about 0 is in M, so that what is drawn to 0 by e in (inner + e) is */
     const double error = ROUND_UP * ((ROUND_SUPPORT + 24.0) * ROUND_U * (p.unit + far) + a->slack + b->slack +
-                                     a->drawn * a->scale + b->drawn * b->scale + placement->error);
+                                     a->drawn * a->scale + b->drawn * b->scale + place->error);
     double sum = 0.0;
     vec3 mean = vec(0, 0, 0), on_a = vec(0, 0, 0);
     for (int i = 0; i < o.n; i++) {
@@ -463,7 +463,7 @@ void ray_leave(const convex *a, double margin_a, double inner_a, const convex *b
     const double e = p.unit * vec_norm(vec_sub(mean, p.d)) / sum + error, inner = inner_a + inner_b;
     const double g = sum * far / p.unit;
     answer->upper = g * (1.0 + (e + error) / inner) * (1.0 + 32.0 * ROUND_U) + error / inner;
-    answer->lower = fmax(vec_dot(o.u, placement->t) - error, 0.0) / (o.height * p.unit + error) * (1.0 - 8.0 * ROUND_U);
+    answer->lower = fmax(vec_dot(o.u, place->t) - error, 0.0) / (o.height * p.unit + error) * (1.0 - 8.0 * ROUND_U);
     answer->found = sum > 0.0 && isfinite(answer->upper) && answer->lower <= answer->upper;
     answer->slope = vec_scale(1.0 / (o.height * p.unit), o.u);
     answer->on_a = vec_axpy(vec_scale(1.0 / sum, on_a), margin_a, o.u);

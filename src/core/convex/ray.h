@@ -29,6 +29,6 @@ typedef struct ray_answer {
  * inner_b, > 0, about it proves to be inside. The origins differ. Without wants_derivatives the bounds and the slope
  * alone are wanted. */
 void ray_leave(const convex *a, double margin_a, double inner_a, const convex *b, double margin_b, double inner_b,
-               const pair_placement *placement, bool wants_derivatives, ray_answer *answer);
+               const pair_placement *place, bool wants_derivatives, ray_answer *answer);
 
 #endif

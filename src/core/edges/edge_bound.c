@@ -246,6 +246,17 @@ bool edge_motion_fill_along(const cprox_edge_checker *c, const cprox_motion *alo
   return finish(c, m);
 }
 
+bool edge_motion_fill_reach(const cprox_edge_checker *c, const cprox_motion *along, const motion_interval *over,
+                            edge_motion *m, double *reach) {
+  for (size_t i = 0; i < c->n_parts; i++) reach[i] = 0.0;
+  for (size_t k = over->last; k-- > over->first;) {
+    const motion_interval segment = edge_segment(over, k);
+    if (!edge_motion_fill_along(c, along, &segment, m)) return false;
+    for (size_t i = 0; i < c->n_parts; i++) reach[i] = greater(edge_motion_reach(c, m, i), reach[i]);
+  }
+  return true;
+}
+
 void edge_motion_relate(const cprox_edge_checker *c, const edge_motion *m) {
   for (size_t i = 0; i < c->n_relations; i++)
     m->relations[i] = m->stands ? (edge_half_bound){0} : bound_relation(c, &c->relations[i], m);

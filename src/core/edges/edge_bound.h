@@ -54,6 +54,16 @@ bool edge_motion_fill(const cprox_edge_checker *checker, const double *from, con
 bool edge_motion_fill_along(const cprox_edge_checker *checker, const cprox_motion *along, const motion_interval *over,
                             edge_motion *motion);
 
+/* Segment k of an interval of many. */
+static inline motion_interval edge_segment(const motion_interval *over, size_t k) {
+  return (motion_interval){
+      .a = k == over->first ? over->a : 0.0, .b = k + 1 == over->last ? over->b : 1.0, .first = k, .last = k + 1};
+}
+
+/* The same of one segment after another, the first one last: how far each part comes from the base on all of them. */
+bool edge_motion_fill_reach(const cprox_edge_checker *checker, const cprox_motion *along, const motion_interval *over,
+                            edge_motion *motion, double *reach);
+
 /* How far a part is from the base at most on the way. */
 double edge_motion_reach(const cprox_edge_checker *checker, const edge_motion *motion, size_t part);
 

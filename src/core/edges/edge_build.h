@@ -57,15 +57,40 @@ static inline void *edge_take(edge_arena *a, size_t n, size_t size) {
   return here;
 }
 
+/* Entries of rotations below this are 0. */
+#define EDGE_SNAP 1e-9
+
 /* Entries of a rotation as they go into lanes; whether only coordinates are exchanged: column k is then `sign` times the
  * coordinate `from`. */
-bool edge_snap(const double r[9], float out[9], int32_t from[3], float sign[3]);
+static inline bool edge_snap(const double r[9], float out[9], int32_t from[3], float sign[3]) {
+  bool exchanges = true;
+  for (int k = 0; k < 9; k++) {
+    const double x = fabs(r[k]) < EDGE_SNAP ? 0.0 : fabs(fabs(r[k]) - 1.0) < EDGE_SNAP ? copysign(1.0, r[k]) : r[k];
+    out[k] = (float)x;
+    exchanges = exchanges && (x == 0.0 || fabs(x) == 1.0);
+  }
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < 3; k++)
+      if (out[3 * k + c] != 0.0f) from[c] = k, sign[c] = out[3 * k + c];
+  return exchanges;
+}
 
 /* A ball about the middle of their box that all points of a hull are in. */
-void edge_enclose_points(edge_hull *hull, const float *points);
-
-/* Whether two geometries of a robot are asked about each other where no list says so: two joints or more are between
- * them. */
-bool edge_is_worth_asking(const cprox_robot *robot, size_t geometry, size_t other);
+static inline void edge_enclose_points(edge_hull *hull, const float *points) {
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (uint32_t i = 0; i < hull->n; i++)
+    for (size_t k = 0; k < 3; k++) {
+      const float x = points[edge_point_place(i) + k * EDGE_BLOCK];
+      low[k] = x < low[k] ? x : low[k], high[k] = x > high[k] ? x : high[k];
+    }
+  for (int k = 0; k < 3; k++) hull->centre[k] = 0.5f * low[k] + 0.5f * high[k];
+  double core2 = 0.0;
+  const vec3 centre = vec((double)hull->centre[0], (double)hull->centre[1], (double)hull->centre[2]);
+  for (uint32_t i = 0; i < hull->n; i++) {
+    const vec3 apart = vec_sub(edge_point(points, i), centre);
+    core2 = greater(vec_dot(apart, apart), core2);
+  }
+  hull->core = edge_float_above(sqrt(core2) * (1.0 + 0x1p-40));
+}
 
 #endif

@@ -30,7 +30,7 @@ static size_t list_self_pairs(const cprox_robot *robot, const cprox_edge_query *
   size_t n = 0;
   for (size_t g = 0; g < robot->n_geometries; g++)
     for (size_t k = 0; k < g; k++) {
-      if (!edge_is_worth_asking(robot, g, k)) continue;
+      if (!robot_is_worth_asking(robot, g, k)) continue;
       if (to) to[n] = (cprox_robot_pair){(int32_t)g, (int32_t)k};
       n++;
     }

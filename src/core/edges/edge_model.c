@@ -64,7 +64,7 @@ static void fill_rows(const edge_rows *rows, const edge_asked *asked) {
     note_two(rows, asked->self_pairs[i].geometry, asked->self_pairs[i].other);
   for (size_t g = 0; g < n && !asked->self_pairs; g++)
     for (size_t k = 0; k < g; k++)
-      if (edge_is_worth_asking(asked->robot, g, k)) note_two(rows, (int32_t)g, (int32_t)k);
+      if (robot_is_worth_asking(asked->robot, g, k)) note_two(rows, (int32_t)g, (int32_t)k);
 }
 
 /* Which axes carry anything that is asked about. */
@@ -390,4 +390,82 @@ void edge_model_fill_robot(cprox_edge_checker *c, const edge_asked *asked, const
   if (!c->in_lanes) return;
   fill_parts(c, covers);
   fill_lane_pairs(c);
+}
+
+/* ---- the robot's side, kept ---- */
+
+/* Beyond these the trees and groups of the search find what is near sooner than lanes do. */
+enum { MOST_PAIRS = 4096, MOST_PARTS = 1024 };
+
+/* One of so many parts may have a cover that tells little. */
+enum { MOST_COARSE = 4 };
+
+/* The robot's side stays in the workspace from query to query. It is the same model as long as the robot's
+ * signature and what is asked about are the same, byte by byte, whatever handles they came with. */
+typedef struct kept_model {
+  cprox_edge_checker model;
+  size_t n_key;
+  edge_asked asked;
+} kept_model;
+
+static bool is_same_list(const cprox_robot_pair *a, const char *b, size_t n) {
+  return n == 0 || memcmp(a, b, n * sizeof *a) == 0;
+}
+
+static bool is_kept(const kept_model *kept, const edge_asked *asked, const robot_covers *covers) {
+  const edge_asked *old = &kept->asked;
+  const size_t pairs = asked->n_pairs * sizeof *asked->pairs, selves = asked->n_self_pairs * sizeof *asked->pairs;
+  if (kept->n_key != covers->n_signature + pairs + selves || old->n_pairs != asked->n_pairs ||
+      old->n_self_pairs != asked->n_self_pairs || old->n_obstacles != asked->n_obstacles ||
+      old->about_obstacles != asked->about_obstacles || old->about_self != asked->about_self ||
+      !old->pairs != !asked->pairs || !old->self_pairs != !asked->self_pairs)
+    return false;
+  const char *key = (const char *)(kept + 1);
+  return memcmp(covers->signature, key, covers->n_signature) == 0 &&
+         is_same_list(asked->pairs, key + covers->n_signature, asked->n_pairs) &&
+         is_same_list(asked->self_pairs, key + covers->n_signature + pairs, asked->n_self_pairs);
+}
+
+static void write_key(kept_model *kept, const edge_asked *asked, const robot_covers *covers) {
+  const size_t pairs = asked->n_pairs * sizeof *asked->pairs, selves = asked->n_self_pairs * sizeof *asked->pairs;
+  char *key = (char *)(kept + 1);
+  memcpy(key, covers->signature, covers->n_signature);
+  if (pairs > 0) memcpy(key + covers->n_signature, asked->pairs, pairs);
+  if (selves > 0) memcpy(key + covers->n_signature + pairs, asked->self_pairs, selves);
+  kept->n_key = covers->n_signature + pairs + selves;
+}
+
+/* Balls that are not the part itself tell little of what is near, and there are many of them: such parts are left to the
+ * search where their own ball comes near something. A robot with more than a few of them is left to it altogether. */
+static void mark_coarse(cprox_edge_checker *c) {
+  size_t n = 0;
+  for (size_t i = 0; i < c->n_parts; i++) {
+    edge_part *part = &c->parts[i];
+    for (uint32_t k = part->first; k < part->first + part->n; k++)
+      part->coarse = part->coarse || cover_is_coarse((double)c->balls[k].outer, (double)c->balls[k].inner);
+    n += part->coarse;
+  }
+  c->in_lanes = c->in_lanes && MOST_COARSE * n <= c->n_parts;
+}
+
+cprox_edge_checker *edge_model_keep(const edge_asked *asked, cprox_workspace *workspace, workspace_buffer buffer) {
+  if (asked->robot->n_parts > MOST_PARTS || edge_model_count_pairs(asked) > MOST_PAIRS) return NULL;
+  const robot_covers *covers = robot_covers_of(asked->robot);
+  if (!covers || MOST_COARSE * covers->n_coarse > asked->robot->n_parts) return NULL;
+  kept_model *kept = workspace_filled(workspace, buffer);
+  if (kept && is_kept(kept, asked, covers)) {
+    kept->model.robot = asked->robot;
+    return &kept->model;
+  }
+  const size_t bytes = edge_model_robot_size(asked, covers);
+  const size_t pairs = (asked->n_pairs + asked->n_self_pairs) * sizeof *asked->pairs;
+  const size_t key = (sizeof *kept + covers->n_signature + pairs + 63) / 64 * 64;
+  kept = workspace_reserve(workspace, buffer, key + bytes);
+  if (!kept) return NULL;
+  memset(kept, 0, sizeof *kept);
+  kept->asked = *asked;
+  write_key(kept, asked, covers);
+  edge_model_fill_robot(&kept->model, asked, covers, (char *)kept + key);
+  mark_coarse(&kept->model);
+  return &kept->model;
 }

@@ -4,6 +4,7 @@
 #ifndef CPROX_EDGES_EDGE_MODEL_H
 #define CPROX_EDGES_EDGE_MODEL_H
 
+#include "base/workspace.h"
 #include "curve_proximity/cprox/edges.h"
 #include "kinematics/joint_tree.h"
 #include "kinematics/part_cover.h"
@@ -175,6 +176,10 @@ size_t edge_model_scene_size(const cprox_edge_checker *model, const cprox_obstac
 /* The robot's side, in such memory; all else must be 0. Afterwards in_lanes says whether the robot can be in lanes. */
 void edge_model_fill_robot(cprox_edge_checker *model, const edge_asked *asked, const robot_covers *covers,
                            char *memory);
+
+/* The robot's side in a buffer of the workspace, where it stays from query to query; it is made again where the robot or
+ * what is asked about it is another one. NULL: lanes are no use for it, or memory is out. */
+cprox_edge_checker *edge_model_keep(const edge_asked *asked, cprox_workspace *workspace, workspace_buffer buffer);
 
 /* The scene's side: targets first … last - 1, those given to edge_model_scene_size(). `reach`
  * of each part, from the base; NULL: as far as it can. Obstacles that are out of all reach are left out. */

@@ -55,6 +55,24 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
   const vec3 base = c->base;
   const cprox_body *body = body_part_at(target->body, part);
   part_model m = part_model_of(body);
+  const double *size = m.shape->size, margin = m.margin + target->margin;
+  edge_shape shape = EDGE_BALL;
+  vec3 middle = vec(0, 0, 0); /* of what lanes see */
+  double sizes[3] = {margin, 0, 0}, extent = m.radius + target->margin;
+  bool exact = !m.tree;
+  switch (m.shape->ops->kind) {
+    case CPROX_BODY_BOX: shape = EDGE_BOX, sizes[0] = size[0], sizes[1] = size[1], sizes[2] = size[2]; break;
+    case CPROX_BODY_CAPSULE: shape = EDGE_CAPSULE, sizes[1] = size[1]; break;
+    case CPROX_BODY_CYLINDER: shape = EDGE_CYLINDER, sizes[0] = size[0], sizes[1] = size[1]; break;
+    case CPROX_BODY_CONE: shape = EDGE_CONE, sizes[0] = size[0], sizes[1] = size[1]; break;
+    case CPROX_BODY_HALFSPACE: shape = EDGE_HALFSPACE, extent = 0.0; break;
+    case CPROX_BODY_SPHERE: break;
+    default:
+      if (m.shape->ops == &convex_point) break;
+      part_model_find_box(&m);
+      exact = false, shape = EDGE_BOX, middle = m.middle;
+      sizes[0] = m.half.x, sizes[1] = m.half.y, sizes[2] = m.half.z;
+  }
   cprox_pose pose = target->pose;
   double world = vec_norm(base) + vec_norm(target->pose.position) + vec_norm(m.centre); /* rounding in double */
   if (target->body->kind == CPROX_BODY_COMPOUND) {
@@ -62,33 +80,15 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
     world += vec_norm(target->body->parts[part].pose.position);
   }
   const frame f = frame_create(&pose, m.centre);
-  edge_obstacle o = {.target = (int32_t)index, .shape = EDGE_BALL};
+  vec3 p = frame_to_world(&f, middle);
+  const vec3 n = shape == EDGE_HALFSPACE ? frame_turn_to_world(&f, vec(size[0], size[1], size[2])) : middle;
+  edge_obstacle o = {.target = (int32_t)index, .shape = shape};
   add_content(c, &m, &f, target->margin, world + vec_norm(m.tree_at), &o);
-  const cprox_body_kind kind = m.shape->ops->kind;
-  const double *size = m.shape->size, margin = m.margin + target->margin;
-  vec3 p = frame_to_world(&f, vec(0, 0, 0));
-  double sizes[3] = {margin, 0, 0}, extent = m.radius + target->margin;
-  bool exact = !m.tree;
-  switch (kind) {
-    case CPROX_BODY_BOX: o.shape = EDGE_BOX, sizes[0] = size[0], sizes[1] = size[1], sizes[2] = size[2]; break;
-    case CPROX_BODY_CAPSULE: o.shape = EDGE_CAPSULE, sizes[1] = size[1]; break;
-    case CPROX_BODY_CYLINDER: o.shape = EDGE_CYLINDER, sizes[0] = size[0], sizes[1] = size[1]; break;
-    case CPROX_BODY_CONE: o.shape = EDGE_CONE, sizes[0] = size[0], sizes[1] = size[1]; break;
-    case CPROX_BODY_HALFSPACE: o.shape = EDGE_HALFSPACE, extent = 0.0; break;
-    case CPROX_BODY_SPHERE: break;
-    default:
-      if (m.shape->ops == &convex_point) break;
-      part_model_find_box(&m);
-      exact = false, o.shape = EDGE_BOX;
-      sizes[0] = m.half.x, sizes[1] = m.half.y, sizes[2] = m.half.z;
-      p = frame_to_world(&f, m.middle);
-      world += vec_norm(m.middle);
-  }
+  world += vec_norm(middle);
   int32_t from[3] = {0};
   float sign[3];
   const bool exchanges = edge_snap(f.r, o.r, from, sign);
   if (o.shape == EDGE_HALFSPACE) {
-    const vec3 n = rotate(f.r, vec(size[0], size[1], size[2]));
     o.r[0] = (float)n.x, o.r[3] = (float)n.y, o.r[6] = (float)n.z;
     world += fabs(size[3]) + vec_norm(p);
     p = vec_axpy(p, -size[3], n); /* of the plane: that nearest to the base */

@@ -1,7 +1,6 @@
 # The files of this room. A new file is one line here.
 target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/edge_bound.c
-  ${CMAKE_CURRENT_LIST_DIR}/edge_build.c
   ${CMAKE_CURRENT_LIST_DIR}/edge_checker.c
   ${CMAKE_CURRENT_LIST_DIR}/edge_model.c
   ${CMAKE_CURRENT_LIST_DIR}/edge_scene.c

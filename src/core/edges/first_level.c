@@ -7,10 +7,7 @@
 #include "edges/kernels.h"
 
 /* Beyond these the trees and groups of the search find what is near sooner than lanes do. */
-enum { MOST_PAIRS = 4096, MOST_PARTS = 1024, MOST_TARGETS = 512, MOST_NEAR = 4096, MOST_OPEN = 256 };
-
-/* One of so many parts may have a cover that tells little. */
-enum { MOST_COARSE = 4 };
+enum { MOST_TARGETS = 512, MOST_NEAR = 4096, MOST_OPEN = 256 };
 
 /* So many times eight intervals: what they leave open is left to the search. */
 enum { MOST_BATCHES = 32 };
@@ -19,14 +16,6 @@ enum { MOST_BATCHES = 32 };
 enum { MOST_SEGMENTS = 16 };
 
 /* ---- the model ---- */
-
-/* The robot's side of a model stays in the workspace from query to query. It is the same model as long as the robot's
- * signature and what is asked about are the same, byte by byte, whatever handles they came with. */
-typedef struct kept_model {
-  cprox_edge_checker model;
-  size_t n_key;
-  edge_asked asked;
-} kept_model;
 
 static edge_asked asked_of(const query *q) {
   const cprox_mover *m = &q->mover;
@@ -39,75 +28,17 @@ static edge_asked asked_of(const query *q) {
   return asked;
 }
 
-static bool is_same_list(const cprox_robot_pair *a, const char *b, size_t n) {
-  return n == 0 || memcmp(a, b, n * sizeof *a) == 0;
-}
-
-static bool is_kept(const kept_model *kept, const edge_asked *asked, const robot_covers *covers) {
-  const edge_asked *old = &kept->asked;
-  const size_t pairs = asked->n_pairs * sizeof *asked->pairs, selves = asked->n_self_pairs * sizeof *asked->pairs;
-  if (kept->n_key != covers->n_signature + pairs + selves || old->n_pairs != asked->n_pairs ||
-      old->n_self_pairs != asked->n_self_pairs || old->n_obstacles != asked->n_obstacles ||
-      old->about_obstacles != asked->about_obstacles || old->about_self != asked->about_self ||
-      !old->pairs != !asked->pairs || !old->self_pairs != !asked->self_pairs)
-    return false;
-  const char *key = (const char *)(kept + 1);
-  return memcmp(covers->signature, key, covers->n_signature) == 0 &&
-         is_same_list(asked->pairs, key + covers->n_signature, asked->n_pairs) &&
-         is_same_list(asked->self_pairs, key + covers->n_signature + pairs, asked->n_self_pairs);
-}
-
-static void write_key(kept_model *kept, const edge_asked *asked, const robot_covers *covers) {
-  const size_t pairs = asked->n_pairs * sizeof *asked->pairs, selves = asked->n_self_pairs * sizeof *asked->pairs;
-  char *key = (char *)(kept + 1);
-  memcpy(key, covers->signature, covers->n_signature);
-  if (pairs > 0) memcpy(key + covers->n_signature, asked->pairs, pairs);
-  if (selves > 0) memcpy(key + covers->n_signature + pairs, asked->self_pairs, selves);
-  kept->n_key = covers->n_signature + pairs + selves;
-}
-
 static size_t aligned(size_t bytes) {
   return (bytes + 63) / 64 * 64;
-}
-
-/* Balls that are not the part itself tell little of what is near, and there are many of them: such parts are left to the
- * search where their own ball comes near something. A robot with more than a few of them is left to it altogether. */
-static void mark_coarse(cprox_edge_checker *c) {
-  size_t n = 0;
-  for (size_t i = 0; i < c->n_parts; i++) {
-    edge_part *part = &c->parts[i];
-    for (uint32_t k = part->first; k < part->first + part->n; k++)
-      part->coarse = part->coarse || cover_is_coarse((double)c->balls[k].outer, (double)c->balls[k].inner);
-    n += part->coarse;
-  }
-  c->in_lanes = c->in_lanes && MOST_COARSE * n <= c->n_parts;
 }
 
 /* NULL: there is none for this robot, or memory is out. */
 static cprox_edge_checker *model_of(const query *q) {
   const edge_asked asked = asked_of(q);
-  if (asked.robot->n_parts > MOST_PARTS || edge_model_count_pairs(&asked) > MOST_PAIRS) return NULL;
-  const robot_covers *covers = robot_covers_of(asked.robot);
-  if (!covers || MOST_COARSE * covers->n_coarse > asked.robot->n_parts) return NULL;
   const workspace_buffer buffer = mover_is_self(&q->mover)    ? WORKSPACE_EDGE_SELF
                                   : mover_is_whole(&q->mover) ? WORKSPACE_EDGE_WHOLE
                                                               : WORKSPACE_EDGE_ROBOT;
-  kept_model *kept = workspace_filled(q->workspace, buffer);
-  if (kept && is_kept(kept, &asked, covers)) {
-    kept->model.robot = asked.robot;
-    return &kept->model;
-  }
-  const size_t bytes = edge_model_robot_size(&asked, covers);
-  const size_t key =
-      aligned(sizeof *kept + covers->n_signature + (asked.n_pairs + asked.n_self_pairs) * sizeof *asked.pairs);
-  kept = workspace_reserve(q->workspace, buffer, key + bytes);
-  if (!kept) return NULL;
-  memset(kept, 0, sizeof *kept);
-  kept->asked = asked;
-  write_key(kept, &asked, covers);
-  edge_model_fill_robot(&kept->model, &asked, covers, (char *)kept + key);
-  mark_coarse(&kept->model);
-  return &kept->model;
+  return edge_model_keep(&asked, q->workspace, buffer);
 }
 
 /* ---- what is left ---- */
@@ -203,51 +134,34 @@ static bool can_ask(const query *q, size_t first, size_t last, motion_interval *
 }
 
 /* One pair at one time. */
-static bool take_one(const query *q, int32_t geometry, int32_t other, bool self, double at, edge_rest *rest) {
-  cprox_robot_pair *pair = workspace_reserve(q->workspace, WORKSPACE_EDGE_OPEN, 2 * sizeof *pair);
-  if (!pair) return false;
-  pair[0] = self ? as_asked(q, geometry, other) : (cprox_robot_pair){geometry, other};
+static bool take_one(const query *q, int32_t geometry, int32_t other, bool self, double at, cprox_robot_pair *pair,
+                     edge_rest *rest) {
+  *pair = self ? as_asked(q, geometry, other) : (cprox_robot_pair){geometry, other};
   *rest = (edge_rest){.pairs = pair, .self_pairs = pair, .n_pairs = !self, .n_self_pairs = self, .from = at, .to = at};
   if (!self) rest->first = (size_t)other, rest->last = (size_t)other + 1;
   return true;
 }
 
 static bool take_nearest(const query *q, const cprox_edge_checker *c, const edge_found *f, const motion_interval *over,
-                         edge_rest *rest) {
+                         cprox_robot_pair *pair, edge_rest *rest) {
   *rest = (edge_rest){.n_pairs = 0};
   if (f->nearest == UINT32_MAX) return true;
   const bool self = f->nearest >= c->n_near;
   const edge_pair *two = self ? &c->lane_pairs[f->nearest - c->n_near] : NULL;
   const edge_part *part = self ? &c->parts[two->a] : part_of(c, f->nearest);
   const int32_t other = self ? c->members[c->parts[two->b].first_member] : target_of(c, f->nearest);
-  return take_one(q, c->members[part->first_member], other, self, time_of(q, over, (double)f->nearest_at), rest);
+  return take_one(q, c->members[part->first_member], other, self, time_of(q, over, (double)f->nearest_at), pair, rest);
 }
 
 /* All that a query needs in the workspace. */
 typedef struct edge_run {
   edge_motion motion;
   edge_lanes lanes;
-  edge_open all;   /* what is open in any segment */
-  uint32_t *known; /* whether it is there */
+  edge_open all;          /* what is open in any segment */
+  uint32_t *known;        /* whether it is there */
+  cprox_robot_pair *pair; /* room for the one that is measured */
   uint64_t batches;
 } edge_run;
-
-static motion_interval segment_of(const motion_interval *over, size_t k) {
-  return (motion_interval){
-      .a = k == over->first ? over->a : 0.0, .b = k + 1 == over->last ? over->b : 1.0, .first = k, .last = k + 1};
-}
-
-/* How far each part comes from the base. False: beyond single precision. */
-static bool find_reach(const query *q, const cprox_edge_checker *c, const motion_interval *over, edge_motion *motion,
-                       double *reach) {
-  for (size_t i = 0; i < c->n_parts; i++) reach[i] = 0.0;
-  for (size_t k = over->last; k-- > over->first;) {
-    const motion_interval segment = segment_of(over, k);
-    if (!edge_motion_fill_along(c, q->mover.motion, &segment, motion)) return false;
-    for (size_t i = 0; i < c->n_parts; i++) reach[i] = greater(edge_motion_reach(c, motion, i), reach[i]);
-  }
-  return true;
-}
 
 /* The model's other side. False: beyond single precision, or memory is out. */
 static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t last, const motion_interval *over,
@@ -259,19 +173,21 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
                reaches = aligned(c->n_parts * sizeof(double)), near = c->n_parts * n_obstacles,
                noted = near + c->n_lane_pairs + 1,
                rows = aligned(edge_lanes_size(c, near < MOST_NEAR ? near : MOST_NEAR));
-  char *memory = workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
-                                   64 + rows + scene + moves + reaches + 4 * noted * sizeof(uint32_t));
+  char *memory =
+      workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
+                        64 + rows + scene + moves + reaches + 4 * noted * sizeof(uint32_t) + sizeof *run->pair);
   if (!memory) return false;
   memory += 64 - (uintptr_t)memory % 64;
   *run = (edge_run){.motion = edge_motion_in(c, memory + rows), .lanes = {.memory = memory, .measures = true}};
   double *reach = (double *)(void *)(memory + rows + moves);
-  if (!find_reach(q, c, over, &run->motion, reach)) return false;
+  if (!edge_motion_fill_reach(c, q->mover.motion, over, &run->motion, reach)) return false;
   if (!c->has_scene) /* of many states all are within reach of what the robot can reach */
     edge_model_fill_scene(c, q->targets, first, last, q->is_bare ? NULL : reach, memory + rows + moves + reaches);
   uint32_t *marks = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
   memset(marks, 0, 2 * noted * sizeof *marks);
   run->lanes.open.seen = marks, run->known = marks + noted;
   run->lanes.open.pairs = marks + 2 * noted, run->all.pairs = marks + 3 * noted;
+  run->pair = (cprox_robot_pair *)(marks + 4 * noted);
   const uint64_t done = workspace_work(q->workspace), most = q->options.max_nodes;
   run->batches = done < most ? most - done : 1;
   if (run->batches > MOST_BATCHES + over->last - over->first) run->batches = MOST_BATCHES + over->last - over->first;
@@ -295,7 +211,7 @@ static bool look_along(const query *q, const cprox_edge_checker *c, const motion
   *f = (edge_found){.verdict = CPROX_VERDICT_CLEAR, .least = INFINITY, .nearest = UINT32_MAX};
   *rest = (edge_rest){.from = INFINITY, .to = -INFINITY};
   for (size_t k = over->first; k < over->last; k++) {
-    const motion_interval segment = segment_of(over, k);
+    const motion_interval segment = edge_segment(over, k);
     if (over->last - over->first > 1 && !edge_motion_fill_along(c, q->mover.motion, &segment, &run->motion))
       return false;
     if (run->batches == 0) return false;
@@ -337,10 +253,10 @@ bool edge_first_level(const query *q, size_t first, size_t last, bool suspects, 
   found->is_suspect = f.is_suspect;
   found->verdict = f.is_suspect ? CPROX_VERDICT_VIOLATED : f.verdict;
   if (found->verdict == CPROX_VERDICT_VIOLATED)
-    return take_one(q, f.geometry, f.other, f.self, time_of(q, &nearest, (double)f.at), &found->rest);
+    return take_one(q, f.geometry, f.other, f.self, time_of(q, &nearest, (double)f.at), run.pair, &found->rest);
   const double least = lesser((double)f.least * (1.0 - 0x1p-20), c->beyond);
   found->lower = greater(q->limit + greater(least, 0.0) * (1.0 - 0x1p-50), nextafter(q->limit, INFINITY));
-  if (f.verdict == CPROX_VERDICT_CLEAR) return take_nearest(q, c, &f, &nearest, &found->nearest);
+  if (f.verdict == CPROX_VERDICT_CLEAR) return take_nearest(q, c, &f, &nearest, run.pair, &found->nearest);
   if (!(found->rest.from < found->rest.to)) found->rest.from = q->t0, found->rest.to = q->t1;
   return take_open(q, c, &run.all, &found->rest);
 }

@@ -25,12 +25,6 @@ static inline int32_t axis_variables(axis_kind kind) {
   return kind == AXIS_BALL ? 4 : kind == AXIS_VECTOR ? 3 : 1;
 }
 
-/* Where something is: x_world = r x + p. */
-typedef struct placement {
-  double r[9]; /* row-major */
-  vec3 p;
-} placement;
-
 typedef struct robot_axis {
   axis_kind kind;
   int32_t parent;            /* axis, or -1 */
@@ -79,18 +73,6 @@ struct cprox_robot {
 /* That of a place along the chain, per unit of the whole length. */
 #define ROUND_PLACE 7.0
 
-static inline vec3 placement_turn(const placement *at, vec3 v) {
-  return rotate(at->r, v);
-}
-
-static inline vec3 placement_turn_back(const placement *at, vec3 v) {
-  return rotate_back(at->r, v);
-}
-
-static inline vec3 placement_apply(const placement *at, vec3 v) {
-  return vec_add(placement_turn(at, v), at->p);
-}
-
 /* outer then inner: x -> outer.r (inner.r x + inner.p) + outer.p. */
 placement placement_compose(const placement *outer, const placement *inner);
 
@@ -136,6 +118,21 @@ static inline int32_t robot_common_axis(const cprox_robot *robot, int32_t a, int
   const int32_t other = a < b ? b : a;
   while (!robot_axis_carries(robot, axis, other)) axis = robot->axes[axis].parent;
   return axis;
+}
+
+/* How many joints are between two links, -1 being the world. */
+static inline size_t robot_joints_between(const cprox_robot *robot, int32_t link_a, int32_t link_b) {
+  const int32_t a = link_a < 0 ? -1 : robot->links[link_a].axis, b = link_b < 0 ? -1 : robot->links[link_b].axis;
+  const int32_t common = robot_common_axis(robot, a, b);
+  size_t n = 0;
+  for (int32_t i = a; i != common; i = robot->axes[i].parent) n += robot->axes[i].first_of_joint;
+  for (int32_t i = b; i != common; i = robot->axes[i].parent) n += robot->axes[i].first_of_joint;
+  return n;
+}
+
+/* Whether two geometries are asked about each other where no list says so: two joints or more are between them. */
+static inline bool robot_is_worth_asking(const cprox_robot *robot, size_t geometry, size_t other) {
+  return robot_joints_between(robot, robot->given_geometries[geometry].link, robot->given_geometries[other].link) >= 2;
 }
 
 /* The axes from one up to the base; none for -1. */
