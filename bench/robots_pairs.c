@@ -55,7 +55,7 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   else
     list_tolerance(mover, c->targets, n, delta, &options, ws, &r, NULL);
 
-  query q = query_create(mover, c->targets, n, delta, true, &options, ws);
+  query q = query_create(mover, c->targets, n, delta, &options, ws);
   query_ask_whole(&q);
   watched w = {.looks = 0};
   search_goal goal = {.order = delta < 0.0 ? SEARCH_BEST_FIRST : SEARCH_DEPTH_FIRST,

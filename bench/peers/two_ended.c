@@ -189,7 +189,7 @@ static void add(search *s, size_t segment, double a, double b, const interval *p
 
 static bool begin(search *s, query *q, const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                   double epsilon, cprox_workspace *workspace) {
-  *q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
+  *q = query_create(*mover, targets, n, -1.0, NULL, workspace);
   query_ask_whole(q);
   *s = (search){.upper = INFINITY, .dropped = INFINITY, .epsilon = epsilon};
   return robot_scene_begin(&s->scene, q, NULL, 0, n, SIZE_MAX, INFINITY);

@@ -303,7 +303,7 @@ CASE(the_box_round_a_part_bounds_specks_exactly) {
     }
     cprox_obstacles *set = NULL;
     assert_int_equal(cprox_obstacles_create(targets, SPECKS, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
-    query q = query_create(cprox_robot_along(motion, NULL, 0), targets, SPECKS, -1.0, false, NULL, ws);
+    query q = query_create(cprox_robot_along(motion, NULL, 0), targets, SPECKS, -1.0, NULL, ws);
     q.set = set->bvh;
     robot_scene scene;
     assert_true(robot_scene_begin(&scene, &q, NULL, 0, SPECKS, SIZE_MAX, INFINITY));
@@ -352,7 +352,7 @@ CASE(no_corner_of_a_core_moves_farther_than_is_said_and_margins_add_nothing) {
                                         .interpolation = CPROX_INTERPOLATION_LINEAR};
     cprox_motion *motion = NULL;
     assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
-    const query q = query_create(cprox_robot_along(motion, NULL, 0), NULL, 0, -1.0, false, NULL, ws);
+    const query q = query_create(cprox_robot_along(motion, NULL, 0), NULL, 0, -1.0, NULL, ws);
     robot_scene scene;
     assert_true(robot_scene_begin(&scene, &q, NULL, 0, 0, SIZE_MAX, INFINITY));
     robot_scene_enter(&scene, 0, 0.0, 1.0);
@@ -418,7 +418,7 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
     }
     cprox_obstacles *set = NULL;
     assert_int_equal(cprox_obstacles_create(targets, BALLS, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
-    query q = query_create(cprox_robot_along(motion, NULL, 0), targets, BALLS, -1.0, false, NULL, ws);
+    query q = query_create(cprox_robot_along(motion, NULL, 0), targets, BALLS, -1.0, NULL, ws);
     q.set = set->bvh;
     robot_scene scene;
     assert_true(robot_scene_begin(&scene, &q, NULL, 0, BALLS, SIZE_MAX, INFINITY));

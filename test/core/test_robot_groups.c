@@ -92,7 +92,7 @@ CASE(groups_hold_the_pairs_of_the_list_each_once) {
     static cprox_robot_pair given[MOST_PAIRS];
     size_t n_given;
     const cprox_robot_pair *pairs = draw_pairs(&r, &c, given, &n_given);
-    const query q = query_create(cprox_robot_self(c.motion, pairs, n_given), NULL, 0, -1.0, false, NULL, ws);
+    const query q = query_create(cprox_robot_self(c.motion, pairs, n_given), NULL, 0, -1.0, NULL, ws);
     static int listed[MOST_GEOMETRIES][MOST_GEOMETRIES];
     memset(listed, 0, sizeof listed);
     robot_scene scene;
@@ -221,7 +221,7 @@ CASE(no_part_leaves_what_its_group_says) {
   for (size_t i = 0; i < test_cases(300); i++) {
     crowded_robot c;
     make_crowded(&r, rng_log_uniform(&r, 0.05, 3), false, &c);
-    const query q = query_create(cprox_robot_self(c.motion, NULL, 0), NULL, 0, -1.0, false, NULL, ws);
+    const query q = query_create(cprox_robot_self(c.motion, NULL, 0), NULL, 0, -1.0, NULL, ws);
     robot_scene scene;
     assert_true(robot_scene_begin(&scene, &q, NULL, 0, 0, 0, INFINITY));
     const size_t n = scene.groups ? c.robot->groups.n : 0;
@@ -259,7 +259,7 @@ typedef struct searched {
 } searched;
 
 static searched search(const crowded_robot *c, search_goal goal, size_t most_listed) {
-  query q = query_create(cprox_robot_self(c->motion, NULL, 0), NULL, 0, -1.0, false, NULL, ws);
+  query q = query_create(cprox_robot_self(c->motion, NULL, 0), NULL, 0, -1.0, NULL, ws);
   query_ask_whole(&q);
   static robot_search o;
   assert_true(robot_scene_begin(&o.scene, &q, NULL, 0, 0, most_listed, INFINITY));

@@ -198,7 +198,7 @@ CASE(verdicts_and_intervals_agree_with_the_certified_distance) {
                               info.t0 + (info.t1 - info.t0) * rng_uniform(&r, 0.6, 1)};
       if (rng_index(&r, 3) == 0 && part[0] < part[1]) options.interval = part;
 
-      query q = query_create(mover, targets, n, -1.0, false, &options, ws);
+      query q = query_create(mover, targets, n, -1.0, &options, ws);
       assert_int_equal(query_begin(&q, (arguments_query){"the test", ~0u}), CPROX_OK);
       cprox_result exact, searched, r1;
       assert_true(robot_answer(&q, 0, n, INFINITY, &exact) >= 0);

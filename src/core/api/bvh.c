@@ -18,22 +18,18 @@ static bool boxes_hold(const query *q) {
 }
 
 cprox_status bvh_begin(const obstacle_bvh *set, query *q, arguments_query asked) {
-  cprox_workspace *workspace = q->workspace;
-  if (!workspace) return CPROX_INVALID;
-  workspace_clear(workspace);
   /* the targets were checked when the set was made, but for what the mover must go with */
   const bool robot = q->mover.motion && (set->has_curves || set->has_fields || mover_is_self(&q->mover) ||
                                          mover_is_whole(&q->mover) || q->mover.pairs);
   const bool by_hulls = q->mover.body || (q->mover.motion && q->options.signed_distance);
   const bool all = set->has_clock || (by_hulls && set->has_elements) || robot;
-  const cprox_status checked =
-      validate_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, asked, workspace);
-  if (checked != CPROX_OK) return checked;
+  q->targets = all ? set->targets : NULL;
+  q->n = all ? set->n : 0;
+  const cprox_status begun = query_begin(q, asked);
   q->targets = set->targets;
   q->n = set->n;
   if (q->mover.motion && !q->mover.pairs && boxes_hold(q)) q->set = set;
-  query_ask_whole(q);
-  return CPROX_OK;
+  return begun;
 }
 
 static cprox_status out_of_memory(const query *q) {
@@ -72,7 +68,7 @@ static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, 
 
 cprox_status bvh_distance(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
                           cprox_workspace *workspace, cprox_result *result) {
-  query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
+  query q = query_create(mover, NULL, 0, -1.0, options, workspace);
   q.is_signed = q.options.signed_distance;
   return answer(set, &q, "the distance to a set", result);
 }
@@ -81,19 +77,19 @@ cprox_status bvh_tolerance(const obstacle_bvh *set, cprox_mover mover, double de
                            cprox_workspace *workspace, cprox_result *result) {
   const cprox_status checked = validate_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
-  query q = query_create(mover, NULL, 0, delta, true, options, workspace);
+  query q = query_create(mover, NULL, 0, delta, options, workspace);
   return answer(set, &q, "tolerance of a set", result);
 }
 
 cprox_status bvh_collision(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
                            cprox_workspace *workspace, cprox_result *result) {
-  query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
+  query q = query_create(mover, NULL, 0, 0.0, options, workspace);
   return answer(set, &q, "collision with a set", result);
 }
 
 cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
                                  cprox_workspace *workspace, cprox_result *result) {
-  query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
+  query q = query_create(mover, NULL, 0, 0.0, options, workspace);
   const cprox_status begun =
       bvh_begin(set, &q,
                 (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE |
@@ -119,7 +115,7 @@ cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, con
 
 cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, const cprox_options *options,
                          cprox_workspace *workspace, cprox_result *nearest, cprox_listed *listed) {
-  query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
+  query q = query_create(mover, NULL, 0, -1.0, options, workspace);
   q.is_signed = q.options.signed_distance;
   const arguments_query asked = {"the nearest obstacles of a set",
                                  ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS};

@@ -6,21 +6,22 @@
 #include "solve/list.h"
 #include "solve/solve.h"
 
-static arguments_query query_of(const query *q, bool each) {
-  const unsigned has =
-      ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS | (each ? 0 : ARGUMENTS_WHOLE);
-  if (!query_wants_verdict(q))
-    return (arguments_query){"distance", has | ARGUMENTS_SIGNED | (each ? 0 : ARGUMENTS_SHARE)};
-  return (arguments_query){q->is_tolerance ? "tolerance" : "collision", has};
-}
-
-static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
-  const arguments_query asked = query_of(q, each != NULL);
-  cprox_certificate_clear(q->options.certificate);
-  cprox_status status = query_begin(q, asked);
+/* delta < 0: a distance. */
+static cprox_status ask(const char *name, cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+                        const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                        cprox_result *each) {
+  cprox_certificate_clear(arguments_options(options).certificate);
+  query q = query_create(mover, targets, n, delta, options, workspace);
+  arguments_query asked = {name, ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS};
+  if (!each) asked.has |= ARGUMENTS_WHOLE;
+  if (!query_wants_verdict(&q)) {
+    asked.has |= ARGUMENTS_SIGNED | (each ? 0 : ARGUMENTS_SHARE);
+    q.is_signed = q.options.signed_distance;
+  }
+  cprox_status status = query_begin(&q, asked);
   if (status != CPROX_OK) return status;
-  status = each ? solve_each(q, nearest, each) : solve_query(q, 0, q->n, INFINITY, nearest);
-  if (status >= 0 && q->options.certificate) q->options.certificate->prove(q, nearest);
+  status = each ? solve_each(&q, nearest, each) : solve_query(&q, 0, n, INFINITY, nearest);
+  if (status >= 0 && q.options.certificate) q.options.certificate->prove(&q, nearest);
   return status;
 }
 
@@ -28,9 +29,7 @@ static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
 
 cprox_status list_distance(cprox_mover mover, const cprox_obstacle *targets, size_t n, const cprox_options *options,
                            cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
-  query q = query_create(mover, targets, n, -1.0, false, options, workspace);
-  q.is_signed = q.options.signed_distance;
-  return ask(&q, nearest, each);
+  return ask("distance", mover, targets, n, -1.0, options, workspace, nearest, each);
 }
 
 cprox_status list_tolerance(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
@@ -38,15 +37,12 @@ cprox_status list_tolerance(cprox_mover mover, const cprox_obstacle *targets, si
                             cprox_result *each) {
   cprox_certificate_clear(arguments_options(options).certificate);
   const cprox_status checked = validate_delta(delta, workspace);
-  if (checked != CPROX_OK) return checked;
-  query q = query_create(mover, targets, n, delta, true, options, workspace);
-  return ask(&q, nearest, each);
+  return checked == CPROX_OK ? ask("tolerance", mover, targets, n, delta, options, workspace, nearest, each) : checked;
 }
 
 cprox_status list_collision(cprox_mover mover, const cprox_obstacle *targets, size_t n, const cprox_options *options,
                             cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
-  query q = query_create(mover, targets, n, 0.0, false, options, workspace);
-  return ask(&q, nearest, each);
+  return ask("collision", mover, targets, n, 0.0, options, workspace, nearest, each);
 }
 
 cprox_status cprox_distance(cprox_mover mover, cprox_obstacle target, const cprox_options *options,

@@ -133,7 +133,7 @@ static cprox_status search(const edges_call *call, const cprox_motion *motion, c
   options.interval = rest->to > rest->from && (rest->from > 0.0 || rest->to < 1.0) ? interval : NULL;
   const cprox_mover mover = mover_of(motion, rest);
   if (question.first) return list_time_of_contact(mover, targets, n, &options, call->workspace, r);
-  query q = query_create(mover, targets, n, question.beyond, question.beyond > 0.0, &options, call->workspace);
+  query q = query_create(mover, targets, n, question.beyond, &options, call->workspace);
   const arguments_query has = {"edges", ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL};
   const cprox_status begun = query_begin(&q, has);
   if (rest->at_once) q.t0 = q.t1 = rest->from;

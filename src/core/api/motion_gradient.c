@@ -23,7 +23,7 @@ cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cpr
   static const arguments_query ASKED = {"the gradient of a robot's distance",
                                         ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_SIGNED | ARGUMENTS_INTERVAL};
   const obstacle_bvh *set = obstacles ? obstacles->bvh : NULL;
-  query q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
+  query q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, options, workspace);
   q.is_signed = q.options.signed_distance;
   const cprox_status begun = set ? bvh_begin(set, &q, ASKED) : query_begin(&q, ASKED);
   if (begun != CPROX_OK) return begun;
@@ -42,7 +42,7 @@ cprox_status cprox_robot_growth(const cprox_obstacles *obstacles, cprox_mover mo
   WORKSPACE_USE(workspace);
   static const arguments_query ASKED = {"the growth distance of a robot",
                                         ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_SIGNED | ARGUMENTS_INTERVAL};
-  query q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
+  query q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, options, workspace);
   q.is_signed = q.options.signed_distance = true; /* it measures overlaps as well */
   const cprox_status begun = query_begin(&q, ASKED);
   if (begun != CPROX_OK) return begun;

@@ -129,7 +129,7 @@ cprox_status cprox_robot_rows(const cprox_obstacles *obstacles, cprox_mover move
                               size_t room, size_t *count) {
   WORKSPACE_USE(workspace);
   row_search s = {.rows = rows, .room = room, .failure = CPROX_OK};
-  s.q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
+  s.q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, options, workspace);
   query *q = &s.q;
   q->is_signed = q->options.signed_distance;
   cprox_status status = query_begin(q, (arguments_query){"the rows of a robot", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});

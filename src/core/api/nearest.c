@@ -33,7 +33,7 @@ static candidate *rank_targets(const query *q) {
 cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k,
                           const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                           cprox_listed *listed) {
-  query q = query_create(mover, targets, n, -1.0, false, options, workspace);
+  query q = query_create(mover, targets, n, -1.0, options, workspace);
   q.is_signed = q.options.signed_distance;
   const cprox_status begun = query_begin(
       &q, (arguments_query){"the nearest obstacles", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS});
@@ -71,7 +71,7 @@ cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_
                          cprox_listed *listed) {
   const cprox_status usable = validate_delta(delta, workspace);
   if (usable != CPROX_OK) return usable;
-  query q = query_create(mover, targets, n, -1.0, false, options, workspace);
+  query q = query_create(mover, targets, n, -1.0, options, workspace);
   q.is_signed = q.options.signed_distance;
   const cprox_status begun = query_begin(
       &q, (arguments_query){"the obstacles within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS});

@@ -111,7 +111,7 @@ static cprox_status ask_plain(query *q, cprox_result *result) {
 
 static query query_of(const cprox_obstacles *obstacles, cprox_mover mover, double limit, const cprox_options *options,
                       cprox_workspace *workspace) {
-  return query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), limit, true, options, workspace);
+  return query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), limit, options, workspace);
 }
 
 cprox_status cprox_robust_distance(const cprox_obstacles *obstacles, cprox_mover mover,

@@ -55,7 +55,7 @@ static cprox_status begin_verdicts(const cprox_state_query *asked, const cprox_m
   if (checked != CPROX_OK) return checked;
   const obstacle_bvh *bvh = asked->obstacles ? asked->obstacles->bvh : NULL;
   *q = query_create(mover, obstacles_list(asked->obstacles), obstacles_count(asked->obstacles), asked->delta,
-                    is_tolerance, asked->options, workspace);
+                    asked->options, workspace);
   q->is_bare = true;
   const arguments_query has = {is_tolerance ? "tolerance of states" : "collision of states",
                                ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS};

@@ -8,7 +8,7 @@
 
 cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targets, size_t n,
                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
-  query q = query_create(mover, targets, n, 0.0, false, options, workspace);
+  query q = query_create(mover, targets, n, 0.0, options, workspace);
   const arguments_query asked = {
       "time of contact", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS};
   const cprox_status begun = query_begin(&q, asked);

@@ -297,7 +297,7 @@ static cprox_status check(const violation_search *s) {
 cprox_status list_violations(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                              double resolution, const cprox_options *options, cprox_workspace *workspace,
                              cprox_violations *violations) {
-  violation_search s = {.q = query_create(mover, targets, n, -1.0, false, options, workspace),
+  violation_search s = {.q = query_create(mover, targets, n, -1.0, options, workspace),
                         .delta = delta,
                         .resolution = resolution,
                         .out = violations};

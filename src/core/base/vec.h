@@ -73,6 +73,14 @@ static inline double vec_norm(vec3 a) {
   return sqrt(vec_dot(a, a));
 }
 
+/* How far p is from the segment between a and b. */
+static inline double vec_to_segment(vec3 p, vec3 a, vec3 b) {
+  const vec3 ab = vec_sub(b, a), ap = vec_sub(p, a);
+  const double length2 = vec_norm2(ab), along = vec_dot(ap, ab);
+  const double s = length2 > 0.0 ? lesser(greater(along / length2, 0.0), 1.0) : 0.0;
+  return vec_norm(vec_sub(p, vec_lerp(a, b, s)));
+}
+
 static inline bool vec_equal(vec3 a, vec3 b) {
   return a.x == b.x && a.y == b.y && a.z == b.z;
 }

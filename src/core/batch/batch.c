@@ -84,7 +84,7 @@ static cprox_status answer_fast(batch_run *run, cprox_result *r) {
 static bool may_be_fast(const batch_run *run, const cprox_mover *mover) {
   return mover->kind == CPROX_MOVER_BALL && mover->curve && !mover->radius_curve && !mover->curve->arcs &&
          !mover->body && !mover->motion && mover->radius >= 0.0 && mover->radius <= LENGTH_MOST &&
-         curve_is_in_reach(mover->curve) && !run->batch->synchronized && run->q.options.max_lod == CPROX_LOD_MESH &&
+         mover->curve->in_reach && !run->batch->synchronized && run->q.options.max_lod == CPROX_LOD_MESH &&
          !run->q.options.signed_distance && !mover->pairs && mover->n_pairs == 0;
 }
 
@@ -155,7 +155,7 @@ static cprox_status answer_range(query q, const obstacle_batch *batch, const cpr
 
 cprox_status batch_distance(const obstacle_batch *batch, const cprox_mover *movers, size_t first, size_t last,
                             const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
-  const query q = query_create((cprox_mover){0}, NULL, 0, -1.0, false, options, workspace);
+  const query q = query_create((cprox_mover){0}, NULL, 0, -1.0, options, workspace);
   return answer_range(q, batch, movers, first, last, results);
 }
 
@@ -165,6 +165,6 @@ cprox_status batch_tolerance(const obstacle_batch *batch, const cprox_mover *mov
   if (!workspace) return CPROX_INVALID;
   const cprox_status checked = validate_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
-  const query q = query_create((cprox_mover){0}, NULL, 0, delta, true, options, workspace);
+  const query q = query_create((cprox_mover){0}, NULL, 0, delta, options, workspace);
   return answer_range(q, batch, movers, first, last, results);
 }

@@ -371,8 +371,8 @@ TREE_TARGET static inline bool is_impossible(const double *pack, uint32_t wanted
   return true;
 }
 
-TREE_TARGET static void measure(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment,
-                                tree_lanes *lanes) {
+TREE_TARGET static void kernel_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment,
+                                       tree_lanes *lanes) {
   normals near;
   const bool leaf = (at & TREE_LEAF) != 0;
   const tree_node *node = leaf ? NULL : &t->nodes[at];
@@ -447,7 +447,7 @@ TREE_TARGET static inline void visit_pack(const tree *t, uint32_t pack, vec3 x, 
   hit->lower = lower;
 }
 
-TREE_TARGET static tree_hit nearest(const tree *t, vec3 x, double bound) {
+TREE_TARGET static tree_hit kernel_nearest(const tree *t, vec3 x, double bound) {
   open_node open[TREE_LANES * TREE_DEEPEST];
   size_t count = 0;
   tree_hit hit = {.upper = bound, .lower = INFINITY};
@@ -545,4 +545,4 @@ TREE_TARGET static double farthest(const tree *t, vec3 d, vec3 *at) {
   }
 }
 
-const tree_kernel TREE_KERNEL = {.measure = measure, .nearest = nearest, .farthest = farthest};
+const tree_kernel TREE_KERNEL = {.measure = kernel_measure, .nearest = kernel_nearest, .farthest = farthest};

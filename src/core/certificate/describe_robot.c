@@ -86,7 +86,7 @@ size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obs
   WORKSPACE_USE_OR(workspace, 0);
   const cprox_obstacle *targets = obstacles_list(obstacles);
   const size_t n = obstacles_count(obstacles);
-  query q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
+  query q = query_create(*mover, targets, n, -1.0, NULL, workspace);
   if (!mover->motion || !motion_is_described(mover->motion) ||
       describe_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
       validate_query(mover, targets, n, &q.options, (arguments_query){"a description", ARGUMENTS_WHOLE}, workspace) !=

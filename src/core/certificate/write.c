@@ -368,7 +368,7 @@ static cprox_status prove_of_hulls(const task *t) {
   cprox_options options = *t->options;
   options.max_lod = CPROX_LOD_HULL;
   options.signed_distance = false;
-  query q = query_create(*t->mover, t->targets, t->n, -1.0, false, &options, t->workspace);
+  query q = query_create(*t->mover, t->targets, t->n, -1.0, &options, t->workspace);
   query_ask_whole(&q);
   cprox_result hulls;
   const cprox_status status = solve_query(&q, 0, q.n, INFINITY, &hulls);

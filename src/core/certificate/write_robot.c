@@ -153,7 +153,7 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
   const double delta = wanted.delta;
-  query q = query_create(*mover, targets, n, delta, false, options, workspace);
+  query q = query_create(*mover, targets, n, delta, options, workspace);
   q.options.max_lod = CPROX_LOD_MESH;
   const cprox_status known = check_kinds(mover->motion, targets, n, workspace);
   if (known != CPROX_OK) return known;

@@ -183,10 +183,19 @@ static void measure_points(cprox_curve *c) {
   }
 }
 
+static bool is_in_reach(const cprox_curve *c) {
+  const curve_capsule all = curve_whole(c);
+  const vec3 a = all.a, b = all.b;
+  const double ends = fmax(fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))), fmax(fabs(b.x), fmax(fabs(b.y), fabs(b.z))));
+  return fmax(ends, all.radius) <= LENGTH_MOST;
+}
+
 static bool build(cprox_curve *c, cprox_workspace *workspace) {
   measure_points(c);
   if (c->degree > CURVE_LOW_DEGREE) curve_fill_tables(c->degree, (double *)curve_own_tables(c));
-  return build_tree(c, workspace);
+  const bool built = build_tree(c, workspace);
+  c->in_reach = is_in_reach(c);
+  return built;
 }
 
 void curve_build(cprox_curve *c) {

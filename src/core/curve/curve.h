@@ -30,6 +30,7 @@ struct cprox_curve {
   uint32_t n_pieces, n_leaves, degree;
   uint8_t kind;   /* cprox_curve_kind */
   bool flat;      /* all control points have the z of the first, exactly */
+  bool in_reach;  /* it keeps within what queries can hold */
   vec3 *points;   /* n_pieces * (degree + 1) control points */
   double *breaks; /* n_pieces + 1 parameters, ascending; piece i covers [breaks[i], breaks[i+1]] */
   double *error;  /* a piece's: each exact point of the curve is within this of the computed piece's (rounding of the
@@ -194,13 +195,5 @@ static inline void curve_domain(const cprox_curve *c, double *t0, double *t1) {
 /* How far the curve as it was given may be from its computed pieces; of one known by its arc length: from its points.
  */
 double curve_error(const cprox_curve *c);
-
-/* Whether it keeps within what queries can hold. */
-static inline bool curve_is_in_reach(const cprox_curve *c) {
-  const curve_capsule all = curve_whole(c);
-  const vec3 a = all.a, b = all.b;
-  const double ends = fmax(fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))), fmax(fabs(b.x), fmax(fabs(b.y), fabs(b.z))));
-  return fmax(ends, all.radius) <= LENGTH_MOST;
-}
 
 #endif

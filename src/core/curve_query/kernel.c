@@ -377,9 +377,9 @@ const curve_kernel *curve_kernel_of(const placed_pair *p) {
   return p->shape->tree ? &tree_kernel : &convex_kernel;
 }
 
-cprox_status curve_kernel_shortfall(const placed_pair *p, cprox_status status, double slack) {
+cprox_status curve_kernel_shortfall(const placed_pair *p, double slack) {
   const bool by_field = p->shape && p->shape->field && p->shape->field->error > slack; /* which has half of it */
-  return status == CPROX_PRECISION && by_field ? CPROX_INEXACT : status;
+  return by_field ? CPROX_INEXACT : CPROX_PRECISION;
 }
 
 cprox_status curve_search_begin(curve_search *s, const query *q, const placed_pair *p) {

@@ -78,7 +78,7 @@ struct curve_search {
 const curve_kernel *curve_kernel_of(const placed_pair *p);
 
 /* CPROX_PRECISION by its true name: CPROX_INEXACT where the error of a field takes more of `slack` than rounding. */
-cprox_status curve_kernel_shortfall(const placed_pair *p, cprox_status status, double slack);
+cprox_status curve_kernel_shortfall(const placed_pair *p, double slack);
 
 /* Picks the kernel and makes its state ready. */
 cprox_status curve_search_begin(curve_search *s, const query *q, const placed_pair *p);

@@ -4,25 +4,43 @@
 #include "curve_query/report.h"
 #include "shape/body.h"
 
-/* Searches a pair that has been begun; *found gets the interval, *r where the two are nearest. */
-static cprox_status search_placed(curve_search *s, const search_goal *goal, search_outcome *found, cprox_result *r) {
-  const query *q = s->q;
+/* A search by one model, and what it found. */
+typedef struct model_search {
+  placed_pair placed;
+  curve_search s;
+  search_outcome found;
+  bool depth_unknown;     /* a sign is wanted, and the kernel has none */
+  cprox_status shortfall; /* the true name of CPROX_PRECISION */
+} model_search;
+
+/* *r gets where the two are nearest. */
+static cprox_status search_placed(model_search *m, const query *q, const candidate *c, double cutoff, cprox_result *r) {
+  m->placed = placed_pair_resolve(q, c);
+  m->found = (search_outcome){0};
+  r->lod = m->placed.lod;
+  curve_search *s = &m->s;
+  const search_goal goal = query_goal(q, query_order(q), cutoff);
+  cprox_status status = curve_search_begin(s, q, &m->placed);
+  m->depth_unknown = q->is_signed && !s->kernel->knows_depth;
+  if (status < 0) return status;
   curve_start start;
-  start.goal = *goal;
+  start.goal = goal;
   start.upper = INFINITY;
-  cprox_status status = s->kernel->start_distance(s, &start);
+  if (m->depth_unknown) start.goal.is_signed = false;
+  status = s->kernel->start_distance(s, &start);
   if (status < 0) return status;
   start.goal.cutoff = lesser(start.goal.cutoff, start.upper);
   if (query_wants_verdict(q) && start.upper <= q->limit)
-    found->lower = start.root.lower;
+    m->found.lower = start.root.lower;
   else
-    status = search_run(&start.goal, &start.oracle, start.root, q->workspace, found);
+    status = search_run(&start.goal, &start.oracle, start.root, q->workspace, &m->found);
   if (status < 0) return status;
   const bool crosses = s->kernel->prove_crossing && s->kernel->prove_crossing(s);
   curve_finding seen;
   s->kernel->best_found(s, &seen);
   seen.is_contact = crosses;
-  found->best = seen.bound;
+  m->found.best = seen.bound;
+  m->shortfall = curve_kernel_shortfall(&m->placed, seen.bound.slack);
   r->distance_queries = seen.distance_queries;
   const cprox_status reported = report_finding(q, s->pair, &seen, r);
   return reported < 0 ? reported : status;
@@ -30,31 +48,26 @@ static cprox_status search_placed(curve_search *s, const search_goal *goal, sear
 
 /* By the one model that the candidate names. */
 static cprox_status search_model(const query *q, const candidate *c, double cutoff, cprox_result *result) {
-  const placed_pair placed = placed_pair_resolve(q, c), *p = &placed;
-  cprox_result r = {.obstacle_index = -1, .t_obstacle = NAN, .lod = p->lod};
-  search_goal goal = query_goal(q, query_order(q), cutoff);
-  curve_search s;
-  r.status = curve_search_begin(&s, q, p);
-  const bool depth_unknown = q->is_signed && !s.kernel->knows_depth;
-  if (depth_unknown) goal.is_signed = false;
-  search_outcome found = {0};
-  if (r.status == CPROX_OK) r.status = search_placed(&s, &goal, &found, &r);
+  cprox_result r = {.obstacle_index = -1, .t_obstacle = NAN};
+  model_search m;
+  r.status = search_placed(&m, q, c, cutoff, &r);
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
   if (r.status < 0) return r.status;
+  const search_outcome *found = &m.found;
   /* distances are not negative, unless asked for; where the search fell short the ball may know a better lower bound */
   const double least = q->is_signed ? -INFINITY : 0.0;
   double by_ball = c->lower;
-  if (isinf(by_ball) && (r.status != CPROX_OK || depth_unknown)) by_ball = candidate_ball_bound(q, c);
-  r.nodes = found.nodes;
-  r.upper = greater(found.best.upper, least);
-  r.lower = lesser(greater(greater(found.lower, by_ball), least), r.upper);
-  if (depth_unknown &&
-      !(found.lower > 0.0)) { /* how deep cells and clouds go is not known: only the ball round all bounds it */
+  if (isinf(by_ball) && (r.status != CPROX_OK || m.depth_unknown)) by_ball = candidate_ball_bound(q, c);
+  r.nodes = found->nodes;
+  r.upper = greater(found->best.upper, least);
+  r.lower = lesser(greater(greater(found->lower, by_ball), least), r.upper);
+  if (m.depth_unknown &&
+      !(found->lower > 0.0)) { /* how deep cells and clouds go is not known: only the ball round all bounds it */
     r.lower = fmin(by_ball, r.upper);
-    if (r.upper <= 2.0 * found.best.slack) r.status = CPROX_OVERLAP; /* 0 but for rounding */
+    if (r.upper <= 2.0 * found->best.slack) r.status = CPROX_OVERLAP; /* 0 but for rounding */
   }
-  if (r.status == CPROX_OK && !depth_unknown && !query_is_satisfied(q, cutoff, &r)) r.status = CPROX_PRECISION;
-  r.status = curve_kernel_shortfall(p, r.status, found.best.slack);
+  if (r.status == CPROX_OK && !m.depth_unknown && !query_is_satisfied(q, cutoff, &r)) r.status = CPROX_PRECISION;
+  if (r.status == CPROX_PRECISION) r.status = m.shortfall;
   *result = r;
   return r.status;
 }
@@ -69,14 +82,16 @@ bool candidate_may_refine(const query *q, const candidate *c) {
 
 cprox_status candidate_measure_mesh(const query *q, const candidate *c, cprox_result *result) {
   const placed_pair p = placed_pair_resolve(q, c);
-  curve_tree o;
-  if (!curve_tree_begin_pair(&o, q, &p)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a curve");
-  curve_tree_measure_at(&o, result->t);
-  if (curve_side_status(&o.side) < 0) return curve_side_status(&o.side);
-  result->distance_queries += o.distance_queries;
-  result->upper = fmax(o.best_bound.upper, 0.0);
+  curve_search s;
+  const cprox_status begun = curve_search_begin(&s, q, &p);
+  if (begun < 0) return workspace_fail(q->workspace, begun, "no memory for a curve");
+  curve_tree *o = &s.state.tree.base;
+  curve_tree_measure_at(o, result->t);
+  if (curve_side_status(&o->side) < 0) return curve_side_status(&o->side);
+  result->distance_queries += o->distance_queries;
+  result->upper = fmax(o->best_bound.upper, 0.0);
   curve_finding seen;
-  curve_tree_finding(&o, &seen);
+  s.kernel->best_found(&s, &seen);
   return report_finding(q, &p, &seen, result);
 }
 

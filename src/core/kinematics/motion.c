@@ -368,8 +368,3 @@ cprox_link_info cprox_motion_get_link_info(const cprox_motion *motion, int32_t l
 bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b) {
   return cprox_motion_get_link_info(motion, link_a, link_b).n_joints >= 2;
 }
-
-int32_t motion_moving_axis(const cprox_motion *motion, int32_t axis) {
-  while (axis >= 0 && !motion->axis_moves[axis]) axis = motion->robot->axes[axis].parent;
-  return axis;
-}

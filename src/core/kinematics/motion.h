@@ -47,10 +47,12 @@ struct cprox_motion {
   double *rest;      /* the values of those; of a state, room for another one behind them */
   bool is_state;     /* nothing moves, and everything is asked about that could */
   bool *axis_moves;
-  placement *still;     /* of an axis that does not: as it stands in its parent's frame */
-  double *norm;         /* of a quaternion: at least this everywhere */
-  int32_t *arc_of;      /* of an axis, which of its track's joints by arcs; -1: none. NULL: there are none at all */
-  double *sagitta;      /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
+  int32_t *carrier; /* of axis i at i + 1: the last axis above it, or itself, that the motion moves; -1: none does. What
+                       has the same one stands still against each other */
+  placement *still; /* of an axis that does not: as it stands in its parent's frame */
+  double *norm;     /* of a quaternion: at least this everywhere */
+  int32_t *arc_of;  /* of an axis, which of its track's joints by arcs; -1: none. NULL: there are none at all */
+  double *sagitta;  /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
   motion_given given;   /* of a joined one nothing, but */
   motion_given *joined; /* what each of its motions was made of (motion_keep_points()); NULL: it is none */
   size_t n_joined;
@@ -149,10 +151,6 @@ cprox_status motion_set_state(cprox_motion *motion, const double *values, cprox_
 
 /* True if at least two joints between the links can move: neighbours in the chain overlap by design. */
 bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b);
-
-/* The last axis above, or the axis itself, that the motion moves; -1: none does. What has the same one stands still
- * against each other. */
-int32_t motion_moving_axis(const cprox_motion *motion, int32_t axis);
 
 /* The segment that holds a time: the last one that begins at it or before it. */
 size_t motion_segment_at(const cprox_motion *motion, double t);

@@ -121,11 +121,14 @@ cprox_motion *motion_allocate(const motion_source *s, size_t n_tracks) {
   m->slot = calloc(n_variables, sizeof *m->slot);
   m->rest = calloc(2 * n_variables, sizeof *m->rest);
   m->axis_moves = calloc(s->robot->n_axes + 1, sizeof *m->axis_moves);
+  m->carrier = calloc(s->robot->n_axes + 1, sizeof *m->carrier);
   m->still = calloc(s->robot->n_axes + 1, sizeof *m->still);
   m->norm = calloc(s->robot->n_axes + 1, sizeof *m->norm);
   m->part_error = calloc(s->robot->n_parts + 1, sizeof *m->part_error);
   if (m->tracks) m->n_tracks = n_tracks;
-  if (m->tracks && m->track_of && m->slot && m->rest && m->axis_moves && m->still && m->norm && m->part_error) return m;
+  if (m->tracks && m->track_of && m->slot && m->rest && m->axis_moves && m->carrier && m->still && m->norm &&
+      m->part_error)
+    return m;
   cprox_motion_free(m);
   return NULL;
 }
@@ -162,6 +165,7 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion->slot);
   free(motion->rest);
   free(motion->axis_moves);
+  free(motion->carrier);
   free(motion->still);
   free(motion->norm);
   free(motion->part_error);
@@ -282,10 +286,12 @@ static void finish_arcs(cprox_motion *m) {
 
 /* What is known of each axis and part once the coefficients are there. */
 static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
+  m->carrier[0] = -1;
   for (size_t i = 0; i < s->robot->n_axes; i++) {
     const robot_axis *axis = &s->robot->axes[i];
     for (int32_t k = 0; k < axis_variables(axis->kind); k++)
       m->axis_moves[i] = m->axis_moves[i] || (m->slot[axis->variable + k] >= 0 && axis->multiplier != 0.0);
+    m->carrier[i + 1] = m->axis_moves[i] ? (int32_t)i : m->carrier[axis->parent + 1];
     const double *rest = m->rest + axis->variable;
     if (!m->axis_moves[i]) m->still[i] = axis_move(axis, NULL, axis->multiplier * rest[0] + axis->offset, rest);
     if (axis->kind != AXIS_BALL) continue;

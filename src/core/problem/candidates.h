@@ -33,7 +33,4 @@ candidate_ball candidate_bounding_ball(const query *q, const candidate *c, doubl
 /* Ascending by lower. */
 void candidates_sort(candidate *list, size_t n);
 
-/* The bound of list[i] has grown: moves it back to where it belongs. */
-void candidates_sort_again(candidate *list, size_t i, size_t n);
-
 #endif

@@ -39,6 +39,39 @@ placed_models placed_models_resolve(const query *q, const candidate *c) {
   return both;
 }
 
+/* ---- the ball ---- */
+
+/* Round a whole curve, in its frame. */
+static candidate_ball ball_of_curve(const cprox_curve *curve) {
+  const curve_capsule whole = curve_whole(curve), *capsule = &whole;
+  const double length = vec_norm(vec_sub(capsule->b, capsule->a));
+  return (candidate_ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
+}
+
+candidate_ball placed_model_ball(const cprox_obstacle *obstacle, int32_t part, const placed_model *m, double *sizes) {
+  const candidate_ball run = obstacle->curve ? ball_of_curve(obstacle->curve) : (candidate_ball){0};
+  candidate_ball round = {0};
+  *sizes = 0.0;
+  if (m->body) {
+    const frame f = frame_create(&m->pose, vec(0, 0, 0));
+    round.centre = frame_to_world(&f, m->body->ball_centre);
+    round.radius = m->body->ball_radius;
+    *sizes += placed_size(m->body->ball_centre) + placed_size(m->pose.position);
+    /* a compound's part: what the two positions lose may be more than their sum, which is small where they cancel */
+    if (obstacle->body && obstacle->body->kind == CPROX_BODY_COMPOUND)
+      *sizes += placed_size(obstacle->body->parts[part].pose.position);
+  }
+  if (obstacle->curve) {
+    const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
+    round.centre = vec_add(round.centre, frame_to_world(&f, run.centre));
+    round.radius += run.radius;
+    *sizes += placed_size(run.centre) + placed_size(f.position) + round.radius;
+  }
+  return round;
+}
+
+/* ---- the pair ---- */
+
 /* What composing the poses costs: a turn of both shapes, and the sum of the positions. */
 static double position_error_of(const placed_model *m, const cprox_body *carried) {
   if (!m->moved || !m->body) return 0.0;
@@ -63,6 +96,6 @@ placed_pair placed_pair_resolve(const query *q, const candidate *c) {
   p.position_error = position_error_of(m, p.carried);
   if (!p.shape) return p;
   const cprox_pose outer = obstacle_pose(p.obstacle);
-  p.frame = m->moved ? frame_create_within(&outer, &m->inner, p.shape->centre) : frame_create(&outer, p.shape->centre);
+  p.frame = !m->moved ? frame_create(&outer, p.shape->centre) : frame_create_within(&outer, &m->inner, p.shape->centre);
   return p;
 }

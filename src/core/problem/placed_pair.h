@@ -50,4 +50,12 @@ placed_models placed_models_resolve(const query *q, const candidate *c);
 /* That of the obstacle alone. */
 placed_model placed_model_of_obstacle(const query *q, const candidate *c);
 
+/* Round one model of an obstacle, or where its curve carries that; *sizes as of candidate_bounding_ball(). */
+candidate_ball placed_model_ball(const cprox_obstacle *obstacle, int32_t part, const placed_model *m, double *sizes);
+
+/* No less than the length, and had without a root: for sums of sizes that rounding is measured by. */
+static inline double placed_size(vec3 v) {
+  return fabs(v.x) + fabs(v.y) + fabs(v.z);
+}
+
 #endif

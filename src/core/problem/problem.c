@@ -7,13 +7,12 @@
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/robot.h"
 
-query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
+query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit,
                    const cprox_options *options, cprox_workspace *workspace) {
   query q = {.mover = mover,
              .targets = targets,
              .n = n,
              .limit = limit,
-             .is_tolerance = is_tolerance,
              .options = arguments_options(options),
              .workspace = workspace};
   if (q.options.max_lod == CPROX_LOD_NONE) q.options.max_lod = CPROX_LOD_MESH;
@@ -29,7 +28,7 @@ void query_ask_whole(query *q) {
   }
   q->part = curve_side_whole();
   q->reach = curve_whole(q->mover.curve);
-  curve_domain(q->mover.curve, &q->t0, &q->t1);
+  q->t0 = q->mover.curve->breaks[0], q->t1 = q->mover.curve->breaks[q->mover.curve->n_pieces];
 }
 
 cprox_status query_begin(query *q, arguments_query asked) {
@@ -123,8 +122,8 @@ cprox_status query_conclude(const query *q, double cutoff, cprox_status failure,
   /* each bound is proven, so that they contradict each other only where a proof is wrong */
   CORE_CHECK(!(all->lower > all->upper), "lower %.17g, upper %.17g", all->lower, all->upper);
   all->lower = lesser(all->lower, all->upper);
-  all->status = query_is_satisfied(q, cutoff, all) ? CPROX_OK : failure != CPROX_OK ? failure : CPROX_PRECISION;
   all->verdict = query_verdict(q, all);
+  all->status = query_is_satisfied(q, cutoff, all) ? CPROX_OK : failure != CPROX_OK ? failure : CPROX_PRECISION;
   if (all->status != CPROX_OK) workspace_fail(q->workspace, all->status, "%s", query_shortfall(all->status));
   return all->status;
 }

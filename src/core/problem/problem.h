@@ -18,11 +18,10 @@ typedef struct query {
   cprox_mover mover;
   const cprox_obstacle *targets;
   size_t n;
-  double limit;      /* verdicts: delta, 0 for collision; distance: -1 */
-  bool is_signed;    /* distance: overlaps are measured, too */
-  bool is_tolerance; /* and not a collision: for messages */
-  bool is_bare;      /* a robot's verdict: what is proven clear without a measurement needs no witness */
-  bool is_repeated;  /* the last query of the workspace was this one, but for the state of the robot */
+  double limit;     /* verdicts: delta, 0 for collision; distance: -1 */
+  bool is_signed;   /* distance: overlaps are measured, too */
+  bool is_bare;     /* a robot's verdict: what is proven clear without a measurement needs no witness */
+  bool is_repeated; /* the last query of the workspace was this one, but for the state of the robot */
   cprox_options options;
   cprox_workspace *workspace;
   curve_interval part; /* of the mover's curve: the whole of it, or some of one piece */
@@ -61,7 +60,7 @@ static inline bool mover_is_whole(const cprox_mover *mover) {
 }
 
 /* options NULL: the default. Nothing is checked. */
-query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
+query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit,
                    const cprox_options *options, cprox_workspace *workspace);
 
 /* Forgets the last error, checks all arguments, and asks about the whole curve or motion. CPROX_OK, or a negative

@@ -2,6 +2,7 @@
 #include "problem/radius.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "base/workspace.h"
 #include "curve/relative_curve.h"
@@ -42,27 +43,36 @@ static cprox_status check_sign(const char *whose, const cprox_curve *radius, dou
   return CPROX_OK;
 }
 
-cprox_status radius_check(const char *whose, const cprox_curve *radius, double constant, const cprox_curve *curve,
-                          cprox_workspace *workspace) {
-  if (!radius) return CPROX_OK;
+/* Its parameters are those of `curve`, and with `constant` added it is never negative. */
+static cprox_status check_radius(const char *whose, const cprox_curve *radius, double constant,
+                                 const cprox_curve *curve, cprox_workspace *workspace) {
   if (radius->arcs || curve->arcs)
     return workspace_fail(workspace, CPROX_INVALID, "%s changes, but of %s only the arc length is known", whose,
                           radius->arcs ? "it" : "the curve");
-  double t0, t1, u0, u1;
-  curve_domain(curve, &t0, &t1);
-  curve_domain(radius, &u0, &u1);
+  const double t0 = curve->breaks[0], t1 = curve->breaks[curve->n_pieces];
+  const double u0 = radius->breaks[0], u1 = radius->breaks[radius->n_pieces];
   if (t0 != u0 || t1 != u1)
     return workspace_fail(workspace, CPROX_INVALID, "%s runs over [%.17g, %.17g], and the curve over [%.17g, %.17g]",
                           whose, u0, u1, t0, t1);
-  if (!curve_is_in_reach(radius))
-    return workspace_fail(workspace, CPROX_INVALID, "%s is larger than %g m", whose, LENGTH_MOST);
+  if (!radius->in_reach) return workspace_fail(workspace, CPROX_INVALID, "%s is larger than %g m", whose, LENGTH_MOST);
   return check_sign(whose, radius, constant, workspace);
 }
 
-double radius_most(const cprox_curve *radius) {
-  if (!radius) return 0.0;
-  const curve_capsule whole = curve_whole(radius), *all = &whole;
-  return ROUND_UP * (fmax(fabs(all->a.x), fabs(all->b.x)) + all->radius);
+cprox_status radius_check(const cprox_mover *mover, const cprox_obstacle *target, size_t index, arguments_query asked,
+                          cprox_workspace *workspace) {
+  if (!(asked.has & ARGUMENTS_RADIUS))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "a radius that changes does not apply to %s: ask for a distance, a verdict, a profile or a "
+                          "time of contact",
+                          asked.name);
+  if (!target) return check_radius("the mover's radius", mover->radius_curve, mover->radius, mover->curve, workspace);
+  if (target->curve && target->curve->arcs)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "a radius that changes: of obstacle %zu only the arc length is known", index);
+  if (!target->radius_curve) return CPROX_OK;
+  char whose[48];
+  snprintf(whose, sizeof whose, "the radius of obstacle %zu", index);
+  return check_radius(whose, target->radius_curve, target->margin, mover->curve, workspace);
 }
 
 double radius_at(const cprox_curve *radius, double t, bool from_left, cprox_workspace *workspace) {

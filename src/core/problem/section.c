@@ -17,10 +17,7 @@ static curve_capsule reach_of(const cprox_curve *curve, size_t piece, double t0,
   double largest = 0.0;
   for (size_t i = 0; i <= curve->degree; i++) {
     /* the capsule round a chord contains the hull of points that are near the chord */
-    const vec3 ab = vec_sub(c.b, c.a), ap = vec_sub(p[i], c.a);
-    const double length2 = vec_norm2(ab), along = vec_dot(ap, ab);
-    const double s = length2 > 0.0 ? fmin(fmax(along / length2, 0.0), 1.0) : 0.0;
-    c.radius = fmax(c.radius, vec_norm(vec_sub(p[i], vec_lerp(c.a, c.b, s))));
+    c.radius = fmax(c.radius, vec_to_segment(p[i], c.a, c.b));
     largest = fmax(largest, vec_norm(curve_piece(curve, piece)[i]));
   }
   const double degree = (double)curve->degree;

@@ -102,7 +102,7 @@ cprox_status validate_target(const cprox_obstacle *target, size_t index, cprox_w
   if (target->body && !body_is_in_reach(target->body))
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: the body reaches farther than %g m", index,
                           LENGTH_MOST);
-  if (target->curve && !curve_is_in_reach(target->curve))
+  if (target->curve && !target->curve->in_reach)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: the curve reaches farther than %g m", index,
                           LENGTH_MOST);
   return CPROX_OK;
@@ -126,36 +126,14 @@ static cprox_status check_clock(const cprox_curve *curve, const cprox_obstacle *
     return workspace_fail(
         workspace, CPROX_INVALID,
         "obstacle %zu is on the mover's clock, but of one of the two curves only the arc length is known", index);
-  double t0, t1, u0, u1;
-  curve_domain(curve, &t0, &t1);
-  curve_domain(target->curve, &u0, &u1);
+  const double t0 = curve->breaks[0], t1 = curve->breaks[curve->n_pieces];
+  const double u0 = target->curve->breaks[0], u1 = target->curve->breaks[target->curve->n_pieces];
   if (t0 == u0 && t1 == u1) return CPROX_OK;
   return workspace_fail(
       workspace, CPROX_INVALID,
       "obstacle %zu is on the mover's clock, but its curve runs over [%.17g, %.17g] and the mover's over "
       "[%.17g, %.17g]",
       index, u0, u1, t0, t1);
-}
-
-/* The curve, and what rides it: convex parts without end have no Minkowski difference that a search could use. */
-static cprox_status check_ride(const cprox_mover *mover, cprox_lod finest, cprox_workspace *workspace) {
-  const cprox_body *body = mover->body;
-  if (mover->curve && !curve_is_in_reach(mover->curve))
-    return workspace_fail(workspace, CPROX_INVALID, "the mover's curve reaches farther than %g m", LENGTH_MOST);
-  if (!body) return CPROX_OK;
-  if (body->field)
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "the mover's body is known by its distance alone: only convex bodies are carried");
-  if (!isfinite(body->ball_radius))
-    return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
-  if (!body_is_in_reach(body))
-    return workspace_fail(workspace, CPROX_INVALID, "the mover's body reaches farther than %g m", LENGTH_MOST);
-  /* past some targets it goes by its hull even where balls are asked for */
-  if (model_has_tree(body, finest == CPROX_LOD_SPHERE ? CPROX_LOD_HULL : finest))
-    return workspace_fail(
-        workspace, CPROX_INVALID,
-        "the mover's body is a mesh, points or boxes, or has such a part: only convex parts are carried");
-  return CPROX_OK;
 }
 
 static cprox_status check_pairs(const cprox_mover *mover, const cprox_robot_pair *pairs, size_t n_pairs, bool self,
@@ -190,53 +168,51 @@ static cprox_status check_robot(const cprox_mover *mover, size_t n, cprox_worksp
 
 /* Is the target one that the mover can be held against? */
 static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle *target, size_t index,
-                                  cprox_lod finest, cprox_workspace *workspace) {
+                                  cprox_workspace *workspace) {
   if (target->body && target->body->field && (mover->motion || mover->body))
     return workspace_fail(workspace, CPROX_INVALID,
                           "obstacle %zu is known by its distance alone: balls on curves are held against it, not %s",
                           index, mover->motion ? "robots" : "bodies");
-  if (!mover->motion) {
-    const cprox_status clock = check_clock(mover->curve, target, index, workspace);
-    if (clock == CPROX_OK && mover->body && model_has_tree(target->body, finest))
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "obstacle %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
-                            "it, balls are (radius)",
-                            index);
-    return clock;
-  }
+  if (!mover->motion) return check_clock(mover->curve, target, index, workspace);
   if (!target->body || target->curve)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is a curve: a robot is asked about bodies", index);
   return CPROX_OK;
 }
 
-/* A radius that changes is an affair of queries that know it. */
-static cprox_status check_radius_applies(arguments_query asked, cprox_workspace *workspace) {
-  if (!(asked.has & ARGUMENTS_RADIUS))
+/* What bodies are made of. Convex ones are carried past convex ones: elements, and parts without end, have no Minkowski
+ * difference that a search could use. Depths are those of convex bodies and hulls. */
+static cprox_status check_elements(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
+                                   const cprox_options *options, cprox_workspace *workspace) {
+  static const char *const WHY =
+      "signed_distance: %s %zu is a mesh without a hull, points or boxes, or has such a part: "
+      "how deep a robot overlaps these is not measured";
+  const cprox_robot *robot = mover->motion && options->signed_distance ? mover->motion->robot : NULL;
+  const cprox_body *body = mover->body;
+  const cprox_lod finest = robot ? CPROX_LOD_HULL : options->max_lod;
+  if (body && body->field)
     return workspace_fail(workspace, CPROX_INVALID,
-                          "a radius that changes does not apply to %s: ask for a distance, a verdict, a profile or a "
-                          "time of contact",
-                          asked.name);
+                          "the mover's body is known by its distance alone: only convex bodies are carried");
+  if (body && !isfinite(body->ball_radius))
+    return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
+  if (body && !body_is_in_reach(body))
+    return workspace_fail(workspace, CPROX_INVALID, "the mover's body reaches farther than %g m", LENGTH_MOST);
+  /* past some targets it goes by its hull even where balls are asked for */
+  if (body && model_has_tree(body, finest == CPROX_LOD_SPHERE ? CPROX_LOD_HULL : finest))
+    return workspace_fail(
+        workspace, CPROX_INVALID,
+        "the mover's body is a mesh, points or boxes, or has such a part: only convex parts are carried");
+  for (size_t i = 0; robot && i < robot->n_parts; i++)
+    if (robot->parts[i].model.by_ball)
+      return workspace_fail(workspace, CPROX_INVALID, WHY, "geometry", (size_t)robot->parts[i].geometry);
+  for (size_t i = 0; (robot || body) && i < n; i++) {
+    if (!model_has_tree(targets[i].body, finest)) continue;
+    if (robot) return workspace_fail(workspace, CPROX_INVALID, WHY, "obstacle", i);
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "obstacle %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
+                          "it, balls are (radius)",
+                          i);
+  }
   return CPROX_OK;
-}
-
-static cprox_status check_own_radius(const cprox_mover *mover, arguments_query asked, cprox_workspace *workspace) {
-  if (!mover->radius_curve) return CPROX_OK;
-  const cprox_status applies = check_radius_applies(asked, workspace);
-  if (applies != CPROX_OK) return applies;
-  return radius_check("the mover's radius", mover->radius_curve, mover->radius, mover->curve, workspace);
-}
-
-static cprox_status check_radius_against(const cprox_mover *mover, const cprox_obstacle *target, size_t index,
-                                         arguments_query asked, cprox_workspace *workspace) {
-  if (!radius_changes(mover, target)) return CPROX_OK;
-  const cprox_status applies = check_radius_applies(asked, workspace);
-  if (applies != CPROX_OK) return applies;
-  if (target->curve && target->curve->arcs)
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "a radius that changes: of obstacle %zu only the arc length is known", index);
-  char whose[48];
-  snprintf(whose, sizeof whose, "the radius of obstacle %zu", index);
-  return radius_check(whose, target->radius_curve, target->margin, mover->curve, workspace);
 }
 
 /* Do the members that are set belong to the kind? */
@@ -274,22 +250,6 @@ static cprox_status check_part(const cprox_mover *mover, const cprox_options *op
   return CPROX_OK;
 }
 
-/* Depths are those of convex bodies and hulls. */
-static cprox_status check_depths(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
-                                 cprox_workspace *workspace) {
-  static const char *const WHY =
-      "signed_distance: %s %zu is a mesh without a hull, points or boxes, or has such a part: "
-      "how deep a robot overlaps these is not measured";
-  const cprox_robot *robot = mover->motion->robot;
-  for (size_t i = 0; i < robot->n_parts; i++)
-    if (robot->parts[i].model.by_ball)
-      return workspace_fail(workspace, CPROX_INVALID, WHY, "geometry", (size_t)robot->parts[i].geometry);
-  for (size_t i = 0; i < n; i++)
-    if (model_has_tree(targets[i].body, CPROX_LOD_HULL))
-      return workspace_fail(workspace, CPROX_INVALID, WHY, "obstacle", i);
-  return CPROX_OK;
-}
-
 cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                             const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
@@ -306,16 +266,15 @@ cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targ
     return workspace_fail(
         workspace, CPROX_INVALID,
         "the mover has pairs, but no motion: that is for robots (cprox_robot_along, cprox_robot_self)");
+  if (mover->curve && !mover->curve->in_reach)
+    return workspace_fail(workspace, CPROX_INVALID, "the mover's curve reaches farther than %g m", LENGTH_MOST);
   checked = check_robot(mover, n, workspace);
   if (checked == CPROX_OK) checked = check_part(mover, options, workspace);
-  if (checked == CPROX_OK) checked = check_ride(mover, options->max_lod, workspace);
-  if (checked == CPROX_OK) checked = check_own_radius(mover, asked, workspace);
   if (checked == CPROX_OK) checked = validate_targets(targets, n, workspace);
+  for (size_t i = 0; i < n && checked == CPROX_OK; i++) checked = check_against(mover, &targets[i], i, workspace);
+  if (checked == CPROX_OK) checked = check_elements(mover, targets, n, options, workspace);
+  if (checked == CPROX_OK && mover->radius_curve) checked = radius_check(mover, NULL, 0, asked, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)
-    checked = check_against(mover, &targets[i], i, options->max_lod, workspace);
-  for (size_t i = 0; i < n && checked == CPROX_OK; i++)
-    checked = check_radius_against(mover, &targets[i], i, asked, workspace);
-  if (checked == CPROX_OK && mover->motion && options->signed_distance)
-    checked = check_depths(mover, targets, n, workspace);
+    if (radius_changes(mover, &targets[i])) checked = radius_check(mover, &targets[i], i, asked, workspace);
   return checked;
 }

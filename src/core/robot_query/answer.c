@@ -86,24 +86,29 @@ static cprox_status answer_class(const query *q, const start_class *starts, size
 /* The union of all classes, by the models that the query allows. */
 static cprox_status answer_models(const query *q, size_t first, size_t last, double cutoff, cprox_result *result,
                                   double *travel) {
-  if (!start_class_is_one_of_many(q->mover.motion)) return answer_class(q, NULL, first, last, cutoff, result, travel);
+  const bool one_of_many = start_class_is_one_of_many(q->mover.motion);
   cprox_status failure = CPROX_OK;
   cprox_result all = query_nothing();
   start_class starts = start_class_first();
+  bool violated = false;
   do {
-    if (all.verdict == CPROX_VERDICT_VIOLATED) { /* of the classes that are left nothing is known */
+    if (violated) { /* of the classes that are left nothing is known */
       all.lower = fmin(all.lower, 0.0);
       break;
     }
     cprox_result r = {0};
     double moves = 0.0;
-    const cprox_status status =
-        answer_class(q, &starts, first, last, lesser(cutoff, all.upper), &r, travel ? &moves : NULL);
+    const cprox_status status = answer_class(q, one_of_many ? &starts : NULL, first, last, lesser(cutoff, all.upper),
+                                             &r, travel ? &moves : NULL);
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
     if (travel && (r.upper < all.upper || all.obstacle_index < 0)) *travel = moves;
+    if (!one_of_many) {
+      *result = r;
+      return status;
+    }
     query_join(&all, &r);
-    all.verdict = query_verdict(q, &all);
+    violated = r.verdict == CPROX_VERDICT_VIOLATED;
   } while (start_class_next(q->mover.motion, &starts));
   query_conclude(q, cutoff, failure, &all);
   *result = all;

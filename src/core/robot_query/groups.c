@@ -135,7 +135,7 @@ static void set_still(const robot_scene *s) {
   const int32_t n = (int32_t)s->motion->robot->n_parts;
   for (int pass = 0; pass < 2; pass++)
     for (int32_t i = 0; i < n; i++) {
-      int32_t *first = &g->first[motion_moving_axis(s->motion, axis_at(s, i)) + 1];
+      int32_t *first = &g->first[s->motion->carrier[axis_at(s, i) + 1] + 1];
       if (*first < 0) *first = i;
       if (pass == 0)
         set_bit(rows + (size_t)*first * g->words, i);

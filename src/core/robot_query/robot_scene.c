@@ -180,8 +180,8 @@ bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts
   const bool self = pair_plan_has_self(&q->mover);
   *s = (robot_scene){.q = q, .motion = q->mover.motion, .starts = starts};
   if (starts) {
-    s->lead_tolerance = start_tolerance(s->motion, starts->lead);
-    s->other_tolerance = start_tolerance(s->motion, starts->other);
+    s->lead_tolerance = starts->lead_tolerance;
+    s->other_tolerance = starts->other_tolerance;
   }
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;
@@ -223,7 +223,7 @@ bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts
     if (robot_scene_add_obstacles(s, q->set ? q->set->unbounded[i] : first + i) < 0) return false;
   s->has_solids = s->has_solids || (q->set && q->set->has_solids);
   for (size_t i = 0; i < robot->n_parts; i++) {
-    s->parts[i] = (part_state){.body = part_body(q, i), .carrier = motion_moving_axis(s->motion, robot->parts[i].axis)};
+    s->parts[i] = (part_state){.body = part_body(q, i), .carrier = s->motion->carrier[robot->parts[i].axis + 1]};
     s->has_solids = s->has_solids || s->parts[i].body.winding;
   }
 

@@ -7,35 +7,30 @@
 
 /* ---- classes ---- */
 
-double start_tolerance(const cprox_motion *m, int32_t clock) {
-  for (size_t k = 0; k < m->n_tracks; k++)
-    if (m->tracks[k].clock == clock) return m->tracks[k].tolerance;
-  return 0.0;
-}
-
 /* The next clock after this one that has a tolerance; CLOCK_NONE: there is none. Tracks are in the order of their
  * clocks. */
-static int32_t next_clock(const cprox_motion *m, int32_t after) {
-  for (size_t k = 0; k < m->n_tracks; k++)
-    if (m->tracks[k].tolerance > 0.0 && m->tracks[k].clock > after) return m->tracks[k].clock;
+static int32_t next_clock(const cprox_motion *m, int32_t after, double *tolerance) {
+  for (size_t k = 0; k < m->n_tracks; k++) {
+    *tolerance = m->tracks[k].tolerance;
+    if (*tolerance > 0.0 && m->tracks[k].clock > after) return m->tracks[k].clock;
+  }
+  *tolerance = 0.0;
   return CLOCK_NONE;
 }
 
 /* Of each lead first what is at the same time, then each clock behind it. */
 bool start_class_next(const cprox_motion *m, start_class *to) {
-  to->other = next_clock(m, to->other < to->lead ? to->lead : to->other);
+  to->other = next_clock(m, to->other < to->lead ? to->lead : to->other, &to->other_tolerance);
   if (to->other != CLOCK_NONE) return true;
-  to->lead = next_clock(m, to->lead);
+  to->lead = next_clock(m, to->lead, &to->lead_tolerance);
   return to->lead != CLOCK_NONE;
 }
 
 int32_t start_clock_of(const cprox_motion *m, int32_t part) {
-  for (int32_t i = part < 0 ? -1 : m->robot->parts[part].axis; i >= 0; i = m->robot->axes[i].parent) {
-    if (!m->axis_moves[i]) continue;
-    const motion_track *track = &m->tracks[m->track_of[m->robot->axes[i].variable]];
-    return track->tolerance > 0.0 ? track->clock : CLOCK_KNOWN;
-  }
-  return CLOCK_STANDS;
+  const int32_t axis = part < 0 ? -1 : m->carrier[m->robot->parts[part].axis + 1];
+  if (axis < 0) return CLOCK_STANDS;
+  const motion_track *track = &m->tracks[m->track_of[m->robot->axes[axis].variable]];
+  return track->tolerance > 0.0 ? track->clock : CLOCK_KNOWN;
 }
 
 bool start_class_has(const cprox_motion *m, const start_class *of, int32_t part, int32_t other) {

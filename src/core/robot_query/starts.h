@@ -11,13 +11,14 @@
 typedef struct start_class {
   int32_t lead;  /* CLOCK_KNOWN: all clocks without a tolerance, and what stands */
   int32_t other; /* another clock, at a time of its own; CLOCK_NONE: both sides are on `lead`, or one of them stands */
+  double lead_tolerance, other_tolerance; /* [s] */
 } start_class;
 
 enum { CLOCK_KNOWN = -1, CLOCK_STANDS = -2, CLOCK_NONE = -3 };
 
 /* The class of all pairs without a tolerance, which comes first; the others by this: false after the last one. */
 static inline start_class start_class_first(void) {
-  return (start_class){CLOCK_KNOWN, CLOCK_NONE};
+  return (start_class){.lead = CLOCK_KNOWN, .other = CLOCK_NONE};
 }
 bool start_class_next(const cprox_motion *motion, start_class *to);
 
@@ -31,9 +32,6 @@ bool start_class_has(const cprox_motion *motion, const start_class *of, int32_t 
 
 /* The clock that moves a part, if it has a tolerance; else CLOCK_KNOWN, or CLOCK_STANDS where nothing moves it. */
 int32_t start_clock_of(const cprox_motion *motion, int32_t part);
-
-/* [s] The tolerance of a clock; 0 for CLOCK_KNOWN. */
-double start_tolerance(const cprox_motion *motion, int32_t clock);
 
 /* What is possible of an interval of the times of a class's two clocks. */
 typedef struct start_times {

@@ -501,7 +501,7 @@ static cprox_status gradient_of_curve(const query *q, const placed_pair *c, cons
 cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                      const cprox_result *result, cprox_workspace *workspace, cprox_gradient *gradient) {
   WORKSPACE_USE(workspace);
-  query q = query_create(mover, &target, 1, -1.0, false, options, workspace);
+  query q = query_create(mover, &target, 1, -1.0, options, workspace);
   workspace_clear(workspace);
   if (mover.motion) return workspace_fail(workspace, CPROX_INVALID, "no gradient is known along a robot's motion");
   const arguments_query asked = {"a gradient", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS};

@@ -377,8 +377,7 @@ static cprox_status begin(along *o, const cprox_curve *curve, const cprox_option
   if (!curve) return workspace_fail(workspace, CPROX_INVALID, "curve is NULL");
   const cprox_status status = growing_begin(&o->g, options, workspace);
   if (status) return status;
-  if (!curve_is_in_reach(curve))
-    return workspace_fail(workspace, CPROX_INVALID, "the curve leaves what queries can hold");
+  if (!curve->in_reach) return workspace_fail(workspace, CPROX_INVALID, "the curve leaves what queries can hold");
   growing *g = &o->g;
   o->epsilon = g->asked.epsilon;
   g->asked.epsilon *= 0.1;

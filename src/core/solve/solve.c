@@ -30,7 +30,10 @@ cprox_status solve_query(const query *q, size_t first, size_t last, double cutof
     if (unknown && i + 1 < n && candidate_may_refine(q, &list[i])) {
       const cprox_status ranked = candidate_rank(q, &list[i], &all.nodes, &all.distance_queries);
       if (ranked < 0) return ranked;
-      candidates_sort_again(list, i, n);
+      const candidate moved = list[i]; /* back to where its bound belongs */
+      size_t k = i;
+      for (; k + 1 < n && list[k + 1].lower < moved.lower; k++) list[k] = list[k + 1];
+      list[k] = moved;
       continue;
     }
     cprox_result one = query_nothing();
@@ -62,7 +65,7 @@ cprox_status solve_each(const query *q, cprox_result *nearest, cprox_result *eac
     if (one.obstacle_index < 0) one.obstacle_index = (int32_t)i;
     each[i] = one;
   }
-  workspace_clear(q->workspace);
   *nearest = all;
-  return query_conclude(q, INFINITY, failure, nearest);
+  if (query_conclude(q, INFINITY, failure, nearest) == CPROX_OK) workspace_clear(q->workspace);
+  return nearest->status;
 }

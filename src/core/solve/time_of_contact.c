@@ -73,7 +73,7 @@ static cprox_status meet_model(const query *q, const candidate *c, double time_c
   const bool near = met->near.upper <= q->options.epsilon;
   const double end = near ? fmin(met->near_at, time_cutoff) : time_cutoff;
   if (met->status == CPROX_OK && met->free_until < end) met->status = CPROX_PRECISION;
-  met->status = curve_kernel_shortfall(&p, met->status, met->slack);
+  if (met->status == CPROX_PRECISION) met->status = curve_kernel_shortfall(&p, met->slack);
   return near && !isfinite(met->touch.t) && !isfinite(time_cutoff) ? prove_farther(q, c, met) : CPROX_OK;
 }
 
