@@ -8,14 +8,6 @@
 #include "problem/obstacles.h"
 #include "solve/growth_motion.h"
 
-static cprox_status check_rows(const cprox_motion *motion, const cprox_motion_gradient *gradient,
-                               cprox_workspace *workspace) {
-  const bool rows = gradient->positions || gradient->velocities || gradient->accelerations;
-  if (!rows || motion->kind == CPROX_MOTION_JOINED || !motion->arc_of) return CPROX_OK;
-  return workspace_fail(workspace, CPROX_INVALID,
-                        "slerp and screws have a gradient by their variables, not by their points");
-}
-
 cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cprox_mover mover,
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *result, cprox_motion_gradient *gradient) {
@@ -32,8 +24,8 @@ cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cpr
                           "the mover is no robot: ask cprox_distance_gradient() for the gradient along a curve");
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
-  const cprox_status known = check_rows(mover.motion, gradient, workspace);
-  return known ? known : motion_gradient_answer(&q, result, gradient);
+  const cprox_status known = motion_gradient_check(&q, gradient);
+  return known ? known : motion_gradient_of(&q, 0, q.n, result, gradient);
 }
 
 cprox_status cprox_robot_growth(const cprox_obstacles *obstacles, cprox_mover mover, const cprox_options *options,
@@ -50,6 +42,6 @@ cprox_status cprox_robot_growth(const cprox_obstacles *obstacles, cprox_mover mo
     return workspace_fail(workspace, CPROX_INVALID,
                           "the mover is no robot: ask cprox_growth_along() about a body along a curve");
   if (!found) return workspace_fail(workspace, CPROX_INVALID, "found is NULL: nowhere to put the answer");
-  const cprox_status known = gradient ? check_rows(mover.motion, gradient, workspace) : CPROX_OK;
+  const cprox_status known = gradient ? motion_gradient_check(&q, gradient) : CPROX_OK;
   return known ? known : growth_motion_answer(&q, found, gradient);
 }

@@ -78,15 +78,6 @@ static node_state state_of(const search_goal *goal, const search_best *best, con
   return search_is_unresolved(goal, best, node->lower, node->slack) ? NODE_UNRESOLVED : NODE_OPEN;
 }
 
-/* A child that is settled at birth leaves at once. */
-static bool enter(const search_goal *goal, const search_oracle *oracle, const search_node *child, frontier *open,
-                  search_outcome *outcome) {
-  if (!search_is_pruned(goal, outcome->best.upper, child->lower)) return frontier_push(open, child);
-  outcome->lower = lesser(child->lower, outcome->lower);
-  oracle->release(oracle->self, child);
-  return true;
-}
-
 /* One node: re-bound, probe, re-bound, split. Sets *state to why it left the search, or NODE_OPEN if its children
  * entered it. */
 static cprox_status work_on(const search_goal *goal, const search_oracle *oracle, search_node *node, frontier *open,
@@ -112,9 +103,16 @@ static cprox_status work_on(const search_goal *goal, const search_oracle *oracle
   int first = 0;
   for (int k = 1; k < children; k++)
     if (child[k].lower <= child[first].lower) first = k;
-  for (int k = 0; k < children; k++)
-    if (k != first && !enter(goal, oracle, &child[k], open, outcome)) return CPROX_MEMORY;
-  return enter(goal, oracle, &child[first], open, outcome) ? CPROX_OK : CPROX_MEMORY;
+  for (int i = 0; i < children; i++) {
+    const search_node *entering = &child[i + 1 == children ? first : i < first ? i : i + 1];
+    if (!search_is_pruned(goal, outcome->best.upper, entering->lower)) {
+      if (!frontier_push(open, entering)) return CPROX_MEMORY;
+      continue;
+    }
+    outcome->lower = lesser(entering->lower, outcome->lower); /* settled at birth */
+    oracle->release(oracle->self, entering);
+  }
+  return CPROX_OK;
 }
 
 cprox_status search_run(search_goal *goal, const search_oracle *oracle, search_node root, cprox_workspace *workspace,

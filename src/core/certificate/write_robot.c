@@ -159,7 +159,11 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
   if (known != CPROX_OK) return known;
   robot_scene scene;
   if (!robot_scene_begin(&scene, &q, NULL, 0, n, SIZE_MAX, INFINITY)) return CPROX_MEMORY;
-  for (size_t i = 0; i < scene.motion->robot->n_parts; i++) scene.parts[i].body.side.margin_turns = true;
+  for (size_t i = 0; i < scene.motion->robot->n_parts; i++) {
+    robot_body *body = &scene.parts[i].body;
+    body->side.margin_turns = true;
+    body->core = robot_core_radius(body);
+  }
   if (scene.n_pairs > MOST_PAIRS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);
   const double epsilon = answer ? width_allowed(options->epsilon, options->relative_epsilon, answer->upper) : 0.0;

@@ -168,6 +168,11 @@ static simplex_vertex alternating_support_step(const alternating_task *task, vec
   return x;
 }
 
+static bool alternating_is_reached(const alternating_task *task, alternating_answer *answer) {
+  answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
+  return answer->reached;
+}
+
 void alternating_search(const alternating_task *task, alternating_answer *answer) {
   *answer = (alternating_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
   vec3 y = task->goal->placed ? task->goal->place : task->t;
@@ -195,8 +200,7 @@ void alternating_search(const alternating_task *task, alternating_answer *answer
 
     const vec3 u = alternating_direction(&p);
     if (vec_norm2(u) > 0.0) alternating_support_step(task, u, answer);
-    answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
-    if (answer->reached) {
+    if (alternating_is_reached(task, answer)) {
       if (task->feature) alternating_describe(task, &p, answer);
       return;
     }
@@ -240,8 +244,7 @@ void alternating_smooth(const alternating_task *task, vec3 u, alternating_answer
       answer->pair = x;
     }
     if (distance <= task->contact_tolerance) return;
-    answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
-    if (answer->reached) return;
+    if (alternating_is_reached(task, answer)) return;
     double delta[2];
     vec3 e, f;
     if (!smooth_step(task, &x, u, 0.5 * (greater(phi, 0.0) + distance), delta, &e, &f)) return;

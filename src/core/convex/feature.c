@@ -3,14 +3,6 @@
 
 #include "base/rounding.h"
 
-void feature_tangents(vec3 n, vec3 *e, vec3 *f) {
-  /* the axis least along n crosses it well */
-  const double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
-  const vec3 axis = x <= y && x <= z ? vec(1, 0, 0) : y <= z ? vec(0, 1, 0) : vec(0, 0, 1);
-  feature_unit(vec_cross(axis, n), e);
-  *f = vec_cross(n, *e);
-}
-
 void feature_vertex(convex_near *near, vec3 origin, double offset) {
   near->flat = true;
   near->tangents = 0;

@@ -36,14 +36,20 @@ static inline double feature_unit(vec3 v, vec3 *unit) {
   return most * norm;
 }
 
+/* Two unit vectors that make a right-handed orthonormal basis with the unit vector n. */
+static inline void feature_tangents(vec3 n, vec3 *e, vec3 *f) {
+  /* the axis least along n crosses it well */
+  const double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+  const vec3 axis = x <= y && x <= z ? vec(1, 0, 0) : y <= z ? vec(0, 1, 0) : vec(0, 0, 1);
+  feature_unit(vec_cross(axis, n), e);
+  *f = vec_cross(n, *e);
+}
+
 /* x·(h y) for a symmetric matrix h: xx, xy, xz, yy, yz, zz. */
 static inline double feature_quadratic(const double h[6], vec3 x, vec3 y) {
   return x.x * (h[0] * y.x + h[1] * y.y + h[2] * y.z) + x.y * (h[1] * y.x + h[3] * y.y + h[4] * y.z) +
          x.z * (h[2] * y.x + h[4] * y.y + h[5] * y.z);
 }
-
-/* Two unit vectors that make a right-handed orthonormal basis with the unit vector n. */
-void feature_tangents(vec3 n, vec3 *e, vec3 *f);
 
 /* distance = |y - origin| - offset: a vertex, the centre of a ball. */
 void feature_vertex(convex_near *near, vec3 origin, double offset);

@@ -68,9 +68,24 @@ typedef struct pair {
   double lower;
 } pair;
 
-/* b is kept in its own frame. */
+/* b is kept in its own frame: a direction there, and a point of b from there. */
+static vec3 pair_turn_to_b(const pair *p, vec3 v) {
+  return rotate_back(p->r, v);
+}
+
+static vec3 pair_from_b(const pair *p, vec3 b) {
+  return vec_add(rotate(p->r, b), p->t);
+}
+
 static vec3 pair_difference(const pair *p, vec3 a, vec3 b) {
-  return vec_sub(a, vec_add(rotate(p->r, b), p->t));
+  return vec_sub(a, pair_from_b(p, b));
+}
+
+/* Adds a vertex unless it is there already. */
+static bool pair_add(simplex *s, const simplex_vertex *x) {
+  if (simplex_has(s, x->w)) return false;
+  s->vertex[s->n++] = *x;
+  return true;
 }
 
 /* What a support point fails to reach of the support value along d. An implicit shape's value is a bound from above;
@@ -96,7 +111,7 @@ static double support_of(const convex *shape, vec3 d, vec3 *at, int32_t *id) {
 /* The point of M that is least along u. */
 static simplex_vertex pair_extreme(pair *p, vec3 u) {
   simplex_vertex x = {.id = -1, .id_b = -1};
-  const vec3 da = vec_neg(u), db = rotate_back(p->r, u);
+  const vec3 da = vec_neg(u), db = pair_turn_to_b(p, u);
   const double ha = support_of(p->a, da, &x.a, &x.id);
   const double hb = support_of(p->b, db, &x.b, &x.id_b);
   if (isnan(ha) || isnan(hb)) p->support_failed = true;
@@ -156,7 +171,7 @@ static void pieces_add_curvature(pair_pieces *pieces, double weight, const doubl
 /* The simplex's vertices moved to where u finds them on their pieces; those that fall together are one. e and f NULL:
  * their curvature is not asked for. */
 static pair_pieces pair_follow(const pair *p, vec3 u, const vec3 *e, const vec3 *f) {
-  const vec3 da = vec_neg(u), db = rotate_back(p->r, u);
+  const vec3 da = vec_neg(u), db = pair_turn_to_b(p, u);
   const double same = 1e-12 * (p->a->scale + p->b->scale);
   pair_pieces pieces = {0};
   for (int i = 0; i < p->s.n; i++) {
@@ -169,7 +184,7 @@ static pair_pieces pair_follow(const pair *p, vec3 u, const vec3 *e, const vec3 
     }
     if (piece_follow(p->b, db, &y.b) && e) {
       p->b->ops->curvature(p->b, db, y.b, h);
-      pieces_add_curvature(&pieces, weight, h, rotate_back(p->r, *e), rotate_back(p->r, *f));
+      pieces_add_curvature(&pieces, weight, h, pair_turn_to_b(p, *e), pair_turn_to_b(p, *f));
     }
     y.w = pair_difference(p, y.a, y.b);
     int twin = 0;
@@ -262,13 +277,12 @@ static bool pair_support_step(pair *p, vec3 u, bool follow) {
   bool nearer = false;
   if (follow) {
     simplex moved = pair_moved(p, u);
-    if (!simplex_has(&moved, x.w)) moved.vertex[moved.n++] = x;
+    pair_add(&moved, &x);
     nearer = pair_accept(p, &moved);
   }
-  if (!nearer && !simplex_has(&p->s, x.w) && p->s.n < 4) {
+  if (!nearer && p->s.n < 4) {
     simplex grown = p->s;
-    grown.vertex[grown.n++] = x;
-    nearer = pair_accept(p, &grown);
+    nearer = pair_add(&grown, &x) && pair_accept(p, &grown);
   }
   return nearer || p->lower > lower;
 }
@@ -295,7 +309,7 @@ static void pair_restart(pair *p) {
     feature_unit(simplex_spread[i], &u);
     const simplex_vertex x = pair_extreme(p, u);
     pair_raise_lower(p, u, vec_dot(u, x.w) - x.behind);
-    if (!simplex_has(&s, x.w)) s.vertex[s.n++] = x;
+    pair_add(&s, &x);
   }
   p->least = INFINITY;
   p->idle = 0;
@@ -341,7 +355,7 @@ static bool pair_begin_known(pair *p, const pair_vertices *known) {
     simplex_vertex x = {.id = known->a[i], .id_b = known->b[i]};
     if (!vertex_of(p->a, x.id, &x.a) || !vertex_of(p->b, x.id_b, &x.b)) return false;
     x.w = pair_difference(p, x.a, x.b);
-    if (!simplex_has(&s, x.w)) s.vertex[s.n++] = x;
+    pair_add(&s, &x);
   }
   if (s.n == 0) return false;
   simplex_reduce(&s, &p->nearest);
@@ -432,7 +446,7 @@ static void pair_core_points(const pair *p, vec3 *a, vec3 *b) {
     *a = vec_axpy(*a, p->s.weight[i], p->s.vertex[i].a);
     *b = vec_axpy(*b, p->s.weight[i], p->s.vertex[i].b);
   }
-  *b = vec_add(rotate(p->r, *b), p->t);
+  *b = pair_from_b(p, *b);
 }
 
 /* Draws what belongs to implicit cores into them; the distance of the two points, which is not less than the cores'. */
@@ -663,7 +677,7 @@ static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 s
  * lies in M. */
 static bool pair_meets_at(pair *p, const simplex_vertex *common) {
   if (!p->a->ops->closed_form || !p->b->ops->closed_form) return false;
-  const vec3 y = rotate_back(p->r, vec_sub(common->a, p->t));
+  const vec3 y = pair_turn_to_b(p, vec_sub(common->a, p->t));
   convex_near in_a, in_b;
   p->a->ops->nearest(p->a, common->a, NULL, &in_a);
   p->b->ops->nearest(p->b, y, NULL, &in_b);

@@ -60,8 +60,9 @@ typedef struct robot_part {
 struct cprox_robot {
   size_t n_links, n_axes, n_parts, n_geometries, n_variables;
   robot_link *links;
-  robot_axis *axes; /* parents first */
-  robot_part *parts;
+  robot_axis *axes;   /* parents first */
+  robot_part *parts;  /* by geometry; the first one of each, and after the last of all their number: */
+  size_t *first_part; /* n_geometries + 1 */
   part_groups groups;
   _Atomic(robot_covers *) covers; /* robot_covers_of() */
   cprox_link *given_links;        /* as they were given: what certificates are about */

@@ -192,12 +192,12 @@ void motion_place_axis(const cprox_motion *m, size_t own, double u, size_t i, ax
   }
   double joint[7];
   const double *values = joint;
-  if (m->arc_of && m->arc_of[i] >= 0) {
+  if (!m->arc_of || m->arc_of[i] < 0) {
+    for (int32_t k = 0; k < axis_variables(axis->kind); k++) joint[k] = motion_value(m, axis->variable + k, own, u);
+  } else {
     const int32_t ball = motion_track_of(m, i)->arc_axes[m->arc_of[i]];
     motion_arc_values(m, i, own, u, joint);
     values += axis->variable - (m->robot->axes[ball].variable - 3);
-  } else {
-    for (int32_t k = 0; k < axis_variables(axis->kind); k++) joint[k] = motion_value(m, axis->variable + k, own, u);
   }
   state->frame = axis_move(axis, parent, axis->multiplier * values[0] + axis->offset, values);
 }

@@ -50,6 +50,29 @@ static double largest_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t count) {
   return sqrt(largest);
 }
 
+/* The values in the middle with two derivatives, bounds on the first three of these, and how far the first three
+ * coordinates are from their middle at most, but for errors; returns the sum of their errors. */
+static double derivatives_over(const cprox_motion *m, const motion_interval *own, const robot_axis *axis,
+                               double p[3][4], double bound[4], double *shift) {
+  const size_t degree = m->tracks[m->track_of[axis->variable]].degree[own->first];
+  const int count = axis_variables(axis->kind);
+  double c[4][MOTION_MAX_DEGREE + 1], factor = 2.0 * (double)degree;
+  const double error = coordinates_over(m, own, axis, c);
+  *shift = 0.0;
+  for (int k = 0; k < count; k++) p[0][k] = bernstein_at(c[k], degree, 0.5);
+  for (size_t i = 0; i <= degree && axis->kind == AXIS_VECTOR; i++)
+    *shift = greater(vec_norm(vec(c[0][i] - p[0][0], c[1][i] - p[0][1], c[2][i] - p[0][2])), *shift);
+  for (size_t order = 1; order <= 3 && order <= degree; order++) {
+    for (int k = 0; k < count; k++) {
+      differentiate(c[k], degree - order + 1);
+      if (order < 3) p[order][k] = bernstein_at(c[k], degree - order, 0.5);
+    }
+    bound[order] = ROUND_UP * largest_norm(c, degree - order + 1) + factor * error;
+    factor *= 2.0 * (double)(degree - order);
+  }
+  return error;
+}
+
 size_t motion_derivative_bounds(const cprox_motion *m, int32_t axis, const motion_interval *own, double *rates) {
   const robot_axis *of = &m->robot->axes[axis];
   const size_t degree = m->tracks[m->track_of[of->variable]].degree[own->first];
@@ -69,26 +92,23 @@ static vec3 twice_product(const double *p, const double *q) {
   return vec_scale(2.0, vec_sub(vec_sub(vec_scale(q[3], u), vec_scale(p[3], v)), vec_cross(u, v)));
 }
 
-/* The frame of a ball by its quaternion and two derivatives of that, and its velocities. */
-static void place_ball(const robot_axis *axis, double p[3][4], const placement *parent, const placement *before,
-                       axis_state *state) {
+/* The velocities of a ball by its quaternion and two derivatives of that. */
+static void find_ball(double p[3][4], const placement *before, axis_state *state) {
   double square = 0.0, along = 0.0;
   for (int k = 0; k < 4; k++) square += p[0][k] * p[0][k], along += p[0][k] * p[1][k];
   const vec3 omega = vec_scale(1.0 / square, twice_product(p[1], p[0]));
   const vec3 alpha = vec_axpy(vec_scale(1.0 / square, twice_product(p[2], p[0])), -2.0 * along / square, omega);
   state->velocity = placement_turn(before, omega);
   state->acceleration = placement_turn(before, alpha);
-  const placement own = axis_move(axis, NULL, 0.0, p[0]);
-  state->frame = parent ? placement_compose(parent, &own) : own;
 }
 
 /* Over a span the quaternion is within `stray` of a straight line. Quaternions that are e apart, one of them of norm m
  * > e, turn vectors to where they are 2 e / m of their length apart at most, and any two turn them 2 apart at most. */
-static void ball_over_span(const cprox_motion *m, size_t axis_index, const double *rows, const placement *parent,
-                           const placement *before, axis_state *state) {
+static void ball_over_span(const cprox_motion *m, size_t axis_index, const double *rows, const placement *before,
+                           double p[3][4], axis_state *state) {
   const robot_axis *axis = &m->robot->axes[axis_index];
   const size_t stride = m->row_size;
-  double p[3][4] = {{0}}, line = 0.0, stray = 0.0, shift = 0.0, norm = 0.0;
+  double line = 0.0, stray = 0.0, shift = 0.0, norm = 0.0;
   for (int k = 0; k < 4; k++) {
     const int32_t slot = m->slot[axis->variable + k];
     const double *of = rows + (slot < 0 ? 0 : slot);
@@ -112,27 +132,18 @@ static void ball_over_span(const cprox_motion *m, size_t axis_index, const doubl
   state->stray = least > NEAREST_LINE * norm ? 2.0 * lesser(ROUND_UP * stray / least, 1.0) : NO_LINE;
   state->variation = INFINITY;
   state->error = 256.0 * ROUND_U * (1.0 + state->w) * (1.0 + state->w);
-  place_ball(axis, p, parent, before, state);
+  find_ball(p, before, state);
 }
 
 /* A quaternion of any norm turns at omega = 2 vec(p' p*) / |p|² and omega' = 2 vec(p'' p*) / |p|² - 2 omega (p·p') /
  * |p|². */
-static void ball_over(const cprox_motion *m, const motion_interval *own, size_t axis_index, const placement *parent,
-                      const placement *before, axis_state *state) {
+static void ball_over(const cprox_motion *m, const motion_interval *own, size_t axis_index, const placement *before,
+                      double p[3][4], axis_state *state) {
   const robot_axis *axis = &m->robot->axes[axis_index];
   const size_t degree = motion_track_of(m, axis_index)->degree[own->first];
   const double n = (double)degree;
-  double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n;
-  const double error = coordinates_over(m, own, axis, c);
-  for (int k = 0; k < 4; k++) p[0][k] = bernstein_at(c[k], degree, 0.5);
-  for (size_t order = 1; order <= 3 && order <= degree; order++) {
-    for (int k = 0; k < 4; k++) {
-      differentiate(c[k], degree - order + 1);
-      if (order < 3) p[order][k] = bernstein_at(c[k], degree - order, 0.5);
-    }
-    bound[order] = ROUND_UP * largest_norm(c, degree - order + 1) + factor * error;
-    factor *= 2.0 * (n - (double)order);
-  }
+  double bound[4] = {0}, shift;
+  const double error = derivatives_over(m, own, axis, p, bound, &shift);
 
   /* all rates are in units of the least norm */
   const double norm = m->norm[axis_index], r1 = bound[1] / norm, r2 = bound[2] / norm, r3 = bound[3] / norm;
@@ -144,7 +155,7 @@ static void ball_over(const cprox_motion *m, const motion_interval *own, size_t 
   state->stray = 0.0;
   state->error = 2.0 * (2.0 * n + 1.0) * (2.0 * n + 1.0) * (1.0 + state->w) * (1.0 + state->w) * error / norm;
 
-  place_ball(axis, p, parent, before, state);
+  find_ball(p, before, state);
 }
 
 /* ---- balls by rotation vectors ---- */
@@ -176,10 +187,9 @@ static turn_series turn_series_of(double square) {
   return t;
 }
 
-/* The frame of a rotation vector p, its two derivatives given, and its velocities: omega = J p', J = 1 + A [p] + B
+/* The velocities of a rotation vector p, its two derivatives given: omega = J p', J = 1 + A [p] + B
  * [p]^2. */
-static void place_vector(const robot_axis *axis, double values[3][4], const placement *parent, const placement *before,
-                         axis_state *state) {
+static void find_vector(double values[3][4], const placement *before, axis_state *state) {
   const vec3 p = vec(values[0][0], values[0][1], values[0][2]), v = vec(values[1][0], values[1][1], values[1][2]),
              a = vec(values[2][0], values[2][1], values[2][2]);
   const turn_series t = turn_series_of(vec_norm2(p));
@@ -191,29 +201,16 @@ static void place_vector(const robot_axis *axis, double values[3][4], const plac
   alpha = vec_axpy(alpha, t.b, vec_cross(v, pv)); /* of [p]^2 v; what has v cross v is 0 */
   state->velocity = placement_turn(before, omega);
   state->acceleration = placement_turn(before, alpha);
-  const placement own = axis_move(axis, NULL, 0.0, values[0]);
-  state->frame = parent ? placement_compose(parent, &own) : own;
 }
 
 /* With bounds r1, r2, r3 on the derivatives of p: |omega| <= r1, |omega'| <= r2 + r1^2/2, |omega''| <= r3 + 3/2 r1 r2 +
  * r1^3/2. */
 static void vector_over(const cprox_motion *m, const motion_interval *own, const robot_axis *axis,
-                        const placement *parent, const placement *before, axis_state *state) {
+                        const placement *before, double p[3][4], axis_state *state) {
   const size_t degree = m->tracks[m->track_of[axis->variable]].degree[own->first];
   const double n = (double)degree;
-  double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n, shift = 0.0;
-  const double error = coordinates_over(m, own, axis, c);
-  for (int k = 0; k < 3; k++) p[0][k] = bernstein_at(c[k], degree, 0.5);
-  for (size_t i = 0; i <= degree; i++)
-    shift = greater(vec_norm(vec(c[0][i] - p[0][0], c[1][i] - p[0][1], c[2][i] - p[0][2])), shift);
-  for (size_t order = 1; order <= 3 && order <= degree; order++) {
-    for (int k = 0; k < 3; k++) {
-      differentiate(c[k], degree - order + 1);
-      if (order < 3) p[order][k] = bernstein_at(c[k], degree - order, 0.5);
-    }
-    bound[order] = ROUND_UP * largest_norm(c, degree - order + 1) + factor * error;
-    factor *= 2.0 * (n - (double)order);
-  }
+  double bound[4] = {0}, shift;
+  const double error = derivatives_over(m, own, axis, p, bound, &shift);
   const double r1 = bound[1], r2 = bound[2], r3 = bound[3];
   state->w = r1;
   state->a = ROUND_UP * (r2 + 0.5 * r1 * r1);
@@ -223,14 +220,14 @@ static void vector_over(const cprox_motion *m, const motion_interval *own, const
   state->stray = 0.0;
   state->error = 4.0 * (2.0 * n + 1.0) * (2.0 * n + 1.0) * (1.0 + r1) * (1.0 + r1) * error +
                  256.0 * ROUND_U * ((1.0 + r1) * (1.0 + r1) + r2);
-  place_vector(axis, p, parent, before, state);
+  find_vector(p, before, state);
 }
 
 /* Over a span the vector is within `stray` of a straight line; rotations are no farther apart than their vectors. */
-static void vector_over_span(const cprox_motion *m, const robot_axis *axis, const double *rows, const placement *parent,
-                             const placement *before, axis_state *state) {
+static void vector_over_span(const cprox_motion *m, const robot_axis *axis, const double *rows, const placement *before,
+                             double p[3][4], axis_state *state) {
   const size_t stride = m->row_size;
-  double p[3][4] = {{0}}, line = 0.0, stray = 0.0, shift = 0.0;
+  double line = 0.0, stray = 0.0, shift = 0.0;
   for (int k = 0; k < 3; k++) {
     const int32_t slot = m->slot[axis->variable + k];
     const double *of = rows + (slot < 0 ? 0 : slot);
@@ -249,7 +246,7 @@ static void vector_over_span(const cprox_motion *m, const robot_axis *axis, cons
   state->shift = lesser(shift, 2.0), state->line = lesser(line, 2.0), state->stray = lesser(stray, 2.0);
   state->variation = INFINITY;
   state->error = 256.0 * ROUND_U * (1.0 + rate) * (1.0 + rate);
-  place_vector(axis, p, parent, before, state);
+  find_vector(p, before, state);
 }
 
 /* ---- balls and shifts by arcs ---- */
@@ -271,17 +268,7 @@ static void arc_over(const cprox_motion *m, const motion_interval *own, size_t i
   vec3 p[3] = {vec(0, 0, 0), vec(0, 0, 0), vec(0, 0, 0)};
   if (arc->screw) arc_position(arc, s, p);
   *state = (axis_state){.kind = axis->kind, .frame = *before};
-  if (axis->kind == AXIS_PRISMATIC) {
-    state->z = world_axis(axis, before);
-    if (!axis->first_of_joint) return;
-    double across;
-    const double speed = arc_speed(arc, &across);
-    state->velocity = vec_scale(ds, placement_turn(before, p[1]));
-    state->acceleration = vec_scale(ds * ds, placement_turn(before, p[2]));
-    state->w = ROUND_UP * ds * speed;
-    state->a = ROUND_UP * ds * ds * across * arc->angle;
-    state->g = ROUND_UP * ds * ds * ds * across * arc->angle * arc->angle;
-  } else {
+  if (axis->kind != AXIS_PRISMATIC) {
     double q[4];
     arc_orientation(arc, s, q);
     placement here = axis_move(axis, NULL, 0.0, q);
@@ -289,6 +276,16 @@ static void arc_over(const cprox_motion *m, const motion_interval *own, size_t i
     state->frame = placement_compose(before, &here);
     state->velocity = vec_scale(ds * arc->angle, placement_turn(before, arc->z));
     state->w = ROUND_UP * ds * arc->angle;
+  } else {
+    double across;
+    const double speed = arc_speed(arc, &across);
+    state->z = world_axis(axis, before);
+    if (!axis->first_of_joint) return;
+    state->velocity = vec_scale(ds, placement_turn(before, p[1]));
+    state->acceleration = vec_scale(ds * ds, placement_turn(before, p[2]));
+    state->w = ROUND_UP * ds * speed;
+    state->a = ROUND_UP * ds * ds * across * arc->angle;
+    state->g = ROUND_UP * ds * ds * ds * across * arc->angle * arc->angle;
   }
   state->shift = state->line = 0.5 * state->w, state->variation = state->w;
   state->error = 256.0 * ROUND_U * (state->w + state->a);
@@ -330,12 +327,17 @@ void motion_find_axis(const cprox_motion *m, const motion_interval *own, const d
   } else if (axis->kind < AXIS_BALL) {
     line_over(m, own, axis, rows, &before, state);
     if (m->arc_of) state->shift += m->sagitta[i], state->stray += m->sagitta[i];
-  } else if (axis->kind == AXIS_VECTOR && motion_is_span(own))
-    vector_over_span(m, axis, rows, parent, &before, state);
-  else if (axis->kind == AXIS_VECTOR)
-    vector_over(m, own, axis, parent, &before, state);
-  else if (motion_is_span(own))
-    ball_over_span(m, i, rows, parent, &before, state);
-  else
-    ball_over(m, own, i, parent, &before, state);
+  } else {
+    double values[3][4] = {{0}}; /* with two derivatives */
+    if (axis->kind == AXIS_VECTOR && motion_is_span(own))
+      vector_over_span(m, axis, rows, &before, values, state);
+    else if (axis->kind == AXIS_VECTOR)
+      vector_over(m, own, axis, &before, values, state);
+    else if (motion_is_span(own))
+      ball_over_span(m, i, rows, &before, values, state);
+    else
+      ball_over(m, own, i, &before, values, state);
+    const placement moved = axis_move(axis, NULL, 0.0, values[0]);
+    state->frame = parent ? placement_compose(parent, &moved) : moved;
+  }
 }

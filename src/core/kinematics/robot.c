@@ -280,10 +280,12 @@ cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const c
     made->links = calloc(n_links, sizeof *made->links);
     made->axes = calloc(AXES_OF_FLOATING * n_links, sizeof *made->axes);
     made->parts = calloc(n_parts + 1, sizeof *made->parts);
+    made->first_part = calloc(n_geometries + 1, sizeof *made->first_part);
     made->given_links = calloc(n_links, sizeof *made->given_links);
     made->given_geometries = calloc(n_geometries + 1, sizeof *made->given_geometries);
   }
-  if (!made || !made->links || !made->axes || !made->parts || !made->given_links || !made->given_geometries) {
+  if (!made || !made->links || !made->axes || !made->parts || !made->first_part || !made->given_links ||
+      !made->given_geometries) {
     cprox_robot_free(made);
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot of %zu links", n_links);
   }
@@ -293,7 +295,10 @@ cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const c
   made->n_variables = n_variables;
   made->n_geometries = n_geometries;
   for (size_t i = 0; i < n_links; i++) add_link(made, &links[i]);
-  for (size_t i = 0; i < n_geometries; i++) add_geometry(made, &geometries[i], i);
+  for (size_t i = 0; i < n_geometries; i++) {
+    add_geometry(made, &geometries[i], i);
+    made->first_part[i + 1] = made->n_parts;
+  }
   if (!order_axes(made) || !part_groups_create(made, &made->groups)) {
     cprox_robot_free(made);
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot of %zu links", n_links);
@@ -367,5 +372,6 @@ void cprox_robot_free(cprox_robot *robot) {
   robot_covers_free(atomic_load(&robot->covers));
   free(robot->given_links);
   free(robot->given_geometries);
+  free(robot->first_part);
   free(robot);
 }

@@ -119,11 +119,12 @@ void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_resu
 }
 
 cprox_status query_conclude(const query *q, double cutoff, cprox_status failure, cprox_result *all) {
-  /* each bound is proven, so that they contradict each other only where a proof is wrong */
-  CORE_CHECK(!(all->lower > all->upper), "lower %.17g, upper %.17g", all->lower, all->upper);
-  all->lower = lesser(all->lower, all->upper);
+  const double lower = all->lower;
+  all->lower = lesser(lower, all->upper);
   all->verdict = query_verdict(q, all);
   all->status = query_is_satisfied(q, cutoff, all) ? CPROX_OK : failure != CPROX_OK ? failure : CPROX_PRECISION;
+  /* each bound is proven, so that they contradict each other only where a proof is wrong */
+  CORE_CHECK(!(lower > all->upper), "lower %.17g, upper %.17g", lower, all->upper);
   if (all->status != CPROX_OK) workspace_fail(q->workspace, all->status, "%s", query_shortfall(all->status));
   return all->status;
 }

@@ -50,9 +50,9 @@ static cprox_lod lod_of(const robot_search *o) {
 }
 
 void robot_search_report(const robot_search *o, cprox_result *result) {
-  report(o, &o->best, result);
-  result->distance_queries = o->gaps;
   result->lod = lod_of(o);
+  result->distance_queries = o->gaps;
+  report(o, &o->best, result);
 }
 
 /* Of the pairs of one class; NULL: of all, because no start has a tolerance. */

@@ -135,7 +135,9 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
                      .standing = whole->standing,
                      .element = {found->element[0], found->element[1]},
                      .near = {ROBOT_WHOLE, ROBOT_WHOLE},
-                     .self = whole->self};
+                     .self = whole->self,
+                     .common = whole->common,
+                     .shared = whole->shared};
   placed_robot_pair p;
   placed_robot_pair_of(&o->scene, &pair, &p);
   const double displacement = placed_robot_pair_move(&p)->displacement;

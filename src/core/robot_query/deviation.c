@@ -67,7 +67,7 @@ static deviation along_chain(robot_scene *s, int32_t from, int32_t to, vec3 cent
 /* Against what stands in the world; not counting how obstacles turn. */
 static part_deviation part_deviation_of(robot_scene *s, int32_t part, const robot_body *body) {
   const cprox_error_bounds *b = s->q->errors->bounds;
-  const double scale = ROUND_UP * s->q->errors->scale, radius = robot_core_radius(body);
+  const double scale = ROUND_UP * s->q->errors->scale, radius = body->core;
   const int32_t axis = s->motion->robot->parts[part].axis;
   part_deviation d = {.found = s->node};
   d.joints = along_chain(s, axis, -1, body->side.at.p, radius, &d.travel);
@@ -117,10 +117,10 @@ static deviation of_self_pair(robot_scene *s, const robot_pair *pair, const robo
                               const robot_body *standing, deviation *places) {
   const cprox_robot *robot = s->motion->robot;
   const int32_t axis[2] = {robot->parts[pair->moving].axis, robot->parts[pair->standing].axis};
-  const int32_t common = robot_common_axis(robot, axis[0], axis[1]);
+  const int32_t common = pair->common;
   double travel;
-  const deviation d = along_chain(s, axis[0], common, moving->side.at.p, robot_core_radius(moving), &travel);
-  const deviation e = along_chain(s, axis[1], common, standing->side.at.p, robot_core_radius(standing), &travel);
+  const deviation d = along_chain(s, axis[0], common, moving->side.at.p, moving->core, &travel);
+  const deviation e = along_chain(s, axis[1], common, standing->side.at.p, standing->core, &travel);
   const double flex = ROUND_UP * s->q->errors->scale * s->q->errors->bounds->flex;
   *places = (deviation){flex * ((axis[0] >= 0) + (axis[1] >= 0)), 0.0};
   return sum_of(sum_of(d, e), *places);
@@ -132,7 +132,7 @@ deviation deviation_of_pair(robot_scene *s, const robot_pair *pair, const robot_
   const part_deviation part = pair->element[0] == ROBOT_WHOLE ? *whole_part(s, pair->moving, moving)
                                                               : part_deviation_of(s, pair->moving, moving);
   const cprox_obstacle *target = &s->q->targets[standing->index];
-  const double arm = vec_norm(vec_sub(moving->side.at.p, target->pose.position)) + robot_core_radius(moving);
+  const double arm = vec_norm(vec_sub(moving->side.at.p, target->pose.position)) + moving->core;
   *places = sum_of(part.places, turn_of_obstacle(s, deviation_reach(target), ROUND_UP * arm, &part));
   return sum_of(part.joints, *places);
 }
@@ -199,7 +199,7 @@ bool deviation_losses(robot_scene *s, const placed_robot_pair *p, vec3 n, double
   /* from the moving side on: lever arms over the node, how far the axes so far move it, all turns of both kinds */
   const robot_axis *axes = s->motion->robot->axes;
   const size_t n_axes = axes_between(s, p->pair);
-  const double radius = robot_core_radius(p->nominal);
+  const double radius = p->nominal->core;
   double moved = 0.0, turns = 0.0, off = 0.0;
   if (!p->pair->self) off = s->q->errors->scale * s->q->errors->bounds->base_rotation;
   for (size_t k = 0; k < n_axes; k++) {

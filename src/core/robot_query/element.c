@@ -5,6 +5,12 @@
 
 #include "base/rounding.h"
 
+double robot_core_radius(const robot_body *body) {
+  const double least = body->tree ? lesser(body->side.margin, body->tree_margin) : body->side.margin;
+  const double margin = body->side.margin_turns ? 0.0 : least;
+  return greater(body->radius - margin, 0.0) + ROUND_UP * 2.0 * ROUND_U * body->radius + body->side.error;
+}
+
 static vec3 middle_of(const vec3 v[3], int n) {
   if (n == 1) return v[0];
   if (n == 2) return vec_axpy(vec_scale(0.5, v[0]), 0.5, v[1]);
@@ -36,7 +42,7 @@ static double placing_error(const robot_body *owner, double reach, vec3 world) {
   return ROUND_UP * ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(world));
 }
 
-static const robot_body *cluster_make(const robot_body *owner, int32_t code, robot_element *e) {
+static void make_cluster(const robot_body *owner, int32_t code, robot_element *e) {
   const cluster_hull *hull = robot_cluster_of(owner, code);
   e->body = *owner;
   robot_body *body = &e->body;
@@ -48,12 +54,9 @@ static const robot_body *cluster_make(const robot_body *owner, int32_t code, rob
   const double grow = ROUND_U * hull->radius;
   body->side.middle = vec(0, 0, 0);
   body->side.half = vec_add(hull->half, vec(grow, grow, grow));
-  return body;
 }
 
-const robot_body *robot_element_make(const robot_body *owner, int32_t code, robot_element *e) {
-  e->node = 0;
-  if (code < ROBOT_WHOLE) return cluster_make(owner, code, e);
+static void make_element(const robot_body *owner, int32_t code, robot_element *e) {
   const tree *t = owner->tree;
   vec3 v[3];
   const int n = tree_corners(t, robot_element_place(code), v);
@@ -79,5 +82,14 @@ const robot_body *robot_element_make(const robot_body *owner, int32_t code, robo
   body->side.error += placing_error(owner, reach, body->side.at.p);
   body->radius = reach + owner->tree_margin;
   find_box(e, n);
-  return body;
+}
+
+const robot_body *robot_element_make(const robot_body *owner, int32_t code, robot_element *e) {
+  e->node = 0;
+  if (code < ROBOT_WHOLE)
+    make_cluster(owner, code, e);
+  else
+    make_element(owner, code, e);
+  e->body.core = robot_core_radius(&e->body);
+  return &e->body;
 }

@@ -11,6 +11,7 @@
 typedef struct robot_body {
   bound_side side;
   double radius;                 /* of a ball about the shape's origin that contains the part, margin included */
+  double core;                   /* robot_core_radius() */
   uint32_t steps;                /* transforms that its place went through */
   int32_t index, part;           /* target and part of it; or geometry and its number among the robot's parts */
   const tree *tree;              /* the elements under the shape, NULL for none; the tree's axes are the shape's, */
@@ -21,11 +22,7 @@ typedef struct robot_body {
 } robot_body;
 
 /* Of a ball round the core: a margin does not turn. Elements may have a smaller margin than what contains them. */
-static inline double robot_core_radius(const robot_body *body) {
-  const double least = body->tree ? lesser(body->side.margin, body->tree_margin) : body->side.margin;
-  const double margin = body->side.margin_turns ? 0.0 : least;
-  return greater(body->radius - margin, 0.0) + ROUND_UP * 2.0 * ROUND_U * body->radius + body->side.error;
-}
+double robot_core_radius(const robot_body *body);
 
 /* A place in a tree as a number; -1 stands for none. */
 static inline int32_t robot_element_code(tree_place at) {

@@ -82,8 +82,8 @@ static void ask_given(const robot_scene *s, uint64_t *rows) {
   const robot_part *parts = s->motion->robot->parts;
   const int32_t n_parts = (int32_t)s->motion->robot->n_parts;
   for (size_t k = 0; k < n; k++) {
-    const int32_t first = (int32_t)pair_plan_first_part(s->motion->robot, pairs[k].geometry),
-                  other = (int32_t)pair_plan_first_part(s->motion->robot, pairs[k].other);
+    const size_t *first_part = s->motion->robot->first_part;
+    const int32_t first = (int32_t)first_part[pairs[k].geometry], other = (int32_t)first_part[pairs[k].other];
     for (int32_t i = first; i < n_parts && parts[i].geometry == pairs[k].geometry; i++)
       for (int32_t j = other; j < n_parts && parts[j].geometry == pairs[k].other; j++) {
         const int32_t a = place_of(g, i), b = place_of(g, j);
@@ -219,7 +219,7 @@ bool robot_groups_begin(robot_scene *s) {
     ask_given(s, rows);
   else
     ask_all(s, rows);
-  if (s->starts && start_class_is_one_of_many(s->motion)) clear_other_classes(s, rows);
+  if (s->starts) clear_other_classes(s, rows);
   for (size_t i = 0; i <= robot->n_axes; i++) g->first[i] = -1;
   if (moves) set_still(s);
   robot_groups_choose(s, PAIRS_ALL);
@@ -261,7 +261,7 @@ static void place_group(robot_scene *s, int32_t group) {
     const robot_body *body = robot_scene_part(s, g->of->part[of->first]);
     state->centre = body->side.at.p;
     state->radius = ROUND_UP * (body->radius + body->side.error);
-    state->core = ROUND_UP * robot_core_radius(body);
+    state->core = ROUND_UP * body->core;
     state->within = state->displacement = 0.0;
     return;
   }

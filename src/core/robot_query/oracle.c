@@ -28,14 +28,9 @@ static search_node node_of(const robot_search *o, const search_node *parent, con
   return node;
 }
 
-/* To one of two lists, which have so many by now. */
-static void add_entry(const robot_search *o, int32_t standing, int32_t moving, size_t n[2], bool stands,
-                      list_entry entry) {
-  lists_at(&o->lists, stands ? standing : moving)[n[stands]++] = entry;
-}
-
 bool robot_search_root(robot_search *o, const motion_interval *over, const motion_interval *other, search_node *root) {
   *root = (search_node){.lower = -INFINITY};
+  *root = node_of(o, root, over, other);
   robot_scene *s = &o->scene;
   const obstacle_bvh *set = s->q->set;
   const size_t n_pairs = s->n_pairs, n_parts = set && set->boxes ? s->motion->robot->n_parts : 0;
@@ -43,26 +38,29 @@ bool robot_search_root(robot_search *o, const motion_interval *over, const motio
 
   /* what stands is settled once; but where others as near as the nearest are looked for, or errors take off, with nodes */
   const bool together = s->motion->is_state || o->goal.beyond > 0.0 || s->q->errors;
-  const int32_t moving = lists_take(&o->lists, room), standing = together ? moving : lists_take(&o->lists, room);
+  lists_begin(&o->lists, s->q->workspace);
+  int32_t list[2]; /* of what moves; of what stands */
+  for (int k = 0; k < (together ? 1 : 2); k++) list[k] = lists_take(&o->lists, room);
+  if (together) list[1] = list[0];
+  const int32_t moving = list[0], standing = list[1];
   if (moving < 0 || standing < 0) return false;
   const pair_choice choice = together ? PAIRS_ALL : s->q->choice;
   size_t n[2] = {0, 0};
   o->n_standing = 0;
   for (size_t i = 0; i < n_pairs; i++) {
-    o->n_standing += !together && robot_scene_stands(s, &s->pairs[i]);
-    add_entry(o, standing, moving, n, robot_scene_stands(s, &s->pairs[i]) && !together,
-              (list_entry){.lower = s->plan.pairs[i].apart, .pair = (int32_t)i});
+    const bool stands = !together && robot_scene_stands(s, &s->pairs[i]);
+    o->n_standing += stands;
+    lists_add(&o->lists, list, n, stands, (list_entry){.lower = s->plan.pairs[i].apart, .pair = (int32_t)i});
   }
   for (size_t i = 0; i < n_parts; i++)
     if (start_class_has(s->motion, s->starts, (int32_t)i, -1))
-      add_entry(o, standing, moving, n, s->parts[i].carrier < 0 && !together,
+      lists_add(&o->lists, list, n, s->parts[i].carrier < 0 && !together,
                 (list_entry){.lower = -INFINITY, .pair = LIST_CLUSTER, .part = (int32_t)i});
-  for (int still = 0; s->groups && still <= !together; still++) { /* all parts with all */
+  for (int still = !together; s->groups && still >= 0; still--) { /* all parts with all; those that move stay chosen */
     robot_groups_choose(s, together ? PAIRS_ALL : still ? PAIRS_STANDING : PAIRS_MOVING);
     if (robot_groups_ask(s, (group_pair){{0, 0}}))
-      add_entry(o, standing, moving, n, still, (list_entry){.lower = -INFINITY, .pair = LIST_GROUPS});
+      lists_add(&o->lists, list, n, still, (list_entry){.lower = -INFINITY, .pair = LIST_GROUPS});
   }
-  if (s->groups && !together) robot_groups_choose(s, PAIRS_MOVING);
   lists_set_count(&o->lists, moving, choice == PAIRS_STANDING ? 0 : n[0]);
   robot_own(root)->list = moving;
   if (!together && (n[1] == 0 || choice == PAIRS_MOVING)) {
@@ -71,7 +69,6 @@ bool robot_search_root(robot_search *o, const motion_interval *over, const motio
     lists_set_count(&o->lists, standing, n[1]);
     o->standing = standing;
   }
-  *root = node_of(o, root, over, other);
   return true;
 }
 
@@ -210,7 +207,6 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->gaps = o->planes = o->balls = o->nodes = o->flights = o->work = 0;
   o->next = NULL, o->n_next = 0;
   begin_node(o);
-  lists_begin(&o->lists, o->scene.q->workspace);
 }
 search_oracle robot_search_oracle(robot_search *o) {
   return (search_oracle){

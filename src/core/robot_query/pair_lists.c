@@ -43,6 +43,10 @@ list_entry *lists_at(const robot_lists *l, int32_t block) {
   return l->memory + block + 1;
 }
 
+void lists_add(const robot_lists *l, const int32_t block[2], size_t n[2], bool second, list_entry entry) {
+  lists_at(l, block[second])[n[second]++] = entry;
+}
+
 size_t lists_count(const robot_lists *l, int32_t block) {
   return head_of(l, block)->count;
 }

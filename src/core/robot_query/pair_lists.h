@@ -34,6 +34,8 @@ void lists_begin(robot_lists *l, cprox_workspace *workspace);
 
 /* A block with room for n entries, used once; -1 where memory is out. It may move all blocks in memory. */
 int32_t lists_take(robot_lists *l, size_t n);
+/* To one of two blocks, which have so many by now and room for more. */
+void lists_add(const robot_lists *l, const int32_t block[2], size_t n[2], bool second, list_entry entry);
 list_entry *lists_at(const robot_lists *l, int32_t block);
 size_t lists_count(const robot_lists *l, int32_t block);
 void lists_set_count(robot_lists *l, int32_t block, size_t n);

@@ -20,11 +20,6 @@ static size_t first_from(const int32_t *number, size_t bytes, size_t n, int32_t 
   return low;
 }
 
-size_t pair_plan_first_part(const cprox_robot *robot, int32_t geometry) {
-  if (robot->n_parts == robot->n_geometries) return (size_t)geometry; /* each has one */
-  return first_from(&robot->parts->geometry, sizeof *robot->parts, robot->n_parts, geometry);
-}
-
 /* ---- the pairs that are asked about ---- */
 
 /* The pairs of geometries that the caller gave; NULL: all. */
@@ -62,7 +57,6 @@ static double parts_apart(const pair_plan *p, size_t part, size_t other) {
  * against each other are not asked about. */
 static bool take_parts(pair_plan *p, size_t part, size_t other, bool all) {
   const cprox_motion *m = p->q->mover.motion;
-  if (!start_class_has(m, p->starts, (int32_t)part, (int32_t)other)) return true;
   const double apart = parts_apart(p, part, other);
   const bool near = apart <= p->reach;
   if (!near && apart >= p->beyond) return true;
@@ -75,8 +69,10 @@ static bool take_parts(pair_plan *p, size_t part, size_t other, bool all) {
 /* A part against obstacles first … last - 1, or against such parts of the robot itself. */
 static bool take_row(pair_plan *p, size_t part, size_t first, size_t last, bool self, bool all) {
   bool took = true;
-  if (!self && !start_class_has(p->q->mover.motion, p->starts, (int32_t)part, -1)) return true;
-  for (size_t k = first; k < last && took; k++) took = self ? take_parts(p, part, k, all) : take(p, part, k, -INFINITY);
+  for (size_t k = first; k < last && took; k++) {
+    if (!start_class_has(p->q->mover.motion, p->starts, (int32_t)part, self ? (int32_t)k : -1)) continue;
+    took = self ? take_parts(p, part, k, all) : take(p, part, k, -INFINITY);
+  }
   return took;
 }
 
@@ -84,16 +80,16 @@ static bool take_row(pair_plan *p, size_t part, size_t first, size_t last, bool 
 static bool take_given(pair_plan *p, const cprox_robot_pair *given, const robot_body *obstacles, size_t n_obstacles,
                        bool self) {
   const cprox_robot *robot = p->q->mover.motion->robot;
-  const size_t end = pair_plan_first_part(robot, given->geometry + 1);
+  const size_t end = robot->first_part[given->geometry + 1];
   size_t other[2] = {0, 0};
   for (int32_t k = 0; k < 2; k++) {
     if (self)
-      other[k] = pair_plan_first_part(robot, given->other + k);
+      other[k] = robot->first_part[given->other + k];
     else if (n_obstacles > 0)
       other[k] = first_from(&obstacles->index, sizeof *obstacles, n_obstacles, given->other + k);
   }
   bool took = true;
-  for (size_t i = pair_plan_first_part(robot, given->geometry); i < end && took; i++)
+  for (size_t i = robot->first_part[given->geometry]; i < end && took; i++)
     took = take_row(p, i, other[0], other[1], self, false);
   return took;
 }
@@ -109,7 +105,7 @@ bool pair_plan_list(pair_plan *p, const robot_body *obstacles, size_t n_obstacle
     const cprox_robot_pair *given = given_pairs(mover, with, &count);
     for (size_t i = 0; given && i < count && took; i++) took = take_given(p, &given[i], obstacles, n_obstacles, with);
     for (size_t i = 0; !given && i < robot->n_parts && took; i++)
-      took = take_row(p, i, 0, with ? pair_plan_first_part(robot, robot->parts[i].geometry) : n_obstacles, with, true);
+      took = take_row(p, i, 0, with ? robot->first_part[robot->parts[i].geometry] : n_obstacles, with, true);
     if (!with) p->n_against = p->n;
   }
   return took;

@@ -40,7 +40,4 @@ const planned_pair *pair_plan_nearest(const pair_plan *plan);
 /* A reach that was found later. */
 void pair_plan_leave_out(pair_plan *plan, double reach);
 
-/* The parts of a geometry stand side by side. */
-size_t pair_plan_first_part(const cprox_robot *robot, int32_t geometry);
-
 #endif

@@ -24,6 +24,7 @@ static void add_errors(placed_robot_pair *p) {
   const deviation d = deviation_of_pair(p->scene, p->pair, p->moving, p->standing, &p->places);
   p->off = *p->moving;
   p->off.side.margin += d.middle, p->off.tree_margin += d.middle, p->off.radius += d.middle;
+  p->off.core = robot_core_radius(&p->off);
   p->errors = d;
   p->moving = &p->off;
 }
@@ -101,7 +102,7 @@ static void find_motion(const placed_robot_pair *p, chain_motion *m) {
   const vec3 centre = p->moving->side.at.p;
   double stray;
   const size_t n = chain_of(p, &stray);
-  motion_of_part(s->axes, s->chain, n, centre, robot_core_radius(p->moving), s->scratch, m);
+  motion_of_part(s->axes, s->chain, n, centre, p->moving->core, s->scratch, m);
   m->displacement += stray + p->errors.growth, m->stray += stray;
   if (!robot_scene_has_two_times(s) || !p->pair->self) return;
   motion_find_standing_rates(s->axes, s->chain, n, centre, m);
@@ -137,7 +138,7 @@ double placed_robot_pair_displacement(const placed_robot_pair *p) {
   if (!p->pair->self && p->pair->element[0] == ROBOT_WHOLE)
     return robot_scene_part_displacement(s, p->pair->moving) + p->errors.growth;
   return motion_displacement(s->motion, s->axes, seen_from_axis(p), moving_axis(p), p->moving->side.at.p,
-                             robot_core_radius(p->moving)) +
+                             p->moving->core) +
          p->errors.growth;
 }
 

@@ -22,6 +22,14 @@ static part_model model_for(const query *q, part_model model) {
   return q->options.max_lod == CPROX_LOD_SPHERE && !endless ? part_model_ball(&model) : model;
 }
 
+/* What follows from all else. */
+static robot_body with_core(const robot_body *body, const part_model *m) {
+  robot_body whole = *body;
+  whole.side.middle = m->middle, whole.side.half = m->half;
+  whole.core = robot_core_radius(&whole);
+  return whole;
+}
+
 /* ---- obstacles ---- */
 
 /* A part of a target; the frames of parts of unions are composed. */
@@ -49,8 +57,7 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
   if (robot_body_is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
   const double sizes = vec_norm(m.centre) + placed.radius;
   placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
-  placed.side.middle = m.middle, placed.side.half = m.half;
-  return placed;
+  return with_core(&placed, &m);
 }
 
 int32_t robot_scene_add_obstacles(robot_scene *s, size_t target) {
@@ -76,8 +83,7 @@ static robot_body part_body(const query *q, size_t i) {
   body.side = (bound_side){.shape = m.shape, .margin = m.margin, .error = motion->part_error[i]};
   body.tree = m.tree, body.clusters = m.tree ? m.clusters : NULL, body.tree_at = m.tree_at,
   body.tree_margin = m.tree_margin, body.winding = m.winding;
-  body.side.middle = m.middle, body.side.half = m.half;
-  return body;
+  return with_core(&body, &m);
 }
 
 /* ---- pairs ---- */
@@ -87,7 +93,8 @@ robot_pair robot_scene_pair_of(const robot_scene *s, const planned_pair *planned
                      .standing = planned->standing,
                      .element = {ROBOT_WHOLE, ROBOT_WHOLE},
                      .near = {ROBOT_WHOLE, ROBOT_WHOLE},
-                     .self = self};
+                     .self = self,
+                     .common = -1};
   if (!self) return pair;
   const cprox_robot *robot = s->motion->robot;
   pair.common = robot_common_axis(robot, robot->parts[pair.moving].axis, robot->parts[pair.standing].axis);
@@ -105,7 +112,9 @@ static double measured_apart(robot_scene *s, const planned_pair *parts) {
     const double t = s->q->t0 + (s->q->t1 - s->q->t0) * k / PLACES;
     const motion_interval at = motion_interval_of(s->motion, t, t);
     robot_scene_enter_place(s, at.first, at.a);
-    const robot_body *a = robot_scene_part(s, parts->moving), *b = robot_scene_part(s, parts->standing);
+    const robot_body *body[2];
+    for (int side = 0; side < 2; side++) body[side] = robot_scene_part(s, side ? parts->standing : parts->moving);
+    const robot_body *a = body[0], *b = body[1];
     const double apart = vec_norm(vec_sub(a->side.at.p, b->side.at.p));
     least = lesser(apart + a->radius + b->radius + a->side.error + b->side.error, least);
   }
@@ -291,12 +300,13 @@ void robot_scene_enter_both(robot_scene *s, const motion_interval *lead, const m
   s->node++;
   s->at_place = false;
   s->over = *lead, s->other = *other;
+  const bool two = robot_scene_has_two_times(s);
   s->centre = motion_middle(s->motion, lead);
-  s->other_centre = (span_centre){.u = s->centre.u, .segment = s->centre.segment};
+  s->other_centre =
+      two ? motion_middle(s->motion, other) : (span_centre){.u = s->centre.u, .segment = s->centre.segment};
   /* the one track says where the centre is */
   if (s->motion->n_tracks == 1) fill_track(s, 0);
-  if (!robot_scene_has_two_times(s)) return;
-  s->other_centre = motion_middle(s->motion, other);
+  if (!two) return;
   const start_times times = {{time_from(s, lead), time_to(s, lead)}, {time_from(s, other), time_to(s, other)}};
   s->times.n = start_times_corners(&times, most_apart(s), s->times.corner);
 }
@@ -400,7 +410,7 @@ double robot_scene_part_displacement(robot_scene *s, int32_t index) {
   state->displaced = s->node;
   state->displacement =
       motion_displacements(s->motion, s->axes, axis, displacements ? robot_axis_depth(s->motion->robot, axis) : 0,
-                           body->side.at.p, robot_core_radius(body), displacements);
+                           body->side.at.p, body->core, displacements);
   return state->displacement;
 }
 

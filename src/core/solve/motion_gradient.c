@@ -43,8 +43,7 @@ typedef struct gradient_search {
   cprox_status failure; /* where that is negative the search ends */
 
   bool settled;    /* the minimiser is known, */
-  bool ended;      /* or that there is none alone: */
-  const char *why; /* why not */
+  const char *why; /* or why there is none alone; NULL: nothing is known against it */
   double lower;    /* the least bound of nodes that were set aside */
   spot_pair pair;
   motion_spot spot;
@@ -58,20 +57,15 @@ typedef struct gradient_search {
   uint32_t nodes;  /* since the minimiser is known */
 } gradient_search;
 
-static void end(gradient_search *g, const char *why) {
-  g->ended = true;
-  g->why = why;
-}
-
 /* ---- the minimiser ---- */
 
-/* Does the motion change how the two of the pair stand to each other? */
-static bool is_moved(const gradient_search *g) {
-  const robot_pair *pair = &g->pair.pair;
-  const cprox_robot *robot = g->o.scene.motion->robot;
-  const int32_t other = pair->self ? robot->parts[pair->standing].link : -1;
-  return !g->o.scene.motion->is_state &&
-         cprox_motion_get_link_info(g->o.scene.motion, robot->parts[pair->moving].link, other).n_moved > 0;
+/* Does the motion change how the two of the nearest pair stand to each other? */
+static bool is_moved(const robot_search *o) {
+  const robot_pair *pair = &o->scene.pairs[o->best.pair];
+  const cprox_motion *m = o->scene.motion;
+  const robot_part *parts = m->robot->parts;
+  const int32_t other = pair->self ? parts[pair->standing].link : -1;
+  return !m->is_state && cprox_motion_get_link_info(m, parts[pair->moving].link, other).n_moved > 0;
 }
 
 static bool is_in(const motion_given *given, int32_t variable) {
@@ -86,9 +80,8 @@ static bool is_given(const gradient_search *g) {
   const cprox_robot *robot = m->robot;
   const robot_pair *pair = &g->pair.pair;
   const int32_t ends[2] = {robot->parts[pair->moving].axis, pair->self ? robot->parts[pair->standing].axis : -1};
-  const int32_t common = robot_common_axis(robot, ends[0], ends[1]);
   for (int k = 0; k < 2; k++)
-    for (int32_t axis = ends[k]; axis != common; axis = robot->axes[axis].parent) {
+    for (int32_t axis = ends[k]; axis != pair->common; axis = robot->axes[axis].parent) {
       const int32_t variable = robot->axes[axis].variable;
       if (is_in(&m->given, variable)) return true;
       for (size_t i = 0; i < m->n_joined; i++)
@@ -108,15 +101,15 @@ static cprox_status measure_at(gradient_search *g, double t, bool from_left, mot
 
 /* On one side of the minimiser, towards `t`: farther there, and falling towards the minimiser between. */
 static cprox_status rises_towards(gradient_search *g, double here, double t, bool *rises) {
-  const double sign = t < here ? -1.0 : 1.0;
-  motion_spot there;
-  cprox_status status = measure_at(g, t, sign > 0.0, &there);
-  if (status < 0) return status;
-  *rises = there.gap.lower >= g->spot.gap.upper + FARTHER * g->apart;
-  if (!*rises) return CPROX_OK;
-  status = measure_at(g, here + INSIDE * (t - here), sign > 0.0, &there);
-  *rises = status >= 0 && sign * there.slope > 0.0;
-  return status;
+  const double sign = t < here ? -1.0 : 1.0, place[2] = {t, here + INSIDE * (t - here)};
+  *rises = true;
+  for (int k = 0; k < 2 && *rises; k++) {
+    motion_spot there;
+    const cprox_status status = measure_at(g, place[k], sign > 0.0, &there);
+    if (status < 0) return status;
+    *rises = k == 0 ? there.gap.lower >= g->spot.gap.upper + FARTHER * g->apart : sign * there.slope > 0.0;
+  }
+  return CPROX_OK;
 }
 
 /* The least neighbourhood of the minimiser, from the first-th on, whose ends are farther away. */
@@ -136,7 +129,7 @@ static cprox_status find_neighbourhood(gradient_search *g, size_t first) {
       if (status < 0) return status;
       if (!rises && (end == t0 || end == t1)) break;
     }
-    if (!rises && *side[k] != here) end(g, "the distance is as small on an interval of the motion");
+    if (!rises && *side[k] != here) g->why = "the distance is as small on an interval of the motion";
   }
   return CPROX_OK;
 }
@@ -151,21 +144,22 @@ static cprox_status settle(gradient_search *g) {
   g->settled = true;
   o->goal.epsilon = fmin(o->goal.epsilon, g->apart); /* distances are to be known that well from here on */
   if (o->best.pair < 0) {
-    end(g, "nothing was measured");
+    g->why = "nothing was measured";
     return CPROX_OK;
   }
   if (is_zero(g, o->best_bound.upper, APART_ROUNDINGS * o->best_bound.slack)) {
-    end(g, "the distance is 0");
+    g->why = "the distance is 0";
     return CPROX_OK;
   }
+  const bool moved = is_moved(o);
   if (!spot_begin(&o->scene, o->best.pair, &g->pair)) return robot_no_memory(o);
   cprox_status status = spot_measure(&g->pair, o->best.segment, o->best.u, &g->spot);
   if (status < 0) return status;
   bool good = true;
-  if (is_moved(g)) status = spot_refine(&g->pair, &g->within, &g->spot, &good);
+  if (moved) status = spot_refine(&g->pair, &g->within, &g->spot, &good);
   if (status < 0) return status;
   if (!good) {
-    end(g, "the distance is as small on an interval of the motion");
+    g->why = "the distance is as small on an interval of the motion";
     return CPROX_OK;
   }
   const robot_gap *gap = &g->spot.gap;
@@ -175,25 +169,25 @@ static cprox_status settle(gradient_search *g) {
   }
   const bool known = gap->lower > 0.0 || (g->q->is_signed && gap->upper < 0.0);
   if (vec_norm2(gap->normal) == 0.0 || !known) {
-    end(g, "the distance is 0");
+    g->why = "the distance is 0";
     return CPROX_OK;
   }
   if (APART_ROUNDINGS * gap->slack > g->apart) {
-    end(g, "rounding is larger than the distance to other minimisers");
+    g->why = "rounding is larger than the distance to other minimisers";
     return CPROX_OK;
   }
   status = spot_is_alone(&g->pair, &g->spot, g->apart, &good);
   g->crosses = false;
-  if (status >= 0 && !good && gap->upper < 0.0 && is_moved(g)) {
+  if (status >= 0 && !good && gap->upper < 0.0 && moved) {
     status = spot_find_crossing(&g->pair, &g->within, &g->spot, g->apart, g->side, g->part, &good);
     g->crosses = good;
   }
   if (status < 0) return status;
-  if (!good) end(g, gap->upper < 0.0 ? "there is more than one way out" : "the nearest points are not the only ones");
-  if (good && !is_moved(g) && !g->o.scene.motion->is_state && is_given(g))
-    end(g, "the distance is as small on an interval of the motion");
+  if (!good) g->why = gap->upper < 0.0 ? "there is more than one way out" : "the nearest points are not the only ones";
+  if (good && !moved && !g->o.scene.motion->is_state && is_given(g))
+    g->why = "the distance is as small on an interval of the motion";
   g->from = -INFINITY, g->to = INFINITY, g->widest = 0, g->nodes = 0;
-  return is_moved(g) && !g->ended ? find_neighbourhood(g, 0) : CPROX_OK;
+  return moved && !g->why ? find_neighbourhood(g, 0) : CPROX_OK;
 }
 
 /* ---- the search ---- */
@@ -205,7 +199,7 @@ static double filter(void *self, search_node *node, double goal) {
   const double known = g->o.best_bound.upper;
   const double width = width_allowed(g->q->options.epsilon, g->q->options.relative_epsilon, known);
   if (!g->settled && lower >= known - width) g->failure = settle(g);
-  if (!g->ended && g->failure >= 0) return lower;
+  if (!g->why && g->failure >= 0) return lower;
   g->lower = fmin(g->lower, lower);
   return INFINITY;
 }
@@ -249,7 +243,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   gradient_search *g = self;
   if (g->failure < 0) return g->failure;
   const cprox_status status = g->robot.probe(&g->o, node, best);
-  if (status < 0 || !g->settled || g->ended) return status;
+  if (status < 0 || !g->settled || g->why) return status;
   look_for_better(g);
   if (!g->settled || !(node->lower < INFINITY)) return status;
   if (!is_of_minimiser(g, node)) {
@@ -257,7 +251,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     const bool short_of = is_shortest(node) || g->nodes > MOST_NODES;
     if (!short_of && g->nodes % PATIENCE > 0) return status;
     if (g->widest + 1 < NEIGHBOURHOODS && isfinite(g->from)) return find_neighbourhood(g, g->widest + 1);
-    if (short_of) end(g, "the distance is as small elsewhere along the motion, or of another pair");
+    if (short_of) g->why = "the distance is as small elsewhere along the motion, or of another pair";
     return status;
   }
   g->lower = fmin(g->lower, node->lower);
@@ -286,7 +280,7 @@ static cprox_status run(gradient_search *g, search_outcome *found) {
   g->robot = robot_search_oracle(o);
   *found = (search_outcome){.lower = INFINITY};
   if (o->scene.n_pairs == 0 && !q->set) {
-    end(g, "there is nothing to be near");
+    g->why = "there is nothing to be near";
     return CPROX_OK;
   }
   search_node root;
@@ -313,8 +307,8 @@ static cprox_status gradient_of_models(const query *q, size_t first, size_t last
   search_outcome found;
   const cprox_status status = run(&g, &found);
   if (status < 0) return status;
-  if (!g.ended && (status == CPROX_BUDGET || status == CPROX_STOPPED)) end(&g, query_shortfall(status));
-  if (!g.settled && !g.ended) {
+  if (!g.why && (status == CPROX_BUDGET || status == CPROX_STOPPED)) g.why = query_shortfall(status);
+  if (!g.settled && !g.why) {
     const cprox_status settled = settle(&g);
     if (settled < 0) return settled;
   }
@@ -327,34 +321,43 @@ static cprox_status gradient_of_models(const query *q, size_t first, size_t last
   r.nodes = found.nodes + g.o.flights, r.distance_queries += g.pair.gaps;
   query_conclude(q, INFINITY, status, &r);
 
-  if (!g.ended && !(g.previous > g.spot.gap.upper + g.apart))
-    end(&g, "the distance is as small elsewhere along the motion, or of another pair");
+  if (!g.why && !(g.previous > g.spot.gap.upper + g.apart))
+    g.why = "the distance is as small elsewhere along the motion, or of another pair";
   if (g.settled && g.pair.scene) {
     const spots one = {&g.spot, NULL, 1}, crossing = {g.side, g.part, SPOT_SIDES};
     motion_derivatives_fill(&g.pair, &g.spot, g.crosses ? &crossing : &one, gradient);
   } else {
     motion_derivatives_fill_nothing(q->mover.motion, gradient);
   }
-  gradient->valid = !g.ended;
+  gradient->valid = !g.why;
   *result = r;
   *why = g.why;
   return r.status;
+}
+
+cprox_status motion_gradient_check(const query *q, const cprox_motion_gradient *gradient) {
+  const cprox_motion *motion = q->mover.motion;
+  const bool rows = gradient->positions || gradient->velocities || gradient->accelerations;
+  if (!rows || motion->kind == CPROX_MOTION_JOINED || !motion->arc_of) return CPROX_OK;
+  return workspace_fail(q->workspace, CPROX_INVALID,
+                        "slerp and screws have a gradient by their variables, not by their points");
 }
 
 cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox_result *result,
                                 cprox_motion_gradient *gradient) {
   const query apart = robot_depth_apart(q), hulls = robot_depth_hulls(q);
   const bool two = q->is_signed && robot_depth_has_meshes(q, first, last);
-  const char *why = "";
+  const char *why = NULL;
   cprox_result r = {0};
-  cprox_status status = gradient_of_models(two || !q->is_signed ? &apart : &hulls, first, last, &r, gradient, &why);
-  if (status >= 0 && two && !robot_depth_is_settled(q, &r)) {
-    cprox_result deep = {0};
-    status = gradient_of_models(&hulls, first, last, &deep, gradient, &why);
-    if (status >= 0) status = robot_depth_join(q, INFINITY, &r, &deep);
-    r = deep;
+  cprox_status status = CPROX_OK;
+  for (int deep = q->is_signed && !two; deep < 2; deep++) {
+    cprox_result one = {0};
+    status = gradient_of_models(deep ? &hulls : &apart, first, last, &one, gradient, &why);
+    if (status >= 0 && deep && two) status = robot_depth_join(q, INFINITY, &r, &one);
+    if (status < 0) return status;
+    r = one;
+    if (!two || robot_depth_is_settled(q, &r)) break;
   }
-  if (status < 0) return status;
   if (!gradient->valid) workspace_fail(q->workspace, status, "no gradient: %s", why);
   *result = r;
   return status;

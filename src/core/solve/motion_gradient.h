@@ -12,9 +12,7 @@
 cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox_result *result,
                                 cprox_motion_gradient *gradient);
 
-static inline cprox_status motion_gradient_answer(const query *q, cprox_result *result,
-                                                  cprox_motion_gradient *gradient) {
-  return motion_gradient_of(q, 0, q->n, result, gradient);
-}
+/* Of slerp and of screws there are no rows by points: CPROX_INVALID, with an error message, where they are wanted. */
+cprox_status motion_gradient_check(const query *q, const cprox_motion_gradient *gradient);
 
 #endif

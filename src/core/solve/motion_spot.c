@@ -56,13 +56,31 @@ static cprox_status refuse(const spot_pair *p) {
   return workspace_fail(p->scene->q->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
 }
 
-static void measure_elements(spot_pair *p, const int32_t element[2], robot_gap *gap) {
-  robot_pair pair = p->pair;
-  pair.element[0] = element[0], pair.element[1] = element[1];
-  placed_robot_pair elements;
-  placed_robot_pair_of(p->scene, &pair, &elements);
-  robot_pair_measure(elements.moving, elements.standing, exactly(p), gap);
+static cprox_status measure(spot_pair *p, const robot_body *moving, const robot_body *standing, robot_accuracy accuracy,
+                            robot_gap *gap) {
+  robot_pair_measure(moving, standing, accuracy, gap);
   p->gaps++;
+  return gap->support_failed ? refuse(p) : CPROX_OK;
+}
+
+/* Both sides at a place of the motion. */
+static void place_at(spot_pair *p, size_t segment, double u) {
+  robot_scene_enter(p->scene, segment, u, u);
+  placed_robot_pair_at(p->scene, p->index, &p->placed);
+}
+
+/* Two elements of them. */
+static void place_elements(const spot_pair *p, const int32_t element[2], robot_pair *pair, placed_robot_pair *placed) {
+  *pair = p->pair;
+  pair->element[0] = element[0], pair->element[1] = element[1];
+  placed_robot_pair_of(p->scene, pair, placed);
+}
+
+static cprox_status measure_elements(spot_pair *p, const int32_t element[2], robot_gap *gap) {
+  robot_pair pair;
+  placed_robot_pair elements;
+  place_elements(p, element, &pair, &elements);
+  return measure(p, elements.moving, elements.standing, exactly(p), gap);
 }
 
 /* ---- curved sides ---- */
@@ -110,36 +128,31 @@ static cprox_status measure_trees(spot_pair *p, robot_gap *gap) {
   const robot_body *moving = p->placed.moving, *standing = p->placed.standing;
   const double radii = moving->radius + (robot_body_is_halfspace(standing) ? 0.0 : standing->radius);
   robot_gap hulls;
-  robot_pair_measure(moving, standing, (robot_accuracy){.epsilon = 1e-3 * moving->radius}, &hulls);
-  p->gaps++;
-  if (hulls.support_failed) return refuse(p);
+  cprox_status status = measure(p, moving, standing, (robot_accuracy){.epsilon = 1e-3 * moving->radius}, &hulls);
+  if (status < 0) return status;
   robot_refinement c = {.pair = &p->placed,
                         .reach = fmax(hulls.upper, 0.0) + 4.0 * radii,
                         .accuracy = 1e-9 * radii,
                         .normal = hulls.upper > 0.0 ? hulls.normal : vec(0, 0, 0)};
   if (p->element[0] >= 0 || p->element[1] >= 0) {
-    measure_elements(p, p->element, gap);
-    if (gap->support_failed) return refuse(p);
+    status = measure_elements(p, p->element, gap);
+    if (status < 0) return status;
     c.reach = fmin(c.reach, fmax(gap->upper, 0.0) + 1e-8 * radii);
   }
   robot_refinement_run(&c);
   p->gaps += c.gaps;
   if (c.support_failed) return refuse(p);
   if (c.nearest.gap.upper < INFINITY) p->element[0] = c.nearest.element[0], p->element[1] = c.nearest.element[1];
-  measure_elements(p, p->element, gap);
-  return gap->support_failed ? refuse(p) : CPROX_OK;
+  return measure_elements(p, p->element, gap);
 }
 
 /* By every variable, at the place that the frames stand for. */
 static void differentiate(spot_pair *p, const robot_gap *gap) {
   const cprox_robot *robot = p->scene->motion->robot;
   const int32_t moving = robot->parts[p->pair.moving].axis;
+  const int32_t standing = p->pair.self ? robot->parts[p->pair.standing].axis : -1;
+  const int32_t common = p->pair.common;
   memset(p->by_variable, 0, robot->n_variables * sizeof *p->by_variable);
-  if (!p->pair.self) {
-    motion_add_gradient(robot, p->values, p->frames, moving, -1, gap->normal, gap->on_moving, p->by_variable);
-    return;
-  }
-  const int32_t standing = robot->parts[p->pair.standing].axis, common = robot_common_axis(robot, moving, standing);
   motion_add_gradient(robot, p->values, p->frames, moving, common, gap->normal, gap->on_moving, p->by_variable);
   motion_add_gradient(robot, p->values, p->frames, standing, common, vec_neg(gap->normal), gap->on_standing,
                       p->by_variable);
@@ -148,25 +161,20 @@ static void differentiate(spot_pair *p, const robot_gap *gap) {
 void spot_differentiate(spot_pair *p, const motion_spot *spot) {
   motion_place(p->scene->motion, spot->segment, spot->u, p->values, p->frames);
   differentiate(p, &spot->gap);
+  motion_rates(p->scene->motion, spot->segment, spot->u, p->rates);
 }
 
 cprox_status spot_measure(spot_pair *p, size_t segment, double u, motion_spot *spot) {
   const cprox_motion *motion = p->scene->motion;
-  robot_scene_enter(p->scene, segment, u, u);
-  placed_robot_pair_at(p->scene, p->index, &p->placed);
+  place_at(p, segment, u);
   const robot_body *moving = p->placed.moving, *standing = p->placed.standing;
   *spot = (motion_spot){.segment = segment, .u = u};
-  if (moving->tree || standing->tree) {
-    const cprox_status status = measure_trees(p, &spot->gap);
-    if (status < 0) return status;
-  } else {
-    robot_pair_measure(moving, standing, exactly(p), &spot->gap);
-    p->gaps++;
-    if (spot->gap.support_failed) return refuse(p);
-    sharpen(moving, standing, &spot->gap);
-  }
+  const bool trees = moving->tree || standing->tree;
+  const cprox_status status =
+      trees ? measure_trees(p, &spot->gap) : measure(p, moving, standing, exactly(p), &spot->gap);
+  if (status < 0) return status;
+  if (!trees) sharpen(moving, standing, &spot->gap);
   spot_differentiate(p, spot);
-  motion_rates(motion, segment, u, p->rates);
   for (size_t v = 0; v < motion->robot->n_variables; v++) spot->slope += p->by_variable[v] * p->rates[v];
   return CPROX_OK;
 }
@@ -311,9 +319,8 @@ static cprox_status spread_of(spot_pair *p, const robot_body *moving, const robo
     robot_gap seen[2];
     for (int k = 0; k < 2; k++) {
       const robot_body turned = turned_about(standing, here->on_standing, vec_scale(k ? turn : -turn, axis[i]));
-      robot_pair_measure(moving, &turned, exactly(p), &seen[k]);
-      p->gaps++;
-      if (seen[k].support_failed) return refuse(p);
+      const cprox_status status = measure(p, moving, &turned, exactly(p), &seen[k]);
+      if (status < 0) return status;
     }
     *spread = fmax(vec_norm(vec_sub(seen[1].on_moving, seen[0].on_moving)), *spread);
   }
@@ -334,9 +341,8 @@ static cprox_status lean_of(spot_pair *p, const robot_body *moving, const robot_
     for (int k = 0; k < 2; k++) {
       robot_body shifted = *moving;
       shifted.side.at.p = vec_axpy(moving->side.at.p, k ? step : -step, vec(i == 0, i == 1, i == 2));
-      robot_pair_measure(&shifted, standing, exactly(p), &seen[k]);
-      p->gaps++;
-      if (seen[k].support_failed) return refuse(p);
+      const cprox_status status = measure(p, &shifted, standing, exactly(p), &seen[k]);
+      if (status < 0) return status;
     }
     *lean = fmax(vec_norm(vec_sub(seen[1].normal, seen[0].normal)), *lean);
   }
@@ -384,8 +390,8 @@ static cprox_status elements_are_alone(spot_pair *p, const motion_spot *spot, do
   *alone = c.complete;
   for (size_t i = 0; i < c.n_found && *alone; i++) {
     robot_gap gap;
-    measure_elements(p, c.found[i].element, &gap);
-    if (gap.support_failed) return refuse(p);
+    const cprox_status status = measure_elements(p, c.found[i].element, &gap);
+    if (status < 0) return status;
     *alone = gap.lower > spot->gap.upper + apart ||
              vec_norm(vec_sub(gap.on_moving, spot->gap.on_moving)) <= TWO_POINTS * size;
   }
@@ -393,17 +399,15 @@ static cprox_status elements_are_alone(spot_pair *p, const motion_spot *spot, do
 }
 
 cprox_status spot_is_alone(spot_pair *p, const motion_spot *spot, double apart, bool *alone) {
-  robot_scene_enter(p->scene, spot->segment, spot->u, spot->u);
-  placed_robot_pair_at(p->scene, p->index, &p->placed);
+  place_at(p, spot->segment, spot->u);
   const robot_body *moving = p->placed.moving, *standing = p->placed.standing;
+  robot_pair pair;
+  placed_robot_pair elements;
   if (moving->tree || standing->tree) {
     const double size = robot_body_is_halfspace(standing) ? moving->radius : fmin(moving->radius, standing->radius);
     const cprox_status status = elements_are_alone(p, spot, size, apart, alone);
     if (status < 0 || !*alone) return status;
-    robot_pair pair = p->pair;
-    pair.element[0] = p->element[0], pair.element[1] = p->element[1];
-    placed_robot_pair elements;
-    placed_robot_pair_of(p->scene, &pair, &elements);
+    place_elements(p, p->element, &pair, &elements);
     moving = elements.moving, standing = elements.standing;
   }
   return convex_is_alone(p, moving, standing, &spot->gap, alone);

@@ -32,7 +32,7 @@ bool spot_begin(robot_scene *scene, int32_t index, spot_pair *p);
 /* Measures at u of a segment. CPROX_OK, or a negative status. */
 cprox_status spot_measure(spot_pair *p, size_t segment, double u, motion_spot *spot);
 
-/* by_variable again at a spot that was measured before others. */
+/* by_variable and rates again at a spot that was measured before others. */
 void spot_differentiate(spot_pair *p, const motion_spot *spot);
 
 static inline double spot_distance(const motion_spot *spot) {
