@@ -83,7 +83,8 @@ CASE(the_least_distance_over_a_time_is_below_that_at_every_time) {
 }
 
 /* Seed 22, 500 places a pair, contact tolerance 1e-7 of the sizes: nothing undecided, free before as bisection by pairs
- * finds it (within tolerance over the speed), and the least distance agrees with the verdict. */
+ * finds it (within tolerance over the speed), no deeper at the end than `lower` says, and the least distance agrees with
+ * the verdict. */
 CASE(time_of_contact_is_never_late_and_never_undecided) {
   bodies *b = *state;
   rng r = rng_seed(22);
@@ -111,6 +112,7 @@ CASE(time_of_contact_is_never_late_and_never_undecided) {
         assert_true(least.upper > 0.0);
       if (found.verdict == CPROX_VERDICT_VIOLATED && found.t > 0.0) {
         assert_true(found.upper <= 0.0 && found.t_contact_lower <= found.t);
+        assert_true(found.lower <= pair_at(b, x, y, found.t, 1e-9).upper);
         assert_true(pair_at(b, x, y, found.t_contact_lower, 0.01 * options.epsilon).lower <= options.epsilon);
         for (int k = 1; k <= 8; k++) /* free before */
           assert_true(pair_at(b, x, y, found.t_contact_lower * (1.0 - ldexp(1.0, -3 * k)), 1e-9).upper > 0.0);
