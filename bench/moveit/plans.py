@@ -3,7 +3,8 @@
 """What moveit_plans has printed: a summary, or the page of doc/charts with its chart.
 
     bench/moveit/plans.py moveit_plans.csv                            prints the tables
-    bench/moveit/plans.py moveit_plans.csv MOVEIT_VERSION FOLDER      writes moveit_plans.md and moveit_plans.png there
+    bench/moveit/plans.py moveit_plans.csv MOVEIT_VERSION FOLDER [REMARK]
+                                                                      writes moveit_plans.md and moveit_plans.png there
 """
 import csv
 import math
@@ -69,8 +70,9 @@ def tables(rows):
     for robot, own in robots_of(rows):
         (value, spread), (certify, part) = ratio(own), added(own)
         problems = len({(row['scene'], row['way']) for row in own})
-        lines.append([robot, str(problems), f'{value:.3f}', f'{value / spread:.3f} to {value * spread:.3f}', f'{certify:.1f}', f'{100.0 * part:.1f} %'])
-    second = table(['robot', 'problems', 'time with / without', 'by one standard error', 'a certification [ms]', 'of a plan'], lines)
+        total = sum(times([row for row in own if row['pipeline'] == WITH])) / sum(times([row for row in own if row['pipeline'] == WITHOUT]))
+        lines.append([robot, str(problems), f'{total:.2f}', f'{value:.3f}', f'{value / spread:.3f} to {value * spread:.3f}', f'{certify:.1f}', f'{100.0 * part:.1f} %'])
+    second = table(['robot', 'problems', 'total time with / without', 'ratio of a problem', 'by one standard error', 'a certification [ms]', 'of a plan'], lines)
     return first, second
 
 
@@ -95,7 +97,7 @@ def main():
     if len(sys.argv) == 2:
         print(first, second, sep='\n\n')
         return
-    version, out = sys.argv[2:]
+    version, out, *remark = sys.argv[2:]
     rounds = len({row['round'] for row in rows})
     moments = sum(int(row['moments'] or 0) for row in rows)
     draw(rows, os.path.join(out, 'moveit_plans.png'))
@@ -104,16 +106,18 @@ def main():
 
 A running move_group of MoveIt {version} with OMPL's RRTConnect and MoveIt's default adapters: one pipeline as it is, one
 with `curve_proximity/CertifyTrajectory` besides. Problems of MotionBenchMaker in all seven families, for a Panda and a
-UR5 (without its gripper), from start to goal and back; each is asked {rounds} times of both pipelines in turn.
+UR5 (without its gripper), from start to goal and back. Both pipelines are asked in turn, up to {rounds} times each.
 `scripts/moveit_beside WORKSPACE --plans` makes this page and [moveit_plans.csv](moveit_plans.csv).
 
 Each plan is judged twice: by the capability `curve_proximity/CertifyPath` ("proven"), and by MoveIt's FCL detector at
 moments of the spline at most 1e-3 rad apart, {moments} in all ("hit by samples"). MoveIt has called every plan valid.
+The adapter may ask for up to 10 plans (`certify_attempts`), within the 60 s of a request.
+{' '.join(remark)}
 
 {first}
 
-Times are of the whole service call. The ratio is the geometric mean over the problems of the medians over the rounds;
-RRTConnect's times differ from plan to plan, so that its standard error is given. A certification is a call of the service
+Times are of the whole service call. The ratio of a problem is the geometric mean over the problems, of the medians over
+the rounds; RRTConnect's times differ from plan to plan, so that its standard error is given. A certification is a call of the service
 `certify_path` for a plan of the pipeline without the adapter.
 
 {second}

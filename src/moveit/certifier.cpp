@@ -44,8 +44,8 @@ class Look {
     query_.options.stop_user = &end_;
   }
 
-  /* Adds to the finding what is not proven, where and by how much. */
-  void operator()(Finding &out) {
+  /* Adds to the finding what is not proven; where and by how much if it `measures`. */
+  void operator()(Finding &out, bool measures) {
     beginBudget();
     Answer answer = ask();
     if (answer.result.status >= 0 && answer.result.verdict == CPROX_VERDICT_CLEAR) return;
@@ -57,6 +57,7 @@ class Look {
       return;
     }
     out.why += cprox_verdict_name(answer.result.verdict);
+    if (!measures) return;
     const std::string remark = answer.message.empty() ? "" : " (" + answer.message + ")";
     Doubt doubt;
     doubt.where = intervals();
@@ -149,8 +150,8 @@ std::shared_ptr<const Env> Certifier::envOf(const planning_scene::PlanningScene 
   return env;
 }
 
-Finding Certifier::certify(const planning_scene::PlanningScene &scene,
-                           const robot_trajectory::RobotTrajectory &trajectory, const CertifySettings &settings) const {
+Finding Certifier::find(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,
+                        const CertifySettings &settings, bool measures) const {
   Finding out;
   try {
     if (trajectory.getWayPointCount() == 0) throw Error("it has no waypoint");
@@ -162,18 +163,29 @@ Finding Certifier::certify(const planning_scene::PlanningScene &scene,
     const RobotMotion among_objects = motion(*env);
     out.clear_until = among_objects.domain()[1];
     out.warnings = among_objects.warnings();
-    Look(among_objects, false, settings)(out);
+    Look(among_objects, false, settings)(out, measures);
+    if (!measures && !out.why.empty()) return out;
     if (own_size == env) {
-      Look(among_objects, true, settings)(out);
+      Look(among_objects, true, settings)(out, measures);
     } else {
       const RobotMotion with_itself = motion(*own_size);
-      Look(with_itself, true, settings)(out);
+      Look(with_itself, true, settings)(out, measures);
     }
   } catch (const std::exception &error) {
     out = {};
     out.why = std::string("the trajectory cannot be certified: ") + error.what();
   }
   return out;
+}
+
+Finding Certifier::certify(const planning_scene::PlanningScene &scene,
+                           const robot_trajectory::RobotTrajectory &trajectory, const CertifySettings &settings) const {
+  return find(scene, trajectory, settings, true);
+}
+
+Finding Certifier::judge(const planning_scene::PlanningScene &scene,
+                         const robot_trajectory::RobotTrajectory &trajectory, const CertifySettings &settings) const {
+  return find(scene, trajectory, settings, false);
 }
 
 } // namespace curve_proximity

@@ -40,7 +40,14 @@ class Certifier {
   Finding certify(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,
                   const CertifySettings &settings) const;
 
+  /* The same without measuring where a trajectory is not proven and by how much, which takes many times as long: `why` and
+   * `warnings` alone. */
+  Finding judge(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,
+                const CertifySettings &settings) const;
+
  private:
+  Finding find(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,
+               const CertifySettings &settings, bool measures) const;
   std::shared_ptr<const CollisionEnvCurveProximity> envOf(const planning_scene::PlanningScene &scene) const;
 
   mutable std::mutex mutex_; /* of last_ */

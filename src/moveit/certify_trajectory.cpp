@@ -72,18 +72,31 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
   bool adaptAndPlan(const PlannerFn &planner, const planning_scene::PlanningSceneConstPtr &scene,
                     const MotionPlanRequest &req, MotionPlanResponse &res, std::vector<std::size_t> &) const override {
     const Clock::time_point begin = Clock::now();
-    if (!planner(scene, req, res) || !res.trajectory_) return false;
-    Finding finding = certifier_.certify(*scene, *res.trajectory_, settings_);
-    int attempts = 1;
-    for (; attempts < attempts_ && !finding.why.empty() && secondsSince(begin) < req.allowed_planning_time; ++attempts)
-      if (!planAgain(planner, scene, req, finding, res)) break;
+    std::vector<MotionPlanResponse> refused;
+    double planning_time = 0.0;
+    int asked = 0;
+    do {
+      res = MotionPlanResponse();
+      const bool is_planned = planner(scene, req, res) && res.trajectory_;
+      ++asked;
+      planning_time += res.planning_time_;
+      res.planning_time_ = planning_time;
+      if (!is_planned && refused.empty()) return false;
+      if (!is_planned) continue; // a planner by chance may find one next time
+      if (!refused.empty() && isSame(*res.trajectory_, *refused.back().trajectory_)) break;
+      const Finding finding = certifier_.judge(*scene, *res.trajectory_, settings_);
+      if (finding.why.empty()) {
+        report(*scene, finding);
+        if (!refused.empty())
+          ROS_INFO_STREAM_NAMED(ADAPTER_LOG, "plan " << asked << " is proven, those before it were not");
+        return true;
+      }
+      refused.push_back(res);
+    } while (asked < attempts_ && secondsSince(begin) < req.allowed_planning_time);
+    Finding finding = longestProven(*scene, refused, res);
+    res.planning_time_ = planning_time;
     report(*scene, finding);
-    if (finding.why.empty()) {
-      if (attempts > 1)
-        ROS_INFO_STREAM_NAMED(ADAPTER_LOG, "plan " << attempts << " is proven, those before it were not");
-      return true;
-    }
-    if (attempts > 1) finding.why += "; so are " + std::to_string(attempts - 1) + " other plans";
+    if (refused.size() > 1) finding.why += "; so are " + std::to_string(refused.size() - 1) + " other plans";
     if (shrink_ && shrink(*scene, req, finding, res)) return true;
     const std::string why = finding.why + (shrink_ ? "; no beginning of it is proven" : "");
     if (!reject_) {
@@ -96,21 +109,17 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
   }
 
  private:
-  /* Replaces the plan by one that is proven, or is proven for longer. false: the planner has no other one. */
-  bool planAgain(const PlannerFn &planner, const planning_scene::PlanningSceneConstPtr &scene,
-                 const MotionPlanRequest &req, Finding &finding, MotionPlanResponse &res) const {
-    MotionPlanResponse other;
-    if (!planner(scene, req, other) || !other.trajectory_) return true; // a planner by chance may find one next time
-    if (isSame(*other.trajectory_, *res.trajectory_)) return false;
-    Finding of_other = certifier_.certify(*scene, *other.trajectory_, settings_);
-    other.planning_time_ += res.planning_time_;
-    if (!of_other.why.empty() && of_other.clear_until <= finding.clear_until) {
-      res.planning_time_ = other.planning_time_;
-      return true;
+  /* Of plans that are not proven the one that is proven for the longest time. */
+  Finding longestProven(const planning_scene::PlanningScene &scene, const std::vector<MotionPlanResponse> &refused,
+                        MotionPlanResponse &res) const {
+    Finding out;
+    for (const MotionPlanResponse &plan : refused) {
+      Finding finding = certifier_.certify(scene, *plan.trajectory_, settings_);
+      if (&plan != &refused.front() && finding.clear_until <= out.clear_until) continue;
+      out = std::move(finding);
+      res = plan;
     }
-    res = other;
-    finding = std::move(of_other);
-    return true;
+    return out;
   }
 
   void report(const planning_scene::PlanningScene &scene, const Finding &finding) const {
@@ -129,7 +138,7 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
       if (!trajectory_processing::IterativeParabolicTimeParameterization().computeTimeStamps(
               *shorter, req.max_velocity_scaling_factor, req.max_acceleration_scaling_factor))
         return false;
-      if (!certifier_.certify(scene, *shorter, settings_).why.empty()) continue;
+      if (!certifier_.judge(scene, *shorter, settings_).why.empty()) continue;
       ROS_WARN_STREAM_NAMED(ADAPTER_LOG, finding.why << ": the plan is shortened, it ends where it was at t = " << end
                                                      << " of " << whole.getDuration() << " s");
       res.trajectory_ = shorter;
