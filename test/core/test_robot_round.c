@@ -6,10 +6,12 @@
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/implicits.h"
 #include "support/random.h"
 #include "support/reference.h"
 
-enum { MOST_JOINTS = 3 };
+/* Kinds of bodies; those before BY_INEQUALITIES have forms of their own. */
+enum { MOST_JOINTS = 3, BY_INEQUALITIES = 7, KINDS = 9 };
 
 static cprox_quat times(cprox_quat a, cprox_quat b) {
   return (cprox_quat){.w = a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
@@ -51,7 +53,18 @@ static cprox_body *round_body(rng *r, size_t kind) {
     case 3: cprox_body_create_cone(b, a, ws, &body); break;
     case 4: cprox_body_create_ellipsoid(vec(a, a, c), ws, &body); break;
     case 5: cprox_body_create_ellipsoid(vec(a, b, c), ws, &body); break;
-    default: cprox_body_create_box(vec(a, b, c), ws, &body);
+    case 6: cprox_body_create_box(vec(a, b, c), ws, &body); break;
+    case BY_INEQUALITIES: {
+      const double power = rng_log_uniform(r, 1.2, 50.0);
+      cprox_body_create_superquadric(vec(a, a, c), vec(power, power, rng_log_uniform(r, 1.2, 50.0)), ws, &body);
+      break;
+    }
+    default: {
+      const cprox_affine map = {.linear = {a, 0, 0, 0, a, 0, 0, 0, c}};
+      implicit_case paper;
+      implicit_case_paper(1 + (int)rng_index(r, 6), &paper);
+      body = implicit_case_body(&paper, &map);
+    }
   }
   assert_non_null(body);
   return body;
@@ -76,7 +89,8 @@ typedef struct round_robot {
   cprox_motion *motion;
 } round_robot;
 
-static void round_robot_make(rng *r, round_robot *t) {
+/* Its links of the kinds from `first` to before `end`; what stands, of any before `end`. */
+static void round_robot_make(rng *r, size_t first, size_t end, round_robot *t) {
   static const double OFF[5] = {0.0, 1e-9, 1e-4, 1e-2, 0.3};
   t->n = 1 + rng_index(r, MOST_JOINTS);
   const double speed = rng_log_uniform(r, 0.01, 300.0);
@@ -91,7 +105,7 @@ static void round_robot_make(rng *r, round_robot *t) {
                                .axis = axis,
                                .variable = (int32_t)i,
                                .multiplier = 1.0};
-    t->body[i] = round_body(r, rng_index(r, 7));
+    t->body[i] = round_body(r, first + rng_index(r, end - first));
     const cprox_pose at = rng_index(r, 4) ? on_axis(r, axis, OFF[rng_index(r, 5)]) : rng_pose(r, 0.8);
     t->geometries[i] = (cprox_link_geometry){.body = t->body[i], .pose = at, .link = (int32_t)i};
     variables[i] = (int32_t)i;
@@ -102,7 +116,7 @@ static void round_robot_make(rng *r, round_robot *t) {
   for (size_t k = 0; k < 2; k++) points[k] = (cprox_waypoint){.time = (double)k, .positions = t->values[k]};
   t->body[t->n] = NULL;
   if (rng_index(r, 8))
-    t->body[t->n] = round_body(r, rng_index(r, 7));
+    t->body[t->n] = round_body(r, rng_index(r, end));
   else
     assert_int_equal(cprox_body_create_halfspace(rng_unit(r), -rng_uniform(r, 0.2, 1.5), ws, &t->body[t->n]), CPROX_OK);
   const cprox_pose beside = on_axis(r, t->links[0].axis, OFF[rng_index(r, 5)]);
@@ -149,40 +163,52 @@ static double distance_at(const round_robot *t, size_t geometry, int32_t other, 
 /* What distances are measured to, and computed poses may be off at lengths below 4 and angles below 600. */
 static const double ROUNDING = 1e-10 + 1e-11;
 
-/* 3,000 robots of up to three joints (seed 411) that turn by up to 600 rad, their bodies on the axes of their joints or
- * off by 1e-9 … 0.3, what stands on the axis of the first: at 60 times none is nearer than `lower`, and at the time of the
- * best they are as near as `upper`. */
-CASE(what_turns_about_its_own_axis_is_never_nearer_than_lower) {
+/* A random robot: at 60 times none of one pair's distances is below `lower`, and at the time of the best they are as near
+ * as `upper`. Whether the search ended. */
+static bool agrees_with_samples(rng *r, size_t first, size_t end, size_t number) {
   enum { SAMPLES = 60 };
+  round_robot t;
+  round_robot_make(r, first, end, &t);
+  const size_t geometry = rng_index(r, t.n);
+  const int32_t other = geometry > 0 && rng_index(r, 2) ? (int32_t)rng_index(r, geometry) : -1;
+  const cprox_robot_pair pair = {.geometry = (int32_t)geometry, .other = other};
+  const cprox_robot_pair with = {.geometry = (int32_t)geometry, .other = 0};
+  cprox_options options = accurate(rng_log_uniform(r, 1e-9, 1e-2));
+  options.max_nodes = 300;
+  cprox_result found;
+  const cprox_status status =
+      other < 0 ? cprox_distance(cprox_robot_along(t.motion, &with, 1), t.obstacle, &options, ws, &found)
+                : cprox_obstacles_distance(NULL, cprox_robot_self(t.motion, &pair, 1), &options, ws, &found, NULL);
+  assert_true(status == CPROX_OK || status == CPROX_BUDGET || status == CPROX_OVERLAP || status == CPROX_PRECISION);
+  double least = distance_at(&t, geometry, other, found.t);
+  if (least > found.upper + ROUNDING) fail_msg("case %zu: %.17g at %g, not %.17g", number, least, found.t, found.upper);
+  for (int k = 0; k <= SAMPLES; k++) {
+    const double time = (k + (k > 0 && k < SAMPLES ? rng_uniform(r, -0.5, 0.5) : 0.0)) / SAMPLES;
+    least = lesser(distance_at(&t, geometry, other, time), least);
+  }
+  if (found.lower > least + ROUNDING) fail_msg("case %zu: lower %.17g, but %.17g", number, found.lower, least);
+  if (status == CPROX_OK) assert_true(found.upper <= least + options.epsilon + ROUNDING);
+  round_robot_free(&t);
+  return status == CPROX_OK;
+}
+
+/* 3,000 robots of up to three joints (seed 411) that turn by up to 600 rad, their bodies on the axes of their joints or
+ * off by 1e-9 … 0.3, what stands on the axis of the first. */
+CASE(what_turns_about_its_own_axis_is_never_nearer_than_lower) {
   rng r = rng_seed(411);
   const size_t cases = test_cases(3000);
   size_t answered = 0;
-  for (size_t i = 0; i < cases; i++) {
-    round_robot t;
-    round_robot_make(&r, &t);
-    const size_t geometry = rng_index(&r, t.n);
-    const int32_t other = geometry > 0 && rng_index(&r, 2) ? (int32_t)rng_index(&r, geometry) : -1;
-    const cprox_robot_pair pair = {.geometry = (int32_t)geometry, .other = other};
-    const cprox_robot_pair with = {.geometry = (int32_t)geometry, .other = 0};
-    cprox_options options = accurate(rng_log_uniform(&r, 1e-9, 1e-2));
-    options.max_nodes = 300;
-    cprox_result found;
-    const cprox_status status =
-        other < 0 ? cprox_distance(cprox_robot_along(t.motion, &with, 1), t.obstacle, &options, ws, &found)
-                  : cprox_obstacles_distance(NULL, cprox_robot_self(t.motion, &pair, 1), &options, ws, &found, NULL);
-    assert_true(status == CPROX_OK || status == CPROX_BUDGET || status == CPROX_OVERLAP || status == CPROX_PRECISION);
-    double least = distance_at(&t, geometry, other, found.t);
-    if (least > found.upper + ROUNDING) fail_msg("case %zu: %.17g at %g, not %.17g", i, least, found.t, found.upper);
-    for (int k = 0; k <= SAMPLES; k++) {
-      const double time = (k + (k > 0 && k < SAMPLES ? rng_uniform(&r, -0.5, 0.5) : 0.0)) / SAMPLES;
-      least = lesser(distance_at(&t, geometry, other, time), least);
-    }
-    if (found.lower > least + ROUNDING) fail_msg("case %zu: lower %.17g, but %.17g", i, found.lower, least);
-    if (status == CPROX_OK) assert_true(found.upper <= least + options.epsilon + ROUNDING);
-    answered += status == CPROX_OK;
-    round_robot_free(&t);
-  }
+  for (size_t i = 0; i < cases; i++) answered += agrees_with_samples(&r, 0, BY_INEQUALITIES, i);
   assert_true(2 * answered > cases);
+}
+
+/* 500 of the same (seed 413) whose links are superquadrics of exponents 1.2 … 50, and the implicit paper's objects. */
+CASE(links_by_inequalities_are_never_nearer_than_lower) {
+  rng r = rng_seed(413);
+  const size_t cases = test_cases(500);
+  size_t answered = 0;
+  for (size_t i = 0; i < cases; i++) answered += agrees_with_samples(&r, BY_INEQUALITIES, KINDS, i);
+  assert_true(3 * answered > cases);
 }
 
 /* ---- cost ---- */
