@@ -398,8 +398,8 @@ static void meshes(const bench_size *size, cprox_body *const *object, bench_stat
     const bench_workload w = {
         .group = "implicit", .name = "as meshes", .parameter = names[k], .problems = problems, .n = size->problems};
     const bench_method methods[] = {
-        {"curve_proximity", hybrid, s},
-        {"curve_proximity meshes", meshes_ours, s},
+        {"curve_proximity bodies", hybrid, s},
+        {"curve_proximity", meshes_ours, s},
 #ifdef CPROX_BENCH_FCL
         {"fcl meshes", meshes_fcl, s},
 #endif
