@@ -380,7 +380,8 @@ static finding find(const problem *p, const unsigned char *bytes, size_t size) {
   found.delta = reader_number(&in);
   const uint32_t claimed = reader_count(&in), sections = reader_count(&in);
   if (in.bad || memcmp(magic, "CPC1", 4) != 0 || (width != 4 && width != 8) || !(found.delta >= 0.0)) {
-    found.fault = "it is no certificate";
+    const bool other = memcmp(magic, "CPC", 3) == 0 && magic[3] > '1' && magic[3] <= '9';
+    found.fault = other ? "it is a certificate of a later version" : "it is no certificate";
     return found;
   }
 

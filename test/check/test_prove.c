@@ -86,6 +86,12 @@ CASE(what_is_cut_off_or_about_another_query_proves_nothing) {
       const proof cut = prove(s->text, s->length, s->bytes, size);
       assert_true(!cut.apart && !cut.near && cut.fault[0] != 0);
     }
+    sample other = *s;
+    other.bytes[3] = '2';
+    assert_string_equal(prove(s->text, s->length, other.bytes, s->size).fault,
+                        "it is a certificate of a later version");
+    memset(other.bytes, 'x', other.size);
+    assert_string_equal(prove(s->text, s->length, other.bytes, s->size).fault, "it is no certificate");
     for (size_t length = 0; length < s->length - 1; length += 1 + s->length / 20) {
       const proof cut = prove(s->text, length, s->bytes, s->size);
       assert_true(!cut.apart || cut.delta == s->delta); /* the last number may have lost digits that are 0 */
