@@ -215,7 +215,7 @@ class CertificateTest(Case):
         self.assertIn('other: proven: not farther than', self.check().out)
 
     def superquadrics_are_near_and_apart(self):
-        scene = BOX_SCENE + '    - {id: odd, bodies: [{type: superquadric, dimensions: [1, 1, 1, 3, 3, 1.5], pose: [8, 0, 1]}]}\n'
+        scene = BOX_SCENE + '    - {id: odd, bodies: [{type: superquadric, dimensions: [1, 1, 1, 3, 3, 1.5], pose: {position: [8, 0, 1]}}]}\n'
         answer = self.write('distance', [PASSING, bezier('other', (8, -4, 1), (8, 4, 1))], scene)
         self.assertEqual([row['proof'] for row in answer.rows], ['apart', 'near'], answer.err)
         self.assertEqual(self.check().code, 0)
