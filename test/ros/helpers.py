@@ -312,10 +312,14 @@ def raw_call(service, kind, data, seconds=60):
 SHADOW = range(0x7fff7000, 0x10007fff8000)  # of AddressSanitizer on x86-64
 
 
+def is_sanitized(pid):
+    with open('/proc/%d/maps' % pid) as maps:
+        return '/libasan.so' in maps.read()
+
+
 def resident_mb(pid):
     """Without AddressSanitizer's shadow: an eighth of each large block that is freed becomes resident there for a moment."""
-    with open('/proc/%d/maps' % pid) as maps:
-        sanitized = '/libasan.so' in maps.read()
+    sanitized = is_sanitized(pid)
     with open('/proc/%d/%s' % (pid, 'smaps' if sanitized else 'status')) as sizes:
         text = sizes.read()
     if not sanitized:
