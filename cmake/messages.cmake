@@ -10,10 +10,13 @@ set(CURVE_PROXIMITY_MESSAGES
   ConstraintResult.msg
   Curve.msg
   CurvePiece.msg
+  ExecutionErrors.msg
   Gradient.msg
   Hyperquadric.msg
   LinkPadding.msg
+  LinkPair.msg
   LinkScale.msg
+  ObjectMargins.msg
   Octree.msg
   PairQuery.msg
   PoseTrajectory.msg
@@ -25,6 +28,8 @@ set(CURVE_PROXIMITY_MESSAGES
   RobotTrajectory.msg
   SceneState.msg
   SensorState.msg
+  SpeedProfile.msg
+  SweptCells.msg
   TrajectoryConstraint.msg
   ViolationIntervals.msg
   Waypoint.msg
@@ -37,9 +42,13 @@ set(CURVE_PROXIMITY_SERVICES
   Distance.srv
   EvaluateConstraints.srv
   GetScene.srv
+  LimitSpeed.srv
+  ListLinkPairs.srv
+  ListMargins.srv
   ListViolations.srv
   MeasurePairs.srv
   NearestPairs.srv
+  SweepVolume.srv
   TimeOfContact.srv
   Tolerance.srv
 )

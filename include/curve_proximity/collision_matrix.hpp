@@ -25,8 +25,12 @@ struct LinkContact {
   cprox_result result{}; /**< of cprox_robot_box_collision(): clear means never, violated that they can touch */
   JointPositions
       posture;         /**< where their distance is result.upper: the joints between them that do not follow others */
-  std::string message; /**< why the verdict is undecided; else empty */
+  std::string message; /**< why the verdict is undecided; else empty. Of a robot whose geometry was not all read it is
+                            never clear */
 };
+
+/** "never", "always", "possible" or "undecided". */
+const char *contactName(const LinkContact &contact);
 
 /** Asks for all pairs of links. Immutable; shared by any number of threads, each with a workspace of its own. */
 class CollisionMatrix {

@@ -38,15 +38,17 @@ struct RobustAnswer {
    *  is that of the method, not that of an execution. Names, status, rounding and coverage as of askEnvironment(). */
   Answer answer;
 
-  /** With all bounds but timing times this the verdict is clear; 0: with none; infinity: the bounds do not matter. */
+  /** With all bounds but timing times this the verdict is clear; 0: with none; infinity: the bounds do not matter. Of
+   *  DISTANCE both are NaN. */
   double certified = 0.0;
   /** With all bounds times this it was not; infinity: no such scale was found. */
   double refused = 0.0;
 };
 
-/** query: TOLERANCE, or COLLISION for a delta of 0; takes no certificate, no per_object, no signed_distance and no
- *  moving_only. self: the robot against itself. Throws Error: a joint that the robot does not have or that follows
- *  another, a bound that is negative or not finite. Cost: at most ten verdicts. */
+/** query: any type; takes no certificate, no per_object, no signed_distance and no moving_only. Of DISTANCE the
+ *  answer has no verdict, and lower is the clearance that every execution keeps. self: the robot against itself.
+ *  Throws Error: a joint that the robot does not have or that follows another, a bound that is negative or not
+ *  finite. Cost: at most ten verdicts. */
 RobustAnswer askRobust(const RobotMotion &motion, bool self, const ErrorBounds &bounds, const Query &query,
                        Workspace &workspace);
 

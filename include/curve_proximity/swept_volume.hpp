@@ -26,19 +26,25 @@ struct SweptVolume {
 struct SweepOptions {
   double resolution = 0.01;                        /**< [m] above 0 */
   bool inside = false;                             /**< find the cells inside, too: several times the work */
+  std::vector<std::string> links;                  /**< these links and what they carry; empty: all of the motion's */
   unsigned threads = 0;                            /**< 0: as many as the machine has */
   std::size_t memory_limit = std::size_t{1} << 30; /**< bytes for the cells of the box round the motion */
-  bool (*stop)(void *) = nullptr;                  /**< polled; true ends the work with Error, status CPROX_STOPPED */
+  bool (*stop)(void *) = nullptr; /**< polled by all threads; true ends the work with Error, status CPROX_STOPPED */
+  void *stop_user = nullptr;      /**< its argument */
 };
 
 /** The swept volume of all links that the motion asks about, with their paddings and what they carry. Throws Error: a
- *  resolution that is not above 0, more memory than the limit (known before the work begins). */
+ *  resolution that is not above 0, an unknown link, more memory than the limit (known before the work begins). */
 SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options = {});
 
 /** The surface of the cells as triangles, a binary STL; `inside_only`: of the cells inside. Closed. */
 std::string toStl(const SweptVolume &volume, bool inside_only = false);
 
-/** The cells as an octree of the same resolution, in octomap's binary format. */
+/** The cells as an octree of the same resolution: a shape of an object. Throws Error: the volume is larger than an
+ *  octree of this resolution. */
+OctreeData toOctree(const SweptVolume &volume, bool inside_only = false);
+
+/** The same as a file in octomap's binary format. */
 std::string toOctomap(const SweptVolume &volume, bool inside_only = false);
 
 } // namespace curve_proximity

@@ -24,15 +24,6 @@ const DisabledPair *find(const std::vector<DisabledPair> &pairs, const std::stri
   return nullptr;
 }
 
-const char *nameOf(const LinkContact &contact) {
-  switch (contact.result.verdict) {
-    case CPROX_VERDICT_CLEAR: return "never";
-    case CPROX_VERDICT_VIOLATED: return contact.rigid ? "always" : "possible";
-    case CPROX_VERDICT_UNDECIDED: break;
-  }
-  return "undecided";
-}
-
 /* Why the new SRDF disables a pair; nothing: it does not. What a person decided stays; that two links never touch is
  * no decision. */
 std::string reasonOf(const LinkContact &contact, const DisabledPair *before) {
@@ -53,7 +44,7 @@ std::string postureOf(const LinkContact &contact) {
 }
 
 std::string lineOf(const LinkContact &contact, const DisabledPair *before, const std::string &reason) {
-  std::string line = quotedField(contact.a) + ',' + quotedField(contact.b) + ',' + nameOf(contact) + ',' +
+  std::string line = quotedField(contact.a) + ',' + quotedField(contact.b) + ',' + contactName(contact) + ',' +
                      (before ? quotedField(before->reason) : "") + ',' + quotedField(reason);
   appendField(line, contact.result.lower);
   appendField(line, contact.result.upper);

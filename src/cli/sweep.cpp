@@ -51,6 +51,7 @@ int sweepVolume(const Arguments &arguments, Console &console) {
     try {
       SweepOptions options;
       options.resolution = arguments.resolution;
+      options.links = arguments.query.links;
       options.inside = !arguments.inside.empty();
       options.threads = static_cast<unsigned>(arguments.threads);
       options.stop = interrupted;

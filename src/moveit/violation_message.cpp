@@ -27,7 +27,7 @@ Proximity toRow(const Answer &answer) {
   out.lower = result.lower;
   out.upper = result.upper;
   out.t = result.t;
-  out.t_b = out.t_contact_lower = out.second_distance = none;
+  out.t_b = out.t_contact_lower = out.certified_scale = out.refused_scale = out.second_distance = none;
   out.witness_a = toPoint(result.witness_mover);
   out.witness_b = toPoint(result.witness_obstacle);
   out.normal.x = result.normal.x;

@@ -436,7 +436,7 @@ void addMotions(py::module &module) {
            py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("links") = Names{},
            py::arg("objects") = Names{}, py::arg("allow_empty") = false, py::arg("moving_only") = false,
            "The k pairs that come closest, nearest first; each as distance() gives it.");
-  addRobust(motion);
+  addRobust(module, motion);
 }
 
 } // namespace curve_proximity::python

@@ -136,8 +136,13 @@ void addCurveQueries(SceneClass &scene);
 
 using MotionClass = py::class_<RobotMotion, std::shared_ptr<RobotMotion>>;
 
-/** Its methods about errors, persons and objects that may be moved. */
-void addRobust(MotionClass &motion);
+/** Its methods about errors, persons, objects that may be moved, and what it passes through. */
+void addRobust(py::module &module, MotionClass &motion);
+
+using RobotClass = py::class_<LoadedRobot, std::shared_ptr<LoadedRobot>>;
+
+/** Its method about links that can touch. */
+void addMatrix(RobotClass &robot);
 
 } // namespace curve_proximity::python
 #endif

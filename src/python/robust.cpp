@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Robots as they are: bounds of their errors, persons who may come, objects that may be moved. */
+/* Robots as they are: bounds of their errors, persons who may come, objects that may be moved, where a robot has been,
+ * which of its links can touch. */
+#include <algorithm>
 #include <set>
 
+#include <curve_proximity/collision_matrix.hpp>
 #include <curve_proximity/margins.hpp>
 #include <curve_proximity/robust.hpp>
 #include <curve_proximity/separation.hpp>
+#include <curve_proximity/swept_volume.hpp>
 
 #include "robots.h"
 
@@ -138,10 +142,84 @@ py::list marginsOf(const RobotMotion &motion, double within, double delta, doubl
   return out;
 }
 
+SweptVolume sweepOf(const RobotMotion &motion, double resolution, bool inside, const Names &links, unsigned threads) {
+  SweepOptions options;
+  options.resolution = resolution, options.inside = inside, options.links = links, options.threads = threads;
+  options.stop = interrupted;
+  return unlocked([&] { return sweptVolume(motion, options); });
+}
+
+py::array_t<std::int32_t> cellsOf(const SweptVolume &volume) {
+  const auto n = static_cast<py::ssize_t>(volume.cells.size());
+  py::array_t<std::int32_t> out({n, py::ssize_t{3}});
+  auto cells = out.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < n; ++i)
+    for (py::ssize_t k = 0; k < 3; ++k)
+      cells(i, k) = volume.cells[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+  return out;
+}
+
+py::array_t<bool> insideOf(const SweptVolume &volume) {
+  py::array_t<bool> out(static_cast<py::ssize_t>(volume.inside.size()));
+  std::copy(volume.inside.begin(), volume.inside.end(), out.mutable_data());
+  return out;
+}
+
+py::list matrixOf(const LoadedRobot &robot, double epsilon, Count max_nodes, const Names &links) {
+  const Scene scene(robot.robot);
+  const CollisionMatrix matrix(scene.snapshot());
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.epsilon = epsilon, options.max_nodes = max_nodes, options.stop = interrupted;
+  const auto isAsked = [&](const std::string &link) {
+    return links.empty() || std::find(links.begin(), links.end(), link) != links.end();
+  };
+  for (const std::string &link : links)
+    if (robot.robot->links().count(link) == 0) throw Error("the robot has no link '" + link + "'");
+  py::list out;
+  for (std::size_t i = 0; i < matrix.pairs().size(); ++i) {
+    if (!isAsked(matrix.pairs()[i][0]) && !isAsked(matrix.pairs()[i][1])) continue;
+    const LinkContact found = unlocked([&] { return matrix.ask(i, options, threadWorkspace()); });
+    py::dict row;
+    row["a"] = found.a, row["b"] = found.b, row["contact"] = contactName(found), row["adjacent"] = found.adjacent;
+    row["lower"] = found.result.lower, row["upper"] = found.result.upper, row["posture"] = py::cast(found.posture);
+    row["nodes"] = found.result.nodes, row["message"] = found.message;
+    out.append(row);
+  }
+  return out;
+}
+
+py::bytes stlOf(const SweptVolume &volume, bool inside_only) {
+  return toStl(volume, inside_only);
+}
+
+py::bytes octomapOf(const SweptVolume &volume, bool inside_only) {
+  return toOctomap(volume, inside_only);
+}
+
 } // namespace
 
-void addRobust(MotionClass &motion) {
+void addMatrix(RobotClass &robot) {
+  robot.def("collision_matrix", &matrixOf, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET,
+            py::arg("links") = Names{},
+            "Which links can touch for some joint values within the limits: a dict for each pair of a, b, contact\n"
+            "('never', 'always', 'possible' or 'undecided'), adjacent, lower, upper, posture (where their distance is\n"
+            "upper), nodes, message. links: only pairs with one of these.");
+}
+
+void addRobust(py::module &module, MotionClass &motion) {
+  py::class_<SweptVolume>(module, "SweptVolume", "Cells of a grid over what a robot passes through.")
+      .def_readonly("resolution", &SweptVolume::resolution, "[m] edge of a cell.")
+      .def_readonly("gap", &SweptVolume::gap, "[m] every point of a cell is so near what the robot passes through.")
+      .def_property_readonly("cells", &cellsOf,
+                             "(n, 3) whole numbers: a cell reaches from them to 1 more, times the resolution, in the\n"
+                             "fixed frame. The robot touches no other cell at any time.")
+      .def_property_readonly("inside", &insideOf, "(n,): does the robot fill the cell at one time, where asked?")
+      .def("to_stl", &stlOf, py::arg("inside_only") = false, "The closed surface of the cells: bytes of a binary STL.")
+      .def("to_octomap", &octomapOf, py::arg("inside_only") = false, "The cells as an octree: bytes of a .bt file.");
   motion
+      .def("sweep", &sweepOf, py::arg("resolution") = 0.01, py::arg("inside") = false, py::arg("links") = Names{},
+           py::arg("threads") = 0,
+           "The SweptVolume of the motion, of all links or of these, with what they carry. threads: 0 for all.")
       .def("robust", &robustOf, py::arg("errors"), py::arg("delta") = 0.0, py::arg("self_collision") = false,
            py::arg("epsilon") = 1e-6, py::arg("max_nodes") = DEFAULT_BUDGET, py::arg("links") = Names{},
            py::arg("objects") = Names{}, py::arg("allow_empty") = false,

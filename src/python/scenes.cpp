@@ -161,7 +161,9 @@ py::dict limitsOf(const LoadedRobot &loaded) {
 } // namespace
 
 void addScenes(py::module &module) {
-  py::class_<LoadedRobot, std::shared_ptr<LoadedRobot>>(module, "Robot", "A robot from its URDF. Immutable.")
+  RobotClass robot(module, "Robot", "A robot from its URDF. Immutable.");
+  addMatrix(robot);
+  robot
       .def_static("from_urdf", &load, py::arg("urdf"), py::arg("srdf") = py::none(), py::arg("packages") = Packages{},
                   "Reads the file of a URDF, and of an SRDF. packages: the folder of each package:// in them.")
       .def_property_readonly("name", [](const LoadedRobot &r) { return r.robot->name(); })

@@ -4,8 +4,12 @@
 #include <curve_proximity/ClearanceProfile.h>
 #include <curve_proximity/Collision.h>
 #include <curve_proximity/Distance.h>
+#include <curve_proximity/LimitSpeed.h>
+#include <curve_proximity/ListLinkPairs.h>
+#include <curve_proximity/ListMargins.h>
 #include <curve_proximity/ListViolations.h>
 #include <curve_proximity/NearestPairs.h>
+#include <curve_proximity/SweepVolume.h>
 #include <curve_proximity/TimeOfContact.h>
 #include <curve_proximity/Tolerance.h>
 #include <ros/console.h>
@@ -20,6 +24,7 @@
 
 #include "../scene/yaml/scene_change.h"
 #include "messages/scene_message.h"
+#include "queries/link_pairs.h"
 #include "transport/checked_stream.h"
 #include "transport/guard.h"
 #include "transport/memory_account.h"
@@ -66,6 +71,9 @@ double deltaOf(const Tolerance::Request &request) {
 double deltaOf(const ListViolations::Request &request) {
   return request.delta;
 }
+double deltaOf(const ListMargins::Request &request) {
+  return request.delta;
+}
 
 template <class Request>
 Question questionOf(const Request &) {
@@ -102,6 +110,39 @@ Question questionOf(const ListViolations::Request &request) {
   return question::Violations{request.resolution};
 }
 
+Question questionOf(const LimitSpeed::Request &request) {
+  const std::pair<const char *, double> no_default[] = {{"person_speed", request.person_speed},
+                                                        {"reaction_time", request.reaction_time},
+                                                        {"stopping_time", request.stopping_time}};
+  for (const auto &[name, value] : no_default)
+    if (!(value > 0.0)) throw Error(std::string(name) + " is " + std::to_string(value) + ": it must be above 0");
+  if (request.query.objects.empty()) throw Error("objects is empty: it names the objects in which persons may be");
+  question::Speed out;
+  out.separation = {request.person_speed,
+                    request.reaction_time,
+                    request.stopping_time,
+                    request.intrusion,
+                    request.person_position,
+                    request.robot_position,
+                    {}};
+  if (request.robot_speed != 0.0) out.separation.robot_speed = request.robot_speed;
+  if (request.intervals != 0) out.profile.intervals = request.intervals;
+  return out;
+}
+Question questionOf(const ListMargins::Request &request) {
+  question::Margins out;
+  if (request.within != 0.0) out.within = request.within;
+  return out;
+}
+Question questionOf(const SweepVolume::Request &request) {
+  question::Sweep out;
+  if (request.resolution != 0.0) out.options.resolution = request.resolution;
+  out.options.inside = request.inside != 0;
+  out.options.threads = 1; // the turn is this thread's
+  out.options.memory_limit = std::size_t{256} << 20;
+  return out;
+}
+
 template <class Request>
 bool isPerLink(const Request &) {
   return false;
@@ -119,9 +160,17 @@ void deliver(const QueryRequest &request, QueryResponse &answer, Distance::Respo
   response.results = std::move(answer.results);
 }
 void deliver(const QueryRequest &, QueryResponse &answer, ClearanceProfile::Response &response) {
-  response.profiles = takeProfiles(answer);
+  response.profiles = takeSummed<Profile>(answer);
 }
-
+void deliver(const QueryRequest &, QueryResponse &answer, LimitSpeed::Response &response) {
+  response.limits = takeSpeeds(answer);
+}
+void deliver(const QueryRequest &, QueryResponse &answer, ListMargins::Response &response) {
+  response.margins = takeSummed<ObjectMargins>(answer);
+}
+void deliver(const QueryRequest &, QueryResponse &answer, SweepVolume::Response &response) {
+  response.volumes = takeSummed<SweptCells>(answer);
+}
 void deliver(const QueryRequest &, QueryResponse &answer, ListViolations::Response &response) {
   response.violations = takeViolations(answer);
 }
@@ -201,6 +250,9 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   serveQueries<TimeOfContact>("time_of_contact", QueryType::COLLISION);
   serveQueries<ClearanceProfile>("clearance_profile", QueryType::DISTANCE);
   serveQueries<ListViolations>("violations", QueryType::TOLERANCE);
+  serveQueries<LimitSpeed>("speed_limits", QueryType::DISTANCE);
+  serveQueries<ListMargins>("margins", QueryType::TOLERANCE);
+  serveQueries<SweepVolume>("swept_volume", QueryType::DISTANCE);
   serve<ApplyScene>("apply_scene", SCENE_TIMES_WIRE,
                     [this](const Call &call, auto &request, auto &response) { applyScene(call, request, response); });
   serve<GetScene>("get_scene", QUERY_TIMES_WIRE,
@@ -216,6 +268,16 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
     Turn turn(turns_, call.client, waitUntil(call));
     TimeBudget budget(tuning_.budget_ms, call.arrival, stop_, &turn);
     pairs_.answer(request, response, budget);
+  });
+  serve<ListLinkPairs>("collision_matrix", SCENE_TIMES_WIRE, [this](const Call &call, auto &request, auto &response) {
+    Turn turn(turns_, call.client, waitUntil(call));
+    const double budget_ms = request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load();
+    if (!(budget_ms > 0.0)) throw Error("budget_ms is " + std::to_string(budget_ms) + ": it must be at least 0");
+    TimeBudget budget(budget_ms, call.arrival, stop_, &turn);
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    options.epsilon = tuning_.epsilon;
+    options.max_nodes = static_cast<std::uint32_t>(tuning_.max_nodes.load());
+    answerLinkPairs(request, response, live_, options, budget);
   });
   const auto take_object = [this](const CollisionObjectConstPtr &object) { takeObject(object); };
   const auto count_object = [this](const std::string &publisher, const CollisionObject &object) {

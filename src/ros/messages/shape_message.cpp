@@ -127,15 +127,6 @@ std::vector<shape_msgs::MeshTriangle> toTriangleMessages(const Triangles &triang
   return out;
 }
 
-Octree toOctreeMessage(const OctreeData &octree) {
-  Octree message;
-  message.binary = octree.binary;
-  message.id = octree.id;
-  message.resolution = octree.resolution;
-  message.data.assign(octree.data.begin(), octree.data.end());
-  return message;
-}
-
 template <std::size_t N>
 std::vector<double> toNumbers(const std::vector<std::array<double, N>> &rows) {
   std::vector<double> out;
@@ -201,6 +192,15 @@ void addPlane(CollisionObject &message, const ShapeDescription &shape) {
 }
 
 } // namespace
+
+Octree toOctreeMessage(const OctreeData &octree) {
+  Octree message;
+  message.binary = octree.binary;
+  message.id = octree.id;
+  message.resolution = octree.resolution;
+  message.data.assign(octree.data.begin(), octree.data.end());
+  return message;
+}
 
 ShapeDescription toShape(const Body &body) {
   const std::optional<ShapeType> type = shapeTypeFromName(body.type);

@@ -19,6 +19,9 @@ ShapeDescription toShape(const Body &body);
  *  above; poses that do not match the shapes; a cloud in another frame than the object's. */
 std::vector<ShapeDescription> toShapes(const CollisionObject &object);
 
+/** An octree as it stands in a message. */
+Octree toOctreeMessage(const OctreeData &octree);
+
 /** One shape more, in the list of the message that can hold it. Mesh files stay names of files. */
 void addShape(CollisionObject &message, const ShapeDescription &shape);
 

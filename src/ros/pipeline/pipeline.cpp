@@ -251,7 +251,7 @@ void Pipeline::tellClearance(const QueryRequest &request, const ProximityResults
     Drawing not_drawn;
     queries_.answer(again, answer, not_drawn);
     if (!answer.success && complaints_.isDue(answer.message)) ROS_WARN("~clearance: %s", answer.message.c_str());
-    for (const Profile &profile : takeProfiles(answer)) clearance_->publish(profile, begin);
+    for (const Profile &profile : takeSummed<Profile>(answer)) clearance_->publish(profile, begin);
   }
 }
 

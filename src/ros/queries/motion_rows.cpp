@@ -170,6 +170,8 @@ void Queries::answerMoving(const std::string &id, const std::vector<std::string>
       Proximity &row = work.response.add(std::move(details[i]));
       fillRow(answer, work.request.question, work.query.query_type, row);
       if (answer.result.status >= 0) addRemark(moving.remark, row);
+      if (const auto *scale = std::get_if<RobustScale>(&moving.rows[i].detail))
+        row.certified_scale = scale->certified, row.refused_scale = scale->refused;
       if (i < moving.proofs.size()) addProof(std::move(moving.proofs[i]), row);
     }
     if (moving.motion || !work.drawing.motion) {
@@ -195,6 +197,7 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
   answerMoving(id, {Proximity::KIND_MOVERS}, work, [&](Workspace &workspace, Moving &out) {
     work.lookup.begin();
     if (!work.query.links.empty()) throw Error("links and group do not apply to a body");
+    if (work.errors) throw Error("errors do not apply to a body");
     const Eigen::Isometry3d in_fixed = work.lookup.toFixed(frame, stamp);
     for (TimedPose &pose : poses) pose.pose = in_fixed * pose.pose;
     demandTime(work.query);
@@ -237,6 +240,7 @@ void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &traje
   }
   CurveSearch &search = curveSearch(work);
   try {
+    if (work.errors) throw Error("errors do not apply to what flies by itself");
     if (!work.request.more.moving_robots.empty())
       throw Error("moving_robots do not apply to what flies by itself: ask about it without");
     for (const Curve &curve : toCurves(trajectory, parameters_.path_radius)) answerCurve(curve, search, work);
@@ -320,7 +324,9 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
 
     Query environment = work.query;
     environment.links.clear(); // the motion has them
+    const ErrorBounds *errors = work.errors ? &*work.errors : nullptr;
     if (movesBeside(request.more, *work.snapshot)) {
+      if (errors) throw Error("errors do not apply among objects that move");
       const Surroundings around(work.snapshot, request.more, robots_, out.motion, stamp, out.trajectory.points.size(),
                                 work.lookup, mostBytes(), stopOf(work.query));
       const std::vector<std::string> own = ownNames(*work.snapshot, work.query.links);
@@ -330,14 +336,16 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
       out.movers = around.movers();
       out.robots.assign(around.robots().begin() + 1, around.robots().end());
     } else {
-      out.ask(MotionSubject{*out.motion, false}, covered(environment, work.joints.age, true, work), request, workspace);
+      const bool by_objects = !asksFor<question::Sweep>(request.question);
+      out.ask(MotionSubject{*out.motion, false, errors}, covered(environment, work.joints.age, by_objects, work),
+              request, workspace);
     }
     if (!request.more.self_collision) return;
     Query self = environment; // of no objects
     self.per_object = false;
     self.objects.clear();
     if (request.turn) request.turn->yield();
-    out.ask(MotionSubject{*out.motion, true}, covered(self, work.joints.age, false, work), request, workspace);
+    out.ask(MotionSubject{*out.motion, true, errors}, covered(self, work.joints.age, false, work), request, workspace);
   });
 }
 

@@ -12,8 +12,37 @@
 namespace curve_proximity {
 namespace {
 
+constexpr std::size_t DIRECTIONS = 7; /* of an object's margins */
+
 /** Of a row: itself, its answer in the scene's form, its bytes on the wire, names of usual length. */
 constexpr std::size_t ROW_BYTES = 2 * sizeof(Proximity) + sizeof(Answer) + 512;
+
+double numberOf(const std::vector<double> &numbers, std::size_t i, std::size_t joints) {
+  if (numbers.size() != joints && !numbers.empty())
+    throw Error("errors: a list has " + std::to_string(numbers.size()) + " numbers for " + std::to_string(joints) +
+                " joints");
+  return numbers.empty() ? 0.0 : numbers[i];
+}
+
+std::optional<ErrorBounds> toErrors(const std::vector<ExecutionErrors> &messages) {
+  if (messages.empty()) return std::nullopt;
+  if (messages.size() > 1) throw Error("there are " + std::to_string(messages.size()) + " errors: give one");
+  const ExecutionErrors &message = messages.front();
+  ErrorBounds out;
+  out.every_joint = {message.tracking, message.speed, message.acceleration};
+  const std::size_t n = message.joints.size();
+  for (std::size_t i = 0; i < n; ++i)
+    out.joints[message.joints[i]] = {numberOf(message.joint_tracking, i, n), numberOf(message.joint_speed, i, n),
+                                     numberOf(message.joint_acceleration, i, n)};
+  out.timing = message.timing;
+  out.base_position = message.base_position;
+  out.base_rotation = message.base_rotation;
+  out.object_position = message.object_position;
+  out.object_rotation = message.object_rotation;
+  out.sensor = message.sensor;
+  out.flex = message.flex;
+  return out;
+}
 
 } // namespace
 
@@ -21,19 +50,21 @@ std::string Queries::numbered(const std::string &name, std::size_t i, std::size_
   return all == 1 ? name : name + "/" + std::to_string(i);
 }
 
-std::vector<Profile> takeProfiles(QueryResponse &answer) {
-  std::vector<Profile> profiles = answer.takeDetails<Profile>();
-  for (std::size_t i = 0; i < profiles.size(); ++i) profiles[i].summary = std::move(answer.results[i]);
-  return profiles;
+std::vector<SpeedProfile> takeSpeeds(QueryResponse &answer) {
+  std::vector<SpeedProfile> speeds = answer.takeDetails<SpeedProfile>();
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    SpeedProfile &speed = speeds[i];
+    speed.profile.summary = std::move(answer.results[i]);
+    if (speed.overrides.empty()) speed.constant = speed.unwatched = NAN; // there is no answer
+  }
+  return speeds;
 }
 
 std::vector<ViolationIntervals> takeViolations(QueryResponse &answer) {
-  std::vector<ViolationIntervals> violations = answer.takeDetails<ViolationIntervals>();
-  for (std::size_t i = 0; i < violations.size(); ++i) {
-    violations[i].summary = std::move(answer.results[i]);
-    for (std::string &a : violations[i].a)
-      if (a.empty()) a = violations[i].summary.a; // a curve is one thing
-  }
+  std::vector<ViolationIntervals> violations = takeSummed<ViolationIntervals>(answer);
+  for (ViolationIntervals &found : violations)
+    for (std::string &a : found.a)
+      if (a.empty()) a = found.summary.a; // a curve is one thing
   return violations;
 }
 
@@ -71,6 +102,10 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
     throw Error("self_collision is about the robot along a trajectory or as it stands (robot_state): there is neither");
   if (!more.moving_robots.empty() && motions == 0 && !more.robot_state && !more.movers)
     throw Error("moving_robots are about trajectories, robot_state or movers: there is none of these");
+  if (!more.errors.empty() &&
+      (request.curves.size() + request.paths.size() > 0 || !more.moving_robots.empty() || more.movers))
+    throw Error(
+        "errors are those of the robot among objects that stand: ask about its trajectories or robot_state alone");
   if (!more.moving_robots.empty() && request.curves.size() + request.paths.size() > 0)
     throw Error("moving_robots do not apply to curves and paths: ask about them without");
   Query query;
@@ -140,6 +175,8 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   if (const auto *nearest = std::get_if<question::Nearest>(&request.question)) targets = nearest->limits.count;
   if (const auto *profile = std::get_if<question::Profile>(&request.question))
     targets = std::max(profile->intervals, profile->breaks.size());
+  if (const auto *speed = std::get_if<question::Speed>(&request.question)) targets = speed->profile.intervals;
+  if (asksFor<question::Margins>(request.question)) targets = DIRECTIONS * (snapshot.objects().size() + 1);
   if (asksFor<question::Violations>(request.question)) targets = MOST_VIOLATIONS;
   demandAtMost("max_results", parameters_.max_results, targets, "results");
   const bool often = !asksFor<question::Search, question::Gradient>(request.question) &&
@@ -152,6 +189,7 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   demandAtMost("max_results", parameters_.max_results, rows, "results");
   constexpr std::size_t VECTOR = 3 * sizeof(double), COPIES = 2, KINDS = 2, DERIVATIVES = 3;
   std::size_t bytes = rows * ROW_BYTES + points * memory::OF_POINT + values * memory::OF_VALUE;
+  if (const auto *sweep = std::get_if<question::Sweep>(&request.question)) bytes += sweep->options.memory_limit;
   if (asksFor<question::Gradient>(request.question))
     bytes += COPIES * (rows * sizeof(Gradient) + points * VECTOR + values * KINDS * DERIVATIVES * sizeof(double));
   return bytes;
@@ -188,6 +226,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
   const bool current = request.more.current_joints || request.more.robot_state;
   Work work{request,
             snapshot,
+            toErrors(request.more.errors),
             std::move(query),
             FrameLookup(frames_, request.turn),
             currentJoints(request.more.joint_state, current && snapshot->robot(), live_.joints,

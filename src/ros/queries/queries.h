@@ -21,6 +21,7 @@
 #include <curve_proximity/srdf.hpp>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -146,7 +147,13 @@ struct QueryResponse {
 };
 
 /** The details, each with its row as its summary. */
-std::vector<Profile> takeProfiles(QueryResponse &answer);
+template <class Message>
+std::vector<Message> takeSummed(QueryResponse &answer) {
+  std::vector<Message> out = answer.takeDetails<Message>();
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].summary = std::move(answer.results[i]);
+  return out;
+}
+std::vector<SpeedProfile> takeSpeeds(QueryResponse &answer);
 std::vector<ViolationIntervals> takeViolations(QueryResponse &answer);
 
 /** What the markers show of a query. */
@@ -209,6 +216,7 @@ class Queries {
   struct Work {
     const QueryRequest &request;
     const SnapshotPtr snapshot;
+    const std::optional<ErrorBounds> errors;
     Query query;
     FrameLookup lookup;
     CurrentJoints joints;

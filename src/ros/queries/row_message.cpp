@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "queries/row_message.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "messages/geometry_message.h"
 #include "messages/gradient_message.h"
+#include "messages/shape_message.h"
 
 namespace curve_proximity {
 namespace {
@@ -46,6 +48,41 @@ Profile toMessage(const std::vector<ClearanceInterval> &intervals) {
   return message;
 }
 
+SpeedProfile toMessage(const SpeedLimits &limits) {
+  SpeedProfile message;
+  message.profile = toMessage(limits.profile);
+  message.overrides = limits.overrides;
+  message.constant = limits.constant;
+  message.unwatched = limits.unwatched;
+  return message;
+}
+
+ObjectMargins toMessage(const std::vector<ObjectMargin> &margins) {
+  ObjectMargins message;
+  for (const ObjectMargin &margin : margins) {
+    message.object.push_back(margin.object);
+    message.direction.push_back(margin.direction);
+    message.free.push_back(margin.free);
+    message.blocked.push_back(margin.blocked);
+    message.t.push_back(margin.t);
+    message.a.push_back(margin.a);
+    message.toward.push_back(toVectorMessage(margin.toward));
+    message.converged.push_back(margin.status == CPROX_OK);
+  }
+  return message;
+}
+
+SweptCells toMessage(const SweptVolume &volume) {
+  SweptCells message;
+  const auto inside = std::count(volume.inside.begin(), volume.inside.end(), true);
+  if (!volume.cells.empty()) message.outside = toOctreeMessage(toOctree(volume));
+  if (inside > 0) message.inside = toOctreeMessage(toOctree(volume, true));
+  message.outside_cells = static_cast<std::uint32_t>(volume.cells.size());
+  message.inside_cells = static_cast<std::uint32_t>(inside);
+  message.gap = volume.gap;
+  return message;
+}
+
 } // namespace
 
 void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
@@ -64,14 +101,12 @@ void fillRow(const Answer &answer, QueryType query_type, Proximity &message) {
   message.t = result.t;
   const bool on_curve = answer.kind == Proximity::KIND_CURVE && result.obstacle_index >= 0;
   message.t_b = on_curve ? result.t_obstacle : std::numeric_limits<double>::quiet_NaN();
-  message.t_contact_lower = std::numeric_limits<double>::quiet_NaN();
+  message.t_contact_lower = message.certified_scale = message.refused_scale = std::numeric_limits<double>::quiet_NaN();
   message.second_opinion = secondOpinionName(answer.second_opinion.verdict);
   message.second_distance = answer.second_opinion.distance;
   message.witness_a = toPointMessage(result.witness_mover);
   message.witness_b = toPointMessage(result.witness_obstacle);
-  message.normal.x = result.normal.x;
-  message.normal.y = result.normal.y;
-  message.normal.z = result.normal.z;
+  message.normal = toVectorMessage(toEigen(result.normal));
   message.a = answer.a;
   message.b = answer.b;
   message.nodes = result.nodes;
@@ -88,6 +123,7 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   message.kind = kind;
   message.status = cprox_status_name(CPROX_INVALID);
   message.lower = message.upper = message.t = message.t_b = message.t_contact_lower = message.second_distance = none;
+  message.certified_scale = message.refused_scale = none;
   message.witness_a.x = message.witness_a.y = message.witness_a.z = none;
   message.witness_b = message.witness_a;
   message.normal.x = message.normal.y = message.normal.z = none;
@@ -108,6 +144,9 @@ DetailMessage toMessage(const Row &row, const TrajectoryDescription *trajectory)
   if (const auto *gradient = std::get_if<CurveGradient>(&row.detail)) return toMessage(*gradient);
   if (const auto *gradient = std::get_if<ClearanceGradient>(&row.detail)) return toMessage(*gradient, *trajectory);
   if (const auto *found = std::get_if<Violations>(&row.detail)) return toMessage(*found);
+  if (const auto *limits = std::get_if<SpeedLimits>(&row.detail)) return toMessage(*limits);
+  if (const auto *margins = std::get_if<std::vector<ObjectMargin>>(&row.detail)) return toMessage(*margins);
+  if (const auto *volume = std::get_if<SweptVolume>(&row.detail)) return toMessage(*volume);
   const auto *intervals = std::get_if<std::vector<ClearanceInterval>>(&row.detail);
   if (!intervals) return {};
   Profile profile = toMessage(*intervals);

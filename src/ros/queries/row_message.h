@@ -4,8 +4,11 @@
 #define CURVE_PROXIMITY_ROS_ROW_MESSAGE_H
 
 #include <curve_proximity/Gradient.h>
+#include <curve_proximity/ObjectMargins.h>
 #include <curve_proximity/Profile.h>
 #include <curve_proximity/Proximity.h>
+#include <curve_proximity/SpeedProfile.h>
+#include <curve_proximity/SweptCells.h>
 #include <curve_proximity/ViolationIntervals.h>
 
 #include <cstdint>
@@ -20,7 +23,8 @@
 namespace curve_proximity {
 
 /** What a row has beside its results message; nothing for rows without an answer. Summaries are not filled in. */
-using DetailMessage = std::variant<std::monostate, Gradient, Profile, ViolationIntervals>;
+using DetailMessage =
+    std::variant<std::monostate, Gradient, Profile, ViolationIntervals, SpeedProfile, ObjectMargins, SweptCells>;
 
 /** So many violations of one curve or motion are listed at most; where there are more, that is an error. */
 constexpr std::size_t MOST_VIOLATIONS = 256;

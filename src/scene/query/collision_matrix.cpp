@@ -81,7 +81,26 @@ void refuseSeveralValues(const Robot::Joint &joint) {
     throw Error("joint '" + joint.name + "' has several values without limits: the links behind it may be anywhere");
 }
 
+/* Geometry that was not read may be that of these links. */
+void cover(const Coverage &coverage, LinkContact &contact) {
+  if (coverage.complete()) return;
+  contact.result.lower = 0.0;
+  const bool never = contact.result.verdict == CPROX_VERDICT_CLEAR;
+  if (!never && coverage.provesContact()) return;
+  contact.result.verdict = CPROX_VERDICT_UNDECIDED;
+  contact.message = coverage.message();
+}
+
 } // namespace
+
+const char *contactName(const LinkContact &contact) {
+  switch (contact.result.verdict) {
+    case CPROX_VERDICT_CLEAR: return "never";
+    case CPROX_VERDICT_VIOLATED: return contact.rigid ? "always" : "possible";
+    case CPROX_VERDICT_UNDECIDED: break;
+  }
+  return "undecided";
+}
 
 CollisionMatrix::CollisionMatrix(SnapshotPtr snapshot) {
   auto data = std::make_unique<Data>();
@@ -130,6 +149,7 @@ LinkContact CollisionMatrix::ask(std::size_t pair, const cprox_options &options,
                                                         &options, workspace.get(), &out.result, state.data());
   if (status < 0) throw Error(workspace.reason(), status);
   if (out.result.verdict == CPROX_VERDICT_UNDECIDED) out.message = workspace.reason();
+  cover(kinematics.robot->coverage(), out);
   for (const std::string &joint : movers)
     out.posture[joint] = state[static_cast<std::size_t>(kinematics.variables.at(joint))];
   return out;

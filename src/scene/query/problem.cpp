@@ -117,6 +117,8 @@ std::string unprovable(const CurveDescription &curve) {
 
 std::string unprovable(const Subject &subject) {
   if (std::holds_alternative<MoversSubject>(subject)) return "what moves on one clock has no certificates";
+  const auto *motion = std::get_if<MotionSubject>(&subject);
+  if (motion && motion->errors) return "an answer about errors has no certificate";
   const auto *curve = std::get_if<CurveSubject>(&subject);
   return curve ? unprovable(*curve->description) : "";
 }

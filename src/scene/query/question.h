@@ -12,6 +12,8 @@
 #include <vector>
 
 #include <curve_proximity/query.hpp>
+#include <curve_proximity/separation.hpp>
+#include <curve_proximity/swept_volume.hpp>
 
 namespace curve_proximity {
 namespace question {
@@ -42,10 +44,27 @@ struct Violations {
   double resolution = 0.0; /**< in units of the parameter; 0: a thousandth of the domain */
 };
 
+/** How fast the robot may go while persons, who are in the objects, may walk up to it. */
+struct Speed {
+  Separation separation;
+  Profile profile; /**< the intervals of the limits */
+};
+
+/** How far each object may be moved before the motion is no longer farther than Query::delta. */
+struct Margins {
+  double within = 1.0; /**< [m] objects are moved no farther */
+};
+
+/** What the robot passes through. */
+struct Sweep {
+  SweepOptions options; /**< its stop function is not used: that of the query is */
+};
+
 } // namespace question
 
-using Question = std::variant<question::Search, question::Gradient, question::Nearest, question::Contact,
-                              question::Profile, question::Violations>;
+using Question =
+    std::variant<question::Search, question::Gradient, question::Nearest, question::Contact, question::Profile,
+                 question::Violations, question::Speed, question::Margins, question::Sweep>;
 
 /** distance, tolerance or collision. */
 std::optional<QueryType> queryTypeFromName(const std::string &name);

@@ -83,7 +83,7 @@ RobustAnswer askRobust(const RobotMotion &motion, bool self, const ErrorBounds &
   const Clock::time_point start = Clock::now();
   const RobotPairs against = pairsOf(self);
   const bool distance = query.query_type == QueryType::DISTANCE;
-  check(query, against, distance ? "errors are asked about by a tolerance or collision" : "");
+  check(query, against, "");
   const CoreErrors errors(motion, bounds);
   const Asked asked = askedOf(motion, against, query);
   cprox_result result{};
@@ -95,12 +95,18 @@ RobustAnswer askRobust(const RobotMotion &motion, bool self, const ErrorBounds &
   } else {
     const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
     const cprox_options options = withoutRounding(query.options, asked.rounding);
-    result.status = cprox_robust_tolerance(obstacles.get(), asked.mover(), query.delta, errors.get(), &options,
-                                           workspace.get(), &result);
+    result.status = distance ? cprox_robust_distance(obstacles.get(), asked.mover(), errors.get(), &options,
+                                                     workspace.get(), &result)
+                             : cprox_robust_tolerance(obstacles.get(), asked.mover(), query.delta, errors.get(),
+                                                      &options, workspace.get(), &result);
     if (result.status < 0) throw Error(workspace.reason(), result.status);
   }
   RobustAnswer out;
   out.answer = toAnswer(asked, result, query, workspace, start);
+  if (distance) {
+    out.certified = out.refused = std::numeric_limits<double>::quiet_NaN();
+    return out;
+  }
   if (!asked.pairs.empty() && !out.answer.gap) {
     const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
     const cprox_status status = cprox_robust_find_scale(obstacles.get(), asked.mover(), query.delta + asked.rounding,

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "answering.h"
+#include "motion/motion_data.h"
 #include "motion/movers_data.h"
 
 namespace curve_proximity {
@@ -140,21 +141,62 @@ std::vector<ClearanceInterval> unmeasured(const std::vector<double> &breaks, con
   return out;
 }
 
+/* The motion that questions about a robot among objects that stand are about. */
+const RobotMotion &motionAmongObjects(const Subject &subject, const char *question) {
+  const auto *motion = std::get_if<MotionSubject>(&subject);
+  if (!motion || motion->self)
+    throw Error(std::string(question) + " are about a robot along a trajectory and objects that stand");
+  return motion->motion;
+}
+
+/* The cover, or that there is none. */
+Row swept(const RobotMotion &motion, SweepOptions options, const Query &query) {
+  const Clock::time_point start = Clock::now();
+  options.stop = query.options.stop, options.stop_user = query.options.stop_user;
+  Row out;
+  Answer &answer = out.answer;
+  answer.kind = "environment";
+  answer.result.obstacle_index = -1;
+  answer.result.upper = INFINITE;
+  answer.result.verdict = CPROX_VERDICT_UNDECIDED;
+  try {
+    out.detail = sweptVolume(motion, options);
+  } catch (const Error &error) {
+    if (error.status() != CPROX_STOPPED) throw;
+    answer.result.status = CPROX_STOPPED;
+    SweptVolume nothing;
+    nothing.resolution = options.resolution;
+    nothing.gap = INFINITE;
+    out.detail = std::move(nothing);
+  }
+  answer.status = cprox_status_name(answer.result.status);
+  answer.microseconds = microsecondsSince(start);
+  applyCoverage(coverageOf(query, motion.data().coverage, ""), query, answer);
+  return out;
+}
+
 /* The rows of one question about one part of a subject. */
 class Answering {
  public:
   Answering(const Subject &subject, const Part &part, const Query &query, Beside beside, Workspace &workspace)
-      : subject_(subject), part_(part), query_(query), beside_(beside), workspace_(workspace) {}
+      : subject_(subject), part_(part), query_(query), beside_(beside), workspace_(workspace) {
+    const auto *motion = std::get_if<MotionSubject>(&subject);
+    if (motion && motion->errors) erring_ = motion;
+  }
 
   void operator()(const question::Search &) {
-    add(search());
+    if (!erring_) return add(search());
+    RobustAnswer found = askRobust(erring_->motion, erring_->self, *erring_->errors, query_, workspace_);
+    rows_.push_back({part_, std::move(found.answer), RobustScale{found.certified, found.refused}});
   }
   void operator()(const question::Gradient &) {
+    refuseErrors("a gradient");
     rows_.push_back(
         std::visit([&](const auto &subject) { return differentiated(subject, query_, workspace_); }, subject_));
     rows_.back().part = part_;
   }
   void operator()(const question::Nearest &nearest) {
+    refuseErrors("a list of nearest pairs");
     std::vector<Answer> pairs = about(subject_, [&](const auto &what, const auto &whom) {
       return nearestPairs(what, whom, nearest.limits, query_, workspace_);
     });
@@ -162,22 +204,43 @@ class Answering {
     add(by_search ? search() : std::move(pairs));
   }
   void operator()(const question::Contact &) {
+    if (erring_) {
+      constexpr double PART = 1e-4; // of the duration: how near the time is searched for
+      const std::array<double, 2> all = erring_->motion.domain();
+      const double resolution = all[1] > all[0] ? PART * (all[1] - all[0]) : 1.0;
+      return add(
+          {robustTimeOfContact(erring_->motion, erring_->self, *erring_->errors, resolution, query_, workspace_)});
+    }
     add({about(subject_,
                [&](const auto &what, const auto &whom) { return timeOfContact(what, whom, query_, workspace_); })});
   }
   void operator()(const question::Profile &profile) {
-    const std::vector<double> breaks = breaksOf(profile, domainOf(subject_));
-    addDetail([&](const auto &what, const auto &whom) {
-      return clearanceProfile(what, whom, breaks, query_, workspace_, profile.horizon);
-    });
+    addDetail([&] { return profiled(profile); });
   }
   void operator()(const question::Violations &violations) {
+    refuseErrors("a list of violations");
     constexpr double PART = 1e-3;
     const std::array<double, 2> all = domainOf(subject_);
     const double resolution = violations.resolution > 0.0 ? violations.resolution : PART * (all[1] - all[0]);
-    addDetail([&](const auto &what, const auto &whom) {
-      return curve_proximity::violations(what, whom, resolution, query_, workspace_);
+    addDetail([&] {
+      return about(subject_, [&](const auto &what, const auto &whom) {
+        return curve_proximity::violations(what, whom, resolution, query_, workspace_);
+      });
     });
+  }
+  void operator()(const question::Speed &speed) {
+    motionAmongObjects(subject_, "limits of the speed");
+    addDetail([&] { return limitSpeed(profiled(speed.profile), speed.separation); });
+  }
+  void operator()(const question::Margins &margins) {
+    const RobotMotion &motion = motionAmongObjects(subject_, "margins");
+    refuseErrors("a list of margins");
+    addDetail([&] { return objectMargins(motion, margins.within, query_, workspace_); });
+  }
+  void operator()(const question::Sweep &sweep) {
+    refuseErrors("a swept volume");
+    rows_.push_back(swept(motionAmongObjects(subject_, "swept volumes"), sweep.options, query_));
+    rows_.back().part = part_;
   }
 
   std::vector<Row> rows() {
@@ -185,7 +248,20 @@ class Answering {
   }
 
  private:
+  void refuseErrors(const char *what) const {
+    if (erring_) throw Error(std::string("errors do not apply to ") + what);
+  }
+  std::vector<ClearanceInterval> profiled(const question::Profile &profile) const {
+    const std::vector<double> breaks = breaksOf(profile, domainOf(subject_));
+    if (erring_ && profile.horizon == INFINITE)
+      return robustProfile(erring_->motion, erring_->self, *erring_->errors, breaks, query_, workspace_);
+    if (erring_) throw Error("errors do not apply with a horizon");
+    return about(subject_, [&](const auto &what, const auto &whom) {
+      return clearanceProfile(what, whom, breaks, query_, workspace_, profile.horizon);
+    });
+  }
   std::vector<Answer> search() const {
+    if (erring_) return {askRobust(erring_->motion, erring_->self, *erring_->errors, query_, workspace_).answer};
     return std::visit([&](const auto &subject) { return searched(subject, query_, workspace_); }, subject_);
   }
   void add(std::vector<Answer> answers) {
@@ -196,7 +272,7 @@ class Answering {
   void addDetail(const Call &call) {
     Answer summary;
     if (beside_ == Beside::SEARCH) summary = std::move(search().front());
-    rows_.push_back({part_, std::move(summary), about(subject_, call)});
+    rows_.push_back({part_, std::move(summary), call()});
   }
 
   const Subject &subject_;
@@ -204,6 +280,7 @@ class Answering {
   const Query &query_;
   const Beside beside_;
   Workspace &workspace_;
+  const MotionSubject *erring_ = nullptr; /* null: without errors */
   std::vector<Row> rows_;
 };
 

@@ -8,9 +8,11 @@
 #include <variant>
 #include <vector>
 
+#include <curve_proximity/margins.hpp>
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/movers.hpp>
 #include <curve_proximity/query.hpp>
+#include <curve_proximity/robust.hpp>
 
 #include "question.h"
 
@@ -27,6 +29,7 @@ struct CurveSubject {
 struct MotionSubject {
   const RobotMotion &motion;
   bool self;
+  const ErrorBounds *errors = nullptr; /**< not null: every execution of the motion within these bounds */
 };
 
 /** What moves on one clock: one of the robots or a body along its poses against all others, or all of them. */
@@ -54,22 +57,26 @@ struct Part {
  *  is one part, with a row an object. */
 std::vector<Part> partsOf(const Subject &subject, const Question &question, const Query &query, bool per_link);
 
+/** By how much bounds of errors may grow: as in RobustAnswer. */
+struct RobustScale {
+  double certified, refused;
+};
+
 /** What a row has beside its answer; it depends on the question. */
-using Detail =
-    std::variant<std::monostate, CurveGradient, ClearanceGradient, std::vector<ClearanceInterval>, Violations>;
+using Detail = std::variant<std::monostate, CurveGradient, ClearanceGradient, std::vector<ClearanceInterval>,
+                            Violations, RobustScale, SpeedLimits, std::vector<ObjectMargin>, SweptVolume>;
 
 /** One row of an answer. */
 struct Row {
   Part part;     /**< whom it is about */
   Answer answer; /**< as the function that answers the question gives it */
-  Detail detail; /**< of gradients, profiles and violations */
+  Detail detail; /**< of all but searches without errors, nearest pairs and times of contact */
 };
 
 /** What rows have beside the answer to their question. */
 enum class Beside {
-  NOTHING, /**< of profiles and violations Row::answer is as it was made */
-  SEARCH /**< profiles and violations have the answer of Search, too; an empty list of nearest pairs without a limit is
-            that answer */
+  NOTHING, /**< of profiles, violations, speeds and margins Row::answer is as it was made */
+  SEARCH   /**< these have the answer of Search, too; an empty list of nearest pairs without a limit is that answer */
 };
 
 /** The rows of all parts. The stop function is asked between two of them. Where it wants an end, rows of searches and

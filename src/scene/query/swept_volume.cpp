@@ -10,6 +10,7 @@
 #include <mutex>
 #include <sstream>
 
+#include <curve_proximity/nearest_name.hpp>
 #include <curve_proximity/parallel.hpp>
 
 #include "motion/motion_data.h"
@@ -31,12 +32,14 @@ struct SweptBody {
   double radius;
 };
 
-std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, double displacement, Workspace &workspace) {
+std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, const std::vector<std::string> &links,
+                                   double displacement, Workspace &workspace) {
   std::vector<SweptBody> out;
   const Kinematics &kinematics = *data.kinematics;
   for (std::size_t i = 0; i < kinematics.geometries.size(); ++i) {
     const MovingGeometry &geometry = kinematics.geometries[i];
     if (!data.wanted[i] || geometry.within) continue;
+    if (!links.empty() && std::find(links.begin(), links.end(), *geometry.link) == links.end()) continue;
     const auto &shapes = geometry.attached ? geometry.attached->shapes : data.snapshot->linkGeometry(*geometry.link);
     const Geometry &shape = shapes.at(static_cast<std::size_t>(geometry.part)).geometry;
     std::vector<cprox_swept_pose> poses;
@@ -180,6 +183,22 @@ bool isWanted(const SweptVolume &volume, std::size_t i, bool inside_only) {
   return !inside_only || volume.inside[i];
 }
 
+void fill(octomap::OcTree &tree, const SweptVolume &volume, bool inside_only) {
+  for (std::size_t i = 0; i < volume.cells.size(); ++i) {
+    if (!isWanted(volume, i, inside_only)) continue;
+    octomap::OcTreeKey key;
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t place = volume.cells[i][k] + (1 << 15);
+      if (place < 0 || place >= 1 << 16) throw Error("the swept volume is larger than an octree of this resolution");
+      key[static_cast<unsigned>(k)] = static_cast<octomap::key_type>(place);
+    }
+    tree.updateNode(key, true, true);
+  }
+  tree.updateInnerOccupancy();
+  tree.toMaxLikelihood();
+  tree.prune();
+}
+
 } // namespace
 
 SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) {
@@ -191,15 +210,18 @@ SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) 
   out.resolution = r;
   const double displacement = 0.5 * r;
 
-  /* the blocks that the bodies may reach; all memory is known before the work begins */
+  const auto &known = motion.data().kinematics->robot->links();
+  for (const std::string &link : options.links)
+    if (known.count(link) == 0) throw Error("the robot has no link '" + link + "'" + didYouMean(link, namesOf(known)));
+
+  /* the blocks that the bodies may reach, by few poses: all memory is known before the work begins */
+  constexpr double ROUGH = 0.01;
   Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
-  const std::vector<SweptBody> bodies = bodiesAlong(motion.data(), displacement, workspace);
-  out.n_poses = bodies.size();
-  if (bodies.empty()) throw Error("the motion has no collision geometry");
-  for (const SweptBody &body : bodies) {
+  for (const SweptBody &body : bodiesAlong(motion.data(), options.links, std::max(displacement, ROUGH), workspace)) {
     low = low.cwiseMin((body.centre.array() - body.radius).matrix());
     high = high.cwiseMax((body.centre.array() + body.radius).matrix());
   }
+  if (!(low.x() <= high.x())) throw Error("the motion has no collision geometry");
   std::array<std::int32_t, 3> first{}, n{};
   double cells = 1.0;
   for (int i = 0; i < 3; ++i) {
@@ -215,6 +237,8 @@ SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) 
                     " GB, the limit is " + std::to_string(static_cast<double>(options.memory_limit) / 1e9) + " GB",
                 CPROX_MEMORY);
 
+  const std::vector<SweptBody> bodies = bodiesAlong(motion.data(), options.links, displacement, workspace);
+  out.n_poses = bodies.size();
   std::vector<BodyHandle> boxes;
   for (int level = 0; level <= LEVELS; ++level) boxes.push_back(makeBox(Eigen::Vector3d::Constant(r * (1 << level))));
   boxes.push_back(makePoint(Eigen::Vector3d::Zero()));
@@ -230,7 +254,7 @@ SweptVolume sweptVolume(const RobotMotion &motion, const SweepOptions &options) 
                            SIDE * (first[2] + at % n[2])};
       Block block(corner, options, boxes);
       for (const SweptBody &body : bodies) {
-        if (options.stop && options.stop(nullptr)) throw Error("stopped", CPROX_STOPPED);
+        if (options.stop && options.stop(options.stop_user)) throw Error("stopped", CPROX_STOPPED);
         if (!block.isFull()) block.draw(body, own);
       }
       const std::lock_guard<std::mutex> lock(mutex);
@@ -281,21 +305,17 @@ std::string toStl(const SweptVolume &volume, bool inside_only) {
   return out + facets;
 }
 
+OctreeData toOctree(const SweptVolume &volume, bool inside_only) {
+  octomap::OcTree tree(volume.resolution);
+  fill(tree, volume, inside_only);
+  std::ostringstream data;
+  tree.writeBinaryData(data);
+  return {tree.getTreeType(), volume.resolution, true, data.str()};
+}
+
 std::string toOctomap(const SweptVolume &volume, bool inside_only) {
   octomap::OcTree tree(volume.resolution);
-  for (std::size_t i = 0; i < volume.cells.size(); ++i) {
-    if (!isWanted(volume, i, inside_only)) continue;
-    octomap::OcTreeKey key;
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t place = volume.cells[i][k] + (1 << 15);
-      if (place < 0 || place >= 1 << 16) throw Error("the swept volume is larger than an octree of this resolution");
-      key[static_cast<unsigned>(k)] = static_cast<octomap::key_type>(place);
-    }
-    tree.updateNode(key, true, true);
-  }
-  tree.updateInnerOccupancy();
-  tree.toMaxLikelihood();
-  tree.prune();
+  fill(tree, volume, inside_only);
   /* octomap's own header is written with a message on the console, and six digits */
   std::ostringstream out;
   out.precision(17);
