@@ -119,6 +119,52 @@ CASE(the_verdict_changes_where_the_law_of_cosines_says) {
   cprox_body_free(ball);
 }
 
+/* A joint carries two balls, .1 and 1.5 m from its axis, or a rod of twice 1.5 m. The outer ball, or the rod's end, turns
+ * straight towards a ball that it touches at the end of the box alone, with the budget of one box: nothing looks for
+ * contact, and the bound of the whole box must not call it clear. The joint is the variable, or goes twice as far. */
+CASE(the_bound_of_a_box_reaches_to_its_end) {
+  enum { PARTS = 2 };
+  static const double RADIUS = 0.05, INNER = 0.1, ARM = 1.5, THICK = 0.02;
+  cprox_body *ball = NULL, *both = NULL, *rod = NULL;
+  assert_int_equal(cprox_body_create_sphere(RADIUS, ws, &ball), CPROX_OK);
+  const cprox_body *parts[PARTS] = {ball, ball};
+  const cprox_pose places[PARTS] = {{{INNER, 0, 0}, {1, 0, 0, 0}}, {{ARM, 0, 0}, {1, 0, 0, 0}}};
+  assert_int_equal(cprox_body_create_compound(parts, places, PARTS, ws, &both), CPROX_OK);
+  assert_int_equal(cprox_body_create_box(vec(2.0 * ARM, THICK, THICK), ws, &rod), CPROX_OK);
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  options.max_nodes = 1;
+  size_t clear = 0;
+  for (int k = 0; k < 160; k++) {
+    const double end = 0.05 * (1 + k / 8), multiplier = 1 + k % 2, low = 0.0, high = end / multiplier;
+    const bool is_rod = k / 2 % 2, touches = k / 4 % 2;
+    const double beyond = touches ? 0.0 : 2.0; /* so far away a whole box is clear */
+    const cprox_link links[2] = {{.parent = -1, .type = CPROX_JOINT_FIXED, .origin = CPROX_POSE_IDENTITY},
+                                 {.parent = 0,
+                                  .type = CPROX_JOINT_REVOLUTE,
+                                  .origin = CPROX_POSE_IDENTITY,
+                                  .axis = {0, 0, 1},
+                                  .multiplier = multiplier}};
+    const cprox_link_geometry geometries[2] = {
+        {.body = ball, .pose = {{ARM * cos(end + beyond), ARM * sin(end + beyond), 0}, {1, 0, 0, 0}}, .link = 0},
+        {.body = is_rod ? rod : both, .pose = CPROX_POSE_IDENTITY, .link = 1}};
+    cprox_robot *robot = NULL;
+    assert_int_equal(cprox_robot_create(links, 2, geometries, 2, 1, ws, &robot), CPROX_OK);
+    const cprox_joint_box box = {&low, &high, 1};
+    for (int turned = 0; turned < 2; turned++) { /* either may be the first of the pair */
+      const cprox_robot_pair pair = {turned, 1 - turned};
+      cprox_result found;
+      assert_true(cprox_robot_box_collision(robot, &pair, 1, &box, &options, ws, &found, NULL) >= 0);
+      if (touches) assert_int_not_equal(found.verdict, CPROX_VERDICT_CLEAR);
+      clear += found.verdict == CPROX_VERDICT_CLEAR;
+    }
+    cprox_robot_free(robot);
+  }
+  assert_true(clear > 40);
+  cprox_body_free(rod);
+  cprox_body_free(both);
+  cprox_body_free(ball);
+}
+
 CASE(a_budget_that_is_used_up_leaves_the_verdict_open) {
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.2, ws, &ball), CPROX_OK); /* they come to 0 m of each other, not nearer */

@@ -333,6 +333,34 @@ CASE(errors_cost_more_where_another_joint_moves_the_link) {
   }
 }
 
+/* The ball slides along a wall, away from the joint and from the base's origin. Without errors the distance stays as it
+ * is; a turn by e of either takes FAR sin e where the ball is farthest. */
+CASE(errors_cost_what_the_farthest_of_the_way_is_away) {
+  static const double FAR = 2.0, TURN = 1e-3;
+  const double e[ARM_VARIABLES] = {0.0, TURN}, ends[2] = {0.0, FAR};
+  const int32_t slide = 0;
+  arm a;
+  make_arm(CPROX_JOINT_REVOLUTE, 1, 1.0, beside_tip(), &a);
+  put_slide_on_joint(vec(0, 0, 0), 0.0, &a);
+  cprox_body *wall = put_wall_behind(0.0, &a);
+  const cprox_waypoint points[2] = {{.time = 0.0, .positions = &ends[0]}, {.time = 1.0, .positions = &ends[1]}};
+  const cprox_motion_description along = {.kind = CPROX_MOTION_WAYPOINTS,
+                                          .variables = &slide,
+                                          .n_variables = 1,
+                                          .waypoints = points,
+                                          .n_waypoints = 2,
+                                          .interpolation = CPROX_INTERPOLATION_LINEAR};
+  assert_int_equal(cprox_motion_create(a.robot, &along, ws, &a.motion), CPROX_OK);
+  const cprox_error_bounds bounds[] = {{.base_rotation = TURN}, {.tracking = e, .n_variables = ARM_VARIABLES}};
+  for (size_t i = 0; i < 2; i++) {
+    const cprox_result r = robust(&a, &bounds[i], NULL);
+    assert_true(r.lower <= GAP - FAR * sin(TURN) + 1e-9);
+    assert_true(r.lower >= GAP - FAR * TURN - FAR * TURN * TURN - 1e-7);
+  }
+  free_arm(&a);
+  cprox_body_free(wall);
+}
+
 /* ---- verdicts, and what is refused ---- */
 
 CASE(verdicts_tell_the_motion_from_its_errors) {

@@ -65,6 +65,43 @@ CASE(no_point_leaves_the_grown_body_of_its_interval) {
   assert_true(many > test_cases(50));
 }
 
+/* Two balls on a joint, that far from its axis first: its chord counts. */
+CASE(all_parts_of_a_geometry_stay_in_the_grown_body) {
+  static const double ARM = 1.5, TURN = 2.0;
+  enum { PARTS = 2 };
+  cprox_body *ball = NULL, *both = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.05, ws, &ball), CPROX_OK);
+  const cprox_body *parts[PARTS] = {ball, ball};
+  const cprox_pose places[PARTS] = {{{ARM, 0, 0}, {1, 0, 0, 0}}, {{0.1, 0, 0}, {1, 0, 0, 0}}};
+  assert_int_equal(cprox_body_create_compound(parts, places, PARTS, ws, &both), CPROX_OK);
+  const cprox_link links[2] = {
+      {.parent = -1, .type = CPROX_JOINT_FIXED, .origin = CPROX_POSE_IDENTITY},
+      {.parent = 0, .type = CPROX_JOINT_REVOLUTE, .origin = CPROX_POSE_IDENTITY, .axis = {0, 0, 1}, .multiplier = 1.0}};
+  const cprox_link_geometry geometry = {.body = both, .pose = CPROX_POSE_IDENTITY, .link = 1};
+  cprox_robot *robot = NULL;
+  assert_int_equal(cprox_robot_create(links, 2, &geometry, 1, 1, ws, &robot), CPROX_OK);
+  const double ends[2] = {0.0, TURN};
+  const int32_t variable = 0;
+  const cprox_waypoint points[2] = {{.time = 0.0, .positions = &ends[0]}, {.time = 1.0, .positions = &ends[1]}};
+  const cprox_motion_description along = {.kind = CPROX_MOTION_WAYPOINTS,
+                                          .variables = &variable,
+                                          .n_variables = 1,
+                                          .waypoints = points,
+                                          .n_waypoints = 2,
+                                          .interpolation = CPROX_INTERPOLATION_LINEAR};
+  cprox_motion *motion = NULL;
+  assert_int_equal(cprox_motion_create(robot, &along, ws, &motion), CPROX_OK);
+  static cprox_swept_pose poses[MOST_POSES];
+  size_t n = 0;
+  assert_int_equal(cprox_motion_sweep(motion, 0, 0.01, ws, MOST_POSES, poses, &n), CPROX_OK);
+  for (size_t i = 0; i < n; i++)
+    assert_true(poses[i].displacement >= 2.0 * ARM * sin(0.25 * TURN * (poses[i].t1 - poses[i].t0)));
+  cprox_motion_free(motion);
+  cprox_robot_free(robot);
+  cprox_body_free(both);
+  cprox_body_free(ball);
+}
+
 CASE(a_sweep_that_cannot_be_is_refused) {
   rng r = rng_seed(4603);
   test_robot t;
