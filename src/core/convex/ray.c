@@ -108,14 +108,12 @@ static bool portal_open(ray *p, ray_vertex v[RAY_CORNERS], double *height) {
       across = vec_neg(across);
     }
     ray_extreme(p, across, &v[2]);
-    if (is_beyond(v[1].w, v[2].w, p->d))
+    if (is_beyond(v[1].w, v[2].w, p->d)) {
       v[0] = v[2];
-    else if (is_beyond(v[2].w, v[0].w, p->d))
-      v[1] = v[2];
-    else if (triple(v[0].w, v[1].w, v[2].w) > 0.0)
-      return true;
-    else
-      v[1] = v[2]; /* the two were opposite each other */
+      continue;
+    }
+    if (!is_beyond(v[2].w, v[0].w, p->d) && triple(v[0].w, v[1].w, v[2].w) > 0.0) return true;
+    v[1] = v[2]; /* also where the two are opposite each other */
   }
   return false;
 }
