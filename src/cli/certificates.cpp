@@ -37,6 +37,7 @@ std::string proofOf(const CertificateHandle &certificate) {
     case CPROX_CLAIM_APART: return "apart";
     case CPROX_CLAIM_NEAR: return "near";
     case CPROX_CLAIM_BEFORE: return "before";
+    case CPROX_CLAIM_DURING: return "during";
     case CPROX_CLAIM_NONE: break;
   }
   return "none";
