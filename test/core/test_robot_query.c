@@ -188,16 +188,21 @@ CASE(the_whole_robot_is_as_near_as_the_nearer_of_both) {
     for (int k = 0; k < 2; k++)
       if (first[k].verdict == CPROX_VERDICT_VIOLATED) assert_true(first[2].t_contact_lower <= first[k].t);
 
-    /* what it does not have */
-    cprox_result each[CASE_MAX_OBJECTS];
+    /* a certificate changes no answer */
     cprox_certificate *proof = cprox_certificate_create();
     cprox_options options = CPROX_OPTIONS_DEFAULT;
-    cprox_listed listed;
+    cprox_result proven;
     options.certificate = proof;
+    assert_true(cprox_obstacles_distance(all, whole, NULL, ws, &r, NULL) >= 0);
+    assert_true(cprox_obstacles_distance(all, whole, &options, ws, &proven, NULL) >= 0);
+    assert_true(proven.lower == r.lower && proven.upper == r.upper && proven.t == r.t);
+    cprox_certificate_free(proof);
+
+    /* what it does not have */
+    cprox_result each[CASE_MAX_OBJECTS];
+    cprox_listed listed;
     assert_int_equal(cprox_obstacles_nearest_pairs(all, whole, 1, 1.0, NULL, ws, each, &listed), CPROX_INVALID);
     if (i % 2 == 0) assert_int_equal(cprox_obstacles_distance(all, whole, NULL, ws, &r, each), CPROX_INVALID);
-    assert_int_equal(cprox_obstacles_distance(all, whole, &options, ws, &r, NULL), CPROX_INVALID);
-    cprox_certificate_free(proof);
     cprox_obstacles_free(all);
     robot_case_free(&c);
   }
