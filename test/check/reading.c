@@ -101,5 +101,6 @@ int main(int argc, char **argv) {
     }
   }
   printf("%zu inputs, of which %zu prove something; at most %.2g s a megabyte\n", tried, proven, slowest);
+  printf("%zu passed, %d failed\n", tried, tried == 0);
   return tried == 0;
 }

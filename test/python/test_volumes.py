@@ -107,4 +107,7 @@ class Volumes(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    unittest.main()
+    outcome = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromModule(__import__('__main__')))
+    failed = len(outcome.failures) + len(outcome.errors)
+    print(f'{outcome.testsRun - failed} passed, {failed} failed')
+    raise SystemExit(failed > 0 or outcome.testsRun == 0)

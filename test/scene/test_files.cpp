@@ -641,6 +641,10 @@ TEST(Files, scenes_and_trajectories_of_the_data_are_read_without_a_warning) {
   for (const fs::directory_entry &entry : fs::recursive_directory_iterator(TEST_DATA_DIR "/scenes")) {
     const std::string path = entry.path().string(), name = entry.path().filename().string();
     if (entry.path().extension() != ".yaml" || name.rfind("request", 0) == 0) continue;
+    if (path.find("/mbm/") != std::string::npos && path.find("_ur5/") != std::string::npos) {
+      EXPECT_TRUE(loadSceneFile(path).change.coverage.complete()) << path; // of a robot that has a gripper, too
+      continue;
+    }
     const bool of_panda = path.find("/mbm/") != std::string::npos;
     if (!of_panda && readText(path).find("frame_id: base_link") != std::string::npos)
       continue; // of robots that are not here
