@@ -164,8 +164,12 @@ static bool ask_part(const subject *s, size_t number, rng *r, cprox_workspace *w
   options.interval = part;
   const bool distance = number % 4 < 2;
   const double delta = distance ? known.lower : (1.0 - rng_log_uniform(r, 1e-6, 1.0)) * known.lower;
-  const cprox_result answer = {
-      .lower = known.lower, .upper = known.upper, .t = known.t, .obstacle_index = -1, .mover_part = -1};
+  const cprox_result answer = {.verdict = CPROX_VERDICT_UNDECIDED,
+                               .lower = known.lower,
+                               .upper = known.upper,
+                               .t = known.t,
+                               .obstacle_index = -1,
+                               .mover_part = -1};
   const cprox_status status = cprox_certify(s->mover, all, delta, distance ? &answer : NULL, &options, ws, c);
   cprox_obstacles_free(all);
   const cprox_certificate_info info = cprox_certificate_get_info(c);

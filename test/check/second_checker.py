@@ -232,7 +232,7 @@ class Set:
         for _ in range(words.count()):
             corners = [words.numbers(3) for _ in range(self.CORNERS[self.kind])]
             if self.kind == 'cells':
-                corners = [list(p) for p in product(*zip(*corners))]
+                corners = [list(p)[::-1] for p in product(*reversed(list(zip(*corners))))]  # x first
             found.append([[c + x for c, x in zip(centre, v)] for v in corners])
         return found
 
