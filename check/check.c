@@ -283,7 +283,7 @@ static const char *check_sets(const problem *p, section *c, pieces *growth, doub
       c->clock[1 + k] = there ? &made[k] : NULL;
     }
     if (!fault) fault = check_section(c);
-    for (int k = 0; k < 2; k++) pieces_free(&made[k]);
+    for (int k = 0; k < 2; k++) pieces_free(&made[k]), c->clock[1 + k] = NULL;
   }
   return fault;
 }

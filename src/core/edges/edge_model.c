@@ -409,7 +409,7 @@ typedef struct kept_model {
 } kept_model;
 
 static bool is_same_list(const cprox_robot_pair *a, const char *b, size_t n) {
-  return n == 0 || memcmp(a, b, n * sizeof *a) == 0;
+  return n == 0 || (a && memcmp(a, b, n * sizeof *a) == 0);
 }
 
 static bool is_kept(const kept_model *kept, const edge_asked *asked, const robot_covers *covers) {

@@ -218,7 +218,9 @@ HullSurface hullSurfaceOf(const Points &points, const std::function<bool()> &sto
   const Progress progress(qh, stop);
   qh_zero(qh, progress.file());
   Points copy = points; /* qhull may change its input */
-  char command[] = "qhull Qt TF500";
+  /* Progress is asked for only where it is needed: qhull prints the time with it, by a function that threads share. */
+  char silent[] = "qhull Qt", printing[] = "qhull Qt TF500";
+  char *const command = stop ? printing : silent;
   const int failed = qh_new_qhull(qh, 3, static_cast<int>(copy.size()), copy.front().data(), False, command,
                                   progress.file(), progress.file());
   if (failed == 0 && !progress.isStopped()) {
