@@ -18,6 +18,7 @@ import numpy
 import rosgraph
 import rospy
 import rostest
+import rosunit.xmlrunner
 from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric, ProximityQuery
 from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance,
                                  DistanceRequest, GetScene, Tolerance, ToleranceRequest)
@@ -35,8 +36,15 @@ BOX, SPHERE, CYLINDER, CONE = 1, 2, 3, 4
 _NODES = itertools.count()
 
 
+def keep_failed_subtest(result, test, subtest, failure):
+    """rosunit counts a subtest that fails, and then reports its test as passed: here it fails as its test would."""
+    if failure:
+        (result.addFailure if issubclass(failure[0], test.failureException) else result.addError)(subtest, failure)
+
+
 def run(name):
     """Runs all test cases of the script that calls this, as the rostest of that name."""
+    rosunit.xmlrunner._XMLTestResult.addSubTest = keep_failed_subtest
     rospy.init_node(name)
     rostest.rosrun('curve_proximity', name, '__main__')
 
