@@ -20,6 +20,7 @@ from histories import AWAY, LIMIT, RADIUS, REACHES, World, robot, write_scene
 from sensor_msgs.msg import JointState
 
 REACTION = 1.0  # [s] a gate on a busy machine stops the arm within this time
+SILENCE = 2.5   # [s] the same where roscpp waits for the answer of a server that has died: ~server_timeout, and some
 SURE = 0.03     # [m] closer to the limit than this either end is right
 
 
@@ -126,7 +127,10 @@ class Goals(unittest.TestCase):
             happening, before = r.choice(happenings), self.arm.position()
             happening(r)
             story.append('at %.2f: %s -> %s, refused %s' % (before, happening.__name__, self.world.objects, self.world.refused))
-            time.sleep(REACTION)
+            if happening == self.die:
+                until(lambda: not self.controller.server.is_active(), SILENCE)
+            else:
+                time.sleep(REACTION)
             after = self.arm.position()
             doubt = bool(self.world.refused) or self.arm.silent or not self.node.alive()
             running = self.controller.server.is_active() and after < end - 0.05
