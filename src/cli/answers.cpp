@@ -29,12 +29,13 @@ class Lines {
       : asked_(asked), arguments_(arguments), proof_(proof), out_(out) {}
 
   void add(Row row) {
-    if (std::holds_alternative<std::monostate>(row.detail)) return add(std::move(row.answer));
+    const auto *scale = std::get_if<RobustScale>(&row.detail);
+    if (scale || std::holds_alternative<std::monostate>(row.detail)) return add(std::move(row.answer), scale);
     std::visit([&](auto &detail) { add(detail); }, row.detail);
   }
 
  private:
-  void add(Answer answer) {
+  void add(Answer answer, const RobustScale *scale) {
     answer.id = asked_.id;
     putLinkFirst(asked_.part.link, answer, answer.result.witness_mover, answer.result.witness_obstacle);
     const bool one_of_several = asked_.kind == "curve" && !answer.b.empty();
@@ -43,6 +44,7 @@ class Lines {
     out_.stopped = out_.stopped || answer.result.status == CPROX_STOPPED;
     ResultRow row = toRow(answer, arguments_.query.query_type);
     row.proof = proof_;
+    if (scale) row.certified_scale = scale->certified, row.refused_scale = scale->refused;
     out_.text += resultsLine(row, columnsOf(arguments_));
     noteVerdict(row, out_);
     if (!answer.unproven.empty()) out_.unproven.push_back(asked_.place + ": no certificate: " + answer.unproven);
@@ -73,7 +75,27 @@ class Lines {
     }
   }
 
-  /* No command asks for derivatives. */
+  void add(const SpeedLimits &limits) {
+    for (std::size_t i = 0; i < limits.profile.size(); ++i) {
+      const ClearanceInterval &interval = limits.profile[i];
+      out_.stopped = out_.stopped || interval.status == CPROX_STOPPED;
+      out_.against_nothing = out_.against_nothing || interval.gap == Gap::EMPTY;
+      noteGap(interval.gap, out_);
+      out_.text += speedLine(asked_.id, interval, limits.overrides[i], limits.constant, limits.unwatched);
+    }
+  }
+
+  void add(const std::vector<ObjectMargin> &margins) {
+    out_.against_nothing = margins.empty();
+    for (const ObjectMargin &margin : margins) {
+      out_.stopped = out_.stopped || margin.status == CPROX_STOPPED;
+      out_.violated = out_.violated || margin.blocked == 0.0;
+      noteGap(margin.gap, out_);
+      out_.text += marginLine(asked_.id, margin);
+    }
+  }
+
+  /* No command asks for derivatives, and a swept volume is no row. */
   template <class Detail>
   void add(const Detail &) {}
 
@@ -105,12 +127,15 @@ Columns columnsOf(const Arguments &arguments) {
   columns.proof = !arguments.certificate.empty();
   columns.contact = asksFor<question::Contact>(arguments.question);
   columns.opinion = arguments.second_opinion.has_value();
+  columns.scale = !arguments.errors.empty() && asksFor<question::Search>(arguments.question);
   return columns;
 }
 
 std::string headerOf(const Arguments &arguments) {
   if (asksFor<question::Profile>(arguments.question)) return profileHeader();
   if (asksFor<question::Violations>(arguments.question)) return violationsHeader();
+  if (asksFor<question::Speed>(arguments.question)) return speedHeader();
+  if (asksFor<question::Margins>(arguments.question)) return marginHeader();
   return resultsHeader(columnsOf(arguments));
 }
 
@@ -118,21 +143,19 @@ void addFailure(const Asked &asked, const Arguments &arguments, cprox_status sta
                 Outcome &out) {
   out.complaints.push_back(asked.place + ": " + why);
   if (!arguments.certificate.empty()) out.certificate = emptyRecord();
-  if (asksFor<question::Profile>(arguments.question)) {
-    out.text += failedProfileLine(asked.id, asked.kind, status, why);
-  } else if (asksFor<question::Violations>(arguments.question)) {
-    out.text += clearLine(asked.id, asked.kind, status, why);
-  } else {
-    ResultRow row;
-    row.id = asked.id;
-    row.kind = asked.kind;
-    row.a = asked.kind == "curve" ? asked.id : asked.part.link;
-    row.b = asked.part.object;
-    row.result.status = status;
-    row.message = why;
-    row.proof = "none";
-    out.text += resultsLine(row, columnsOf(arguments));
+  if (!asksFor<question::Search, question::Nearest, question::Contact>(arguments.question)) {
+    out.text += failedLine(headerOf(arguments), asked.id, asked.kind, status, why);
+    return;
   }
+  ResultRow row;
+  row.id = asked.id;
+  row.kind = asked.kind;
+  row.a = asked.kind == "curve" ? asked.id : asked.part.link;
+  row.b = asked.part.object;
+  row.result.status = status;
+  row.message = why;
+  row.proof = "none";
+  out.text += resultsLine(row, columnsOf(arguments));
 }
 
 void answer(const Asked &asked, const Arguments &arguments, const Query &query, Workspace &workspace, Outcome &out) {

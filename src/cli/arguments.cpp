@@ -48,6 +48,13 @@ struct Words {
   }
 };
 
+/* Throws for the first of these options that is given: `whose` takes none of them. */
+void refuse(const Words &words, const std::string &whose, std::initializer_list<const char *> names,
+            const std::string &why = "") {
+  for (const char *name : names)
+    if (words.has(name)) throw BadUsage(whose + " takes no " + name + why);
+}
+
 /* Takes one option off the words at `i`, with its value: "--name value" or "--name=value". */
 void takeOption(const std::vector<std::string> &words, std::size_t &i, const Command &command, Words &out) {
   const std::size_t equals = words[i].find('=');
@@ -164,9 +171,8 @@ void readQuery(const Words &words, const Command &command, Query &query) {
   query.moving_only = words.has("--moving-links-only");
   if (query.moving_only && !words.has("--trajectory") && !words.has("--movers"))
     throw BadUsage("--moving-links-only is for --trajectory and --movers");
-  for (const char *name : {"--objects", "--links"})
-    if (words.has(name) && words.has("--certificate"))
-      throw BadUsage("--certificate takes no " + std::string(name) + ": it proves an answer about all of them");
+  if (words.has("--certificate"))
+    refuse(words, "--certificate", {"--objects", "--links"}, ": it proves an answer about all of them");
   query.query_type = command.query_type;
   query.per_object = words.has("--per-object");
   query.allow_empty = words.has("--allow-empty");
@@ -231,22 +237,28 @@ void readQuestion(const Words &words, const Command &command, Arguments &out) {
 
 /* Curves against curves: there is no scene, and a row has one answer. */
 void readAgainst(const Words &words, Arguments &out) {
-  for (const char *name :
-       {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings", "--allow-empty",
-        "--mesh-tolerance", "--max-lod", "--per-link", "--links", "--objects", "--second-opinion"}) {
-    if (words.has(name))
-      throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
-  }
+  refuse(words, "--against",
+         {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings", "--allow-empty",
+          "--mesh-tolerance", "--max-lod", "--per-link", "--links", "--objects", "--second-opinion"},
+         ": curves are measured against curves");
   if (out.action == Action::CURVES) out.action = Action::AGAINST;
   out.against = words.text("--against");
   out.synchronized = words.has("--synchronized");
 }
 
+/* What stands there, and the robot. */
+void readWorldWords(const Words &words, Arguments &out) {
+  for (const char *name : {"--state", "--srdf"})
+    if (words.has(name) && !words.has("--robot")) throw BadUsage(std::string(name) + " needs --robot URDF");
+  out.scene = words.text("--scene");
+  out.robot = words.text("--robot");
+  out.srdf = words.text("--srdf");
+  out.state = words.text("--state");
+}
+
 /* The robot along a trajectory, instead of curves. */
 void readTrajectoryWords(const Words &words, Arguments &out) {
-  for (const char *name : {"--curves", "--against"}) {
-    if (words.has(name)) throw BadUsage("--trajectory takes no " + std::string(name));
-  }
+  refuse(words, "--trajectory", {"--curves", "--against"});
   if (words.has("--signed") && !asksFor<question::Search>(out.question))
     throw BadUsage("'nearest' takes no --signed with --trajectory: ask for the 'distance'");
   if (!words.has("--robot")) throw BadUsage("--trajectory needs --robot URDF");
@@ -256,28 +268,22 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   out.self = words.has("--self");
   out.per_link = words.has("--per-link");
   if (out.per_link && words.has("--per-object")) throw BadUsage("--per-link and --per-object exclude each other");
-  out.scene = words.text("--scene");
-  out.robot = words.text("--robot");
-  out.srdf = words.text("--srdf");
-  out.state = words.text("--state");
+  readWorldWords(words, out);
 }
 
 /* A robot along a trajectory, for every execution within bounds of its errors. */
 void readErrorsWords(const Words &words, Arguments &out) {
-  for (const char *name :
-       {"--per-link", "--per-object", "--horizon", "--second-opinion", "--moving-links-only", "--certificate"})
-    if (words.has(name)) throw BadUsage("--errors takes no " + std::string(name));
+  refuse(words, "--errors",
+         {"--per-link", "--per-object", "--horizon", "--second-opinion", "--moving-links-only", "--certificate"});
   out.action = Action::ROBUST;
   out.errors = words.text("--errors");
 }
 
 /* What moves in the scene, without a robot of the command line. */
 void readMoversWords(const Words &words, Arguments &out) {
-  for (const char *name :
-       {"--curves", "--against", "--trajectory", "--signed", "--robot", "--srdf", "--state", "--per-object",
-        "--per-link", "--links", "--objects", "--certificate", "--second-opinion", "--errors"}) {
-    if (words.has(name)) throw BadUsage("--movers takes no " + std::string(name));
-  }
+  refuse(words, "--movers",
+         {"--curves", "--against", "--trajectory", "--signed", "--robot", "--srdf", "--state", "--per-object",
+          "--per-link", "--links", "--objects", "--certificate", "--second-opinion", "--errors"});
   if (!words.has("--scene")) throw BadUsage("--movers needs --scene SCENE.yaml: what moves in it is asked about");
   out.action = Action::MOVERS;
   out.scene = words.text("--scene");
@@ -286,23 +292,17 @@ void readMoversWords(const Words &words, Arguments &out) {
 
 /* A body along a path, or a ball. A robot carries the body where it has no shapes of its own. */
 void readPathWords(const Words &words, Arguments &out) {
-  for (const char *name : {"--curves", "--against", "--trajectory", "--movers", "--self", "--signed", "--per-link",
-                           "--links", "--certificate", "--second-opinion", "--errors"}) {
-    if (words.has(name)) throw BadUsage("--path takes no " + std::string(name));
-  }
+  refuse(words, "--path",
+         {"--curves", "--against", "--trajectory", "--movers", "--self", "--signed", "--per-link", "--links",
+          "--certificate", "--second-opinion", "--errors"});
   if (!words.has("--scene")) throw BadUsage("--path needs --scene SCENE.yaml, what it is measured against");
   if (words.has("--radius") && words.has("--body"))
     throw BadUsage("--radius and --body exclude each other: a ball rides along the path, or the body");
   if (words.has("--radius")) out.radius = readNumber(words, "--radius", 0.0, true, "of at least 0 (metres)");
-  for (const char *name : {"--srdf", "--state"})
-    if (words.has(name) && !words.has("--robot")) throw BadUsage(std::string(name) + " needs --robot URDF");
   out.action = Action::MOVERS;
   out.path = words.text("--path");
   out.body = words.text("--body");
-  out.scene = words.text("--scene");
-  out.robot = words.text("--robot");
-  out.srdf = words.text("--srdf");
-  out.state = words.text("--state");
+  readWorldWords(words, out);
 }
 
 /* The number of a shard, from 0. */
@@ -322,12 +322,7 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
   /* what curves are measured against */
   const auto readSurroundings = [&] {
     if (!words.has("--robot")) required("--scene", "SCENE.yaml");
-    out.scene = words.text("--scene");
-    out.robot = words.text("--robot");
-    out.srdf = words.text("--srdf");
-    out.state = words.text("--state");
-    if (out.robot.empty() && !out.state.empty()) throw BadUsage("--state needs --robot URDF");
-    if (out.robot.empty() && !out.srdf.empty()) throw BadUsage("--srdf needs --robot URDF");
+    readWorldWords(words, out);
   };
   std::vector<std::string> plain = words.plain;
 
@@ -409,12 +404,7 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
         break;
       }
       out.cases = required("--in", "CASES.yaml, or --trajectory T.yaml");
-      out.scene = words.text("--scene");
-      out.robot = words.text("--robot");
-      out.srdf = words.text("--srdf");
-      out.state = words.text("--state");
-      for (const char *name : {"--srdf", "--state"})
-        if (words.has(name) && out.robot.empty()) throw BadUsage(std::string(name) + " needs --robot URDF");
+      readWorldWords(words, out);
       break;
     case Action::ROBUST:
       out.errors = required("--errors", "ERRORS.yaml, bounds of the errors of an execution");
@@ -439,11 +429,11 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       out.errors = words.text("--errors");
       required("--trajectory", "T.yaml");
       readTrajectoryWords(words, out);
+      out.question = question::Speed{{}, out.profile};
       break;
     case Action::MARGINS:
-      if (!words.has("--within")) out.nearest.limits.within = 1.0;
-      if (!(out.nearest.limits.within > 0.0))
-        throw BadUsage("--within is 0: how far objects are moved at most (metres)");
+      if (out.nearest.limits.within == 0.0) throw BadUsage("--within is 0: how far objects are moved at most (metres)");
+      out.question = words.has("--within") ? question::Margins{out.nearest.limits.within} : question::Margins{};
       required("--scene", "SCENE.yaml");
       required("--trajectory", "T.yaml");
       readTrajectoryWords(words, out);

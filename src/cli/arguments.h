@@ -43,10 +43,10 @@ struct Arguments {
   Action action = Action::HELP;
   std::string topic; /**< HELP: the command that it is about; empty: all */
   Query query;       /**< CURVES, AGAINST, PAIRS and REPORT: the command, and how it is to be answered */
-  Question question; /**< of CURVES, TRAJECTORY and MOVERS */
+  Question question; /**< of CURVES, TRAJECTORY, MOVERS, ROBUST, SPEED (without its constants) and MARGINS */
 
-  question::Profile profile; /**< REPORT: of each curve or link; SPEED: its intervals */
-  question::Nearest nearest; /**< REPORT; MARGINS: how far objects are moved */
+  question::Profile profile; /**< REPORT: of each curve or link */
+  question::Nearest nearest; /**< REPORT */
 
   std::optional<Peer> second_opinion; /**< CURVES, TRAJECTORY and PAIRS: who measures pairs again */
 

@@ -15,7 +15,7 @@ int answerCurves(const Arguments &arguments, Console &console);
 /** distance, tolerance, collision: curves against curves, row by row. */
 int answerAgainst(const Arguments &arguments, Console &console);
 
-/** distance, tolerance, collision: the robot along a joint trajectory, against the scene and itself. */
+/** The robot along a joint trajectory, against the scene and itself; speed, margins and robust are about it, too. */
 int answerTrajectory(const Arguments &arguments, Console &console);
 
 /** distance, tolerance, collision, time-of-contact: what moves in the scene, against what stands there and against each
@@ -37,17 +37,8 @@ int certifyDataset(const Arguments &arguments, Console &console);
 /** merge: the shards as one table. */
 int mergeShards(const Arguments &arguments, Console &console);
 
-/** robust: the robot along a trajectory, for every execution within bounds of its errors. */
-int answerRobust(const Arguments &arguments, Console &console);
-
 /** acm: which links of a robot can touch each other, and an SRDF that disables the others. */
 int findLinkContacts(const Arguments &arguments, Console &console);
-
-/** speed: how fast the robot may go along a trajectory while a person may walk up to it. */
-int limitSpeeds(const Arguments &arguments, Console &console);
-
-/** margins: how far objects may be moved before a motion is no longer clear of them. */
-int listMargins(const Arguments &arguments, Console &console);
 
 /** sweep: what a robot passes through along a trajectory, as cells of a grid. */
 int sweepVolume(const Arguments &arguments, Console &console);

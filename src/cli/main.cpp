@@ -30,17 +30,17 @@ int run(const std::vector<std::string> &words, Console &console) {
     case Action::VERSION: std::puts("cprox " CPROX_VERSION); return kAllAnswered;
     case Action::CURVES: return answerCurves(arguments, console);
     case Action::AGAINST: return answerAgainst(arguments, console);
-    case Action::TRAJECTORY: return answerTrajectory(arguments, console);
+    case Action::TRAJECTORY:
+    case Action::ROBUST:
+    case Action::SPEED:
+    case Action::MARGINS: return answerTrajectory(arguments, console);
     case Action::MOVERS: return answerMovers(arguments, console);
     case Action::PAIRS: return answerPairs(arguments, console);
     case Action::CONSTRAINTS: return answerConstraints(arguments, console);
     case Action::CHECK: return checkCertificates(arguments, console);
     case Action::CERTIFY: return certifyDataset(arguments, console);
     case Action::MERGE: return mergeShards(arguments, console);
-    case Action::ROBUST: return answerRobust(arguments, console);
     case Action::ACM: return findLinkContacts(arguments, console);
-    case Action::SPEED: return limitSpeeds(arguments, console);
-    case Action::MARGINS: return listMargins(arguments, console);
     case Action::SWEEP: return sweepVolume(arguments, console);
     case Action::REPORT: return writeReport(arguments, console);
     case Action::SEND: return sendScene(arguments, console);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "results.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -113,12 +114,6 @@ std::string profileLine(const std::string &id, const std::string &kind, const Cl
          '\n';
 }
 
-std::string failedProfileLine(const std::string &id, const std::string &kind, cprox_status status,
-                              const std::string &message) {
-  return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ",,,,,,,,,,,,,," + quotedField(message) +
-         '\n';
-}
-
 std::string speedHeader() {
   return "id,status,t0,t1,lower,override,constant_override,unwatched_override,a,b,message\n";
 }
@@ -130,10 +125,6 @@ std::string speedLine(const std::string &id, const ClearanceInterval &interval, 
     appendField(line, value);
   return line + ',' + quotedField(interval.a) + ',' + quotedField(interval.b) + ',' + quotedField(messageOf(interval)) +
          '\n';
-}
-
-std::string failedSpeedLine(const std::string &id, cprox_status status, const std::string &message) {
-  return quotedField(id) + ',' + cprox_status_name(status) + ",,,,,,,,," + quotedField(message) + '\n';
 }
 
 std::string marginHeader() {
@@ -154,10 +145,6 @@ std::string marginLine(const std::string &id, const ObjectMargin &margin) {
          '\n';
 }
 
-std::string failedMarginLine(const std::string &id, cprox_status status, const std::string &message) {
-  return quotedField(id) + ',' + cprox_status_name(status) + ",,,,,,,,,," + quotedField(message) + '\n';
-}
-
 std::string violationsHeader() {
   return "id,kind,status,verdict,enter_lower,enter_upper,leave_lower,leave_upper,upper,t,a,b,message\n";
 }
@@ -173,9 +160,16 @@ std::string violationLine(const std::string &id, const std::string &kind, const 
 }
 
 std::string clearLine(const std::string &id, const std::string &kind, cprox_status status, const std::string &message) {
-  const std::string verdict = status < 0 ? "" : cprox_verdict_name(CPROX_VERDICT_CLEAR);
-  return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ',' + verdict + ",,,,,,,,," +
-         quotedField(message) + '\n';
+  return quotedField(id) + ',' + kind + ',' + cprox_status_name(status) + ',' +
+         cprox_verdict_name(CPROX_VERDICT_CLEAR) + ",,,,,,,,," + quotedField(message) + '\n';
+}
+
+std::string failedLine(const std::string &header, const std::string &id, const std::string &kind, cprox_status status,
+                       const std::string &message) {
+  const bool has_kind = header.rfind("id,kind,", 0) == 0;
+  const auto columns = std::count(header.begin(), header.end(), ',') - (has_kind ? 2 : 1);
+  return quotedField(id) + ',' + (has_kind ? kind + ',' : "") + cprox_status_name(status) +
+         std::string(static_cast<std::size_t>(columns), ',') + quotedField(message) + '\n';
 }
 
 ResultsFile::ResultsFile(const std::string &path, const std::vector<std::string> &inputs, const std::string &option)

@@ -54,25 +54,23 @@ std::string resultsLine(const ResultRow &row, const Columns &columns = {});
 std::string profileHeader();
 std::string profileLine(const std::string &id, const std::string &kind, const ClearanceInterval &interval);
 
-/** The line of a profile that there is none of. */
-std::string failedProfileLine(const std::string &id, const std::string &kind, cprox_status status,
-                              const std::string &message);
-
 /** The same of limits of the speed: a line an interval. */
 std::string speedHeader();
 std::string speedLine(const std::string &id, const ClearanceInterval &interval, double limit, double constant,
                       double unwatched);
-std::string failedSpeedLine(const std::string &id, cprox_status status, const std::string &message);
 
 /** The same of margins: a line an object and direction. */
 std::string marginHeader();
 std::string marginLine(const std::string &id, const ObjectMargin &margin);
-std::string failedMarginLine(const std::string &id, cprox_status status, const std::string &message);
 
 /** The same of violations: a line each. Without any: the line that all is clear. */
 std::string violationsHeader();
 std::string violationLine(const std::string &id, const std::string &kind, const Violations &of, const Violation &found);
 std::string clearLine(const std::string &id, const std::string &kind, cprox_status status, const std::string &message);
+
+/** The line of what there is no answer to, in the columns of one of these headers. */
+std::string failedLine(const std::string &header, const std::string &id, const std::string &kind, cprox_status status,
+                       const std::string &message);
 
 /** Where results go: standard output, or a file that is written anew. */
 class ResultsFile {

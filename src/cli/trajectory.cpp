@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "../scene/yaml/errors_yaml.h"
+#include "../scene/yaml/separation_yaml.h"
 #include "../scene/yaml/trajectory_yaml.h"
 #include "certificates.h"
 #include "commands.h"
@@ -13,6 +15,17 @@
 #include "world.h"
 
 namespace curve_proximity::cli {
+namespace {
+
+/* The command that takes scenes in which nothing else moves; "": this one takes all. */
+std::string standingOnly(const Arguments &arguments) {
+  if (asksFor<question::Speed>(arguments.question)) return "speed";
+  if (asksFor<question::Margins>(arguments.question)) return "margins";
+  return arguments.errors.empty() ? "" : "robust";
+}
+
+} // namespace
+
 Rest restOf(const TrajectoryDescription &trajectory, const World &world) {
   Rest out;
   out.joints = world.scene_joints;
@@ -66,12 +79,18 @@ void tellOfReading(const World &world, const RobotMotion &motion, const Argument
   tellSkipped(motion.skipped(), console);
 }
 
-int answerTrajectory(const Arguments &arguments, Console &console) {
+int answerTrajectory(const Arguments &given, Console &console) {
+  Arguments arguments = given;
   Warnings warnings;
-  const World world = readWorld(arguments, warnings);
+  const std::string alone = standingOnly(arguments);
+  const World world = alone.empty() ? readWorld(arguments, warnings) : readStandingWorld(arguments, alone, warnings);
   if (world.moves()) return answerAmongMovers(arguments, world, warnings, console);
   const RobotMotion motion = readMotion(arguments, world, warnings);
   warnOfMotion(motion, arguments, world, warnings);
+  auto *speed = std::get_if<question::Speed>(&arguments.question);
+  if (speed) speed->separation = yaml::readSeparation(arguments.separation);
+  std::optional<ErrorBounds> errors;
+  if (!arguments.errors.empty()) errors = yaml::readErrors(arguments.errors);
   const Query query = queryOf(arguments, world, warnings);
   Query around = query; // who asks about the robot itself and gives no scene means that there is none
   around.allow_empty = query.allow_empty || (arguments.self && arguments.scene.empty());
@@ -87,7 +106,9 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   for (const bool self : {false, true}) {
     if (self && !arguments.self) continue;
     Asked asked = askedAlong(motion, self, arguments);
-    asked.ends_run = asksFor<question::Search>(arguments.question);
+    if (asksFor<question::Speed, question::Margins>(arguments.question)) asked.place = arguments.trajectory; // no kinds
+    if (errors) std::get<MotionSubject>(asked.subject).errors = &*errors;
+    asked.ends_run = alone.empty() && asksFor<question::Search>(arguments.question);
     addTasks(asked, arguments, self ? query : around, tasks);
   }
   return output.answer(headerOf(arguments), tasks, console);
