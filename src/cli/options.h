@@ -13,12 +13,12 @@ namespace curve_proximity::cli {
 struct Command {
   const char *word;
   Action action;
-  QueryType query_type;
-  Question question;
   const char *usage; /**< a form a line, behind "cprox WORD"; INPUTS: those of inputForms() */
   const char *help;
   const char *examples; /**< a line each, behind "cprox " */
   const char *columns;  /**< of its results; "": it has none */
+  QueryType query_type = QueryType::DISTANCE;
+  Question question = question::Search{};
 };
 
 struct Option {
