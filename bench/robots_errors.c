@@ -14,7 +14,7 @@ static const double TRACKING = 5e-4, PLACES = 2e-4;
 typedef struct problem {
   cprox_mover mover;
   const cprox_obstacles *obstacles;
-  cprox_error_bounds bounds, none;
+  cprox_error_bounds bounds;
   double delta;
 } problem;
 
@@ -28,12 +28,6 @@ static void robust(const void *problems, size_t i, void *state, bench_answer *an
   const problem *p = (const problem *)problems + i;
   cprox_result r;
   answer_with(cprox_robust_tolerance(p->obstacles, p->mover, p->delta, &p->bounds, NULL, state, &r), &r, answer);
-}
-
-static void without_errors(const void *problems, size_t i, void *state, bench_answer *answer) {
-  const problem *p = (const problem *)problems + i;
-  cprox_result r;
-  answer_with(cprox_robust_tolerance(p->obstacles, p->mover, p->delta, &p->none, NULL, state, &r), &r, answer);
 }
 
 static void plain(const void *problems, size_t i, void *state, bench_answer *answer) {
@@ -53,7 +47,7 @@ static void scale(const void *problems, size_t i, void *state, bench_answer *ans
 
 void bench_robot_errors(const robot_case *cases, size_t n_cases, const bench_size *size, cprox_workspace *ws) {
   if (!bench_wanted(size, "robust verdict") && !bench_wanted(size, "largest scale")) return;
-  static double tracking[CASE_MAX_VARIABLES], nothing[CASE_MAX_VARIABLES];
+  static double tracking[CASE_MAX_VARIABLES];
   for (size_t i = 0; i < CASE_MAX_VARIABLES; i++) tracking[i] = TRACKING;
   problem problems[MOST];
   cprox_obstacles *obstacles[MOST];
@@ -66,7 +60,6 @@ void bench_robot_errors(const robot_case *cases, size_t n_cases, const bench_siz
     *p = (problem){.mover = cprox_robot_along(c->motion, NULL, 0), .obstacles = obstacles[n]};
     p->bounds = (cprox_error_bounds){
         .tracking = tracking, .n_variables = c->n_variables, .base_position = PLACES, .object_position = PLACES};
-    p->none = (cprox_error_bounds){.tracking = nothing, .n_variables = c->n_variables};
     cprox_result r;
     /* half of what is certified: both are clear */
     cprox_robust_distance(p->obstacles, p->mover, &p->bounds, NULL, ws, &r);
@@ -78,10 +71,8 @@ void bench_robot_errors(const robot_case *cases, size_t n_cases, const bench_siz
   }
   const bench_workload verdicts = {"robots", "robust verdict", "half of the certified clearance", problems, n, NULL,
                                    0.0};
-  const bench_method methods[] = {{"curve_proximity", robust, ws},
-                                  {"same search without errors", without_errors, ws},
-                                  {"plain verdict", plain, ws}};
-  if (bench_wanted(size, verdicts.name)) bench_measure(&verdicts, size, methods, 3);
+  const bench_method methods[] = {{"curve_proximity", robust, ws}, {"plain verdict", plain, ws}};
+  if (bench_wanted(size, verdicts.name)) bench_measure(&verdicts, size, methods, 2);
   const bench_workload scales = {"robots", "largest scale", "verdicts", problems, n, NULL, 0.0};
   const bench_method method = {"curve_proximity", scale, ws};
   if (bench_wanted(size, scales.name)) bench_measure(&scales, size, &method, 1);

@@ -5,6 +5,9 @@
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "edges/first_level.h"
+#include "kinematics/errors.h"
+#include "problem/problem.h"
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/robots.h"
@@ -190,7 +193,27 @@ CASE(no_execution_comes_nearer_than_is_certified) {
   if (worlds >= 50) assert_true(worlds > test_cases(50) && tight > 0);
 }
 
-/* The robot with itself: links are drawn from the same values, and bent each by itself. */
+/* The distance of two links in one execution, at one time: links are drawn from the same values, and bent each by itself. */
+static double pair_in_execution(rng *r, const world *w, cprox_robot_pair pair, double from, double to) {
+  long double values[TEST_MAX_VARIABLES + 1];
+  ref_pose links[TEST_MAX_LINKS];
+  draw_values(r, w, from, to, values);
+  robot_ref_links(&w->t, values, links);
+  cprox_obstacle side[2];
+  for (int k = 0; k < 2; k++) {
+    const cprox_link_geometry *g = &w->t.geometries[k ? pair.other : pair.geometry];
+    const ref_pose *l = &links[g->link];
+    vec3l p = l->p;
+    if (first_moving_link(&w->t, (size_t)g->link)) p = shifted(r, w->bounds.flex, p);
+    const cprox_pose link = {.position = {(double)p.x, (double)p.y, (double)p.z},
+                             .orientation = {(double)l->q[3], (double)l->q[0], (double)l->q[1], (double)l->q[2]}};
+    side[k] = cprox_with_margin(cprox_obstacle_at(g->body, frame_compose(&link, &g->pose)), g->margin);
+  }
+  cprox_result at;
+  assert_true(cprox_pair(side[0], side[1], NULL, ws, &at) >= 0);
+  return at.upper;
+}
+
 CASE(no_execution_brings_two_links_nearer_than_is_certified) {
   rng r = rng_seed(4602);
   size_t asked = 0;
@@ -209,30 +232,109 @@ CASE(no_execution_brings_two_links_nearer_than_is_certified) {
       asked++;
       const cprox_motion_info info = cprox_motion_get_info(w.t.motion);
       for (int k = 0; k < 40; k++) {
-        long double values[TEST_MAX_VARIABLES + 1];
-        ref_pose links[TEST_MAX_LINKS];
-        draw_values(&r, &w, k % 2 ? d.t : info.t0, k % 2 ? d.t : info.t1, values);
-        robot_ref_links(&w.t, values, links);
-        cprox_obstacle side[2];
-        for (int s = 0; s < 2; s++) {
-          const int32_t geometry = s ? pair.other : pair.geometry;
-          const cprox_link_geometry *g = &w.t.geometries[geometry];
-          const ref_pose *l = &links[g->link];
-          vec3l p = l->p;
-          if (first_moving_link(&w.t, (size_t)g->link)) p = shifted(&r, w.bounds.flex, p);
-          const cprox_pose link = {.position = {(double)p.x, (double)p.y, (double)p.z},
-                                   .orientation = {(double)l->q[3], (double)l->q[0], (double)l->q[1], (double)l->q[2]}};
-          side[s] = cprox_with_margin(cprox_obstacle_at(g->body, frame_compose(&link, &g->pose)), g->margin);
-        }
-        cprox_result at;
-        assert_true(cprox_pair(side[0], side[1], NULL, ws, &at) >= 0);
-        if (at.upper < d.lower - 1e-12) fail_msg("world %zu: %.12g, certified %.12g", i, at.upper, d.lower);
+        const double least = pair_in_execution(&r, &w, pair, k % 2 ? d.t : info.t0, k % 2 ? d.t : info.t1);
+        if (least < d.lower - 1e-12) fail_msg("world %zu: %.12g, certified %.12g", i, least, d.lower);
       }
     }
     free_world(&w);
   }
   print_message("%zu pairs of links\n", asked);
   if (test_cases(120) >= 60) assert_true(asked > test_cases(60));
+}
+
+/* ---- lanes ---- */
+
+/* Whether lanes alone prove that all executions are farther than delta. */
+static bool lanes_prove(const world *w, cprox_mover mover, size_t n, double delta) {
+  query q = query_create(mover, w->targets, n, delta, NULL, ws);
+  assert_int_equal(query_begin(&q, (arguments_query){"the test", ~0u}), CPROX_OK);
+  robot_errors errors = {.bounds = &w->bounds, .scale = 1.0};
+  q.errors = &errors;
+  edge_first first;
+  workspace_forget_work(ws);
+  return edge_first_level(&q, 0, n, false, &first) && first.verdict == CPROX_VERDICT_CLEAR;
+}
+
+/* The largest delta for which they do, nearly; negative: none. */
+static double most_by_lanes(const world *w, cprox_mover mover, size_t n) {
+  double proven = -1.0, open = 10.0;
+  for (int k = 0; k < 24; k++) {
+    const double delta = k == 0 ? 0.0 : 0.5 * (proven + open);
+    if (lanes_prove(w, mover, n, delta))
+      proven = delta;
+    else
+      open = delta;
+    if (proven < 0.0) return proven;
+  }
+  return proven;
+}
+
+CASE(no_execution_comes_nearer_than_lanes_say) {
+  rng r = rng_seed(4604);
+  size_t executions = 0, tight = 0, worlds = 0, more = 0;
+  for (size_t i = 0; i < test_cases(800); i++) {
+    world w;
+    make_world(&r, &w);
+    w.bounds.timing = 0.0;
+    const cprox_mover mover = cprox_robot_along(w.t.motion, NULL, 0);
+    const cprox_motion_info info = cprox_motion_get_info(w.t.motion);
+    const double lanes = most_by_lanes(&w, mover, TARGETS);
+    if (lanes > 0.0) {
+      cprox_obstacles *obstacles = NULL;
+      assert_int_equal(cprox_obstacles_create(w.targets, TARGETS, CPROX_INDEX_NONE, ws, &obstacles), CPROX_OK);
+      const cprox_options options = accurate(1e-5);
+      cprox_result d, verdict;
+      assert_true(cprox_robust_distance(obstacles, mover, &w.bounds, &options, ws, &d) >= 0);
+      more += lanes > d.upper;
+      assert_true(cprox_robust_tolerance(obstacles, mover, 0.99 * d.lower, &w.bounds, &options, ws, &verdict) >= 0);
+      assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
+      double proven = lanes; /* by a verdict, whoever gave it */
+      for (int k = 0; k < 4; k++) {
+        const double delta = fmax(d.upper, lanes) * (1.0 + rng_log_uniform(&r, 1e-3, 1.0));
+        assert_true(cprox_robust_tolerance(obstacles, mover, delta, &w.bounds, &options, ws, &verdict) >= 0);
+        if (verdict.verdict == CPROX_VERDICT_CLEAR) proven = fmax(delta, proven);
+      }
+      for (size_t k = 0; k < EXECUTIONS; k++) {
+        const long double least = execution(&r, &w, k % 2 ? d.t : info.t0, k % 2 ? d.t : info.t1);
+        if (least < proven) fail_msg("world %zu: %.12Lg, proven %.12g", i, least, proven);
+        tight += least < lanes + 0.003;
+        executions++;
+      }
+      worlds++;
+      cprox_obstacles_free(obstacles);
+    }
+    free_world(&w);
+  }
+  print_message(
+      "%zu executions of %zu motions, none nearer than lanes say; %zu within 3 mm of it; %zu motions by more "
+      "than the search says\n",
+      executions, worlds, tight, more);
+  if (worlds >= 50) assert_true(tight > 0);
+}
+
+CASE(no_execution_brings_two_links_nearer_than_lanes_say) {
+  rng r = rng_seed(4605);
+  size_t asked = 0, tight = 0;
+  for (size_t i = 0; i < test_cases(300); i++) {
+    world w;
+    make_world(&r, &w);
+    w.bounds.timing = 0.0;
+    const cprox_motion_info info = cprox_motion_get_info(w.t.motion);
+    for (int32_t a = 1; a < (int32_t)w.t.n_links; a++) {
+      const cprox_robot_pair pair = {a, (int32_t)rng_index(&r, (size_t)a)};
+      const double lanes = most_by_lanes(&w, cprox_robot_self(w.t.motion, &pair, 1), 0);
+      if (!(lanes > 0.0)) continue;
+      asked++;
+      for (int k = 0; k < 40; k++) {
+        const double least = pair_in_execution(&r, &w, pair, info.t0, info.t1);
+        if (least < lanes - 1e-12) fail_msg("world %zu: %.12g, by lanes %.12g", i, least, lanes);
+        tight += least < lanes + 0.003;
+      }
+    }
+    free_world(&w);
+  }
+  print_message("%zu pairs of links, %zu executions within 3 mm\n", asked, tight);
+  if (asked >= 50) assert_true(tight > 0);
 }
 
 int main(void) {

@@ -212,31 +212,32 @@ CASE(the_certified_scale_of_random_motions_is_near_the_sampled_one) {
   cprox_body_free(box);
 }
 
-/* Of the same search: plain verdicts may be decided in lanes before it, which no count tells. */
-CASE(errors_cost_the_search_at_most_as_much_again) {
+/* Lanes prove a verdict with errors where they prove it without: then neither asks the search for intervals. */
+CASE(half_of_the_certified_distance_takes_a_plain_verdict_and_no_more) {
   size_t n, counted = 0;
   FILE *f = open_cases(&n);
-  double times[2 * MOST_CASES];
+  double times[MOST_CASES];
   for (size_t i = 0; i < n; i++) {
     real_case r;
     read_case(f, &r);
     const cprox_mover mover = cprox_robot_along(r.c.motion, NULL, 0);
+    for (size_t v = 0; v < r.c.n_variables; v++) r.tracking[v] = 5e-4;
+    const cprox_error_bounds small = {.tracking = r.tracking, .n_variables = r.c.n_variables};
     cprox_result d, plain, at;
-    assert_true(cprox_robust_distance(r.obstacles, mover, &r.bounds, NULL, ws, &d) >= 0);
-    for (int k = 0; k < 2; k++) {
-      const double delta = (k ? 0.5 : 0.9) * d.lower;
-      assert_true(cprox_robust_tolerance(r.obstacles, mover, delta, &r.bounds, NULL, ws, &at) >= 0);
-      assert_true(cprox_robust_tolerance(r.obstacles, mover, delta, &(cprox_error_bounds){0}, NULL, ws, &plain) >= 0);
-      if (!(d.lower > 0.0)) continue;
+    assert_true(cprox_robust_distance(r.obstacles, mover, &small, NULL, ws, &d) >= 0);
+    if (d.lower > 0.0) {
+      assert_true(cprox_robust_tolerance(r.obstacles, mover, 0.5 * d.lower, &small, NULL, ws, &at) >= 0);
+      assert_true(cprox_obstacles_tolerance(r.obstacles, mover, 0.5 * d.lower, NULL, ws, &plain, NULL) >= 0);
+      assert_int_equal(at.verdict, CPROX_VERDICT_CLEAR);
       times[counted++] = ((double)at.nodes + at.distance_queries) / ((double)plain.nodes + plain.distance_queries);
     }
     free_case(&r);
   }
   fclose(f);
   const double middle = median(times, counted);
-  print_message("%zu verdicts: nodes and distance queries %.2f times those without errors in the median\n", counted,
+  print_message("%zu verdicts: nodes and distance queries %.2f times those of plain ones in the median\n", counted,
                 middle);
-  assert_true(counted > 20 && middle <= 2.0);
+  assert_true(counted > 10 && middle <= 2.0);
 }
 
 int main(void) {

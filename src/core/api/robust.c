@@ -87,7 +87,7 @@ static cprox_status begin(query *q, const cprox_obstacles *obstacles, const cpro
   const cprox_motion_info info = cprox_motion_get_info(q->mover.motion);
   q->t0 = greater(q->t0 - bounds->timing, info.t0), q->t1 = lesser(q->t1 + bounds->timing, info.t1);
   for (size_t i = 0; q->set && i < q->n; i++) {
-    const double reach = deviation_reach(&q->targets[i]);
+    const double reach = obstacle_reach(&q->targets[i]);
     if (isfinite(reach)) errors->object_size = greater(reach, errors->object_size);
   }
   return CPROX_OK;
@@ -134,7 +134,9 @@ cprox_status cprox_robust_tolerance(const cprox_obstacles *obstacles, cprox_move
   if (status == CPROX_OK) status = begin(&q, obstacles, bounds, &errors);
   if (status != CPROX_OK) return status;
   cprox_result robust, plain;
-  status = ask(&q, &errors, 1.0, &robust);
+  q.errors = &errors, errors.scale = 1.0;
+  workspace_forget_work(q.workspace);
+  status = robot_verdict(&q, 0, q.n, INFINITY, &robust);
   if (status < 0) return status;
   if (robust.verdict != CPROX_VERDICT_CLEAR) {
     const cprox_status of_motion = ask_plain(&q, &plain);

@@ -44,7 +44,7 @@ edge_motion edge_motion_in(const cprox_edge_checker *c, char *memory) {
   m.rate = m.middle + c->n_frames;
   m.more = m.rate + c->n_frames;
   m.more_rate = m.more + EDGE_POWERS * c->n_frames;
-  m.room = m.more_rate + EDGE_POWERS * c->n_frames;
+  m.room = m.standing_room = m.more_rate + EDGE_POWERS * c->n_frames;
   return m;
 }
 

@@ -38,7 +38,9 @@ typedef struct edge_motion {
   edge_frame_bound *bounds;   /* of each frame */
   edge_half_bound *frames;    /* of each frame as the base sees it, */
   edge_half_bound *relations; /* and as others do */
-  float *room;                /* of each part: what rounding may cost a distance from it [m] */
+  float *room;                /* of each part: what rounding may cost a distance from it [m], */
+  float *standing_room;       /* and a distance from what stands: the same, or by errors of an execution more; */
+  float *pair_losses;         /* what errors may cost those of each pair of parts; NULL: nothing */
   bool stands;                /* from = to */
 } edge_motion;
 

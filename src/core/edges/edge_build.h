@@ -75,6 +75,21 @@ static inline bool edge_snap(const double r[9], float out[9], int32_t from[3], f
   return exchanges;
 }
 
+/* A rotation that takes the z axis to the unit vector z. */
+static inline placement edge_turn_to(vec3 z) {
+  const vec3 side = fabs(z.x) < 0.6 ? vec(1, 0, 0) : vec(0, 1, 0);
+  vec3 x = vec_axpy(side, -vec_dot(side, z), z);
+  x = vec_scale(1.0 / vec_norm(x), x);
+  const vec3 y = vec_cross(z, x);
+  return (placement){.r = {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
+}
+
+/* What turns the axes of a frame in lanes, whose z is its joint's, to those of the joint. */
+static inline placement edge_turn_of_axis(const robot_axis *axis) {
+  static const placement HERE = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  return axis->along == 2 && axis->z.z > 0.0 ? HERE : edge_turn_to(axis->z);
+}
+
 /* A ball about the middle of their box that all points of a hull are in. */
 static inline void edge_enclose_points(edge_hull *hull, const float *points) {
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};

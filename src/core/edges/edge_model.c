@@ -8,20 +8,6 @@
 
 /* ---- frames ---- */
 
-/* A rotation that takes the z axis to the unit vector z. */
-static placement turn_to(vec3 z) {
-  const vec3 side = fabs(z.x) < 0.6 ? vec(1, 0, 0) : vec(0, 1, 0);
-  vec3 x = vec_axpy(side, -vec_dot(side, z), z);
-  x = vec_scale(1.0 / vec_norm(x), x);
-  const vec3 y = vec_cross(z, x);
-  return (placement){.r = {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
-}
-
-static placement turn_of_axis(const robot_axis *axis) {
-  static const placement HERE = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  return axis->along == 2 && axis->z.z > 0.0 ? HERE : turn_to(axis->z);
-}
-
 static placement turned_back(const placement *turn, const placement *at) {
   placement out = {.p = rotate_back(turn->r, at->p)};
   const double *t = turn->r;
@@ -92,10 +78,10 @@ static bool fill_frames(cprox_edge_checker *c) {
     if (axis->parent < 0)
       at.p = vec_sub(at.p, c->base);
     else {
-      const placement above = turn_of_axis(&robot->axes[axis->parent]);
+      const placement above = edge_turn_of_axis(&robot->axes[axis->parent]);
       at = turned_back(&above, &at);
     }
-    const placement own = turn_of_axis(axis);
+    const placement own = edge_turn_of_axis(axis);
     double r[9];
     rotation_compose(at.r, own.r, r);
     *f = (edge_frame){.parent = axis->parent < 0 ? 0 : frame_of[axis->parent],
@@ -117,7 +103,7 @@ static bool fill_frames(cprox_edge_checker *c) {
 static placement place_in_frame(const cprox_edge_checker *c, const robot_part *part) {
   placement at = part->at;
   if (part->axis >= 0) {
-    const placement turn = turn_of_axis(&c->robot->axes[part->axis]);
+    const placement turn = edge_turn_of_axis(&c->robot->axes[part->axis]);
     return turned_back(&turn, &at);
   }
   at.p = vec_sub(at.p, c->base);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "edges/edge_losses.h"
 #include "edges/kernels.h"
 
 /* Beyond these the trees and groups of the search find what is near sooner than lanes do. */
@@ -156,12 +157,25 @@ static bool take_nearest(const query *q, const cprox_edge_checker *c, const edge
 /* All that a query needs in the workspace. */
 typedef struct edge_run {
   edge_motion motion;
+  edge_losses losses;
   edge_lanes lanes;
   edge_open all;          /* what is open in any segment */
   uint32_t *known;        /* whether it is there */
   cprox_robot_pair *pair; /* room for the one that is measured */
   uint64_t batches;
 } edge_run;
+
+/* How far each part may be from the base, where errors take it farther. */
+static void add_to_reach(const query *q, const cprox_edge_checker *c, const motion_interval *over, edge_losses *losses,
+                         double *reach) {
+  for (size_t i = 0; i < c->n_parts; i++) losses->most[i] = 0.0;
+  for (size_t k = over->first; k < over->last; k++) {
+    const motion_interval segment = edge_segment(over, k);
+    edge_losses_over(q, c, &segment, losses);
+    for (size_t i = 0; i < c->n_parts; i++) losses->most[i] = greater(losses->standing[i], losses->most[i]);
+  }
+  for (size_t i = 0; i < c->n_parts; i++) reach[i] += losses->most[i];
+}
 
 /* The model's other side. False: beyond single precision, or memory is out. */
 static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t last, const motion_interval *over,
@@ -181,6 +195,8 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   *run = (edge_run){.motion = edge_motion_in(c, memory + rows), .lanes = {.memory = memory, .measures = true}};
   double *reach = (double *)(void *)(memory + rows + moves);
   if (!edge_motion_fill_reach(c, q->mover.motion, over, &run->motion, reach)) return false;
+  if (q->errors && !edge_losses_begin(q, c, first, last, &run->losses)) return false;
+  if (q->errors) add_to_reach(q, c, over, &run->losses, reach);
   if (!c->has_scene) /* of many states all are within reach of what the robot can reach */
     edge_model_fill_scene(c, q->targets, first, last, q->is_bare ? NULL : reach, memory + rows + moves + reaches);
   uint32_t *marks = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
@@ -214,6 +230,7 @@ static bool look_along(const query *q, const cprox_edge_checker *c, const motion
     const motion_interval segment = edge_segment(over, k);
     if (over->last - over->first > 1 && !edge_motion_fill_along(c, q->mover.motion, &segment, &run->motion))
       return false;
+    if (q->errors) edge_losses_add(q, c, &segment, &run->losses, &run->motion);
     if (run->batches == 0) return false;
     run->lanes.open.edge++, run->lanes.most_batches = (uint32_t)run->batches;
     edge_found one;

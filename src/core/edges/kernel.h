@@ -303,6 +303,13 @@ EDGE_INLINE lane moves_of(const lane_batch *b, lane3 speed, edge_half_bound boun
   return b->half * lane_sqrt(lane3_norm2(speed)) + b->half2 * lane_all(bound.acceleration + bound.turn * reach);
 }
 
+/* What rounding and errors may cost a distance of two parts. */
+EDGE_INLINE float pair_room(const lane_batch *b, size_t i) {
+  const edge_pair *pair = &b->c->lane_pairs[i];
+  const float rounding = b->motion->room[pair->a] + b->motion->room[pair->b];
+  return b->motion->pair_losses ? rounding + b->motion->pair_losses[i] : rounding;
+}
+
 #include "edges/normals.h"
 
 /* ---- contact ---- */
@@ -317,7 +324,7 @@ EDGE_TARGET static bool part_touches(lane_batch *b, size_t i, const edge_obstacl
   for (uint32_t k = part->first; k < part->first + part->n; k++) {
     const edge_ball *ball = &b->c->balls[k];
     const lane_two two = {ball->geometry, o->target, false};
-    const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, b->motion->room[i] + o->grown);
+    const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, b->motion->standing_room[i] + o->grown);
     if (inner > 0.0f && proves_contact(b, &two, distance2_from(o, lane3_add(own->o, ways[k])), inner)) return true;
   }
   return false;
@@ -348,7 +355,7 @@ EDGE_TARGET static bool place_part(lane_batch *b, size_t i) {
 EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, const edge_obstacle *o) {
   const edge_part *part = &b->c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
-  const float beyond = (float)b->c->clear_beyond, room = b->motion->room[i];
+  const float beyond = (float)b->c->clear_beyond, room = b->motion->standing_room[i];
   const lane3 *ways = ways_of(b, i);
   need(b, CPROX_EDGE_COVER);
   for (uint32_t k = part->first; k < part->first + part->n; k++) {
@@ -380,7 +387,7 @@ EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
   const lane_part *at = &b->parts[i];
   if (part->n_near == 0) return false;
   const lane moves = moves_of(b, at->speed, b->motion->frames[part->frame], part->reach);
-  const float radius = part->outer + (float)b->c->clear_beyond + b->motion->room[i];
+  const float radius = part->outer + (float)b->c->clear_beyond + b->motion->standing_room[i];
   for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
     const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
     const uint32_t near = within(b, k, b->apart2[k], moves, radius) & b->all & ~b->split;
@@ -432,7 +439,7 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
   const edge_pair *pair = &b->c->lane_pairs[i];
   const edge_part *first = &b->c->parts[pair->a], *second = &b->c->parts[pair->b];
   const lane_part *at = &b->parts[pair->a];
-  const float costs = b->motion->room[pair->a] + b->motion->room[pair->b], room = costs + (float)b->c->clear_beyond;
+  const float costs = pair_room(b, i), room = costs + (float)b->c->clear_beyond;
   const lane distance2 = lane3_norm2(lane3_sub(at->centre, b->parts[pair->b].centre));
   const lane3 speed = relative_speed(&b->frames[second->frame], at->centre, at->speed);
   const lane moves = moves_of(b, speed, b->motion->relations[pair->relation], first->reach);

@@ -371,7 +371,7 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
   const cprox_edge_checker *c = b->c;
   const edge_part *part = &c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
-  const float room = b->motion->room[i];
+  const float room = b->motion->standing_room[i];
   const bool known = is_open(b, near_at);
   need(b, CPROX_EDGE_NORMAL);
   lane_apart two = {.o = o,
@@ -438,7 +438,7 @@ EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
   const edge_part *first = &c->parts[pair->a], *second = &c->parts[pair->b];
   const lane_frame *own = &b->frames[first->frame], *other = &b->frames[second->frame];
   const uint32_t number = (uint32_t)(c->n_near + i);
-  const float room = b->motion->room[pair->a] + b->motion->room[pair->b] + (float)c->clear_beyond;
+  const float room = pair_room(b, i) + (float)c->clear_beyond;
   const bool known = is_open(b, number);
   need(b, CPROX_EDGE_NORMAL);
   lane_apart two = {.spin = lane3_sub(own->spin, other->spin),

@@ -260,7 +260,7 @@ EDGE_TARGET static bool open_standing(lane_batch *b, size_t i, uint32_t near_at,
                      .part = part,
                      .own = &b->frames[part->frame],
                      .pair = near_at,
-                     .room = b->motion->room[i],
+                     .room = b->motion->standing_room[i],
                      .beyond = (float)c->clear_beyond};
   place_standing(o, &s.frame);
   need(b, part->by_hulls || !o->tree ? CPROX_EDGE_NORMAL : CPROX_EDGE_COVER);

@@ -2,6 +2,7 @@
 target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/arcs.c
   ${CMAKE_CURRENT_LIST_DIR}/bound.c
+  ${CMAKE_CURRENT_LIST_DIR}/errors.c
   ${CMAKE_CURRENT_LIST_DIR}/given.c
   ${CMAKE_CURRENT_LIST_DIR}/jacobian.c
   ${CMAKE_CURRENT_LIST_DIR}/joint_tree.c

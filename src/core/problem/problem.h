@@ -30,8 +30,7 @@ typedef struct query {
   const struct obstacle_bvh
       *set; /* a robot's query: the set that the targets are, by whose boxes they are found; or NULL */
   pair_choice choice;
-  struct robot_errors
-      *errors; /* a robot's: it answers for all executions within them (robot_query/deviation.h); NULL */
+  struct robot_errors *errors; /* a robot's: it answers for all executions within them (kinematics/errors.h); NULL */
 } query;
 
 /* Asks about the whole curve; the arguments must have been checked. */

@@ -5,63 +5,25 @@
 
 #include "base/rounding.h"
 #include "base/workspace.h"
-#include "kinematics/motion_rates.h"
+#include "problem/obstacles.h"
 
 /* ---- axes ---- */
 
-static double bound_at(const double *bounds, int32_t variable) {
-  return bounds ? bounds[variable] : 0.0;
-}
-
-/* How far an axis may be from its value, in the middle of the node and anywhere in it. Balls are never off. */
-static deviation axis_deviation_of(const robot_scene *s, int32_t index) {
-  const cprox_error_bounds *b = s->q->errors->bounds;
-  const robot_axis *axis = &s->motion->robot->axes[index];
-  if (axis->kind >= AXIS_BALL) return (deviation){0.0, 0.0};
-  const int32_t variable = axis->variable;
-  const double speed = bound_at(b->speed, variable), acceleration = bound_at(b->acceleration, variable);
-  double middle = bound_at(b->tracking, variable), most = middle;
-  if ((speed > 0.0 || acceleration > 0.0) && s->motion->slot[variable] >= 0) {
-    double here[2], over[2];
-    motion_rates_at(s->motion, variable, s->centre.segment, s->centre.u, here);
-    motion_rates_over(s->motion, variable, &s->over, over);
-    most += speed * over[0] + acceleration * over[1];
-    middle += speed * lesser(here[0], over[0]) + acceleration * lesser(here[1], over[1]);
-  }
-  const double factor = fabs(axis->multiplier) * s->q->errors->scale;
-  return (deviation){factor * middle, factor * greater(most - middle, 0.0)};
-}
-
 static const deviation *axis_deviation(robot_scene *s, int32_t axis) {
   axis_deviations *state = &s->deviations[axis];
-  if (state->found != s->node) state->of = axis_deviation_of(s, axis), state->found = s->node;
+  if (state->found != s->node) {
+    state->of = errors_of_axis(s->motion, s->q->errors, axis, s->centre.segment, s->centre.u, &s->over);
+    state->found = s->node;
+  }
   return &state->of;
 }
 
 /* ---- parts ---- */
 
-/* A sum over the axes from one up to, not including, another one above it. An axis that is off by e turns or shifts all
- * that is on it by at most e times its lever arm. Over the node the lever arm grows by what moves tipside of it. */
+/* A sum over the axes from one up to, not including, another one above it. */
 static deviation along_chain(robot_scene *s, int32_t from, int32_t to, vec3 centre, double radius, double *travel) {
-  const robot_axis *axes = s->motion->robot->axes;
-  double middle = 0.0, most = 0.0, moved = 0.0;
-  for (int32_t i = from; i != to; i = axes[i].parent) {
-    const axis_state *state = &s->axes[i];
-    double arm = 1.0, widest = 1.0;
-    if (axes[i].kind != AXIS_PRISMATIC) {
-      const vec3 away = vec_sub(centre, state->frame.p);
-      arm = axes[i].kind == AXIS_REVOLUTE ? vec_norm(vec_cross(placement_turn(&state->frame, axes[i].z), away))
-                                          : vec_norm(away);
-      arm = ROUND_UP * (arm + radius);
-      widest = arm + moved;
-    }
-    const deviation *e = axis_deviation(s, i);
-    middle += e->middle * arm;
-    most += (e->middle + e->growth) * widest;
-    if (s->motion->axis_moves[i]) moved += state->shift * arm;
-  }
-  *travel = ROUND_UP * moved;
-  return (deviation){ROUND_UP * middle, ROUND_UP * greater(most - middle, 0.0)};
+  for (int32_t i = from; i != to; i = s->motion->robot->axes[i].parent) axis_deviation(s, i);
+  return errors_along_chain(s->motion, s->axes, s->deviations, from, to, centre, radius, travel);
 }
 
 /* Against what stands in the world; not counting how obstacles turn. */
@@ -87,21 +49,12 @@ static const part_deviation *whole_part(robot_scene *s, int32_t part, const robo
 
 /* ---- pairs ---- */
 
-static deviation sum_of(deviation a, deviation b) {
-  return (deviation){a.middle + b.middle, a.growth + b.growth};
-}
-
-double deviation_reach(const cprox_obstacle *obstacle) {
-  const cprox_body *body = obstacle->body;
-  return ROUND_UP * (vec_norm(body->ball_centre) + body->ball_radius + obstacle->margin);
-}
-
 /* Where an obstacle turns about a point, the part turns about it against the obstacle, from wherever it may be: the
  * shorter arm of both counts. */
 static deviation turn_of_obstacle(const robot_scene *s, double reach, double arm, const part_deviation *part) {
   const double angle = ROUND_UP * s->q->errors->scale * s->q->errors->bounds->object_rotation;
   if (!(angle > 0.0)) return (deviation){0.0, 0.0};
-  const deviation off = sum_of(part->joints, part->places);
+  const deviation off = deviation_sum(part->joints, part->places);
   const double middle = lesser(reach, arm + off.middle),
                most = lesser(reach, arm + off.middle + part->travel + off.growth);
   return (deviation){angle * middle, angle * (most - middle)};
@@ -110,7 +63,7 @@ static deviation turn_of_obstacle(const robot_scene *s, double reach, double arm
 deviation deviation_of_cluster(robot_scene *s, int32_t part) {
   const part_deviation *whole = whole_part(s, part, robot_scene_part(s, part));
   const deviation turn = turn_of_obstacle(s, s->q->errors->object_size, INFINITY, whole);
-  return sum_of(sum_of(whole->joints, whole->places), turn);
+  return deviation_sum(deviation_sum(whole->joints, whole->places), turn);
 }
 
 static deviation of_self_pair(robot_scene *s, const robot_pair *pair, const robot_body *moving,
@@ -123,7 +76,7 @@ static deviation of_self_pair(robot_scene *s, const robot_pair *pair, const robo
   const deviation e = along_chain(s, axis[1], common, standing->side.at.p, standing->core, &travel);
   const double flex = ROUND_UP * s->q->errors->scale * s->q->errors->bounds->flex;
   *places = (deviation){flex * ((axis[0] >= 0) + (axis[1] >= 0)), 0.0};
-  return sum_of(sum_of(d, e), *places);
+  return deviation_sum(deviation_sum(d, e), *places);
 }
 
 deviation deviation_of_pair(robot_scene *s, const robot_pair *pair, const robot_body *moving,
@@ -133,8 +86,8 @@ deviation deviation_of_pair(robot_scene *s, const robot_pair *pair, const robot_
                                                               : part_deviation_of(s, pair->moving, moving);
   const cprox_obstacle *target = &s->q->targets[standing->index];
   const double arm = vec_norm(vec_sub(moving->side.at.p, target->pose.position)) + moving->core;
-  *places = sum_of(part.places, turn_of_obstacle(s, deviation_reach(target), ROUND_UP * arm, &part));
-  return sum_of(part.joints, *places);
+  *places = deviation_sum(part.places, turn_of_obstacle(s, obstacle_reach(target), ROUND_UP * arm, &part));
+  return deviation_sum(part.joints, *places);
 }
 
 /* ---- along a normal ---- */

@@ -4,22 +4,10 @@
 #ifndef CPROX_ROBOT_QUERY_DEVIATION_H
 #define CPROX_ROBOT_QUERY_DEVIATION_H
 
-#include "curve_proximity/cprox/robust.h"
+#include "kinematics/errors.h"
 #include "robot_query/placed_robot_pair.h"
 
-/* What a query knows of errors. */
-typedef struct robot_errors {
-  const cprox_error_bounds *bounds;
-  double scale;       /* of all of them */
-  double loss, left;  /* after the search: what errors take off the distance of its nearest pair, where that was found,
-                         and what is left; negative where it is less than what errors take */
-  double object_size; /* [m] no obstacle with a box reaches farther from its pose's position */
-} robot_errors;
-
-/* The largest distance of a point of an obstacle from its pose's position; infinity where it has no end. */
-double deviation_reach(const cprox_obstacle *obstacle);
-
-/* The same against anything under a node of the set's tree. */
+/* Of a whole part, against anything under a node of the set's tree. */
 deviation deviation_of_cluster(robot_scene *scene, int32_t part);
 
 /* Both sides of a pair, which are placed. places: what of it is not by joints. */

@@ -4,6 +4,7 @@
 #define CPROX_ROBOT_QUERY_ROBOT_SCENE_H
 
 #include "kinematics/bound.h"
+#include "kinematics/errors.h"
 #include "problem/candidates.h"
 #include "robot_query/element.h"
 #include "robot_query/pair_distance.h"
@@ -51,18 +52,7 @@ typedef struct track_state {
   motion_interval own; /* of its own segments */
 } track_state;
 
-/* How much nearer two sides may be than they are in the middle of the node, by errors; elsewhere in the node by so much
- * more. */
-typedef struct deviation {
-  double middle, growth;
-} deviation;
-
-/* Of an axis: how far it may be from its value; and of a whole part, by the node for which they were found. */
-typedef struct axis_deviations {
-  uint32_t found;
-  deviation of;
-} axis_deviations;
-
+/* Of a whole part, by the node for which it was found. */
 typedef struct part_deviation {
   uint32_t found;
   deviation joints, places; /* by joints that are off; by the base, flex, obstacles that are shifted, and sensors */

@@ -32,6 +32,7 @@ cprox_status robot_verdict(const query *q, size_t first, size_t last, double cut
     if (!violated || r.verdict == CPROX_VERDICT_VIOLATED) {
       /* everything else is farther than known.lower */
       r.lower = clear ? known.lower : lesser(violated ? 0.0 : known.lower, r.lower);
+      if (q->errors) r.upper = greater(r.lower, r.upper); /* what is left of a pair is bounded in another way */
       *result = r;
       return query_conclude(q, cutoff, r.status, result);
     }
