@@ -8,7 +8,7 @@
 #include "problem/obstacles.h"
 
 /* Single precision places what is in a part no farther than this, by the largest distance from its frame. */
-#define ROUND_PLACE 0x1p-20
+#define EDGE_PLACE 0x1p-20
 
 bool edge_losses_begin(const query *q, const cprox_edge_checker *c, size_t first, size_t last, edge_losses *l) {
   const size_t n_axes = q->mover.motion->robot->n_axes, rows = MOTION_ROWS * q->mover.motion->row_size;
@@ -51,7 +51,7 @@ typedef struct part_ball {
 static part_ball ball_of(const query *q, const cprox_edge_checker *c, const edge_losses *l, const edge_part *part) {
   part_ball ball = {.axis = l->axis_of[part->frame],
                     .centre = vec((double)part->centre[0], (double)part->centre[1], (double)part->centre[2]),
-                    .radius = (double)part->core + ROUND_PLACE * part->farthest + ROUND_WORLD * vec_norm(c->base)};
+                    .radius = (double)part->core + EDGE_PLACE * part->farthest + ROUND_WORLD * vec_norm(c->base)};
   if (ball.axis < 0) {
     ball.centre = vec_add(c->base, ball.centre);
     return ball;
