@@ -289,6 +289,32 @@ CASE(closedness_is_found_at_vertices_of_many_edges) {
   cprox_body_free(body);
 }
 
+/* Two lines, the first of them outside of a torus, the second one inside of its tube: the spline crosses no triangle. */
+CASE(a_spline_that_jumps_into_a_solid_is_in_contact) {
+  test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.0);
+  const vec3 points[4] = {{3, 0, 0}, {2.5, 0, 0}, {1, 0, 0}, {1, 0.01, 0}};
+  const double knots[6] = {0, 0, 1, 1, 2, 2};
+  cprox_curve_description d = describe_bspline(points, 4, 1, knots, 6, 0, 2);
+  cprox_curve *curve = NULL;
+  assert_int_equal(cprox_curve_create(&d, ws, &curve), CPROX_OK);
+  for (int solid = 0; solid < 2; solid++) {
+    cprox_body *body = mesh_body(&mesh, solid ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE, ws);
+    const cprox_obstacle torus = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
+    const cprox_mover mover = cprox_point_along(curve);
+    cprox_result r;
+    assert_int_equal(cprox_collision(mover, torus, NULL, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, solid ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
+    assert_int_equal(cprox_distance(mover, torus, NULL, ws, &r), CPROX_OK);
+    assert_true(solid ? r.upper == 0.0 && r.t == 1.0 : r.lower > 0.35);
+    assert_int_equal(cprox_time_of_contact(mover, torus, NULL, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, solid ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
+    if (solid) assert_true(r.t_contact_lower <= 1.0 && r.t_contact_lower > 0.99 && r.t == 1.0);
+    cprox_body_free(body);
+  }
+  cprox_curve_free(curve);
+  mesh_free(&mesh);
+}
+
 /* 200 points (seed 60): the surface of a solid is the mesh made as a surface, and outlives no part of it. */
 CASE(a_solid_shares_its_triangles_with_its_surface) {
   rng r = rng_seed(60);

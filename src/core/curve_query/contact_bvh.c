@@ -36,7 +36,7 @@ static tree_sample measure(contact_tree *c, tree_place place, size_t piece, doub
   return sample;
 }
 
-/* Where the curve begins: inside of a solid, or somewhere from which a witness is taken. */
+/* Where the curve begins or jumps: inside of a solid, or somewhere from which a witness is taken. */
 static void begin(contact_tree *c) {
   curve_tree *o = &c->base;
   tree_sample sample;
@@ -45,7 +45,8 @@ static void begin(contact_tree *c) {
   const size_t first = piece ? curve_side_piece(&o->side, part) : 0;
   const double s = piece ? part->a : 0.0;
   if (curve_tree_begins_inside(o, &sample)) {
-    consider(c, &sample, &(search_best){.upper = -o->offset, .at = curve_side_parameter_below(&o->side, first, s)});
+    const double at = curve_side_parameter_below(&o->side, sample.piece, sample.s);
+    consider(c, &sample, &(search_best){.upper = -o->offset, .at = at});
     return;
   }
   curve_side_load(&o->side, first);

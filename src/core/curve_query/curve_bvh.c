@@ -184,16 +184,32 @@ bool curve_tree_meets(curve_tree *o, tree_sample *sample, size_t *until_piece, d
   return false;
 }
 
+/* The curve is elsewhere at the end of the piece before, by more than rounding: splines alone jump. */
+static bool jumps_into(const cprox_curve *curve, size_t piece) {
+  const vec3 *start = curve_piece(curve, piece);
+  const double sizes = vec_norm(start[0]) + vec_norm(start[-1]);
+  const double same = 64.0 * ROUND_U * sizes + curve->error[piece - 1] + curve->error[piece];
+  return vec_norm(vec_sub(start[0], start[-1])) > same;
+}
+
+/* Is the point at s of a piece inside? The sample is filled then. */
+static bool starts_inside(curve_tree *o, size_t piece, double s, tree_sample *sample) {
+  curve_side_load(&o->side, piece);
+  const vec3 y = curve_side_point(&o->side, s);
+  if (!vec_finite(y) || !is_inside(o, y, curve_side_point_error(&o->side))) return false;
+  *sample = (tree_sample){.y = y, .piece = piece, .s = s, .inside = true, .near = {.point = y}};
+  return true;
+}
+
 bool curve_tree_begins_inside(curve_tree *o, tree_sample *sample) {
   if (!o->body->winding) return false;
   const curve_interval *part = &o->side.part;
-  const bool piece = curve_side_is_piece(&o->side, part);
-  curve_side_load(&o->side, piece ? curve_side_piece(&o->side, part) : 0);
-  const double s = piece ? part->a : 0.0;
-  const vec3 y = curve_side_point(&o->side, s);
-  if (!vec_finite(y) || !is_inside(o, y, curve_side_point_error(&o->side))) return false;
-  *sample = (tree_sample){.y = y, .piece = o->side.root_piece, .s = s, .inside = true, .near = {.point = y}};
-  return true;
+  if (curve_side_is_piece(&o->side, part)) return starts_inside(o, curve_side_piece(&o->side, part), part->a, sample);
+  if (starts_inside(o, 0, 0.0, sample)) return true;
+  const cprox_curve *curve = o->side.curve;
+  for (size_t i = 1; i < curve->n_pieces && !curve->arcs; i++)
+    if (jumps_into(curve, i) && starts_inside(o, i, 0.0, sample)) return true;
+  return false;
 }
 
 /* Nothing to subtract, and nearer than asked: only a proof of contact is better. */

@@ -92,7 +92,7 @@ bool curve_tree_holds(const curve_tree *o, vec3 y);
  * *until of a piece, or is inside of a solid there. */
 bool curve_tree_meets(curve_tree *o, tree_sample *sample, size_t *until_piece, double *until);
 
-/* Whether it begins inside of a solid, for a search that has not begun; the sample is filled then. */
+/* Whether it begins inside of a solid, or jumps into it, for a search that has not begun; the sample is filled then. */
 bool curve_tree_begins_inside(curve_tree *o, tree_sample *sample);
 
 #endif
