@@ -213,12 +213,16 @@ struct ClearanceInterval {
   cprox_status status = CPROX_OK;
 
   std::optional<Gap> gap; /**< the profile does not cover all that was given: lower is 0 */
+
+  /** With options.certificate: a certificate that the distance is greater than lower, or where that is 0 that it is at
+   *  most upper somewhere; empty: there is none. */
+  std::string certificate;
+  std::string unproven; /**< why there is none */
 };
 
 /** The clearance profile: the least distance on each interval between two breaks, which ascend within the domain of the
  *  curve. Clearance beyond a horizon >= 0 [m] is only bounded: lower > horizon, which is less work. Takes no query but
- *  DISTANCE, no signed_distance, no per_object and no certificate; throws Error for those, and where the core refuses.
- */
+ *  DISTANCE, no signed_distance and no per_object; throws Error for those, and where the core refuses. */
 std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
                                                 const std::vector<double> &breaks, const Query &query,
                                                 Workspace &workspace,
@@ -277,13 +281,16 @@ struct Violations {
   /** The list does not cover all that was given: each time outside of what is violated is undecided, and message says
    *  why. */
   std::optional<Gap> gap;
+  /** With options.certificate, in the order of the parameter: certificates that the distance is above query.delta
+   *  between the violations, and that it is not somewhere in each of them. */
+  std::vector<std::string> certificates;
+  std::string unproven; /**< why one of these is missing; empty: none is */
 };
 
 /** All intervals in which the curve is within query.delta of something: where does it enter, where does it leave?
  *  Outside of them it is proven to be farther. Within enter_upper … leave_lower it is proven not to be, but for the
  *  rounding of poses outside the core. resolution > 0, in units of the parameter: as cprox_obstacles_violations() has
- *  it. Takes no other query than TOLERANCE, no per_object and no certificate; throws Error for those, and where the
- *  core refuses. */
+ *  it. Takes no other query than TOLERANCE and no per_object; throws Error for those, and where the core refuses. */
 Violations violations(const Targets &targets, const CompiledCurve &curve, double resolution, const Query &query,
                       Workspace &workspace);
 

@@ -60,6 +60,19 @@ class Lines {
       noteGap(interval.gap, out_);
       out_.text += profileLine(asked_.id, asked_.kind, interval);
     }
+    if (arguments_.certificate.empty()) return;
+    std::vector<std::string> proofs;
+    std::size_t measured = 0;
+    std::string why;
+    for (const ClearanceInterval &interval : profile) {
+      if (why.empty()) why = interval.unproven;
+      measured += std::isfinite(interval.lower) && interval.status >= 0 ? 1 : 0;
+      if (!interval.certificate.empty()) proofs.push_back(interval.certificate);
+    }
+    out_.certificate = recordOf(proofs);
+    if (proofs.size() < measured)
+      out_.unproven.push_back(asked_.place + ": no certificate of " + std::to_string(measured - proofs.size()) +
+                              " of " + std::to_string(measured) + " intervals: " + why);
   }
 
   void add(const Violations &found) {
@@ -73,6 +86,10 @@ class Lines {
       out_.undecided = out_.undecided || one.verdict == CPROX_VERDICT_UNDECIDED;
       out_.text += violationLine(asked_.id, asked_.kind, found, one);
     }
+    if (arguments_.certificate.empty()) return;
+    out_.certificate = recordOf(found.certificates);
+    if (!found.unproven.empty())
+      out_.unproven.push_back(asked_.place + ": a part has no certificate: " + found.unproven);
   }
 
   void add(const SpeedLimits &limits) {

@@ -32,6 +32,15 @@ std::string recordOf(const CertificateHandle &certificate) {
   return recordOfBytes(info.bytes, info.size);
 }
 
+std::string recordOf(const std::vector<std::string> &certificates) {
+  if (certificates.empty()) return emptyRecord();
+  std::string all = "CPCP";
+  const std::size_t n = certificates.size();
+  for (int i = 0; i < 4; ++i) all += static_cast<char>(n >> (8 * i) & 255);
+  for (const std::string &one : certificates) all += recordOfBytes(one.data(), one.size());
+  return recordOfBytes(all.data(), all.size());
+}
+
 std::string proofOf(const CertificateHandle &certificate) {
   switch (cprox_certificate_get_info(certificate.get()).claim) {
     case CPROX_CLAIM_APART: return "apart";

@@ -23,6 +23,9 @@ using CertificateHandle = std::unique_ptr<cprox_certificate, decltype(&cprox_cer
 CertificateHandle makeCertificate();
 std::string recordOf(const CertificateHandle &certificate);
 
+/** The record of several certificates of one row; of length 0 where there is none. */
+std::string recordOf(const std::vector<std::string> &certificates);
+
 /** What it claims, for the column `proof`: "apart", "near", "before", or "none". */
 std::string proofOf(const CertificateHandle &certificate);
 

@@ -15,7 +15,6 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <regex>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -82,24 +81,34 @@ class Scratch {
   int file_;
 };
 
+/* What a line says that is proven: the word of the column `proof`, or "parts" of several claims. */
+std::string claimOf(const std::string &said) {
+  const std::size_t counts = said.rfind(" bytes, "), parts = said.find(" parts, ", counts);
+  if (counts != std::string::npos && parts != std::string::npos) return "parts";
+  if (said.rfind("not ", 0) == 0) return "near";
+  if (said.find(" m before ") != std::string::npos) return "before";
+  return said.find(" m from ") != std::string::npos ? "during" : "apart";
+}
+
 /* A line of cprox_check, `ID: proven: farther than X m everywhere (…)` for example, as JSON. */
 std::string jsonLine(const std::string &line) {
-  static const std::regex form(
-      "(?:(.*?): )?(?:(proven): ((not )?farther than ([^ ]+) m.*)|(refused): (.*)|(nothing is claimed))");
-  std::smatch found;
+  constexpr std::array<std::string_view, 3> words{": proven: ", ": refused: ", ": nothing is claimed"};
+  const std::string whole = ": " + line; // its ID may be missing
+  std::size_t at = std::string::npos, found = 0;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (const std::size_t here = whole.find(words[i]); here < at) at = here, found = i;
   Json row;
-  if (!std::regex_match(line, found, form)) {
+  if (at == std::string::npos) {
     row["message"] = line;
     return textOfJson(row);
   }
-  row["id"] = found[1].str();
-  row["proof"] = found[6].matched                                       ? "refused"
-                 : !found[2].matched                                    ? "none"
-                 : found[4].matched                                     ? "near"
-                 : found[3].str().find(" before ") != std::string::npos ? "before"
-                                                                        : "apart";
-  row["delta"] = found[5].matched ? Json(std::stod(found[5])) : Json();
-  row["message"] = found[2].matched ? found[3].str() : found[6].matched ? found[7].str() : found[8].str();
+  const std::string said = whole.substr(at + words[found].size());
+  const std::string proof = found == 0 ? claimOf(said) : found == 1 ? "refused" : "none";
+  const std::size_t delta = found == 0 && proof != "parts" ? said.find("than ") : std::string::npos;
+  row["id"] = at > 0 ? whole.substr(2, at - 2) : "";
+  row["proof"] = proof;
+  row["delta"] = delta != std::string::npos ? Json(std::stod(said.substr(delta + std::strlen("than ")))) : Json();
+  row["message"] = found == 2 ? "nothing is claimed" : said;
   return textOfJson(row);
 }
 

@@ -226,11 +226,11 @@ const std::vector<Option> &options() {
        "(of trajectories), or another package's"},
       {"--parameters", "LIST", "constraints", "\"name: value, ...\": what the provider is set to"},
       {"--check-gradient", "", "constraints", "holds the gradients against central differences"},
-      {"--certificate", "FILE", "distance tolerance collision time-of-contact report",
+      {"--certificate", "FILE", "distance tolerance collision time-of-contact profile violations report",
        "writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near, before "
-       "(of the time of contact) or none. The answers are the same as without. A link that is a mesh is taken by its "
-       "convex hull: that it is far can be proven, that it is near cannot. Superquadrics and other implicit bodies "
-       "have no proofs"},
+       "(of the time of contact) or none. Of profiles and violations it proves each part of the range and adds no "
+       "column. The answers are the same as without. A link that is a mesh is taken by its "
+       "convex hull: that it is far can be proven, that it is near cannot"},
       {"--epsilon", "E", "queries report pairs certify robust acm speed margins",
        "width of the intervals asked for, metres, above 0 (default 1e-06)"},
       {"--delta", "D", "tolerance violations report robust margins",

@@ -105,6 +105,52 @@ class CertificateTest(Case):
         checked = self.check(scene='nearer.yaml')
         self.assertEqual((checked.code, checked.out.count('refused')), (1, 2), checked.out)
 
+    def each_interval_of_a_profile_is_proven(self):
+        """`through` is inside the box in the middle: near there, apart elsewhere."""
+        rows = [PASSING, bezier('through', (-3, 0, 0), (3, 0.1, 0))]
+        self.certificates = os.path.join(self.folder, 'answers.cpc')
+        plain = self.ask('profile', rows, SCENE, '--intervals', '6')
+        answer = self.ask('profile', rows, SCENE, '--intervals', '6', '--certificate', self.certificates)
+        self.assertEqual((answer.code, answer.rows, answer.err), (0, plain.rows, plain.err))
+        checked = self.check()
+        self.assertEqual(checked.code, 0, checked.out)
+        for line, name in zip(checked.out.splitlines(), ('passing', 'through')):
+            self.assertTrue(line.startswith(name + ': proven: '), line)
+            claims = line.partition(': proven: ')[2].rpartition(' (')[0].split('; ')
+            mine = [row for row in answer.rows if row['id'] == name]
+            self.assertEqual(len(claims), len(mine))
+            for claim, row in zip(claims, mine):
+                self.assertEqual(claim.startswith('farther than '), float(row['lower']) > 0, claim)
+                if float(row['lower']) > 0:
+                    delta, part = claim.split('farther than ')[1].split(' m from ')
+                    self.assertAlmostEqual(float(delta), float(row['lower']), delta=1.001e-6)  # epsilon
+                    self.assertEqual([float(t) for t in part.split(' to ')], [float(row['t0']), float(row['t1'])])
+        self.assertEqual([json.loads(line)['proof'] for line in self.check('--json').out.splitlines()], ['parts', 'parts'])
+        self.file('nearer.yaml', SCENE.replace('[2, 2, 2]', '[2.001, 2, 2]'))
+        checked = self.check(scene='nearer.yaml')
+        self.assertEqual(checked.code, 1, checked.out)
+        self.assertIn('through: refused: part ', checked.out)
+
+    def what_lies_between_violations_and_each_of_them_is_proven(self):
+        rows = [PASSING, bezier('through', (-3, 0, 0), (3, 0.1, 0))]
+        answer = self.write('violations', rows, SCENE, '--delta', '0.3', '--resolution', '1e-6')
+        plain = self.ask('violations', rows, SCENE, '--delta', '0.3', '--resolution', '1e-6')
+        self.assertEqual((answer.rows, answer.err), (plain.rows, plain.err))
+        checked = self.check()
+        self.assertEqual(checked.code, 0, checked.out)
+        clear, through = checked.out.splitlines()
+        self.assertTrue(clear.startswith(f'passing: proven: farther than {0.3:.17g} m from 0 to 1 '), clear)
+        claims = through.partition(': proven: ')[2].split('; ')
+        self.assertEqual([claim.startswith('not ') for claim in claims], [False, True, False], through)
+        row = answer.row('through')
+        until = float(claims[0].split(' to ')[1])
+        after = float(claims[2].split(' m from ')[1].split(' to ')[0])
+        self.assertLessEqual(until, float(row['enter_lower']))
+        self.assertGreaterEqual(after, float(row['leave_upper']))
+        self.assertLess(max(float(row['enter_lower']) - until, after - float(row['leave_upper'])), 1e-3)
+        self.file('nearer.yaml', SCENE.replace('[2, 2, 2]', '[2.01, 2, 2]'))
+        self.assertIn('through: refused: part 1 of 3', self.check(scene='nearer.yaml').out)
+
     def a_certificate_of_another_query_is_refused(self):
         self.write('distance', [PASSING], BOX_SCENE)
         self.file('larger.yaml', BOX_SCENE.replace('[2, 2, 2]', '[2.001, 2, 2]'))

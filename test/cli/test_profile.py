@@ -144,7 +144,7 @@ class Curves(Case):
 
     def options_are_for_their_commands(self):
         for command, option in (('distance', '--pairs=3'), ('distance', '--intervals=3'), ('profile', '--within=1'), ('nearest', '--breaks=0,1'),
-                                ('profile', '--certificate=c'), ('profile', '--signed'), ('time-of-contact', '--signed'),
+                                ('nearest', '--certificate=c'), ('profile', '--signed'), ('time-of-contact', '--signed'),
                                 ('nearest', '--against=b'), ('time-of-contact', '--delta=1'), ('nearest', '--per-link')):
             with self.subTest(command=command, option=option):
                 self.assertRefused(self.ask(command, [OVER], TWO, option), option.split('=')[0])

@@ -135,6 +135,14 @@ class Trajectory(Case):
                 if query_type == 'distance':
                     self.assertAlmostEqual(float(line.split('farther than ')[1].split(' m')[0]), float(row['lower']), delta=1.001e-6)
 
+        for query_type, more in (('profile', ['--intervals', '3']), ('violations', ['--delta', '1', '--resolution', '1e-5'])):
+            plain, asked = self.robot(query_type, swing, '--self', *more), self.robot(query_type, swing, '--self', '--certificate', file, *more)
+            self.assertEqual((asked.code, asked.rows, asked.err), (plain.code, plain.rows, ''))
+            checked = self.robot('check', swing, file, '--self')
+            self.assertEqual((checked.code, checked.out.count(': proven: ')), (0, 2), checked.out + checked.err)
+            for line in checked.out.splitlines() if query_type == 'profile' else []:
+                self.assertEqual(line.count('; '), 2, line)
+
         # it goes farther than the query that was proven
         self.robot('tolerance', swing, '--certificate', file, '--delta', '0.3')
         for trajectory, code in ((swing, 0), (swing.replace('[2, 0.5]', '[2.5, 0.5]'), 1)):

@@ -42,7 +42,7 @@ class Usage(Case):
         page = cprox('profile', '--help').out
         self.assertIn('--horizon', page)
         self.assertIn('id,kind,status,t0,t1', page)
-        for word in ('--within', '--provider', '--dataset', '--certificate'):
+        for word in ('--within', '--provider', '--dataset', '--synchronized'):
             self.assertNotIn(word, page.partition('\nOptions\n')[2])
 
     def a_shell_completes_commands_options_and_files(self):
@@ -142,7 +142,7 @@ print -rn -- $out
                      (command, start + ['--trajectory', 't', '--robot', 'r'], run | own | {
                          '--scene', '--srdf', '--state', '--certificate', '--per-object', '--per-link', '--max-lod', '--skipped', '--self', '--second-opinion',
                          '--links', '--objects', '--allow-empty', '--moving-links-only'})]
-        for command, own in (('profile', {'--intervals', '--breaks', '--horizon'}), ('nearest', {'--pairs', '--within', '--signed'}), ('time-of-contact', {'--certificate'})):
+        for command, own in (('profile', {'--intervals', '--breaks', '--horizon', '--certificate'}), ('nearest', {'--pairs', '--within', '--signed'}), ('time-of-contact', {'--certificate'})):
             both = run | (set() if command == 'profile' else {'--second-opinion'}) | own | {
                 '--scene', '--srdf', '--state', '--per-object', '--max-lod', '--skipped', '--links', '--objects', '--allow-empty'}
             rows += [(command, ['--curves', 'c', '--robot', 'r'], both),

@@ -278,10 +278,12 @@ static cprox_status certify_part(const task *t) {
   const bool begins = t->wanted.apart == CPROX_CLAIM_DURING;
   const double begin = begins ? count_at(pieces_of(t), t->wanted.t0) : 0.0;
   const double end = count_at(pieces_of(t), t->wanted.t1);
+  const bool whole_end = begins && end == (double)pieces_of(t)->n_pieces;
   if (begins && is_of_distance(t)) return certify_clear(t, (reach_part){begin, end});
   cprox_status status = CPROX_PRECISION;
   for (double back = 0.0; status > 0; back = fmax(STEPS_BACK * back, FINEST_STEP)) {
-    const reach_part part = {begins ? begin + back : 0.0, nextafter(end - back, 0.0)};
+    const double to = whole_end && back == 0.0 ? end : nextafter(end - back, 0.0);
+    const reach_part part = {begins ? begin + back : 0.0, to};
     if (!(part.to > part.from) || (begins && back > CLAIM_MOST_BACK)) return CPROX_PRECISION;
     status = attempt(t, 4, t->delta, part);
     if (status > 0) status = attempt(t, 8, t->delta, part);

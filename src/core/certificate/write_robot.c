@@ -144,7 +144,9 @@ static cprox_status certify_during(robot_cover *cover, const claim_wanted *wante
     status = attempt(cover, CPROX_CLAIM_DURING, 4, cover->delta);
     if (status > 0) status = attempt(cover, CPROX_CLAIM_DURING, 8, cover->delta);
     if (status <= 0 || !distance) continue;
-    return cover->delta > epsilon ? attempt(cover, CPROX_CLAIM_DURING, 4, cover->delta - epsilon) : status;
+    if (!(cover->delta > epsilon)) return status;
+    status = attempt(cover, CPROX_CLAIM_DURING, 4, cover->delta - epsilon);
+    return status > 0 ? attempt(cover, CPROX_CLAIM_DURING, 8, cover->delta - epsilon) : status;
   }
   return status;
 }

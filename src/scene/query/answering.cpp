@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "proving.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -109,6 +111,11 @@ Answer unasked(const std::string &id, const std::string &kind, const Query &quer
   return answer;
 }
 
+Query withoutCertificate(Query query) {
+  query.options.certificate = nullptr;
+  return query;
+}
+
 cprox_options withoutRounding(cprox_options options, double rounding) {
   if (options.epsilon > 4.0 * rounding) options.epsilon -= 2.0 * rounding;
   return options;
@@ -165,6 +172,19 @@ ClearanceInterval toInterval(const cprox_profile_interval &found, double roundin
   return out;
 }
 
+/* That the distance is greater than its lower bound, or at most the upper one. */
+std::string provenInterval(const Query &query, const Stated &stated, const Obstacles &obstacles,
+                           const cprox_profile_interval &found, Workspace &workspace, std::string &unproven) {
+  PartialClaim claim{{found.t0, found.t1}, found.lower, !(found.lower > 0.0), true, cprox_result{}};
+  if (claim.near) claim.delta = std::max(found.upper, 0.0);
+  if (!std::isfinite(claim.delta)) return {};
+  claim.answer.verdict = CPROX_VERDICT_UNDECIDED;
+  claim.answer.lower = found.lower, claim.answer.upper = found.upper, claim.answer.t = found.t;
+  claim.answer.obstacle_index = found.obstacle_index, claim.answer.mover_part = found.mover_part;
+  claim.answer.witness_mover = found.witness_mover, claim.answer.witness_obstacle = found.witness_obstacle;
+  return certificateOf(query, stated.mover, obstacles.get(), claim, workspace, unproven);
+}
+
 } // namespace
 
 std::vector<ClearanceInterval> searchProfile(const Stated &stated, const std::vector<double> &breaks, double horizon,
@@ -172,7 +192,8 @@ std::vector<ClearanceInterval> searchProfile(const Stated &stated, const std::ve
   if (stated.is_empty) return profileOfNothing(breaks);
   std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
   const Obstacles obstacles(stated.targets, CPROX_INDEX_NONE);
-  const cprox_options options = withoutRounding(query.options, stated.rounding);
+  cprox_options options = withoutRounding(query.options, stated.rounding);
+  options.certificate = nullptr;
   const cprox_status status =
       cprox_obstacles_profile(obstacles.get(), stated.mover, breaks.data(), intervals.size(), horizon + stated.rounding,
                               &options, workspace.get(), intervals.data());
@@ -187,6 +208,8 @@ std::vector<ClearanceInterval> searchProfile(const Stated &stated, const std::ve
     out.back().a = sides.a, out.back().witness_a = sides.result.witness_mover;
     out.back().b = sides.b, out.back().witness_b = sides.result.witness_obstacle;
     if (std::isinf(sides.result.upper)) out.back().upper = INFINITE;
+    if (query.options.certificate)
+      out.back().certificate = provenInterval(query, stated, obstacles, found, workspace, out.back().unproven);
   }
   return out;
 }
@@ -214,7 +237,7 @@ void searchContact(const cprox_mover &mover, const std::vector<cprox_obstacle> &
 std::string faultOfDistances(const Query &query) {
   if (query.query_type != QueryType::DISTANCE)
     return "query_type does not apply: pairs and clearance profiles are answered by their distances";
-  if (query.options.certificate) return "a certificate does not apply: pairs and clearance profiles have none";
+  if (query.options.certificate) return "a certificate does not apply: nearest pairs have none";
   return "";
 }
 

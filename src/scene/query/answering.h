@@ -40,6 +40,9 @@ Answer refusal(const std::string &id, const std::string &kind, const std::string
 /* An answer that knows nothing, since the stop function has ended the query before its search began. */
 Answer unasked(const std::string &id, const std::string &kind, const Query &query);
 
+/* The query without its certificate. */
+Query withoutCertificate(Query query);
+
 /* The part of epsilon that rounding takes is not the core's to use. */
 cprox_options withoutRounding(cprox_options options, double rounding);
 

@@ -93,7 +93,7 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
 std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
                                                 const std::vector<double> &breaks, const Query &query,
                                                 Workspace &workspace, double horizon) {
-  requireDistances(query);
+  requireDistances(withoutCertificate(query));
   const std::string fault = faultOfProfile(query, breaks, horizon);
   if (!fault.empty()) throw Error(fault);
   Stated stated = statedOf(targets, curve, query);

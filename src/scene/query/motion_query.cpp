@@ -210,7 +210,7 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
 
 std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
                                                 const Query &query, Workspace &workspace, double horizon) {
-  checkDistances(againstOf(self), query);
+  checkDistances(againstOf(self), withoutCertificate(query));
   const std::string fault = faultOfProfile(query, breaks, horizon);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, againstOf(self), query);

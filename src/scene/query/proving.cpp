@@ -60,6 +60,25 @@ void leaveContactProof(const Query &query, const cprox_mover &mover, const std::
   if (status != CPROX_OK) answer.unproven = workspace.reason();
 }
 
+std::string certificateOf(const Query &query, const cprox_mover &mover, const cprox_obstacles *obstacles,
+                          const PartialClaim &claim, Workspace &workspace, std::string &unproven) {
+  cprox_certificate *certificate = query.options.certificate;
+  cprox_options options = query.options;
+  options.certificate = nullptr;
+  options.signed_distance = false;
+  options.stop = nullptr;
+  options.interval = claim.near ? nullptr : claim.range.data();
+  const bool with_answer = claim.near || claim.distance;
+  const cprox_status status = cprox_certify(mover, obstacles, claim.delta, with_answer ? &claim.answer : nullptr,
+                                            &options, workspace.get(), certificate);
+  if (status != CPROX_OK) {
+    unproven = workspace.reason();
+    return {};
+  }
+  const cprox_certificate_info info = cprox_certificate_get_info(certificate);
+  return {static_cast<const char *>(info.bytes), info.size};
+}
+
 std::string unprovable(const std::string &who, const cprox_obstacle &target, bool moves) {
   const cprox_body_kind kind = target.body ? cprox_body_get_info(target.body).kind : CPROX_BODY_POINT;
   const bool elements = kind == CPROX_BODY_MESH || kind == CPROX_BODY_POINTS || kind == CPROX_BODY_OCTREE;

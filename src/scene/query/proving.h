@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_PROVING_H
 #define CURVE_PROXIMITY_SCENE_PROVING_H
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,19 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
 /* The same of the time of contact: `result` is the core's, of these targets or of larger ones. */
 void leaveContactProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
                        const cprox_result &result, Workspace &workspace, Answer &answer);
+
+/* A claim about a part of the range, or that the distance is at most delta where the answer says. */
+struct PartialClaim {
+  std::array<double, 2> range;
+  double delta;
+  bool near;
+  bool distance; /* of a distance: the claim may be weaker by epsilon */
+  cprox_result answer;
+};
+
+/* The certificate of a claim; empty, with a message in `unproven`, where there is none. */
+std::string certificateOf(const Query &query, const cprox_mover &mover, const cprox_obstacles *obstacles,
+                          const PartialClaim &claim, Workspace &workspace, std::string &unproven);
 
 /* Why nothing at all can be proven where this body takes part; empty where it can. `who`: "object 'can'". moves: it
  * is a link, or attached. */
