@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <curve_proximity/roadmap.hpp>
+
 namespace curve_proximity {
 namespace {
 
@@ -51,6 +53,7 @@ class Look {
     if (answer.result.status >= 0 && answer.result.verdict == CPROX_VERDICT_CLEAR) return;
     if (!out.why.empty()) out.why += "; ";
     out.why += answer.kind + ": ";
+    out.of_self = self_;
     if (answer.result.status < 0) {
       out.why += "failed, " + answer.message;
       out.clear_until = motion_.domain()[0];
@@ -176,6 +179,30 @@ Finding Certifier::find(const planning_scene::PlanningScene &scene, const robot_
     out.why = std::string("the trajectory cannot be certified: ") + error.what();
   }
   return out;
+}
+
+EdgeTest Certifier::edges(const planning_scene::PlanningScene &scene, const moveit::core::RobotState &at,
+                          const std::vector<std::string> &joints, bool with_self,
+                          const CertifySettings &settings) const {
+  const std::shared_ptr<const Env> env = envOf(scene);
+  Query query;
+  query.query_type = settings.clearance > 0.0 ? QueryType::TOLERANCE : QueryType::COLLISION;
+  query.delta = settings.clearance;
+  query.allow_empty = true; // MoveIt's scene is whole
+  query.options.epsilon = settings.epsilon;
+  const auto checkers = std::make_shared<std::vector<EdgeChecker>>();
+  const auto add = [&](const Env &of, RobotPairs against) {
+    checkers->emplace_back(*of.robot(at, scene.getAllowedCollisionMatrix()), joints, jointPositions(at), against,
+                           query);
+  };
+  add(*env, RobotPairs::ENVIRONMENT);
+  if (with_self) add(*atItsOwnSize(env), RobotPairs::SELF);
+  const auto workspace = std::make_shared<Workspace>();
+  return [checkers, workspace](const Row &from, const Row &to) {
+    return std::all_of(checkers->begin(), checkers->end(), [&](const EdgeChecker &checker) {
+      return checker.ask(from.data(), to.data(), *workspace) == CPROX_VERDICT_CLEAR;
+    });
+  };
 }
 
 Finding Certifier::certify(const planning_scene::PlanningScene &scene,

@@ -12,6 +12,7 @@
 #include <moveit/robot_trajectory/robot_trajectory.h>
 
 #include "collision_env.h"
+#include "detour.h"
 
 namespace curve_proximity {
 
@@ -29,6 +30,7 @@ struct Doubt {
 
 struct Finding {
   std::string why;                   /* why the trajectory is not proven, in one line; "": it is */
+  bool of_self = false;              /* that is so, at the last, against the robot itself */
   double clear_until = 0.0;          /* [s] proven up to here */
   std::vector<Doubt> doubts;         /* none although `why` is not "": the trajectory cannot be certified */
   std::vector<std::string> warnings; /* joints beyond their limits */
@@ -40,10 +42,15 @@ class Certifier {
   Finding certify(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,
                   const CertifySettings &settings) const;
 
-  /* The same without measuring where a trajectory is not proven and by how much, which takes many times as long: `why` and
-   * `warnings` alone. */
+  /* The same without measuring where a trajectory is not proven and by how much, which takes many times as long: `why`
+   * and `warnings` alone. */
   Finding judge(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,
                 const CertifySettings &settings) const;
+
+  /* Are straight motions of these joints, all others at `at`, proven? Against the objects, and `with_self` against the
+   * robot: that takes long where two of its meshes are always close. No budget; not for several threads. Throws Error. */
+  EdgeTest edges(const planning_scene::PlanningScene &scene, const moveit::core::RobotState &at,
+                 const std::vector<std::string> &joints, bool with_self, const CertifySettings &settings) const;
 
  private:
   Finding find(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,

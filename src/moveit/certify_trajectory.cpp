@@ -10,6 +10,7 @@
 #include <ros/ros.h>
 #include <pluginlib/class_list_macros.hpp>
 
+#include "repair.h"
 #include "violation_message.h"
 
 namespace curve_proximity {
@@ -52,6 +53,7 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
     settings_.clearance = parameter(node, "clearance", 0.0);
     settings_.epsilon = parameter(node, "epsilon", 1e-6);
     settings_.budget_ms = parameter(node, "budget_ms", 1000.0);
+    repair_ms_ = parameter(node, "repair_ms", 200.0);
     attempts_ = node.param("certify_attempts", 3);
     if (attempts_ < 1) {
       ROS_ERROR_STREAM_NAMED(ADAPTER_LOG, node.resolveName("certify_attempts")
@@ -91,6 +93,14 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
           ROS_INFO_STREAM_NAMED(ADAPTER_LOG, "plan " << asked << " is proven, those before it were not");
         return true;
       }
+      if (const auto other = repair(*scene, req, res, finding)) {
+        ROS_INFO_STREAM_NAMED(ADAPTER_LOG, finding.why << ": the plan is led round that, its duration is "
+                                                       << other->getDuration() << " s instead of "
+                                                       << res.trajectory_->getDuration());
+        res.trajectory_ = other;
+        report(*scene, Finding());
+        return true;
+      }
       refused.push_back(res);
     } while (asked < attempts_ && secondsSince(begin) < req.allowed_planning_time);
     Finding finding = longestProven(*scene, refused, res);
@@ -122,6 +132,12 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
     return out;
   }
 
+  robot_trajectory::RobotTrajectoryPtr repair(const planning_scene::PlanningScene &scene, const MotionPlanRequest &req,
+                                              const MotionPlanResponse &res, const Finding &finding) const {
+    if (repair_ms_ <= 0.0) return nullptr;
+    return repaired(certifier_, scene, req, *res.trajectory_, finding, settings_, repair_ms_);
+  }
+
   void report(const planning_scene::PlanningScene &scene, const Finding &finding) const {
     for (const std::string &warning : finding.warnings) ROS_WARN_STREAM_NAMED(ADAPTER_LOG, warning);
     for (const Doubt &doubt : finding.doubts) violations_.publish(toMessage(doubt));
@@ -148,6 +164,7 @@ class CertifyTrajectory : public planning_request_adapter::PlanningRequestAdapte
   }
 
   CertifySettings settings_;
+  double repair_ms_ = 0.0; /* 0: no plan is repaired */
   int attempts_ = 3;
   bool reject_ = true, shrink_ = false;
   Certifier certifier_;

@@ -524,9 +524,13 @@ void CollisionEnvCurveProximity::checkRobotCollision(const Request &req, Result 
 
 RobotMotion CollisionEnvCurveProximity::motion(const TrajectoryDescription &trajectory, const State &at,
                                                const Matrix &acm) const {
+  return RobotMotion(*robot(at, acm), trajectory, jointPositions(at));
+}
+
+std::shared_ptr<const PreparedRobot> CollisionEnvCurveProximity::robot(const State &at, const Matrix &acm) const {
   const Current now = current(at, true);
   if (!now.fault.empty()) throw Error(now.fault);
-  return RobotMotion(*prepared(now, &acm), trajectory, jointPositions(at));
+  return prepared(now, &acm);
 }
 
 const std::string &CollisionDetectorAllocatorCurveProximity::getName() const {

@@ -64,6 +64,9 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
    * and what is attached. Throws Error. */
   RobotMotion motion(const TrajectoryDescription &trajectory, const State &at, const Matrix &acm) const;
 
+  /* The robot among the objects of the world, made ready for motions, with what is attached in `at`. Throws Error. */
+  std::shared_ptr<const PreparedRobot> robot(const State &at, const Matrix &acm) const;
+
  protected:
   void updatedPaddingOrScaling(const std::vector<std::string> &links) override;
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The adapter with planners that answer as the test wants: when it plans again, what it returns and what it publishes. */
+/* The adapter with planners that answer as the test wants: when it repairs a plan or plans again, what it returns and what it
+ * publishes. */
 #include <gtest/gtest.h>
 #include <moveit/planning_request_adapter/planning_request_adapter.h>
 #include <moveit/planning_scene/planning_scene.h>
@@ -58,6 +59,8 @@ class Attempts : public testing::Test {
   bool plans(int attempts, const std::vector<double> &angles) {
     ros::NodeHandle node("~pipeline");
     node.setParam("certify_attempts", attempts);
+    node.setParam("certify_repair_ms", repair_ms_);
+    node.setParam("certify_clearance", clearance_);
     const auto adapter = loader_.createUniqueInstance("curve_proximity/CertifyTrajectory");
     adapter->initialize(node);
     asked_ = 0;
@@ -83,6 +86,7 @@ class Attempts : public testing::Test {
   MotionPlanRequest req_;
   MotionPlanResponse res_;
   std::size_t asked_ = 0;
+  double repair_ms_ = 0.0, clearance_ = 0.0;
 };
 
 const double NONE = std::numeric_limits<double>::quiet_NaN();
@@ -125,6 +129,43 @@ TEST_F(Attempts, end_when_the_planning_time_is_over) {
   EXPECT_EQ(asked_, 1u);
 }
 
+/* The way round is free by FCL at 2000 moments of MoveIt's own interpolation, too. */
+TEST_F(Attempts, lead_a_plan_round_a_post) {
+  repair_ms_ = 5000.0;
+  for (const double clearance : {0.0, 0.02}) {
+    clearance_ = clearance;
+    ASSERT_TRUE(plans(1, {0.8})) << clearance;
+    EXPECT_EQ(asked_, 1u);
+    EXPECT_EQ(res_.trajectory_->getFirstWayPoint().distance(turned(-0.8)), 0.0);
+    EXPECT_EQ(res_.trajectory_->getLastWayPoint().distance(turned(0.8)), 0.0);
+    EXPECT_EQ(res_.trajectory_->getLastWayPoint().getVariableVelocity("panda_joint1"), 0.0) << "it ends at rest";
+    ASSERT_EQ(scene_->getActiveCollisionDetectorName(), "FCL");
+    auto state = std::make_shared<moveit::core::RobotState>(panda());
+    for (int i = 0; i <= 2000; ++i) {
+      res_.trajectory_->getStateAtDurationFromStart(i / 2000.0 * res_.trajectory_->getDuration(), state);
+      state->update();
+      ASSERT_TRUE(state->satisfiesBounds(panda()->getJointModelGroup("panda_arm"), 1e-9)) << i;
+      ASSERT_FALSE(scene_->isStateColliding(*state, "panda_arm")) << i;
+      ASSERT_GT(scene_->getCollisionEnv()->distanceRobot(*state, scene_->getAllowedCollisionMatrix()), clearance - 1e-4)
+          << i;
+    }
+  }
+}
+
+TEST_F(Attempts, plan_again_where_there_is_no_way_round) {
+  repair_ms_ = 300.0;
+  EXPECT_TRUE(plans(3, {0.3, -0.4})) << "the post is in the goal of the first plan";
+  EXPECT_EQ(asked_, 2u);
+  EXPECT_EQ(end(), -0.4);
+}
+
+TEST_F(Attempts, leave_a_plan_on_its_way_where_the_path_is_constrained) {
+  repair_ms_ = 5000.0;
+  req_.path_constraints.joint_constraints.resize(1);
+  req_.path_constraints.joint_constraints[0].joint_name = "panda_joint2";
+  EXPECT_FALSE(plans(1, {0.8}));
+}
+
 TEST_F(Attempts, publish_the_pair_that_is_not_proven) {
   ros::NodeHandle node("~pipeline");
   std::vector<curve_proximity::ViolationIntervals> told;
@@ -136,6 +177,8 @@ TEST_F(Attempts, publish_the_pair_that_is_not_proven) {
       "certify/markers", 9,
       [&](const visualization_msgs::MarkerArray::ConstPtr &message) { markers = message->markers.size(); });
   node.setParam("certify_attempts", 1);
+  node.setParam("certify_repair_ms", 0.0);
+  node.setParam("certify_clearance", 0.0);
   const auto adapter = loader_.createUniqueInstance("curve_proximity/CertifyTrajectory");
   adapter->initialize(node);
   const auto planner = [&](const planning_scene::PlanningSceneConstPtr &, const MotionPlanRequest &,

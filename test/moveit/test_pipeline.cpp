@@ -86,6 +86,7 @@ bool plans(const planning_scene::PlanningScenePtr &scene, const std::vector<std:
            planning_interface::MotionPlanResponse &res) {
   ros::NodeHandle node("~pipeline");
   node.setParam("certify_clearance", clearance);
+  node.setParam("certify_repair_ms", 0.0); // the planner's plan as it is
   return plans(scene, {panda(), node, "straight_planner/StraightPlanner", adapters}, res);
 }
 
