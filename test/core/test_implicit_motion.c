@@ -113,6 +113,7 @@ CASE(time_of_contact_is_never_late_and_never_undecided) {
       if (found.verdict == CPROX_VERDICT_VIOLATED && found.t > 0.0) {
         assert_true(found.upper <= 0.0 && found.t_contact_lower <= found.t);
         assert_true(found.lower <= pair_at(b, x, y, found.t, 1e-9).upper);
+        assert_true(pair_at(b, x, y, found.t, 1e-3 * options.epsilon).lower <= 0.0); /* no plane fits between them */
         assert_true(pair_at(b, x, y, found.t_contact_lower, 0.01 * options.epsilon).lower <= options.epsilon);
         for (int k = 1; k <= 8; k++) /* free before */
           assert_true(pair_at(b, x, y, found.t_contact_lower * (1.0 - ldexp(1.0, -3 * k)), 1e-9).upper > 0.0);

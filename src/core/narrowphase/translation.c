@@ -205,8 +205,9 @@ typedef struct approach {
   vec3 velocity;       /* of b, seen from a */
   double duration;
   double free_until;
-  bool never;        /* they part from here on */
-  cprox_result last; /* the pair at free_until */
+  bool never;             /* they part from here on */
+  cprox_result last;      /* the pair at free_until */
+  cprox_pair_start start; /* where the search of the last pair ended */
   uint32_t pairs;
 } approach;
 
@@ -219,6 +220,7 @@ static cprox_obstacle approach_at(const approach *p, double t) {
 /* Steps until the distance is at most epsilon, the end, or no further step can be proven. */
 static cprox_status approach_run(approach *p, const cprox_options *options, cprox_workspace *workspace) {
   cprox_options asked = *options;
+  if (is_implicit(p->a.body) || is_implicit(p->b.body)) asked.start = &p->start; /* no pair of theirs has a formula */
   for (; p->pairs < TRANSLATION_STEPS; p->pairs++) {
     if (options->stop && p->pairs > 0 && options->stop(options->stop_user)) return CPROX_STOPPED;
     /* far away a rough answer steps as far as a fine one */
@@ -251,9 +253,29 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
   return CPROX_BUDGET;
 }
 
-/* They are within epsilon at free_until. A little later they may certainly touch: by their speed, as deep as rounding
- * could hide it. Whether they do is asked, and not how deep: no distance changes by more than they move. Then *at is that
- * time, and p->last holds what is known there. */
+/* Whether a ball of the radius `room` about a point is proven to lie in a body. An implicit one is scaled about its
+ * centre by more than the ball takes of its inner ball. */
+static bool body_holds(const cprox_obstacle *target, vec3 point, double room) {
+  const pair_side side = relative_pose_of_side(target, 0);
+  const convex *shape = side.shape;
+  double error = 0.0;
+  const vec3 local = frame_to_local(&side.f, point, &error);
+  room += error + side.error;
+  if (is_implicit(target->body)) {
+    const implicit *body = shape->implicit;
+    const double part = 1.01 * (room + 2.0 * body->give) / body->inner;
+    return part < 0.5 && implicit_value(body, vec_scale(1.0 / (1.0 - part), local)) <= 0.0;
+  }
+  convex_near near;
+  shape->ops->nearest(shape, local, NULL, &near);
+  room += shape->ops->near_rounding * ROUND_U * (vec_norm(local) + shape->scale) + shape->slack;
+  return near.distance <= -room;
+}
+
+/* They are within epsilon at free_until. A little later they may certainly touch: by their speed, a hundredth of epsilon
+ * deep, and deeper than rounding could hide. Halfway between what were the nearest points is a common one, where both
+ * bodies can tell. Else it is asked whether they touch, and not how deep: no distance changes by more than they move.
+ * Then *at is that time, and p->last holds what is known there. */
 static cprox_status approach_prove(approach *p, const cprox_options *options, cprox_workspace *workspace, double *at) {
   enum { MOST_STEPS = 12 };
   cprox_options fine = *options;
@@ -265,14 +287,21 @@ static cprox_status approach_prove(approach *p, const cprox_options *options, cp
   double t = p->free_until, hidden = 128.0 * ROUND_U *
                                      (vec_norm(p->b.pose.position) + vec_norm(p->a.pose.position) +
                                       speed * p->duration + p->a.body->ball_radius + p->b.body->ball_radius);
+  hidden = fmax(hidden, 0.01 * options->epsilon);
   for (int i = 0; i < MOST_STEPS && t < p->duration && r.upper > 0.0 && towards > 0.0; i++, hidden *= 8.0) {
     const double next = fmin(t + (r.upper + hidden) / towards * (1.0 + 1e-12), p->duration);
     if (!(next > t)) break;
     t = next;
-    const cprox_status status =
-        WORKSPACE_LEND(workspace, cprox_pair_tolerance(p->a, approach_at(p, t), 0.0, &fine, workspace, &r));
-    if (status < 0) return status;
+    const cprox_obstacle then = approach_at(p, t);
+    const vec3 moved = vec_axpy(p->last.witness_obstacle, t - p->free_until, p->velocity),
+               middle = vec_scale(0.5, vec_add(p->last.witness_mover, moved));
     p->pairs++;
+    if (body_holds(&p->a, middle, rounded) && body_holds(&then, middle, rounded)) {
+      r.upper = 0.0, r.witness_mover = r.witness_obstacle = middle;
+      break;
+    }
+    const cprox_status status = WORKSPACE_LEND(workspace, cprox_pair_tolerance(p->a, then, 0.0, &fine, workspace, &r));
+    if (status < 0) return status;
   }
   if (r.upper > 0.0) return CPROX_OK;
   r.lower = fmin(p->last.lower - ROUND_UP * (speed * (t - p->free_until) + rounded), 0.0);
