@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The demo proper, in the environment of the built workspace: see scripts/demo."""
+import ast
 import os
 import signal
+import struct
 import subprocess
 import sys
+import tempfile
 import time
 
 import numpy as np
@@ -122,6 +125,22 @@ def change(thing):
         raise Failure(f"apply_scene: {answer['message']}")
 
 
+def checked(row, positions):
+    """The line of cprox_check about the certificate of a row, for the same query read from files."""
+    proof = row['certificate']
+    proof = ast.literal_eval(proof) if isinstance(proof, str) else bytes(proof)
+    with tempfile.TemporaryDirectory() as folder:
+        file, curves = (os.path.join(folder, name) for name in ('proof.cpc', 'tool.csv'))
+        with open(file, 'wb') as out:
+            out.write(struct.pack('<I', len(proof)) + bytes(proof))
+        numbers = [0.0, 1.0, RADIUS, len(CONTROL), *sum(CONTROL, []), *map(float, KNOTS)]
+        with open(curves, 'w') as out:
+            out.write(','.join(['tool', 'bspline', str(DEGREE), *map(repr, numbers)]) + '\n')
+        state = ', '.join(f'{name}: {value}' for name, value in zip(JOINTS, positions))
+        line = run('cprox', 'check', file, '--curves', curves, '--scene', SCENE, '--robot', ROBOT, '--state', state).strip()
+    print(f'   cprox_check: {line.partition(": ")[2]}')
+
+
 def tool_path(t0=0.0, t1=1.0):
     points = [dict(zip('xyz', point)) for point in CONTROL]
     return {'id': 'tool', 'basis': 'bspline', 'degree': DEGREE, 'radius': RADIUS, 't0': float(t0), 't1': float(t1),
@@ -146,22 +165,25 @@ def ask_and_tell():
     waiting, reaching = posture(WAITING), posture(REACHING)
 
     print('\n1. How close does the tool come to anything?   rosservice call ~distance')
-    near, = ask('distance', curves=[tool_path()], joint_state=waiting, epsilon=1e-6)
+    near, = ask('distance', curves=[tool_path()], joint_state=waiting, epsilon=1e-6, certificate=True)
     lower, upper, microseconds = (float(near[key]) for key in ('lower', 'upper', 'microseconds'))
     print(f"   {1e3 * upper:.6f} mm, to {near['b']}, at t = {float(near['t']):.4f} of the path.\n"
           f"   The tool's surface is then at {at(near['witness_a'])}, that of {near['b']} at {at(near['witness_b'])}.\n"
           f"   Certified: the true distance is at most {1e3 * (upper - lower):.1g} mm less, and no more. "
           f"It took {near['nodes']} intervals, {microseconds:.0f} microseconds.")
+    checked(near, WAITING)
 
     print(f'\n2. Does it stay more than {1e3 * TOLERANCE:.0f} mm clear of everything?   rosservice call ~tolerance')
-    clear, = ask('tolerance', curves=[tool_path()], joint_state=waiting, delta=TOLERANCE)
+    clear, = ask('tolerance', curves=[tool_path()], joint_state=waiting, delta=TOLERANCE, certificate=True)
     print('   ' + {'clear': 'Yes, everywhere along the path', 'violated': f"No: {clear['b']} is closer at t = {float(clear['t']):.4f}"}
           .get(clear['verdict'], 'Undecided, which counts as no') + f": {clear['nodes']} intervals settle it.")
+    checked(clear, WAITING)
 
     print('\n3. And while the arm reaches into the shelf: does the tool hit it?   rosservice call ~collision')
-    hit, = ask('collision', curves=[tool_path()], joint_state=reaching)
+    hit, = ask('collision', curves=[tool_path()], joint_state=reaching, certificate=True)
     print('   ' + {'violated': f"Yes: it hits {hit['b']} at t = {float(hit['t']):.4f}, near {at(hit['witness_a'])}.",
                    'clear': 'No: the whole path is free.'}.get(hit['verdict'], 'Undecided, which counts as a hit.'))
+    checked(hit, REACHING)
 
     print('\n4. A box is dropped past the shelf, and turns: how close does it come?   rosservice call ~distance')
     change({'id': 'box', 'primitives': [{'type': 1, 'dimensions': BOX}], 'trajectory': {'waypoints': FALL}})
