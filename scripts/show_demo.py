@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The demo proper, in the environment of the built workspace: see scripts/demo."""
-import ast
 import os
 import signal
 import struct
@@ -40,6 +39,17 @@ BOX = [0.2, 0.1, 0.3]
 FALL = [{'time': 0.0, 'pose': {'position': {'x': 0.5, 'y': 0.06, 'z': 1.6}, 'orientation': {'w': 1.0}}},
         {'time': 0.8, 'pose': {'position': {'x': 0.5, 'y': 0.06, 'z': 0.2},
                                'orientation': {'x': 0.8660254037844386, 'w': 0.5}}}]
+
+
+# The arm moves for 2 s, between a wedge (a mesh) and a cloud of points.
+MOVE = {'joint_names': JOINTS, 'points': [
+    {'positions': WAITING, 'time_from_start': {'secs': 0, 'nsecs': 0}},
+    {'positions': [0.3, -0.6, 0.1, -1.9, 0.0, 1.4, 0.785], 'time_from_start': {'secs': 2, 'nsecs': 0}}]}
+BESIDE = [{'id': 'wedge', 'bodies': [{'type': 'mesh', 'vertices': [dict(zip('xyz', corner)) for corner in (
+              [0.5, -0.5, 0.0], [0.8, -0.5, 0.0], [0.5, -0.2, 0.0], [0.5, -0.25, 0.5])],
+              'triangles': [{'vertex_indices': corners} for corners in ([0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3])]}]},
+          {'id': 'cloud', 'bodies': [{'type': 'points', 'dimensions': [0.01], 'vertices': [
+              {'x': 0.4 + 0.02 * (i % 8), 'y': 0.37 + 0.02 * (i // 8 % 8), 'z': 0.55 + 0.02 * (i // 64)} for i in range(256)]}]}]
 
 
 class Failure(Exception):
@@ -125,20 +135,35 @@ def change(thing):
         raise Failure(f"apply_scene: {answer['message']}")
 
 
-def checked(row, positions):
-    """The line of cprox_check about the certificate of a row, for the same query read from files."""
-    proof = row['certificate']
-    proof = ast.literal_eval(proof) if isinstance(proof, str) else bytes(proof)
+def checked(row, *query, files=()):
+    """Prints the line of cprox_check about the certificate of a row, for the same query read from files: words of `cprox
+    check`, and {option: text of a file}."""
+    proof = bytes(row['certificate'])
     with tempfile.TemporaryDirectory() as folder:
-        file, curves = (os.path.join(folder, name) for name in ('proof.cpc', 'tool.csv'))
-        with open(file, 'wb') as out:
-            out.write(struct.pack('<I', len(proof)) + bytes(proof))
-        numbers = [0.0, 1.0, RADIUS, len(CONTROL), *sum(CONTROL, []), *map(float, KNOTS)]
-        with open(curves, 'w') as out:
-            out.write(','.join(['tool', 'bspline', str(DEGREE), *map(repr, numbers)]) + '\n')
-        state = ', '.join(f'{name}: {value}' for name, value in zip(JOINTS, positions))
-        line = run('cprox', 'check', file, '--curves', curves, '--scene', SCENE, '--robot', ROBOT, '--state', state).strip()
+        words = [os.path.join(folder, 'proof.cpc')]
+        with open(words[0], 'wb') as out:
+            out.write(struct.pack('<I', len(proof)) + proof)
+        for option, text in files:
+            words += [option, os.path.join(folder, option[2:])]
+            with open(words[-1], 'w') as out:
+                out.write(text)
+        line = run('cprox', 'check', *words, '--robot', ROBOT, *query).strip()
     print(f'   cprox_check: {line.partition(": ")[2]}')
+
+
+def checked_tool(row, positions):
+    numbers = [0.0, 1.0, RADIUS, len(CONTROL), *sum(CONTROL, []), *map(float, KNOTS)]
+    curve = ','.join(['tool', 'bspline', str(DEGREE), *map(repr, numbers)]) + '\n'
+    state = ', '.join(f'{name}: {value}' for name, value in zip(JOINTS, positions))
+    checked(row, '--scene', SCENE, '--state', state, files=[('--curves', curve)])
+
+
+def checked_arm(row, trajectory, things):
+    """things: objects of the scene beside those of its file."""
+    with open(SCENE) as text:
+        scene = yaml.safe_load(text)
+    scene['world']['collision_objects'] += things
+    checked(row, files=[('--trajectory', yaml.safe_dump({'joint_trajectory': trajectory})), ('--scene', yaml.safe_dump(scene))])
 
 
 def tool_path(t0=0.0, t1=1.0):
@@ -161,7 +186,7 @@ def at(message):
 
 # ------------------------------------------------------------------------------------------------------------ the demo
 def ask_and_tell():
-    """The four queries, in words. Returns the nearest pair."""
+    """The queries, in words. Returns the nearest pair."""
     waiting, reaching = posture(WAITING), posture(REACHING)
 
     print('\n1. How close does the tool come to anything?   rosservice call ~distance')
@@ -171,25 +196,34 @@ def ask_and_tell():
           f"   The tool's surface is then at {at(near['witness_a'])}, that of {near['b']} at {at(near['witness_b'])}.\n"
           f"   Certified: the true distance is at most {1e3 * (upper - lower):.1g} mm less, and no more. "
           f"It took {near['nodes']} intervals, {microseconds:.0f} microseconds.")
-    checked(near, WAITING)
+    checked_tool(near, WAITING)
 
     print(f'\n2. Does it stay more than {1e3 * TOLERANCE:.0f} mm clear of everything?   rosservice call ~tolerance')
     clear, = ask('tolerance', curves=[tool_path()], joint_state=waiting, delta=TOLERANCE, certificate=True)
     print('   ' + {'clear': 'Yes, everywhere along the path', 'violated': f"No: {clear['b']} is closer at t = {float(clear['t']):.4f}"}
           .get(clear['verdict'], 'Undecided, which counts as no') + f": {clear['nodes']} intervals settle it.")
-    checked(clear, WAITING)
+    checked_tool(clear, WAITING)
 
     print('\n3. And while the arm reaches into the shelf: does the tool hit it?   rosservice call ~collision')
     hit, = ask('collision', curves=[tool_path()], joint_state=reaching, certificate=True)
     print('   ' + {'violated': f"Yes: it hits {hit['b']} at t = {float(hit['t']):.4f}, near {at(hit['witness_a'])}.",
                    'clear': 'No: the whole path is free.'}.get(hit['verdict'], 'Undecided, which counts as a hit.'))
-    checked(hit, REACHING)
+    checked_tool(hit, REACHING)
 
     print('\n4. A box is dropped past the shelf, and turns: how close does it come?   rosservice call ~distance')
     change({'id': 'box', 'primitives': [{'type': 1, 'dimensions': BOX}], 'trajectory': {'waypoints': FALL}})
     fall, = ask('distance', movers=True)
     change({'id': 'box', 'operation': 1})
     print(f"   {1e3 * float(fall['upper']):.6f} mm, to {fall['b']}, at t = {float(fall['t']):.4f} s of the fall.")
+
+    print('\n5. The arm moves between a wedge and a cloud: how close does it come?   rosservice call ~distance')
+    for thing in BESIDE:
+        change(thing)
+    arm, = ask('distance', trajectories=[MOVE], joint_state=waiting, epsilon=1e-5, certificate=True)
+    for thing in BESIDE:
+        change({'id': thing['id'], 'operation': 1})
+    print(f"   {1e3 * float(arm['upper']):.2f} mm, {arm['a']} to {arm['b']}, after {float(arm['t']):.3f} s.")
+    checked_arm(arm, MOVE, BESIDE)
     return near
 
 
