@@ -94,18 +94,27 @@ class Movers {
   std::unique_ptr<const Data> data_;
 };
 
+/** What is asked about among movers: pairs of all of them, or one of the robots. */
+struct Whom {
+  Against against = Against::OTHERS;  /**< without a robot */
+  const MovingRobot *robot = nullptr; /**< one of the movers, at the times of its own motion (one that stands: at all
+                                           times), against all that stands and all others that move */
+
+  /** Pairs of all. */
+  Whom(Against pairs) : against(pairs) {}
+  /** Of one robot, which is referred to. */
+  Whom(const MovingRobot &one) : robot(&one) {}
+};
+
 /** How close movers come. kind is "environment" where b is an object that stands, else "movers"; a and b are names of
  *  moving objects or links ("name/link"), result.t is the time [s]. query.links: only pairs with one of these movers
  *  ("name") or links ("name/link"), and a is one of these; an object of one pose is measured against objects that stand
  *  only if it is named. query.objects: only pairs with one of these objects, that
  * stand or move, or robots. query.options.interval: only these times. Queries take no per_object, signed_distance or
- * certificate: such a query is refused, with status "invalid". */
-Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace);
-
-/** How close one of the robots comes to all that stands and to all others that move, at the times of its own motion;
- * one that stands at all times. kind is "environment", a is its link or carried object by its own name. query.links:
- * only these of its own. Everything else as above. */
-Answer ask(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace);
+ * certificate: such a query is refused, with status "invalid".
+ *  Of one of the robots: kind is "environment", a is its link or carried object by its own name. query.links: only
+ *  these of its own. */
+Answer ask(const Movers &movers, const Whom &whom, const Query &query, Workspace &workspace);
 
 /** Throws Error where a mover has ended before the robot `subject` begins, or begins after that has ended: by how much.
  *  A robot or object that stands is never late. */
@@ -115,32 +124,19 @@ void checkClocks(const MovingRobot &subject, const std::vector<MovingRobot> &rob
 /** The time of contact: result.t_contact_lower [s] is never after the first contact; of objects that robots carry their
  *  poses count as rounded. Verdict violated: contact at result.t, within the rounding of poses. The query is of type
  *  COLLISION. Everything else as for ask(). */
-Answer timeOfContact(const Movers &movers, Against against, const Query &query, Workspace &workspace);
-
-/** The same of one of the robots, as ask() of one of them. */
-Answer timeOfContact(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace);
+Answer timeOfContact(const Movers &movers, const Whom &whom, const Query &query, Workspace &workspace);
 
 /** The clearance between each two of breaks [s], ascending and within domain(): as clearanceProfile() of motion.hpp.
  * Throws Error for what ask() refuses, for an interval and for another query than DISTANCE. */
-std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, Against against,
-                                                const std::vector<double> &breaks, const Query &query,
-                                                Workspace &workspace,
-                                                double horizon = std::numeric_limits<double>::infinity());
-
-/** The same of one of the robots, as ask() of one of them. */
-std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, const MovingRobot &robot,
+std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, const Whom &whom,
                                                 const std::vector<double> &breaks, const Query &query,
                                                 Workspace &workspace,
                                                 double horizon = std::numeric_limits<double>::infinity());
 
 /** The pairs that come closest, nearest first; each answer is that to DISTANCE for its pair alone. Throws Error for
  * what ask() refuses, and for another query than DISTANCE. */
-std::vector<Answer> nearestPairs(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
+std::vector<Answer> nearestPairs(const Movers &movers, const Whom &whom, const PairLimits &limits, const Query &query,
                                  Workspace &workspace);
-
-/** The same of one of the robots, as ask() of one of them. */
-std::vector<Answer> nearestPairs(const Movers &movers, const MovingRobot &robot, const PairLimits &limits,
-                                 const Query &query, Workspace &workspace);
 
 /** The least distance of one of the robots, as ask() of one of them tells it, and its derivatives by what that robot's
  *  trajectory was made of: positions, velocities, accelerations and joints, the duration with the start kept, and the
@@ -175,11 +171,7 @@ MoversClearance clearanceGradients(const Movers &movers, Against against, const 
 
 /** All intervals of time [s] in which movers are within query.delta of something: as violations() of query.hpp. Throws
  *  Error for what ask() refuses. */
-Violations violations(const Movers &movers, Against against, double resolution, const Query &query,
-                      Workspace &workspace);
-
-/** The same of one of the robots, as ask() of one of them. */
-Violations violations(const Movers &movers, const MovingRobot &robot, double resolution, const Query &query,
+Violations violations(const Movers &movers, const Whom &whom, double resolution, const Query &query,
                       Workspace &workspace);
 
 } // namespace curve_proximity

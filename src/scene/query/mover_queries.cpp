@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <set>
 
@@ -159,16 +158,51 @@ void nameSides(const Movers::Data &data, Against against, const Query &query, An
   result.normal = {-result.normal.x, -result.normal.y, -result.normal.z};
 }
 
+/* The query by the names of all movers, the time that it is about, and how its rows are told. */
+struct AskedMovers {
+  Against against;
+  const MovingRobot *robot;
+  Query query;
+  std::array<double, 2> interval{};
+
+  AskedMovers(const Whom &whom, const Query &given) : against(whom.against), robot(whom.robot), query(given) {
+    if (!robot) return;
+    for (std::string &link : query.links) link = robot->name + "/" + link;
+    if (query.links.empty()) query.links = {robot->name};
+    if (robot->motion->stands() || std::isinf(robot->tolerance)) return;
+    for (std::size_t i = 0; i < interval.size(); ++i)
+      interval[i] = robot->motion->domain()[i] + robot->start + (i == 0 ? -robot->tolerance : robot->tolerance);
+    query.options.interval = interval.data();
+  }
+  AskedMovers(const AskedMovers &) = delete;
+  AskedMovers &operator=(const AskedMovers &) = delete;
+
+  /* The kind of rows that name no pair. */
+  std::string kind() const {
+    return against == Against::MOVERS ? "movers" : "environment";
+  }
+
+  /* A row of a robot, which side a is, by its own name; other rows as nameSides() has them. */
+  Answer told(Answer answer) const {
+    if (!robot) return answer;
+    const std::string prefix = robot->name + "/";
+    answer.kind = "environment";
+    if (answer.a.rfind(prefix, 0) == 0) answer.a.erase(0, prefix.size());
+    return answer;
+  }
+};
+
 template <class Core>
-Answer answerOf(const Movers &movers, Against asked, const Query &query, const std::string &fault,
-                const Workspace &workspace, Core core) {
+Answer answerOf(const Movers &movers, const AskedMovers &asked, const std::string &fault, const Workspace &workspace,
+                Core core) {
   const Movers::Data &data = movers.data();
-  const std::string kind = asked == Against::MOVERS ? "movers" : "environment";
+  const Query &query = asked.query;
+  const std::string kind = asked.kind();
   if (!fault.empty()) return refusal("movers", kind, fault);
   const Clock::time_point start = Clock::now();
   Pairs pairs;
   try {
-    pairs = pairsOf(data, asked, query);
+    pairs = pairsOf(data, asked.against, query);
   } catch (const Error &error) {
     return refusal("movers", kind, error.what());
   }
@@ -195,46 +229,10 @@ Answer answerOf(const Movers &movers, Against asked, const Query &query, const s
   return answer;
 }
 
-/* The query by the names of all movers, and the time that it is about. */
-struct OfRobot {
-  Query query;
-  std::array<double, 2> interval{};
-
-  OfRobot(const MovingRobot &robot, const Query &asked) : query(asked) {
-    for (std::string &link : query.links) link = robot.name + "/" + link;
-    if (query.links.empty()) query.links = {robot.name};
-    if (robot.motion->stands() || std::isinf(robot.tolerance)) return;
-    for (std::size_t i = 0; i < interval.size(); ++i)
-      interval[i] = robot.motion->domain()[i] + robot.start + (i == 0 ? -robot.tolerance : robot.tolerance);
-    query.options.interval = interval.data();
-  }
-  OfRobot(const OfRobot &) = delete;
-  OfRobot &operator=(const OfRobot &) = delete;
-};
-
-/* A row of the robot, which side a is, by its own name. */
-Answer ofRobot(const MovingRobot &robot, Answer answer) {
-  const std::string prefix = robot.name + "/";
-  answer.kind = "environment";
-  if (answer.a.rfind(prefix, 0) == 0) answer.a.erase(0, prefix.size());
-  return answer;
-}
-
-/* How a pair is told: its sides as nameSides() has them, or seen by one of the robots. */
-using View = std::function<Answer(Answer)>;
-
-Answer asFound(Answer answer) {
-  return answer;
-}
-
-View seenBy(const MovingRobot &robot) {
-  return [&robot](Answer answer) { return ofRobot(robot, std::move(answer)); };
-}
-
-Stated statedOf(const Movers::Data &data, const Pairs &pairs, const Query &query, const View &view) {
+Stated statedOf(const Movers::Data &data, const Pairs &pairs, const AskedMovers &asked) {
   const auto name = [&](Answer &answer) {
-    nameSides(data, pairs.against, query, answer);
-    answer = view(std::move(answer));
+    nameSides(data, pairs.against, asked.query, answer);
+    answer = asked.told(std::move(answer));
   };
   return {joinedMover(data, pairs), targetsOf(data, pairs), data.rounding,
           pairs.environment.empty() && pairs.among.empty(), name};
@@ -243,80 +241,6 @@ Stated statedOf(const Movers::Data &data, const Pairs &pairs, const Query &query
 /* Throws Error where movers cannot be asked in this way. */
 void refuse(const std::string &fault) {
   if (!fault.empty()) throw Error(fault);
-}
-
-std::vector<ClearanceInterval> profileOf(const Movers &movers, Against against, const std::vector<double> &breaks,
-                                         const Query &query, Workspace &workspace, double horizon, const View &view) {
-  refuse(faultOfMovers(query));
-  refuse(faultOfDistances(query));
-  refuse(faultOfProfile(query, breaks, horizon));
-  if (query.options.interval) throw Error("an interval does not apply: breaks say where a profile begins and ends");
-  const Movers::Data &data = movers.data();
-  const Pairs pairs = pairsOf(data, against, query);
-  std::vector<ClearanceInterval> profile =
-      searchProfile(statedOf(data, pairs, query, view), breaks, horizon, query, workspace);
-  applyCoverage(coverageOf(data, pairs, query), profile);
-  return profile;
-}
-
-std::vector<Answer> nearestOf(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
-                              Workspace &workspace, const View &view) {
-  refuse(faultOfMovers(query));
-  refuse(faultOfDistances(query));
-  if (query.second_opinion) throw Error("a second opinion does not apply to what moves beside the robot");
-  const Movers::Data &data = movers.data();
-  const Pairs pairs = pairsOf(data, against, query);
-  const cprox_options options = withoutRounding(query.options, data.rounding);
-  std::vector<Answer> out;
-  Unlisted unlisted;
-  const auto add = [&](const Pairs &some) {
-    const std::size_t n = some.environment.size() + some.among.size();
-    if (n == 0) return;
-    const Clock::time_point start = Clock::now();
-    const Obstacles obstacles(targetsOf(data, some), CPROX_INDEX_NONE);
-    std::vector<cprox_result> results(std::min(limits.count, n));
-    cprox_listed listed{};
-    const cprox_status status = cprox_obstacles_nearest_pairs(obstacles.get(), joinedMover(data, some), limits.count,
-                                                              limits.within + data.rounding, &options, workspace.get(),
-                                                              results.data(), &listed);
-    if (status < 0) throw Error(workspace.reason(), status);
-    unlisted.add(status, listed, data.rounding);
-    for (std::size_t i = 0; i < listed.count; ++i) {
-      Answer answer;
-      answer.id = "movers", answer.kind = "environment";
-      answer.result = results[i];
-      widen(query, data.rounding, INFINITE, answer.result);
-      nameSides(data, some.against, query, answer);
-      answer.microseconds = microsecondsSince(start);
-      answer.status = cprox_status_name(answer.result.status);
-      if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
-      out.push_back(view(std::move(answer)));
-    }
-  };
-  add({Against::OBJECTS, pairs.environment, {}});
-  add({Against::MOVERS, {}, pairs.among});
-  const auto far = [](const cprox_result &one) { return std::isfinite(one.upper) ? one.upper : one.lower; };
-  std::stable_sort(out.begin(), out.end(),
-                   [&](const Answer &x, const Answer &y) { return far(x.result) < far(y.result); });
-  for (std::size_t i = limits.count; i < out.size(); ++i)
-    unlisted.lower = std::min(unlisted.lower, std::max(0.0, out[i].result.lower));
-  if (out.size() > limits.count) out.resize(limits.count);
-  unlisted.addRow(limits, query.options, "movers", against == Against::MOVERS ? "movers" : "environment", out);
-  Answer nothing;
-  nothing.id = "movers", nothing.kind = "environment";
-  applyCoverage(coverageOf(data, pairs, query), query, nothing, out);
-  return out;
-}
-
-Violations violationsOf(const Movers &movers, Against against, double resolution, const Query &query,
-                        Workspace &workspace, const View &view) {
-  checkViolations(query, resolution);
-  refuse(faultOfMovers(query));
-  const Movers::Data &data = movers.data();
-  const Pairs pairs = pairsOf(data, against, query);
-  Violations found = searchViolations(statedOf(data, pairs, query, view), resolution, query, workspace);
-  applyCoverage(coverageOf(data, pairs, query), domainOf(query, movers.domain()), found);
-  return found;
 }
 
 /* Where the numbers of one of the robots are in those of the joined one. Robots come first; one that stands has no
@@ -374,13 +298,13 @@ struct Differentiated {
   Differentiated &operator=(const Differentiated &) = delete;
 };
 
-void differentiate(const Movers &movers, Against against, const Query &query, Workspace &workspace,
-                   Differentiated &out) {
+void differentiate(const Movers &movers, const AskedMovers &asked, Workspace &workspace, Differentiated &out) {
+  const Query &query = asked.query;
   refuse(faultOfMovers(query));
   refuse(faultOfDistances(query));
   const double rounding = movers.data().rounding;
   out.answer =
-      answerOf(movers, against, query, "", workspace,
+      answerOf(movers, asked, "", workspace,
                [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
                  const cprox_options options = withoutRounding(query.options, rounding);
                  const Obstacles obstacles(targets, CPROX_INDEX_NONE);
@@ -456,12 +380,12 @@ ClearanceGradient gradientBy(const Movers &movers, const Differentiated &in, std
 ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, const Query &query,
                                Workspace &workspace) {
   const std::size_t number = numberOf(movers.data(), robot);
-  const OfRobot asked(robot, query);
+  const AskedMovers asked(robot, query);
   Differentiated found(movers.data());
-  differentiate(movers, Against::OTHERS, asked.query, workspace, found);
+  differentiate(movers, asked, workspace, found);
   ClearanceRow row;
   row.gradient = gradientBy(movers, found, number);
-  row.answer = ofRobot(robot, std::move(found.answer));
+  row.answer = asked.told(std::move(found.answer));
   const auto domain = asked.query.options.interval ? asked.interval : movers.domain();
   row.t0 = domain[0], row.t1 = domain[1];
   return row;
@@ -470,7 +394,7 @@ ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, c
 MoversClearance clearanceGradients(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
   const Movers::Data &data = movers.data();
   Differentiated found(data);
-  differentiate(movers, against, query, workspace, found);
+  differentiate(movers, AskedMovers(against, query), workspace, found);
   MoversClearance out;
   for (std::size_t i = 0; i < data.robots.size() + data.objects.size(); ++i) {
     const bool is_robot = i < data.robots.size();
@@ -481,63 +405,103 @@ MoversClearance clearanceGradients(const Movers &movers, Against against, const 
   return out;
 }
 
-std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, Against against,
-                                                const std::vector<double> &breaks, const Query &query,
+std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, const Whom &whom,
+                                                const std::vector<double> &breaks, const Query &given,
                                                 Workspace &workspace, double horizon) {
-  return profileOf(movers, against, breaks, query, workspace, horizon, asFound);
+  AskedMovers asked(whom, given);
+  asked.query.options.interval = given.options.interval; // breaks say which times
+  const Query &query = asked.query;
+  refuse(faultOfMovers(query));
+  refuse(faultOfDistances(query));
+  refuse(faultOfProfile(query, breaks, horizon));
+  if (query.options.interval) throw Error("an interval does not apply: breaks say where a profile begins and ends");
+  const Movers::Data &data = movers.data();
+  const Pairs pairs = pairsOf(data, asked.against, query);
+  std::vector<ClearanceInterval> profile =
+      searchProfile(statedOf(data, pairs, asked), breaks, horizon, query, workspace);
+  applyCoverage(coverageOf(data, pairs, query), profile);
+  return profile;
 }
 
-std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, const MovingRobot &robot,
-                                                const std::vector<double> &breaks, const Query &query,
-                                                Workspace &workspace, double horizon) {
-  OfRobot asked(robot, query);
-  asked.query.options.interval = query.options.interval; // breaks say which times
-  return profileOf(movers, Against::OTHERS, breaks, asked.query, workspace, horizon, seenBy(robot));
-}
-
-std::vector<Answer> nearestPairs(const Movers &movers, Against against, const PairLimits &limits, const Query &query,
+std::vector<Answer> nearestPairs(const Movers &movers, const Whom &whom, const PairLimits &limits, const Query &given,
                                  Workspace &workspace) {
-  return nearestOf(movers, against, limits, query, workspace, asFound);
+  const AskedMovers asked(whom, given);
+  const Query &query = asked.query;
+  refuse(faultOfMovers(query));
+  refuse(faultOfDistances(query));
+  if (query.second_opinion) throw Error("a second opinion does not apply to what moves beside the robot");
+  const Movers::Data &data = movers.data();
+  const Pairs pairs = pairsOf(data, asked.against, query);
+  const cprox_options options = withoutRounding(query.options, data.rounding);
+  std::vector<Answer> out;
+  Unlisted unlisted;
+  const auto add = [&](const Pairs &some) {
+    const std::size_t n = some.environment.size() + some.among.size();
+    if (n == 0) return;
+    const Clock::time_point start = Clock::now();
+    const Obstacles obstacles(targetsOf(data, some), CPROX_INDEX_NONE);
+    std::vector<cprox_result> results(std::min(limits.count, n));
+    cprox_listed listed{};
+    const cprox_status status = cprox_obstacles_nearest_pairs(obstacles.get(), joinedMover(data, some), limits.count,
+                                                              limits.within + data.rounding, &options, workspace.get(),
+                                                              results.data(), &listed);
+    if (status < 0) throw Error(workspace.reason(), status);
+    unlisted.add(status, listed, data.rounding);
+    for (std::size_t i = 0; i < listed.count; ++i) {
+      Answer answer;
+      answer.id = "movers", answer.kind = "environment";
+      answer.result = results[i];
+      widen(query, data.rounding, INFINITE, answer.result);
+      nameSides(data, some.against, query, answer);
+      answer.microseconds = microsecondsSince(start);
+      answer.status = cprox_status_name(answer.result.status);
+      if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
+      out.push_back(asked.told(std::move(answer)));
+    }
+  };
+  add({Against::OBJECTS, pairs.environment, {}});
+  add({Against::MOVERS, {}, pairs.among});
+  const auto far = [](const cprox_result &one) { return std::isfinite(one.upper) ? one.upper : one.lower; };
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const Answer &x, const Answer &y) { return far(x.result) < far(y.result); });
+  for (std::size_t i = limits.count; i < out.size(); ++i)
+    unlisted.lower = std::min(unlisted.lower, std::max(0.0, out[i].result.lower));
+  if (out.size() > limits.count) out.resize(limits.count);
+  unlisted.addRow(limits, query.options, "movers", asked.kind(), out);
+  Answer nothing;
+  nothing.id = "movers", nothing.kind = "environment";
+  applyCoverage(coverageOf(data, pairs, query), query, nothing, out);
+  return out;
 }
 
-std::vector<Answer> nearestPairs(const Movers &movers, const MovingRobot &robot, const PairLimits &limits,
-                                 const Query &query, Workspace &workspace) {
-  const OfRobot asked(robot, query);
-  return nearestOf(movers, Against::OTHERS, limits, asked.query, workspace, seenBy(robot));
-}
-
-Violations violations(const Movers &movers, Against against, double resolution, const Query &query,
+Violations violations(const Movers &movers, const Whom &whom, double resolution, const Query &given,
                       Workspace &workspace) {
-  return violationsOf(movers, against, resolution, query, workspace, asFound);
+  const AskedMovers asked(whom, given);
+  const Query &query = asked.query;
+  checkViolations(query, resolution);
+  refuse(faultOfMovers(query));
+  const Movers::Data &data = movers.data();
+  const Pairs pairs = pairsOf(data, asked.against, query);
+  Violations found = searchViolations(statedOf(data, pairs, asked), resolution, query, workspace);
+  applyCoverage(coverageOf(data, pairs, query), domainOf(query, movers.domain()), found);
+  return found;
 }
 
-Violations violations(const Movers &movers, const MovingRobot &robot, double resolution, const Query &query,
-                      Workspace &workspace) {
-  const OfRobot asked(robot, query);
-  return violationsOf(movers, Against::OTHERS, resolution, asked.query, workspace, seenBy(robot));
-}
-
-Answer ask(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace) {
-  const OfRobot asked(robot, query);
-  return ofRobot(robot, ask(movers, Against::OTHERS, asked.query, workspace));
-}
-
-Answer timeOfContact(const Movers &movers, const MovingRobot &robot, const Query &query, Workspace &workspace) {
-  const OfRobot asked(robot, query);
-  return ofRobot(robot, timeOfContact(movers, Against::OTHERS, asked.query, workspace));
-}
-
-Answer ask(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
+Answer ask(const Movers &movers, const Whom &whom, const Query &given, Workspace &workspace) {
+  const AskedMovers asked(whom, given);
+  const Query &query = asked.query;
   const double rounding = movers.data().rounding;
-  return answerOf(movers, against, query, faultOfMovers(query), workspace,
-                  [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
-                    const cprox_options options = withoutRounding(query.options, rounding);
-                    result.status = askCore(query, options, mover, targets, workspace, result);
-                    if (result.status >= 0) widen(query, rounding, INFINITE, result);
-                  });
+  const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
+    const cprox_options options = withoutRounding(query.options, rounding);
+    result.status = askCore(query, options, mover, targets, workspace, result);
+    if (result.status >= 0) widen(query, rounding, INFINITE, result);
+  };
+  return asked.told(answerOf(movers, asked, faultOfMovers(query), workspace, core));
 }
 
-Answer timeOfContact(const Movers &movers, Against against, const Query &query, Workspace &workspace) {
+Answer timeOfContact(const Movers &movers, const Whom &whom, const Query &given, Workspace &workspace) {
+  const AskedMovers asked(whom, given);
+  const Query &query = asked.query;
   std::string fault = faultOfMovers(query);
   if (fault.empty()) fault = faultOfContact(query);
   const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
@@ -546,7 +510,7 @@ Answer timeOfContact(const Movers &movers, Against against, const Query &query, 
     for (cprox_obstacle &target : grown) target.margin += movers.data().rounding;
     searchContact(mover, grown, query, workspace, result);
   };
-  return answerOf(movers, against, query, fault, workspace, core);
+  return asked.told(answerOf(movers, asked, fault, workspace, core));
 }
 
 } // namespace curve_proximity

@@ -23,7 +23,7 @@ auto about(const MotionSubject &subject, const Call &call) {
 }
 template <class Call>
 auto about(const MoversSubject &subject, const Call &call) {
-  return subject.robot ? call(subject.movers, *subject.robot) : call(subject.movers, subject.against);
+  return call(subject.movers, subject.robot ? Whom(*subject.robot) : Whom(subject.against));
 }
 
 template <class Call>
