@@ -2,10 +2,10 @@
 #include "answers.h"
 
 #include <cmath>
-#include <new>
 #include <utility>
 
 #include "certificates.h"
+#include "failure.h"
 #include "finish.h"
 
 namespace curve_proximity::cli {
@@ -177,15 +177,8 @@ void addFailure(const Asked &asked, const Arguments &arguments, cprox_status sta
 
 void answer(const Asked &asked, const Arguments &arguments, const Query &query, Workspace &workspace, Outcome &out) {
   if (asked.ends_run) return addRows(asked, arguments, query, workspace, out);
-  try {
-    addRows(asked, arguments, query, workspace, out);
-  } catch (const Error &e) {
-    addFailure(asked, arguments, e.status(), e.what(), out);
-  } catch (const std::bad_alloc &) {
-    addFailure(asked, arguments, CPROX_MEMORY, cprox_status_text(CPROX_MEMORY), out);
-  } catch (const std::exception &e) {
-    addFailure(asked, arguments, CPROX_INVALID, e.what(), out);
-  }
+  attempt([&] { addRows(asked, arguments, query, workspace, out); },
+          [&](cprox_status status, const char *why) { addFailure(asked, arguments, status, why, out); });
 }
 
 void addTasks(const Asked &asked, const Arguments &arguments, const Query &query, std::vector<Task> &tasks) {

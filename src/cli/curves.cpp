@@ -49,28 +49,21 @@ Outcome answerCurve(const CsvRow &csv, const std::vector<Side> &sides, const Arg
                     Workspace &workspace) {
   const std::string place = placeOf(csv, arguments.curves);
   CompiledCurve curve;
-  const auto fail = [&](cprox_status status, const std::string &why) {
-    Outcome out;
-    addFailure({CurveSubject{sides.front().targets, curve}, rowId(csv.text), "curve", place, {}}, arguments, status,
-               why, out);
-    return out;
-  };
-  try {
+  Outcome out;
+  const auto work = [&] {
     const CurveDescription description = parseCurve(csv.text);
     if (!arguments.certificate.empty()) requireCheckable(description);
     curve = compile(description);
-    Outcome out;
     for (const Side &side : sides)
       answer({CurveSubject{side.targets, curve}, curve.id, "curve", place, {"", side.name}}, arguments, query,
              workspace, out);
-    return out;
-  } catch (const Error &e) {
-    return fail(e.status(), e.what());
-  } catch (const std::bad_alloc &) {
-    return fail(CPROX_MEMORY, cprox_status_text(CPROX_MEMORY));
-  } catch (const std::exception &e) {
-    return fail(CPROX_INVALID, e.what());
-  }
+  };
+  attempt(work, [&](cprox_status status, const char *why) {
+    out = Outcome();
+    addFailure({CurveSubject{sides.front().targets, curve}, rowId(csv.text), "curve", place, {}}, arguments, status,
+               why, out);
+  });
+  return out;
 }
 
 } // namespace

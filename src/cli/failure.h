@@ -3,6 +3,9 @@
 #ifndef CURVE_PROXIMITY_CLI_FAILURE_H
 #define CURVE_PROXIMITY_CLI_FAILURE_H
 
+#include <curve_proximity/core.hpp>
+#include <new>
+
 #include "../scene/yaml/failure.h"
 
 namespace curve_proximity::cli {
@@ -18,6 +21,20 @@ enum ExitCode {
   kSomeUndecided = 3, /**< a verdict is undecided */
   kInterrupted = 130
 };
+
+/** Does the work of a row. Of what it throws becomes fail(status, why). */
+template <class Work, class Fail>
+void attempt(const Work &work, const Fail &fail) {
+  try {
+    work();
+  } catch (const Error &e) {
+    fail(e.status(), e.what());
+  } catch (const std::bad_alloc &) {
+    fail(CPROX_MEMORY, cprox_status_text(CPROX_MEMORY));
+  } catch (const std::exception &e) {
+    fail(CPROX_INVALID, e.what());
+  }
+}
 
 } // namespace curve_proximity::cli
 #endif

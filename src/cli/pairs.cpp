@@ -58,24 +58,18 @@ Outcome failedPair(const PairRow &pair, const std::string &place, const std::str
 Outcome answerPair(const PairRow &pair, const std::string &file, const Query &query, const ResourceOptions &resources,
                    const Columns &columns, Workspace &workspace) {
   const std::string place = file + ": row " + std::to_string(pair.number) + " (id '" + pair.id + "')";
-  try {
-    if (const auto *why = std::get_if<std::string>(&pair.pair))
-      return failedPair(pair, place, *why, CPROX_INVALID, columns);
+  Outcome out;
+  const auto work = [&] {
+    if (const auto *why = std::get_if<std::string>(&pair.pair)) throw BadInput(*why);
     Query own = query;
     own.coverage = pair.coverage;
     const ResultRow row = measure(std::get<PairDescription>(pair.pair), own, resources, workspace);
-    Outcome out;
     out.stopped = row.result.status == CPROX_STOPPED;
     out.text = resultsLine(row, columns);
     noteVerdict(row, out);
-    return out;
-  } catch (const Error &e) {
-    return failedPair(pair, place, e.what(), e.status(), columns);
-  } catch (const std::bad_alloc &) {
-    return failedPair(pair, place, cprox_status_text(CPROX_MEMORY), CPROX_MEMORY, columns);
-  } catch (const std::exception &e) {
-    return failedPair(pair, place, e.what(), CPROX_INVALID, columns);
-  }
+  };
+  attempt(work, [&](cprox_status status, const char *why) { out = failedPair(pair, place, why, status, columns); });
+  return out;
 }
 
 /* YAML nodes belong to one thread: what the others get is plain data. */
