@@ -20,6 +20,7 @@
 #include <curve_proximity/nearest_name.hpp>
 #include <optional>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "../scene/yaml/scene_change.h"
@@ -61,18 +62,14 @@ void checkPathBody(const Parameters &parameters) {
   }
 }
 
+/** Of a request that has one. */
 template <class Request>
-double deltaOf(const Request &) {
+auto deltaOf(const Request &request, int) -> decltype(request.delta) {
+  return request.delta;
+}
+template <class Request>
+double deltaOf(const Request &, long) {
   return 0.0;
-}
-double deltaOf(const Tolerance::Request &request) {
-  return request.delta;
-}
-double deltaOf(const ListViolations::Request &request) {
-  return request.delta;
-}
-double deltaOf(const ListMargins::Request &request) {
-  return request.delta;
 }
 
 template <class Request>
@@ -141,14 +138,6 @@ Question questionOf(const SweepVolume::Request &request) {
   out.options.threads = 1; // the turn is this thread's
   out.options.memory_limit = std::size_t{256} << 20;
   return out;
-}
-
-template <class Request>
-bool isPerLink(const Request &) {
-  return false;
-}
-bool isPerLink(const ClearanceProfile::Request &request) {
-  return request.per_link != 0;
 }
 
 template <class Response>
@@ -375,9 +364,9 @@ void ProximityServer::serveQueries(const char *name, QueryType query_type) {
                                        typename Service::Response &response) {
     response.frame_id = frames_.fixedFrame();
     Turn turn(turns_, call.client, waitUntil(call));
-    QueryRequest request(query_type, deltaOf(asked), asked.query);
+    QueryRequest request(query_type, deltaOf(asked, 0), asked.query);
     request.question = questionOf(asked);
-    request.per_link = isPerLink(asked);
+    if constexpr (std::is_same_v<Service, ClearanceProfile>) request.per_link = asked.per_link != 0;
     request.budget_ms = asked.query.budget_ms;
     request.arrival = call.arrival;
     request.turn = &turn;

@@ -28,7 +28,8 @@ std::string quotedNames(const std::vector<std::string> &names) {
 
 /** The entries of the columns that stay; lists that have not as many entries as there are joints stay as they are, for
  *  the query to refuse. */
-void keepColumns(const std::vector<bool> &keep, std::vector<double> &values) {
+template <class Value>
+void keepColumns(const std::vector<bool> &keep, std::vector<Value> &values) {
   if (values.size() != keep.size()) return;
   std::size_t n = 0;
   for (std::size_t i = 0; i < keep.size(); ++i)
@@ -36,43 +37,35 @@ void keepColumns(const std::vector<bool> &keep, std::vector<double> &values) {
   values.resize(n);
 }
 
-/** Without the joints that the robot does not have; their names come back. */
-std::vector<std::string> keepKnown(const Robot &robot, JointTrajectory &trajectory) {
+void keepColumns(const std::vector<bool> &keep, JointTrajectoryPoint &point) {
+  for (std::vector<double> *values : {&point.positions, &point.velocities, &point.accelerations})
+    keepColumns(keep, *values);
+}
+
+void keepColumns(const std::vector<bool> &keep, trajectory_msgs::MultiDOFJointTrajectoryPoint &point) {
+  keepColumns(keep, point.transforms);
+}
+
+/** Without the joints that are not known; their names come back. */
+template <class Trajectory, class IsKnown>
+std::vector<std::string> keepKnown(Trajectory &trajectory, const IsKnown &isKnown) {
   std::vector<bool> keep;
   std::vector<std::string> names, unknown;
   for (const std::string &name : trajectory.joint_names) {
-    keep.push_back(robot.hasJoint(name));
+    keep.push_back(isKnown(name));
     (keep.back() ? names : unknown).push_back(name);
   }
-  if (unknown.empty()) return unknown;
-  for (JointTrajectoryPoint &point : trajectory.points) {
-    keepColumns(keep, point.positions);
-    keepColumns(keep, point.velocities);
-    keepColumns(keep, point.accelerations);
-  }
+  for (auto &point : trajectory.points) keepColumns(keep, point);
   trajectory.joint_names = names;
   return unknown;
 }
 
-std::vector<std::string> keepKnown(const Robot &robot, const Srdf &srdf, MultiDOFJointTrajectory &trajectory) {
-  std::vector<bool> keep;
-  std::vector<std::string> names, unknown;
-  for (const std::string &name : trajectory.joint_names) {
+std::vector<std::string> keepFree(const Robot &robot, const Srdf &srdf, MultiDOFJointTrajectory &trajectory) {
+  return keepKnown(trajectory, [&](const std::string &name) {
     MultiDOFJointTrajectory alone;
     alone.joint_names = {name};
-    keep.push_back(movesRobot(alone, &robot, srdf));
-    (keep.back() ? names : unknown).push_back(name);
-  }
-  if (unknown.empty()) return unknown;
-  for (auto &point : trajectory.points) {
-    if (point.transforms.size() != keep.size()) continue;
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < keep.size(); ++i)
-      if (keep[i]) point.transforms[n++] = point.transforms[i];
-    point.transforms.resize(n);
-  }
-  trajectory.joint_names = names;
-  return unknown;
+    return movesRobot(alone, &robot, srdf);
+  });
 }
 
 void addRemark(const std::string &remark, std::vector<std::string> &remarks) {
@@ -118,8 +111,8 @@ JointTrajectory toTrajectory(const moveit::RobotTrajectory &message, const Robot
   JointTrajectory joints = message.joint_trajectory;
   MultiDOFJointTrajectory free = message.multi_dof_joint_trajectory;
   joints.header.stamp = free.header.stamp = ros::Time(); // when it was planned is no time to look transforms up for
-  std::vector<std::string> unknown = keepKnown(robot, joints);
-  const std::vector<std::string> other = keepKnown(robot, srdf, free);
+  std::vector<std::string> unknown = keepKnown(joints, [&](const std::string &name) { return robot.hasJoint(name); });
+  const std::vector<std::string> other = keepFree(robot, srdf, free);
   unknown.insert(unknown.end(), other.begin(), other.end());
   if (joints.joint_names.empty() && free.joint_names.empty())
     throw Error(unknown.empty() ? "the trajectory names no joints"
@@ -154,7 +147,7 @@ JointPositions freeValues(const sensor_msgs::MultiDOFJointState &state, const Ro
   point.joint_names = state.joint_names;
   point.points.resize(1);
   point.points[0].transforms = state.transforms;
-  keepKnown(robot, srdf, point);
+  keepFree(robot, srdf, point);
   JointPositions out;
   if (point.joint_names.empty()) return out;
   const JointTrajectory values = toJointTrajectory(point, robot, srdf);

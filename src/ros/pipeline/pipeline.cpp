@@ -36,16 +36,16 @@ ros::Time stampOf(const moveit::DisplayTrajectory &message) {
 
 /** The request is about a message. */
 void fill(const Curve &message, QueryRequest &request) {
-  request.curves = List<Curve>(&message, 1);
+  request.curves = {&message, &message + 1};
 }
 void fill(const nav_msgs::Path &message, QueryRequest &request) {
-  request.paths = List<nav_msgs::Path>(&message, 1);
+  request.paths = {&message, &message + 1};
 }
 void fill(const trajectory_msgs::JointTrajectory &message, QueryRequest &request) {
-  request.trajectories = List<trajectory_msgs::JointTrajectory>(&message, 1);
+  request.trajectories = {&message, &message + 1};
 }
 void fill(const trajectory_msgs::MultiDOFJointTrajectory &message, QueryRequest &request) {
-  request.multi_dof_trajectories = List<trajectory_msgs::MultiDOFJointTrajectory>(&message, 1);
+  request.multi_dof_trajectories = {&message, &message + 1};
 }
 /* What moveit_msgs packs is unpacked by requestOfMotions(). */
 template <class Message>
@@ -208,7 +208,7 @@ void Pipeline::requestOfMotions(const Message &message, ProximityQuery &more, Pr
   more.joint_state = motions.start;
   more.joint_state.header.stamp = ros::Time(); // when the trajectory was planned is no time to look transforms up for
   QueryRequest request(query_type_, results.delta, more);
-  request.trajectories = List<trajectory_msgs::JointTrajectory>(motions.trajectories);
+  request.trajectories = listOf(motions.trajectories);
   request.coverage = std::move(motions.coverage);
   for (std::string &remark : motions.remarks) {
     const std::string line = "~" + results.source + ": " + remark;

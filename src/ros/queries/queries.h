@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/range/iterator_range.hpp>
 #include <curve_proximity/motion.hpp>
 #include <curve_proximity/query.hpp>
 #include <curve_proximity/scene.hpp>
@@ -43,29 +44,12 @@ namespace curve_proximity {
 
 /** Messages that somebody else holds. */
 template <class Message>
-class List {
- public:
-  List() = default;
-  List(const Message *first, std::size_t size) : first_(first), size_(size) {}
-  explicit List(const std::vector<Message> &messages) : List(messages.data(), messages.size()) {}
+using List = boost::iterator_range<const Message *>;
 
-  const Message *begin() const {
-    return first_;
-  }
-  const Message *end() const {
-    return first_ + size_;
-  }
-  std::size_t size() const {
-    return size_;
-  }
-  bool empty() const {
-    return size_ == 0;
-  }
-
- private:
-  const Message *first_ = nullptr;
-  std::size_t size_ = 0;
-};
+template <class Message>
+List<Message> listOf(const std::vector<Message> &messages) {
+  return {messages.data(), messages.data() + messages.size()};
+}
 
 struct QueryResponse;
 
@@ -102,10 +86,10 @@ struct QueryRequest {
   QueryRequest(QueryType type, double limit, const ProximityQuery &query)
       : query_type(type),
         delta(limit),
-        curves(query.curves),
-        paths(query.paths),
-        trajectories(query.trajectories),
-        multi_dof_trajectories(query.multi_dof_trajectories),
+        curves(listOf(query.curves)),
+        paths(listOf(query.paths)),
+        trajectories(listOf(query.trajectories)),
+        multi_dof_trajectories(listOf(query.multi_dof_trajectories)),
         more(query) {}
 
   /** Curves, paths and trajectories. */
