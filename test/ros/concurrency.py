@@ -1,44 +1,32 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Several clients at once, and a scene that changes while they ask."""
-import threading
 import time
 import unittest
 
 from curve_proximity.msg import CollisionObject
-from helpers import Server, bezier, bspline, run, sphere, thing
+from helpers import Call, Server, bezier, bspline, run, sphere, thing
 
 SECONDS = 4.0  # of hammering
 
 
-class Client(threading.Thread):
-    """Runs a piece of work again and again; keeps the first failure."""
-
-    def __init__(self, work):
-        super().__init__(daemon=True)
-        self.work, self.rounds, self.failure = work, 0, None
-
-    def run(self):
-        server, end = Server(), time.monotonic() + SECONDS
-        try:
-            while time.monotonic() < end:
-                self.work(server, self.rounds)
-                self.rounds += 1
-        except BaseException as failure:  # a thread's failure is the test's
-            self.failure = failure
+def again_and_again(work):
+    """How often a piece of work was done."""
+    server, end, rounds = Server(), time.monotonic() + SECONDS, 0
+    while time.monotonic() < end:
+        work(server, rounds)
+        rounds += 1
+    return rounds
 
 
 class Concurrency(unittest.TestCase):
     def hammer(self, *works):
-        clients = [Client(work) for work in works]
-        for client in clients:
-            client.start()
-        for client in clients:
+        for client in [Call(lambda work=work: again_and_again(work)) for work in works]:
             client.join(SECONDS + 20)
-            self.assertFalse(client.is_alive(), 'a client is still waiting')
+            self.assertIsNotNone(client.ended, 'a client is still waiting')
             if client.failure:
                 raise client.failure
-            self.assertGreater(client.rounds, 20)
+            self.assertGreater(client.response, 20)
 
     def test_each_client_gets_the_answer_to_its_own_query(self):
         Server().replace(sphere('ball', 0.25))
@@ -80,8 +68,7 @@ class Concurrency(unittest.TestCase):
         server.replace(sphere('ball', 0.25))
         n = 20000
         line = bspline([(i / 1e3, 0, 1) for i in range(n)], 3)
-        long = Client(lambda s, _: s.distance([line] * 3, epsilon=1e-9))
-        long.start()
+        long = Call(lambda: again_and_again(lambda s, _: s.distance([line] * 3, epsilon=1e-9)))
         slowest = 0.0
         while long.is_alive():
             begin = time.monotonic()

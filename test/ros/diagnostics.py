@@ -7,7 +7,7 @@ import rospy
 from curve_proximity.msg import Curve
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamic_reconfigure.client import Client
-from helpers import Case, Server, bezier, cloud, ring_and_shells, run, sphere, transform, until
+from helpers import Case, Server, bezier, cloud, ring_and_shells, run, sphere, status_of, transform
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 
@@ -25,19 +25,10 @@ class Diagnostics(Case):
     def setUp(self):
         self.server.replace(sphere('ball', 0.25))
 
-    def status(self, name, condition, seconds=8):
-        """The first status of that name from now on for which the condition holds: of its level and its values."""
+    def status(self, name, condition):
+        """From now on."""
         del self.seen[:]
-
-        def look():
-            for array in list(self.seen):
-                for status in array.status:
-                    values = {v.key: v.value for v in status.values}
-                    if status.name == 'curve_proximity: ' + name and condition(status, values):
-                        return status, values
-        found = until(look, seconds)
-        self.assertTrue(found, 'no such status: ' + str(self.seen[-1:]))
-        return found
+        return status_of(self.seen, name, condition)
 
     def test_rates_and_times_of_requests(self):
         def ask(*_):

@@ -6,7 +6,6 @@ import os
 
 import cprox
 import numpy
-import rospy
 from curve_proximity.msg import Body, CollisionObject, ExecutionErrors
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, LimitSpeed, LimitSpeedRequest, ListLinkPairs,
                                  ListLinkPairsRequest, ListMargins, ListMarginsRequest, SweepVolume, SweepVolumeRequest,

@@ -123,20 +123,23 @@ class Gate(unittest.TestCase):
         self.server.replace(sphere('far', 0.1, (0, 0, 5)))
         del self.refused[:], self.passed[:]
 
+    def sent(self, trajectory):
+        """How its goal ends: the state and the sentence."""
+        self.client.send_goal(Goal(trajectory=trajectory))
+        return ends_of(self.client)
+
     def test_a_clear_goal_reaches_the_controller_and_its_result_comes_back(self):
         begun = self.controller.begun
-        self.client.send_goal(Goal(trajectory=turning(1.0, 0.5)))
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(10)))
-        self.assertEqual((self.client.get_state(), self.controller.begun), (GoalStatus.SUCCEEDED, begun + 1), self.client.get_goal_status_text())
+        state, why = self.sent(turning(1.0, 0.5))
+        self.assertEqual((state, self.controller.begun), (GoalStatus.SUCCEEDED, begun + 1), why)
         self.assertEqual(self.refused, [])
 
     def test_a_goal_that_is_not_clear_is_rejected_with_pair_time_and_distance(self):
         begun = self.controller.begun
         self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))  # where the arm is after a quarter turn
-        self.client.send_goal(Goal(trajectory=turning(3.0, 2.0)))
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(10)))
-        self.assertEqual((self.client.get_state(), self.controller.begun), (GoalStatus.REJECTED, begun))
-        self.assertIn("'post'", self.client.get_result().error_string)
+        state, why = self.sent(turning(3.0, 2.0))
+        self.assertEqual((state, self.controller.begun), (GoalStatus.REJECTED, begun))
+        self.assertIn("'post'", why)
         self.assertTrue(until(lambda: self.refused, 5))
         refusal, = self.refused
         self.assertEqual((refusal.source, refusal.row.a, refusal.row.b, refusal.cancelled), (Refusal.ACTION, 'arm', 'post', False))
@@ -152,9 +155,9 @@ class Gate(unittest.TestCase):
         self.assertEqual((self.controller.cancelled, self.refused), (before, []))
         self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
         begin = time.monotonic()
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(10)))
+        state, _ = ends_of(self.client)
         self.assertLess(time.monotonic() - begin, 1.0)
-        self.assertEqual((self.client.get_state(), self.controller.cancelled), (GoalStatus.ABORTED, before + 1))
+        self.assertEqual((state, self.controller.cancelled), (GoalStatus.ABORTED, before + 1))
         self.assertTrue(until(lambda: self.refused, 5))
         self.assertEqual((self.refused[0].row.b, self.refused[0].cancelled), ('post', True))
 
@@ -190,21 +193,18 @@ class Gate(unittest.TestCase):
     def test_a_goal_that_does_not_begin_where_the_robot_is_does_not_pass(self):
         self.arm.offset = 1.0
         time.sleep(0.2)
-        self.client.send_goal(Goal(trajectory=turning(3.0, 2.0)))
-        state, why = ends_of(self.client)
+        state, why = self.sent(turning(3.0, 2.0))
         self.assertEqual(state, GoalStatus.REJECTED)
         self.assertIn("joint 'turn' at 1 is", why)
 
     def test_the_way_to_a_first_point_that_is_not_at_time_zero_counts(self):
         self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))  # between the arm and the first point
-        self.client.send_goal(Goal(trajectory=turning(3.0, 1.0, parts=4, first=3)))
-        state, why = ends_of(self.client)
+        state, why = self.sent(turning(3.0, 1.0, parts=4, first=3))
         self.assertEqual(state, GoalStatus.REJECTED)
         self.assertIn("'post'", why)
         self.arm.silent = True
         time.sleep(0.7)
-        self.client.send_goal(Goal(trajectory=turning(3.0, 1.0, parts=4, first=3)))
-        state, why = ends_of(self.client)
+        state, why = self.sent(turning(3.0, 1.0, parts=4, first=3))
         self.assertEqual(state, GoalStatus.REJECTED)
         self.assertIn("~joint_states does not tell of joint 'turn'", why)
 
@@ -216,8 +216,7 @@ class Gate(unittest.TestCase):
         goal = turning(3.0, 2.0)
         for stamp, passes in ((now + rospy.Duration(5.5), False), (now, True)):
             goal.header.stamp = stamp
-            self.client.send_goal(Goal(trajectory=goal))
-            state, why = ends_of(self.client)
+            state, why = self.sent(goal)
             self.assertEqual(state, GoalStatus.SUCCEEDED if passes else GoalStatus.REJECTED, why)
             self.assertTrue(passes or "'cart'" in why, why)
 
@@ -234,8 +233,7 @@ class Gate(unittest.TestCase):
 
     def test_a_stop_passes(self):
         self.server.apply(sphere('post', 0.1, (0.5, 0, 0.5)))  # in contact with the arm as it stands
-        self.client.send_goal(Goal(trajectory=JointTrajectory(joint_names=['turn'])))
-        self.assertEqual(ends_of(self.client)[0], GoalStatus.SUCCEEDED)
+        self.assertEqual(self.sent(JointTrajectory(joint_names=['turn']))[0], GoalStatus.SUCCEEDED)
         self.topic.publish(JointTrajectory(joint_names=['turn']))
         self.assertTrue(until(lambda: self.passed, 5))
         self.assertEqual((self.passed[0].points, self.refused), ([], []))
@@ -276,19 +274,16 @@ class Gate(unittest.TestCase):
     def test_a_goal_that_makes_no_sense_is_rejected_and_the_next_one_passes(self):
         far = [JointTrajectoryPoint(positions=[0.5], time_from_start=rospy.Duration(0.2))]
         for names, positions in ((['turn'], []), (['turn'], [math.nan]), (['turn'], [0.0, 1.0]), (['none'], [0.0]), ([], [])):
-            self.client.send_goal(Goal(trajectory=JointTrajectory(joint_names=names, points=[JointTrajectoryPoint(positions=positions)] + far)))
-            state, why = ends_of(self.client)
+            state, why = self.sent(JointTrajectory(joint_names=names, points=[JointTrajectoryPoint(positions=positions)] + far))
             self.assertEqual((state, bool(why)), (GoalStatus.REJECTED, True), (names, positions))
-        self.client.send_goal(Goal(trajectory=turning(0.2, 0.2)))
-        self.assertEqual(ends_of(self.client)[0], GoalStatus.SUCCEEDED)
+        self.assertEqual(self.sent(turning(0.2, 0.2))[0], GoalStatus.SUCCEEDED)
 
     def test_a_client_may_cancel(self):
         before = self.controller.cancelled
         self.client.send_goal(Goal(trajectory=turning(1.0, 3.0)))
         self.assertTrue(until(lambda: self.controller.server.is_active(), 5))
         self.client.cancel_goal()
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(5)))
-        self.assertEqual((self.client.get_state(), self.controller.cancelled), (GoalStatus.PREEMPTED, before + 1))
+        self.assertEqual((ends_of(self.client, 5)[0], self.controller.cancelled), (GoalStatus.PREEMPTED, before + 1))
 
     def test_what_was_clear_of_an_older_scene_is_asked_about_again(self):
         """Whatever the type of the message. The answer comes from the test: as of the scene before this one."""

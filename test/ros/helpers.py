@@ -420,6 +420,11 @@ class Case(unittest.TestCase):
         self.addCleanup(node.end)
         return node, Server('/' + name)
 
+    def master(self, port):
+        process = start_master(port)
+        self.addCleanup(lambda: (process.kill(), process.wait()))
+        return process
+
     def publisher(self, topic, kind, **fields):
         publisher = rospy.Publisher(topic, kind, **dict(dict(queue_size=5), **fields))
         self.assertTrue(connected(publisher))
@@ -492,6 +497,19 @@ class Call(threading.Thread):
         except Exception as failure:
             self.failure = failure
         self.ended = time.monotonic()
+
+
+def status_of(seen, name, condition, seconds=8):
+    """The first status of a server's of that name, among arrays of /diagnostics, for which condition(status, its values) holds; and these."""
+    def look():
+        for array in list(seen):
+            for status in array.status:
+                values = {v.key: v.value for v in status.values}
+                if status.name == 'curve_proximity: ' + name and condition(status, values):
+                    return status, values
+    found = until(look, seconds)
+    assert found, 'no such status: ' + str(seen[-1:])
+    return found
 
 
 def refusal(test, name, **parameters):

@@ -84,25 +84,15 @@ class Nodelet(unittest.TestCase):
         self.assertTrue(self.unload_nodelet('/bounded').success)
 
     def test_a_wrong_parameter_fails_the_load_and_nothing_else(self):
-        rospy.set_param('/wrong/epsilon', 'small')
-        try:
-            with self.assertRaises(rospy.ServiceException):
-                response = self.load_nodelet('/wrong', 'curve_proximity/ProximityServer', [], [], [], '')
-                if not response.success:
-                    raise rospy.ServiceException('refused')
-        finally:
-            rospy.delete_param('/wrong')
-        self.assertEqual(self.list_nodelets().nodelets, [])
-
-    def test_wrong_parameters_of_the_gate_fail_its_load(self):
-        for name, value in (('delta', -1.0), ('delta', 'wide'), ('queue_size', 0)):
-            rospy.set_param('/wrong_gate/' + name, value)
+        for kind, name, value in (('ProximityServer', 'epsilon', 'small'), ('TrajectoryGate', 'delta', -1.0), ('TrajectoryGate', 'delta', 'wide'),
+                                  ('TrajectoryGate', 'queue_size', 0)):
+            rospy.set_param('/wrong/' + name, value)
             try:
                 with self.assertRaises(rospy.ServiceException):
-                    if not self.load_nodelet('/wrong_gate', 'curve_proximity/TrajectoryGate', [], [], [], '').success:
+                    if not self.load_nodelet('/wrong', 'curve_proximity/' + kind, [], [], [], '').success:
                         raise rospy.ServiceException('refused')
             finally:
-                rospy.delete_param('/wrong_gate')
+                rospy.delete_param('/wrong')
         self.assertEqual(self.list_nodelets().nodelets, [])
 
     def test_a_gate_whose_server_hangs_is_unloaded_all_the_same(self):

@@ -4,23 +4,17 @@
 import os
 import signal
 import time
-import unittest
 
 import rosgraph
-from helpers import Call, Node, Server, bezier, free_port, ring_and_shells, run, sphere, start_master, until
+from helpers import Call, Case, Node, bezier, free_port, ring_and_shells, run, sphere, until
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 CALLS = int(os.environ.get('CURVE_PROXIMITY_CALLS', 20000))  # of the memory test
 
 
-class Lifetime(unittest.TestCase):
-    def begin(self, **parameters):
-        node = Node('curve_proximity', **parameters)
-        self.addCleanup(node.end)
-        return node, Server()
-
+class Lifetime(Case):
     def test_sigint_during_a_long_query_is_answered_or_fails_promptly(self):
-        node, server = self.begin(budget_ms=60000)
+        node, server = self.begin('ending', budget_ms=60000)
         ring, balls, fields = ring_and_shells()
         server.replace(*balls)
         call = Call(lambda: server.distance(ring, **fields))
@@ -36,7 +30,7 @@ class Lifetime(unittest.TestCase):
         self.assertEqual(node.wait(5), 0, node.output())
 
     def test_memory_is_flat_over_many_calls(self):
-        node, server = self.begin()
+        node, server = self.begin('lasting')
         server.replace(*[sphere('ball%d' % i, 0.1, (i, 0, 0)) for i in range(30)])
 
         def call(times):
@@ -54,12 +48,7 @@ class Lifetime(unittest.TestCase):
     def test_a_node_that_its_master_has_forgotten_ends_for_a_respawn(self):
         port = free_port()
         environment = dict(os.environ, ROS_MASTER_URI='http://localhost:%d' % port)
-
-        def master():
-            process = start_master(port)
-            self.addCleanup(lambda: (process.kill(), process.wait()))
-            return process
-        first = master()
+        first = self.master(port)
         node = Node('forgotten', environment)
         self.addCleanup(node.end)
         graph = rosgraph.Master('/test', environment['ROS_MASTER_URI'])
@@ -70,7 +59,7 @@ class Lifetime(unittest.TestCase):
         first.terminate()
         first.wait()
         self.assertIsNone(node.wait(3), node.output())
-        master()
+        self.master(port)
         self.assertEqual(node.wait(20), 3, node.output())
         self.assertIn('master', node.output())
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every way to name a mesh file, and that tests leave no parameters behind."""
+"""Every way to name a mesh file."""
 import os
 
 import rospy
-from helpers import Case, Node, Server, bezier, joints, refusal, run
+from helpers import Case, bezier, joints, refusal, run
 
 DATA = os.path.dirname(os.path.abspath(__file__)) + '/../data'
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -34,13 +34,6 @@ class Limits(Case):
             self.assertIn(word, refusal(self, 'refused', urdf_dir=folder))
         rospy.set_param('/robot_description', ROBOT % 'meshes/finger.stl')
         self.assertIn('finger.stl', refusal(self, 'refused'))  # relative to nothing
-
-    def test_the_parameters_of_one_run_are_gone_in_the_next(self):
-        node = Node('passing', epsilon=0.5)
-        self.assertTrue(Server('/passing').scene().success)
-        self.assertTrue(rospy.has_param('/passing/epsilon'))
-        node.end()
-        self.assertFalse(rospy.has_param('/passing'))
 
 
 if __name__ == '__main__':

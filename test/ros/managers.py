@@ -5,19 +5,18 @@ import os
 import signal
 import subprocess
 import time
-import unittest
 
 import actionlib
 import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import Curve, QueryAction, QueryGoal
-from helpers import Call, Server, bezier, connected, executable, free_port, query, ring_and_shells, run, start_master, until
+from helpers import Call, Case, Server, bezier, connected, executable, free_port, query, ring_and_shells, run, until
 
 LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
 
 
-class Managers(unittest.TestCase):
+class Managers(Case):
     def start(self, *arguments, environment=None):
         """A program whose output is kept."""
         log = open(LOG, 'a')
@@ -73,18 +72,13 @@ class Managers(unittest.TestCase):
         port = free_port()
         environment = dict(os.environ, ROS_MASTER_URI='http://localhost:%d' % port)
         graph = rosgraph.Master('/test', environment['ROS_MASTER_URI'])
-
-        def master():
-            process = start_master(port)
-            self.addCleanup(lambda: (process.kill(), process.wait()))
-            return process
-        first = master()
+        first = self.master(port)
         manager = self.manager(environment)
         self.assertTrue(until(lambda: any(s[0] == '/stopped_server/distance' for s in graph.getSystemState()[2]), 20))
         first.terminate()
         first.wait()
         time.sleep(1)
-        master()
+        self.master(port)
         self.assertTrue(until(lambda: 'the master does not know this node any more' in self.output(), 20), self.output())
         self.assertIsNone(manager.poll())  # a manager is not ours to end
 

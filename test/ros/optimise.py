@@ -33,8 +33,10 @@ class Optimise(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        cls.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
         cls.service = service('evaluate_constraints', EvaluateConstraints)
+
+    def setUp(self):
+        self.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
 
     def results(self, *cases):
         response = self.service(cases=list(cases))
@@ -121,30 +123,24 @@ class Optimise(unittest.TestCase):
         lamp.trajectory.waypoints = [Waypoint(t, Pose(Point(x, y, 0.7), Quaternion(0, 0, 0, 1))) for t, x, y in ((0.0, 0.4, 0.9), (1.6, 0.9, -0.3))]
         second = RobotTrajectory(name='second', trajectory=trajectory(velocities=False))
         second.base.pose = Pose(Point(1.6, 0.1, 0), Quaternion(0, 0, 1, 0))
-        try:
-            for others in ([], [second]):
-                self.server.replace(*([] if others else [lamp]))
-                row, = self.results(query(trajectory(), 'exact', moving_robots=others))
-                least = self.assertGradient(row, moving_robots=others)
-                self.assertEqual(least.b.split('/')[0], 'second' if others else 'lamp')
-                self.assertNotEqual(least.gradient_start, 0.0)
-            self.server.replace(lamp)
-            both, = self.results(query(trajectory(), 'least'))
-            self.assertEqual({one.kind for one in both.rows}, {'environment', 'self'})
-            self.assertIn('a horizon is not available', self.refused(query(trajectory(), 'near')))
-            self.assertIn("there is no 'panda2'", self.refused(query(trajectory(), 'exact', moving_robots=[RobotTrajectory(robot='panda2', name='x')])))
-            self.assertIn('beside a trajectory', self.refused(ConstraintQuery(a=sphere('', 0.1), b=sphere('', 0.1), moving_robots=[second])))
-        finally:
-            self.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
+        for others in ([], [second]):
+            self.server.replace(*([] if others else [lamp]))
+            row, = self.results(query(trajectory(), 'exact', moving_robots=others))
+            least = self.assertGradient(row, moving_robots=others)
+            self.assertEqual(least.b.split('/')[0], 'second' if others else 'lamp')
+            self.assertNotEqual(least.gradient_start, 0.0)
+        self.server.replace(lamp)
+        both, = self.results(query(trajectory(), 'least'))
+        self.assertEqual({one.kind for one in both.rows}, {'environment', 'self'})
+        self.assertIn('a horizon is not available', self.refused(query(trajectory(), 'near')))
+        self.assertIn("there is no 'panda2'", self.refused(query(trajectory(), 'exact', moving_robots=[RobotTrajectory(robot='panda2', name='x')])))
+        self.assertIn('beside a trajectory', self.refused(ConstraintQuery(a=sphere('', 0.1), b=sphere('', 0.1), moving_robots=[second])))
 
     def test_beyond_the_horizon_there_is_no_row_and_the_horizon_is_the_value(self):
         self.server.replace(sphere('far', 0.1, (9, 9, 9)))
-        try:
-            row, = self.results(query(trajectory(), 'near'))
-            self.assertEqual((row.value, row.lower, row.rows, row.valid), (0.25, 0.25, [], True))
-            self.assertEqual(row.upper, math.inf)
-        finally:
-            self.server.replace(box('table', (0.5, 1.2, 0.05), (0.6, 0, 0.1)), sphere('lamp', 0.12, (0.55, 0.25, 0.85)))
+        row, = self.results(query(trajectory(), 'near'))
+        self.assertEqual((row.value, row.lower, row.rows, row.valid), (0.25, 0.25, [], True))
+        self.assertEqual(row.upper, math.inf)
 
     def test_points_are_read_as_in_other_queries(self):
         late = trajectory()

@@ -112,7 +112,7 @@ class PlanningScene(unittest.TestCase):
     @classmethod
     def publisher(cls, node):
         publisher = rospy.Publisher(node + '/planning_scene', moveit.PlanningScene, queue_size=10)
-        assert connected(publisher), 'the node has another type than moveit_msgs'  # whose sums test_moveit_messages knows
+        assert connected(publisher), 'the node has another type than moveit_msgs'
         return publisher
 
     def version(self, server):

@@ -8,7 +8,7 @@ import unittest
 import rospy
 from curve_proximity.msg import Body
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from helpers import Server, bezier, body, run, sphere, thing, until
+from helpers import Server, bezier, body, run, sphere, status_of, thing, until
 from rosgraph_msgs.msg import Log
 
 LINE = bezier((-1, 0, 1), (1, 0, 1), id='line')
@@ -26,16 +26,7 @@ class SecondOpinion(unittest.TestCase):
         assert until(log.get_num_connections, 8), 'the node has no log'
 
     def queries(self, condition):
-        """The status `queries` for which the condition holds, and its values."""
-        def look():
-            for array in list(self.seen):
-                for status in array.status:
-                    values = {v.key: v.value for v in status.values}
-                    if status.name == 'curve_proximity: queries' and condition(values):
-                        return status, values
-        found = until(look, 8)
-        self.assertTrue(found, 'no such status: ' + str(self.seen[-1:]))
-        return found
+        return status_of(self.seen, 'queries', lambda _, values: condition(values))
 
     def row(self):
         response = self.server.distance(LINE)

@@ -20,9 +20,7 @@ class Comparer {
 
   template <class Value>
   void operator()(const char *name, const Value &value) {
-    names.insert(name);
-    ASSERT_TRUE(file_[name]) << name << " is not documented";
-    EXPECT_EQ(file_[name].as<Value>(), value) << name;
+    EXPECT_EQ(documented(name).as<Value>(), value) << name;
   }
 
   template <class Value>
@@ -33,28 +31,24 @@ class Comparer {
   }
 
   void operator()(const char *name, const std::vector<ProviderSpec> &value) {
-    names.insert(name);
-    ASSERT_TRUE(file_[name]) << name << " is not documented";
-    EXPECT_TRUE(file_[name].IsSequence()) << name;
+    EXPECT_TRUE(documented(name).IsSequence()) << name;
     EXPECT_EQ(file_[name].size(), value.size()) << name;
   }
 
-  void operator()(const char *name, const std::vector<std::string> &value) {
-    names.insert(name);
-    ASSERT_TRUE(file_[name]) << name << " is not documented";
-    EXPECT_EQ(file_[name].as<std::vector<std::string>>(), value) << name;
-  }
-
   void operator()(const char *name, const ObjectDescription &value) {
-    names.insert(name);
-    ASSERT_TRUE(file_[name]) << name << " is not documented";
-    EXPECT_EQ(file_[name].size(), 0u) << name;
+    EXPECT_EQ(documented(name).size(), 0u) << name;
     EXPECT_TRUE(value.id.empty()) << name;
   }
 
   std::set<std::string> names;
 
  private:
+  YAML::Node documented(const std::string &name) {
+    names.insert(name);
+    EXPECT_TRUE(file_[name]) << name << " is not documented";
+    return file_[name];
+  }
+
   const YAML::Node &file_;
 };
 
@@ -88,8 +82,3 @@ TEST(Parameters, each_is_documented_with_its_unit_and_meaning) {
 
 } // namespace
 } // namespace curve_proximity
-
-int main(int argc, char **argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -66,6 +66,20 @@ PlanningScene diff(std::vector<moveit::CollisionObject> objects = {}) {
   return scene;
 }
 
+/* What a link is to carry, or to let go. */
+PlanningScene attaching(const std::string &link, moveit::CollisionObject object) {
+  PlanningScene scene = diff();
+  scene.robot_state.attached_collision_objects.resize(1);
+  scene.robot_state.attached_collision_objects[0].link_name = link;
+  scene.robot_state.attached_collision_objects[0].object = std::move(object);
+  return scene;
+}
+
+void turnTo(double angle, PlanningScene &scene) {
+  scene.robot_state.joint_state.name = {"turn"};
+  scene.robot_state.joint_state.position = {angle};
+}
+
 /* A scene that follows. The arm stands in `world`, where its base is. */
 struct Planning : ::testing::Test {
   const std::shared_ptr<const Robot> robot = Robot::fromUrdf(armUrdf());
@@ -173,8 +187,7 @@ TEST_F(Planning, a_full_scene_replaces_the_world_but_not_what_sensors_keep) {
   use(diff({ball("cloud", 1, poseAt(0, 0, 9)), ball("old", 1, poseAt(0, 0, 5))}));
   kept = {"cloud"};
   PlanningScene full;
-  full.robot_state.joint_state.name = {"turn"};
-  full.robot_state.joint_state.position = {0.0};
+  turnTo(0.0, full);
   use(full);
   EXPECT_TRUE(has("cloud"));
   EXPECT_FALSE(has("old"));
@@ -184,43 +197,29 @@ TEST_F(Planning, a_full_scene_replaces_the_world_but_not_what_sensors_keep) {
 
 TEST_F(Planning, attaching_and_detaching_follow_the_links) {
   use(diff({ball("cup", 0.1, poseAt(0.5, 0, 1))}));
-  PlanningScene grasp = diff();
-  grasp.robot_state.attached_collision_objects.resize(1);
-  grasp.robot_state.attached_collision_objects[0].link_name = "arm";
-  grasp.robot_state.attached_collision_objects[0].object = named("cup", moveit::CollisionObject::ADD);
-  use(grasp);
+  use(attaching("arm", named("cup", moveit::CollisionObject::ADD)));
   EXPECT_FALSE(has("cup"));
   EXPECT_TRUE(scene.snapshot()->attached().at("cup")->description.pose.isApprox(translation(0.5, 0, 0.5)));
 
   // more shapes at the same pose; the joints have moved when it is put down: the link's frame has turned by 90 degrees
-  PlanningScene more = grasp;
-  more.robot_state.attached_collision_objects[0].object =
-      ball("cup", 0.2, geometry_msgs::Pose(), moveit::CollisionObject::APPEND);
+  PlanningScene more = attaching("arm", ball("cup", 0.2, geometry_msgs::Pose(), moveit::CollisionObject::APPEND));
   more.robot_state.attached_collision_objects[0].object.header.frame_id = "arm";
   more.robot_state.attached_collision_objects[0].touch_links = {"base"};
   use(more);
   EXPECT_EQ(scene.snapshot()->attached().at("cup")->description.shapes.size(), 2u);
   EXPECT_TRUE(scene.snapshot()->attached().at("cup")->description.pose.isApprox(translation(0.5, 0, 0.5)));
 
-  PlanningScene release = diff();
-  release.robot_state.joint_state.name = {"turn"};
-  release.robot_state.joint_state.position = {M_PI / 2};
-  release.robot_state.attached_collision_objects.resize(1);
-  release.robot_state.attached_collision_objects[0].object = named("cup", moveit::CollisionObject::REMOVE);
+  PlanningScene release = attaching("", named("cup", moveit::CollisionObject::REMOVE));
+  turnTo(M_PI / 2, release);
   use(release);
   ASSERT_TRUE(has("cup"));
   EXPECT_TRUE(object("cup").pose.translation().isApprox(Eigen::Vector3d(0, 0.5, 1), 1e-12));
 }
 
 TEST_F(Planning, a_full_state_lets_go_of_what_links_carry_and_a_diff_does_not) {
-  PlanningScene grasp = diff();
-  grasp.robot_state.attached_collision_objects.resize(1);
-  grasp.robot_state.attached_collision_objects[0].link_name = "arm";
-  grasp.robot_state.attached_collision_objects[0].object = ball("cup", 0.1, poseAt(0, 0, 0));
-  use(grasp);
+  use(attaching("arm", ball("cup", 0.1, poseAt(0, 0, 0))));
   PlanningScene moved = diff();
-  moved.robot_state.joint_state.name = {"turn"};
-  moved.robot_state.joint_state.position = {1.0};
+  turnTo(1.0, moved);
   use(moved);
   EXPECT_EQ(scene.snapshot()->attached().size(), 1u);
   moved.robot_state.is_diff = 0;
@@ -317,17 +316,9 @@ TEST_F(Planning, what_cannot_be_used_is_one_sentence_and_the_rest_is_used) {
   joints.robot_state.joint_state.position = {1.0};
   expectWrong(joints, {"2 joints have 1 positions"});
 
-  PlanningScene attached = diff();
-  attached.robot_state.attached_collision_objects.resize(1);
-  auto &held = attached.robot_state.attached_collision_objects[0];
-  held.link_name = "wrist";
-  held.object = ball("cup", 0.1, poseAt(0, 0, 0));
-  expectWrong(attached, {"'cup'", "'wrist'"});
-  held.link_name = "arm";
-  held.object = named("cup", moveit::CollisionObject::REMOVE);
-  expectWrong(attached, {"'cup'", "no link carries"});
-  held.object = named("cup", moveit::CollisionObject::MOVE);
-  expectWrong(attached, {"'cup'", "operation"});
+  expectWrong(attaching("wrist", ball("cup", 0.1, poseAt(0, 0, 0))), {"'cup'", "'wrist'"});
+  expectWrong(attaching("arm", named("cup", moveit::CollisionObject::REMOVE)), {"'cup'", "no link carries"});
+  expectWrong(attaching("arm", named("cup", moveit::CollisionObject::MOVE)), {"'cup'", "operation"});
 
   PlanningScene matrix = diff();
   matrix.allowed_collision_matrix.entry_names = {"arm", "base"};
