@@ -165,6 +165,35 @@ CASE(the_bound_of_a_box_reaches_to_its_end) {
   cprox_body_free(ball);
 }
 
+/* A ball on an arm passes another one by a small gap in the second half of its box, and only there. */
+CASE(both_halves_of_a_box_that_is_cut_count) {
+  static const double RADIUS = 0.05, ARM = 1.0, GAP = 1e-3, END = 2.0;
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(RADIUS, ws, &ball), CPROX_OK);
+  for (int k = 0; k < 20; k++) {
+    const double at = k % 2 ? 0.3 + 0.02 * k : 1.3 + 0.02 * k, beyond = ARM + 2.0 * RADIUS + GAP, low = 0.0;
+    const cprox_link links[2] = {{.parent = -1, .type = CPROX_JOINT_FIXED, .origin = CPROX_POSE_IDENTITY},
+                                 {.parent = 0,
+                                  .type = CPROX_JOINT_REVOLUTE,
+                                  .origin = CPROX_POSE_IDENTITY,
+                                  .axis = {0, 0, 1},
+                                  .multiplier = 1.0}};
+    const cprox_link_geometry geometries[2] = {
+        {.body = ball, .pose = {{beyond * cos(at), beyond * sin(at), 0}, {1, 0, 0, 0}}, .link = 0},
+        {.body = ball, .pose = {{ARM, 0, 0}, {1, 0, 0, 0}}, .link = 1}};
+    cprox_robot *robot = NULL;
+    assert_int_equal(cprox_robot_create(links, 2, geometries, 2, 1, ws, &robot), CPROX_OK);
+    const cprox_joint_box box = {&low, &END, 1};
+    const cprox_robot_pair pair = {0, 1};
+    cprox_result found;
+    assert_int_equal(cprox_robot_box_collision(robot, &pair, 1, &box, NULL, ws, &found, NULL), CPROX_OK);
+    assert_int_equal(found.verdict, CPROX_VERDICT_CLEAR);
+    assert_true(found.lower <= GAP + 1e-9);
+    cprox_robot_free(robot);
+  }
+  cprox_body_free(ball);
+}
+
 CASE(a_budget_that_is_used_up_leaves_the_verdict_open) {
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.2, ws, &ball), CPROX_OK); /* they come to 0 m of each other, not nearer */

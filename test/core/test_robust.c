@@ -124,6 +124,54 @@ CASE(errors_of_places_cost_what_they_say) {
   free_arm(&a);
 }
 
+/* A ball moves away from a joint, or from the base, along a wall, and back: its lever arm is the longest on the way. */
+CASE(what_moves_away_from_what_is_off_loses_by_its_longest_lever_arm) {
+  static const double E = 2e-3, NEAR = 0.5, OUT = 8.0, BACK = 1.0;
+  const double off[2] = {E, 0}, ends[2] = {0, NEAR}, out[2] = {0, OUT}, back[2] = {0, BACK};
+  double far = 0.0;
+  for (double u = 0.0; u < 1.0; u += 1e-4)
+    far = fmax(NEAR + u * (1.0 - u) * (1.0 - u) * OUT - u * u * (1.0 - u) * BACK, far);
+  const int32_t variables[2] = {0, 1};
+  const cprox_link links[2] = {{.parent = -1,
+                                .type = CPROX_JOINT_REVOLUTE,
+                                .origin = CPROX_POSE_IDENTITY,
+                                .axis = {0, 0, 1},
+                                .variable = 0,
+                                .multiplier = 1.0},
+                               {.parent = 0,
+                                .type = CPROX_JOINT_PRISMATIC,
+                                .origin = CPROX_POSE_IDENTITY,
+                                .axis = {1, 0, 0},
+                                .variable = 1,
+                                .multiplier = 1.0}};
+  arm a;
+  assert_int_equal(cprox_body_create_sphere(BALL, ws, &a.ball), CPROX_OK);
+  const cprox_link_geometry geometry = {.body = a.ball, .pose = CPROX_POSE_IDENTITY, .link = 1};
+  assert_int_equal(cprox_robot_create(links, 2, &geometry, 1, 2, ws, &a.robot), CPROX_OK);
+  cprox_body *wall = NULL;
+  assert_int_equal(cprox_body_create_halfspace(vec(0, -1, 0), GAP + BALL, ws, &wall), CPROX_OK);
+  const cprox_obstacle one = cprox_obstacle_at(wall, CPROX_POSE_IDENTITY);
+  assert_int_equal(cprox_obstacles_create(&one, 1, CPROX_INDEX_BVH, ws, &a.obstacles), CPROX_OK);
+  const cprox_waypoint points[2] = {{.time = 0.0, .positions = ends, .velocities = out},
+                                    {.time = 1.0, .positions = ends, .velocities = back}};
+  const cprox_motion_description way = {
+      .kind = CPROX_MOTION_WAYPOINTS, .variables = variables, .n_variables = 2, .waypoints = points, .n_waypoints = 2};
+  assert_int_equal(cprox_motion_create(a.robot, &way, ws, &a.motion), CPROX_OK);
+  const cprox_error_bounds bounds[2] = {{.tracking = off, .n_variables = 2}, {.base_rotation = E}};
+  for (int k = 0; k < 2; k++) {
+    const cprox_result r = robust(&a, &bounds[k], NULL);
+    /* where it is far, the ball is turned towards the wall */
+    assert_true(r.lower <= GAP - far * sin(E) + 1e-9 && r.lower >= GAP - far * E * (1.0 + 2.0 * E) - 1e-6);
+    cprox_result verdict;
+    const cprox_mover mover = cprox_robot_along(a.motion, NULL, 0);
+    assert_true(cprox_robust_tolerance(a.obstacles, mover, GAP - far * sin(E) + 1e-6, &bounds[k], NULL, ws, &verdict) >=
+                0);
+    assert_int_not_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
+  }
+  cprox_body_free(wall);
+  free_arm(&a);
+}
+
 /* A halfspace turns about its pose's position: the robot is off by as much as it is away from there. */
 CASE(an_obstacle_without_end_turns_against_the_link) {
   arm a;
