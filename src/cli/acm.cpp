@@ -65,10 +65,7 @@ int findLinkContacts(const Arguments &arguments, Console &console) {
   cprox_options options = arguments.query.options;
   options.stop = interrupted;
 
-  ResultsFile file(arguments.out, inputsOf(arguments));
-  Arguments of_rows = arguments;
-  of_rows.out.clear();
-  Output rows(of_rows);
+  FileOutput output(arguments);
   console.warn(warnings);
   if (arguments.timings) tellTimings(world.timings, console);
   if (arguments.skipped) tellSkipped(world.skipped, console);
@@ -95,12 +92,12 @@ int findLinkContacts(const Arguments &arguments, Console &console) {
       }
       return out;
     });
-  const int code = rows.answer(
+  const int code = output.rows.answer(
       "a,b,contact,disabled_before,disabled,lower,upper,nodes,distance_queries,posture,message\n", tasks, console);
   if (code == kInterrupted) return code;
   after.erase(std::remove_if(after.begin(), after.end(), [](const DisabledPair &pair) { return pair.reason.empty(); }),
               after.end());
-  file.write(withDisabledPairs(srdf, world.snapshot->robot()->name(), after));
+  output.file.write(withDisabledPairs(srdf, world.snapshot->robot()->name(), after));
   return code;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "finish.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "failure.h"
@@ -78,10 +79,22 @@ int Output::answer(const std::string &header, Rows rows, Console &console) {
 
 int Output::answer(const std::string &header, const std::vector<Task> &tasks, Console &console) {
   Rows rows;
-  rows.next = [&, next = std::size_t{0}]() mutable -> std::optional<Task> {
+  std::size_t next = 0;
+  rows.next = [&]() -> std::optional<Task> {
     return next < tasks.size() ? std::optional<Task>(tasks[next++]) : std::nullopt;
+  };
+  rows.portion = [&]() -> std::optional<double> {
+    return static_cast<double>(next) / static_cast<double>(std::max<std::size_t>(tasks.size(), 1));
   };
   return answer(header, std::move(rows), console);
 }
+
+static Arguments withoutOut(Arguments arguments) {
+  arguments.out.clear();
+  return arguments;
+}
+
+FileOutput::FileOutput(const Arguments &arguments)
+    : of_rows_(withoutOut(arguments)), file(arguments.out, inputsOf(arguments)), rows(of_rows_) {}
 
 } // namespace curve_proximity::cli

@@ -48,5 +48,19 @@ class Output {
   std::optional<ResultsFile> certificates_;
 };
 
+/** Of a command whose --out is no table: that file, and its rows on standard output. */
+class FileOutput {
+ public:
+  /** Throws BadUsage as Output does. */
+  explicit FileOutput(const Arguments &arguments);
+
+ private:
+  Arguments of_rows_;
+
+ public:
+  ResultsFile file;
+  Output rows;
+};
+
 } // namespace curve_proximity::cli
 #endif

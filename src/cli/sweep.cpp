@@ -38,10 +38,7 @@ int sweepVolume(const Arguments &arguments, Console &console) {
   const World world = readStandingWorld(arguments, "sweep", warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
   warnOfMotion(motion, arguments, world, warnings);
-  ResultsFile file(arguments.out, inputsOf(arguments));
-  Arguments of_rows = arguments;
-  of_rows.out.clear();
-  Output rows(of_rows);
+  FileOutput output(arguments);
   console.warn(warnings);
   tellOfReading(world, motion, arguments, console);
 
@@ -70,9 +67,9 @@ int sweepVolume(const Arguments &arguments, Console &console) {
     }
     return out;
   };
-  const int code = rows.answer("id,cells,inside,volume,volume_inside,gap,poses\n", {work}, console);
+  const int code = output.rows.answer("id,cells,inside,volume,volume_inside,gap,poses\n", {work}, console);
   if (volume.cells.empty()) return code;
-  file.write(fileOf(arguments.out, volume, false));
+  output.file.write(fileOf(arguments.out, volume, false));
   if (!arguments.inside.empty()) {
     ResultsFile inside(arguments.inside, inputsOf(arguments), "--inside");
     inside.write(fileOf(arguments.inside, volume, true));
