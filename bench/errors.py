@@ -3,7 +3,7 @@
 """The group `errors`: link pairs and swept volumes, by the Python package: errors.py [--quick] [--rounds N]
 
 collision matrix  all pairs of links of a Panda, and of a mobile robot with two Pandas, a UR5 and a Fanuc on a Husky: 40 links and
-                  more, as a PR2. nodes: boxes; distance_queries: pairs; failures: pairs that are undecided.
+                  more, as a PR2. nodes: boxes; distance_queries: pairs; error: the share of pairs that are undecided.
 outer cover       the swept volume of a Panda's motion with a gap of a centimetre. nodes: cells; distance_queries: bodies at poses;
                   error: the gap [m].
 
@@ -74,7 +74,7 @@ def matrix(name, path, rounds, max_nodes):
     for pair in undecided:
         print(f"errors.py: {name}: {pair['a']} and {pair['b']} are undecided", file=sys.stderr)
     print(f"errors,collision matrix,curve_proximity,{name},{statistics.median(times):.4g},{max(times):.4g},"
-          f"{sum(pair['nodes'] for pair in pairs)},{len(pairs)},,0,{len(undecided)}", flush=True)
+          f"{sum(pair['nodes'] for pair in pairs)},{len(pairs)},{len(undecided) / len(pairs):.4g},0,0", flush=True)
 
 
 def cover(rounds):
