@@ -266,6 +266,29 @@ static dd least_of_piece(const cprox_curve *curve, const cprox_curve *radius, si
   return subtract(least, moved);
 }
 
+/* The same in doubles, and how far it may be off. */
+static double least_in_doubles(const cprox_curve *curve, size_t piece, double s0, double s1, const reach_direction *n,
+                               double *off) {
+  double a[CPROX_MAX_DEGREE + 1];
+  const vec3 *p = curve_piece(curve, piece), d = vec(n->k[0].high, n->k[1].high, n->k[2].high);
+  const double sum = fabs(d.x) + fabs(d.y) + fabs(d.z);
+  double size = 0.0;
+  const size_t degree = curve->degree;
+  for (size_t i = 0; i <= degree; i++) {
+    a[i] = vec_dot(d, p[i]);
+    size = fmax(size, fmax(fmax(fabs(p[i].x), fabs(p[i].y)), fabs(p[i].z)));
+  }
+  for (size_t level = 1; level <= degree && s0 > 0.0; level++)
+    for (size_t i = 0; i + level <= degree; i++) a[i] += s0 * (a[i + 1] - a[i]);
+  const double end = s0 > 0.0 ? (s1 - s0) / (1.0 - s0) : s1;
+  for (size_t level = 1; level <= degree && s1 < 1.0; level++)
+    for (size_t i = degree; i >= level; i--) a[i] = a[i - 1] + end * (a[i] - a[i - 1]);
+  double least = a[0];
+  for (size_t i = 1; i <= degree; i++) least = a[i] < least ? a[i] : least;
+  *off = sum * ((16.0 + 32.0 * (double)degree) * ROUND_U * size + ROUND_UP * curve->error[piece]);
+  return least;
+}
+
 typedef struct piece_range {
   size_t first, end;
 } piece_range;
@@ -296,12 +319,28 @@ reach_value reach_of_curve(const reach_set *set, const reach_direction *n, reach
   return with_carried(set, n, far);
 }
 
+/* Whether doubles see which side of the limit a piece is on. ABOVE: above it by more than the margin, too. */
+typedef enum sign { BELOW, OPEN, ABOVE } sign;
+
+static sign separates_in_doubles(const cprox_curve *curve, reach_part part, size_t piece, const reach_direction *n,
+                                 dd long_n, dd limit, double sizes) {
+  const double k = (double)piece;
+  double off;
+  const double least = least_in_doubles(curve, piece, fmax(part.from - k, 0.0), fmin(part.to - k, 1.0), n, &off);
+  const double above = least - limit.high;
+  const double unsure = 2.0 * off + 4.0 * ROUND_U * (fabs(least) + fabs(limit.high)) + 0x1p-80 * long_n.high * sizes;
+  return above > unsure ? ABOVE : above < -unsure ? BELOW : OPEN;
+}
+
 bool reach_separates(const cprox_curve *curve, const cprox_curve *radius, reach_part part, const reach_direction *n,
                      const reach_value *reach, double delta) {
   const dd long_n = length(n), limit = dd_add(reach->value, dd_scale(long_n, delta));
   if (!(long_n.high > 0.0) || !isfinite(limit.high)) return false;
   const piece_range range = pieces_of(part);
   for (size_t piece = range.first; piece < range.end; piece++) {
+    const sign rough = radius ? OPEN : separates_in_doubles(curve, part, piece, n, long_n, limit, reach->size + delta);
+    if (rough == BELOW) return false;
+    if (rough == ABOVE) continue;
     double size = 0.0;
     const dd least = least_of(curve, radius, part, piece, n, &size);
     const double margin = MARGIN * long_n.high * (size + reach->size + delta);
