@@ -23,9 +23,9 @@ inline double quantile(std::vector<double> values, double q) {
 
 /* A row of results.csv. */
 inline void printRow(const char *group, const std::string &workload, const char *method,
-                     const std::vector<double> &times) {
-  std::printf("%s,%s,%s,,%.4f,%.4f,0,0,0,0,0\n", group, workload.c_str(), method, quantile(times, 0.5),
-              quantile(times, 0.95));
+                     const std::vector<double> &times, const std::string &parameter = "") {
+  std::printf("%s,%s,%s,%s,%.4f,%.4f,0,0,0,0,0\n", group, workload.c_str(), method, parameter.c_str(),
+              quantile(times, 0.5), quantile(times, 0.95));
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a provider's plugin adds to the core's own calls: the same places asked both ways, in turns.
+/* What a provider's plugin adds to the core's own calls: the same places asked both ways, in turns. What a gap of any two
+ * kinds of bodies costs, prepared and evaluated.
  *
  * Workloads named "... adds" have the difference for their time. */
 #include <pluginlib/class_loader.hpp>
@@ -95,6 +96,98 @@ Places randomPlaces(std::size_t n, bool along, Random &random) {
   return out;
 }
 
+ConstraintBody sideOf(const ShapeDescription &shape) {
+  ConstraintBody side;
+  side.parts.push_back({shape, makeGeometry(shape).body, 0.0, {}});
+  return side;
+}
+
+/* One of each kind whose spectrum has another form, about 1 m large. */
+std::vector<std::pair<const char *, ConstraintBody>> bodiesOfAllKinds() {
+  ShapeDescription corners, octahedron, slab;
+  corners.type = ShapeType::POLYTOPE;
+  octahedron.type = ShapeType::MESH;
+  corners.vertices = octahedron.vertices = 0.5 * (Eigen::Matrix3Xd(3, 6) << 1, -1, 0, 0, 0, 0, //
+                                                  0, 0, 1, -1, 0, 0,                           //
+                                                  0, 0, 0, 0, 1, -1)
+                                                     .finished();
+  octahedron.triangles.resize(3, 8);
+  octahedron.triangles << 0, 2, 1, 3, 2, 1, 3, 0, 2, 1, 3, 0, 0, 2, 1, 3, 4, 4, 4, 4, 5, 5, 5, 5;
+  octahedron.solid = true;
+  slab.type = ShapeType::IMPLICIT;
+  slab.hyperquadrics = {{{2, 0, 0, 0, 4}, {0, 2, 0, 0, 4}, {0, 0, 2, 0, 4}}};
+  slab.planes = {{0.6, 0.8, 0, -0.3}};
+  return {{"sphere", sideOf(ShapeType::SPHERE, {0.5})},
+          {"box", sideOf(ShapeType::BOX, {0.8, 0.7, 0.9})},
+          {"ellipsoid", sideOf(ShapeType::ELLIPSOID, {0.5, 0.3, 0.4})},
+          {"capsule", sideOf(ShapeType::CAPSULE, {0.6, 0.2})},
+          {"cylinder", sideOf(ShapeType::CYLINDER, {0.8, 0.4})},
+          {"cone", sideOf(ShapeType::CONE, {0.8, 0.4})},
+          {"superquadric", sideOf(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0})},
+          {"implicit", sideOf(slab)},
+          {"polytope", sideOf(corners)},
+          {"mesh", sideOf(octahedron)}};
+}
+
+/* Of each two kinds in space: what prepare() takes, and a value with its gradient at places where the spheres meet. */
+void gapsOfAllKinds(pluginlib::ClassLoader<ConstraintProvider> &plugins, const bench_size &size) {
+  const auto bodies = bodiesOfAllKinds();
+  for (const int samples : {9, 33}) {
+    const auto provider = plugins.createUniqueInstance("curve_proximity/FourierGap");
+    provider->initialise({{"samples", samples}});
+    const std::size_t n = samples == 9 ? 20 : 5;
+    const std::string at_n = " n " + std::to_string(samples);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      for (std::size_t j = i; j < bodies.size(); ++j) {
+        Random random;
+        Workspace workspace;
+        ConstraintValue value;
+        ConstraintPair pair;
+        pair.a = bodies[i].second, pair.b = bodies[j].second;
+        const double begin = now();
+        const auto constraint = provider->prepare(pair);
+        const std::vector<double> prepared{now() - begin};
+        std::vector<double> times(n, INFINITY);
+        for (std::size_t k = 0; k < n; ++k) {
+          ConstraintPlace place;
+          place.a = random.pose(0.3), place.b = random.pose(0.3);
+          for (int round = 0; round < std::min(size.rounds, 3); ++round) {
+            const double start = now();
+            constraint->evaluate(place, workspace, value);
+            times[k] = std::min(times[k], now() - start);
+          }
+        }
+        const std::string kinds = std::string(bodies[i].first) + " and " + bodies[j].first;
+        printRow("providers", "gap prepared" + at_n, "curve_proximity", prepared, kinds);
+        printRow("providers", "gap value and gradient" + at_n, "curve_proximity", times, kinds);
+      }
+    }
+  }
+}
+
+/* The same of bodies that a curve carries past a box. */
+void gapsAlongCurves(pluginlib::ClassLoader<ConstraintProvider> &plugins, Random &random) {
+  const auto provider = plugins.createUniqueInstance("curve_proximity/FourierGap");
+  provider->initialise({{"samples", 9}});
+  const auto bodies = bodiesOfAllKinds();
+  const Places at = randomPlaces(20, true, random);
+  for (const auto &body : bodies) {
+    Workspace workspace;
+    ConstraintValue value;
+    ConstraintPair pair;
+    pair.along_curve = true;
+    pair.a = body.second, pair.b = bodies[1].second;
+    const auto constraint = provider->prepare(pair);
+    std::vector<double> times;
+    for (const ConstraintPlace &place : at.places) {
+      const double begin = now();
+      constraint->evaluate(place, workspace, value);
+      times.push_back(now() - begin);
+    }
+    printRow("providers", "gap along a curve n 9", "curve_proximity", times, std::string(body.first) + " and box");
+  }
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
@@ -179,6 +272,11 @@ int main(int argc, char **argv) {
     cprox_gap_free(gap);
     cprox_solid_free(a);
     cprox_solid_free(b);
+  }
+
+  if (bench_wanted(&size, "gap of any two kinds")) {
+    gapsOfAllKinds(plugins, size);
+    gapsAlongCurves(plugins, random);
   }
   return 0;
 }
