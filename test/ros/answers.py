@@ -18,12 +18,6 @@ class TestCase(Case):
     def setUpClass(cls):
         cls.server = Server()
 
-    def row(self, response):
-        """The one result of a call that succeeded."""
-        self.assertTrue(response.success, response.message)
-        self.assertEqual(len(response.results), 1)
-        return response.results[0]
-
     def assertContains(self, row, true_distance):
         """The interval contains the true value (to the rounding of the value written here) and is narrow."""
         self.assertHolds(row.lower, row.upper, true_distance, EPSILON, 1e-15)
@@ -119,9 +113,7 @@ class Answers(TestCase):
 
     def test_per_object_gives_a_row_for_each_pair_and_names_it(self):
         self.server.replace(sphere('a', 0.25, (1, 0, 0)), sphere('b', 0.5, (1, 0, 0)), sphere('c', 0.125, (1, 0, 0)))
-        response = self.server.distance([ABOVE, bezier((0, 0, 2), (2, 0, 2), id='top')], per_object=True,
-                                        epsilon=EPSILON)
-        self.assertTrue(response.success, response.message)
+        response = self.succeeded(self.server.distance([ABOVE, bezier((0, 0, 2), (2, 0, 2), id='top')], per_object=True, epsilon=EPSILON))
         rows = {(r.a, r.b): r for r in response.results}
         self.assertEqual(len(response.results), 6)
         for name, radius in (('a', 0.25), ('b', 0.5), ('c', 0.125)):
@@ -388,8 +380,7 @@ class Large(TestCase):
 
     def test_10000_curves_in_one_request_are_answered(self):
         curves = [bezier((0, 0, 1 + i * 1e-3), (2, 0, 1 + i * 1e-3)) for i in range(10000)]
-        response = self.server.distance(curves, epsilon=EPSILON)
-        self.assertTrue(response.success, response.message)
+        response = self.succeeded(self.server.distance(curves, epsilon=EPSILON))
         self.assertEqual(len(response.results), 10000)
         for i in (0, 17, 9999):
             self.assertContains(response.results[i], 1 + i * 1e-3 - 0.25)

@@ -29,8 +29,7 @@ class Constraints(Case):
         cls.service = service('evaluate_constraints', EvaluateConstraints)
 
     def rows(self, *cases):
-        response = self.service(cases=list(cases))
-        self.assertTrue(response.success, response.message)
+        response = self.succeeded(self.service(cases=list(cases)))
         self.assertEqual(response.frame_id, 'world')
         return response.results
 

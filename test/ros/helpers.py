@@ -430,6 +430,15 @@ class Case(unittest.TestCase):
         self.assertTrue(connected(publisher))
         return publisher
 
+    def succeeded(self, response):
+        self.assertTrue(response.success, response.message)
+        return response
+
+    def row(self, response):
+        """The one result of a call that succeeded."""
+        row, = self.succeeded(response).results
+        return row
+
     def assertHolds(self, lower, upper, expected, width=1e-6, slack=1e-12):
         """The interval is narrow and contains the value, which is known to the slack."""
         self.assertLessEqual(lower, expected + slack)

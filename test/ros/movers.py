@@ -64,9 +64,7 @@ class Movers(Case):
         first, second = swing(-0.8, 0.8, stamp=1000.0), swing(-0.8, 0.8, stamp=1000.75)
         rows = []
         for robot in ('other', ''):
-            response = self.server.distance([], trajectory=first, moving_robots=[other(second, robot=robot)], epsilon=1e-5)
-            self.assertTrue(response.success, response.message)
-            rows += response.results
+            rows.append(self.row(self.server.distance([], trajectory=first, moving_robots=[other(second, robot=robot)], epsilon=1e-5)))
         self.assertEqual((rows[0].id, rows[0].kind, rows[0].b.split('/')[0]), ('trajectory', 'environment', 'right'))
         self.assertEqual(rows[0].upper, math.inf)  # ~max_lod is hull: it bounds from below
         self.assertEqual(*[(row.a, row.b, row.lower, row.upper, row.t) for row in rows])
@@ -100,8 +98,7 @@ class Movers(Case):
     def least(self, *things):
         """The least distance between the two things, which both move."""
         self.server.replace(*things)
-        response = self.server.distance([], movers=True, self_collision=True)
-        self.assertTrue(response.success, response.message)
+        response = self.succeeded(self.server.distance([], movers=True, self_collision=True))
         row, = [row for row in response.results if {row.a, row.b} == {'a', 'b'}]
         return row
 
@@ -128,9 +125,7 @@ class Movers(Case):
             way = path((-1, 3, 4), (1, 3, 4), frame='world')
             for at in way.poses:
                 at.pose = pose((at.pose.position.x, 3, 4), orientation)
-            response = self.server.distance([], paths=[way], body=carried, objects=['ball'])
-            self.assertTrue(response.success, response.message)
-            row, = response.results
+            row = self.row(self.server.distance([], paths=[way], body=carried, objects=['ball']))
             self.assertEqual((row.kind, row.a, row.b), ('movers', 'carried', 'ball'))
             self.assertHolds(row.lower, row.upper, 1.0 - half - 0.25, 1.01e-6)
         self.assertRefused(self.server.distance(bezier((0, 0, 0), (1, 0, 0)), body=carried), 'body applies to paths')
@@ -147,21 +142,17 @@ class Movers(Case):
         for things, b, expected in (((sphere('ball', 0.25, (0, 3, 3)), falling), 'ball', 0.45),
                                     ((sphere('ball', 0.25, (0, 3, 2)), falling), 'falling', 0.6)):
             self.server.replace(*things)
-            response = self.server.distance([], paths=[way], body=box('carried', (0.2, 0.2, 0.6)))
-            self.assertTrue(response.success, response.message)
-            row, = response.results
+            row = self.row(self.server.distance([], paths=[way], body=box('carried', (0.2, 0.2, 0.6))))
             self.assertEqual((row.a, row.b), ('carried', b))
             self.assertAlmostEqual(row.upper, expected, delta=2e-6)
 
     def hold(self, link, at):
         """A ball of .1 that the link carries, at a place in its frame."""
         tool = AttachedCollisionObject(link_name=link, object=sphere('tool', 0.1, at, frame=link))
-        response = self.server.apply(attached_collision_objects=[tool])
-        self.assertTrue(response.success, response.message)
+        self.succeeded(self.server.apply(attached_collision_objects=[tool]))
 
     def assertDistance(self, response, a, expected):
-        self.assertTrue(response.success, response.message)
-        row, = response.results
+        row = self.row(response)
         self.assertEqual((row.a, row.b), (a, 'ball'))
         self.assertHolds(row.lower, row.upper, expected, 1.01e-6, 1e-9)
         return row
@@ -258,8 +249,7 @@ class Movers(Case):
         for at, half in zip(way.poses, (0.0, math.radians(45))):
             at.pose.orientation = pose((0, 0, 0), (0, 0, math.sin(half), math.cos(half))).orientation
         markers, response = self.shown(lambda: self.server.distance([], paths=[way], body=crank, objects=['ball']))
-        self.assertTrue(response.success, response.message)
-        row, = response.results
+        row = self.row(response)
         self.assertAlmostEqual(row.upper, 2 - 0.5 - 0.1 - 0.25, delta=2e-6)
         self.assertAlmostEqual(row.t, 1 / 3, delta=3e-3)
         self.assertIn('its stamps are all the same: t counts its poses', row.message)

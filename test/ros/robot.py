@@ -38,8 +38,7 @@ class Robot(Case):
             self.assertTrue(until(lambda: not unheard(), 10), placed.child_frame_id)
 
     def assertDistance(self, response, expected, link=None):
-        self.assertTrue(response.success, response.message)
-        row = response.results[0]
+        row = self.succeeded(response).results[0]
         self.assertHolds(row.lower, row.upper, expected)
         if link:
             self.assertEqual(row.b, link)
@@ -89,8 +88,7 @@ class Robot(Case):
 
     def test_07_per_object_rows_are_for_objects_and_links(self):
         self.server.replace(box('crate', (1, 1, 1), (14, 0, 0.5)))
-        response = self.server.distance(vertical(12, 0), joint_state=joints(turn=0.0), per_object=True)
-        self.assertTrue(response.success, response.message)
+        response = self.succeeded(self.server.distance(vertical(12, 0), joint_state=joints(turn=0.0), per_object=True))
         self.assertEqual(sorted(r.b for r in response.results), ['arm', 'base', 'crate', 'slider'])
 
     def test_08_tf2_and_joint_states_agree(self):

@@ -3,19 +3,18 @@
 """With ~second_opinion another library measures each row's pair again; disagreement is logged once a pair, and counted."""
 import os
 import tempfile
-import unittest
 
 import rospy
 from curve_proximity.msg import Body
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from helpers import Server, bezier, body, run, sphere, status_of, thing, until
+from helpers import Case, Server, bezier, body, run, sphere, status_of, thing, until
 from rosgraph_msgs.msg import Log
 
 LINE = bezier((-1, 0, 1), (1, 0, 1), id='line')
 FACET = 'facet normal 0 0 1\nouter loop\nvertex -1 -1 {z}\nvertex 1 -1 {z}\nvertex 0 1 {z}\nendloop\nendfacet\n'
 
 
-class SecondOpinion(unittest.TestCase):
+class SecondOpinion(Case):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
@@ -28,15 +27,12 @@ class SecondOpinion(unittest.TestCase):
     def queries(self, condition):
         return status_of(self.seen, 'queries', lambda _, values: condition(values))
 
-    def row(self):
-        response = self.server.distance(LINE)
-        self.assertTrue(response.success, response.message)
-        self.assertEqual(len(response.results), 1)
-        return response.results[0]
+    def asked(self):
+        return self.row(self.server.distance(LINE))
 
     def test_1_rows_say_that_it_agrees(self):
         self.server.replace(sphere('ball', 0.25))
-        row = self.row()
+        row = self.asked()
         self.assertEqual((row.second_opinion, row.message), ('agrees', ''))
         self.assertAlmostEqual(row.second_distance, 0.75, delta=1e-5)
         _, values = self.queries(lambda v: int(v['rows with a second opinion']) > 0)
@@ -44,7 +40,7 @@ class SecondOpinion(unittest.TestCase):
 
     def test_2_rows_say_what_it_does_not_know(self):
         self.server.replace(body('odd', 'superquadric', (0.5, 0.5, 0.5, 4, 4, 4)))
-        row = self.row()
+        row = self.asked()
         self.assertEqual(row.second_opinion, 'unknown')
         self.assertIn('superquadric', row.message)
         self.assertNotEqual(row.second_distance, row.second_distance)
@@ -58,7 +54,7 @@ class SecondOpinion(unittest.TestCase):
                 out.write('solid s\n' + FACET.format(z=z) + 'endsolid s\n')
             if z == 0.0:
                 self.server.replace(thing('sheet', bodies=[Body(type='mesh', resource='file://' + file.name)]))
-        row = self.row()
+        row = self.asked()
         self.assertEqual(row.second_opinion, 'disagrees', row.message)
         self.assertAlmostEqual(row.second_distance, 0.5, delta=1e-5)
         self.assertRegex(row.message, r'fcl disagrees: it measures 0\.(5|4999)\S* m at t = \S+, and lower is (1|0\.9999\S*) m; '
@@ -69,7 +65,7 @@ class SecondOpinion(unittest.TestCase):
                          (DiagnosticStatus.WARN, 'second opinions disagree: the log says of what'))
         # Again, and again: one line says the row, the pair, both figures and the accuracy.
         for _ in range(2):
-            self.row()
+            self.asked()
         self.queries(lambda v: int(v['second opinions that disagree, ever']) == 3)
 
         def logged():

@@ -54,8 +54,7 @@ class States(Case):
         self.server.replace()
 
     def rows(self, response):
-        self.assertTrue(response.success, response.message)
-        return {row.kind: row for row in response.results}
+        return {row.kind: row for row in self.succeeded(response).results}
 
     def test_the_robot_as_it_stands_in_the_scene_and_against_itself(self):
         self.server.replace(sphere('ball', 0.2, (2, 1, 0)))
@@ -164,11 +163,9 @@ class States(Case):
     def test_attaching_and_detaching_need_no_tf_where_joints_are_given(self):
         tool = AttachedCollisionObject(link_name='lower', object=sphere('tool', 0.1, (1, 0, 0), frame='upper'))
         here = joints(one=0.0, two=math.pi / 2)
-        response = self.server.apply(attached_collision_objects=[tool], joint_state=here)
-        self.assertTrue(response.success, response.message)
+        self.succeeded(self.server.apply(attached_collision_objects=[tool], joint_state=here))
         off = AttachedCollisionObject(object=CollisionObject(id='tool', operation=CollisionObject.REMOVE))
-        response = self.server.apply(attached_collision_objects=[off], joint_state=joints(one=math.pi / 2, two=math.pi / 2))
-        self.assertTrue(response.success, response.message)
+        self.succeeded(self.server.apply(attached_collision_objects=[off], joint_state=joints(one=math.pi / 2, two=math.pi / 2)))
         tool, = self.server.scene('tool').objects
         self.assertAlmostEqual(tool.pose.position.y, 1.0, delta=1e-9)  # where lower begins, as it was given
         self.assertAlmostEqual(tool.pose.position.x, 0.0, delta=1e-9)
@@ -181,8 +178,7 @@ class States(Case):
     def test_an_octree_without_an_occupied_cell_is_an_empty_object(self):
         tree = Octree(binary=True, id=Octree.OCTREE, resolution=0.1)
         empty = thing('empty', bodies=[Body(type=Body.OCTREE, octree=tree)])
-        response = self.server.apply(empty, sphere('ball', 0.25))
-        self.assertTrue(response.success, response.message)
+        self.succeeded(self.server.apply(empty, sphere('ball', 0.25)))
         row, = self.server.distance(bezier((-1, 5, 1), (1, 5, 1)), objects=['empty', 'ball']).results
         self.assertEqual(row.b, 'ball')
         self.assertEqual({o.id for o in self.server.scene().objects}, {'ball', 'empty'})

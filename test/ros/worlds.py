@@ -46,9 +46,7 @@ class TestCase(Case):
         self.server.replace()
 
     def answer(self, curve=ABOVE):
-        response = self.server.distance(curve, epsilon=EPSILON)
-        self.assertTrue(response.success, response.message)
-        return response.results[0]
+        return self.row(self.server.distance(curve, epsilon=EPSILON))
 
     def assertNearest(self, name, distance):
         """Soon the answer names the object, at that distance; the points of the tests are exact as floats."""
