@@ -4,7 +4,6 @@
 #define CURVE_PROXIMITY_CLI_LIBRARY_H
 
 #include <condition_variable>
-#include <functional>
 #include <list>
 #include <map>
 #include <memory>

@@ -4,7 +4,6 @@
 #include <fstream>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 #include <report_parts.h>
 #include "failure.h"

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
-#include <limits>
 
 #include "transport/guard.h"
 #include "transport/memory_account.h"

@@ -8,7 +8,6 @@
 #include <ros/wall_timer.h>
 
 #include <cstdint>
-#include <string>
 
 #include "moveit/planning_scene_topic.h"
 #include "pipeline/pipeline.h"

@@ -4,8 +4,6 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "markers/canvas.h"
 #include "markers/curve_markers.h"

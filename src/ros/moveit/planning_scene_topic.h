@@ -7,7 +7,6 @@
 #include <ros/service_client.h>
 #include <ros/subscriber.h>
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>

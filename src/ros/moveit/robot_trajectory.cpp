@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "../../scene/motion/trajectory_points.h"

@@ -10,7 +10,6 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstdint>
 #include <Eigen/Geometry>
 #include <limits>
 #include <map>

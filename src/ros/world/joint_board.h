@@ -5,10 +5,8 @@
 
 #include <sensor_msgs/JointState.h>
 
-#include <chrono>
 #include <curve_proximity/robot.hpp>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
