@@ -109,7 +109,7 @@ static bool check_case(const jumping_case *c, size_t number) {
   }
   assert_int_equal(cprox_distance(mover, obstacle, NULL, ws, &distance), CPROX_OK);
   assert_int_equal(cprox_collision(mover, obstacle, NULL, ws, &collision), CPROX_OK);
-  assert_true(cprox_time_of_contact(mover, obstacle, NULL, ws, &contact) >= CPROX_OK); /* or the budget ended it */
+  assert_int_equal(cprox_time_of_contact(mover, obstacle, NULL, ws, &contact), CPROX_OK);
   const cprox_result least = least_sample(c);
   const double step = jumping_step(&c->curve) + (c->kind == BESIDE_MOVER ? jumping_step(&c->other) : 0.0);
   if (!(distance.lower <= least.upper + 1e-12) || !(distance.upper >= least.lower - step))

@@ -94,14 +94,15 @@ static double free_fraction(const contact_curve *c, const search_node *node) {
   const double *x = points_pool_at(&o->pool, (size_t)curve_curve_known(node)->side[0].slot), *y = x + degree + 1,
                *z = y + degree + 1;
   const vec3 n = o->last_normal, start = vec(x[0], y[0], z[0]);
+  if (vec_norm2(n) == 0.0) return 0.0;
   double slope = 0.0;
   const double *r = o->side[0].radius ? curve_side_radii(&o->side[0], &curve_curve_known(node)->side[0]) : NULL;
   for (size_t k = 1; k <= degree; k++) {
     const double rise = vec_dot(n, vec_sub(vec(x[k], y[k], z[k]), start)) - (r ? r[k] - r[0] : 0.0);
     slope = fmin(slope, rise * (double)degree / (double)k);
   }
-  const double above = vec_dot(n, vec_sub(start, curve_side_point(&o->side[1], c->nearest))) -
-                       (o->offset + (r ? r[0] : 0.0)) - 4.0 * node->slack;
+  const double above = vec_dot(n, vec_sub(start, curve_side_point(&o->side[1], c->nearest))) +
+                       curve_curve_carried(o, n) - (o->offset + (r ? r[0] : 0.0)) - 4.0 * node->slack;
   return slope < 0.0 ? fmin(above / -slope, 1.0) : above > 0.0 ? 1.0 : 0.0;
 }
 

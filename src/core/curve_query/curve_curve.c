@@ -13,6 +13,12 @@ enum { SLOT_FIRST, SLOT_SECOND, SLOTS_RESERVED };
 
 /* ---- bounds ---- */
 
+double curve_curve_carried(const curve_curve *o, vec3 n) {
+  if (!o->carries) return 0.0;
+  const convex *shape = &o->joined;
+  return vec_dot(n, o->shift) - (shape->ops->support(shape, n, NULL, NULL) + shape->margin);
+}
+
 /* Along any unit n: the first curve's least n·P less the second's greatest n·Q is a lower bound. A carried body takes
  * off what it reaches. */
 static void bound_by_reaches(const curve_curve *o, search_node *node, vec3 n, const curve_reach *first,
@@ -21,7 +27,7 @@ static void bound_by_reaches(const curve_curve *o, search_node *node, vec3 n, co
   double sizes = first->magnitude + second->magnitude + o->offset, error = first->error + second->error;
   if (o->carries) {
     const convex *shape = &o->joined;
-    bound += vec_dot(n, o->shift) - (shape->ops->support(shape, n, NULL, NULL) + shape->margin);
+    bound += curve_curve_carried(o, n);
     sizes += 2.0 * (shape->scale + shape->margin + vec_norm(o->shift));
     error += shape->slack;
   }

@@ -66,6 +66,9 @@ bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_cur
  */
 bool curve_curve_carry(curve_curve *o, const cprox_pose *placed, const cprox_body *carried, const cprox_pose *pose);
 
+/* The least n·x of what the first curve carries, seen from the curve's point; n is a unit vector. 0: nothing. */
+double curve_curve_carried(const curve_curve *o, vec3 n);
+
 /* The node that is all that is asked about: side[0].part and side[1].part. */
 search_node curve_curve_root(const curve_curve *o);
 
