@@ -4,18 +4,17 @@
 import time
 import unittest
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import QueryAction, QueryGoal
-from helpers import Server, bezier, query, ring_and_shells, run, sphere, until
+from helpers import ActionClient, Server, bezier, query, ring_and_shells, run, sphere, until
 
 
 class Batches(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.server = Server()
-        cls.client = actionlib.SimpleActionClient('/curve_proximity/query', QueryAction)
+        cls.client = ActionClient('/curve_proximity/query', QueryAction)
         assert cls.client.wait_for_server(rospy.Duration(20))
 
     def send(self, seconds=60, **fields):  # on a machine that builds beside it, too

@@ -13,7 +13,7 @@ import foreign_types
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import CollisionObject, PoseTrajectory, Proximity, ProximityResults, Refusal, SceneState, Waypoint
-from helpers import Node, Server, bezier, connected, fingerprint, free_flight, joints, path, pose, run, sphere, thing, until
+from helpers import ActionClient, Node, Server, bezier, connected, fingerprint, free_flight, joints, path, pose, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -113,7 +113,7 @@ class Gate(unittest.TestCase):
                  rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.passed.append),
                  rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.arm.take)]
         cls.topic = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
-        cls.client = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
+        cls.client = ActionClient('/gate/follow_joint_trajectory', Action)
         assert cls.client.wait_for_server(rospy.Duration(20))
         assert connected(cls.states, cls.topic, *heard)
         time.sleep(1.0)  # the gate finds the controller
@@ -221,7 +221,7 @@ class Gate(unittest.TestCase):
             self.assertTrue(passes or "'cart'" in why, why)
 
     def test_a_long_question_keeps_no_running_goal_waiting(self):
-        other = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
+        other = ActionClient('/gate/follow_joint_trajectory', Action)
         self.assertTrue(other.wait_for_server(rospy.Duration(10)))
         self.client.send_goal(Goal(trajectory=turning(2.0, 6.0)))
         self.assertTrue(until(self.controller.server.is_active, 5))
@@ -240,7 +240,7 @@ class Gate(unittest.TestCase):
 
     def test_the_goal_of_a_controller_that_goes_away_is_aborted(self):
         controller = Controller(self.arm, '/lost')
-        client = actionlib.SimpleActionClient('/lost_gate/follow_joint_trajectory', Action)
+        client = ActionClient('/lost_gate/follow_joint_trajectory', Action)
         self.assertTrue(client.wait_for_server(rospy.Duration(10)))
 
         def begins():  # the gate finds the controller in its own time
@@ -252,7 +252,7 @@ class Gate(unittest.TestCase):
         self.assertEqual((state, why), (GoalStatus.ABORTED, "the controller's action '/lost/follow_joint_trajectory' is not there"))
 
     def test_a_server_that_is_gone_or_hangs_ends_the_motion(self):
-        client = actionlib.SimpleActionClient('/alone_gate/follow_joint_trajectory', Action)
+        client = ActionClient('/alone_gate/follow_joint_trajectory', Action)
         self.assertTrue(client.wait_for_server(rospy.Duration(10)))
         for how, word in ((signal.SIGKILL, 'the server does not answer'), (signal.SIGSTOP, '~server_timeout')):
             self.arm.rest()

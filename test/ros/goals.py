@@ -10,12 +10,11 @@ import tempfile
 import time
 import unittest
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import CollisionObject
 from gate import Action, Arm, Controller, Goal, turning
-from helpers import Node, Server, connected, run, sphere, thing, until
+from helpers import ActionClient, Node, Server, connected, run, sphere, thing, until
 from histories import AWAY, LIMIT, RADIUS, REACHES, World, robot, write_scene
 from sensor_msgs.msg import JointState
 
@@ -37,7 +36,7 @@ class Goals(unittest.TestCase):
         cls.folder, cls.node = tempfile.mkdtemp(), None
         cls.arm = Arm(cls.states)
         cls.controller = Controller(cls.arm)
-        cls.client = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
+        cls.client = ActionClient('/gate/follow_joint_trajectory', Action)
         assert cls.client.wait_for_server(rospy.Duration(20))
         time.sleep(1.0)  # the gate finds the controller
 

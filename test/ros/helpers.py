@@ -14,6 +14,7 @@ import time
 import unittest
 import xmlrpc.client
 
+import actionlib
 import numpy
 import rosgraph
 import rospy
@@ -34,6 +35,22 @@ from free_port import free_port  # noqa: E402,F401 (for the tests that start mas
 
 BOX, SPHERE, CYLINDER, CONE = 1, 2, 3, 4
 _NODES = itertools.count()
+
+
+class ActionClient(actionlib.SimpleActionClient):
+    """What comes of a goal while send_goal() works waits until it is done. actionlib drops it, and the goal never ends."""
+
+    def __init__(self, name, action):
+        self.sending = threading.RLock()
+        super().__init__(name, action)
+
+    def send_goal(self, *arguments, **options):
+        with self.sending:
+            super().send_goal(*arguments, **options)
+
+    def _handle_transition(self, handle):
+        with self.sending:
+            super()._handle_transition(handle)
 
 
 def keep_failed_subtest(result, test, subtest, failure):

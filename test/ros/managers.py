@@ -6,12 +6,11 @@ import signal
 import subprocess
 import time
 
-import actionlib
 import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import Curve, QueryAction, QueryGoal
-from helpers import Call, Case, Server, bezier, connected, executable, free_port, query, ring_and_shells, run, until
+from helpers import ActionClient, Call, Case, Server, bezier, connected, executable, free_port, query, ring_and_shells, run, until
 
 LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
 
@@ -49,7 +48,7 @@ class Managers(Case):
 
         # a service, the topic and the action, all at work
         call = Call(lambda: server.distance(ring, **fields))
-        client = actionlib.SimpleActionClient('/stopped_server/query', QueryAction)
+        client = ActionClient('/stopped_server/query', QueryAction)
         self.assertTrue(client.wait_for_server(rospy.Duration(10)))
         client.send_goal(QueryGoal(query_type='distance', query=query([ring] * 100, **fields)))
         topic = rospy.Publisher('/stopped_server/curve', Curve, queue_size=100)

@@ -13,7 +13,7 @@ from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import AllowedContact, CollisionObject, Proximity, ProximityResults, Refusal
 from curve_proximity.srv import Tolerance, ToleranceResponse
 from gate import Action, Arm, Controller, Goal, actionlib, ends_of, turning
-from helpers import Server, bezier, box, connected, fingerprint, mesh, run, sphere, until
+from helpers import ActionClient, Server, bezier, box, connected, fingerprint, mesh, run, sphere, until
 from sensor_msgs.msg import JointState
 
 APART, NEAR = 1, 2
@@ -73,7 +73,7 @@ class Verified(unittest.TestCase):
         cls.reading, cls.server, cls.other, cls.stranger = (
             Server(name) for name in ('/gate/reading', '/curve_proximity', '/other', '/stranger'))
         cls.heard = rospy.Subscriber('/gate/refused', Refusal, cls.refused.append)
-        cls.client = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
+        cls.client = ActionClient('/gate/follow_joint_trajectory', Action)
         assert cls.client.wait_for_server(rospy.Duration(20))
         assert connected(cls.states, cls.heard)
         time.sleep(1.0)  # the gate finds the controller
