@@ -7,7 +7,8 @@ collision matrix  all pairs of links of a Panda, and of a mobile robot with two 
 outer cover       the swept volume of a Panda's motion with a gap of a centimetre. nodes: cells; distance_queries: bodies at poses;
                   error: the gap [m].
 
-Times are those of the processor, of all threads together. Verdicts and scales are rows of the group `robots`."""
+Times of the matrix are those of the processor, of all threads together; of the cover by the clock, on all processors. Verdicts and
+scales are rows of the group `robots`."""
 import argparse
 import os
 import statistics
@@ -84,9 +85,9 @@ def cover(rounds):
     resolution = 0.999 * GAP * coarse.resolution / coarse.gap  # the gap is a multiple of the resolution
     times = []
     for _ in range(rounds):
-        begin = time.process_time()
+        begin = time.perf_counter()
         volume = motion.sweep(resolution)
-        times.append(1e6 * (time.process_time() - begin))
+        times.append(1e6 * (time.perf_counter() - begin))
     print(f"errors,outer cover,curve_proximity,gap 0.01 m cells {resolution:.5f} m,{statistics.median(times):.4g},{max(times):.4g},"
           f"{len(volume.cells)},,{volume.gap:.6g},0,0", flush=True)
 

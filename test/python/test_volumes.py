@@ -65,6 +65,9 @@ class Volumes(unittest.TestCase):
     def test_links_and_threads(self):
         whole = self.motion.sweep(RESOLUTION)
         self.assertGreater(len(whole.cells), len(self.volume.cells))
+        drum = self.motion.sweep(RESOLUTION, links=['drum'])
+        numpy.testing.assert_array_equal(numpy.unique(keys(whole.cells.astype(int))), numpy.union1d(
+            keys(self.volume.cells.astype(int)), keys(drum.cells.astype(int))))
         numpy.testing.assert_array_equal(self.motion.sweep(RESOLUTION, links=['rod'], threads=1).cells, self.volume.cells)
         with self.assertRaisesRegex(ValueError, "no link 'rodd'.*'rod'"):
             self.motion.sweep(RESOLUTION, links=['rodd'])

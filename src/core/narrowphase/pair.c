@@ -340,6 +340,7 @@ static cprox_status pair_ends_at_hulls(const pair_task *task, size_t i, size_t j
   const cprox_status status = pair_of_models(task, i, j, CPROX_LOD_HULL, &one);
   if (status) return status;
   *ends = one.answer.lower > most;
+  if (*ends && !isfinite(best->answer.upper)) best->answer.normal = one.answer.normal;
   one.answer.upper = INFINITY;
   if (!*ends) one.answer.lower = INFINITY;
   pair_join(best, &one);

@@ -25,12 +25,39 @@ constexpr std::int32_t SIDE = 1 << LEVELS;
 
 /* A body at a pose, and the ball round all that it passes through there. */
 struct SweptBody {
+  std::int32_t geometry;
+  bool has_planes; /* its support function is exact */
   cprox_obstacle placed;
   const cprox_body *surface; /* null: its depth is known */
   double displacement;
   Eigen::Vector3d centre;
   double radius;
+  Eigen::Matrix3d turn; /* of the pose, as its position */
+  Eigen::Vector3d position;
 };
+
+/* Implicit bodies have theirs from a solver, and support callbacks are someone else's. */
+bool hasExactSupport(cprox_body_kind kind) {
+  return (kind <= CPROX_BODY_POLYGON && kind != CPROX_BODY_HALFSPACE) ||
+         (kind >= CPROX_BODY_MESH && kind <= CPROX_BODY_LOD);
+}
+
+/* All of a geometry is on one side: normal·x <= reach for each point x in its own frame. */
+struct Plane {
+  std::int32_t geometry = -1;
+  Eigen::Vector3f normal;
+  double reach = 0.0;
+};
+
+/* Does this plane part the cube with these half edges from the body, grown by its displacement? */
+bool parts(const Plane &plane, const SweptBody &body, const Eigen::Vector3d &centre, double half) {
+  constexpr double ROUNDING = 1e-12; /* of the sizes: some thousand roundings of doubles */
+  const Eigen::Vector3d normal = body.turn * plane.normal.cast<double>();
+  const double cube = normal.dot(centre) - half * normal.lpNorm<1>();
+  const double all = plane.reach + normal.dot(body.position) + (body.placed.margin + body.displacement) * normal.norm();
+  const double sizes = centre.lpNorm<1>() + half + body.position.lpNorm<1>() + body.radius + std::fabs(plane.reach);
+  return cube - all > ROUNDING * sizes;
+}
 
 std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, const std::vector<std::string> &links,
                                    double displacement, Workspace &workspace) {
@@ -61,9 +88,10 @@ std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, const std::vec
                                                          pose.pose.orientation.y, pose.pose.orientation.z)
                                           .normalized();
       const Eigen::Vector3d at(pose.pose.position.x, pose.pose.position.y, pose.pose.position.z);
-      out.push_back({cprox_with_margin(cprox_obstacle_at(geometry.body, pose.pose), margin),
+      out.push_back({static_cast<std::int32_t>(i), hasExactSupport(info.kind),
+                     cprox_with_margin(cprox_obstacle_at(geometry.body, pose.pose), margin),
                      geometry.is_mesh ? shape.surface.get() : nullptr, pose.displacement, at + turn * middle,
-                     (info.radius + margin + pose.displacement) * (1.0 + 1e-9)});
+                     (info.radius + margin + pose.displacement) * (1.0 + 1e-9), turn.toRotationMatrix(), at});
     }
   }
   return out;
@@ -76,6 +104,10 @@ class Block {
       : first_(first), resolution_(options.resolution), wants_inside_(options.inside), boxes_(boxes) {
     for (int level = 0; level <= LEVELS; ++level) full_[level].assign(std::size_t{1} << 3 * (LEVELS - level), false);
     inside_.assign(std::size_t{1} << 3 * LEVELS, false);
+    for (int level = 0; level <= LEVELS; ++level) {
+      planes_[level].resize(full_[level].size());
+      entered_[level].assign(full_[level].size(), -1);
+    }
   }
 
   bool isFull() const {
@@ -109,17 +141,37 @@ class Block {
     return out;
   }
 
-  /* Whether the body may touch the block of that level. */
-  bool touches(const SweptBody &body, int level, const Eigen::Vector3d &centre, Workspace &workspace) const {
+  /* False where the ball round the body parts it from the block, or one of two planes: the one that was the last to do
+   * so here, or anywhere, which is beside here. */
+  bool isNear(const SweptBody &body, int level, std::size_t i, const Eigen::Vector3d &centre) {
     const double half = 0.5 * resolution_ * (1 << level);
     if ((body.centre - centre).norm() > body.radius + 1.7320508075688774 * half * (1.0 + 1e-9)) return false;
+    Plane &here = planes_[level][i];
+    for (const Plane &plane : {here, last_}) {
+      if (plane.geometry != body.geometry || !parts(plane, body, centre, half * (1.0 + 1e-9))) continue;
+      here = last_ = plane;
+      return false;
+    }
+    return true;
+  }
+
+  /* Whether the body may touch the block of that level; where not, a plane that parts them is kept. */
+  bool touches(const SweptBody &body, int level, std::size_t i, const Eigen::Vector3d &centre, Workspace &workspace) {
     const cprox_obstacle box =
         cprox_obstacle_at(boxes_[static_cast<std::size_t>(level)].get(), {toVec3(centre), {1, 0, 0, 0}});
     cprox_result result{};
     const cprox_status status =
         cprox_pair_tolerance(box, body.placed, body.displacement, nullptr, workspace.get(), &result);
     if (status < 0) throw Error(workspace.reason(), status);
-    return result.verdict != CPROX_VERDICT_CLEAR;
+    if (result.verdict != CPROX_VERDICT_CLEAR) return true;
+    const Eigen::Vector3d normal(result.normal.x, result.normal.y, result.normal.z); /* from the body to the box */
+    if (body.has_planes && normal.allFinite() && normal.squaredNorm() > 0.5) {
+      last_.geometry = body.geometry;
+      last_.normal = (body.turn.transpose() * normal).cast<float>();
+      last_.reach = cprox_body_support(body.placed.body, toVec3(last_.normal.cast<double>()), nullptr);
+      planes_[level][i] = last_;
+    }
+    return false;
   }
 
   /* Whether the body, in the middle of its interval, fills the ball round the cell: it has the ball's centre, and its
@@ -143,23 +195,33 @@ class Block {
     return status >= 0 && result.verdict == CPROX_VERDICT_VIOLATED;
   }
 
-  void draw(const SweptBody &body, int level, const Cell &at, Workspace &workspace) {
+  /* Whether the body may touch it. A block that the geometry was in at its last pose is not asked about itself: its
+   * parts are. */
+  bool draw(const SweptBody &body, int level, const Cell &at, Workspace &workspace) {
     const std::size_t i = index(level, at);
+    if (done(level, i)) return true;
     const Eigen::Vector3d centre = centreOf(level, at);
+    if (level == 0 && full_[0][i]) {
+      inside_[i] = fills(body, centre, workspace);
+      return true;
+    }
+    if (!isNear(body, level, i, centre)) return false;
     if (level == 0) {
-      if (done(0, i) || (!full_[0][i] && !touches(body, 0, centre, workspace))) return;
+      if (!touches(body, 0, i, centre, workspace)) return false;
       full_[0][i] = true;
       inside_[i] = wants_inside_ && fills(body, centre, workspace);
-      return;
+      return true;
     }
-    if (done(level, i) || !touches(body, level, centre, workspace)) return;
-    bool full = true;
+    if (entered_[level][i] != body.geometry && !touches(body, level, i, centre, workspace)) return false;
+    bool full = true, entered = false;
     for (int k = 0; k < 8; ++k) {
       const Cell child = {2 * at[0] + (k & 1), 2 * at[1] + (k >> 1 & 1), 2 * at[2] + (k >> 2)};
-      draw(body, level - 1, child, workspace);
+      entered = draw(body, level - 1, child, workspace) || entered;
       full = full && done(level - 1, index(level - 1, child));
     }
     full_[level][i] = full;
+    entered_[level][i] = entered ? body.geometry : -1;
+    return entered;
   }
 
   /* Nothing more can be learned of it. */
@@ -173,6 +235,9 @@ class Block {
   const std::vector<BodyHandle> &boxes_;
   std::vector<bool> full_[LEVELS + 1]; /* of level 0: in the cover; above: all its cells are done */
   std::vector<bool> inside_;
+  std::vector<Plane> planes_[LEVELS + 1];         /* the last that parted a geometry from the block */
+  Plane last_;                                    /* the last of all */
+  std::vector<std::int32_t> entered_[LEVELS + 1]; /* the geometry that was last in it; -1: none */
 };
 
 void append(std::string &out, const void *bytes, std::size_t n) {
