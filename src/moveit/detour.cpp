@@ -160,8 +160,8 @@ Path around(Path path, const Detours &detours) {
   std::mt19937_64 random(SEED);
   const Row first_row = path.front(), last_row = path.back();
   const auto is_end = [&](const Row &row) { return row == first_row || row == last_row; };
-  const EdgeTest holds = [&](const Row &a, const Row &b) {
-    return detours.holds(a, b) || ((is_end(a) || is_end(b)) && detours.holds_at_ends(a, b));
+  const EdgeTest holds = [&](const Row &a, const Row &b) { // nothing holds any longer when the time is over
+    return !detours.is_over() && (detours.holds(a, b) || ((is_end(a) || is_end(b)) && detours.holds_at_ends(a, b)));
   };
   int runs = 0;
   for (std::size_t i = 0; i + 1 < path.size();) {

@@ -115,6 +115,20 @@ TEST(Detour, is_empty_when_the_time_is_over) {
   EXPECT_TRUE(around(line(), detours).empty());
 }
 
+TEST(Detour, asks_about_no_edge_when_the_time_is_over) {
+  const std::vector<Disc> discs = {{{0.0, 0.0}, 0.5}, {{1.0, 0.2}, 0.3}};
+  const Detours given = among(discs);
+  int asked = 0;
+  for (int most = 1; most < 400; most += 7) { // also while what is new is shortened and rounded
+    Detours detours = given;
+    detours.holds = [&](const Row &from, const Row &to) { return ++asked, given.holds(from, to); };
+    detours.is_over = [&] { return asked >= most; };
+    asked = 0;
+    around(line(), detours);
+    ASSERT_LE(asked, most);
+  }
+}
+
 TEST(Detour, is_resampled_at_equal_distances) {
   const Path path = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 2.0}};
   const Path rows = resampled(path, 0.7);
