@@ -342,10 +342,18 @@ static bool is_carried(const cprox_body *body) {
   return isfinite(cprox_body_get_info(body).radius);
 }
 
+static void curve_stay(given_curve *g, cprox_workspace *ws) {
+  for (size_t i = 1; i < g->n; i++) g->points[i] = g->points[0];
+  cprox_curve_free(g->curve);
+  if (curve_from(describe_bezier(g->points, g->n, g->t0, g->t1), ws, &g->curve) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
+}
+
 void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away, cprox_workspace *ws) {
   *q = (asked){.scale = scale};
   const vec3 middle = rng_in_cube(r, away);
-  curve_random(&q->mover, r, kinds.bezier_only, scale, middle, ws);
+  curve_random(&q->mover, r, kinds.bezier_only || kinds.stays, scale, middle, ws);
+  if (kinds.stays) curve_stay(&q->mover, ws);
   q->radius = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1 * scale);
   q->n = kinds.polytope_only || kinds.curve_target ? 1 : 1 + rng_index(r, QUERY_MAX_TARGETS);
   for (size_t i = 0; i < q->n; i++) {

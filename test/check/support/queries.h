@@ -57,6 +57,7 @@ typedef struct asked_kinds {
   bool implicit; /* half of the other bodies */
   bool clock;    /* radii that change, and a first target on the mover's clock */
   bool carried;  /* bodies that are carried */
+  bool stays;    /* a mover that stays where it begins; its curve is a Bézier curve */
 } asked_kinds;
 
 /* Of any convex kind. */
