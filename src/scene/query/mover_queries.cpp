@@ -158,7 +158,7 @@ void nameSides(const Movers::Data &data, Against against, const Query &query, An
   result.normal = {-result.normal.x, -result.normal.y, -result.normal.z};
 }
 
-/* The query by the names of all movers, the time that it is about, and how its rows are told. */
+/* The query by the names of all movers, the time that it is about, and what its rows say. */
 struct AskedMovers {
   Against against;
   const MovingRobot *robot;
@@ -183,7 +183,7 @@ struct AskedMovers {
   }
 
   /* A row of a robot, which side a is, by its own name; other rows as nameSides() has them. */
-  Answer told(Answer answer) const {
+  Answer seen(Answer answer) const {
     if (!robot) return answer;
     const std::string prefix = robot->name + "/";
     answer.kind = "environment";
@@ -232,7 +232,7 @@ Answer answerOf(const Movers &movers, const AskedMovers &asked, const std::strin
 Stated statedOf(const Movers::Data &data, const Pairs &pairs, const AskedMovers &asked) {
   const auto name = [&](Answer &answer) {
     nameSides(data, pairs.against, asked.query, answer);
-    answer = asked.told(std::move(answer));
+    answer = asked.seen(std::move(answer));
   };
   return {joinedMover(data, pairs), targetsOf(data, pairs), data.rounding,
           pairs.environment.empty() && pairs.among.empty(), name};
@@ -385,7 +385,7 @@ ClearanceRow clearanceGradient(const Movers &movers, const MovingRobot &robot, c
   differentiate(movers, asked, workspace, found);
   ClearanceRow row;
   row.gradient = gradientBy(movers, found, number);
-  row.answer = asked.told(std::move(found.answer));
+  row.answer = asked.seen(std::move(found.answer));
   const auto domain = asked.query.options.interval ? asked.interval : movers.domain();
   row.t0 = domain[0], row.t1 = domain[1];
   return row;
@@ -456,7 +456,7 @@ std::vector<Answer> nearestPairs(const Movers &movers, const Whom &whom, const P
       answer.microseconds = microsecondsSince(start);
       answer.status = cprox_status_name(answer.result.status);
       if (answer.result.status != CPROX_OK) answer.message = cprox_status_text(answer.result.status);
-      out.push_back(asked.told(std::move(answer)));
+      out.push_back(asked.seen(std::move(answer)));
     }
   };
   add({Against::OBJECTS, pairs.environment, {}});
@@ -496,7 +496,7 @@ Answer ask(const Movers &movers, const Whom &whom, const Query &given, Workspace
     result.status = askCore(query, options, mover, targets, workspace, result);
     if (result.status >= 0) widen(query, rounding, INFINITE, result);
   };
-  return asked.told(answerOf(movers, asked, faultOfMovers(query), workspace, core));
+  return asked.seen(answerOf(movers, asked, faultOfMovers(query), workspace, core));
 }
 
 Answer timeOfContact(const Movers &movers, const Whom &whom, const Query &given, Workspace &workspace) {
@@ -510,7 +510,7 @@ Answer timeOfContact(const Movers &movers, const Whom &whom, const Query &given,
     for (cprox_obstacle &target : grown) target.margin += movers.data().rounding;
     searchContact(mover, grown, query, workspace, result);
   };
-  return asked.told(answerOf(movers, asked, fault, workspace, core));
+  return asked.seen(answerOf(movers, asked, fault, workspace, core));
 }
 
 } // namespace curve_proximity

@@ -38,8 +38,22 @@ struct SweptBody {
 
 /* Implicit bodies have theirs from a solver, and support callbacks are someone else's. */
 bool hasExactSupport(cprox_body_kind kind) {
-  return (kind <= CPROX_BODY_POLYGON && kind != CPROX_BODY_HALFSPACE) ||
-         (kind >= CPROX_BODY_MESH && kind <= CPROX_BODY_LOD);
+  switch (kind) {
+    case CPROX_BODY_POINT:
+    case CPROX_BODY_SPHERE:
+    case CPROX_BODY_BOX:
+    case CPROX_BODY_CAPSULE:
+    case CPROX_BODY_CYLINDER:
+    case CPROX_BODY_CONE:
+    case CPROX_BODY_ELLIPSOID:
+    case CPROX_BODY_POLYTOPE:
+    case CPROX_BODY_POLYGON:
+    case CPROX_BODY_MESH:
+    case CPROX_BODY_POINTS:
+    case CPROX_BODY_OCTREE:
+    case CPROX_BODY_LOD: return true;
+    default: return false;
+  }
 }
 
 /* All of a geometry is on one side: normal·x <= reach for each point x in its own frame. */
