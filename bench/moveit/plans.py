@@ -118,8 +118,8 @@ A plan that is not proven is led round what it hits (`certify_repair_ms` 200); e
 {first}
 
 Times are of the whole service call. The ratio of a problem is the geometric mean over the problems, of the medians over
-the rounds; RRTConnect's times differ from plan to plan, so that its standard error is given. A certification is a call of the service
-`certify_path` for a plan of the pipeline without the adapter.
+the rounds; RRTConnect's times differ from plan to plan, so that its standard error is given. A certification is a call
+of the service `certify_path` for a plan of the pipeline without the adapter.
 
 {second}
 
