@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -102,11 +103,34 @@ constexpr int DIRECTIONS = 200, PLANAR_DIRECTIONS = 64;
 constexpr double PROVEN_WITHIN = 1e-3;
 constexpr int PROOF_CELLS = 20000;
 
-SupportFunction enlarged(const BodyHandle &body, double by) {
-  return [body, by](const Eigen::Vector3d &direction, Eigen::Vector3d &point) {
+SupportFunction bodySupport(const BodyHandle &body) {
+  return [body](const Eigen::Vector3d &direction, Eigen::Vector3d &point) {
     cprox_vec3 at;
     const double height = cprox_body_support(body.get(), toVec3(direction), &at);
-    point = toEigen(at) + by * direction;
+    point = toEigen(at);
+    return height;
+  };
+}
+
+/* Asks once in each direction. */
+SupportFunction remembered(const SupportFunction &support) {
+  struct Answer {
+    double height;
+    Eigen::Vector3d point;
+  };
+  const auto known = std::make_shared<std::map<std::array<double, 3>, Answer>>();
+  return [support, known](const Eigen::Vector3d &u, Eigen::Vector3d &point) {
+    const auto [at, is_new] = known->try_emplace({u.x(), u.y(), u.z()});
+    if (is_new) at->second.height = support(u, at->second.point);
+    point = at->second.point;
+    return at->second.height;
+  };
+}
+
+SupportFunction enlarged(const SupportFunction &support, double by) {
+  return [support, by](const Eigen::Vector3d &direction, Eigen::Vector3d &point) {
+    const double height = support(direction, point);
+    point += by * direction;
     return height + by;
   };
 }
@@ -126,16 +150,17 @@ Eigen::Matrix3Xd reached(const SupportFunction &support) {
 /* A polytope that contains the body and all within `padding` of it: the hull of what it reaches in some directions,
  * with a padding that grows until the support functions prove it. */
 SolidHandle polytopeRound(const BodyHandle &body, double padding) {
-  const SupportFunction whole = enlarged(body, padding);
+  // Of an implicit body a support is a convex program.
+  const SupportFunction support = remembered(bodySupport(body)), whole = enlarged(support, padding);
   const double size = cprox_body_get_info(body.get()).radius + padding, within = PROVEN_WITHIN * size;
   // Where many directions reach one corner, what is added keeps their points apart.
   double more = padding > 0.0 ? 0.0 : 0.1 * within;
   for (int i = 0; i < 20; ++i) {
-    const Hull hull = hullOf(reached(enlarged(body, padding + more)));
+    const Hull hull = hullOf(reached(enlarged(support, padding + more)));
     Eigen::Matrix3Xd corners(3, static_cast<Eigen::Index>(hull.vertices.size()));
     for (std::size_t k = 0; k < hull.vertices.size(); ++k)
       corners.col(static_cast<Eigen::Index>(k)) = toEigen(hull.vertices[k]);
-    const double out = supportGap(whole, enlarged(makePolytope(corners), 0.0), within, PROOF_CELLS) + 1e-10 * size;
+    const double out = supportGap(whole, bodySupport(makePolytope(corners)), within, PROOF_CELLS) + 1e-10 * size;
     if (out <= 0.0) return meshSolid(hull.vertices, hull.triangles);
     more += 1.1 * out + 0.1 * within;
   }
@@ -270,7 +295,7 @@ std::vector<Point> planarPoints(const Eigen::Matrix3Xd &points) {
 
 /* In the plane: where the tangents of neighbouring directions meet. */
 SolidHandle polygonRound(const BodyHandle &body, double padding) {
-  const SupportFunction whole = enlarged(body, padding);
+  const SupportFunction whole = enlarged(bodySupport(body), padding);
   const double step = 2.0 * M_PI / PLANAR_DIRECTIONS;
   std::vector<double> heights;
   Eigen::Vector3d point;

@@ -44,11 +44,12 @@ class Search {
   /* For u = sum l_i u_i of the cell: h_inner(u) <= sum l_i h_inner(u_i), h_outer(u) >= p·u for p of the outer set, and
    * 1 <= sum l_i <= 1/m, m being how far the triangle's plane is from the origin. */
   Cell cell(const Corner &a, const Corner &b, const Corner &c) {
-    const Corner middle = look(a.u + b.u + c.u);
+    Eigen::Vector3d on_middle;
+    outer_((a.u + b.u + c.u).normalized(), on_middle);
     Cell out{{a, b, c}, std::numeric_limits<double>::infinity()};
-    for (const Corner *at : {&a, &b, &c, &middle}) {
+    for (const Eigen::Vector3d &p : {a.on_outer, b.on_outer, c.on_outer, on_middle}) {
       double worst = -std::numeric_limits<double>::infinity();
-      for (const Corner &corner : out.corners) worst = std::max(worst, corner.inner - at->on_outer.dot(corner.u));
+      for (const Corner &corner : out.corners) worst = std::max(worst, corner.inner - p.dot(corner.u));
       out.bound = std::min(out.bound, worst);
     }
     const Eigen::Vector3d normal = (b.u - a.u).cross(c.u - a.u).normalized();
