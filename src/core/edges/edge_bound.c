@@ -44,7 +44,7 @@ edge_motion edge_motion_in(const cprox_edge_checker *c, char *memory) {
   m.rate = m.middle + c->n_frames;
   m.more = m.rate + c->n_frames;
   m.more_rate = m.more + EDGE_POWERS * c->n_frames;
-  m.room = m.standing_room = m.more_rate + EDGE_POWERS * c->n_frames;
+  m.room = m.more_rate + EDGE_POWERS * c->n_frames;
   return m;
 }
 
@@ -244,17 +244,6 @@ bool edge_motion_fill_along(const cprox_edge_checker *c, const cprox_motion *alo
     if (!add_frame(c, &way, m, i)) return false;
   }
   return finish(c, m);
-}
-
-bool edge_motion_fill_reach(const cprox_edge_checker *c, const cprox_motion *along, const motion_interval *over,
-                            edge_motion *m, double *reach) {
-  for (size_t i = 0; i < c->n_parts; i++) reach[i] = 0.0;
-  for (size_t k = over->last; k-- > over->first;) {
-    const motion_interval segment = edge_segment(over, k);
-    if (!edge_motion_fill_along(c, along, &segment, m)) return false;
-    for (size_t i = 0; i < c->n_parts; i++) reach[i] = greater(edge_motion_reach(c, m, i), reach[i]);
-  }
-  return true;
 }
 
 void edge_motion_relate(const cprox_edge_checker *c, const edge_motion *m) {

@@ -32,16 +32,15 @@ typedef struct edge_half_bound {
 } edge_half_bound;
 
 typedef struct edge_motion {
-  float *middle, *rate;       /* of each frame's variable */
-  float *more, *more_rate;    /* powers from the second on, and their derivatives: EDGE_POWERS of each frame */
-  size_t degree;              /* at most 1: those are all 0 */
-  edge_frame_bound *bounds;   /* of each frame */
-  edge_half_bound *frames;    /* of each frame as the base sees it, */
-  edge_half_bound *relations; /* and as others do */
-  float *room;                /* of each part: what rounding may cost a distance from it [m], */
-  float *standing_room;       /* and a distance from what stands: the same, or by errors of an execution more; */
-  float *pair_losses;         /* what errors may cost those of each pair of parts; NULL: nothing */
-  bool stands;                /* from = to */
+  float *middle, *rate;             /* of each frame's variable */
+  float *more, *more_rate;          /* powers from the second on, and their derivatives: EDGE_POWERS of each frame */
+  size_t degree;                    /* at most 1: those are all 0 */
+  edge_frame_bound *bounds;         /* of each frame */
+  edge_half_bound *frames;          /* of each frame as the base sees it, */
+  edge_half_bound *relations;       /* and as others do */
+  float *room;                      /* of each part: what rounding may cost a distance from it [m] */
+  bool stands;                      /* from = to */
+  const struct edge_losses *losses; /* by errors of an execution; NULL: there are none */
 } edge_motion;
 
 /* The bytes that an edge's arrays take, and the arrays in that memory. */
@@ -61,10 +60,6 @@ static inline motion_interval edge_segment(const motion_interval *over, size_t k
   return (motion_interval){
       .a = k == over->first ? over->a : 0.0, .b = k + 1 == over->last ? over->b : 1.0, .first = k, .last = k + 1};
 }
-
-/* The same of one segment after another, the first one last: how far each part comes from the base on all of them. */
-bool edge_motion_fill_reach(const cprox_edge_checker *checker, const cprox_motion *along, const motion_interval *over,
-                            edge_motion *motion, double *reach);
 
 /* How far a part is from the base at most on the way. */
 double edge_motion_reach(const cprox_edge_checker *checker, const edge_motion *motion, size_t part);

@@ -165,16 +165,25 @@ typedef struct edge_run {
   uint64_t batches;
 } edge_run;
 
-/* How far each part may be from the base, where errors take it farther. */
-static void add_to_reach(const query *q, const cprox_edge_checker *c, const motion_interval *over, edge_losses *losses,
-                         double *reach) {
-  for (size_t i = 0; i < c->n_parts; i++) losses->most[i] = 0.0;
-  for (size_t k = over->first; k < over->last; k++) {
+static bool fill_segment(const query *q, const cprox_edge_checker *c, const motion_interval *segment, edge_run *run) {
+  if (!edge_motion_fill_along(c, q->mover.motion, segment, &run->motion)) return false;
+  if (q->errors) edge_losses_over(q, c, segment, &run->motion, &run->losses), run->motion.losses = &run->losses;
+  return true;
+}
+
+/* How far each part comes from the base, errors included, on one segment after another, the first one last. */
+static bool fill_reach(const query *q, const cprox_edge_checker *c, const motion_interval *over, edge_run *run,
+                       double *reach) {
+  for (size_t i = 0; i < c->n_parts; i++) reach[i] = 0.0;
+  for (size_t k = over->last; k-- > over->first;) {
     const motion_interval segment = edge_segment(over, k);
-    edge_losses_over(q, c, &segment, losses);
-    for (size_t i = 0; i < c->n_parts; i++) losses->most[i] = greater(losses->standing[i], losses->most[i]);
+    if (!fill_segment(q, c, &segment, run)) return false;
+    for (size_t i = 0; i < c->n_parts; i++) {
+      const double off = q->errors ? (double)run->losses.standing[i] : 0.0;
+      reach[i] = greater(edge_motion_reach(c, &run->motion, i) + off, reach[i]);
+    }
   }
-  for (size_t i = 0; i < c->n_parts; i++) reach[i] += losses->most[i];
+  return true;
 }
 
 /* The model's other side. False: beyond single precision, or memory is out. */
@@ -194,9 +203,8 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   memory += 64 - (uintptr_t)memory % 64;
   *run = (edge_run){.motion = edge_motion_in(c, memory + rows), .lanes = {.memory = memory, .measures = true}};
   double *reach = (double *)(void *)(memory + rows + moves);
-  if (!edge_motion_fill_reach(c, q->mover.motion, over, &run->motion, reach)) return false;
   if (q->errors && !edge_losses_begin(q, c, first, last, &run->losses)) return false;
-  if (q->errors) add_to_reach(q, c, over, &run->losses, reach);
+  if (!fill_reach(q, c, over, run, reach)) return false;
   if (!c->has_scene) /* of many states all are within reach of what the robot can reach */
     edge_model_fill_scene(c, q->targets, first, last, q->is_bare ? NULL : reach, memory + rows + moves + reaches);
   uint32_t *marks = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
@@ -228,9 +236,7 @@ static bool look_along(const query *q, const cprox_edge_checker *c, const motion
   *rest = (edge_rest){.from = INFINITY, .to = -INFINITY};
   for (size_t k = over->first; k < over->last; k++) {
     const motion_interval segment = edge_segment(over, k);
-    if (over->last - over->first > 1 && !edge_motion_fill_along(c, q->mover.motion, &segment, &run->motion))
-      return false;
-    if (q->errors) edge_losses_add(q, c, &segment, &run->losses, &run->motion);
+    if (over->last - over->first > 1 && !fill_segment(q, c, &segment, run)) return false;
     if (run->batches == 0) return false;
     run->lanes.open.edge++, run->lanes.most_batches = (uint32_t)run->batches;
     edge_found one;

@@ -3,6 +3,7 @@
  * of its functions, and EDGE_KERNEL, the name of its function. doc/robot-edges.md derives what is computed here. */
 #include <string.h>
 
+#include "edges/edge_losses.h"
 #include "edges/kernels.h"
 #include "edges/lane.h"
 
@@ -25,21 +26,34 @@ typedef struct lane_interval {
   float middle, half; /* seen from the middle of the edge */
 } lane_interval;
 
+/* What errors may cost a distance: anywhere in the interval, and in its middle. */
+typedef struct lane_loss {
+  lane most, middle;
+} lane_loss;
+
+/* An axis: it is off by `most` anywhere in the interval, by `middle` in its middle, and moves by `turn` from there. */
+typedef struct lane_off {
+  lane most, middle, turn;
+} lane_off;
+
 /* Eight intervals that are looked at together. */
 typedef struct lane_batch {
   lane middle, half, half2; /* first: they are aligned most */
+  lane_loss loss, places;   /* of the pair that is looked at, and what of that no axis is the cause of */
   const cprox_edge_checker *c;
   const edge_motion *motion;
   edge_open *open;
   edge_found *found;
   lane_frame *frames;
   lane_part *parts;
+  lane_off *off;    /* how far axes are off: is_off */
   lane *apart2;     /* squares of distances of parts from obstacles, by `near` */
   lane3 *ways;      /* of balls from their frames' origins, where */
   uint32_t *placed; /* those of a part are known */
   lane_interval interval[EDGE_LANES];
   uint32_t all;   /* the lanes that are in use */
   uint32_t split; /* those that are to be halved: nothing more is asked about them */
+  bool is_off;    /* that is known */
   bool related;   /* the motion's relations are known: edges that hit an obstacle do without */
   bool last;      /* nothing is halved any more: what is near is left to the search */
   bool suspects;  /* pairs that are left open are noted with how deep they are */
@@ -103,12 +117,16 @@ EDGE_INLINE void place_frame(lane_batch *b, size_t i) {
   to->o = lane3_add(above->o, d), to->speed = d;
 }
 
+EDGE_INLINE lane rate_of_frame(const lane_batch *b, size_t i) {
+  return powers_at(b, b->motion->more_rate + i * EDGE_POWERS, b->motion->rate[i]);
+}
+
 /* How a frame that is placed moves. */
 EDGE_INLINE void move_frame(lane_batch *b, size_t i) {
   const edge_frame *f = &b->c->frames[i];
   const lane_frame *above = &b->frames[f->parent];
   lane_frame *to = &b->frames[i];
-  const lane rate = powers_at(b, b->motion->more_rate + i * EDGE_POWERS, b->motion->rate[i]);
+  const lane rate = rate_of_frame(b, i);
   const lane3 along = {to->r[2] * rate, to->r[5] * rate, to->r[8] * rate};
   to->spin = f->shifts ? above->spin : lane3_add(above->spin, along);
   to->speed = lane3_add(above->speed, lane3_cross(above->spin, to->speed));
@@ -276,14 +294,15 @@ EDGE_INLINE bool proves_contact(lane_batch *b, const lane_two *two, lane distanc
   return true;
 }
 
-/* A ball of the robot comes near something in some lanes, but contact is not proven. `outer` is the radii of both sides
+/* A ball of the robot comes near something in some lanes, but contact is not proven. `radius` is that of both sides
  * together, with what clear needs, and what rounding may cost. */
 EDGE_INLINE void settle_near(lane_batch *b, uint32_t pair, const lane_two *two, lane distance2, uint32_t near,
-                             float outer) {
-  const uint32_t still = near & within_still(distance2, outer);
+                             float radius) {
+  const lane outer = (lane_all(radius) + b->loss.middle) * lane_all(1.0f + (float)EDGE_GROW);
+  const uint32_t still = near & lane_mask((lane_bits)(distance2 <= outer * outer));
   if (still) {
     leave_open(b, pair, still);
-    suspect(b, two, still, lane_all(outer) - lane_sqrt(distance2));
+    suspect(b, two, still, outer - lane_sqrt(distance2));
   }
   halve(b, pair, near & ~still);
 }
@@ -296,20 +315,21 @@ EDGE_INLINE float sure_radius(float inner, float other, float within, float cost
          costs; /* the sums' rounding, which does not shrink with what is left */
 }
 
-/* How far the centre of a ball moves in half an interval: by the velocity in the middle, and by all accelerations. The
- * ball looks the same however it turns. `reach`: of the centre from its frame's origin, at most. */
+/* How far the centre of a ball moves in half an interval: by the velocity in the middle, by all accelerations, and by
+ * errors. The ball looks the same however it turns. `reach`: of the centre from its frame's origin, at most. */
 EDGE_INLINE lane moves_of(const lane_batch *b, lane3 speed, edge_half_bound bound, float reach) {
-  if (b->motion->stands) return lane_all(0.0f);
-  return b->half * lane_sqrt(lane3_norm2(speed)) + b->half2 * lane_all(bound.acceleration + bound.turn * reach);
+  if (b->motion->stands) return b->loss.most;
+  return b->half * lane_sqrt(lane3_norm2(speed)) + b->half2 * lane_all(bound.acceleration + bound.turn * reach) +
+         b->loss.most;
 }
 
-/* What rounding and errors may cost a distance of two parts. */
+/* What rounding may cost a distance of two parts. */
 EDGE_INLINE float pair_room(const lane_batch *b, size_t i) {
   const edge_pair *pair = &b->c->lane_pairs[i];
-  const float rounding = b->motion->room[pair->a] + b->motion->room[pair->b];
-  return b->motion->pair_losses ? rounding + b->motion->pair_losses[i] : rounding;
+  return b->motion->room[pair->a] + b->motion->room[pair->b];
 }
 
+#include "edges/executions.h"
 #include "edges/normals.h"
 
 /* ---- contact ---- */
@@ -324,7 +344,7 @@ EDGE_TARGET static bool part_touches(lane_batch *b, size_t i, const edge_obstacl
   for (uint32_t k = part->first; k < part->first + part->n; k++) {
     const edge_ball *ball = &b->c->balls[k];
     const lane_two two = {ball->geometry, o->target, false};
-    const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, b->motion->standing_room[i] + o->grown);
+    const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, b->motion->room[i] + o->grown);
     if (inner > 0.0f && proves_contact(b, &two, distance2_from(o, lane3_add(own->o, ways[k])), inner)) return true;
   }
   return false;
@@ -355,7 +375,7 @@ EDGE_TARGET static bool place_part(lane_batch *b, size_t i) {
 EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, const edge_obstacle *o) {
   const edge_part *part = &b->c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
-  const float beyond = (float)b->c->clear_beyond, room = b->motion->standing_room[i];
+  const float beyond = (float)b->c->clear_beyond, room = b->motion->room[i];
   const lane3 *ways = ways_of(b, i);
   need(b, CPROX_EDGE_COVER);
   for (uint32_t k = part->first; k < part->first + part->n; k++) {
@@ -386,11 +406,18 @@ EDGE_TARGET static bool look_at_obstacles(lane_batch *b, size_t i) {
   const edge_part *part = &b->c->parts[i];
   const lane_part *at = &b->parts[i];
   if (part->n_near == 0) return false;
-  const lane moves = moves_of(b, at->speed, b->motion->frames[part->frame], part->reach);
-  const float radius = part->outer + (float)b->c->clear_beyond + b->motion->standing_room[i];
+  bool is_rough = b->motion->losses;
+  if (is_rough) b->loss.most = lane_all(b->motion->losses->standing[i]);
+  lane moves = moves_of(b, at->speed, b->motion->frames[part->frame], part->reach);
+  const float radius = part->outer + (float)b->c->clear_beyond + b->motion->room[i];
   for (uint32_t k = part->first_near; k < part->first_near + part->n_near; k++) {
     const edge_obstacle *o = &b->c->obstacles[b->c->near[k]];
-    const uint32_t near = within(b, k, b->apart2[k], moves, radius) & b->all & ~b->split;
+    uint32_t near = within(b, k, b->apart2[k], moves, radius) & b->all & ~b->split;
+    if (near && is_rough) {
+      is_rough = false, find_loss(b, i);
+      moves = moves_of(b, at->speed, b->motion->frames[part->frame], part->reach);
+      near &= within(b, k, b->apart2[k], moves, radius);
+    }
     if (!near) continue;
     if (part->coarse) {
       leave_open(b, k, near);
@@ -442,9 +469,15 @@ EDGE_TARGET static bool look_at_pair(lane_batch *b, size_t i) {
   const float costs = pair_room(b, i), room = costs + (float)b->c->clear_beyond;
   const lane distance2 = lane3_norm2(lane3_sub(at->centre, b->parts[pair->b].centre));
   const lane3 speed = relative_speed(&b->frames[second->frame], at->centre, at->speed);
-  const lane moves = moves_of(b, speed, b->motion->relations[pair->relation], first->reach);
+  const edge_half_bound bound = b->motion->relations[pair->relation];
   const uint32_t number = (uint32_t)(b->c->n_near + i);
-  const uint32_t near = within(b, number, distance2, moves, first->outer + second->outer + room) & b->all & ~b->split;
+  const float radius = first->outer + second->outer + room;
+  if (b->motion->losses) b->loss.most = lane_all(b->motion->losses->pairs[i]);
+  uint32_t near = within(b, number, distance2, moves_of(b, speed, bound, first->reach), radius) & b->all & ~b->split;
+  if (near && b->motion->losses) {
+    find_pair_loss(b, pair);
+    near &= within(b, number, distance2, moves_of(b, speed, bound, first->reach), radius);
+  }
   if (!near) return false;
   if (first->coarse || second->coarse)
     leave_open(b, number, near);
@@ -503,7 +536,7 @@ EDGE_TARGET static void load_batch(lane_batch *b, const lane_interval *stack, si
   *n -= count;
   b->half2 = b->half * b->half;
   b->all = (uint32_t)((1u << count) - 1u);
-  b->split = 0;
+  b->split = 0, b->is_off = false;
   b->found->intervals += (uint32_t)count;
 }
 
@@ -527,7 +560,8 @@ EDGE_TARGET void EDGE_KERNEL(const cprox_edge_checker *c, const edge_motion *mot
   b.frames = (lane_frame *)(void *)lanes->memory;
   b.parts = (lane_part *)(void *)(b.frames + c->n_frames);
   b.ways = (lane3 *)(void *)(b.parts + c->n_parts);
-  b.apart2 = (lane *)(void *)(b.ways + c->n_balls);
+  b.off = (lane_off *)(void *)(b.ways + c->n_balls);
+  b.apart2 = (lane *)(void *)(b.off + c->n_frames);
   b.placed = (uint32_t *)(void *)(b.apart2 + c->n_near);
   memset(&b.frames[0], 0, sizeof b.frames[0]);
   for (int k = 0; k < 9; k += 4) b.frames[0].r[k] = lane_all(1.0f);

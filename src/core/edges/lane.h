@@ -122,6 +122,10 @@ EDGE_INLINE lane3 lane3_cross(lane3 a, lane3 b) {
   return (lane3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+EDGE_INLINE lane lane3_dot(lane3 a, lane3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
 EDGE_INLINE lane lane3_norm2(lane3 a) {
   return a.x * a.x + a.y * a.y + a.z * a.z;
 }

@@ -15,10 +15,6 @@ typedef struct lane_hull {
   lane3 centre; /* from the base */
 } lane_hull;
 
-EDGE_INLINE lane lane3_dot(lane3 a, lane3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 EDGE_INLINE lane3 lane3_scale(lane s, lane3 a) {
   return (lane3){s * a.x, s * a.y, s * a.z};
 }
@@ -265,6 +261,7 @@ typedef struct lane_apart {
   lane3 speed, spin;      /* of a's centre and a, as the other sees it */
   lane_hull a, b;         /* b.hull NULL: */
   const edge_obstacle *o; /* the obstacle */
+  int32_t part;           /* a's, where errors cost less along a normal than in any direction; -1: they do not */
   float reach, radius;    /* of a's part; of both sides together, with clear_beyond and what rounding may cost */
   uint32_t pair;
   edge_half_bound bound;
@@ -286,7 +283,7 @@ EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint
                                       lane *depth) {
   const lane zero = lane_all(0.0f), grow = lane_all(1.0f + (float)EDGE_GROW);
   const lane accelerated = b->half2 * lane_all(two->bound.acceleration + two->bound.turn * two->reach);
-  const lane radius = lane_all(two->radius), stands = radius * grow;
+  const lane radius = lane_all(two->radius);
   const lane3 origins =
       two->o ? (lane3){two->a.frame->o.x - lane_all(two->o->p[0]), two->a.frame->o.y - lane_all(two->o->p[1]),
                        two->a.frame->o.z - lane_all(two->o->p[2])}
@@ -307,13 +304,16 @@ EDGE_TARGET static uint32_t not_apart(lane_batch *b, const lane_apart *two, uint
     const lane turns = lane_sqrt(lane3_norm2(lane3_cross(n, two->spin)));
     const lane moves =
         b->half * (lane_abs(lane3_dot(n, two->speed)) + turns * lane_all(two->a.hull->core)) + accelerated;
-    const lane needed = (moves + radius) * grow;
-    const lane_bits apart = (lane_bits)(gap > needed);
-    const uint32_t now = lane_mask(apart) & asked;
+    lane needed = (moves + radius + b->loss.most) * grow, stands = (radius + b->loss.middle) * grow;
+    if (two->part >= 0 && b->motion->losses && (asked & ~lane_mask((lane_bits)(gap > needed)))) {
+      const lane_loss loss = loss_along(b, (size_t)two->part, two->a.centre, two->a.hull->core, n);
+      needed = (moves + radius + loss.most) * grow, stands = (radius + loss.middle) * grow;
+    }
+    const uint32_t now = lane_mask((lane_bits)(gap > needed)) & asked;
     if (b->measures && now) note_left(b, two->pair, gap * lane_all(1.0f - (float)EDGE_GROW) - needed, lane_those(now));
     open &= ~now, asked &= ~now;
     standing |= lane_mask((lane_bits)(gap > stands)) & asked;
-    *depth = lane_choose(lane_those(asked), lane_min(radius - gap, *depth), *depth);
+    *depth = lane_choose(lane_those(asked), lane_min(stands - gap, *depth), *depth);
     if (plane) break;
     /* no normal will do better: they are too near each other, or they move too far */
     asked &= ~(lane_mask((lane_bits)(length <= stands)) |
@@ -371,10 +371,11 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
   const cprox_edge_checker *c = b->c;
   const edge_part *part = &c->parts[i];
   const lane_frame *own = &b->frames[part->frame];
-  const float room = b->motion->standing_room[i];
+  const float room = b->motion->room[i];
   const bool known = is_open(b, near_at);
   need(b, CPROX_EDGE_NORMAL);
   lane_apart two = {.o = o,
+                    .part = (int32_t)i,
                     .spin = own->spin,
                     .bound = b->motion->frames[part->frame],
                     .reach = (float)part->reach_of_centre,
@@ -442,6 +443,7 @@ EDGE_TARGET static void open_hull_pair(lane_batch *b, size_t i, uint32_t near) {
   const bool known = is_open(b, number);
   need(b, CPROX_EDGE_NORMAL);
   lane_apart two = {.spin = lane3_sub(own->spin, other->spin),
+                    .part = -1,
                     .bound = b->motion->relations[pair->relation],
                     .reach = (float)first->reach_of_centre,
                     .pair = number};

@@ -52,6 +52,7 @@ EDGE_TARGET static void open_piece(lane_batch *b, lane_standing *s, const lane_p
   open_hull stack[EDGE_HULL_STACK];
   stack[0] = (open_hull){piece->number, 0, near};
   lane_apart two = {.b = *beside,
+                    .part = (int32_t)(s->part - c->parts),
                     .spin = s->own->spin,
                     .bound = b->motion->frames[s->part->frame],
                     .reach = (float)s->part->reach_of_centre,
@@ -260,7 +261,7 @@ EDGE_TARGET static bool open_standing(lane_batch *b, size_t i, uint32_t near_at,
                      .part = part,
                      .own = &b->frames[part->frame],
                      .pair = near_at,
-                     .room = b->motion->standing_room[i],
+                     .room = b->motion->room[i],
                      .beyond = (float)c->clear_beyond};
   place_standing(o, &s.frame);
   need(b, part->by_hulls || !o->tree ? CPROX_EDGE_NORMAL : CPROX_EDGE_COVER);

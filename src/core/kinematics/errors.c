@@ -29,6 +29,21 @@ deviation errors_of_axis(const cprox_motion *motion, const robot_errors *errors,
   return (deviation){factor * middle, factor * greater(most - middle, 0.0)};
 }
 
+axis_error errors_of_axis_over(const cprox_motion *motion, const robot_errors *errors, int32_t index,
+                               const motion_interval *over) {
+  const cprox_error_bounds *b = errors->bounds;
+  const robot_axis *axis = &motion->robot->axes[index];
+  const int32_t variable = axis->variable;
+  const double speed = bound_at(b->speed, variable), acceleration = bound_at(b->acceleration, variable);
+  double rates[2] = {0.0, 0.0};
+  if ((speed > 0.0 || acceleration > 0.0) && motion->slot[variable] >= 0)
+    motion_rates_over(motion, variable, over, rates);
+  const double factor = errors->scale * fabs(axis->multiplier);
+  const double still = ROUND_UP * (factor * (bound_at(b->tracking, variable) + acceleration * rates[1]));
+  return (axis_error){
+      .still = still, .by_speed = errors->scale * speed, .most = ROUND_UP * (still + factor * speed * rates[0])};
+}
+
 /* An axis that is off by e turns or shifts all that is on it by at most e times its lever arm. Over the node the lever arm
  * grows by what moves tipside of it. */
 deviation errors_along_chain(const cprox_motion *motion, const axis_state *states, const axis_deviations *off,
