@@ -9,16 +9,15 @@ import time
 import unittest
 
 import actionlib
-import foreign_types
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import CollisionObject, PoseTrajectory, Proximity, ProximityResults, Refusal, SceneState, Waypoint
+from foreign_types import control
 from helpers import ActionClient, Node, Server, bezier, connected, fingerprint, free_flight, joints, path, pose, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-_, TYPES = foreign_types.message('control_msgs/FollowJointTrajectoryAction')
-Action, Goal, Result, Feedback = (TYPES['FollowJointTrajectory' + name] for name in ('Action', 'Goal', 'Result', 'Feedback'))
+Action, Goal, Result, Feedback = (getattr(control, 'FollowJointTrajectory' + name) for name in ('Action', 'Goal', 'Result', 'Feedback'))
 
 
 class Arm:

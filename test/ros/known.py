@@ -8,11 +8,11 @@ import statistics
 import tempfile
 import time
 
-import foreign_types as moveit
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, ConstraintQuery, ProximityResults
 from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
+from foreign_types import moveit
 from helpers import (Case, Node, Server, bezier, cloud, joint_trajectory, joints, run, service, sphere, thing, transform,
                      until)
 from sensor_msgs.msg import JointState, PointCloud2
@@ -236,7 +236,7 @@ class Known(Case):
         scenes = self.publisher('/matrix/planning_scene', moveit.PlanningScene)
         scene = moveit.PlanningScene(is_diff=True)
         scene.robot_state.is_diff = True
-        scene.allowed_collision_matrix = moveit.PARTS['AllowedCollisionMatrix'](
+        scene.allowed_collision_matrix = moveit.AllowedCollisionMatrix(
             entry_names=['base', 'tip'], entry_values=[moveit.AllowedCollisionEntry(enabled=[False, False])] * 2)
         scenes.publish(scene)
         self.assertTrue(until(lambda: violated(server) == 1, 5))

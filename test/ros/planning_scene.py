@@ -8,11 +8,10 @@ import unittest
 import rospy
 from curve_proximity.msg import AllowedContact, AttachedCollisionObject, LinkPadding, LinkScale, ProximityResults
 from diagnostic_msgs.msg import DiagnosticArray
+from foreign_types import GetPlanningScene, GetPlanningSceneResponse, moveit
 from helpers import Server, bezier, box, connected, joint_trajectory, joints, mesh, pose, run, sphere, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
-
-import foreign_types as moveit
 
 NODE = '/curve_proximity'
 PATIENCE = 10                 # [s] for a message to arrive; a failure takes that long
@@ -40,7 +39,7 @@ def attached(link, object, touch_links=()):
 
 def matrix(names, allowed, defaults=()):
     """An allowed collision matrix: pairs that may touch, and pairs of a name and its default."""
-    out = moveit.PARTS['AllowedCollisionMatrix'](entry_names=list(names))
+    out = moveit.AllowedCollisionMatrix(entry_names=list(names))
     out.entry_values = [moveit.AllowedCollisionEntry(enabled=[{a, b} in allowed for b in names]) for a in names]
     out.default_entry_names = [name for name, _ in defaults]
     out.default_entry_values = [value for _, value in defaults]
@@ -91,7 +90,7 @@ class PlanningScene(unittest.TestCase):
         cls.log_reader = rospy.Subscriber('/rosout', Log, lambda line: cls.log.append(line))
         cls.status_reader = rospy.Subscriber('/diagnostics', DiagnosticArray, cls.take_statuses)
         cls.scene = full_scene()                                     # of the move_group that the test plays
-        cls.service = rospy.Service('/get_planning_scene', moveit.GetPlanningScene, cls.answer)
+        cls.service = rospy.Service('/get_planning_scene', GetPlanningScene, cls.answer)
         names = NODE, '/told', '/late', '/follower', '/beginner'
         cls.server, cls.told, cls.late, cls.follower, cls.beginner = [Server(name) for name in names]
         cls.scenes = cls.publisher(NODE)
@@ -101,7 +100,7 @@ class PlanningScene(unittest.TestCase):
         cls.components, scene = request.components.components, None
         if request._connection_header['callerid'] == '/beginner':
             scene = cls.overtake()
-        return moveit.GetPlanningScene._response_class(scene=scene or cls.scene)
+        return GetPlanningSceneResponse(scene=scene or cls.scene)
 
     overtake = staticmethod(lambda: None)    # what /beginner is answered instead
 

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The wire types of moveit_msgs against bytes that moveit_msgs's own classes wrote (test/data/moveit). That each field
- * stands where it belongs is seen by test_planning_scene, which reads the same bytes, and by planning_scene.py, whose
- * classes are made of the definitions: with another md5 sum nothing would connect. */
+/* The classes made of src/ros/foreign against the published md5 sums, and against bytes that moveit_msgs's own classes
+ * wrote (test/data/moveit). That each field stands where it belongs is seen by test_planning_scene, which reads the same
+ * bytes. */
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "messages/octomap_message.h"
+#include "moveit/follow_joint_trajectory.h"
 #include "moveit_data.h"
 
 namespace curve_proximity {
@@ -35,6 +37,17 @@ void expectSame(const std::string &name) {
     EXPECT_THROW(read<Message>(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size))),
                  ros::serialization::StreamOverrunException)
         << size;
+}
+
+TEST(MoveitMessages, definitions_are_the_published_ones) {
+  using ros::message_traits::md5sum;
+  EXPECT_STREQ(md5sum<moveit::PlanningScene>(), "acfc50bcfd6c7b978066bfa7c786002c");
+  EXPECT_STREQ(md5sum<moveit::RobotTrajectory>(), "dfa9556423d709a3729bcef664bddf67");
+  EXPECT_STREQ(md5sum<moveit::DisplayTrajectory>(), "41936b74e168ba754279ae683ce3f121");
+  EXPECT_STREQ(md5sum<moveit::ContactInformation>(), "116228ca08b0c286ec5ca32a50fdc17b");
+  EXPECT_STREQ(ros::service_traits::md5sum<moveit::GetPlanningScene>(), "65cf69d3e7a0342e16374024d4eeef65");
+  EXPECT_STREQ(md5sum<control::FollowJointTrajectoryAction>(), "bc4f9b743838566551c0390c65f1a248");
+  EXPECT_STREQ(md5sum<OctomapMessage>(), "9a45536b45c5e409cd49f04bb2d9999f");
 }
 
 TEST(MoveitMessages, recorded_bytes_are_read_and_written_as_they_are) {

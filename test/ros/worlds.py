@@ -5,10 +5,10 @@ import struct
 import threading
 import time
 
-import foreign_types
 import numpy
 import rospy
 from curve_proximity.msg import Body, Octree
+from foreign_types import octomap
 from geometry_msgs.msg import Point
 from helpers import Case, Server, bezier, cloud, connected, run, thing, until
 from rosgraph_msgs.msg import Log
@@ -20,8 +20,6 @@ EPSILON = 1e-9                                   # [m] asked for in each query t
 RADIUS = 0.25                                    # [m] ~cloud_radius of the launch file
 ABOVE = bezier((0, 0, 1), (2, 0, 1), id='above')  # a straight line one metre up, middle over (1, 0, 0)
 PATIENCE = 20                                    # seconds for a message to arrive; a failure takes that long
-
-OCTOMAP, _ = foreign_types.message('octomap_msgs/Octomap')
 
 # One cell of 0.5 m at the origin's corner, occupied: from the root the last child, then always the first, two bits each.
 CELL = b'\x00\xc0' + b'\x03\x00' * 14 + b'\x02\x00'
@@ -39,7 +37,7 @@ class TestCase(Case):
         cls.lines = []
         cls.log = rospy.Subscriber('/rosout', Log, lambda line: cls.lines.append(line.msg))
         cls.clouds = rospy.Publisher(NODE + '/cloud', PointCloud2, queue_size=1)
-        cls.octomaps = rospy.Publisher(NODE + '/octomap', OCTOMAP, queue_size=1)
+        cls.octomaps = rospy.Publisher(NODE + '/octomap', octomap.Octomap, queue_size=1)
         assert connected(cls.clouds, cls.octomaps, cls.log), 'the node does not subscribe, or has other message types than octomap_msgs'
 
     def setUp(self):
@@ -191,7 +189,7 @@ class Clouds(TestCase):
 
 class Octrees(TestCase):
     def octomap(self, data, resolution=0.5, frame='', **fields):
-        out = OCTOMAP(binary=True, id='OcTree', resolution=resolution, data=signed(data), **fields)
+        out = octomap.Octomap(binary=True, id='OcTree', resolution=resolution, data=signed(data), **fields)
         out.header.frame_id = frame
         return out
 

@@ -490,8 +490,8 @@ class SceneReader {
   }
 
   void readOctomap() {
-    const moveit::OctomapWithPose &given = message_.world.octomap;
-    const OctomapMessage &map = given.octomap;
+    const octomap_msgs::OctomapWithPose &given = message_.world.octomap;
+    const octomap_msgs::Octomap &map = given.octomap;
     if (map.data.empty()) {
       if (!full_ && !map.id.empty() && standing_.count(MOVEIT_OCTOMAP) > 0) removeOne(MOVEIT_OCTOMAP);
       return;

@@ -29,6 +29,9 @@ constexpr std::size_t MOST_SENTENCES = 10;
 /** [s] Between requests until there is a scene, and until nothing of it differs. */
 constexpr double ASK_AGAIN = 1.0;
 
+/** All parts of moveit_msgs/PlanningSceneComponents. */
+constexpr std::uint32_t ALL_COMPONENTS = 1023;
+
 /** How soon a new publisher is noticed: roscpp does not tell. */
 constexpr std::chrono::milliseconds LOOK_FOR_END{100};
 
@@ -287,20 +290,18 @@ bool PlanningSceneTopic::askOnce(moveit::PlanningScene &scene) {
   {
     const std::lock_guard<std::mutex> lock(asking_);
     if (ending_) return false;
-    if (!client_.isValid()) {
-      ros::ServiceClientOptions options(handle_.resolveName("get_planning_scene"), moveit::GET_PLANNING_SCENE_MD5, true,
-                                        ros::M_string());
-      client_ = handle_.serviceClient(options);
-    }
+    if (!client_.isValid()) client_ = handle_.serviceClient<moveit::GetPlanningScene>("get_planning_scene", true);
     client = client_;
   }
   if (!client.isValid()) return false;
   bool good = false;
   guarded(
       [&] {
-        const ros::SerializedMessage request = ros::serialization::serializeMessage(moveit::GetPlanningSceneRequest());
+        moveit::GetPlanningSceneRequest all;
+        all.components.components = ALL_COMPONENTS;
+        const ros::SerializedMessage request = ros::serialization::serializeMessage(all);
         ros::SerializedMessage answer;
-        if (!client.call(request, answer, moveit::GET_PLANNING_SCENE_MD5)) return;
+        if (!client.call(request, answer, ros::service_traits::md5sum<moveit::GetPlanningScene>())) return;
         const auto read = static_cast<std::size_t>(answer.message_start - answer.buf.get());
         CheckedStream stream(answer.message_start, answer.num_bytes - read);
         moveit::GetPlanningSceneResponse response;
