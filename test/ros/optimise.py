@@ -69,7 +69,7 @@ class Optimise(unittest.TestCase):
         self.assertIn('no link of that name', self.refused(ConstraintQuery(providers=['mesh'], b=CollisionObject(id='panda_link55'), curve=line)))
 
     def assertGradient(self, row, **fields):
-        """Value and gradient are those of ~distance, which gradients.py and scene.test_motion_gradient hold against differences."""
+        """Value and gradient are those of ~distance, which scene.test_motion_gradient holds against differences."""
         response = self.server.distance([], trajectory=trajectory(), gradient=True, epsilon=1e-9, **fields)
         self.assertTrue(response.success, response.message)
         answer, gradient, (least,) = response.results[0], response.gradients[0], row.rows
