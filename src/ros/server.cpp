@@ -205,9 +205,7 @@ std::shared_ptr<const SecondOpinions> secondOpinions(const Parameters &parameter
 ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters &parameters)
     : parameters_(parameters),
       tuning_(parameters_),
-      requests_(pool_, static_cast<std::size_t>(parameters_.max_waiting) + 1),
-      objects_queue_(pool_),
-      control_queue_(pool_),
+      requests_(static_cast<std::size_t>(parameters_.max_waiting) + 1),
       handle_(onQueue(handle, requests_)),
       objects_handle_(onQueue(handle, objects_queue_)),
       control_handle_(onQueue(handle, control_queue_)),
@@ -215,7 +213,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       scene_turns_(LARGE_CHANGES),
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
       live_(loadRobot(handle, parameters_), loadSrdf(handle, parameters_), resourceOptions("", parameters_)),
-      state_file_(handle, parameters_, pool_, live_),
+      state_file_(handle, parameters_, live_),
       queries_(parameters_, tuning_, live_, frames_, statistics_, stop_,
                loadFurtherRobots(handle, parameters_, live_.scene.snapshot()->robot(), live_.srdf),
                secondOpinions(parameters_)),
@@ -231,7 +229,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   markers_ = std::make_unique<MarkerPublisher>(
       control_handle_, live_.scene, parameters_.fixed_frame,
       MarkerResources{resourceOptions("", parameters_), resourceOptions(parameters_.urdf_dir, parameters_)});
-  sensors_ = std::make_unique<Sensors>(handle, parameters_, pool_, live_, frames_);
+  sensors_ = std::make_unique<Sensors>(handle, parameters_, live_, frames_);
   serveQueries<Distance>("distance", QueryType::DISTANCE);
   serveQueries<Tolerance>("tolerance", QueryType::TOLERANCE);
   serveQueries<Collision>("collision", QueryType::COLLISION);
@@ -278,7 +276,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       checkedSubscription<AttachedCollisionObject>("attached_collision_object", OBJECTS_KEPT, take_attached)};
   for (ros::SubscribeOptions &topic : topics) objects_.push_back(objects_handle_.subscribe(topic));
   planning_scene_ = std::make_unique<PlanningSceneTopic>(
-      handle, parameters_, pool_, live_, frames_,
+      handle, parameters_, live_, frames_,
       [this](SceneChange &change, const Snapshot &before) { return applyChange(change, before); },
       [this](const std::string &link, const JointPositions &joints, const Snapshot &snapshot, FrameLookup &lookup) {
         sensor_msgs::JointState given;
@@ -288,13 +286,13 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
         }
         return linkPose(link, ros::Time(), given, live_, snapshot, lookup);
       });
-  pipeline_ = std::make_unique<Pipeline>(handle, parameters_, pool_, tuning_, live_, queries_, *markers_, stop_);
-  batches_ = std::make_unique<BatchAction>(control_handle_, pool_, parameters_.fixed_frame, queries_, turns_, stop_);
+  pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, live_, queries_, *markers_, stop_);
+  batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, turns_, stop_);
   diagnostics_ = std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *sensors_,
                                                *planning_scene_, frames_, live_);
   reconfigure_ =
       std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { turns_.setSlots(threads); });
-  for (PooledQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->start();
+  for (ThreadedQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->start();
   const SnapshotPtr snapshot = live_.scene.snapshot();
   ROS_INFO("ready: %zu links, %zu objects%s%s, %zu services", snapshot->robot() ? snapshot->robot()->links().size() : 0,
            snapshot->objects().size() + snapshot->moving().size(), parameters_.scene_file.empty() ? "" : " of ",
@@ -314,7 +312,7 @@ ProximityServer::~ProximityServer() {
   // No new calls, then no thread in a callback, then nothing left that names this object.
   for (ros::ServiceServer &service : services_) service.shutdown();
   for (ros::Subscriber &subscriber : objects_) subscriber.shutdown();
-  for (PooledQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->end();
+  for (ThreadedQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->end();
   reconfigure_.reset();
   diagnostics_.reset();
   batches_.reset();

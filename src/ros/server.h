@@ -34,7 +34,7 @@
 #include "transport/local_services.h"
 #include "transport/service.h"
 #include "transport/statistics.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 #include "transport/turns.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
@@ -90,8 +90,7 @@ class ProximityServer {
   Tuning tuning_;
   Statistics statistics_;
   std::atomic<bool> stop_{false};
-  ThreadPool pool_;
-  PooledQueue requests_, objects_queue_, control_queue_;     /* services; ~collision_object; what watches over all */
+  ThreadedQueue requests_, objects_queue_, control_queue_;   /* services; ~collision_object; what watches over all */
   ros::NodeHandle handle_, objects_handle_, control_handle_; /* their callbacks go to these queues */
   Turns turns_, scene_turns_; /* of queries; of large changes of the scene, which are made beside them */
   Frames frames_;

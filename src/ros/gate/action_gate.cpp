@@ -20,14 +20,14 @@ constexpr double LOOK_PERIOD = 0.1; /* [s] between two looks for the controller 
 
 } // namespace
 
-ActionGate::ActionGate(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters,
-                       ros::Publisher refused, const ProofCheck *proofs)
+ActionGate::ActionGate(const ros::NodeHandle &handle, const GateParameters &parameters, ros::Publisher refused,
+                       const ProofCheck *proofs)
     : parameters_(parameters),
-      queue_(pool, AT_ONCE),
+      queue_(AT_ONCE),
       handle_(onQueue(handle, queue_)),
       refused_(std::move(refused)),
       calls_(handle, parameters.server, parameters.delta, proofs) {
-  watches_ = std::make_unique<MotionWatches>(handle_, pool, parameters_, proofs);
+  watches_ = std::make_unique<MotionWatches>(handle_, parameters_, proofs);
   client_ = std::make_unique<Client>(handle_, parameters_.controller, &queue_);
   server_ = std::make_unique<Server>(
       handle_, "follow_joint_trajectory",

@@ -19,7 +19,7 @@
 #include "gate/server_calls.h"
 #include "moveit/follow_joint_trajectory.h"
 #include "parameters/parameters.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 
 namespace curve_proximity {
 
@@ -31,7 +31,7 @@ namespace curve_proximity {
 class ActionGate {
  public:
   /** handle: private. refused: where refusals go. proofs: as of ServerCalls. */
-  ActionGate(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters, ros::Publisher refused,
+  ActionGate(const ros::NodeHandle &handle, const GateParameters &parameters, ros::Publisher refused,
              const ProofCheck *proofs);
   ~ActionGate();
 
@@ -64,7 +64,7 @@ class ActionGate {
   std::string lostController() const;
 
   const GateParameters parameters_;
-  PooledQueue queue_;
+  ThreadedQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher refused_;
   ServerCalls calls_; /* of new goals */

@@ -101,9 +101,8 @@ void MotionWatch::stop(Refusal refusal) {
 
 /* ---- all ---- */
 
-MotionWatches::MotionWatches(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters,
-                             const ProofCheck *proofs)
-    : parameters_(parameters), calls_(handle, parameters.server, parameters.delta, proofs), queue_(pool, 2) {
+MotionWatches::MotionWatches(const ros::NodeHandle &handle, const GateParameters &parameters, const ProofCheck *proofs)
+    : parameters_(parameters), calls_(handle, parameters.server, parameters.delta, proofs), queue_(2) {
   ros::NodeHandle own = handle;
   states_ = own.subscribe<sensor_msgs::JointState>(
       "joint_states", SCENE_QUEUE,

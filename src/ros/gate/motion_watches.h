@@ -25,7 +25,7 @@
 #include "gate/server_calls.h"
 #include "gate/trajectory_progress.h"
 #include "parameters/parameters.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 
 namespace curve_proximity {
 
@@ -87,8 +87,7 @@ class MotionWatches {
   static constexpr double PERIOD = 0.05; /**< [s] between two looks at the scene */
 
   /** proofs: as of ServerCalls. */
-  MotionWatches(const ros::NodeHandle &handle, ThreadPool &pool, const GateParameters &parameters,
-                const ProofCheck *proofs);
+  MotionWatches(const ros::NodeHandle &handle, const GateParameters &parameters, const ProofCheck *proofs);
 
   /** Nothing is stopped any more. */
   ~MotionWatches();
@@ -119,7 +118,7 @@ class MotionWatches {
   std::list<std::shared_ptr<MotionWatch>> watches_;
   std::map<std::string, std::pair<double, ros::Time>> joints_; /* of ~joint_states: the latest of each, and when */
   std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
-  PooledQueue queue_; /* of the timers, at once */
+  ThreadedQueue queue_; /* of the timers, at once */
   ros::WallTimer looking_, supervising_;
 };
 

@@ -74,13 +74,12 @@ bool isClear(const ProximityResults &results, double delta) {
 
 TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters,
                                const ProofCheck *proofs)
-    : parameters_(parameters), queue_(pool_), handle_(onQueue(handle, queue_)) {
+    : parameters_(parameters), handle_(onQueue(handle, queue_)) {
   refused_ = handle_.advertise<Refusal>("refused", MOTION_QUEUE);
   if (!parameters_.server.empty())
     calls_ = std::make_unique<ServerCalls>(handle_, parameters_.server, parameters_.delta, proofs);
-  if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, pool_, parameters_, proofs);
-  if (!parameters_.controller.empty())
-    actions_ = std::make_unique<ActionGate>(handle, pool_, parameters_, refused_, proofs);
+  if (parameters_.watch) watches_ = std::make_unique<MotionWatches>(handle_, parameters_, proofs);
+  if (!parameters_.controller.empty()) actions_ = std::make_unique<ActionGate>(handle, parameters_, refused_, proofs);
   connect<Curve>("curve");
   connect<trajectory_msgs::JointTrajectory>("trajectory");
   connect<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");

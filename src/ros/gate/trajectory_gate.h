@@ -19,7 +19,7 @@
 #include "gate/motion_watches.h"
 #include "gate/server_calls.h"
 #include "parameters/parameters.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 
 namespace curve_proximity {
 
@@ -65,11 +65,10 @@ class TrajectoryGate {
   void refuse(Refusal refusal, const ProximityResults &results);
 
   const GateParameters parameters_;
-  ThreadPool pool_;
   std::deque<Waiting> waiting_; /* touched by callbacks of the queue alone */
   std::deque<Answered> answered_;
   std::list<std::shared_ptr<MotionWatch>> running_;
-  PooledQueue queue_;
+  ThreadedQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher refused_, clear_trajectory_;
   std::unique_ptr<ServerCalls> calls_;     /* null: the scene is not looked at again */

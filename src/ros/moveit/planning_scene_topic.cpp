@@ -80,15 +80,13 @@ void checkNames(const moveit::PlanningScene &scene, const NameLimits &limits) {
 
 } // namespace
 
-PlanningSceneTopic::PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool,
-                                       LiveScene &live, const Frames &frames, Apply apply, LinkPose link_pose)
+PlanningSceneTopic::PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live,
+                                       const Frames &frames, Apply apply, LinkPose link_pose)
     : parameters_(parameters),
       live_(live),
       frames_(frames),
       apply_(std::move(apply)),
       link_pose_(std::move(link_pose)),
-      queue_(pool),
-      asking_queue_(pool),
       handle_(onQueue(handle, queue_)) {
   ros::SubscribeOptions topic = checkedSubscription<moveit::PlanningScene>(
       "planning_scene", SCENES_KEPT,

@@ -20,7 +20,7 @@
 #include "moveit/planning_scene.h"
 #include "parameters/parameters.h"
 #include "transport/complaints.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
 
@@ -50,8 +50,8 @@ class PlanningSceneTopic {
                                                    const Snapshot &snapshot, FrameLookup &lookup)>;
 
   /** handle: private. All references are kept. */
-  PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live,
-                     const Frames &frames, Apply apply, LinkPose link_pose);
+  PlanningSceneTopic(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames,
+                     Apply apply, LinkPose link_pose);
 
   /** No callback runs, nor will one begin, when it has ended. */
   ~PlanningSceneTopic();
@@ -81,7 +81,7 @@ class PlanningSceneTopic {
   const Frames &frames_;
   const Apply apply_;
   const LinkPose link_pose_;
-  PooledQueue queue_, asking_queue_;
+  ThreadedQueue queue_, asking_queue_;
   ros::NodeHandle handle_; /* its callbacks go to queue_ */
   std::mutex taking_;      /* one message at a time: those of the topic, and those of the service */
   PlanningSceneState state_;

@@ -61,8 +61,8 @@ std::string idOf(const Message &) {
 
 } // namespace
 
-Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, const Tuning &tuning,
-                   LiveScene &live, Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop)
+Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, LiveScene &live,
+                   Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop)
     : parameters_(parameters),
       tuning_(tuning),
       live_(live),
@@ -70,9 +70,8 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
       markers_(markers),
       stop_(stop),
       query_type_(*queryTypeFromName(parameters.query_type)),
-      queue_(pool, 1, [this] { work(); }),
+      queue_(2, [this] { work(); }),
       handle_(onQueue(handle, queue_)),
-      state_queue_(pool),
       state_handle_(onQueue(handle, state_queue_)) {
   results_ = handle_.advertise<ProximityResults>("proximity", RESULTS_KEPT);
   contacts_ = handle_.advertise<moveit::ContactInformation>("contacts", RESULTS_KEPT);

@@ -27,7 +27,7 @@
 #include "parameters/parameters.h"
 #include "queries/queries.h"
 #include "transport/complaints.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 
 namespace curve_proximity {
 
@@ -40,8 +40,8 @@ namespace curve_proximity {
 class Pipeline {
  public:
   /** handle: the server's private one. All are kept by reference. stop: as that of Queries. */
-  Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, const Tuning &tuning,
-           LiveScene &live, Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop);
+  Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, LiveScene &live,
+           Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop);
 
   /** A query that runs must have been told to stop. */
   ~Pipeline();
@@ -83,12 +83,12 @@ class Pipeline {
   std::deque<Job> jobs_;   /* that wait to be answered */
   bool answering_ = false; /* one thread does */
   std::atomic<std::uint64_t> dropped_{0};
-  PooledQueue queue_;
+  ThreadedQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher results_, states_, contacts_;
   std::unique_ptr<ClearanceTopics> clearance_; /* null: without ~profile_intervals */
   Complaints complaints_{std::chrono::seconds(60)};
-  PooledQueue state_queue_; /* it waits for no message */
+  ThreadedQueue state_queue_; /* it waits for no message */
   ros::NodeHandle state_handle_;
   ros::WallTimer state_timer_;
   std::uint32_t state_seq_ = 0;

@@ -57,9 +57,9 @@ void logQueryError(const std::string &why) {
 
 } // namespace
 
-BatchAction::BatchAction(const ros::NodeHandle &handle, ThreadPool &pool, const std::string &fixed_frame,
-                         Queries &queries, Turns &turns, const std::atomic<bool> &stop)
-    : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle), queue_(pool) {
+BatchAction::BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
+                         const std::atomic<bool> &stop)
+    : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle) {
   server_ = std::make_unique<Server>(
       handle_, "query", [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, logQueryError); },
       [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, logQueryError); }, false);

@@ -14,7 +14,7 @@
 #include <string>
 
 #include "queries/queries.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 
 namespace curve_proximity {
 
@@ -24,8 +24,8 @@ class BatchAction {
  public:
   /** handle: private, on the queue that runs goals and cancellations. The others are kept by reference. stop: as that
    * of Queries. */
-  BatchAction(const ros::NodeHandle &handle, ThreadPool &pool, const std::string &fixed_frame, Queries &queries,
-              Turns &turns, const std::atomic<bool> &stop);
+  BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
+              const std::atomic<bool> &stop);
 
   /** stop must be set. */
   ~BatchAction();
@@ -49,7 +49,7 @@ class BatchAction {
   std::deque<std::shared_ptr<Batch>> batches_; /* the first is being answered */
   ros::NodeHandle handle_;
   std::unique_ptr<Server> server_;
-  PooledQueue queue_; /* of the batches */
+  ThreadedQueue queue_; /* of the batches */
 };
 
 } // namespace curve_proximity

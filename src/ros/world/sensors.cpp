@@ -10,9 +10,8 @@
 #include "transport/guard.h"
 
 namespace curve_proximity {
-Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live,
-                 const Frames &frames)
-    : parameters_(parameters), live_(live), frames_(frames), queue_(pool), handle_(onQueue(handle, queue_)) {
+Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames)
+    : parameters_(parameters), live_(live), frames_(frames), handle_(onQueue(handle, queue_)) {
   ros::SubscribeOptions topics[] = {
       checkedSubscription<sensor_msgs::PointCloud2>(
           "cloud", 1, [this](const sensor_msgs::PointCloud2ConstPtr &message) { takeCloud(message); }),

@@ -17,7 +17,7 @@
 #include "messages/octomap_message.h"
 #include "parameters/parameters.h"
 #include "transport/complaints.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
 
@@ -40,8 +40,7 @@ struct SensorCounts {
 class Sensors {
  public:
   /** All are kept by reference. handle: private. */
-  Sensors(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live,
-          const Frames &frames);
+  Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames);
 
   /** No callback runs, nor will one begin, when it has ended. */
   ~Sensors();
@@ -65,7 +64,7 @@ class Sensors {
   const Parameters &parameters_;
   LiveScene &live_;
   const Frames &frames_;
-  PooledQueue queue_;
+  ThreadedQueue queue_;
   ros::NodeHandle handle_; /* its callbacks go to queue_ */
   std::vector<ros::Subscriber> subscribers_;
   mutable std::mutex mutex_; /* of the counts */

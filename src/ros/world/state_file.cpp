@@ -132,11 +132,10 @@ UnknownsBySource fromTable(const std::vector<std::string> &table) {
 
 } // namespace
 
-StateFile::StateFile(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live)
+StateFile::StateFile(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live)
     : live_(live),
       handle_(handle),
-      path_(parameters.state_file == "auto" ? automaticPath(handle.getNamespace()) : parameters.state_file),
-      queue_(pool) {
+      path_(parameters.state_file == "auto" ? automaticPath(handle.getNamespace()) : parameters.state_file) {
   handle_.getParam("/run_id", run_);
   std::string name;
   const std::string description = robotText(handle, parameters, name);

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "parameters/parameters.h"
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 #include "world/live_scene.h"
 
 namespace curve_proximity {
@@ -34,8 +34,8 @@ struct KeptScene {
  * stands a file ".behind" with the run from a change of the scene until it is written. */
 class StateFile {
  public:
-  /** handle: private. pool, live: kept by reference. Writes nothing before watch(). */
-  StateFile(const ros::NodeHandle &handle, const Parameters &parameters, ThreadPool &pool, LiveScene &live);
+  /** handle: private. live: kept by reference. Writes nothing before watch(). */
+  StateFile(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live);
 
   /** Writes what has changed since the last time. */
   ~StateFile();
@@ -71,7 +71,7 @@ class StateFile {
   bool watching_ = false, changed_ = false, awaits_writing_ = false, ending_ = false;
   bool told_ = false, failed_ = false;              /* of the one that writes */
   std::chrono::steady_clock::time_point may_write_; /* likewise */
-  PooledQueue queue_;
+  ThreadedQueue queue_;
 };
 
 } // namespace curve_proximity

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The pool's threads: none runs a callback before the start of its queue, none after the end; no queue waits for another. */
+/* A queue's threads: none runs a callback before the start, none after the end, and no more than may. */
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "transport/thread_pool.h"
+#include "transport/threaded_queue.h"
 
 namespace curve_proximity {
 namespace {
@@ -38,9 +38,8 @@ struct Slow {
   }
 };
 
-TEST(ThreadPool, callbacks_wait_until_their_queue_has_started) {
-  ThreadPool pool;
-  PooledQueue queue(pool, 4);
+TEST(ThreadedQueue, callbacks_wait_until_their_queue_has_started) {
+  ThreadedQueue queue(4);
   std::atomic<int> done{0};
   for (int i = 0; i < 3; ++i) queue.post([&] { ++done; });
   std::this_thread::sleep_for(A_WHILE);
@@ -49,59 +48,48 @@ TEST(ThreadPool, callbacks_wait_until_their_queue_has_started) {
   EXPECT_TRUE(comes([&] { return done == 3; }));
 }
 
-TEST(ThreadPool, threads_that_a_burst_has_left_over_end) {
-  ThreadPool pool;
-  PooledQueue queue(pool, 16);
+TEST(ThreadedQueue, threads_that_a_burst_has_left_over_end) {
+  ThreadedQueue queue(16);
   Slow slow;
   queue.start();
   for (int i = 0; i < 12; ++i) queue.post(slow.work());
   ASSERT_TRUE(comes([&] { return slow.begun == 12; }));
-  EXPECT_EQ(pool.count(), 12u);
+  EXPECT_EQ(queue.threads(), 12u);
   slow.ending = true;
-  EXPECT_TRUE(comes([&] { return pool.count() == 1; }));
+  EXPECT_TRUE(comes([&] { return queue.threads() == 1; }));
   std::atomic<int> done{0};
   queue.post([&] { ++done; });
   EXPECT_TRUE(comes([&] { return done == 1; }));
 }
 
-TEST(ThreadPool, a_full_queue_keeps_no_other_one_waiting) {
-  ThreadPool pool;
-  PooledQueue full(pool, 2), other(pool);
+TEST(ThreadedQueue, no_more_run_at_once_than_may) {
+  ThreadedQueue queue(2);
   Slow slow;
-  for (PooledQueue *queue : {&full, &other}) queue->start();
-  for (int i = 0; i < 5; ++i) full.post(slow.work());
-  ASSERT_TRUE(comes([&] { return full.isFull(); }));
-  std::atomic<int> done{0};
-  other.post([&] { ++done; });
-  EXPECT_TRUE(comes([&] { return done == 1; }));
+  queue.start();
+  for (int i = 0; i < 5; ++i) queue.post(slow.work());
+  ASSERT_TRUE(comes([&] { return queue.isFull(); }));
   std::this_thread::sleep_for(A_WHILE);
   EXPECT_EQ(slow.begun, 2);
   slow.ending = true;
   EXPECT_TRUE(comes([&] { return slow.begun == 5; }));
 }
 
-TEST(ThreadPool, callbacks_of_one_at_once_keep_their_order) {
-  ThreadPool pool;
-  PooledQueue queue(pool), beside(pool, 8);
-  for (PooledQueue *each : {&queue, &beside}) each->start();
+TEST(ThreadedQueue, callbacks_of_one_at_once_keep_their_order) {
+  ThreadedQueue queue;
+  queue.start();
   std::vector<int> order; // no lock: one callback at a time
-  std::atomic<int> done{0};
-  for (int i = 0; i < 1000; ++i) {
-    queue.post([&, i] { order.push_back(i); });
-    beside.post([&] { ++done; });
-  }
-  EXPECT_TRUE(comes([&] { return done == 1000; }));
-  queue.post([&] { ++done; });
-  ASSERT_TRUE(comes([&] { return done == 1001; }));
+  std::atomic<bool> done{false};
+  for (int i = 0; i < 1000; ++i) queue.post([&, i] { order.push_back(i); });
+  queue.post([&] { done = true; });
+  ASSERT_TRUE(comes([&] { return done.load(); }));
   ASSERT_EQ(order.size(), 1000u);
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(order[static_cast<std::size_t>(i)], i);
 }
 
-TEST(ThreadPool, the_next_callback_begins_while_a_thread_does_what_follows_the_last_one) {
-  ThreadPool pool;
+TEST(ThreadedQueue, the_next_callback_begins_while_a_thread_does_what_follows_the_last_one) {
   Slow follows;
   std::atomic<bool> first{true};
-  PooledQueue queue(pool, 1, [&] {
+  ThreadedQueue queue(2, [&] {
     if (first.exchange(false)) follows.work()();
   });
   queue.start();
@@ -121,9 +109,8 @@ TEST(ThreadPool, the_next_callback_begins_while_a_thread_does_what_follows_the_l
   ending.join();
 }
 
-TEST(ThreadPool, none_runs_after_the_end) {
-  ThreadPool pool;
-  PooledQueue queue(pool, 4);
+TEST(ThreadedQueue, none_runs_after_the_end) {
+  ThreadedQueue queue(4);
   std::atomic<int> done{0};
   queue.start();
   queue.post([&] { ++done; });
