@@ -225,7 +225,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   loadScene();
   restoreScene();
   live_.sensors.appeared = live_.unknowns.changed = [this] { state_file_.changed(); };
-  state_file_.watch(parameters_.fixed_frame);
+  state_file_.watch();
   markers_ = std::make_unique<MarkerPublisher>(
       control_handle_, live_.scene, parameters_.fixed_frame,
       MarkerResources{resourceOptions("", parameters_), resourceOptions(parameters_.urdf_dir, parameters_)});

@@ -15,7 +15,7 @@ import unittest
 import rospy
 from curve_proximity.msg import CollisionObject
 from helpers import Node, Server, connected, joint_trajectory, joints, run, sphere, thing, until
-from known import ARM, seen
+from known import ARM, seen, written
 from sensor_msgs.msg import JointState, PointCloud2
 
 NAME, MAX_AGE, LIMIT, RADIUS, POINT = 'history', 1.0, 0.05, 0.1, 0.01
@@ -164,13 +164,13 @@ class Histories(unittest.TestCase):
         """Perhaps before the last change is written. Whether all of the scene was; what the master has kept of the node."""
         kept = self.parameters['state_file']
         if r.random() < 0.5:
-            self.assertTrue(until(lambda: os.path.exists(kept) and not os.path.exists(kept + '.behind'), 5))
+            self.assertTrue(until(lambda: written(kept), 5))
         self.node.process.send_signal(signal.SIGKILL)
         self.node.wait(5)
         last = rospy.get_param('/%s/last_scene' % NAME, None)
         self.world.seen, self.world.told, self.sensing, self.telling = False, False, None, None
         self.node.end()
-        return self.world.whole and os.path.exists(kept) and not os.path.exists(kept + '.behind'), {'last_scene': last} if last else {}
+        return self.world.whole and written(kept), {'last_scene': last} if last else {}
 
     def crash(self, r):
         """A respawn; a sensor and joints are unknown until their next messages."""

@@ -22,6 +22,11 @@ LINE = bezier((-1, 0, 1), (1, 0, 1))
 ARM = os.path.dirname(os.path.abspath(__file__)) + '/data/arm.urdf'
 
 
+def written(path):
+    """Is the scene of a node's state file its latest?"""
+    return os.path.exists(path) and open(path, 'rb').readline() == b'written\n'
+
+
 def seen(*points, age=0.0, frame=''):
     return cloud(points, frame, stamp=rospy.Time.now() - rospy.Duration(age))
 
@@ -157,7 +162,7 @@ class Known(Case):
         before = server.replace(sphere('ball', 0.25), sphere('other', 0.1, (5, 5, 5), padding=0.01)).scene
         clouds.publish(seen((0, 0, -3)))
         self.assertTrue(until(lambda: server.scene().scene.sensors, 5))
-        self.assertTrue(until(lambda: self.written(path) and b'cloud' in open(path, 'rb').read(), 5))
+        self.assertTrue(until(lambda: written(path) and b'cloud' in open(path, 'rb').read(), 5))
         again, server = self.crash(node, 'kept', state_file=path)
         scene = server.scene()
         self.assertEqual({o.id for o in scene.objects}, {'ball', 'other'})
@@ -180,7 +185,7 @@ class Known(Case):
         path = tempfile.mkdtemp() + '/kept.scene'
         node, server = self.begin('hasty', state_file=path)
         server.replace(sphere('ball', 0.25))
-        self.assertTrue(until(lambda: self.written(path), 5))
+        self.assertTrue(until(lambda: written(path), 5))
         self.assertTrue(server.apply(sphere('on_line', 0.25, (0, 0, 1))).success)  # and at once:
         again, server = self.crash(node, 'hasty', state_file=path)
         row, = server.tolerance(LINE, 0.1).results
@@ -189,7 +194,7 @@ class Known(Case):
         self.assertTrue(server.apply(sphere('other', 0.1, (5, 5, 5))).success)  # one object is no scene
         self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')
         self.assertEqual(server.tolerance(LINE, 0.1, objects=['ball']).results[0].status, 'unknown')  # it may have moved
-        self.assertTrue(until(lambda: self.written(path), 5))
+        self.assertTrue(until(lambda: written(path), 5))
         node, server = self.crash(again, 'hasty', state_file=path)  # nor does another crash bring back what is lost
         self.assertIn('lost', server.tolerance(LINE, 0.1).results[0].message)
         server.replace(sphere('ball', 0.25))
@@ -202,17 +207,13 @@ class Known(Case):
         objects = self.publisher('/stubborn/collision_object', CollisionObject)
         objects.publish(sphere('post', 0.1, (0, 0, 1), frame='nowhere'))
         self.assertTrue(until(lambda: server.tolerance(LINE, 0.1).results[0].status == 'unknown', 5))
-        self.assertTrue(until(lambda: self.written(path), 5))
+        self.assertTrue(until(lambda: written(path), 5))
         _, server = self.crash(node, 'stubborn', state_file=path, tf_timeout=0.05)
         row, = server.tolerance(LINE, 0.1).results
         self.assertEqual(row.status, 'unknown')
         self.assertIn("object 'post' is not used", row.message)
         self.assertTrue(server.apply(sphere('post', 0.1, (0, 0, 5))).success)
         self.assertEqual(server.tolerance(LINE, 0.1).results[0].verdict, 'clear')
-
-    @staticmethod
-    def written(path):
-        return os.path.exists(path) and not os.path.exists(path + '.behind')
 
     def test_a_matrix_that_replaces_the_srdfs_pairs_does_so_after_a_crash(self):
         ball = '<collision><geometry><sphere radius="0.2"/></geometry></collision>'
@@ -240,7 +241,7 @@ class Known(Case):
             entry_names=['base', 'tip'], entry_values=[moveit.AllowedCollisionEntry(enabled=[False, False])] * 2)
         scenes.publish(scene)
         self.assertTrue(until(lambda: violated(server) == 1, 5))
-        self.assertTrue(until(lambda: self.written(with_robot['state_file']), 5))
+        self.assertTrue(until(lambda: written(with_robot['state_file']), 5))
         _, server = self.crash(node, 'matrix', **with_robot)
         self.assertEqual([o.id for o in server.scene().objects], ['far'])
         self.assertEqual(violated(server), 1)
@@ -249,7 +250,7 @@ class Known(Case):
         path = tempfile.mkdtemp() + '/kept.scene'
         node, server = self.begin('second', state_file=path)
         server.replace(sphere('ball', 0.25))
-        self.assertTrue(until(lambda: self.written(path), 5))
+        self.assertTrue(until(lambda: written(path), 5))
         self.set_robot()
         node, server = self.crash(node, 'second', state_file=path, fixed_frame='base')
         self.assertEqual(server.scene().objects, [])
