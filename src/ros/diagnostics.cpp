@@ -22,12 +22,10 @@ constexpr double QUIET_WARNING = 10.0; /* [s] between two log lines about the sa
 } // namespace
 
 Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, Turns &turns, const Pipeline &pipeline,
-                         const Sensors &sensors, const PlanningSceneTopic &planning_scene, const Frames &frames,
-                         const LiveScene &live)
+                         const PlanningSceneTopic &planning_scene, const Frames &frames, const LiveScene &live)
     : statistics_(statistics),
       turns_(turns),
       pipeline_(pipeline),
-      sensors_(sensors),
       planning_scene_(planning_scene),
       frames_(frames),
       live_(live),
@@ -36,7 +34,6 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
       updater_(ros::NodeHandle(), handle, handle.getNamespace()) {
   updater_.setHardwareID("none");
   updater_.add("queries", this, &Diagnostics::queries);
-  updater_.add("topics", this, &Diagnostics::topics);
   updater_.add("sensors", this, &Diagnostics::sensors);
   updater_.add("planning_scene", this, &Diagnostics::planningScene);
   updater_.add("transforms", this, &Diagnostics::transforms);
@@ -53,19 +50,23 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
 void Diagnostics::queries(Status &status) {
   const Summary s = statistics_.take();
   const double seconds = std::max(s.seconds, 1e-3);
+  const std::uint64_t dropped = pipeline_.dropped();
   if (s.disputed > 0) {
     status.summary(DiagnosticStatus::WARN, "second opinions disagree: the log says of what");
   } else if (s.failed_calls > 0) {
     status.summary(DiagnosticStatus::WARN, "requests failed");
   } else if (s.undecided > 0) {
     status.summary(DiagnosticStatus::WARN, "verdicts are undecided");
+  } else if (dropped > dropped_) {
+    status.summary(DiagnosticStatus::WARN, "messages are dropped: they come faster than they are answered");
   } else {
     status.summary(DiagnosticStatus::OK, s.calls > 0 ? "answering" : "idle");
   }
   status.addf("requests per second", "%.1f", static_cast<double>(s.calls) / seconds);
   status.addf("rows per second", "%.1f", static_cast<double>(s.rows) / seconds);
-  status.addf("median time of a request [us]", "%.0f", s.p50_us);
-  status.addf("99th percentile [us]", "%.0f", s.p99_us);
+  status.addf("mean time of a request [us]", "%.0f",
+              1e6 * s.busy / static_cast<double>(std::max<std::uint64_t>(s.calls, 1)));
+  status.addf("longest time of a request [us]", "%.0f", 1e6 * s.longest);
   status.add("requests that wait", turns_.waiting());
   status.addf("longest wait [ms]", "%.1f", 1000.0 * turns_.takeLongestWait());
   status.add("resident memory [MB]", memory::resident() >> 20);
@@ -74,53 +75,19 @@ void Diagnostics::queries(Status &status) {
   status.add("failed requests", s.failed_calls);
   status.add("rows with a second opinion", s.opinions);
   status.add("second opinions that disagree, ever", s.all_disputed);
-}
-
-void Diagnostics::topics(Status &status) {
-  const std::uint64_t dropped = pipeline_.dropped();
-  if (dropped != dropped_) {
-    status.summary(DiagnosticStatus::WARN, "messages are dropped: they come faster than they are answered");
-  } else {
-    status.summary(DiagnosticStatus::OK, "no messages dropped");
-  }
-  status.add("dropped", dropped);
-  status.add("dropped lately", dropped - dropped_);
+  status.add("messages dropped", dropped);
   dropped_ = dropped;
 }
 
 void Diagnostics::sensors(Status &status) {
-  const auto now = Statistics::Clock::now();
-  const double seconds = std::max(std::chrono::duration<double>(now - told_).count(), 1e-3);
-  told_ = now;
-  bool any = false, refused = false, dropped = false;
-  std::string unknown;
-  for (const SensorState &sensor : live_.sensors.states())
-    if (sensor.unknown) unknown += (unknown.empty() ? "" : ", ") + sensor.id;
-  if (!unknown.empty()) status.add("unknown", unknown);
-  const auto tell = [&](const std::string &topic, const SensorCounts &counts, SensorCounts &before) {
-    if (counts.taken + counts.refused == 0) return;
-    any = true;
-    refused = refused || counts.refused != before.refused;
-    dropped = dropped || counts.dropped != before.dropped;
-    status.addf(topic + ": messages per second", "%.1f", static_cast<double>(counts.taken - before.taken) / seconds);
-    if (counts.taken > 0)
-      status.addf(topic + ": age of the last one used [s]", "%.3f",
-                  std::chrono::duration<double>(now - counts.last).count());
-    status.add(topic + ": dropped", counts.dropped);
-    status.add(topic + ": refused", counts.refused);
-    before = counts;
-  };
-  tell("cloud", sensors_.cloud(), cloud_);
-  tell("octomap", sensors_.octomap(), octomap_);
-  if (!unknown.empty()) {
+  const std::vector<SensorState> sensors = live_.sensors.states();
+  status.summary(DiagnosticStatus::OK, sensors.empty() ? "nothing came" : "listening");
+  for (const SensorState &sensor : sensors) {
+    status.addf(sensor.id + ": age [s]", "%.3f", sensor.age);
+    if (!sensor.unknown) continue;
+    status.add(sensor.id, "unknown");
     status.summary(DiagnosticStatus::WARN,
                    "what is at an object is unknown: its sensor sees nothing, or what it sent cannot be used");
-  } else if (refused) {
-    status.summary(DiagnosticStatus::WARN, "messages that are of no use: the log says why");
-  } else if (dropped) {
-    status.summary(DiagnosticStatus::WARN, "messages are dropped: they come faster than they are built");
-  } else {
-    status.summary(DiagnosticStatus::OK, any ? "listening" : "nothing came");
   }
 }
 

@@ -14,26 +14,23 @@
 #include "transport/master_watch.h"
 #include "transport/statistics.h"
 #include "world/frames.h"
-#include "world/sensors.h"
+#include "world/live_scene.h"
 
 namespace curve_proximity {
 
-/** Six statuses: `queries` (rate, 50th and 99th percentile of the time of a request, undecided and failed rows),
- * `topics` (messages dropped), `sensors` (of ~cloud and ~octomap the rate, the age of the last message used, drops and
- * refusals), `planning_scene` (what came of move_group's scene, and whether this one differs), `transforms` (how old
+/** Five statuses: `queries` (rate, mean and longest time of a request, undecided and failed rows, messages dropped),
+ * `sensors` (how old the object of each is, and whether anything is known of it), `planning_scene` (what came of move_group's scene, and whether this one differs), `transforms` (how old
  * the robot's link poses in the fixed frame are), `master` (whether it still knows the server). */
 class Diagnostics {
  public:
   /** handle: private; its callback queue runs the timer. The others are kept by reference. */
   Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, Turns &turns, const Pipeline &pipeline,
-              const Sensors &sensors, const PlanningSceneTopic &planning_scene, const Frames &frames,
-              const LiveScene &live);
+              const PlanningSceneTopic &planning_scene, const Frames &frames, const LiveScene &live);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   void queries(Status &status);
-  void topics(Status &status);
   void sensors(Status &status);
   void planningScene(Status &status);
   void transforms(Status &status);
@@ -42,14 +39,11 @@ class Diagnostics {
   Statistics &statistics_;
   Turns &turns_;
   const Pipeline &pipeline_;
-  const Sensors &sensors_;
   const PlanningSceneTopic &planning_scene_;
   const Frames &frames_;
   const LiveScene &live_;
   MasterWatch master_;
-  std::uint64_t dropped_ = 0;                                     /* when last told */
-  SensorCounts cloud_, octomap_;                                  /* likewise */
-  Statistics::Clock::time_point told_ = Statistics::Clock::now(); /* then */
+  std::uint64_t dropped_ = 0; /* when last told */
   ros::NodeHandle handle_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;

@@ -37,8 +37,8 @@ class Diagnostics(Case):
         ask()
         status, values = self.status('queries', lambda s, v: ask() or (s.level == 0 and float(v['requests per second']) > 10))
         self.assertEqual(status.level, DiagnosticStatus.OK)
-        self.assertGreater(float(values['99th percentile [us]']), 0)
-        self.assertLessEqual(float(values['median time of a request [us]']), float(values['99th percentile [us]']))
+        self.assertGreater(float(values['mean time of a request [us]']), 0)
+        self.assertLessEqual(float(values['mean time of a request [us]']), float(values['longest time of a request [us]']))
         self.status('queries', lambda s, v: s.message == 'idle')
 
     def test_failed_and_undecided_rows_are_counted(self):
@@ -63,27 +63,18 @@ class Diagnostics(Case):
         self.say_where('island', 'sea')
         for i in range(100):
             publisher.publish(bezier((0, 0, 1), (1, 0, 1), frame='island'))  # each waits ~tf_timeout for that frame
-        status, values = self.status('topics', lambda s, v: int(v['dropped']) > 50)
+        status, values = self.status('queries', lambda s, v: int(v['messages dropped']) > 50)
         self.assertEqual(status.level, DiagnosticStatus.WARN)
 
-    def test_what_sensors_send_is_counted(self):
-        publisher = self.publisher('/curve_proximity/cloud', PointCloud2, queue_size=100)
+    def test_how_old_what_sensors_see_is_and_whether_it_is_known(self):
+        publisher = self.publisher('/curve_proximity/cloud', PointCloud2)
         self.addCleanup(self.server.replace)
-        point = [(0, 0, 1)]
-        status, values = self.status(
-            'sensors', lambda s, v: publisher.publish(cloud(point)) or float(v.get('cloud: messages per second', 0)) > 2)
-        self.assertLess(float(values['cloud: age of the last one used [s]']), 1.0)
-        self.assertEqual(values['cloud: refused'], '0')
-        before = int(values['cloud: dropped'])
-        self.say_where('nowhere', 'elsewhere')
-        for _ in range(20):
-            publisher.publish(cloud(point, 'nowhere'))  # the first waits ~tf_timeout for that frame; the last one takes the others' place
-        status, values = self.status('sensors', lambda s, v: int(v['cloud: dropped']) >= before + 15)
+        status, values = self.status('sensors', lambda s, v: publisher.publish(cloud([(0, 0, 1)])) or 'cloud: age [s]' in v)
+        self.assertEqual((status.level, status.message), (DiagnosticStatus.OK, 'listening'))
+        self.assertLess(float(values['cloud: age [s]']), 1.5)
+        publisher.publish(cloud([(0, 0, 1)], 'nowhere'))
+        status, _ = self.status('sensors', lambda s, v: v.get('cloud') == 'unknown')
         self.assertEqual(status.level, DiagnosticStatus.WARN)
-        self.assertGreater(int(values['cloud: refused']), 0)
-        self.assertIn('unknown', self.status('sensors', lambda s, v: float(v['cloud: messages per second']) == 0)[0].message)
-        status, values = self.status('sensors', lambda s, v: publisher.publish(cloud(point)) or s.level == DiagnosticStatus.OK)
-        self.assertEqual(status.message, 'listening')
 
     def test_the_age_of_transforms_is_told(self):
         status, _ = self.status('transforms', lambda s, v: True)

@@ -5,9 +5,7 @@
 
 #include <curve_proximity/Proximity.h>
 
-#include <array>
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <vector>
@@ -23,7 +21,7 @@ struct Summary {
   std::uint64_t rows = 0, undecided = 0, failed = 0; /**< rows answered; without a verdict; without an answer */
   std::uint64_t opinions = 0, disputed = 0;          /**< rows with a second opinion; where it disagrees */
   std::uint64_t all_disputed = 0;                    /**< rows ever where it disagreed */
-  double p50_us = 0.0, p99_us = 0.0;                 /**< of the time of a request, to 10 %; 0 without requests */
+  double busy = 0.0, longest = 0.0;                  /**< [s] of the times of requests: the sum, the longest */
 };
 
 /** Any number of threads. */
@@ -37,16 +35,10 @@ class Statistics {
   Summary take();
 
  private:
-  static constexpr std::size_t PER_OCTAVE = 8, OCTAVES = 32;
-
-  double percentile(double fraction) const;
-
   Complaints disagreements_{std::chrono::seconds(60)}; /* of second opinions, by row and pair */
   std::mutex mutex_;
   Clock::time_point since_ = Clock::now();
   Summary now_;
-  std::uint64_t disputed_ = 0;                                /* ever */
-  std::array<std::uint64_t, PER_OCTAVE * OCTAVES> buckets_{}; /* of 1 us times 2^(i / PER_OCTAVE) */
 };
 
 } // namespace curve_proximity

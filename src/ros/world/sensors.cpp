@@ -27,35 +27,17 @@ Sensors::~Sensors() {
   queue_.end();
 }
 
-SensorCounts Sensors::cloud() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return cloud_;
-}
-
-SensorCounts Sensors::octomap() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return octomap_;
-}
-
-/** Does the work of a message, and counts it. */
+/** Does the work of a message. What it throws makes the object unknown. */
 template <class Work>
-void Sensors::take(const char *topic, const std::string &id, const std_msgs::Header &header, SensorCounts &counts,
-                   std::uint32_t &seq, Work &&work) {
-  bool used = true;
+void Sensors::take(const std::string &topic, const std::string &id, Work &&work) {
   guarded(work, [&](const std::string &why) {
-    used = false;
     live_.sensors.refused(id);
-    complain(topic, why);
+    if (complaints_.isDue(topic + why)) ROS_WARN_STREAM(topic + ": " + why + "; what is there now is unknown");
   });
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (counts.taken + counts.refused > 0 && header.seq > seq) counts.dropped += header.seq - seq - 1;
-  seq = header.seq;
-  ++(used ? counts.taken : counts.refused);
-  if (used) counts.last = std::chrono::steady_clock::now();
 }
 
 void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
-  take("~cloud", parameters_.cloud_id, message->header, cloud_, cloud_seq_, [&] {
+  take("~cloud", parameters_.cloud_id, [&] {
     Cloud cloud = toCloud(*message);
     const auto valid = static_cast<double>(cloud.points.cols());
     const double all = valid + static_cast<double>(cloud.left_out);
@@ -74,7 +56,7 @@ void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
 }
 
 void Sensors::takeOctomap(const OctomapMessage::ConstPtr &message) {
-  take("~octomap", parameters_.octomap_id, message->header, octomap_, octomap_seq_, [&] {
+  take("~octomap", parameters_.octomap_id, [&] {
     ShapeDescription shape;
     shape.type = ShapeType::OCTREE;
     shape.unknown_is_occupied = parameters_.unknown_is_occupied;
@@ -102,10 +84,6 @@ void Sensors::remove(const std::string &id) {
   change.operations.front().kind = Operation::Kind::REMOVE;
   change.operations.front().object.id = id;
   live_.scene.apply(change);
-}
-
-void Sensors::complain(const std::string &topic, const std::string &why) {
-  if (complaints_.isDue(topic + why)) ROS_WARN_STREAM(topic + ": " + why + "; what is there now is unknown");
 }
 
 } // namespace curve_proximity

@@ -8,9 +8,7 @@
 #include <sensor_msgs/PointCloud2.h>
 
 #include <chrono>
-#include <cstdint>
 #include <curve_proximity/scene.hpp>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -22,13 +20,6 @@
 #include "world/live_scene.h"
 
 namespace curve_proximity {
-
-/** What became of the messages of one topic. */
-struct SensorCounts {
-  std::uint64_t taken = 0, refused = 0; /**< used; of no use */
-  std::uint64_t dropped = 0; /**< came too fast: told by the gaps in their headers' seq, so of one publisher only */
-  std::chrono::steady_clock::time_point last; /**< when the last one was used, where any was */
-};
 
 /** ~cloud and ~octomap. They have a queue of their own, so that what is built at the rate of a sensor takes no place
  * from the queries, which work on the snapshot before it. Of messages that come too fast the oldest are dropped.
@@ -45,9 +36,6 @@ class Sensors {
   /** No callback runs, nor will one begin, when it has ended. */
   ~Sensors();
 
-  SensorCounts cloud() const;
-  SensorCounts octomap() const;
-
   Sensors(const Sensors &) = delete;
   Sensors &operator=(const Sensors &) = delete;
 
@@ -57,9 +45,7 @@ class Sensors {
   void replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape);
   void remove(const std::string &id);
   template <class Work>
-  void take(const char *topic, const std::string &id, const std_msgs::Header &header, SensorCounts &counts,
-            std::uint32_t &seq, Work &&work);
-  void complain(const std::string &topic, const std::string &why);
+  void take(const std::string &topic, const std::string &id, Work &&work);
 
   const Parameters &parameters_;
   LiveScene &live_;
@@ -67,9 +53,6 @@ class Sensors {
   ThreadedQueue queue_;
   ros::NodeHandle handle_; /* its callbacks go to queue_ */
   std::vector<ros::Subscriber> subscribers_;
-  mutable std::mutex mutex_; /* of the counts */
-  SensorCounts cloud_, octomap_;
-  std::uint32_t cloud_seq_ = 0, octomap_seq_ = 0; /* of the last message */
   Complaints complaints_{std::chrono::seconds(5)};
 };
 
