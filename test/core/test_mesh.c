@@ -215,6 +215,44 @@ CASE(a_closed_mesh_is_solid_inside) {
   mesh_free(&mesh);
 }
 
+/* Whether a point is inside is found by a ray in one of three directions. 100 tetrahedra (seed 60) whose corners lie on
+ * all three rays from a point inside, and as many points from which a ray meets a corner of a torus. */
+CASE(inside_is_found_where_rays_meet_corners) {
+  static const vec3 RAYS[3] = {{0.5377, 0.7419, 0.4006}, {-0.3121, 0.6233, -0.7170}, {0.6011, -0.4127, 0.6843}};
+  rng r = rng_seed(60);
+  for (int i = 0; i < 100; i++) {
+    const vec3 p = i % 2 ? rng_in_cube(&r, 1.0) : vec(0.0, 0.0, 0.0);
+    vec3 corners[4] = {p, p, p, p};
+    for (int k = 0; k < 3; k++) {
+      const double far = i < 10 ? 1.0 : rng_uniform(&r, 0.5, 2.0);
+      corners[k] = vec_axpy(p, far, RAYS[k]);
+      corners[3] = vec_axpy(corners[3], -far, RAYS[k]);
+    }
+    const uint32_t triangles[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+    cprox_body *body = NULL;
+    assert_int_equal(cprox_body_create_mesh(corners, 4, triangles, 4, CPROX_MESH_FILL_SOLID, SIZE_MAX, ws, &body),
+                     CPROX_OK);
+    assert_true(cprox_body_get_info(body).is_solid);
+    assert_true(cprox_body_nearest(body, p, NULL) < 0.0);
+    assert_true(cprox_body_nearest(body, vec_axpy(p, 4.0, vec_sub(p, corners[3])), NULL) > 0.0);
+    cprox_body_free(body);
+  }
+
+  test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.2);
+  cprox_body *solid = mesh_body(&mesh, CPROX_MESH_FILL_SOLID, ws);
+  size_t inside = 0;
+  for (int i = 0; i < 100; i++) {
+    const vec3 p = vec_axpy(mesh.vertices[rng_index(&r, (uint32_t)mesh.n)], -rng_uniform(&r, 0.01, 0.7), RAYS[i % 3]);
+    if (mesh_distance(&mesh, ref_vec(p)) < 1e-9L) continue;
+    const bool wanted = fabsl(mesh_winding(&mesh, ref_vec(p))) > 0.5L;
+    inside += wanted;
+    assert_true((cprox_body_nearest(solid, p, NULL) < 0.0) == wanted);
+  }
+  assert_in_range(inside, 10, 90);
+  cprox_body_free(solid);
+  mesh_free(&mesh);
+}
+
 /* 100 bodies (seed 62) of 1 to 3000 triangles, points and boxes, in 100 directions each, against all their corners.
  * Tolerance: 1e-14 of the sizes, about 20 roundings on either side. */
 CASE(support_values_are_those_of_all_corners) {
