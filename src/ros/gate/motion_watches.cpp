@@ -20,7 +20,6 @@ using trajectory_msgs::JointTrajectory;
 
 constexpr std::chrono::seconds AT_LEAST{1};
 constexpr std::uint32_t SCENE_QUEUE = 10;
-constexpr double SERVER_PATIENCE = 0.1; /* [s] with a server that is not there */
 
 } // namespace
 
@@ -90,7 +89,7 @@ bool MotionWatch::isStillClear(ServerCalls &calls, Refusal &refusal) {
     query_.trajectories.front() = rest();
     return query_;
   };
-  return calls.isStillClear(left, recent, SERVER_PATIENCE, scene_, refusal);
+  return calls.isStillClear(left, recent, scene_, refusal);
 }
 
 void MotionWatch::stop(Refusal refusal) {
@@ -132,6 +131,15 @@ void MotionWatches::add(std::shared_ptr<MotionWatch> watch) {
 void MotionWatches::remove(const std::shared_ptr<MotionWatch> &watch) {
   const std::lock_guard<std::mutex> lock(mutex_);
   watches_.remove(watch);
+}
+
+void MotionWatches::forget(const std::vector<std::string> &joints) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  watches_.remove_if([&](const std::shared_ptr<MotionWatch> &one) {
+    const auto &others = one->trajectory().joint_names;
+    return joints.empty() ||
+           std::find_first_of(others.begin(), others.end(), joints.begin(), joints.end()) != others.end();
+  });
 }
 
 std::vector<std::shared_ptr<MotionWatch>> MotionWatches::all() const {

@@ -100,6 +100,9 @@ class MotionWatches {
   /** Its stop may be under way. */
   void remove(const std::shared_ptr<MotionWatch> &watch);
 
+  /** Removes those that move one of the joints; an empty list is all. */
+  void forget(const std::vector<std::string> &joints);
+
   /** The trajectory as it will run: a controller that is given a first point at a later time than 0 begins where the
    *  robot is. Throws Error where the robot is known not to be where the trajectory begins, and where it would begin is
    *  not known. */

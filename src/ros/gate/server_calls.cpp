@@ -11,25 +11,20 @@
 
 namespace curve_proximity {
 
-void logGateError(const std::string &why) {
-  ROS_ERROR("gate: %s", why.c_str());
-}
+namespace {
 
-bool isClear(const Proximity &row, double delta, bool decided) {
-  return (decided && row.verdict == Proximity::VERDICT_CLEAR) ||
-         row.lower > delta; // without an answer: NaN, no verdict
-}
+constexpr double PATIENCE = 2.0;      /* [s] with a server that is not there */
+constexpr double LOOK_PATIENCE = 0.1; /* [s] the same where a motion runs */
 
-Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneState &scene) {
-  Refusal out;
-  out.header.stamp = ros::Time::now();
+/** By the first row that is not certified to stay farther than delta: its pair, its time, its distance. */
+Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneState &scene, bool &clear) {
+  Refusal out = refusalBecause("it is not certified to be clear", scene);
   out.delta = delta;
-  out.scene = scene;
-  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Proximity &r) { return !isClear(r, delta, true); });
-  if (row == rows.end()) {
-    out.message = "it is not certified to be clear";
-    return out;
-  }
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Proximity &r) {
+    return r.verdict != Proximity::VERDICT_CLEAR && !(r.lower > delta); // without an answer: NaN, no verdict
+  });
+  clear = !rows.empty() && row == rows.end();
+  if (row == rows.end()) return out;
   out.row = *row;
   std::ostringstream text;
   text.precision(4);
@@ -41,6 +36,12 @@ Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneS
   return out;
 }
 
+} // namespace
+
+void logGateError(const std::string &why) {
+  ROS_ERROR("gate: %s", why.c_str());
+}
+
 Refusal refusalBecause(const std::string &why, const SceneState &scene) {
   Refusal out;
   out.header.stamp = ros::Time::now();
@@ -49,44 +50,35 @@ Refusal refusalBecause(const std::string &why, const SceneState &scene) {
   return out;
 }
 
-SceneState ServerCalls::scene(double patience) {
-  Tolerance call;
-  if (!tolerance_.call(call, patience)) throw Error("the server does not answer");
-  return call.response.scene;
-}
-
 bool ServerCalls::isClear(const ProximityQuery &query, SeenScene &scene, Refusal &refusal) {
   Tolerance call;
   call.request.query = query;
   call.request.query.certificate = proofs_ != nullptr;
   call.request.delta = delta_;
-  refusal = Refusal();
-  refusal.header.stamp = ros::Time::now();
-  refusal.delta = delta_;
   scene.read = read(); // what comes from now on is looked at again
   if (!tolerance_.call(call, PATIENCE)) {
-    refusal.message = "the server does not answer";
+    refusal = refusalBecause("the server does not answer", scene.state);
     return false;
   }
   const std::vector<Proximity> &rows = call.response.results;
-  const bool clear = call.response.success && !rows.empty() &&
-                     std::all_of(rows.begin(), rows.end(),
-                                 [&](const Proximity &r) { return curve_proximity::isClear(r, delta_, true); });
-  refusal = refusalOf(rows, delta_, call.response.scene);
+  bool clear = false;
+  refusal = refusalOf(rows, delta_, call.response.scene, clear);
   scene.state = call.response.scene;
   if (!call.response.success) refusal.message = call.response.message;
   refusal.header.frame_id = call.response.frame_id;
-  if (!clear || !proofs_) return clear;
-  refusal.message = proofs_->doubt(query, rows, delta_);
+  if (!call.response.success || !clear) return false;
+  refusal.message = proofs_ ? proofs_->doubt(query, rows, delta_) : "";
   return refusal.message.empty();
 }
 
-bool ServerCalls::isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, double patience,
-                               SeenScene &scene, Refusal &refusal) {
+bool ServerCalls::isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, SeenScene &scene,
+                               Refusal &refusal) {
   bool clear = false;
   guarded(
       [&] {
-        const SceneState now = this->scene(patience);
+        Tolerance call; // about nothing: its answer names the scene
+        if (!tolerance_.call(call, LOOK_PATIENCE)) throw Error("the server does not answer");
+        const SceneState &now = call.response.scene;
         clear = recent && now.epoch == scene.state.epoch && now.version == scene.state.version && read() == scene.read;
         if (!clear) clear = isClear(query(), scene, refusal);
       },

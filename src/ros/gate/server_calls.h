@@ -20,17 +20,11 @@
 
 namespace curve_proximity {
 
-/** A refusal by the first row that is not certified to stay farther than delta: its pair, its time, its distance. */
-Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneState &scene);
-
 /** A refusal without a row. */
 Refusal refusalBecause(const std::string &why, const SceneState &scene);
 
 /** In the log. */
 void logGateError(const std::string &why);
-
-/** Does this row prove that? decided: its verdict is about a limit of delta at least. */
-bool isClear(const Proximity &row, double delta, bool decided);
 
 /** What all of a motion was clear of. */
 struct SeenScene {
@@ -41,14 +35,9 @@ struct SeenScene {
 /** For one thread, but for end(). */
 class ServerCalls {
  public:
-  static constexpr double PATIENCE = 2.0; /**< [s] with a server that is not there */
-
   /** server: the namespace of its services. delta [m]. proofs: checks each answer; null: the server is believed. */
   ServerCalls(const ros::NodeHandle &handle, const std::string &server, double delta, const ProofCheck *proofs)
       : delta_(delta), proofs_(proofs), tolerance_(handle, server + "/tolerance") {}
-
-  /** Throws Error where the server does not answer for `patience` seconds. */
-  SceneState scene(double patience = PATIENCE);
 
   /** Ends a call that waits for the server, and all later ones: they fail. By any thread. */
   void end() {
@@ -60,8 +49,8 @@ class ServerCalls {
   bool isClear(const ProximityQuery &query, SeenScene &scene, Refusal &refusal);
 
   /** The same where the scene is another one than `scene`, or `recent` is false; else all of it was clear of that. */
-  bool isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, double patience,
-                    SeenScene &scene, Refusal &refusal);
+  bool isStillClear(const std::function<const ProximityQuery &()> &query, bool recent, SeenScene &scene,
+                    Refusal &refusal);
 
  private:
   std::uint64_t read() const {

@@ -278,12 +278,7 @@ GateParameters readGateParameters(const ros::NodeHandle &handle) {
   visitGateParameters(parameters, reader);
   reader.keep(READING_OF_GATE);
   reader.warnOfOthers();
-  if (!parameters.controller.empty() && parameters.server.empty())
-    throw ParameterError("parameter ~controller: goals need a server to ask: ~server is its namespace");
-  if (parameters.watch && parameters.server.empty())
-    throw ParameterError("parameter ~watch: it needs a server to ask: ~server is its namespace");
-  if (parameters.verify && parameters.server.empty())
-    throw ParameterError("parameter ~verify: it needs a server to ask for certificates: ~server is its namespace");
+  if (parameters.server.empty()) throw ParameterError("parameter ~server: the namespace of a server is expected");
   return parameters;
 }
 

@@ -149,14 +149,14 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
 struct GateParameters {
   double delta = 0.0; /**< [m] */
   int queue_size = 10;
-  std::string server;            /**< the namespace of the server's services; empty: the scene is not looked at again */
-  std::string controller;        /**< the action of the controller; empty: there is no action */
-  bool self_collision = true;    /**< of goals of the action */
-  bool watch = false;            /**< ~clear_trajectory is watched while it runs */
-  double path_tolerance = 0.1;   /**< [rad, m] how far each joint may be from the trajectory that runs */
-  double feedback_timeout = 0.5; /**< [s] without a word of the robot; then what runs is stopped */
-  double server_timeout = 2.0;   /**< [s] for an answer about what runs; then it is stopped */
-  bool verify = false;           /**< the server's certificates are checked by what the gate reads itself */
+  std::string server = "/curve_proximity"; /**< the namespace of the server's services */
+  std::string controller;                  /**< the action of the controller; empty: there is no action */
+  bool self_collision = true;              /**< of trajectories */
+  bool watch = false;                      /**< ~clear_trajectory is watched while it runs */
+  double path_tolerance = 0.1;             /**< [rad, m] how far each joint may be from the trajectory that runs */
+  double feedback_timeout = 0.5;           /**< [s] without a word of the robot; then what runs is stopped */
+  double server_timeout = 2.0;             /**< [s] for an answer about what runs; then it is stopped */
+  bool verify = false;                     /**< the server's certificates are checked by what the gate reads itself */
 };
 
 template <class Fields, class Visitor>

@@ -6,6 +6,7 @@
 #include <curve_proximity/fingerprint.hpp>
 #include <iterator>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 #include "messages/topics.h"
@@ -18,10 +19,6 @@ namespace {
 
 constexpr std::uint32_t RESULTS_KEPT = 100; /* for subscribers in other processes that are slow */
 
-/** In the order of Pipeline::Job. */
-constexpr const char *TOPICS[] = {"curve", "trajectory",       "multi_dof_trajectory",
-                                  "path",  "robot_trajectory", "display_trajectory"};
-
 template <class Message>
 ros::Time stampOf(const Message &message) {
   return message.header.stamp;
@@ -33,6 +30,10 @@ ros::Time stampOf(const moveit::RobotTrajectory &message) {
 ros::Time stampOf(const moveit::DisplayTrajectory &message) {
   return message.trajectory.empty() ? ros::Time() : stampOf(message.trajectory.front());
 }
+
+template <class Message>
+constexpr bool isOfMoveIt =
+    std::is_same_v<Message, moveit::RobotTrajectory> || std::is_same_v<Message, moveit::DisplayTrajectory>;
 
 /** The request is about a message. */
 void fill(const Curve &message, QueryRequest &request) {
@@ -47,9 +48,6 @@ void fill(const trajectory_msgs::JointTrajectory &message, QueryRequest &request
 void fill(const trajectory_msgs::MultiDOFJointTrajectory &message, QueryRequest &request) {
   request.multi_dof_trajectories = {&message, &message + 1};
 }
-/* What moveit_msgs packs is unpacked by requestOfMotions(). */
-template <class Message>
-void fill(const Message &, QueryRequest &) {}
 
 std::string idOf(const Curve &curve) {
   return curve.id;
@@ -70,7 +68,8 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
       markers_(markers),
       stop_(stop),
       query_type_(*queryTypeFromName(parameters.query_type)),
-      queue_(2, [this] { work(); }),
+      jobs_(static_cast<std::size_t>(parameters.queue_size)),
+      queue_(2, [this] { jobs_.work(); }),
       handle_(onQueue(handle, queue_)),
       state_handle_(onQueue(handle, state_queue_)) {
   results_ = handle_.advertise<ProximityResults>("proximity", RESULTS_KEPT);
@@ -108,62 +107,38 @@ Pipeline::~Pipeline() {
   state_queue_.end();
 }
 
-/** roscpp's own queue drops what is oldest too, but counts nothing: it is left without a limit, and emptied at once: one
- *  thread answers, and another one takes in what comes meanwhile. */
+/** roscpp's queue is left without a limit, and emptied at once: one thread answers, and another one takes in what comes
+ *  meanwhile. */
 template <class Message>
 void Pipeline::listen(const char *topic) {
   using Pointer = boost::shared_ptr<const Message>;
-  ros::SubscribeOptions options = checkedSubscription<Message>(topic, 0, [this](const Pointer &message) {
-    if (message) keep(Job(message));
+  ros::SubscribeOptions options = checkedSubscription<Message>(topic, 0, [this, topic](const Pointer &message) {
+    if (message)
+      jobs_.add([this, topic, message] {
+        guarded([&] { handle(topic, *message); },
+                [](const std::string &why) { ROS_ERROR("a message is not answered: %s", why.c_str()); });
+      });
   });
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(handle_.subscribe(options));
 }
 
-void Pipeline::keep(Job job) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (jobs_.size() == static_cast<std::size_t>(parameters_.queue_size)) {
-    jobs_.pop_front();
-    ++dropped_;
-  }
-  jobs_.push_back(std::move(job));
-}
-
-/** The thread that has taken a message in answers all that wait, unless another one does. */
-void Pipeline::work() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  if (answering_) return;
-  answering_ = true;
-  while (!jobs_.empty()) {
-    const Job job = std::move(jobs_.front());
-    jobs_.pop_front();
-    lock.unlock();
-    if (!stop_)
-      guarded([&] { handle(job); },
-              [](const std::string &why) { ROS_ERROR("a message is not answered: %s", why.c_str()); });
-    lock.lock();
-  }
-  answering_ = false;
-}
-
-void Pipeline::handle(const Job &job) {
+template <class Message>
+void Pipeline::handle(const char *topic, const Message &message) {
+  if (stop_) return;
   // What is known of the message before anything can go wrong with it.
   const auto results = boost::make_shared<ProximityResults>();
-  results->source = TOPICS[job.index()];
-  std::visit(
-      [&](const auto &message) {
-        results->header.stamp = stampOf(*message);
-        results->id = idOf(*message);
-        results->fingerprint = fingerprint(*message);
-      },
-      job);
+  results->source = topic;
+  results->header.stamp = stampOf(message);
+  results->id = idOf(message);
+  results->fingerprint = fingerprint(message);
   describe(*results);
 
   const auto drawing = std::make_shared<Drawing>();
   bool published = false;
   const auto publish = [&] {
     published = true;
-    results->dropped = dropped_;
+    results->dropped = jobs_.dropped();
     results_.publish(ProximityResultsPtr(results));
     tellContacts(*results);
     markers_.show(drawing);
@@ -173,30 +148,27 @@ void Pipeline::handle(const Job &job) {
     publish(); // nobody has to wait for the profile
     tellClearance(request, *results);
   };
-  guarded([&] { requestOf(job, *results, ask); },
-          [&](const std::string &why) {
-            if (published) ROS_ERROR("~clearance: %s", why.c_str());
-            if (published) return;
-            results->success = false;
-            results->message = why;
-          });
+  guarded(
+      [&] {
+        // Curves meet the robot where tf2 has it; joints that a trajectory leaves alone stand as they were last told.
+        ProximityQuery more;
+        more.current_joints = movesRobot(message);
+        more.self_collision = parameters_.self_collision && more.current_joints;
+        if constexpr (isOfMoveIt<Message>) {
+          requestOfMotions(message, more, *results, ask);
+        } else {
+          QueryRequest request(query_type_, results->delta, more);
+          fill(message, request);
+          ask(request);
+        }
+      },
+      [&](const std::string &why) {
+        if (published) ROS_ERROR("~clearance: %s", why.c_str());
+        if (published) return;
+        results->success = false;
+        results->message = why;
+      });
   if (!published) publish();
-}
-
-/** Hands the request that a message is to `ask`. */
-void Pipeline::requestOf(const Job &job, ProximityResults &results, const Ask &ask) {
-  // Curves meet the robot where tf2 has it; joints that a trajectory leaves alone stand as they were last told.
-  ProximityQuery more;
-  const bool moves = movesRobot(job);
-  more.self_collision = parameters_.self_collision && moves;
-  more.current_joints = moves;
-  if (const auto *motion = std::get_if<moveit::RobotTrajectoryConstPtr>(&job))
-    return requestOfMotions(**motion, more, results, ask);
-  if (const auto *motions = std::get_if<moveit::DisplayTrajectoryConstPtr>(&job))
-    return requestOfMotions(**motions, more, results, ask);
-  QueryRequest request(query_type_, results.delta, more);
-  std::visit([&](const auto &message) { fill(*message, request); }, job);
-  ask(request);
 }
 
 /** What is not used of the message is told in the answer and in the log. */
@@ -296,12 +268,11 @@ void Pipeline::tellState() {
 }
 
 /** Is the message about the robot? */
-bool Pipeline::movesRobot(const Job &job) const {
-  if (std::holds_alternative<trajectory_msgs::JointTrajectoryConstPtr>(job)) return true;
-  if (std::holds_alternative<moveit::RobotTrajectoryConstPtr>(job)) return true;
-  if (std::holds_alternative<moveit::DisplayTrajectoryConstPtr>(job)) return true;
-  const auto *several = std::get_if<trajectory_msgs::MultiDOFJointTrajectoryConstPtr>(&job);
-  return several && curve_proximity::movesRobot(**several, live_.scene.snapshot()->robot().get(), live_.srdf);
+template <class Message>
+bool Pipeline::movesRobot(const Message &message) const {
+  if constexpr (std::is_same_v<Message, trajectory_msgs::MultiDOFJointTrajectory>)
+    return curve_proximity::movesRobot(message, live_.scene.snapshot()->robot().get(), live_.srdf);
+  return !std::is_same_v<Message, Curve> && !std::is_same_v<Message, nav_msgs::Path>;
 }
 
 } // namespace curve_proximity

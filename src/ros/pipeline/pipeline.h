@@ -14,11 +14,8 @@
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <variant>
 #include <vector>
 
 #include "markers/markers.h"
@@ -27,6 +24,7 @@
 #include "parameters/parameters.h"
 #include "queries/queries.h"
 #include "transport/complaints.h"
+#include "transport/job_queue.h"
 #include "transport/threaded_queue.h"
 
 namespace curve_proximity {
@@ -47,30 +45,25 @@ class Pipeline {
   ~Pipeline();
 
   std::uint64_t dropped() const {
-    return dropped_;
+    return jobs_.dropped();
   }
 
  private:
-  using Job = std::variant<CurveConstPtr, trajectory_msgs::JointTrajectoryConstPtr,
-                           trajectory_msgs::MultiDOFJointTrajectoryConstPtr, nav_msgs::PathConstPtr,
-                           moveit::RobotTrajectoryConstPtr, moveit::DisplayTrajectoryConstPtr>;
-
   template <class Message>
   void listen(const char *topic);
-  void keep(Job job);
-  void work();
-  void handle(const Job &job);
+  template <class Message>
+  void handle(const char *topic, const Message &message);
   void describe(ProximityResults &results) const;
   void answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing);
   using Ask = std::function<void(const QueryRequest &)>;
-  void requestOf(const Job &job, ProximityResults &results, const Ask &ask);
   template <class Message>
   void requestOfMotions(const Message &message, ProximityQuery &more, ProximityResults &results, const Ask &ask);
   void tellContacts(const ProximityResults &results);
   void tellClearance(const QueryRequest &request, const ProximityResults &results);
   void tellState();
 
-  bool movesRobot(const Job &job) const;
+  template <class Message>
+  bool movesRobot(const Message &message) const;
 
   const Parameters &parameters_;
   const Tuning &tuning_;
@@ -79,10 +72,7 @@ class Pipeline {
   MarkerPublisher &markers_;
   const std::atomic<bool> &stop_;
   const QueryType query_type_;
-  std::mutex mutex_;
-  std::deque<Job> jobs_;   /* that wait to be answered */
-  bool answering_ = false; /* one thread does */
-  std::atomic<std::uint64_t> dropped_{0};
+  JobQueue jobs_; /* messages that wait to be answered */
   ThreadedQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher results_, states_, contacts_;
