@@ -414,8 +414,10 @@ class Known(Case):
         states.publish(joints(turn=0.0))
         row = until(lambda: (lambda r: r.results and r.results[0])(server.tolerance([], 0.01, robot_state=True)), 5)
         self.assertEqual(row.status, 'unknown')
+        self.assertEqual(server.tolerance(LINE, 0.01, current_joints=True).results[0].status, 'unknown')  # curves meet links there
         states.publish(joints(lift=0.0))
         self.assertTrue(until(lambda: server.tolerance([], 0.01, robot_state=True).results[0].verdict == 'clear', 5))
+        self.assertEqual(server.tolerance(LINE, 0.01, current_joints=True).results[0].verdict, 'clear')
         _, assuming = self.begin('assuming', fixed_frame='base', assumed_joints=['lift'])
         assuming.replace(sphere('ball', 0.1, (0, 0, 9)))
         for fields in (dict(current_joints=True), {}):  # {}: at 0 by the request's own words

@@ -28,8 +28,8 @@ struct Queries::CurvePlace {
 
 /** Ready for the next curve. */
 Queries::CurveSearch &Queries::curveSearch(Work &work) {
+  const bool by_joints = !work.joints.positions.empty();
   if (!work.search) {
-    const bool by_joints = !work.joints.positions.empty();
     work.search.reset(new CurveSearch{StampedTargets(work.snapshot, work.query, live_.srdf,
                                                      by_joints ? &work.joints.positions : nullptr, work.lookup),
                                       WorkspacePool::Lease(workspaces_),
@@ -39,6 +39,9 @@ Queries::CurveSearch &Queries::curveSearch(Work &work) {
                                       nullptr});
   }
   work.doubts.objects(work.query);
+  const bool current = by_joints && work.request.more.current_joints && work.search->targets.withRobot();
+  work.doubts.joints(
+      current ? unknownJoints(*work.snapshot->robot(), {}, work.joints.positions, parameters_.assumed_joints) : "");
   return *work.search;
 }
 
