@@ -15,9 +15,8 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-constexpr double REPORT_PERIOD = 1.0;  /* [s] */
-constexpr double OLD_TRANSFORM = 1.0;  /* [s] from here on a link pose that changes is a stale one */
-constexpr double QUIET_WARNING = 10.0; /* [s] between two log lines about the same */
+constexpr double REPORT_PERIOD = 1.0; /* [s] */
+constexpr double OLD_TRANSFORM = 1.0; /* [s] from here on a link pose that changes is a stale one */
 
 } // namespace
 
@@ -29,7 +28,6 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
       planning_scene_(planning_scene),
       frames_(frames),
       live_(live),
-      master_(handle.getNamespace() + "/distance"),
       handle_(handle),
       updater_(ros::NodeHandle(), handle, handle.getNamespace()) {
   updater_.setHardwareID("none");
@@ -37,7 +35,6 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
   updater_.add("sensors", this, &Diagnostics::sensors);
   updater_.add("planning_scene", this, &Diagnostics::planningScene);
   updater_.add("transforms", this, &Diagnostics::transforms);
-  updater_.add("master", this, &Diagnostics::master);
 
   // By the wall clock: the updater's own period counts in ROS time, which may stand still.
   timer_ = handle_.createWallTimer(ros::WallDuration(REPORT_PERIOD), [this](const ros::WallTimerEvent &) {
@@ -138,17 +135,6 @@ void Diagnostics::transforms(Status &status) {
   }
   status.addf("oldest [s]", "%.3f", oldest);
   status.add("link", which);
-}
-
-void Diagnostics::master(Status &status) {
-  switch (master_.look()) {
-    case MasterWatch::State::KNOWN: return status.summary(DiagnosticStatus::OK, "registered");
-    case MasterWatch::State::SILENT: return status.summary(DiagnosticStatus::WARN, "the master does not answer");
-    case MasterWatch::State::FORGOTTEN: break;
-  }
-  const char *why = "the master does not know this node any more (was it restarted?): nobody new finds it";
-  status.summary(DiagnosticStatus::ERROR, why);
-  ROS_ERROR_THROTTLE(QUIET_WARNING, "%s", why);
 }
 
 } // namespace curve_proximity

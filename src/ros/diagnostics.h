@@ -11,16 +11,15 @@
 
 #include "moveit/planning_scene_topic.h"
 #include "pipeline/pipeline.h"
-#include "transport/master_watch.h"
 #include "transport/statistics.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
 
 namespace curve_proximity {
 
-/** Five statuses: `queries` (rate, mean and longest time of a request, undecided and failed rows, messages dropped),
- * `sensors` (how old the object of each is, and whether anything is known of it), `planning_scene` (what came of move_group's scene, and whether this one differs), `transforms` (how old
- * the robot's link poses in the fixed frame are), `master` (whether it still knows the server). */
+/** Four statuses: `queries` (rate, mean and longest time of a request, undecided and failed rows, messages dropped),
+ * `sensors` (how old the object of each is, and whether anything is known of it), `planning_scene` (what came of
+ * move_group's scene, and whether this one differs), `transforms` (how old the robot's link poses in the fixed frame are). */
 class Diagnostics {
  public:
   /** handle: private; its callback queue runs the timer. The others are kept by reference. */
@@ -34,7 +33,6 @@ class Diagnostics {
   void sensors(Status &status);
   void planningScene(Status &status);
   void transforms(Status &status);
-  void master(Status &status);
 
   Statistics &statistics_;
   Turns &turns_;
@@ -42,7 +40,6 @@ class Diagnostics {
   const PlanningSceneTopic &planning_scene_;
   const Frames &frames_;
   const LiveScene &live_;
-  MasterWatch master_;
   std::uint64_t dropped_ = 0; /* when last told */
   ros::NodeHandle handle_;
   diagnostic_updater::Updater updater_;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The server as a process: signals, and a watch on the master; all else is ProximityServer. */
+/** The server as a process: signals; all else is ProximityServer. */
 #include <malloc.h>
 #include <ros/console.h>
 #include <ros/init.h>
-#include <ros/this_node.h>
 #include <signal.h>
 
 #include <chrono>
@@ -12,12 +11,10 @@
 
 #include "parameters/parameters.h"
 #include "server.h"
-#include "transport/master_watch.h"
 
 namespace {
 
-constexpr int EXIT_WRONG = 1;        /* parameters or robot are unusable */
-constexpr int EXIT_UNREGISTERED = 3; /* the master has forgotten this node; roslaunch's respawn brings it back */
+constexpr int EXIT_WRONG = 1; /* parameters or robot are unusable */
 
 volatile sig_atomic_t interrupted = 0;
 
@@ -42,19 +39,6 @@ void giveMemoryBack() {
   mallopt(M_TRIM_THRESHOLD, 2 << 20);
 }
 
-/** Until a signal, a shutdown by the graph, or the end of our registration. */
-int serve() {
-  curve_proximity::MasterWatch master(ros::this_node::getName() + "/distance");
-  while (ros::ok() && !interrupted) {
-    if (master.look() == curve_proximity::MasterWatch::State::FORGOTTEN) {
-      ROS_FATAL("the master does not know this node any more (was it restarted?): ending, so that a respawn registers");
-      return EXIT_UNREGISTERED;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return 0;
-}
-
 } // namespace
 
 int main(int argc, char **argv) {
@@ -66,7 +50,8 @@ int main(int argc, char **argv) {
   try {
     const curve_proximity::Parameters parameters = curve_proximity::readParameters(handle);
     const curve_proximity::ProximityServer server(handle, parameters);
-    code = serve();
+    while (ros::ok() && !interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    code = 0;
   } catch (const std::exception &error) {
     ROS_FATAL("%s", error.what());
   }

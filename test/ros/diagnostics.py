@@ -87,10 +87,6 @@ class Diagnostics(Case):
         self.assertEqual(status.level, DiagnosticStatus.WARN)
         self.assertLess(abs((rospy.Time.now() - sent).to_sec() - float(values['oldest [s]'])), 1.5)
 
-    def test_the_master_knows_it(self):
-        status, _ = self.status('master', lambda s, v: True)
-        self.assertEqual((status.level, status.message), (DiagnosticStatus.OK, 'registered'))
-
     def test_epsilon_budget_and_threads_change_while_it_runs(self):
         client = Client('/curve_proximity', timeout=10)
         before = client.get_configuration()

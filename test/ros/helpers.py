@@ -431,16 +431,11 @@ class Node:
 class Case(unittest.TestCase):
     """Nodes that end with their test, and what tests say of answers."""
 
-    def begin(self, name, environment=None, **parameters):
+    def begin(self, name, **parameters):
         """A node, and its services."""
-        node = Node(name, environment, **parameters)
+        node = Node(name, **parameters)
         self.addCleanup(node.end)
         return node, Server('/' + name)
-
-    def master(self, port):
-        process = start_master(port)
-        self.addCleanup(lambda: (process.kill(), process.wait()))
-        return process
 
     def publisher(self, topic, kind, **fields):
         publisher = rospy.Publisher(topic, kind, **dict(dict(queue_size=5), **fields))

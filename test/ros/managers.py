@@ -1,26 +1,25 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Nodelet managers that end while queries run, and whose master is restarted."""
+"""Nodelet managers that end while queries run."""
 import os
 import signal
 import subprocess
 import time
 
-import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import Curve, QueryAction, QueryGoal
-from helpers import ActionClient, Call, Case, Server, bezier, connected, executable, free_port, query, ring_and_shells, run, until
+from helpers import ActionClient, Call, Case, Server, bezier, connected, executable, query, ring_and_shells, run, until
 
 LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
 
 
 class Managers(Case):
-    def start(self, *arguments, environment=None):
+    def start(self, *arguments):
         """A program whose output is kept."""
         log = open(LOG, 'a')
         self.addCleanup(log.close)
-        process = subprocess.Popen(arguments, stdout=log, stderr=subprocess.STDOUT, env=environment)
+        process = subprocess.Popen(arguments, stdout=log, stderr=subprocess.STDOUT)
         self.addCleanup(lambda: (process.poll() is None and process.kill(), process.wait()))
         return process
 
@@ -28,12 +27,12 @@ class Managers(Case):
         open(LOG, 'w').close()
         self.addCleanup(os.unlink, LOG)
 
-    def manager(self, environment=None):
+    def manager(self):
         """A manager with a server and a gate."""
         nodelet = executable('nodelet', 'nodelet')
-        manager = self.start(nodelet, 'manager', '__name:=stopped_manager', environment=environment)
+        manager = self.start(nodelet, 'manager', '__name:=stopped_manager')
         for name, kind in (('stopped_server', 'ProximityServer'), ('stopped_gate', 'TrajectoryGate')):
-            self.start(nodelet, 'load', 'curve_proximity/' + kind, 'stopped_manager', '__name:=' + name, environment=environment)
+            self.start(nodelet, 'load', 'curve_proximity/' + kind, 'stopped_manager', '__name:=' + name)
         return manager
 
     def output(self):
@@ -66,20 +65,6 @@ class Managers(Case):
         self.assertLess(call.ended - begin, 6.0)
         self.assertTrue(until(lambda: manager.poll() is not None, 15), 'the manager does not end')
         self.assertGreaterEqual(manager.returncode, 0, 'it died of a signal:\n' + self.output())
-
-    def test_a_manager_that_its_master_has_forgotten_says_so(self):
-        port = free_port()
-        environment = dict(os.environ, ROS_MASTER_URI='http://localhost:%d' % port)
-        graph = rosgraph.Master('/test', environment['ROS_MASTER_URI'])
-        first = self.master(port)
-        manager = self.manager(environment)
-        self.assertTrue(until(lambda: any(s[0] == '/stopped_server/distance' for s in graph.getSystemState()[2]), 20))
-        first.terminate()
-        first.wait()
-        time.sleep(1)
-        self.master(port)
-        self.assertTrue(until(lambda: 'the master does not know this node any more' in self.output(), 20), self.output())
-        self.assertIsNone(manager.poll())  # a manager is not ours to end
 
 
 if __name__ == '__main__':
