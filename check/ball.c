@@ -34,7 +34,8 @@ static num num_of_interval(const iv *a, double slope) {
   return (num){low, GROW(high - low + slope)};
 }
 
-static void sine_and_cosine(num angle, num *sine, num *cosine) {
+/* Of a large angle. */
+static void turn_far(num angle, num *sine, num *cosine) {
   const int before = iv_precision(64);
   iv *w = iv_new(3);
   iv_set_d(&w[0], angle.m);
@@ -45,10 +46,42 @@ static void sine_and_cosine(num angle, num *sine, num *cosine) {
   iv_precision(before);
 }
 
+/* 1 - x²/((n - 1) n) (1 - x²/((n + 1) (n + 2)) (...)), of x² below .63: what is left out is below 2^-57. */
+static num series(num square, int n) {
+  enum { LAST = 16 };
+  num sum = num_of(1.0);
+  for (int k = LAST + n % 2; k >= n; k -= 2)
+    sum = num_sub(num_of(1.0), num_mul(square, num_div(sum, num_of((double)((k - 1) * k)))));
+  sum.e += 0x1p-57;
+  return sum;
+}
+
+/* A quarter turn is NEAR + REST; NEAR has 33 bits, so that up to 2^20 quarters of it are doubles. */
+void num_turn(num angle, num *sine, num *cosine) {
+  static const double NEAR = 0x1.921fb544p+0, QUARTERS = 0x1.45f306dc9c883p-1;
+  static const num REST = {0x1.0b4611a626331p-34, 0x1p-87};
+  const double quarters = rint(angle.m * QUARTERS);
+  if (!(fabs(quarters) < 0x1p20)) {
+    turn_far(angle, sine, cosine);
+    return;
+  }
+  const double near = quarters * NEAR;
+  const num x = num_sub(num_sub(num_of(angle.m), num_of(near)), num_mul(num_of(quarters), REST));
+  const num square = num_mul(x, x), s = num_mul(x, series(square, 3)), c = series(square, 2);
+  const bool odd = fmod(quarters, 2.0) != 0.0;
+  const double quarter = fmod(fmod(quarters, 4.0) + 4.0, 4.0);
+  *sine = odd ? c : s;
+  *cosine = odd ? s : c;
+  if (quarter >= 2.0) *sine = num_neg(*sine);
+  if (quarter == 1.0 || quarter == 2.0) *cosine = num_neg(*cosine);
+  sine->e += angle.e;
+  cosine->e += angle.e;
+}
+
 /* cos + sin [z] + (1 - cos) z zᵀ */
 rot rot_about(const num *z, num angle) {
   num s, c, k[9];
-  sine_and_cosine(angle, &s, &c);
+  num_turn(angle, &s, &c);
   const num d = num_sub(num_of(1.0), c);
   for (int i = 0; i < 3; i++) {
     const int a = (i + 1) % 3, b = (i + 2) % 3;

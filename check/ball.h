@@ -190,6 +190,8 @@ static inline place place_product(const place *outer, const place *inner) {
 /* Of a quaternion w, x, y, z of any norm that is not 0. */
 rot rot_of_quaternion(const num q[4]);
 
+void num_turn(num angle, num *sine, num *cosine);
+
 /* About an axis whose length is 1 but for its numbers' radii. */
 rot rot_about(const num *axis, num angle);
 

@@ -47,17 +47,20 @@ static vec vec_of_numbers(num x, num y, num z) {
   return (vec){{x.m, y.m, z.m}, GROW(length_of(e))};
 }
 
-static void line_state(const robot *r, const axis *a, size_t degree, const num *points, const place *before,
-                       axis_state *s) {
+/* arc: of an axis that turns by slerp. */
+static void line_state(const robot *r, const axis *a, const slerp_arc *arc, size_t degree, const num *points,
+                       const place *before, axis_state *s) {
   jet j = {.at = {num_of(r->rest[a->variable])}};
   if (a->moves) j = jet_of(points + a->variable * ROOM, degree);
   const num factor = num_of(a->multiplier), value = num_add(num_mul(factor, j.at[0]), num_of(a->offset));
-  const vec z = vec_of_numbers(a->z[0], a->z[1], a->z[2]);
+  const num *about = a->kind == AXIS_ARC ? arc->z : a->z;
+  const vec z = vec_of_numbers(about[0], about[1], about[2]);
   place moved = {.r = {.m = {1, 0, 0, 0, 1, 0, 0, 0, 1}}};
-  if (a->kind == AXIS_TURN)
-    moved.r = rot_about(a->z, value);
-  else
+  if (a->kind == AXIS_SHIFT)
     moved.p = vec_scale(value, &z);
+  else
+    moved.r = rot_about(about, value);
+  if (a->kind == AXIS_ARC) moved.r = rot_product(&moved.r, &arc->start);
   s->frame = place_product(before, &moved);
   s->z = rot_turn(&before->r, &z, false);
   s->velocity = vec_scale(num_mul(factor, j.at[1]), &s->z);
@@ -114,14 +117,15 @@ static void quaternion_state(const robot *r, const axis *a, size_t degree, const
   s->z = (vec){{0.0, 0.0, 0.0}, 0.0};
 }
 
-void kinematics_axes(const robot *r, size_t degree, const num *points, axis_state *states) {
+void kinematics_axes(const robot *r, size_t segment, const num *points, axis_state *states) {
+  const size_t degree = r->degrees[segment];
   for (size_t i = 0; i < r->n_axes; i++) {
     const axis *a = &r->axes[i];
     const place before = a->parent < 0 ? a->at : place_product(&states[a->parent].frame, &a->at);
     if (a->kind == AXIS_QUATERNION)
       quaternion_state(r, a, degree, points, &before, &states[i]);
     else
-      line_state(r, a, degree, points, &before, &states[i]);
+      line_state(r, a, &r->arcs[segment * r->n_axes + i], degree, points, &before, &states[i]);
   }
 }
 
@@ -160,7 +164,8 @@ static void find_levers(const robot *r, const axis_state *states, const int *cha
     const axis_state *s = &states[chain[i]];
     const axis_kind passed = r->axes[chain[i]].kind;
     const vec from = vec_sub(centre, &s->frame.p), across = vec_cross(&s->z, &from);
-    const double middle = passed == AXIS_SHIFT ? 1.0 : GROW(vec_top(passed == AXIS_TURN ? &across : &from) + radius);
+    const vec *arm = passed == AXIS_QUATERNION ? &from : &across;
+    const double middle = passed == AXIS_SHIFT ? 1.0 : GROW(vec_top(arm) + radius);
     levers[i] = passed == AXIS_SHIFT ? 1.0 : GROW(middle + *travel);
     *travel = GROW(*travel + s->shift * middle);
   }
@@ -224,6 +229,6 @@ void kinematics_hold(const robot *r, size_t segment, double u, num *points, axis
   for (size_t i = 0; i < r->n_variables * row; i++) points[i] = robot_points(r, segment, 0)[i];
   for (size_t v = 0; v < r->n_variables; v++)
     if (r->moved[v]) hold_at(points + v * row, r->degrees[segment], u);
-  kinematics_axes(r, r->degrees[segment], points, states);
+  kinematics_axes(r, segment, points, states);
   for (size_t i = 0; i < r->n_bodies; i++) places[i] = kinematics_place(&r->bodies[i], states);
 }

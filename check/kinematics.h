@@ -15,8 +15,9 @@ typedef struct axis_state {
   double shift;   /* it is never farther than this from where it is in the middle */
 } axis_state;
 
-/* points: of the interval, laid out as those of a segment. Radii are infinite where nothing can be said. */
-void kinematics_axes(const robot *r, size_t degree, const num *points, axis_state *states);
+/* points: of an interval of the segment, laid out as those of a segment. Radii are infinite where nothing can be said.
+ */
+void kinematics_axes(const robot *r, size_t segment, const num *points, axis_state *states);
 
 /* The world place of a body in the middle. */
 place kinematics_place(const body *b, const axis_state *states);

@@ -161,5 +161,6 @@ void robot_forget(robot *r) {
   free(r->times);
   free(r->degrees);
   free(r->points);
+  free(r->arcs);
   free(r);
 }

@@ -11,10 +11,10 @@ struct words;
 
 enum { ROBOT_MAX_DEGREE = 9 };
 
-typedef enum axis_kind { AXIS_TURN, AXIS_SHIFT, AXIS_QUATERNION } axis_kind;
+typedef enum axis_kind { AXIS_TURN, AXIS_SHIFT, AXIS_QUATERNION, AXIS_ARC } axis_kind;
 
 /* A rotation about z or a shift along it by multiplier * variable + offset; or a rotation by the quaternion of four
- * variables (x, y, z, w). */
+ * variables (x, y, z, w), the first of which is the angle of an arc where it turns by slerp. */
 typedef struct axis {
   axis_kind kind;
   int parent; /* -1: the world */
@@ -58,6 +58,13 @@ typedef struct pair {
   size_t n_items, room;
 } pair;
 
+/* Over a segment of the motion: a rotation by `angle` about z, from where it begins. */
+typedef struct slerp_arc {
+  bool used;
+  num z[3], angle;
+  rot start;
+} slerp_arc;
+
 typedef struct robot {
   size_t n_links, n_axes, n_parts, n_bodies, n_pairs, n_variables, n_segments;
   hook *links;
@@ -70,6 +77,7 @@ typedef struct robot {
   double *times;   /* n_segments + 1 */
   size_t *degrees; /* of a segment */
   num *points;     /* [segment][variable][ROBOT_MAX_DEGREE + 1]; not of variables that are not moved */
+  slerp_arc *arcs; /* [segment][axis] */
 } robot;
 
 /* Reads what follows "robot ID"; NULL with a sentence in the problem's fault. */

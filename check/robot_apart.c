@@ -33,7 +33,7 @@ typedef struct walk {
   reader *in;
   uint32_t width;
   double delta, begin, end; /* of the part of the segment that is spoken of */
-  size_t degree, *tries;
+  size_t segment, *tries;
   axis_state *states;
   place *places; /* of the bodies */
   int *chain;
@@ -96,8 +96,9 @@ static bool settles(const walk *w, const view *v, const vec *own) {
   ++*w->tries;
   if (!(size > SHORTEST && size < LONGEST)) return false;
 
-  /* in the middle, and the way from there */
+  /* by the ball about what moves; in the middle, and the way from there */
   const double padded = GROW(limit + moving_pad * size);
+  if (is_beyond(start, GROW(padded + (v->moving->radius + v->motion->travel) * size))) return true;
   const num middle = num_add(start, lowest(v, &n));
   if (!is_beyond(middle, padded)) return false;
   if (is_beyond(middle, GROW(padded + v->motion->travel * size))) return true;
@@ -111,18 +112,23 @@ static bool settles(const walk *w, const view *v, const vec *own) {
   bend = vec_sub(&bend, &outwards);
   const num along = vec_dot(&n, &m->v), faster = vec_dot(&n, &m->a);
   bool second = true, third = true;
-  for (int end = 0; end < 2; end++) {
+  num there[2];
+  vec d[2];
+  for (int end = 0; end < 2 && (second || third); end++) {
     const double tau = end == 0 ? -0.5 : 0.5;
-    const vec d = vec_axpy(&n, tau, &turn), e = vec_axpy(&d, 0.125, &bend);
-    const num there = num_add(start, num_mul(num_of(tau), along)), f = num_add(there, lowest(v, &d));
-    const num g = num_add(num_add(there, num_mul(num_of(0.125), faster)), lowest(v, &e));
-    const double below = GROW(limit + moving_pad * vec_top(&d)), beyond = GROW(limit + moving_pad * vec_top(&e));
+    d[end] = vec_axpy(&n, tau, &turn);
+    there[end] = num_add(start, num_mul(num_of(tau), along));
+    const num f = num_add(there[end], lowest(v, &d[end]));
+    const double below = GROW(limit + moving_pad * vec_top(&d[end]));
     second = second && is_beyond(f, GROW(below + 0.125 * m->second * size));
     third = third && is_beyond(f, GROW(below + m->third * size / 48.0));
-    third = third && is_beyond(g, GROW(beyond + m->third * size / 48.0));
-    if (!second && !third) return false;
   }
-  return true;
+  for (int end = 0; end < 2 && !second && third; end++) {
+    const vec e = vec_axpy(&d[end], 0.125, &bend);
+    const num g = num_add(num_add(there[end], num_mul(num_of(0.125), faster)), lowest(v, &e));
+    third = is_beyond(g, GROW(limit + moving_pad * vec_top(&e) + m->third * size / 48.0));
+  }
+  return second || third;
 }
 
 /* From the box round what stands to the centre of what moves, in the frame of what stands; a halfspace has its own
@@ -294,7 +300,7 @@ static const char *check_interval(walk *w, num *points, const open_item *open, s
       fault = check_interval(w, points, open, 0, half == 0 ? from : middle, depth + 1);
     return fault;
   }
-  kinematics_axes(r, w->degree, points, w->states);
+  kinematics_axes(r, w->segment, points, w->states);
   w->mover = NULL;
   for (size_t i = 0; i < r->n_bodies; i++) w->places[i] = kinematics_place(&r->bodies[i], w->states);
   open_list left_open = {.n = 0};
@@ -307,7 +313,8 @@ static const char *check_interval(walk *w, num *points, const open_item *open, s
   if (!fault && head % 2 == 1) {
     for (size_t v = 0; v < r->n_variables; v++)
       if (r->moved[v])
-        trajectory_halve(points + v * (ROBOT_MAX_DEGREE + 1), w->degree, left + v * (ROBOT_MAX_DEGREE + 1));
+        trajectory_halve(points + v * (ROBOT_MAX_DEGREE + 1), r->degrees[w->segment],
+                         left + v * (ROBOT_MAX_DEGREE + 1));
     fault = check_interval(w, left, left_open.at, left_open.n, from, depth + 1);
     if (!fault) fault = check_interval(w, points, left_open.at, left_open.n, middle, depth + 1);
   }
@@ -357,7 +364,7 @@ const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, cons
   for (size_t s = from->segment; s <= until->segment && !fault; s++) {
     w.begin = s > from->segment ? 0.0 : from->u;
     w.end = s < until->segment ? 1.0 : until->u;
-    w.degree = r->degrees[s];
+    w.segment = s;
     fault = check_outside(&w, s, points);
     for (size_t i = 0; i < room; i++) points[i] = robot_points(r, s, 0)[i];
     if (!fault) fault = check_interval(&w, points, all, r->n_pairs, 0.0, 0);

@@ -3,36 +3,41 @@
 
 #include <stdlib.h>
 
-enum { MAX_HALVINGS = 12 };
+#include "slerp.h"
 
-/* What both kinds of motion have. */
+enum { MAX_HALVINGS = 12, ROW = ROBOT_MAX_DEGREE + 1, MOST_ROWS = 1 << 22 };
+
+/* Variables that are moved together: the Bézier points of each over each of their own segments. */
 typedef struct source {
-  robot *robot;
-  size_t n;          /* variables that are moved */
+  size_t n, n_segments;
   size_t *variables; /* which */
+  double *times;     /* n_segments + 1, on the clock of all */
+  size_t *degrees;
+  num *points;     /* [segment][n][ROW] */
+  slerp_arc *arcs; /* [segment][axis]; NULL: nothing turns by slerp */
 } source;
 
 static num *row_of(const source *s, size_t segment, size_t k) {
-  return s->robot->points + (segment * s->robot->n_variables + s->variables[k]) * (ROBOT_MAX_DEGREE + 1);
+  return s->points + (segment * s->n + k) * ROW;
 }
 
-static void make_room(words *w, robot *r, size_t segments) {
-  r->n_segments = segments;
-  r->times = words_room(w, segments + 1, sizeof *r->times);
-  r->degrees = words_room(w, segments, sizeof *r->degrees);
-  r->points = words_room(w, segments * r->n_variables * (ROBOT_MAX_DEGREE + 1), sizeof *r->points);
+static void make_room(words *w, source *s, size_t segments) {
+  s->n_segments = segments;
+  s->times = words_room(w, segments + 1, sizeof *s->times);
+  s->degrees = words_room(w, segments, sizeof *s->degrees);
+  s->points = words_room(w, segments * s->n * ROW, sizeof *s->points);
 }
 
 /* N and as many variables, none twice. */
-static void read_variables(words *w, source *s) {
+static void read_variables(words *w, robot *r, source *s) {
   s->n = words_count(w);
   s->variables = words_room(w, s->n, sizeof *s->variables);
   for (size_t k = 0; k < s->n && !w->wrong; k++) {
     s->variables[k] = words_size(w);
-    if (s->variables[k] >= s->robot->n_variables || s->robot->moved[s->variables[k]])
+    if (s->variables[k] >= r->n_variables || r->moved[s->variables[k]])
       w->wrong = true;
     else
-      s->robot->moved[s->variables[k]] = true;
+      r->moved[s->variables[k]] = true;
   }
 }
 
@@ -73,24 +78,23 @@ static void hermite(const waypoint *p, const waypoint *q, size_t n, size_t k, si
 }
 
 /* The lower of the two orders counts, and the interpolation's where it is one: linear, cubic, quintic. */
-static void join_waypoints(words *w, const source *s, const waypoint *points, size_t n_points, size_t order) {
-  robot *r = s->robot;
-  make_room(w, r, n_points - 1);
+static void join_waypoints(words *w, source *s, const waypoint *points, size_t n_points, size_t order) {
+  make_room(w, s, n_points - 1);
   for (size_t i = 0; i + 1 < n_points && !w->wrong; i++) {
     const waypoint *p = &points[i], *q = p + 1;
     const size_t both = p->orders < q->orders ? p->orders : q->orders, known = order ? order : both;
     if (!(p->time < q->time) || known > both) w->wrong = true;
     if (w->wrong) break;
-    r->times[i] = p->time, r->times[i + 1] = q->time;
-    r->degrees[i] = 2 * known - 1;
-    for (size_t k = 0; k < s->n; k++) hermite(p, q, s->n, k, r->degrees[i], row_of(s, i, k));
+    s->times[i] = p->time, s->times[i + 1] = q->time;
+    s->degrees[i] = 2 * known - 1;
+    for (size_t k = 0; k < s->n; k++) hermite(p, q, s->n, k, s->degrees[i], row_of(s, i, k));
   }
 }
 
 /* waypoints ORDER N variable×N POINTS, then a line a point. ORDER: 0: what both ends of a segment know; 1, 2, 3. */
-static bool read_waypoints(problem *p, words *w, source *s) {
+static bool read_waypoints(problem *p, words *w, robot *r, source *s) {
   const size_t order = words_size(w);
-  read_variables(w, s);
+  read_variables(w, r, s);
   const size_t n_points = words_size(w);
   if (order > 3 || n_points < 2) w->wrong = true;
   if (!words_end(p, w)) return false;
@@ -127,10 +131,9 @@ static void blossom(const double *control, size_t n, const double *knots, size_t
 
 /* bspline DEGREE N variable×N POINTS, then "knots" and POINTS + DEGREE + 1 of them, and a line "control" with N values
  * a point. */
-static bool read_spline(problem *p, words *w, source *s) {
-  robot *r = s->robot;
+static bool read_spline(problem *p, words *w, robot *r, source *s) {
   const size_t degree = words_size(w);
-  read_variables(w, s);
+  read_variables(w, r, s);
   const size_t n = words_size(w);
   if (degree < 1 || degree > ROBOT_MAX_DEGREE || n <= degree) w->wrong = true;
   if (!words_end(p, w)) return false;
@@ -147,12 +150,12 @@ static bool read_spline(problem *p, words *w, source *s) {
   size_t segments = 0;
   for (size_t i = degree; i < n && good; i++) segments += knots[i] < knots[i + 1];
   if (good && segments == 0) w->wrong = true;
-  if (good) make_room(w, r, segments);
+  if (good) make_room(w, s, segments);
   segments = 0;
   for (size_t i = degree; i < n && good && !w->wrong; i++) {
     if (!(knots[i] < knots[i + 1])) continue;
-    r->times[segments] = knots[i], r->times[segments + 1] = knots[i + 1];
-    r->degrees[segments] = degree;
+    s->times[segments] = knots[i], s->times[segments + 1] = knots[i + 1];
+    s->degrees[segments] = degree;
     for (size_t k = 0; k < s->n; k++) blossom(control + k, s->n, knots, degree, i, row_of(s, segments, k));
     segments++;
   }
@@ -213,6 +216,135 @@ static double least_of_axis(const robot *r, const axis *a) {
   return least;
 }
 
+/* ---- slerp ---- */
+
+/* Of the source's rows those of the quaternion's numbers; false where it moves none of them. All four must be moved, and
+ * nothing else by their variables. */
+static bool find_quaternion(const robot *r, const source *s, const axis *a, size_t rows[4], words *w) {
+  size_t n = 0;
+  for (size_t k = 0; k < s->n; k++)
+    if (s->variables[k] >= a->variable && s->variables[k] < a->variable + 4)
+      rows[s->variables[k] - a->variable] = k, n++;
+  for (size_t j = 0; j < r->n_axes && n > 0; j++) {
+    const axis *b = &r->axes[j];
+    const bool is_line = b->kind == AXIS_TURN || b->kind == AXIS_SHIFT;
+    const size_t last = b->variable + (is_line ? 0 : 3);
+    if ((is_line || b->variable != a->variable) && b->variable <= a->variable + 3 && last >= a->variable)
+      w->wrong = true;
+  }
+  if (n > 0 && n < 4) w->wrong = true;
+  return n > 0 && !w->wrong;
+}
+
+/* The angle takes the place of a quaternion's first number. */
+static void read_arcs(words *w, robot *r, source *s) {
+  if (w->wrong || r->n_axes == 0) return;
+  if (s->n_segments > MOST_ROWS / r->n_axes) w->wrong = true;
+  s->arcs = words_room(w, s->n_segments * r->n_axes, sizeof *s->arcs);
+  for (size_t i = 0; i < r->n_axes && !w->wrong; i++) {
+    size_t rows[4];
+    if (r->axes[i].kind != AXIS_QUATERNION || !find_quaternion(r, s, &r->axes[i], rows, w)) continue;
+    for (size_t segment = 0; segment < s->n_segments && !w->wrong; segment++) {
+      const size_t degree = s->degrees[segment];
+      num p[4], q[4];
+      for (int k = 0; k < 4; k++) p[k] = row_of(s, segment, rows[k])[0], q[k] = row_of(s, segment, rows[k])[degree];
+      if (!slerp_between(p, q, &s->arcs[segment * r->n_axes + i])) w->wrong = true;
+    }
+  }
+  for (size_t i = 0; i < r->n_axes && !w->wrong; i++) {
+    size_t rows[4];
+    axis *a = &r->axes[i];
+    if (a->kind != AXIS_QUATERNION || !find_quaternion(r, s, a, rows, w)) continue;
+    a->kind = AXIS_ARC;
+    a->multiplier = 1.0;
+    for (size_t segment = 0; segment < s->n_segments; segment++)
+      for (size_t k = 0; k <= s->degrees[segment]; k++) {
+        const num part = fraction(num_of((double)k), (double)s->degrees[segment]);
+        row_of(s, segment, rows[0])[k] = num_mul(part, s->arcs[segment * r->n_axes + i].angle);
+      }
+  }
+}
+
+/* ---- one clock ---- */
+
+/* The polynomial over [a, b]: blossoms, i times of b. */
+static void cut(const num *c, size_t degree, num a, num b, num *out) {
+  for (size_t i = 0; i <= degree; i++) {
+    num d[ROW];
+    for (size_t j = 0; j <= degree; j++) d[j] = c[j];
+    for (size_t level = 1; level <= degree; level++)
+      for (size_t j = 0; j + level <= degree; j++)
+        d[j] = num_add(d[j], num_mul(level <= i ? b : a, num_sub(d[j + 1], d[j])));
+    out[i] = d[0];
+  }
+}
+
+/* The same polynomial with more points. */
+static void elevate(num *c, size_t degree, size_t wanted) {
+  for (size_t n = degree + 1; n <= wanted; n++) {
+    c[n] = c[n - 1];
+    for (size_t i = n - 1; i > 0; i--)
+      c[i] = num_add(c[i], num_mul(fraction(num_of((double)i), (double)n), num_sub(c[i - 1], c[i])));
+  }
+}
+
+/* What the source does over a segment of the clock: before it begins and after it has ended it stands. `own` is its own
+ * segment there. */
+static void fill_segment(robot *r, const source *s, size_t segment, size_t own) {
+  const double begin = s->times[own], end = s->times[own + 1], from = r->times[segment], to = r->times[segment + 1];
+  const num length = num_sub(num_of(end), num_of(begin));
+  num a = num_div(num_sub(num_of(from), num_of(begin)), length),
+      b = num_div(num_sub(num_of(to), num_of(begin)), length);
+  if (from <= begin) a = num_of(0.0);
+  if (to <= begin) b = num_of(0.0);
+  if (from >= end) a = num_of(1.0);
+  if (to >= end) b = num_of(1.0);
+  const size_t degree = s->degrees[own];
+  for (size_t k = 0; k < s->n; k++) {
+    num *out = r->points + (segment * r->n_variables + s->variables[k]) * ROW;
+    const num *c = row_of(s, own, k);
+    for (size_t i = 0; i <= degree; i++) out[i] = c[i];
+    if (from != begin || to != end) cut(c, degree, a, b, out);
+    elevate(out, degree, r->degrees[segment]);
+  }
+  for (size_t i = 0; i < r->n_axes && s->arcs; i++)
+    if (s->arcs[own * r->n_axes + i].used) r->arcs[segment * r->n_axes + i] = s->arcs[own * r->n_axes + i];
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Segments end wherever one of a source does. */
+static void join_sources(words *w, robot *r, const source *sources, size_t n) {
+  size_t all = 0, count = 0;
+  for (size_t i = 0; i < n; i++) all += sources[i].n_segments + 1;
+  double *times = r->times = words_room(w, all, sizeof *r->times);
+  for (size_t i = 0; i < n && !w->wrong; i++)
+    for (size_t k = 0; k <= sources[i].n_segments; k++) times[count++] = sources[i].times[k];
+  if (w->wrong) return;
+  qsort(times, all, sizeof *times, ascending);
+  count = 0;
+  for (size_t i = 0; i < all; i++)
+    if (count == 0 || times[i] > times[count - 1]) times[count++] = times[i];
+  if (count < 2 || (n > 1 && count > MOST_ROWS / (r->n_variables + r->n_axes + 1))) w->wrong = true;
+  if (w->wrong) return;
+  r->n_segments = count - 1;
+  r->degrees = words_room(w, r->n_segments, sizeof *r->degrees);
+  r->points = words_room(w, r->n_segments * r->n_variables * ROW, sizeof *r->points);
+  r->arcs = words_room(w, r->n_segments * r->n_axes, sizeof *r->arcs);
+  for (int pass = 0; pass < 2 && !w->wrong; pass++)
+    for (size_t i = 0; i < n; i++) {
+      size_t own = 0;
+      for (size_t k = 0; k < r->n_segments; k++) {
+        while (own + 1 < sources[i].n_segments && sources[i].times[own + 1] <= times[k]) own++;
+        if (pass == 1) fill_segment(r, &sources[i], k, own);
+        if (sources[i].degrees[own] > r->degrees[k]) r->degrees[k] = sources[i].degrees[own];
+      }
+    }
+}
+
 /* ---- the whole ---- */
 
 static void find_what_moves(robot *r) {
@@ -224,14 +356,57 @@ static void find_what_moves(robot *r) {
   }
 }
 
-bool trajectory_read(problem *p, words *w, robot *r) {
-  static const char *const names[] = {"waypoints", "bspline"};
-  source s = {.robot = r};
-  bool good = false;
-  if (words_begin(p, w, "motion"))
-    good = words_choose(w, names, 2) == 0 ? read_waypoints(p, w, &s) : read_spline(p, w, &s);
-  if (!p->fault[0] && !good) words_end(p, w);
-  free(s.variables);
-  if (good) find_what_moves(r);
+/* Waypoints, a B-spline, or waypoints between which floating joints turn by slerp; times are later by `start`. */
+static bool read_source(problem *p, words *w, robot *r, size_t which, double start, source *s) {
+  const bool good = which == 1 ? read_spline(p, w, r, s) : read_waypoints(p, w, r, s);
+  if (!good) return false;
+  if (which == 2) read_arcs(w, r, s);
+  for (size_t i = 0; i <= s->n_segments; i++) {
+    s->times[i] += start;
+    if (i > 0 && !(s->times[i - 1] < s->times[i])) w->wrong = true;
+  }
+  if (w->wrong && !w->starved)
+    snprintf(p->fault, sizeof p->fault, "the motion that ends in line %zu turns or starts as none can", p->number);
+  return !w->wrong;
+}
+
+/* joined N, then N times "start TIME" and another motion. */
+static bool read_sources(problem *p, words *w, robot *r, source **sources, size_t *n) {
+  static const char *const names[] = {"waypoints", "bspline", "slerp", "joined"};
+  if (!words_begin(p, w, "motion")) return false;
+  const size_t which = words_choose(w, names, 4);
+  *n = which == 3 ? words_size(w) : 1;
+  if (*n < 1 || *n > r->n_links + 1) w->wrong = true;
+  *sources = words_room(w, *n, sizeof **sources);
+  if (which < 3) return !w->wrong && read_source(p, w, r, which, 0.0, *sources);
+  bool good = words_end(p, w);
+  for (size_t i = 0; i < *n && good; i++) {
+    double start = 0.0;
+    if (words_begin(p, w, "start")) start = words_number(w);
+    good = words_end(p, w) && words_begin(p, w, "motion");
+    const size_t one = words_choose(w, names, 3);
+    good = good && !w->wrong && read_source(p, w, r, one, start, *sources + i);
+  }
   return good;
+}
+
+bool trajectory_read(problem *p, words *w, robot *r) {
+  source *sources = NULL;
+  size_t n = 0;
+  bool good = read_sources(p, w, r, &sources, &n);
+  if (!p->fault[0] && !good) words_end(p, w);
+  if (good) join_sources(w, r, sources, n);
+  if (good && w->wrong && !w->starved)
+    snprintf(p->fault, sizeof p->fault, "the motions that end in line %zu have too many segments", p->number);
+  for (size_t i = 0; sources && i < n; i++) {
+    free(sources[i].variables);
+    free(sources[i].times);
+    free(sources[i].degrees);
+    free(sources[i].points);
+    free(sources[i].arcs);
+  }
+  free(sources);
+  if (!good || w->wrong) return false;
+  find_what_moves(r);
+  return true;
 }

@@ -36,9 +36,10 @@ REACHING = [-2.7783, -0.7590, -2.4919, -2.1355, 2.8973, 2.0248, 0.4576]
 
 # A box that falls in front of the shelf, from 1.6 m to 0.2 m within 0.8 s, and turns by 120 degrees about x.
 BOX = [0.2, 0.1, 0.3]
-FALL = [{'time': 0.0, 'pose': {'position': {'x': 0.5, 'y': 0.06, 'z': 1.6}, 'orientation': {'w': 1.0}}},
+FALL = [{'time': 0.0, 'pose': {'position': {'x': 0.5, 'y': 0.06, 'z': 1.6}, 'orientation': {'x': 0.0, 'y': 0.0, 'z': 0.0, 'w': 1.0}}},
         {'time': 0.8, 'pose': {'position': {'x': 0.5, 'y': 0.06, 'z': 0.2},
-                               'orientation': {'x': 0.8660254037844386, 'w': 0.5}}}]
+                               'orientation': {'x': 0.8660254037844386, 'y': 0.0, 'z': 0.0, 'w': 0.5}}}]
+FALLING = {'id': 'box', 'primitives': [{'type': 1, 'dimensions': BOX}], 'trajectory': {'waypoints': FALL}}
 
 
 # The arm moves for 2 s, between a wedge (a mesh) and a cloud of points.
@@ -135,7 +136,7 @@ def change(thing):
         raise Failure(f"apply_scene: {answer['message']}")
 
 
-def checked(row, *query, files=()):
+def checked(row, *query, files=(), robot=True):
     """Prints the line of cprox_check about the certificate of a row, for the same query read from files: words of `cprox
     check`, and {option: text of a file}."""
     proof = bytes(row['certificate'])
@@ -147,7 +148,8 @@ def checked(row, *query, files=()):
             words += [option, os.path.join(folder, option[2:])]
             with open(words[-1], 'w') as out:
                 out.write(text)
-        line = run('cprox', 'check', *words, '--robot', ROBOT, *query).strip()
+        words += ['--robot', ROBOT] if robot else []
+        line = run('cprox', 'check', *words, *query).strip()
     print(f'   cprox_check: {line.partition(": ")[2]}')
 
 
@@ -164,6 +166,13 @@ def checked_arm(row, trajectory, things):
         scene = yaml.safe_load(text)
     scene['world']['collision_objects'] += things
     checked(row, files=[('--trajectory', yaml.safe_dump({'joint_trajectory': trajectory})), ('--scene', yaml.safe_dump(scene))])
+
+
+def checked_fall(row):
+    with open(SCENE) as text:
+        scene = yaml.safe_load(text)
+    scene['world']['collision_objects'].append(FALLING)
+    checked(row, '--movers', files=[('--scene', yaml.safe_dump(scene))], robot=False)
 
 
 def tool_path(t0=0.0, t1=1.0):
@@ -211,10 +220,11 @@ def ask_and_tell():
     checked_tool(hit, REACHING)
 
     print('\n4. A box is dropped past the shelf, and turns: how close does it come?   rosservice call ~distance')
-    change({'id': 'box', 'primitives': [{'type': 1, 'dimensions': BOX}], 'trajectory': {'waypoints': FALL}})
-    fall, = ask('distance', movers=True)
+    change(FALLING)
+    fall, = ask('distance', movers=True, certificate=True)
     change({'id': 'box', 'operation': 1})
     print(f"   {1e3 * float(fall['upper']):.6f} mm, to {fall['b']}, at t = {float(fall['t']):.4f} s of the fall.")
+    checked_fall(fall)
 
     print('\n5. The arm moves between a wedge and a cloud: how close does it come?   rosservice call ~distance')
     for thing in BESIDE:

@@ -110,8 +110,8 @@ struct Whom {
  *  moving objects or links ("name/link"), result.t is the time [s]. query.links: only pairs with one of these movers
  *  ("name") or links ("name/link"), and a is one of these; an object of one pose is measured against objects that stand
  *  only if it is named. query.objects: only pairs with one of these objects, that
- * stand or move, or robots. query.options.interval: only these times. Queries take no per_object, signed_distance or
- * certificate: such a query is refused, with status "invalid".
+ * stand or move, or robots. query.options.interval: only these times. Queries take no per_object and no
+ *  signed_distance: such a query is refused, with status "invalid".
  *  Of one of the robots: kind is "environment", a is its link or carried object by its own name. query.links: only
  *  these of its own. */
 Answer ask(const Movers &movers, const Whom &whom, const Query &query, Workspace &workspace);
@@ -173,6 +173,11 @@ MoversClearance clearanceGradients(const Movers &movers, Against against, const 
  *  Error for what ask() refuses. */
 Violations violations(const Movers &movers, const Whom &whom, double resolution, const Query &query,
                       Workspace &workspace);
+
+/** The query as the checker of certificates reads it, but for its head (doc/certificates.md); empty where there is
+ *  nothing to measure, or where a body or a motion is of a kind that has no certificates. Throws Error for a name that
+ *  is none. */
+std::string describeQuery(const Movers &movers, const Whom &whom, const Query &query);
 
 } // namespace curve_proximity
 #endif

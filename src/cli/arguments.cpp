@@ -283,9 +283,9 @@ void readErrorsWords(const Words &words, Arguments &out) {
 void readMoversWords(const Words &words, Arguments &out) {
   refuse(words, "--movers",
          {"--curves", "--against", "--trajectory", "--signed", "--robot", "--srdf", "--state", "--per-object",
-          "--per-link", "--links", "--objects", "--certificate", "--second-opinion", "--errors"});
+          "--per-link", "--links", "--objects", "--second-opinion", "--errors"});
   if (!words.has("--scene")) throw BadUsage("--movers needs --scene SCENE.yaml: what moves in it is asked about");
-  out.action = Action::MOVERS;
+  if (out.action == Action::CURVES) out.action = Action::MOVERS;
   out.scene = words.text("--scene");
   out.self = words.has("--self");
 }
@@ -294,12 +294,12 @@ void readMoversWords(const Words &words, Arguments &out) {
 void readPathWords(const Words &words, Arguments &out) {
   refuse(words, "--path",
          {"--curves", "--against", "--trajectory", "--movers", "--self", "--signed", "--per-link", "--links",
-          "--certificate", "--second-opinion", "--errors"});
+          "--second-opinion", "--errors"});
   if (!words.has("--scene")) throw BadUsage("--path needs --scene SCENE.yaml, what it is measured against");
   if (words.has("--radius") && words.has("--body"))
     throw BadUsage("--radius and --body exclude each other: a ball rides along the path, or the body");
   if (words.has("--radius")) out.radius = readNumber(words, "--radius", 0.0, true, "of at least 0 (metres)");
-  out.action = Action::MOVERS;
+  if (out.action == Action::CURVES) out.action = Action::MOVERS;
   out.path = words.text("--path");
   out.body = words.text("--body");
   readWorldWords(words, out);

@@ -25,6 +25,7 @@
 #include "csv.h"
 #include "failure.h"
 #include "json.h"
+#include "moving_world.h"
 #include "trajectory.h"
 #include "world.h"
 
@@ -270,9 +271,25 @@ void tellCurves(const Arguments &arguments, Console &console, Checkers &checkers
     checkers.add(none.empty() ? moverOf(*row) : noMoverLine(rowId(row->text)));
 }
 
+/* The robot, or null: what moves in the scene, or a body along a path. A row of the robot itself follows. */
+void tellMovers(const Arguments &arguments, const World &world, std::shared_ptr<const RobotMotion> motion,
+                Checkers &checkers) {
+  const MovingWorld moving = gatherMovers(arguments, world, motion);
+  const std::string query = problemOf(askedAmong(moving, arguments).subject, arguments.query).text;
+  checkers.begin("");
+  checkers.add(query.empty() ? problemHead() + noMoverLine("movers") : query);
+  if (!motion || !arguments.self) return;
+  const std::string own = describeQuery(*moving.subject->motion, true, arguments.query);
+  checkers.add(own.empty() ? noMoverLine("self") : own);
+}
+
 void tellTrajectory(const Arguments &arguments, Console &console, Checkers &checkers) {
   Warnings warnings;
-  const World world = readStandingWorld(arguments, "'check'", warnings);
+  const World world = readWorld(arguments, warnings);
+  if (world.moves()) {
+    tellMovers(arguments, world, std::make_shared<const RobotMotion>(readMotion(arguments, world, warnings)), checkers);
+    return console.warn(warnings);
+  }
   const RobotMotion motion = readMotion(arguments, world, warnings);
   warnOfUnprovable(unprovable(motion, false, arguments.query), warnings);
   if (arguments.self) warnOfUnprovable(unprovable(motion, true, arguments.query), warnings);
@@ -283,6 +300,13 @@ void tellTrajectory(const Arguments &arguments, Console &console, Checkers &chec
     const std::string query = describeQuery(motion, self, arguments.query);
     checkers.add(query.empty() ? noMoverLine(self ? "self" : "environment") : query);
   }
+}
+
+void tellMoving(const Arguments &arguments, Console &console, Checkers &checkers) {
+  Warnings warnings;
+  const World world = readWorld(arguments, warnings);
+  tellMovers(arguments, world, nullptr, checkers);
+  console.warn(warnings);
 }
 
 void tellPairs(const Arguments &arguments, Checkers &checkers) {
@@ -303,6 +327,8 @@ int checkCertificates(const Arguments &arguments, Console &console) {
   Checkers checkers(arguments.certificate, arguments.threads, arguments.json);
   if (!arguments.trajectory.empty())
     tellTrajectory(arguments, console, checkers);
+  else if (arguments.curves.empty())
+    tellMoving(arguments, console, checkers);
   else if (arguments.against.empty())
     tellCurves(arguments, console, checkers);
   else

@@ -18,7 +18,6 @@ void checkAsked(const Arguments &arguments) {
   const auto refuse = [&](const std::string &what) {
     throw BadUsage(arguments.scene + ": " + what + " is not available where objects or further robots move");
   };
-  if (!arguments.certificate.empty()) refuse("--certificate");
   if (arguments.query.options.signed_distance) refuse("--signed");
 }
 

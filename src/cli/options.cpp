@@ -197,15 +197,15 @@ const std::vector<Option> &options() {
       {"--separation", "FILE", "speed",
        "the constants of ISO/TS 15066: person: {speed, position}, robot: {reaction_time, stopping_time, position, "
        "speed}, intrusion (doc/separation.md)"},
-      {"--movers", "", "queries",
+      {"--movers", "", "queries check",
        "what moves in the scene, instead of curves or a robot: against what stands there, and against each other"},
-      {"--path", "FILE", "queries",
+      {"--path", "FILE", "queries check",
        "nav_msgs/Path, as rostopic prints it: straight from pose to pose, turning at a constant rate, at the times of "
        "the stamps; where these do not ascend, t counts poses"},
-      {"--body", "FILE", "queries",
+      {"--body", "FILE", "queries check",
        "with --path: {id, pose, padding, primitives, meshes, bodies, ...} as an object of a scene; with an id alone: "
        "the object of that id that a link of --robot carries, along poses of the link"},
-      {"--radius", "R", "queries", "with --path, instead of --body: a ball of R metres (default 0, a point)"},
+      {"--radius", "R", "queries check", "with --path, instead of --body: a ball of R metres (default 0, a point)"},
       {"--self", "", "queries report check robust", "how close the robot comes to itself, too"},
       {"--shortest-way", "", "queries report check certify constraints robust speed margins sweep",
        "continuous joints turn the shorter way between two waypoints, from 3.1 to -3.1 by 0.083 rad"},

@@ -48,7 +48,7 @@ static bool is_bounded(const bytes *genuine, size_t size, const finding *found) 
 }
 
 /* Targets come nearer by up to a tenth, or the motion goes farther by up to a third. */
-static void change(robot_query *q, rng *r) {
+static void change(robot_query *q, rng *r, cprox_workspace *ws) {
   if (q->n > 0 && rng_index(r, 2)) {
     for (size_t i = 0; i < q->n; i++)
       q->targets[i].pose.position = vec_scale(1.0 - rng_log_uniform(r, 1e-6, 0.1), q->targets[i].pose.position);
@@ -60,7 +60,7 @@ static void change(robot_query *q, rng *r) {
     for (size_t k = 0; k < t->n_variables; k++)
       t->positions[i][k] = t->positions[0][k] + more * (t->positions[i][k] - t->positions[0][k]);
   robot_rebuild(t);
-  q->mover.motion = t->motion;
+  robot_query_renew(q, ws);
 }
 
 /* The files of a query, NULL where none are wanted. */
@@ -104,7 +104,7 @@ static void try_query(robot_query *q, size_t number, size_t mutants, rng *r, cpr
   robot_text_free(&text);
   for (size_t k = 0; k < mutants / 4; k++) {
     double changed[2];
-    change(q, r);
+    change(q, r, ws);
     if (!ask(q, r, ws, NULL, changed, NULL)) continue;
     text = robot_text_of(&q->mover, q->targets, q->n, ws);
     const finding found = robot_text_check(&text, genuine->at, genuine->n);
@@ -127,6 +127,7 @@ int main(int argc, char **argv) {
   for (size_t i = 0; i < queries;) {
     robot_query q;
     robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), i % 3 == 2, ws);
+    if (i % 4 == 3) robot_query_fly(&q, &r, ws);
     if (argc == 4) { /* the program in Python knows neither */
       if (i % 3 == 1) robot_query_inequalities(&q, &r, ws);
       robot_query_whole(&q, &r);

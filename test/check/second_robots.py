@@ -70,6 +70,16 @@ class Pose:
         return Pose(add(self.p, turn(self.q, inner.p)), times(self.q, inner.q))
 
 
+def slerp(p, q, u):
+    """Between unit vectors, the shorter way."""
+    along = sum(a * b for a, b in zip(p, q))
+    q = [math.copysign(1.0, along) * x for x in q]
+    angle = 2.0 * math.asin(min(1.0, math.sqrt(sum((a - b)**2 for a, b in zip(p, q))) / 2.0))
+    if angle < 1e-12:
+        return p
+    return [(math.sin((1 - u) * angle) * a + math.sin(u * angle) * b) / math.sin(angle) for a, b in zip(p, q)]
+
+
 # ---- the text --------------------------------------------------------------------------------------------------------------
 
 
@@ -162,38 +172,15 @@ class Body:
         return rim + [-s[0] if self.kind == 'cone' else math.copysign(s[0], d[2])]
 
 
-class Robot:
-    def __init__(self, words, lines, targets):
-        self.id = words.word()
-        links, parts, variables = words.count(), words.count(), words.count()
-        self.links = []
-        for _ in range(links):
-            w = Words(next(lines))
-            w.word()
-            parent, kind, x = w.count(), w.word(), w.numbers(10)
-            self.links.append((parent, kind, Pose(x[:3], x[3:7]), x[7:], w.count(), w.number(), w.number()))
-        self.bodies = []
-        for _ in range(parts):
-            w = Words(next(lines))
-            w.word()
-            link = w.count()
-            self.bodies.append((link, Body(w)))
-        self.bodies += [(-1, target) for target in targets]
-        w = Words(next(lines))
-        w.word()
-        self.pairs = [(w.count(), w.count()) for _ in range(w.count())]
-        w = Words(next(lines))
-        w.word()
-        self.rest = w.numbers(variables)
-        self.read_motion(lines)
+class Motion:
+    """Some variables, over times of their own that begin later by `start`."""
 
-    def read_motion(self, lines):
-        w = Words(next(lines))
-        w.word()
-        self.spline = w.word() == 'bspline'
-        self.order = w.count()
-        self.variables = [w.count() for _ in range(w.count())]
-        n = w.count()
+    def __init__(self, words, lines, start):
+        kind = words.word()
+        self.spline, self.slerps = kind == 'bspline', kind == 'slerp'
+        self.order = words.count()
+        self.variables = [words.count() for _ in range(words.count())]
+        n = words.count()
         self.times, self.points = [], []
         if self.spline:
             knots = Words(next(lines))
@@ -209,14 +196,19 @@ class Robot:
             self.points.append([w.numbers(len(self.variables)) for _ in range(w.count())])
         if self.spline:
             self.times = [self.knots[i] for i in range(self.order, n) if self.knots[i] < self.knots[i + 1]] + [self.knots[n]]
+        self.clock = [t + start for t in self.times]
 
-    # ---- its motion ----
-
-    def values(self, segment, u):
-        out = list(self.rest)
+    def fill(self, clock, balls, out):
+        """Writes its values at a time of the clock. balls: the first variables of quaternions."""
+        inside = min(max(clock, self.clock[0]), self.clock[-1])
+        segment = max(i for i in range(len(self.clock) - 1) if i == 0 or self.clock[i] <= inside)
+        u = (inside - self.clock[segment]) / (self.clock[segment + 1] - self.clock[segment])
         for k, variable in enumerate(self.variables):
             out[variable] = self.on_spline(segment, u, k) if self.spline else self.by_hermite(segment, u, k)
-        return out
+        for v in balls if self.slerps else ():
+            if v in self.variables:
+                p, q = (unit([self.points[i][0][self.variables.index(v + k)] for k in range(4)]) for i in (segment, segment + 1))
+                out[v:v + 4] = slerp(p, q, u)
 
     def by_hermite(self, segment, u, k):
         p, q, h = self.points[segment], self.points[segment + 1], self.times[segment + 1] - self.times[segment]
@@ -244,6 +236,52 @@ class Robot:
                 (self.knots[i + degree + 1] - t) / right * weight(i + 1, degree - 1) if right > 0 else 0.0)
 
         return sum(weight(i, self.order) * self.points[i][k] for i in range(span - self.order, span + 1))
+
+
+class Robot:
+    def __init__(self, words, lines, targets):
+        self.id = words.word()
+        links, parts, variables = words.count(), words.count(), words.count()
+        self.links = []
+        for _ in range(links):
+            w = Words(next(lines))
+            w.word()
+            parent, kind, x = w.count(), w.word(), w.numbers(10)
+            self.links.append((parent, kind, Pose(x[:3], x[3:7]), x[7:], w.count(), w.number(), w.number()))
+        self.bodies = []
+        for _ in range(parts):
+            w = Words(next(lines))
+            w.word()
+            link = w.count()
+            self.bodies.append((link, Body(w)))
+        self.bodies += [(-1, target) for target in targets]
+        w = Words(next(lines))
+        w.word()
+        self.pairs = [(w.count(), w.count()) for _ in range(w.count())]
+        w = Words(next(lines))
+        w.word()
+        self.rest = w.numbers(variables)
+        w = Words(next(lines))
+        w.word()
+        self.motions = []
+        if w.words[0] != 'joined':
+            self.motions.append(Motion(w, lines, 0.0))
+        else:
+            w.word()
+            for _ in range(w.count()):
+                start, head = Words(next(lines)), Words(next(lines))
+                start.word(), head.word()
+                self.motions.append(Motion(head, lines, start.number()))
+        self.times = sorted({t for one in self.motions for t in one.clock})
+
+    # ---- its motion ----
+
+    def values(self, segment, u):
+        out = list(self.rest)
+        balls = [link[4] + 3 for link in self.links if link[1] == 'floating']
+        for one in self.motions:
+            one.fill((1 - u) * self.times[segment] + u * self.times[segment + 1], balls, out)
+        return out
 
     def poses(self, segment, u):
         """Of all bodies."""

@@ -163,6 +163,29 @@ CASE(robots_beside_bodies_by_inequalities_leave_certificates_that_hold) {
   cprox_certificate_free(c);
 }
 
+/* 60 robots with a body beside them that turns by slerp, on one clock (seed 9); before a motion begins and after it has
+ * ended the robot or the body stands. */
+CASE(bodies_that_turn_by_slerp_beside_robots_leave_certificates_that_hold) {
+  static tally sum[3];
+  cprox_certificate *c = cprox_certificate_create();
+  rng r = rng_seed(9);
+  for (size_t i = 0; i < test_cases(60); i++) {
+    robot_query q;
+    robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
+    robot_query_fly(&q, &r, ws);
+    robot_query_whole(&q, &r);
+    char name[40];
+    snprintf(name, sizeof name, "robot %zu", i);
+    ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);
+    robot_query_free(&q);
+  }
+  print_tally("robots and a body by slerp, distance to 1e-5", &sum[0]);
+  print_tally("robots and a body by slerp, .9 of it", &sum[1]);
+  print_tally("robots and a body by slerp, 1.1 of it", &sum[2]);
+  assert_true(sum[0].apart > test_cases(20));
+  cprox_certificate_free(c);
+}
+
 /* A crank round a coaxial cylinder, and a wheel that turns about its own axis beside a box: the distance stays the same,
  * or nearly, however far they turn. */
 CASE(turning_cranks_and_wheels_leave_certificates_that_hold) {

@@ -201,10 +201,53 @@ class Movers(Case):
         row, = self.scene('violations', FALL, '--movers', '--delta', '0.018').rows
         self.assertEqual((row['verdict'], row['a'], row['b']), ('violated', 'box', 'shelf'))
 
+    def proven(self, ask, query_type, scene, *more):
+        """What cprox_check says about the answers of a query."""
+        proofs = self.folder + '/proofs'
+        answer = ask(query_type, scene, *more, '--certificate', proofs)
+        self.assertEqual(answer.err, '')
+        words = [word for word in more if word in ('--movers', '--self')]
+        arguments = ['--scene', self.folder + '/scene.yaml', *words]
+        if ask == self.robot:
+            arguments += ['--robot', self.folder + '/robot.urdf', '--trajectory', self.folder + '/go.yaml']
+        checked = cprox('check', proofs, *arguments)
+        self.assertEqual((checked.code, checked.err), (0, ''), checked.out)
+        return checked.out
+
+    def proofs_of_what_moves_are_accepted(self):
+        """A body that turns by slerp; a robot beside a ball and beside another robot, on one clock."""
+        said = self.proven(self.scene, 'distance', FALL, '--movers')
+        self.assertAlmostEqual(float(said.split('farther than ')[1].split()[0]), 0.3 - 0.2 * math.sqrt(2), delta=3e-6)
+        self.assertIn('everywhere', said)
+        self.assertIn('farther than 0.017', self.proven(self.scene, 'tolerance', FALL, '--movers', '--delta', '0.017'))
+        self.assertIn('not farther than 0.01', self.proven(self.scene, 'tolerance', FALL, '--movers', '--delta', '0.018'))
+        self.assertIn('everywhere', self.proven(self.scene, 'time-of-contact', FALL, '--movers'))
+        self.assertIn(' before ', self.proven(self.scene, 'time-of-contact', FALL.replace('-0.8, 0]', '0, 0]'), '--movers'))
+        self.assertIn(' from ', self.proven(self.scene, 'profile', FALL, '--movers', '--intervals', '5'))
+        self.assertIn('not farther than', self.proven(self.scene, 'violations', FALL, '--movers', '--delta', '0.018'))
+        late, second = BALL.replace('START', '3'), SECOND.replace('NAME', 'other').replace('START', '0')
+        self.assertIn('from 0 to 4', self.proven(self.robot, 'distance', late))
+        self.assertIn('not farther than', self.proven(self.robot, 'collision', BALL.replace('START', '0')))
+        self.assertIn('everywhere', self.proven(self.robot, 'tolerance', second, '--self', '--delta', '0.01'))
+        self.assertIn(' from ', self.proven(self.robot, 'profile', late, '--intervals', '3'))
+
+    def a_proof_of_another_fall_is_refused(self):
+        proofs = self.folder + '/proofs'
+        self.scene('tolerance', FALL, '--movers', '--delta', '0.017', '--certificate', proofs)
+        for change, into in (('0.8, 0]', '0.79, 0]'), ('[0, 0, 2]}', '[0, -0.01, 2]}'), ('[0, 0, -2]', '[0, -0.1, -2]')):
+            with self.subTest(into=into):
+                checked = cprox('check', proofs, '--movers', '--scene', self.file('other.yaml', FALL.replace(change, into)))
+                self.assertEqual(checked.code, 1, checked.out)
+                self.assertIn('refused', checked.out)
+
+    def starts_with_a_tolerance_have_no_proof(self):
+        answer = self.robot('distance', BALL.replace('START', '2\n        start_tolerance: 0.5'), '--certificate', self.folder + '/proofs')
+        self.assertEqual(answer.row('go')['proof'], 'none')
+        self.assertIn('starts with a tolerance', answer.err)
+
     def what_does_not_know_movers_says_so(self):
         ball = BALL.replace('START', '0')
-        for more in (('--signed',), ('--certificate', self.folder + '/c')):
-            self.assertRefused(self.robot('distance', ball, *more), 'not available where objects or further robots move')
+        self.assertRefused(self.robot('distance', ball, '--signed'), 'not available where objects or further robots move')
         curves = self.file('curves.csv', 'c,bezier,1,0,1,0,2,0,0,0,1,0,0\n')
         self.assertRefused(self.scene('distance', ball, '--curves', curves), "object 'ball' moves along a trajectory")
         self.assertRefused(self.scene('distance', 'world: {}', '--movers'), 'nothing moves in this scene')

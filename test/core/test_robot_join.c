@@ -674,12 +674,16 @@ CASE(what_cannot_be_joined_gets_a_sentence) {
   cprox_motion_evaluate(motion, a.times[1], values);
   assert_memory_equal(values + 7, pose, sizeof pose);
 
-  /* certificates are about one robot */
+  /* certificates know when everything starts */
   cprox_certificate *certificate = cprox_certificate_create();
   assert_non_null(certificate);
+  cprox_motion_free(motion);
+  motion = NULL;
+  joined[0].tolerance = 0.5;
+  assert_int_equal(join(robot, joined, 2, &motion), CPROX_OK);
   refused(certify_of_list(cprox_robot_self(motion, &(cprox_robot_pair){0, 1}, 1), NULL, 0, 0.0, NULL, NULL, ws,
                           certificate),
-          "no certificates: joined motions");
+          "no certificates: starts with a tolerance");
   cprox_certificate_free(certificate);
   cprox_motion_free(motion);
   cprox_motion_free(stand);

@@ -56,10 +56,7 @@ static void describe_variables(text *t, const motion_given *g) {
   say(t, " %zu\n", g->n_points);
 }
 
-static void describe_motion(text *t, const cprox_motion *motion) {
-  const motion_given *g = &motion->given;
-  say(t, "rest");
-  describe_values(t, motion->rest, motion->robot->n_variables);
+static void describe_given(text *t, const motion_given *g) {
   if (g->degree > 0) {
     say(t, "motion bspline %zu", g->degree);
     describe_variables(t, g);
@@ -71,11 +68,28 @@ static void describe_motion(text *t, const cprox_motion *motion) {
     }
     return;
   }
-  say(t, "motion waypoints %d", (int)g->interpolation);
+  say(t, "motion %s %d", g->turning == CPROX_TURNING_SLERP ? "slerp" : "waypoints", (int)g->interpolation);
   describe_variables(t, g);
   for (size_t i = 0; i < g->n_points; i++) {
     say(t, "at %a %d", g->times[i], (int)g->orders[i]);
     describe_values(t, g->values + 3 * i * g->n, g->orders[i] * g->n);
+  }
+}
+
+static void describe_motion(text *t, const cprox_motion *motion) {
+  say(t, "rest");
+  describe_values(t, motion->rest, motion->robot->n_variables);
+  if (!motion->sources) {
+    describe_given(t, &motion->given);
+    return;
+  }
+  size_t n = 0;
+  for (size_t i = 0; i < motion->n_joined; i++) n += motion->sources[i].times != NULL;
+  say(t, "motion joined %zu\n", n);
+  for (size_t i = 0; i < motion->n_joined; i++) {
+    if (!motion->sources[i].times) continue;
+    say(t, "start %a\n", motion->sources[i].start);
+    describe_given(t, &motion->sources[i]);
   }
 }
 

@@ -20,8 +20,9 @@ static const double STEPS_BACK = 16.0;
 static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle *targets, size_t n,
                                 cprox_workspace *workspace) {
   if (!motion_is_described(motion))
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "no certificates: joined motions, and joints that turn by slerp, screws or rotation vectors");
+    return workspace_fail(
+        workspace, CPROX_INVALID,
+        "no certificates: starts with a tolerance, and joints that move by screws or rotation vectors");
   const cprox_robot *robot = motion->robot;
   const size_t geometry = describe_unknown_geometry(robot);
   if (geometry < robot->n_geometries)

@@ -126,9 +126,8 @@ static void add_times(const query *q, const motion_interval *over, const edge_op
 
 static bool can_ask(const query *q, size_t first, size_t last, motion_interval *over) {
   const cprox_motion *m = q->mover.motion;
-  if (!query_wants_verdict(q) || q->choice != PAIRS_ALL || q->options.max_lod != CPROX_LOD_MESH ||
-      q->options.certificate || q->is_signed || m->n_tracks != 1 || m->tracks[0].tolerance > 0.0 ||
-      last - first > MOST_TARGETS || !(q->limit < 1e6))
+  if (!query_wants_verdict(q) || q->choice != PAIRS_ALL || q->options.max_lod != CPROX_LOD_MESH || q->is_signed ||
+      m->n_tracks != 1 || m->tracks[0].tolerance > 0.0 || last - first > MOST_TARGETS || !(q->limit < 1e6))
     return false;
   *over = motion_interval_of(m, q->t0, q->t1);
   return over->last - over->first <= MOST_SEGMENTS;

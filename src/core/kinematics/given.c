@@ -21,7 +21,8 @@ static bool make_room(motion_given *g, const int32_t *variables, size_t per_poin
 bool motion_keep_waypoints(motion_given *g, const cprox_motion_description *d) {
   const cprox_waypoint *points = d->waypoints;
   const size_t n = d->n_variables, n_points = d->n_waypoints;
-  *g = (motion_given){.interpolation = d->interpolation, .n = n, .n_points = n_points, .n_times = n_points};
+  *g = (motion_given){
+      .interpolation = d->interpolation, .turning = d->turning, .n = n, .n_points = n_points, .n_times = n_points};
   if (!make_room(g, d->variables, 3 * n)) return false;
   for (size_t i = 0; i < n_points; i++) {
     const double *rows[3] = {points[i].positions, points[i].velocities, points[i].accelerations};
@@ -54,6 +55,18 @@ bool motion_keep_points(motion_given *g, const motion_given *from, int32_t first
   }
   for (size_t k = 0; k < g->n; k++) g->variables[k] = first_variable + from->variables[k];
   if (g->n_times > 0) memcpy(g->times, from->times, g->n_times * sizeof *from->times);
+  return true;
+}
+
+bool motion_keep_joined(motion_given *g, const motion_given *from, int32_t first_variable, double start) {
+  const size_t per_point = (from->degree > 0 ? 1 : 3) * from->n;
+  *g = *from;
+  g->start = start;
+  if (!make_room(g, from->variables, per_point)) return false;
+  for (size_t k = 0; k < g->n; k++) g->variables[k] += first_variable;
+  memcpy(g->times, from->times, g->n_times * sizeof *g->times);
+  memcpy(g->orders, from->orders, g->n_points * sizeof *g->orders);
+  memcpy(g->values, from->values, g->n_points * per_point * sizeof *g->values);
   return true;
 }
 

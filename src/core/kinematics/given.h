@@ -11,6 +11,8 @@
 typedef struct motion_given {
   size_t degree; /* of a B-spline; 0: waypoints */
   cprox_interpolation interpolation;
+  cprox_turning turning;
+  double start;                /* [s] on the clock of a joined motion */
   size_t n, n_points, n_times; /* variables; waypoints or control points; times or knots */
   int32_t *variables;
   double *times;
@@ -23,6 +25,9 @@ typedef struct motion_given {
 bool motion_keep_waypoints(motion_given *given, const cprox_motion_description *description);
 bool motion_keep_spline(motion_given *given, const cprox_motion_description *description);
 bool motion_keep_points(motion_given *given, const motion_given *from, int32_t first_variable);
+
+/* All of it, as part of a joined motion that starts it at this time. */
+bool motion_keep_joined(motion_given *given, const motion_given *from, int32_t first_variable, double start);
 
 void motion_given_free(motion_given *given);
 

@@ -233,7 +233,7 @@ double motion_time_below(const cprox_motion *m, size_t segment, double u) {
 bool motion_is_described(const cprox_motion *motion) {
   bool vectors = false;
   for (size_t i = 0; i < motion->robot->n_axes; i++) vectors = vectors || motion->robot->axes[i].kind == AXIS_VECTOR;
-  return motion->given.times && !motion->arc_of && !vectors;
+  return (motion->given.times || motion->sources) && motion->given.turning != CPROX_TURNING_SCREW && !vectors;
 }
 
 cprox_motion_info cprox_motion_get_info(const cprox_motion *motion) {

@@ -53,8 +53,9 @@ struct cprox_motion {
   double *norm;     /* of a quaternion: at least this everywhere */
   int32_t *arc_of;  /* of an axis, which of its track's joints by arcs; -1: none. NULL: there are none at all */
   double *sagitta;  /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
-  motion_given given;   /* of a joined one nothing, but */
-  motion_given *joined; /* what each of its motions was made of (motion_keep_points()); NULL: it is none */
+  motion_given given;    /* of a joined one nothing, but */
+  motion_given *joined;  /* what each of its motions was made of (motion_keep_points()); NULL: it is none */
+  motion_given *sources; /* the same, whole; none of those that stand. NULL: certificates do not know them */
   size_t n_joined;
   double *part_error; /* every point of a part is computed within this of where it is */
   part_sweep *sweeps; /* of each part, where there are several tracks; else NULL */

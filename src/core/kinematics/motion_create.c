@@ -174,7 +174,9 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion->sagitta);
   motion_given_free(&motion->given);
   for (size_t i = 0; i < motion->n_joined; i++) motion_given_free(&motion->joined[i]);
+  for (size_t i = 0; i < motion->n_joined && motion->sources; i++) motion_given_free(&motion->sources[i]);
   free(motion->joined);
+  free(motion->sources);
   free(motion);
 }
 

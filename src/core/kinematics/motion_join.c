@@ -244,6 +244,27 @@ static void copy_robot(cprox_motion *m, const cprox_motion *from, size_t variabl
     if (from->robot->axes[i].kind == AXIS_BALL) m->arc_of[axis + i] = from->arc_of[i];
 }
 
+/* Whether certificates know a motion, so joined. */
+static bool is_source(const cprox_joined_motion *one) {
+  return one->motion->is_state ||
+         (one->tolerance == 0.0 && one->motion->given.times && motion_is_described(one->motion));
+}
+
+/* False where memory is out. */
+static bool copy_sources(cprox_motion *m, const cprox_joined_motion *joined) {
+  for (size_t i = 0; i < m->n_joined; i++)
+    if (!is_source(&joined[i])) return true;
+  m->sources = calloc(m->n_joined, sizeof *m->sources);
+  size_t variable = 0;
+  for (size_t i = 0; i < m->n_joined && m->sources; i++) {
+    const cprox_motion *from = joined[i].motion;
+    if (!from->is_state && !motion_keep_joined(&m->sources[i], &from->given, (int32_t)variable, joined[i].start))
+      return false;
+    variable += from->robot->n_variables;
+  }
+  return m->sources;
+}
+
 static bool copy_motions(cprox_motion *m, const motion_source *s, const cprox_joined_motion *joined) {
   size_t variable = 0, axis = 0, track = 0, slot = 0;
   for (size_t i = 0; i < s->description->n_joined; i++) {
@@ -280,7 +301,8 @@ static cprox_motion *make_joined(const motion_source *s, const clock_range *whol
   if (!m) free(times);
   if (m) m->times = times, m->n_segments = count - 1;
   if (m && (m->joined = calloc(n, sizeof *m->joined))) m->n_joined = n;
-  if (m && m->joined && (arcs == 0 || motion_allocate_arcs(m)) && copy_motions(m, s, joined)) return m;
+  if (m && m->joined && (arcs == 0 || motion_allocate_arcs(m)) && copy_sources(m, joined) && copy_motions(m, s, joined))
+    return m;
   cprox_motion_free(m);
   return NULL;
 }

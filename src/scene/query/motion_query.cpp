@@ -146,19 +146,7 @@ std::string describeQuery(const RobotMotion &motion, bool self, const Query &que
   if (asked.pairs.empty()) return {};
   std::vector<std::string> names;
   for (const std::size_t item : asked.items) names.push_back(*asked.data.snapshot->world().items()[item].owner);
-  const std::string bodies = targetLines(asked.targets, names);
-  if (bodies.empty()) return {};
-  const std::string id = wordOf(motion.data().id + (self ? ".self" : ".environment"));
-  Workspace workspace;
-  const cprox_mover mover = asked.mover();
-  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
-  const auto describe = [&](char *text, std::size_t size) {
-    return cprox_mover_describe(&mover, obstacles.get(), id.c_str(), workspace.get(), text, size);
-  };
-  std::string robot(describe(nullptr, 0) + 1, '\0');
-  if (describe(robot.data(), robot.size()) == 0) return {};
-  robot.pop_back();
-  return bodies + robot;
+  return describeQuery(asked.mover(), asked.targets, names, motion.data().id + (self ? ".self" : ".environment"));
 }
 
 std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Query &query) {

@@ -11,13 +11,13 @@
 
 #include "answering.h"
 #include "motion/movers_data.h"
+#include "proving.h"
 #include "second_opinion.h"
 
 namespace curve_proximity {
 namespace {
 
 std::string faultOfMovers(const Query &query) {
-  if (query.options.certificate) return "a certificate does not apply: movers on one clock have none";
   if (query.options.signed_distance) return "signed_distance does not apply: movers on one clock have no depth";
   return faultOfMotion(query, true);
 }
@@ -192,12 +192,17 @@ struct AskedMovers {
   }
 };
 
+/* Leaves the proof of an answer, by its interval in the core's numbers. */
+using Prove = void (*)(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+                       const cprox_result &result, Workspace &workspace, Answer &answer);
+
 template <class Core>
-Answer answerOf(const Movers &movers, const AskedMovers &asked, const std::string &fault, const Workspace &workspace,
-                Core core) {
+Answer answerOf(const Movers &movers, const AskedMovers &asked, const std::string &fault, Prove prove,
+                Workspace &workspace, Core core) {
   const Movers::Data &data = movers.data();
   const Query &query = asked.query;
   const std::string kind = asked.kind();
+  cprox_certificate_clear(query.options.certificate);
   if (!fault.empty()) return refusal("movers", kind, fault);
   const Clock::time_point start = Clock::now();
   Pairs pairs;
@@ -210,12 +215,15 @@ Answer answerOf(const Movers &movers, const AskedMovers &asked, const std::strin
   answer.id = "movers";
   answer.kind = kind;
   answer.result.obstacle_index = -1;
+  cprox_result found{};
+  found.status = CPROX_INVALID;
   if (pairs.environment.empty() && pairs.among.empty()) {
     answerNothing(query, answer.result);
     answer.result.t_contact_lower = movers.domain()[1];
   } else {
     core(joinedMover(data, pairs), targetsOf(data, pairs), answer.result);
     if (answer.result.status < 0) answer.message = workspace.reason();
+    found = answer.result;
     nameSides(data, pairs.against, query, answer);
   }
   if (query.moving_only && answer.result.status >= 0)
@@ -226,6 +234,8 @@ Answer answerOf(const Movers &movers, const AskedMovers &asked, const std::strin
   answer.status = cprox_status_name(answer.result.status);
   applyCoverage(coverageOf(data, pairs, query), query, answer);
   refuseSecondOpinion(query, "the peers are not asked about what moves beside the robot", answer);
+  if (query.options.certificate)
+    prove(query, joinedMover(data, pairs), targetsOf(data, pairs), found, workspace, answer);
   return answer;
 }
 
@@ -304,7 +314,7 @@ void differentiate(const Movers &movers, const AskedMovers &asked, Workspace &wo
   refuse(faultOfDistances(query));
   const double rounding = movers.data().rounding;
   out.answer =
-      answerOf(movers, asked, "", workspace,
+      answerOf(movers, asked, "", leaveProof, workspace,
                [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
                  const cprox_options options = withoutRounding(query.options, rounding);
                  const Obstacles obstacles(targets, CPROX_INDEX_NONE);
@@ -412,7 +422,7 @@ std::vector<ClearanceInterval> clearanceProfile(const Movers &movers, const Whom
   asked.query.options.interval = given.options.interval; // breaks say which times
   const Query &query = asked.query;
   refuse(faultOfMovers(query));
-  refuse(faultOfDistances(query));
+  refuse(faultOfDistances(withoutCertificate(query)));
   refuse(faultOfProfile(query, breaks, horizon));
   if (query.options.interval) throw Error("an interval does not apply: breaks say where a profile begins and ends");
   const Movers::Data &data = movers.data();
@@ -492,11 +502,12 @@ Answer ask(const Movers &movers, const Whom &whom, const Query &given, Workspace
   const Query &query = asked.query;
   const double rounding = movers.data().rounding;
   const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
-    const cprox_options options = withoutRounding(query.options, rounding);
+    cprox_options options = withoutRounding(query.options, rounding);
+    options.certificate = nullptr;
     result.status = askCore(query, options, mover, targets, workspace, result);
     if (result.status >= 0) widen(query, rounding, INFINITE, result);
   };
-  return asked.seen(answerOf(movers, asked, faultOfMovers(query), workspace, core));
+  return asked.seen(answerOf(movers, asked, faultOfMovers(query), leaveProof, workspace, core));
 }
 
 Answer timeOfContact(const Movers &movers, const Whom &whom, const Query &given, Workspace &workspace) {
@@ -508,9 +519,20 @@ Answer timeOfContact(const Movers &movers, const Whom &whom, const Query &given,
     /* what is nearer than the rounding may be in contact: standing bodies grow by it */
     std::vector<cprox_obstacle> grown = targets;
     for (cprox_obstacle &target : grown) target.margin += movers.data().rounding;
-    searchContact(mover, grown, query, workspace, result);
+    searchContact(mover, grown, withoutCertificate(query), workspace, result);
   };
-  return asked.seen(answerOf(movers, asked, fault, workspace, core));
+  return asked.seen(answerOf(movers, asked, fault, leaveContactProof, workspace, core));
+}
+
+std::string describeQuery(const Movers &movers, const Whom &whom, const Query &given) {
+  const AskedMovers asked(whom, given);
+  const Movers::Data &data = movers.data();
+  const Pairs pairs = pairsOf(data, asked.against, asked.query);
+  if (pairs.environment.empty() && pairs.among.empty()) return {};
+  const std::vector<cprox_obstacle> targets = targetsOf(data, pairs);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < targets.size(); ++i) names.push_back(*data.snapshot->world().items()[i].owner);
+  return describeQuery(joinedMover(data, pairs), targets, names, asked.robot ? asked.robot->name : "movers");
 }
 
 } // namespace curve_proximity

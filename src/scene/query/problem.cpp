@@ -8,6 +8,7 @@
 #include "answering.h"
 #include "asked_pairs.h"
 #include "base/digest.h"
+#include "motion/movers_data.h"
 #include "proving.h"
 #include "targets.h"
 
@@ -78,8 +79,20 @@ Problem problemFor(const MotionSubject &subject, const Query &query) {
   return out;
 }
 
-Problem problemFor(const MoversSubject &, const Query &) {
-  return {};
+Problem problemFor(const MoversSubject &subject, const Query &query) {
+  Query of_part = query;
+  if (!subject.body.empty()) of_part.links = {subject.body};
+  const Whom whom = subject.robot ? Whom(*subject.robot) : Whom(subject.against);
+  Problem out;
+  const Movers::Data &data = subject.movers.data();
+  addDoubts(coverageOf(of_part, data.coverage, ""), {}, out);
+  if (!out.doubt.empty()) return out;
+  out.text = describeQuery(subject.movers, whom, of_part);
+  if (out.text.empty())
+    out.doubt = "there is nothing to measure, or something is of a kind that has no certificates";
+  else
+    out.text = problemHead() + out.text;
+  return out;
 }
 
 } // namespace
@@ -116,7 +129,6 @@ std::string unprovable(const CurveDescription &curve) {
 }
 
 std::string unprovable(const Subject &subject) {
-  if (std::holds_alternative<MoversSubject>(subject)) return "what moves on one clock has no certificates";
   const auto *motion = std::get_if<MotionSubject>(&subject);
   if (motion && motion->errors) return "an answer about errors has no certificate";
   const auto *curve = std::get_if<CurveSubject>(&subject);

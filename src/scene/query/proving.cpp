@@ -29,6 +29,13 @@ bool beginProof(const Query &query, const cprox_result &result, cprox_options &o
   return !answer.gap;
 }
 
+/* Is it all of a motion? */
+bool isWhole(const double *interval, const cprox_mover &mover) {
+  if (!interval || !mover.motion) return false;
+  const cprox_motion_info info = cprox_motion_get_info(mover.motion);
+  return interval[0] <= info.t0 && interval[1] >= info.t1;
+}
+
 } // namespace
 
 void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
@@ -40,6 +47,7 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
     answer.unproven = "there is nothing to measure";
     return;
   }
+  if (result.upper <= delta || isWhole(options.interval, mover)) options.interval = nullptr; // near is of one time
   ObstaclesHandle obstacles;
   cprox_status status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
   if (status == CPROX_OK)
@@ -54,7 +62,13 @@ void leaveContactProof(const Query &query, const cprox_mover &mover, const std::
   if (!beginProof(query, result, options, answer)) return;
   ObstaclesHandle obstacles;
   cprox_status status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
-  if (status == CPROX_OK)
+  if (isWhole(options.interval, mover)) options.interval = nullptr;
+  std::array<double, 2> before{};
+  if (options.interval && status == CPROX_OK) { // what was before its begin is not asked
+    before = {options.interval[0], std::min(result.t_contact_lower, options.interval[1])};
+    options.interval = before.data();
+    status = cprox_certify(mover, obstacles.get(), 0.0, nullptr, &options, workspace.get(), query.options.certificate);
+  } else if (status == CPROX_OK)
     status =
         cprox_certify_contact(mover, obstacles.get(), &result, &options, workspace.get(), query.options.certificate);
   if (status != CPROX_OK) answer.unproven = workspace.reason();
@@ -109,6 +123,22 @@ std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::v
     }
   }
   return "targets " + std::to_string(count) + "\n" + all;
+}
+
+std::string describeQuery(const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+                          const std::vector<std::string> &names, const std::string &id) {
+  const std::string bodies = targetLines(targets, names);
+  if (bodies.empty()) return {};
+  Workspace workspace;
+  const Obstacles obstacles(targets, CPROX_INDEX_NONE);
+  const std::string word = wordOf(id);
+  const auto describe = [&](char *text, std::size_t size) {
+    return cprox_mover_describe(&mover, obstacles.get(), word.c_str(), workspace.get(), text, size);
+  };
+  std::string robot(describe(nullptr, 0) + 1, '\0');
+  if (describe(robot.data(), robot.size()) == 0) return {};
+  robot.pop_back();
+  return bodies + robot;
 }
 
 } // namespace curve_proximity

@@ -42,6 +42,11 @@ std::string unprovable(const std::string &who, const cprox_obstacle &target, boo
  * certificates. */
 std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::vector<std::string> &names);
 
+/* What moves by joints against the targets, as the checker reads it, with these after targetLines(); empty where a body
+ * or a motion is of a kind that has no certificates. */
+std::string describeQuery(const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+                          const std::vector<std::string> &names, const std::string &id);
+
 /* The text as one word. */
 std::string wordOf(const std::string &text);
 

@@ -42,7 +42,7 @@ void prove(const Stated &stated, const Query &query, const Obstacles &obstacles,
     std::string one = certificateOf(query, stated.mover, obstacles.get(), claim, workspace, out.unproven);
     if (!one.empty()) out.certificates.push_back(std::move(one));
   };
-  const std::array<double, 2> all = rangeOf(stated.mover);
+  const std::array<double, 2> all = domainOf(query, rangeOf(stated.mover));
   double clear_from = all[0];
   for (std::size_t i = 0; i <= count; ++i) {
     const double clear_to = i < count ? list[i].enter_lower : all[1];

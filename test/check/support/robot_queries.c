@@ -64,6 +64,59 @@ void robot_query_random(robot_query *q, rng *r, double speed, double apart, bool
   q->n = 0;
 }
 
+void robot_query_renew(robot_query *q, cprox_workspace *ws) {
+  robot_flyer *f = &q->flyer;
+  q->mover.motion = q->robot.motion;
+  if (!f->body) return;
+  cprox_motion_free(f->together);
+  cprox_robot_free(f->joined);
+  f->joined = NULL, f->together = NULL;
+  const cprox_robot *robots[2] = {q->robot.robot, f->robot};
+  const cprox_joined_motion motions[2] = {{.motion = q->robot.motion, .start = f->start}, {.motion = f->motion}};
+  const cprox_motion_description d = {.kind = CPROX_MOTION_JOINED, .joined = motions, .n_joined = 2};
+  if (cprox_robot_join(robots, NULL, 2, ws, &f->joined) != CPROX_OK ||
+      cprox_motion_create(f->joined, &d, ws, &f->together) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
+  q->mover.motion = f->together;
+}
+
+void robot_query_fly(robot_query *q, rng *r, cprox_workspace *ws) {
+  enum { POSES = 3 };
+  static const int32_t SEVEN[7] = {0, 1, 2, 3, 4, 5, 6};
+  robot_flyer *f = &q->flyer;
+  f->body = bounded_body(r, 0.3, ws);
+  const cprox_link link = {.parent = -1, .type = CPROX_JOINT_FLOATING, .origin = rng_pose(r, 0.5)};
+  const cprox_link_geometry geometry = {.body = f->body, .pose = rng_pose(r, 0.2), .margin = 0.01};
+  const cprox_motion_info own = cprox_motion_get_info(q->robot.motion);
+  const double length = own.t1 - own.t0, part = length * rng_uniform(r, 0.1, 1.0);
+  double values[POSES][7], rates[POSES][7];
+  cprox_waypoint points[POSES];
+  const size_t n = 2 + rng_index(r, POSES - 1);
+  const bool fast = rng_index(r, 2);
+  for (size_t i = 0; i < n; i++) {
+    const cprox_pose at = rng_pose(r, 1.5);
+    const vec3 x = at.position;
+    const cprox_quat o = at.orientation;
+    const double fresh[7] = {x.x, x.y, x.z, o.x, o.y, o.z, o.w};
+    for (int k = 0; k < 7; k++) values[i][k] = i > 0 && !fast ? 0.9 * values[0][k] + 0.1 * fresh[k] : fresh[k];
+    for (int k = 0; k < 7; k++) rates[i][k] = rng_uniform(r, -0.1, 0.1);
+    points[i] = (cprox_waypoint){.time = 1.0 + part * (double)i / (double)(n - 1), .positions = values[i]};
+    if (rng_index(r, 2)) points[i].velocities = rates[i];
+  }
+  if (rng_index(r, 4) == 0) memcpy(values[1] + 3, values[0] + 3, 4 * sizeof(double));
+  const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                      .variables = SEVEN,
+                                      .n_variables = 7,
+                                      .waypoints = points,
+                                      .n_waypoints = n,
+                                      .turning = CPROX_TURNING_SLERP};
+  if (cprox_robot_create(&link, 1, &geometry, 1, 7, ws, &f->robot) != CPROX_OK ||
+      cprox_motion_create(f->robot, &d, ws, &f->motion) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
+  f->start = 1.0 - own.t0 - rng_uniform(r, 0.0, 0.9) * length + 0.5 * part; /* so that both overlap */
+  robot_query_renew(q, ws);
+}
+
 void robot_query_whole(robot_query *q, rng *r) {
   if (q->n > 0 && rng_index(r, 3) == 0) q->mover = cprox_robot_whole(q->mover, NULL, 0);
 }
@@ -78,6 +131,11 @@ void robot_query_inequalities(robot_query *q, rng *r, cprox_workspace *ws) {
 
 void robot_query_free(robot_query *q) {
   for (size_t i = 0; i < q->n; i++) cprox_body_free((cprox_body *)q->targets[i].body);
+  cprox_motion_free(q->flyer.together);
+  cprox_robot_free(q->flyer.joined);
+  cprox_motion_free(q->flyer.motion);
+  cprox_robot_free(q->flyer.robot);
+  cprox_body_free(q->flyer.body);
   robot_free(&q->robot);
   for (size_t i = 0; i < q->n_loose; i++) cprox_body_free(q->loose[i]);
   for (size_t i = 0; i < q->n_meshes; i++) {

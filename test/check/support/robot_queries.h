@@ -17,8 +17,17 @@ enum {
   ROBOT_QUERY_LOOSE = 2 * ROBOT_QUERY_BODIES
 };
 
+/* A body that flies beside the robot and turns by slerp. */
+typedef struct robot_flyer {
+  cprox_body *body;
+  cprox_robot *robot, *joined;
+  cprox_motion *motion, *together;
+  double start; /* [s] of the robot's motion: that of the body starts at 0 */
+} robot_flyer;
+
 typedef struct robot_query {
   test_robot robot;
+  robot_flyer flyer; /* body NULL: there is none */
   cprox_obstacle targets[ROBOT_QUERY_TARGETS];
   size_t n;
   cprox_body *loose[ROBOT_QUERY_LOOSE]; /* what unions are made of */
@@ -34,6 +43,12 @@ void robot_query_free(robot_query *q);
 
 /* One in three that has obstacles is asked about both at once. */
 void robot_query_whole(robot_query *q, rng *r);
+
+/* A body flies beside the robot, on one clock with it. A query about the robot itself becomes one about both. */
+void robot_query_fly(robot_query *q, rng *r, cprox_workspace *ws);
+
+/* The mover after a change of the robot's motion. */
+void robot_query_renew(robot_query *q, cprox_workspace *ws);
 
 /* Bodies by inequalities take the place of half of the targets. */
 void robot_query_inequalities(robot_query *q, rng *r, cprox_workspace *ws);
