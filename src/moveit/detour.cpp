@@ -11,11 +11,13 @@ namespace {
 constexpr double LEAST_ROOM = 0.1;         /* [rad], [m] round the rows of a run, for the first try */
 constexpr double MOST_ROOM = 6.0;          /* of the last try but one, which takes all of the path */
 constexpr std::size_t LEAST_VERTICES = 50; /* likewise; each further try has twice as many of both */
-constexpr int SHORTCUTS = 60;              /* of each detour, */
-constexpr std::size_t BESIDE = 8;          /* with so many rows before and behind it */
+constexpr int SHORTCUTS = 20;              /* of each detour, */
+constexpr std::size_t BESIDE = 4;          /* with so many rows before and behind it */
 constexpr int MOST_RUNS = 64;
-constexpr int SMOOTHINGS = 3; /* likewise */
-constexpr double STEP = 0.3;  /* of the diagonal of the box */
+constexpr int SMOOTHINGS = 2;    /* likewise */
+constexpr double STEP = 0.3;     /* of the diagonal of the box, at most; */
+constexpr int STEPS = 3;         /* so many lengths are tried, */
+constexpr double SHORTER = 0.25; /* each this part of the one before */
 constexpr std::uint64_t SEED = 1;
 constexpr double TIGHT = 1e-9; /* rows are the same */
 
@@ -68,12 +70,17 @@ struct Tree {
 
 /* Steps from a row of the tree towards the target, as long as they hold, at most `steps`; the last row that was reached. */
 std::size_t extend(Tree &tree, std::size_t at, const Row &target, double step, int steps, const EdgeTest &holds) {
-  for (; steps > 0; --steps) {
+  for (int shorter = 0; steps > 0 && shorter < STEPS;) {
     const double way = distanceOf(tree.rows[at], target);
     if (way <= TIGHT) break;
     const Row next = way <= step ? target : between(tree.rows[at], target, step / way);
-    if (!holds(tree.rows[at], next)) break;
-    at = tree.add(next, at);
+    if (holds(tree.rows[at], next)) {
+      at = tree.add(next, at);
+      --steps;
+    } else {
+      step = SHORTER * std::min(step, way);
+      ++shorter;
+    }
   }
   return at;
 }
@@ -113,19 +120,45 @@ void shorten(Path &path, int tries, const EdgeTest &holds, std::mt19937_64 &rand
   }
 }
 
-/* Halves edges and rounds corners, where that holds: each row moves half of the way to the middle of those beside it. */
+/* Halves edges, whose halves hold as they do, and rounds corners, where that holds: each row moves half of the way to the
+ * middle of those beside it. */
 void smooth(Path &path, const EdgeTest &holds) {
-  Path out{path.front()};
-  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    Row middle = between(path[i], path[i + 1], 0.5);
-    if (holds(path[i], middle) && holds(middle, path[i + 1])) out.push_back(std::move(middle));
-    out.push_back(path[i + 1]);
+  path = halved(path);
+  for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+    const Row nearer = between(path[i], between(path[i - 1], path[i + 1], 0.5), 0.5);
+    if (holds(path[i - 1], nearer) && holds(nearer, path[i + 1])) path[i] = nearer;
   }
-  for (std::size_t i = 1; i + 1 < out.size(); ++i) {
-    const Row nearer = between(out[i], between(out[i - 1], out[i + 1], 0.5), 0.5);
-    if (holds(out[i - 1], nearer) && holds(nearer, out[i + 1])) out[i] = nearer;
+}
+
+/* A run of edges that do not hold, and the way round it. */
+struct Way {
+  std::size_t begin, end; /* rows of the path */
+  Path rows;              /* from the first to the last of them; empty: none was found */
+  EdgeTest holds;         /* of its edges */
+};
+
+Way wayRound(const Path &path, std::size_t begin, std::size_t end, const Detours &detours, std::mt19937_64 &random) {
+  const auto is_old = [&path](const Row &row) { return std::find(path.begin(), path.end(), row) != path.end(); };
+  std::vector<EdgeTest> tests;
+  for (const EdgeTest &wanted : detours.wanted)
+    tests.push_back([&detours, &wanted, is_old](const Row &a, const Row &b) { // nothing holds when the time is over
+      if (detours.is_over()) return false;
+      if (wanted(a, b)) return true;
+      return !detours.is_over() && (is_old(a) || is_old(b)) && detours.needed(a, b);
+    });
+  double room = LEAST_ROOM;
+  std::size_t vertices = LEAST_VERTICES;
+  for (std::size_t wider = std::max<std::size_t>(1, end - begin);; wider *= 2, room *= 2.0, vertices *= 2) {
+    const JointBox box = boxOf(path, begin, end, room, detours.limits);
+    for (const EdgeTest &holds : tests) {
+      Path rows = rrtConnect(path[begin], path[end], box, STEP * distanceOf(box.lower, box.upper), vertices, holds,
+                             detours.is_over, random);
+      if (!rows.empty()) return {begin, end, std::move(rows), holds};
+    }
+    if (detours.is_over() || room > MOST_ROOM) return {begin, end, {}, {}};
+    begin -= std::min(begin, wider);
+    end = std::min(path.size() - 1, end + wider);
   }
-  path = std::move(out);
 }
 
 } // namespace
@@ -156,48 +189,44 @@ Path rrtConnect(const Row &from, const Row &to, const JointBox &box, double step
   return {};
 }
 
-Path around(Path path, const Detours &detours) {
+Path around(const Path &path, const Detours &detours) {
   std::mt19937_64 random(SEED);
-  const Row first_row = path.front(), last_row = path.back();
-  const auto is_end = [&](const Row &row) { return row == first_row || row == last_row; };
-  const EdgeTest holds = [&](const Row &a, const Row &b) { // nothing holds any longer when the time is over
-    return !detours.is_over() && (detours.holds(a, b) || ((is_end(a) || is_end(b)) && detours.holds_at_ends(a, b)));
-  };
+  const auto stays = [&detours](const Row &a, const Row &b) { return !detours.is_over() && detours.stays(a, b); };
+  Path out = path;
   int runs = 0;
-  for (std::size_t i = 0; i + 1 < path.size();) {
-    if (holds(path[i], path[i + 1])) {
+  for (std::size_t i = 0; i + 1 < out.size();) {
+    if (stays(out[i], out[i + 1])) {
       ++i;
       continue;
     }
-    if (++runs > MOST_RUNS) return {};
-    std::size_t begin = i, end = i + 1;
-    while (end + 1 < path.size() && !holds(path[end], path[end + 1])) ++end;
-    Path found;
-    double room = LEAST_ROOM;
-    std::size_t vertices = LEAST_VERTICES;
-    for (std::size_t wider = std::max<std::size_t>(1, end - begin);; wider *= 2, room *= 2.0, vertices *= 2) {
-      const JointBox box = boxOf(path, begin, end, room, detours.limits);
-      found = rrtConnect(path[begin], path[end], box, STEP * distanceOf(box.lower, box.upper), vertices, holds,
-                         detours.is_over, random);
-      if (!found.empty()) break;
-      if (detours.is_over() || room > MOST_ROOM) return {};
-      begin -= std::min(begin, wider);
-      end = std::min(path.size() - 1, end + wider);
-    }
-    const std::size_t before = begin - std::min(begin, BESIDE), behind = std::min(path.size() - 1, end + BESIDE);
-    Path part(path.begin() + static_cast<std::ptrdiff_t>(before), path.begin() + static_cast<std::ptrdiff_t>(begin));
-    part.insert(part.end(), found.begin(), found.end());
-    part.insert(part.end(), path.begin() + static_cast<std::ptrdiff_t>(end) + 1,
-                path.begin() + static_cast<std::ptrdiff_t>(behind) + 1);
-    shorten(part, SHORTCUTS, holds, random);
-    for (int k = 0; k < SMOOTHINGS; ++k) smooth(part, holds);
-    const Path rest(path.begin() + static_cast<std::ptrdiff_t>(behind) + 1, path.end());
-    path.resize(before);
-    path.insert(path.end(), part.begin(), part.end());
-    path.insert(path.end(), rest.begin(), rest.end());
+    if (++runs > MOST_RUNS || detours.is_over()) return {};
+    std::size_t end = i + 1;
+    while (end + 1 < out.size() && !stays(out[end], out[end + 1])) ++end;
+    const Way way = wayRound(out, i, end, detours, random);
+    if (way.rows.empty()) return {};
+    const auto row = [&out](std::size_t k) { return out.begin() + static_cast<std::ptrdiff_t>(k); };
+    const std::size_t before = way.begin - std::min(way.begin, BESIDE),
+                      behind = std::min(out.size() - 1, way.end + BESIDE);
+    Path part(row(before), row(way.begin));
+    part.insert(part.end(), way.rows.begin(), way.rows.end());
+    part.insert(part.end(), row(way.end) + 1, row(behind) + 1);
+    shorten(part, SHORTCUTS, way.holds, random);
+    for (int k = 0; k < SMOOTHINGS; ++k) smooth(part, way.holds);
+    part = resampled(part, detours.step);
+    out.erase(row(before), row(behind) + 1);
+    out.insert(row(before), part.begin(), part.end());
     i = before;
   }
-  return path;
+  return out;
+}
+
+Path halved(const Path &path) {
+  Path out{path.front()};
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    out.push_back(between(path[i], path[i + 1], 0.5));
+    out.push_back(path[i + 1]);
+  }
+  return out;
 }
 
 double lengthOf(const Path &path) {

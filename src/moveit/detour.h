@@ -26,19 +26,25 @@ Path rrtConnect(const Row &from, const Row &to, const JointBox &box, double step
                 const EdgeTest &holds, const std::function<bool()> &is_over, std::mt19937_64 &random);
 
 struct Detours {
-  EdgeTest holds;                /* each edge of the path that is returned, */
-  EdgeTest holds_at_ends;        /* but one at the path's first or last row, for which this is enough */
-  JointBox limits;               /* of the joints */
+  EdgeTest stays;               /* edges of the path that do not hold are led round; the others stay as they are */
+  std::vector<EdgeTest> wanted; /* of new edges, the most clearance first; each is tried before a search goes farther */
+  EdgeTest needed;              /* of new edges that begin or end at a row of the path: it may stand closer */
+  JointBox limits;              /* of the joints */
+  double step;                  /* of new rows, at most */
   std::function<bool()> is_over; /* the time is */
 };
 
 /* A path with the same ends. Each run of edges that do not hold is planned anew between the rows before and behind it,
  * and where there is no way between them, between rows farther and farther apart. What is new is shortened, its
- * corners are rounded. The same for the same path. Empty: none is found. */
-Path around(Path path, const Detours &detours);
+ * corners are rounded, and its rows are at equal distances: edges between them cut what is left of the corners. All
+ * else stays as it is. The same for the same path. Empty: none is found. */
+Path around(const Path &path, const Detours &detours);
 
 /* Rows at equal distances along the path, at most `step`; corners between them are cut. */
 Path resampled(const Path &path, double step);
+
+/* With a row in the middle of each edge. */
+Path halved(const Path &path);
 
 double lengthOf(const Path &path);
 

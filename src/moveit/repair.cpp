@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <moveit/trajectory_processing/iterative_time_parameterization.h>
 #include <moveit/utils/message_checks.h>
@@ -18,9 +19,15 @@ using moveit::core::JointModel;
 using robot_trajectory::RobotTrajectory;
 using robot_trajectory::RobotTrajectoryPtr;
 
-/* [m] more than the clearance asked for, and the part of the time after which the next one is tried. */
-constexpr std::pair<double, double> MARGINS[] = {{0.01, 0.4}, {0.003, 0.7}, {0.0, 1.0}};
-constexpr int CLOSER[] = {1, 2, 4}; /* times as many waypoints */
+/* [m] more than the clearance asked for, of new edges: the first for which there is a way. */
+constexpr double MARGINS[] = {0.01, 0.003, 0.001, 0.0};
+
+/* The spline goes beside the straight edges: what is tried until it is proven. */
+struct Try {
+  double stays; /* [m] more than the clearance asked for, of edges that stay as they are */
+  int halvings; /* of edges: the spline comes closer to them */
+};
+constexpr Try TRIES[] = {{0.0, 0}, {0.0, 1}, {0.001, 0}, {0.001, 1}, {0.003, 1}, {0.003, 2}};
 
 /* The group's joints have one value each, and follow no other. */
 bool isPlain(const moveit::core::JointModelGroup &group) {
@@ -62,10 +69,6 @@ RobotTrajectoryPtr toTrajectory(const Path &path, const std::vector<std::string>
 RobotTrajectoryPtr repaired(const Certifier &certifier, const planning_scene::PlanningScene &scene,
                             const planning_interface::MotionPlanRequest &req, const RobotTrajectory &trajectory,
                             const Finding &why, const CertifySettings &settings, double budget_ms) try {
-  const Clock::time_point begin = Clock::now();
-  const auto end_of = [&](double share) {
-    return begin + std::chrono::microseconds(std::llround(1e3 * share * budget_ms));
-  };
   const moveit::core::JointModelGroup *group = trajectory.getGroup();
   if (!group || !isPlain(*group) || !moveit::core::isEmpty(req.path_constraints)) return nullptr;
   const TrajectoryDescription spline = timed(trajectory);
@@ -75,29 +78,39 @@ RobotTrajectoryPtr repaired(const Certifier &certifier, const planning_scene::Pl
   if (!(step > 0.0)) return nullptr;
 
   bool with_self = why.of_self;
-  const JointBox limits = limitsOf(*trajectory.getRobotModel(), spline.joints);
-  const auto edges = [&](double more) {
-    CertifySettings wider = settings;
-    wider.clearance += more;
-    return certifier.edges(scene, trajectory.getFirstWayPoint(), spline.joints, with_self, wider);
+  std::map<std::pair<double, bool>, EdgeTest> known; // each is made when it is first asked: that takes a millisecond
+  const auto edges = [&](double more) -> EdgeTest {
+    return [&, more](const Row &from, const Row &to) {
+      EdgeTest &test = known[{more, with_self}];
+      if (!test) {
+        CertifySettings wider = settings;
+        wider.clearance += more;
+        test = certifier.edges(scene, trajectory.getFirstWayPoint(), spline.joints, with_self, wider);
+      }
+      return test(from, to);
+    };
   };
-  const EdgeTest as_asked = edges(0.0);
   for (const Row &row : {path.front(), path.back()})
-    if (!as_asked(row, row)) return nullptr; // no way round leads there
-  for (const auto &[margin, share] : MARGINS) {
-    const Clock::time_point end = end_of(share);
-    const Path way = around(path, {edges(margin), edges(0.0), limits, [end] { return Clock::now() >= end; }});
+    if (!edges(0.0)(row, row)) return nullptr; // no way round leads there
+  const JointBox limits = limitsOf(*trajectory.getRobotModel(), spline.joints);
+  const auto is_over = [end = Clock::now() + std::chrono::microseconds(std::llround(1e3 * budget_ms))] {
+    return Clock::now() >= end;
+  };
+  for (const Try &one : TRIES) {
+    Detours detours{edges(one.stays), {}, edges(0.0), limits, step, is_over};
+    for (const double margin : MARGINS)
+      if (margin >= one.stays) detours.wanted.push_back(edges(margin));
+    Path way = around(path, detours);
+    if (is_over()) return nullptr;
     if (way.empty()) continue;
-    for (const int closer : CLOSER) {
-      if (Clock::now() >= end_of(1.0)) return nullptr;
-      const RobotTrajectoryPtr out = toTrajectory(resampled(way, step / closer), spline.joints, trajectory);
-      if (!trajectory_processing::IterativeParabolicTimeParameterization().computeTimeStamps(
-              *out, req.max_velocity_scaling_factor, req.max_acceleration_scaling_factor))
-        return nullptr;
-      const Finding finding = certifier.judge(scene, *out, settings);
-      if (finding.why.empty()) return out;
-      with_self = with_self || finding.of_self;
-    }
+    for (int k = 0; k < one.halvings; ++k) way = halved(way);
+    const RobotTrajectoryPtr out = toTrajectory(way, spline.joints, trajectory);
+    if (!trajectory_processing::IterativeParabolicTimeParameterization().computeTimeStamps(
+            *out, req.max_velocity_scaling_factor, req.max_acceleration_scaling_factor))
+      return nullptr;
+    const Finding finding = certifier.judge(scene, *out, settings);
+    if (finding.why.empty()) return out;
+    with_self = with_self || finding.of_self;
   }
   return nullptr;
 } catch (const std::exception &error) {

@@ -32,13 +32,21 @@ bool isFree(const std::vector<Disc> &discs, const Row &a, const Row &b, double c
 
 constexpr double MARGIN = 0.01;
 
-Detours among(const std::vector<Disc> &discs) {
-  return {[&discs](const Row &a, const Row &b) { return isFree(discs, a, b, MARGIN); },
-          [&discs](const Row &a, const Row &b) { return isFree(discs, a, b, 0.0); },
-          {{-3.0, -3.0}, {3.0, 3.0}},
-          [] { return false; }};
+constexpr double STEP = 0.2;
+
+/* New edges keep the first of these margins for which there is a way. */
+Detours among(const std::vector<Disc> &discs, const std::vector<double> &margins = {MARGIN}) {
+  Detours out;
+  out.stays = out.needed = [&discs](const Row &a, const Row &b) { return isFree(discs, a, b, 0.0); };
+  for (const double margin : margins)
+    out.wanted.push_back([&discs, margin](const Row &a, const Row &b) { return isFree(discs, a, b, margin); });
+  out.limits = {{-3.0, -3.0}, {3.0, 3.0}};
+  out.step = STEP;
+  out.is_over = [] { return false; };
+  return out;
 }
 
+/* 21 rows from (-2, 0) to (2, 0). */
 /* 21 rows from (-2, 0) to (2, 0). */
 Path line() {
   Path out;
@@ -71,8 +79,8 @@ TEST(Detour, holds_on_each_edge_and_keeps_both_ends) {
     EXPECT_EQ(path.front(), line().front());
     EXPECT_EQ(path.back(), line().back());
     for (std::size_t k = 0; k + 1 < path.size(); ++k) {
-      const bool at_end = k == 0 || k + 2 == path.size();
-      ASSERT_TRUE(isFree(discs, path[k], path[k + 1], at_end ? 0.0 : MARGIN)) << i << ", edge " << k;
+      ASSERT_TRUE(isFree(discs, path[k], path[k + 1], 0.0)) << i << ", edge " << k;
+      ASSERT_LE(distance(path[k], path[k + 1]), STEP * (1.0 + 1e-9)) << i << ", edge " << k;
     }
     for (const Row &row : path)
       for (const double value : row) ASSERT_LE(std::abs(value), 3.0) << i;
@@ -93,12 +101,28 @@ TEST(Detour, is_the_same_for_the_same_path) {
   EXPECT_EQ(around(line(), among(discs)), once);
 }
 
-TEST(Detour, leaves_an_end_that_has_less_clearance_than_the_rest) {
-  const std::vector<Disc> discs = {{{-2.0, 0.2}, 0.195}, {{0.0, 0.0}, 0.4}};
+/* An end that has less clearance than what is new, and edges of the path that no detour touches. */
+TEST(Detour, leaves_what_holds_without_the_clearance_of_what_is_new) {
+  const std::vector<Disc> discs = {{{-2.0, 0.2}, 0.195}, {{1.7, -0.3}, 0.297}, {{0.0, 0.0}, 0.1}};
   const Path path = around(line(), among(discs));
   ASSERT_FALSE(path.empty());
-  for (std::size_t k = 0; k + 1 < path.size(); ++k)
-    EXPECT_TRUE(isFree(discs, path[k], path[k + 1], k == 0 ? 0.0 : MARGIN)) << k;
+  for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+    const bool is_new = std::abs(path[k][1]) > 1e-9 || std::abs(path[k + 1][1]) > 1e-9;
+    EXPECT_TRUE(isFree(discs, path[k], path[k + 1], is_new ? 0.5 * MARGIN : 0.0)) << k; // resampling cuts corners
+  }
+  EXPECT_EQ(path[1], line()[1]);
+  EXPECT_EQ(path[path.size() - 2], line()[line().size() - 2]);
+}
+
+/* Between two discs there is less room than the first margin wants; past them there is none. */
+TEST(Detour, takes_less_clearance_where_there_is_no_other_way) {
+  std::vector<Disc> wall = {{{0.0, 0.0}, 0.15}, {{0.0, 0.315}, 0.15}};
+  for (int i = 0; i < 60; ++i)
+    for (const double side : {-0.15 - 0.05 * i, 0.465 + 0.05 * i}) wall.push_back({{0.0, side}, 0.05});
+  EXPECT_TRUE(around(line(), among(wall)).empty());
+  const Path path = around(line(), among(wall, {MARGIN, 0.002}));
+  ASSERT_FALSE(path.empty());
+  for (std::size_t k = 0; k + 1 < path.size(); ++k) EXPECT_TRUE(isFree(wall, path[k], path[k + 1], 0.0)) << k;
 }
 
 TEST(Detour, is_empty_where_there_is_no_way) {
@@ -121,12 +145,18 @@ TEST(Detour, asks_about_no_edge_when_the_time_is_over) {
   int asked = 0;
   for (int most = 1; most < 400; most += 7) { // also while what is new is shortened and rounded
     Detours detours = given;
-    detours.holds = [&](const Row &from, const Row &to) { return ++asked, given.holds(from, to); };
+    detours.stays = detours.needed = [&](const Row &from, const Row &to) { return ++asked, given.needed(from, to); };
+    detours.wanted = {[&](const Row &from, const Row &to) { return ++asked, given.wanted.front()(from, to); }};
     detours.is_over = [&] { return asked >= most; };
     asked = 0;
     around(line(), detours);
     ASSERT_LE(asked, most);
   }
+}
+
+TEST(Detour, is_halved_between_its_rows) {
+  EXPECT_EQ(halved({{0.0, 0.0}, {1.0, 0.0}, {1.0, 2.0}}),
+            (Path{{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {1.0, 2.0}}));
 }
 
 TEST(Detour, is_resampled_at_equal_distances) {
