@@ -330,9 +330,17 @@ CollisionEnvCurveProximity::Current CollisionEnvCurveProximity::current(const St
   const std::lock_guard<std::mutex> lock(mutex_);
   applyChanges(sees_octrees);
   const SnapshotPtr scene = scene_->snapshot();
-  if (!standing_) standing_ = std::make_shared<const StandingRobot>(scene);
-  Current out{standing_, bodies_.of(state, *scene, *shapes_), {}};
+  Current out{scene, bodies_.of(state, *scene, *shapes_), {}};
   for (const auto &[id, fault] : faults_) out.fault += (out.fault.empty() ? "" : "; ") + fault;
+  return out;
+}
+
+/* Another thread may have changed the scene since: the robot is that of the query's. */
+std::shared_ptr<const StandingRobot> CollisionEnvCurveProximity::standing(const Current &now) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (standing_ && standing_->snapshot() == now.scene) return standing_;
+  const auto out = std::make_shared<const StandingRobot>(now.scene);
+  if (now.scene == scene_->snapshot()) standing_ = out;
   return out;
 }
 
@@ -365,7 +373,7 @@ void CollisionEnvCurveProximity::check(const Request &req, Result &res, const St
     query.verdicts_only = !req.contacts;
     query.may_touch = [acm](const std::string &a, const std::string &b) { return acm && alwaysAllowed(*acm, a, b); };
     Collector collector(req, res);
-    now.robot->visit(robot, query, workspace(), [&](const NearPair &near) {
+    standing(now)->visit(robot, query, workspace(), [&](const NearPair &near) {
       if (!touches(near)) return 0.0;
       cd::Contact contact = toContact(near);
       return isAllowedContact(acm, contact) || collector.add(contact) ? 0.0 : -1.0;
@@ -401,7 +409,7 @@ void CollisionEnvCurveProximity::distances(const cd::DistanceRequest &req, cd::D
     query.may_touch = [&req](const std::string &a, const std::string &b) {
       return req.acm && alwaysAllowed(*req.acm, a, b);
     };
-    now.robot->visit(robot, query, workspace(), [&](const NearPair &near) {
+    standing(now)->visit(robot, query, workspace(), [&](const NearPair &near) {
       const cd::DistanceResultsData found = toDistance(near);
       if (found.distance < res.minimum_distance.distance) res.minimum_distance = found;
       res.collision = res.collision || touches(near);
@@ -450,7 +458,7 @@ void CollisionEnvCurveProximity::distanceRobot(const cd::DistanceRequest &req, c
 
 /* Planners ask about many motions in one scene with one matrix: the last robots are kept. */
 std::shared_ptr<const PreparedRobot> CollisionEnvCurveProximity::prepared(const Current &now, const Matrix *acm) const {
-  const SnapshotPtr &scene = now.robot->snapshot();
+  const SnapshotPtr &scene = now.scene;
   std::vector<AllowedPair> allowed;
   if (acm) allowed = allowedPairs(*acm, *scene, now.attached);
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -73,7 +73,7 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
  private:
   /* What the last changes have made of the scene, for one query. */
   struct Current {
-    std::shared_ptr<const StandingRobot> robot;
+    SnapshotPtr scene;
     AttachedObjects attached;
     std::string fault; /* what of the world could not be taken over; "": nothing */
   };
@@ -96,6 +96,7 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
   void checkMotion(const Request &req, Result &res, const State &from, const State &to, const Matrix *acm) const;
   void distances(const collision_detection::DistanceRequest &req, collision_detection::DistanceResult &res,
                  const State &state, RobotPairs pairs) const;
+  std::shared_ptr<const StandingRobot> standing(const Current &now) const;
   std::shared_ptr<const PreparedRobot> prepared(const Current &now, const Matrix *acm) const;
   std::set<std::string> linksOf(const std::string &group) const;
 

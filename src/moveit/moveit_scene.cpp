@@ -2,6 +2,7 @@
 #include "moveit_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <octomap/octomap.h>
@@ -45,16 +46,27 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 29);
 }
 
-/* Depth first: which children a cell has; of a cell without any whether it is occupied. */
+/* Depth first, of each cell that has children: which, and of those that have none which are occupied. */
 std::uint64_t mixedCells(const octomap::OcTree &tree, const octomap::OcTreeNode &node, std::uint64_t hash) {
-  unsigned int children = 0;
-  if (tree.nodeHasChildren(&node))
-    for (unsigned int i = 0; i < 8; ++i)
-      if (tree.nodeChildExists(&node, i)) children |= 1u << i;
-  if (children == 0) return mixed(hash, tree.isNodeOccupied(node) ? 257 : 256);
-  hash = mixed(hash, children);
-  for (unsigned int i = 0; i < 8; ++i)
-    if ((children >> i & 1u) != 0) hash = mixedCells(tree, *tree.getNodeChild(&node, i), hash);
+  std::array<const octomap::OcTreeNode *, 8> children, inner;
+  unsigned int n_children = 0, n_inner = 0;
+  std::uint64_t cells = 0;
+  for (unsigned int i = 0; i < 8; ++i) {
+    if (!tree.nodeChildExists(&node, i)) continue;
+    children[n_children++] = tree.getNodeChild(&node, i);
+    cells |= 1u << i;
+  }
+  for (unsigned int i = 0; i < n_children; ++i) {
+    cells <<= 2;
+    if (tree.nodeHasChildren(children[i])) {
+      cells |= 2;
+      inner[n_inner++] = children[i];
+    } else if (tree.isNodeOccupied(*children[i])) {
+      cells |= 1;
+    }
+  }
+  hash = mixed(hash, cells);
+  for (unsigned int i = 0; i < n_inner; ++i) hash = mixedCells(tree, *inner[i], hash);
   return hash;
 }
 
@@ -129,7 +141,10 @@ std::uint64_t cellsOf(const shapes::Shape &shape) {
   const auto &tree = static_cast<const shapes::OcTree &>(shape).octree;
   if (!tree) return 0;
   const std::uint64_t hash = mixed(tree->size(), static_cast<std::uint64_t>(tree->getResolution() * 1e9));
-  return tree->getRoot() ? mixedCells(*tree, *tree->getRoot(), hash) : hash;
+  const octomap::OcTreeNode *root = tree->getRoot();
+  if (!root) return hash;
+  return tree->nodeHasChildren(root) ? mixedCells(*tree, *root, hash)
+                                     : mixed(hash, tree->isNodeOccupied(*root) ? 1 : 2);
 }
 
 std::uint64_t cellsOf(const collision_detection::World::Object &object) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "motion_data.h"
@@ -14,6 +15,8 @@ namespace {
 
 using Links = std::array<std::string, 2>;
 using LinkNames = std::pair<std::string_view, std::string_view>;
+
+const std::string NO_NAME; /* no matrix has an entry of it */
 
 /* ---- the pairs ---- */
 
@@ -44,6 +47,24 @@ const char *exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const 
   if (mayTouch(a, b) || mayTouch(b, a)) return "it is one of its touch_links";
   if (!carried && off.count(ordered(*a.link, *b.link)) > 0) return "the SRDF disables them";
   return snapshot.mayTouch(a.owner(), b.owner()) ? "they are allowed to touch" : "";
+}
+
+/* The items of each object of the world, and whether the matrix names the object: all others are alike in it. */
+struct ObjectItems {
+  std::size_t begin, end;
+  bool is_named;
+};
+
+std::vector<ObjectItems> objectItems(const Snapshot &snapshot) {
+  std::unordered_set<std::string_view> named;
+  for (const AllowedPair &pair : snapshot.allowed()) named.insert({pair.a, pair.b});
+  const std::vector<Item> &items = snapshot.world().items();
+  std::vector<ObjectItems> out;
+  for (std::size_t k = 0; k < items.size(); ++k) { // the items of an object are neighbours
+    if (k == 0 || items[k].owner != items[k - 1].owner) out.push_back({k, k, named.count(*items[k].owner) > 0});
+    out.back().end = k + 1;
+  }
+  return out;
 }
 
 /* Does the motion move the geometry against the world? */
@@ -117,6 +138,7 @@ void preparePairs(const std::vector<Links> &disabled, PreparedRobot::Data &data)
   std::set<LinkNames> off;
   for (const Links &pair : disabled) off.insert(ordered(pair[0], pair[1]));
 
+  const std::vector<ObjectItems> objects = objectItems(*data.snapshot);
   data.self.reserve(geometries.size() * geometries.size() / 2);
   data.environment.resize(geometries.size());
   data.allowed.resize(geometries.size());
@@ -124,15 +146,16 @@ void preparePairs(const std::vector<Links> &disabled, PreparedRobot::Data &data)
     data.link.push_back(static_cast<std::int32_t>(data.kinematics->links.at(*geometry.link)));
   for (std::size_t i = 0; i < geometries.size(); ++i) {
     if (geometries[i].within) continue;
-    const std::string *object = nullptr; /* the items of an object are neighbours */
-    bool may_touch = false;
-    for (std::size_t k = 0; k < items.size(); ++k) {
-      if (items[k].owner != object) {
-        object = items[k].owner;
-        may_touch = data.snapshot->mayTouch(geometries[i].owner(), *object);
-        if (may_touch) data.allowed[i].push_back(*object);
+    const bool may_touch_all = data.snapshot->mayTouch(geometries[i].owner(), NO_NAME);
+    data.environment[i].reserve(items.size());
+    for (const ObjectItems &object : objects) {
+      const std::string &owner = *items[object.begin].owner;
+      if (object.is_named ? data.snapshot->mayTouch(geometries[i].owner(), owner) : may_touch_all) {
+        data.allowed[i].push_back(owner);
+        continue;
       }
-      if (!may_touch) data.environment[i].push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
+      for (std::size_t k = object.begin; k < object.end; ++k)
+        data.environment[i].push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
     for (std::size_t k = i + 1; k < geometries.size(); ++k) {
       if (geometries[k].within || geometries[i].link == geometries[k].link) continue;
