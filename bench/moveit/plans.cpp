@@ -40,7 +40,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char *PIPELINES[] = {"ompl", "ompl_certified"};
 constexpr double PLANNING_TIME = 60.0;                 /* [s] */
-constexpr double GOAL_TOLERANCE = 1e-4;                /* [rad] */
+constexpr double GOAL_TOLERANCE = 1e-9;                /* [rad]: MoveIt's samples of the goal are not seeded */
 constexpr double BETWEEN_MOMENTS = 1e-3;               /* [rad], of the joint that moves the most */
 constexpr std::size_t LEAST_MOMENTS = 4;               /* of the spline between two waypoints */
 constexpr double UR5_HEIGHT = 0.9144, UR5_TURN = 1.57; /* where the UR5 of MotionBenchMaker stands */

@@ -40,15 +40,20 @@ def line(robot, rows, pipeline):
             f'{ms[int(0.95 * len(ms))]:.0f}', f'{statistics.mean(float(row["duration"]) for row in plans):.2f}']
 
 
-def ratio(rows):
-    """The time with the adapter to that without: the geometric mean over the problems of the medians over the rounds."""
-    problems = {(row['scene'], row['way']) for row in rows}
-    logs = []
-    for problem in problems:
-        own = [row for row in rows if (row['scene'], row['way']) == problem]
-        medians = [statistics.median(times([row for row in own if row['pipeline'] == name])) for name in (WITHOUT, WITH)]
-        logs.append(math.log(medians[1] / medians[0]))
-    return math.exp(statistics.mean(logs)), math.exp(statistics.stdev(logs) / math.sqrt(len(logs)))
+def pairs(rows):
+    """By problem: the times with the adapter to those without, of requests with the same random numbers."""
+    ms = {(row['scene'], row['way'], row['round'], row['pipeline']): float(row['ms']) for row in rows}
+    out = {}
+    for scene, way, number, pipeline in ms:
+        if pipeline == WITH:
+            out.setdefault((scene, way), []).append(ms[scene, way, number, WITH] / ms[scene, way, number, WITHOUT])
+    return out
+
+
+def mean_of_problems(values):
+    """Mean and standard error of the problems' means: the plans of one problem are no independent samples."""
+    means = [statistics.mean(own) for own in values]
+    return statistics.mean(means), statistics.stdev(means) / math.sqrt(len(means))
 
 
 def added(rows):
@@ -68,11 +73,15 @@ def tables(rows):
                   [line(robot, own, name) for robot, own in robots_of(rows) for name in (WITHOUT, WITH)])
     lines = []
     for robot, own in robots_of(rows):
-        (value, spread), (certify, part) = ratio(own), added(own)
-        problems = len({(row['scene'], row['way']) for row in own})
+        certify, part = added(own)
+        ratios = pairs(own)
+        every = [ratio for problem in ratios.values() for ratio in problem]
+        mean, error = mean_of_problems(ratios.values())
+        log, log_error = mean_of_problems([[math.log(ratio) for ratio in problem] for problem in ratios.values()])
         total = sum(times([row for row in own if row['pipeline'] == WITH])) / sum(times([row for row in own if row['pipeline'] == WITHOUT]))
-        lines.append([robot, str(problems), f'{total:.2f}', f'{value:.3f}', f'{value / spread:.3f} to {value * spread:.3f}', f'{certify:.1f}', f'{100.0 * part:.1f} %'])
-    second = table(['robot', 'problems', 'total time with / without', 'ratio of a problem', 'by one standard error', 'a certification [ms]', 'of a plan'], lines)
+        lines.append([robot, str(len(ratios)), str(len(every)), f'{statistics.median(every):.3f}', f'{math.exp(log):.3f} ± {math.exp(log) * log_error:.3f}',
+                      f'{mean:.3f} ± {error:.3f}', f'{total:.2f}', f'{certify:.1f}', f'{100.0 * part:.1f} %'])
+    second = table(['robot', 'problems', 'pairs', 'median ratio', 'geometric mean', 'mean', 'total time with / without', 'a certification [ms]', 'of a plan'], lines)
     return first, second
 
 
@@ -106,8 +115,8 @@ def main():
 
 A running move_group of MoveIt {version} with OMPL's RRTConnect and MoveIt's default adapters: one pipeline as it is, one
 with `curve_proximity/CertifyTrajectory` besides. Problems of MotionBenchMaker in all seven families, for a Panda and a
-UR5 (without its gripper), from start to goal and back. Both pipelines are asked in turn, up to {rounds} times each.
-`scripts/moveit_beside WORKSPACE --plans` makes this page and [moveit_plans.csv](moveit_plans.csv).
+UR5 (without its gripper), from start to goal and back. Both pipelines are asked in turn, up to {rounds} times each; the two
+requests of a pair have the same random numbers, so that OMPL's first plan is the same. `scripts/moveit_beside WORKSPACE --plans` makes this page and [moveit_plans.csv](moveit_plans.csv).
 
 Each plan is judged twice: by the capability `curve_proximity/CertifyPath` ("proven"), and by MoveIt's FCL detector at
 moments of the spline at most 1e-3 rad apart, {moments} in all ("hit by samples"). MoveIt has called every plan valid.
@@ -117,9 +126,9 @@ A plan that is not proven is led round what it hits (`certify_repair_ms` 200); e
 
 {first}
 
-Times are of the whole service call. The ratio of a problem is the geometric mean over the problems, of the medians over
-the rounds; RRTConnect's times differ from plan to plan, so that its standard error is given. A certification is a call
-of the service `certify_path` for a plan of the pipeline without the adapter.
+Times are of the whole service call. A ratio is that of a pair: with the adapter to without. Means are those of the
+problems' means, with one standard error. A certification is a call of the service `certify_path` for a plan of the
+pipeline without the adapter.
 
 {second}
 
