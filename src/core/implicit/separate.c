@@ -11,6 +11,10 @@
 
 enum { SEPARATE_STEPS = 20 };
 
+/* An approach has stalled after more planes that do not part the bodies: at first, and from a normal of the interior point
+ * method on. */
+enum { APPROACH_BEHIND = 2, APPROACH_LATER = 12 };
+
 /* An ascent whose gap shrinks less in two steps has stalled. */
 static const double SEPARATE_GAIN = 0.25;
 
@@ -140,4 +144,59 @@ bool implicit_separate(const implicit_query *query, const implicit_goal *goal, i
   }
   *warm = leave_off(q, answer);
   return answer->certified;
+}
+
+bool implicit_approach(const implicit_query *query, double epsilon, double lost, implicit_warm *warm,
+                       implicit_answer *answer) {
+  implicit_query moved = *query;
+  const double far = vec_norm(query->t), reach = query->a->radius + query->b->radius, speed = vec_norm(query->velocity),
+               passed = answer->time;
+  const implicit_warm former = *warm;
+  *warm = (implicit_warm){.usable = false};
+  *answer = (implicit_answer){.lower = -INFINITY, .upper = INFINITY, .time = passed};
+  if (!(far > 0.0) || !(speed > 0.0)) return false;
+  const double rounding =
+      query->a->give + query->b->give + ROUND_UP * 64.0 * ROUND_U * (reach + far + speed * query->duration);
+  moved.t = vec_axpy(query->t, passed, query->velocity);
+
+  ascent c = {.q = &moved};
+  simplex hull = {.n = 0};
+  vec3 next = unit(former.usable ? former.apart : vec_neg(moved.t));
+  for (int behind = 0; behind <= (former.usable ? APPROACH_LATER : APPROACH_BEHIND) && answer->steps < SEPARATE_STEPS;
+       answer->steps++) {
+    look(&c, next);
+    const double between = c.phi - rounding - lost;
+    if (between > 0.0) {
+      const double towards = vec_dot(c.u, query->velocity);
+      answer->normal = c.u;
+      const double step = between / (towards + 8.0 * ROUND_U * speed) * (1.0 - 1e-12),
+                   then = fmax(nextafter(answer->time + step, -INFINITY), answer->time);
+      if (towards <= -8.0 * ROUND_U * speed || then >= query->duration) return false;
+      const vec3 ahead = vec_scale(then - answer->time, query->velocity);
+      answer->time = then;
+      moved.t = vec_axpy(query->t, then, query->velocity);
+      c.apart = vec_sub(c.apart, ahead);
+      c.phi -= vec_dot(c.u, ahead);
+      answer->lower = c.phi - rounding;
+      for (int i = 0; i < hull.n; i++) hull.vertex[i].w = vec_sub(hull.vertex[i].w, ahead);
+    } else {
+      behind++;
+    }
+    simplex_nearest nearest;
+    if (!simplex_has(&hull, c.apart) && hull.n < 4)
+      hull.vertex[hull.n++] = (simplex_vertex){.w = c.apart, .a = c.x, .b = c.y};
+    simplex_reduce(&hull, &nearest);
+    if (nearest.inside || !(nearest.distance > 0.0)) return false;
+    answer->upper = nearest.distance + rounding;
+    answer->x = of_hull(&hull, false);
+    answer->y = of_hull(&hull, true);
+    *warm = (implicit_warm){.usable = true, .x = answer->x, .y = answer->y, .apart = nearest.v};
+    answer->certified = answer->lower > 0.0 && answer->upper - lost <= epsilon;
+    if (answer->certified) return true;
+    double step[2];
+    next = between > 0.0 && newton(&c, nearest.distance, step)
+               ? unit(vec_axpy(vec_axpy(c.u, step[0], c.e), step[1], c.f))
+               : unit(nearest.v);
+  }
+  return false;
 }

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "base/rotation.h"
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "implicit/implicit.h"
@@ -217,9 +218,58 @@ static cprox_obstacle approach_at(const approach *p, double t) {
   return b;
 }
 
+/* Of two closed implicit bodies one search finds normal and time; where it stalls the interior point method says along
+ * which normal to go on. What was proven counts in any case. */
+static bool approach_implicit(approach *p, const cprox_options *options, cprox_workspace *workspace) {
+  enum { MOST_STALLS = 3 };
+  const pair_side x = relative_pose_of_side(&p->a, 0), y = relative_pose_of_side(&p->b, 0);
+  const implicit *first = x.shape->implicit, *second = y.shape->implicit;
+  if (!first->closed || !second->closed) return false;
+  const pair_placement place = relative_pose_make(&x, &y);
+  implicit_query query = {.a = first, .b = second, .moving = true, .t = place.t, .duration = p->duration};
+  for (int i = 0; i < 9; i++) query.m[i] = place.r[i];
+  query.velocity = frame_turn_to_local(&x.f, p->velocity);
+  const double margins = x.margin + y.margin, moves = vec_norm(p->velocity) * p->duration,
+               rounding = ROUND_UP * (place.error + (ROUND_ROTATION + 4.0) * ROUND_U * moves),
+               epsilon = options->epsilon - 2.0 * rounding;
+  implicit_answer found = {.time = 0.0};
+  implicit_warm warm = {.usable = false};
+  bool met = false;
+  for (int stalls = 0;; stalls++) {
+    met = implicit_approach(&query, epsilon, margins + rounding, &warm, &found);
+    p->free_until = found.time;
+    if (met || !warm.usable || stalls == MOST_STALLS) break;
+    void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(first, second));
+    if (!memory) return false;
+    implicit_query there = query;
+    there.moving = false;
+    there.t = vec_axpy(query.t, found.time, query.velocity);
+    const implicit_goal goal = {.epsilon = 0.25 * epsilon, .relative_epsilon = 1e-5, .max_steps = options->max_nodes};
+    implicit_answer stood;
+    implicit_solve(&there, &goal, &warm, memory, &stood);
+    p->pairs++;
+    if (stood.overlap || !(stood.lower > 0.0)) break;
+    warm = (implicit_warm){.usable = true, .apart = stood.normal};
+  }
+  if (!met) return false;
+  const vec3 on_a = convex_drawn(x.shape, found.x), b_is_at = vec_axpy(place.t, found.time, query.velocity),
+             on_b = vec_add(rotate(query.m, convex_drawn(y.shape, found.y)), b_is_at);
+  const double sizes = x.shape->scale + y.shape->scale + vec_norm(b_is_at) + margins;
+  p->last =
+      (cprox_result){.lower = found.lower - margins - rounding,
+                     .upper = vec_norm(vec_sub(on_a, on_b)) - margins + rounding + ROUND_UP * 16.0 * ROUND_U * sizes,
+                     .t_obstacle = NAN,
+                     .witness_mover = frame_to_world(&x.f, vec_axpy(on_a, -x.margin, found.normal)),
+                     .witness_obstacle = frame_to_world(&x.f, vec_axpy(on_b, y.margin, found.normal)),
+                     .normal = frame_turn_to_world(&x.f, found.normal),
+                     .lod = CPROX_LOD_HULL};
+  return p->last.upper <= options->epsilon;
+}
+
 /* Steps until the distance is at most epsilon, the end, or no further step can be proven. */
 static cprox_status approach_run(approach *p, const cprox_options *options, cprox_workspace *workspace) {
   cprox_options asked = *options;
+  if (is_implicit(p->a.body) && is_implicit(p->b.body) && approach_implicit(p, options, workspace)) return CPROX_OK;
   if (is_implicit(p->a.body) || is_implicit(p->b.body)) asked.start = &p->start; /* no pair of theirs has a formula */
   for (; p->pairs < TRANSLATION_STEPS; p->pairs++) {
     if (options->stop && p->pairs > 0 && options->stop(options->stop_user)) return CPROX_STOPPED;
