@@ -52,15 +52,6 @@ std_msgs::ColorRGBA clearanceColour(double clearance, double alpha) {
   return colour(c.x(), c.y(), c.z(), alpha);
 }
 
-std_msgs::ColorRGBA shaded(std_msgs::ColorRGBA tint, const Eigen::Vector3d &normal) {
-  static const Eigen::Vector3d light = Eigen::Vector3d(0.3, -0.4, 0.85).normalized();
-  const auto share = static_cast<float>(0.72 + 0.28 * normal.dot(light));
-  tint.r *= share;
-  tint.g *= share;
-  tint.b *= share;
-  return tint;
-}
-
 void setScale(Marker &marker, double x, double y, double z) {
   marker.scale.x = x;
   marker.scale.y = y;

@@ -18,10 +18,6 @@ std_msgs::ColorRGBA colour(double r, double g, double b, double a);
  * red from green. */
 std_msgs::ColorRGBA clearanceColour(double clearance, double alpha = 1.0);
 
-/** The same, darker where a surface of that unit normal turns away from a light above: RViz does not light coloured
- * vertices. */
-std_msgs::ColorRGBA shaded(std_msgs::ColorRGBA tint, const Eigen::Vector3d &normal);
-
 /** The i-th of n + 1 times from the beginning of a domain to its end. */
 inline double sampleAt(const std::array<double, 2> &domain, std::size_t i, std::size_t n) {
   const double part = static_cast<double>(i) / static_cast<double>(n);

@@ -21,7 +21,7 @@ using StandingBodies = std::vector<StandingBody>;
 /** [m] The least plain distance of a ball to the bodies; infinite where there are none. */
 double clearance(const cprox_vec3 &centre, double radius, const StandingBodies &placed);
 
-/** A tube along the points, a colour a point; of radius 0 a thin one. */
+/** A tube along the points, a colour a point; of radius 0 a thin one. RViz turns its line to the viewer. */
 void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::Vector3d> &points,
              const std::vector<std_msgs::ColorRGBA> &tints, double radius);
 
@@ -32,13 +32,6 @@ void addCurve(Canvas &canvas, const CompiledCurve &curve, const StandingBodies &
 
 /** The two points with a line between them, and the distance in words. Nothing where there is no pair. */
 void addPair(Canvas &canvas, const Answer &answer);
-
-/** Did the search leave intervals that decide nothing? */
-bool isOpen(const Answer &answer, QueryType query_type);
-
-/** The hulls of those intervals of the curve that, with a small budget each, are not shown to be farther away than the
- *  answer's lower bound and what was asked leave room for. */
-void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &line, const Answer &answer);
 
 } // namespace curve_proximity
 #endif

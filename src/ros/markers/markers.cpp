@@ -53,9 +53,7 @@ void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
         std::min_element(line.answers.begin(), line.answers.end(),
                          [](const Answer &a, const Answer &b) { return a.result.upper < b.result.upper; });
     const bool still_true = drawing.snapshot->version() == scene.version();
-    if (!still_true || nearest == line.answers.end()) continue;
-    addPair(canvas, *nearest);
-    if (isOpen(*nearest, drawing.query_type)) addOpenHulls(canvas, drawing, line, *nearest);
+    if (still_true && nearest != line.answers.end()) addPair(canvas, *nearest);
   }
 }
 

@@ -25,7 +25,6 @@ struct MarkerResources {
 /** All markers in the fixed frame, after one that deletes what was shown before. By namespace:
  *    scene    the objects
  *    curves   the curves, coloured by clearance: tubes of their radius
- *    open     hulls of the intervals of a curve that its budget, or epsilon, left undecided
  *    robot    the robot: along a trajectory at its closest moment, each link coloured by its clearance from the objects
  *    swept    the robot on its way
  *    sweep    the way of the point of the robot that comes closest
@@ -33,7 +32,7 @@ struct MarkerResources {
  *  Drawings may be null. Pairs are shown only as long as the scene is the one they were measured in.
  *
  *  Colours come from plain distances at sampled parameters: they are for the eye. The certified answers are the pairs
- * with their labels, and the open hulls. */
+ * with their labels. */
 visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion,
                                           const std::string &frame, const MarkerResources &resources);
 

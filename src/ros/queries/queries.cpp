@@ -261,7 +261,6 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
       if (row.status == Proximity::STATUS_STOPPED) row.message = budget.reason();
   }
   describe(work);
-  drawing.query_type = request.query_type;
   drawing.snapshot = snapshot;
 }
 

@@ -145,7 +145,6 @@ struct Drawing {
     CompiledCurve curve;
     std::vector<Answer> answers;
   };
-  QueryType query_type = QueryType::DISTANCE;
   std::size_t most_lines = 100; /**< no more than a person can tell apart; 0: nobody will look at them */
   std::vector<Line> lines;      /**< of the first curves of the request */
   SnapshotPtr snapshot;
