@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What one client can make the node hold: requests of honest form and hostile size, under a memory limit. The resident memory
 never goes above the limit and 64 MB, and goes back afterwards. scripts/soak has these at full size."""
+import os
 import socket
 import struct
 import threading
@@ -41,13 +42,20 @@ class Memory(threading.Thread):
 
 class Attacks(unittest.TestCase):
     def setUp(self):
-        self.node = Node('attacked', memory_limit_mb=LIMIT_MB)
+        self.sanitized = is_sanitized(os.getpid())
+        self.start(LIMIT_MB)
+        if self.sanitized:  # the node counts the shadow, too: its limit is that of a usual node and what it takes more than one at rest
+            rest = self.node.resident_mb(shadow=True)
+            self.node.end()
+            self.start(LIMIT_MB + int(max(0.0, rest - AT_REST_MB)))
         self.addCleanup(self.node.end)
+        self.before = self.node.resident_mb()
+        self.memory = Memory(self.node, 0.05 if self.sanitized else 0.002)
+
+    def start(self, limit_mb):
+        self.node = Node('attacked', memory_limit_mb=limit_mb)
         self.server = Server('/attacked')
         self.server.replace(sphere('ball', 0.25))
-        self.before = self.node.resident_mb()
-        self.sanitized = is_sanitized(self.node.process.pid)
-        self.memory = Memory(self.node, 0.05 if self.sanitized else 0.002)
 
     def assertHeld(self):
         self.assertTrue(self.node.alive(), self.node.output()[-2000:])

@@ -342,9 +342,9 @@ def is_sanitized(pid):
         return '/libasan.so' in maps.read()
 
 
-def resident_mb(pid):
+def resident_mb(pid, shadow=False):
     """Without AddressSanitizer's shadow: an eighth of each large block that is freed becomes resident there for a moment."""
-    sanitized = is_sanitized(pid)
+    sanitized = is_sanitized(pid) and not shadow
     with open('/proc/%d/%s' % (pid, 'smaps' if sanitized else 'status')) as sizes:
         text = sizes.read()
     if not sanitized:
@@ -414,8 +414,8 @@ class Node:
         except subprocess.TimeoutExpired:
             return None
 
-    def resident_mb(self):
-        return resident_mb(self.process.pid)
+    def resident_mb(self, shadow=False):
+        return resident_mb(self.process.pid, shadow)
 
     def end(self):
         if self.alive():
