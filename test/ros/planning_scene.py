@@ -9,7 +9,7 @@ import rospy
 from curve_proximity.msg import AllowedContact, AttachedCollisionObject, LinkPadding, LinkScale, ProximityResults
 from diagnostic_msgs.msg import DiagnosticArray
 from foreign_types import GetPlanningScene, GetPlanningSceneResponse, moveit
-from helpers import Server, bezier, box, connected, joint_trajectory, joints, mesh, pose, run, sphere, until
+from helpers import Server, bezier, box, connected, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 
@@ -299,11 +299,6 @@ class PlanningScene(unittest.TestCase):
         self.assertSameRows(answer.results, asked[0])
         self.assertIn("'elbow'", ' '.join(answer.warnings))
         self.assertLogged(NODE, '~robot_trajectory', "'elbow'")
-        message.joint_trajectory.joint_names = ['elbow', 'wrist']
-        message.joint_trajectory.header.stamp = stamp = rospy.Time(79)
-        answer = self.ask('robot_trajectory', message, stamp)
-        self.assertFalse(answer.success)
-        self.assertIn("'elbow', 'wrist'", answer.message)
 
         # two after each other
         stamp = rospy.Time(80)
@@ -375,6 +370,50 @@ class PlanningScene(unittest.TestCase):
         self.assertStatus('beginner', 0, 'following', 'scenes replaced after a comparison=1')
         type(self).overtake = staticmethod(lambda: None)
         publisher.unregister()
+
+    def test_9_each_message_that_cannot_be_used_is_one_sentence_and_the_rest_of_it_is_used(self):
+        def world(*objects):
+            return dict(world=moveit.PlanningSceneWorld(collision_objects=list(objects)))
+
+        def carried(link, object):
+            return dict(robot_state=moveit.RobotState(attached_collision_objects=[attached(link, object)], is_diff=True))
+
+        def told(names, positions):
+            return dict(robot_state=moveit.RobotState(joint_state=JointState(name=names, position=positions), is_diff=True))
+        nothing = {operation: moveit.CollisionObject(id='cup', operation=operation) for operation in (0, 1, 3, 7)}
+        short = moveit.AllowedCollisionMatrix(entry_names=['arm'], entry_values=[moveit.AllowedCollisionEntry()])
+        cup, crowded, ring = foreign(sphere('cup', .1)), foreign(sphere('cup', .1)), [transform('moon', 'sun'), transform('sun', 'moon')]
+        crowded.primitive_poses = [pose()] * 2
+        publisher = self.publisher('/told')
+        self.send(full_scene(), publisher, self.told)
+        for i, (fields, *words) in enumerate((
+                (dict(link_padding=[moveit.LinkPadding('wrist', .1), moveit.LinkPadding('arm', .5)]), 'links that the robot does not', "'wrist'"),
+                (dict(link_padding=[moveit.LinkPadding('arm', -1)]), "'arm'", '-1', 'not below 0'),
+                (dict(link_scale=[moveit.LinkScale('arm', 0)]), "link_scale", "'arm'", 'above 0'),
+                (told(['wing', 'turn'], [1, .5]), 'joints that the robot does not have', "'wing'"),
+                (told(['turn', 'wing'], [1]), '2 joints have 1 positions'),
+                (carried('wrist', cup), "'cup'", "'wrist'"),
+                (carried('arm', nothing[1]), "'cup'", 'no link carries'),
+                (carried('arm', nothing[3]), "'cup'", 'operation is 3'),
+                (dict(allowed_collision_matrix=short), 'allowed_collision_matrix', "'arm'", '0 entries'),
+                (world(nothing[0]), "'cup'", 'no shapes'),
+                (world(foreign(sphere('cup', .1), frame='mars')), "'cup'", "'mars'"),
+                (world(foreign(sphere('cup', .1), at=(math.nan, 0, 0))), "'cup'", 'finite'),
+                (world(crowded), "'cup'", '2 poses'),
+                (world(nothing[7]), "'cup'", 'operation 7'),
+                (world(foreign(sphere('<octomap>', .1))), 'reserved'),
+                (world(moveit.CollisionObject(id='mug', operation=1)), "'mug'", 'to remove'),
+                (world(moveit.CollisionObject(id='mug', operation=3)), "'mug'", 'to move'),
+                (dict(world(foreign(sphere('cup', .1), frame='moon')), fixed_frame_transforms=ring), "'cup'", 'ring'),
+                (dict(robot_model_name='another'), "'another'", "'arm'"))):
+            scene = diff()
+            for name, value in fields.items():
+                setattr(scene, name, value)
+            scene.world.collision_objects.append(foreign(sphere('good', .1), at=(i, 9, 9)))
+            self.send(scene, publisher, self.told)
+            self.assertLogged('/told', *words, 'the rest is used')
+            self.assertEqual(self.told.scene('good').objects[0].pose.position.x, i)
+        self.assertEqual([(p.link_name, p.padding) for p in self.told.scene().link_padding], [('arm', .5)])
 
 
 if __name__ == '__main__':

@@ -2,10 +2,10 @@
 /* moveit_msgs/RobotTrajectory and DisplayTrajectory as what the queries take. */
 #include "moveit/robot_trajectory.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <limits>
-
-#include "moveit_data.h"
 
 namespace curve_proximity {
 namespace {

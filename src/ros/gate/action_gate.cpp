@@ -105,8 +105,8 @@ void ActionGate::begin(Server::GoalHandle goal) {
     passes = false;
   }
   if (!passes) {
-    control::FollowJointTrajectoryResult result;
-    result.error_code = control::FollowJointTrajectoryResult::INVALID_GOAL;
+    control_msgs::FollowJointTrajectoryResult result;
+    result.error_code = control_msgs::FollowJointTrajectoryResult::INVALID_GOAL;
     result.error_string = refusal.message;
     goal.setRejected(result, refusal.message);
     return tell(std::move(refusal), goal.getGoalID().id, false);
@@ -138,7 +138,8 @@ void ActionGate::send(const RunningPointer &running) {
   Client::GoalHandle out = client_->sendGoal(
       *running->in.getGoal(),
       [this, running](Client::GoalHandle done) { guarded([&] { end(running, done); }, logGateError); },
-      [running](Client::GoalHandle, const boost::shared_ptr<const control::FollowJointTrajectoryFeedback> &feedback) {
+      [running](Client::GoalHandle,
+                const boost::shared_ptr<const control_msgs::FollowJointTrajectoryFeedback> &feedback) {
         guarded(
             [&] {
               if (running->watch)
@@ -179,11 +180,11 @@ void ActionGate::stop(const RunningPointer &running, const std::string &why) {
 void ActionGate::end(const RunningPointer &running, const Client::GoalHandle &done) {
   if (!(done.getCommState() == actionlib::CommState::DONE)) return;
   const auto given = done.getResult();
-  control::FollowJointTrajectoryResult result = given ? *given : control::FollowJointTrajectoryResult();
+  control_msgs::FollowJointTrajectoryResult result = given ? *given : control_msgs::FollowJointTrajectoryResult();
   const actionlib::TerminalState state = done.getTerminalState();
   if (!forget(running)) return;
   if (!running->stopped.empty()) {
-    result.error_code = control::FollowJointTrajectoryResult::PATH_TOLERANCE_VIOLATED;
+    result.error_code = control_msgs::FollowJointTrajectoryResult::PATH_TOLERANCE_VIOLATED;
     result.error_string = running->stopped;
     running->in.setAborted(result, running->stopped);
   } else if (state == actionlib::TerminalState::SUCCEEDED) {
@@ -204,8 +205,8 @@ void ActionGate::findLost() {
     Refusal refusal;
     refusal.header.stamp = ros::Time::now();
     refusal.message = lostController();
-    control::FollowJointTrajectoryResult result;
-    result.error_code = control::FollowJointTrajectoryResult::PATH_TOLERANCE_VIOLATED;
+    control_msgs::FollowJointTrajectoryResult result;
+    result.error_code = control_msgs::FollowJointTrajectoryResult::PATH_TOLERANCE_VIOLATED;
     result.error_string = refusal.message;
     one->in.setAborted(result, refusal.message);
     tell(std::move(refusal), one->in.getGoalID().id, true);

@@ -6,6 +6,7 @@
 #include <actionlib/client/action_client.h>
 #include <actionlib/server/action_server.h>
 #include <curve_proximity/Refusal.h>
+#include <foreign/control_msgs/FollowJointTrajectoryAction.h>
 #include <ros/node_handle.h>
 #include <ros/wall_timer.h>
 
@@ -17,7 +18,6 @@
 
 #include "gate/motion_watches.h"
 #include "gate/server_calls.h"
-#include "moveit/follow_joint_trajectory.h"
 #include "parameters/parameters.h"
 #include "transport/threaded_queue.h"
 
@@ -39,8 +39,8 @@ class ActionGate {
   ActionGate &operator=(const ActionGate &) = delete;
 
  private:
-  using Server = actionlib::ActionServer<control::FollowJointTrajectoryAction>;
-  using Client = actionlib::ActionClient<control::FollowJointTrajectoryAction>;
+  using Server = actionlib::ActionServer<control_msgs::FollowJointTrajectoryAction>;
+  using Client = actionlib::ActionClient<control_msgs::FollowJointTrajectoryAction>;
   struct Running {
     Server::GoalHandle in;
     Client::GoalHandle out;

@@ -572,31 +572,27 @@ std::vector<std::string> differences(const PlanningScene &message, const Plannin
     if (out.size() < most) out.push_back(what);
   };
 
-  std::map<std::string, const ObjectDescription *> objects;
+  // Each object by its name and, where a link carries it, by that link.
+  const auto named = [](const std::string &id, const std::string &link) {
+    return "object '" + id + (link.empty() ? "'" : "' on link '" + link + "'");
+  };
+  std::map<std::string, const ObjectDescription *> wanted, here;
   for (const Operation &operation : theirs.change.operations)
-    if (operation.kind == Operation::Kind::ADD) objects[operation.object.id] = &operation.object;
-  for (const auto &[id, object] : objects) {
-    const auto ours = context.before.objects().find(id);
-    const bool missing = ours == context.before.objects().end();
-    const std::string what = missing ? "is missing here" : difference(*object, ours->second->description);
-    if (!what.empty()) tell("object '" + id + "' " + what);
+    if (operation.kind == Operation::Kind::ADD) wanted[named(operation.object.id, "")] = &operation.object;
+  for (const Attachment &attachment : theirs.change.attachments)
+    wanted[named(attachment.object.id, attachment.link)] = &attachment.object;
+  for (const auto &[id, object] : context.before.objects()) {
+    const bool kept = std::find(context.kept.begin(), context.kept.end(), id) != context.kept.end();
+    if (!kept || wanted.count(named(id, "")) > 0) here[named(id, "")] = &object->description;
   }
-  for (const auto &entry : context.before.objects()) {
-    const bool kept = std::find(context.kept.begin(), context.kept.end(), entry.first) != context.kept.end();
-    if (objects.count(entry.first) == 0 && !kept) tell("object '" + entry.first + "' is here alone");
+  for (const auto &[id, object] : context.before.attached()) here[named(id, object->link)] = &object->description;
+  for (const auto &[name, object] : wanted) {
+    const auto ours = here.find(name);
+    const std::string what = ours == here.end() ? "is missing here" : difference(*object, *ours->second);
+    if (!what.empty()) tell(name + " " + what);
   }
-
-  std::map<std::string, const Attachment *> attached;
-  for (const Attachment &attachment : theirs.change.attachments) attached[attachment.object.id] = &attachment;
-  for (const auto &[id, attachment] : attached) {
-    const auto ours = context.before.attached().find(id);
-    const bool missing = ours == context.before.attached().end() || ours->second->link != attachment->link;
-    const std::string what =
-        missing ? "is not carried here" : difference(attachment->object, ours->second->description);
-    if (!what.empty()) tell("object '" + id + "' on link '" + attachment->link + "' " + what);
-  }
-  for (const auto &entry : context.before.attached())
-    if (attached.count(entry.first) == 0) tell("object '" + entry.first + "' is carried here alone");
+  for (const auto &entry : here)
+    if (wanted.count(entry.first) == 0) tell(entry.first + " is here alone");
 
   for (const auto &padding : theirs.change.link_padding) tell("link '" + padding.first + "' has another padding");
   for (const auto &scale : theirs.change.link_scale) tell("link '" + scale.first + "' has another scale");

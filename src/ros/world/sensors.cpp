@@ -15,8 +15,8 @@ Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, Li
   ros::SubscribeOptions topics[] = {
       checkedSubscription<sensor_msgs::PointCloud2>(
           "cloud", 1, [this](const sensor_msgs::PointCloud2ConstPtr &message) { takeCloud(message); }),
-      checkedSubscription<OctomapMessage>("octomap", 1,
-                                          [this](const OctomapMessage::ConstPtr &message) { takeOctomap(message); })};
+      checkedSubscription<octomap_msgs::Octomap>(
+          "octomap", 1, [this](const octomap_msgs::Octomap::ConstPtr &message) { takeOctomap(message); })};
   for (const std::string &id : parameters.expected_sensors) live_.sensors.awaits(id);
   for (ros::SubscribeOptions &topic : topics) subscribers_.push_back(handle_.subscribe(topic));
   queue_.start();
@@ -55,7 +55,7 @@ void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
   });
 }
 
-void Sensors::takeOctomap(const OctomapMessage::ConstPtr &message) {
+void Sensors::takeOctomap(const octomap_msgs::Octomap::ConstPtr &message) {
   take("~octomap", parameters_.octomap_id, [&] {
     ShapeDescription shape;
     shape.type = ShapeType::OCTREE;

@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_ROS_SENSORS_H
 #define CURVE_PROXIMITY_ROS_SENSORS_H
 
+#include <foreign/octomap_msgs/Octomap.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -12,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "messages/octomap_message.h"
 #include "parameters/parameters.h"
 #include "transport/complaints.h"
 #include "transport/threaded_queue.h"
@@ -41,7 +41,7 @@ class Sensors {
 
  private:
   void takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message);
-  void takeOctomap(const OctomapMessage::ConstPtr &message);
+  void takeOctomap(const octomap_msgs::Octomap::ConstPtr &message);
   void replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape);
   void remove(const std::string &id);
   template <class Work>
