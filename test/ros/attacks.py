@@ -3,9 +3,9 @@
 """What one client can make the node hold: requests of honest form and hostile size, under a memory limit. The resident memory
 never goes above the limit and 64 MB, and goes back afterwards. scripts/soak has these at full size."""
 import os
+import re
 import socket
 import struct
-import threading
 import time
 import unittest
 
@@ -17,40 +17,20 @@ from helpers import Call, Node, Server, bezier, handshake, is_sanitized, raw_cal
 
 LIMIT_MB = 300
 ROOM_MB = 64
-AT_REST_MB = 45  # of a node that nobody has asked yet, at most; under AddressSanitizer it is some 120 MB more, beside the shadow
+AT_REST_MB = 45  # of a node that nobody has asked yet, at most
 LINE = bezier((-1, 0, 1), (1, 0, 1))
-
-
-class Memory(threading.Thread):
-    """The most that a node has resident, looked at all the time; period [s]: a look at one under a sanitizer stops it."""
-
-    def __init__(self, node, period):
-        super().__init__(daemon=True)
-        self.node, self.period, self.most, self.going = node, period, 0.0, True
-        self.start()
-
-    def run(self):
-        while self.going:
-            self.most = max(self.most, self.node.resident_mb())
-            time.sleep(self.period)
-
-    def end(self):
-        self.going = False
-        self.join()
-        return self.most
 
 
 class Attacks(unittest.TestCase):
     def setUp(self):
-        self.sanitized = is_sanitized(os.getpid())
+        self.sanitized, self.extra = is_sanitized(os.getpid()), 0.0  # [MB] extra: what a node under AddressSanitizer takes more at rest
         self.start(LIMIT_MB)
-        if self.sanitized:  # the node counts the shadow, too: its limit is that of a usual node and what it takes more than one at rest
-            rest = self.node.resident_mb(shadow=True)
+        if self.sanitized:  # the node counts the shadow, too, so its limit takes it in
+            self.extra = max(0.0, self.node.resident_mb(shadow=True) - AT_REST_MB)
             self.node.end()
-            self.start(LIMIT_MB + int(max(0.0, rest - AT_REST_MB)))
+            self.start(LIMIT_MB + int(self.extra))
         self.addCleanup(self.node.end)
         self.before = self.node.resident_mb()
-        self.memory = Memory(self.node, 0.05 if self.sanitized else 0.002)
 
     def start(self, limit_mb):
         self.node = Node('attacked', memory_limit_mb=limit_mb)
@@ -63,8 +43,10 @@ class Attacks(unittest.TestCase):
         self.assertAlmostEqual(row.upper, 0.75, delta=2e-6)
         back = until(lambda: self.node.resident_mb() < self.before + 40, 30 if self.sanitized else 10)
         self.assertTrue(back, self.node.resident_mb() - self.before)
-        own = max(0.0, self.before - AT_REST_MB) if self.sanitized else 0.0
-        self.assertLess(self.memory.end() - own, LIMIT_MB + ROOM_MB)
+        with open('/proc/%d/status' % self.node.process.pid) as status:
+            peak, = re.findall(r'VmHWM:\s*(\d+)', status.read())
+        shadow = LIMIT_MB / 8 if self.sanitized else 0.0  # of what was freed
+        self.assertLess(int(peak) / 1024 - self.extra, LIMIT_MB + ROOM_MB + shadow)
 
     def send(self, service, kind, message, copies=1):
         """The same bytes over as many connections at once; the answers, None where a connection was closed."""

@@ -9,9 +9,9 @@ import tempfile
 import unittest
 
 import rospy
-from helpers import Server, bezier, box, connected, joints, run, sphere, until
+from helpers import Drawings, Server, bezier, box, joints, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-from visualization_msgs.msg import Marker, MarkerArray
+from visualization_msgs.msg import Marker
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'scripts'))
 from draw_legend import clearance_colour  # noqa: E402
@@ -30,31 +30,18 @@ class Demo(unittest.TestCase):
         until(lambda: cls.server.distance(LINE).success, 20)
 
     def test_markers_show_curve_closest_pair_scene_and_robot(self):
-        self.listen()
+        drawn = Drawings()
         self.assertTrue(self.server.distance(LINE).success)
-        shown = self.markers({'scene', 'robot', 'curves', 'pairs', 'labels'})
-        tube = next(m for m in shown if m.ns == 'curves' and m.type == Marker.LINE_STRIP)
+        shown = drawn.shown(lambda s: True, 'scene', 'robot', 'curves', 'pairs', 'labels')
+        tube = next(m for m in shown['curves'] if m.type == Marker.LINE_STRIP)
         self.assertEqual(len(tube.points), len(tube.colors))
         self.assertGreater(len(tube.points), 100)
         self.assertTrue(all(math.isfinite(c) for p in tube.points for c in (p.x, p.y, p.z)))
         # the links are their mesh files, by a name that RViz finds on any working directory
-        meshes = [m.mesh_resource for m in shown if m.type == Marker.MESH_RESOURCE and m.ns == 'robot']
+        meshes = [m.mesh_resource for m in shown['robot'] if m.type == Marker.MESH_RESOURCE]
         self.assertEqual(len(meshes), 11)
         self.assertTrue(all(m.startswith('file:///') and os.path.isfile(m[7:]) for m in meshes))
-        self.assertEqual({m.header.frame_id for m in shown}, {'world'})
-
-    def listen(self):
-        """Nothing is drawn where nobody listens."""
-        self.received = []
-        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, self.received.append)
-        self.addCleanup(subscriber.unregister)
-        self.assertTrue(connected(subscriber))
-
-    def markers(self, wanted):
-        """Those of the first array that has all the wanted namespaces."""
-        found = until(lambda: next((a for a in self.received if wanted <= {m.ns for m in a.markers}), None), 10)
-        self.assertTrue(found, wanted)
-        return found.markers
+        self.assertEqual({m.header.frame_id for markers in shown.values() for m in markers}, {'world'})
 
     def test_the_example_draws_the_clearance_of_each_link(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
@@ -77,17 +64,17 @@ class Demo(unittest.TestCase):
         trajectory = JointTrajectory(joint_names=names, points=[
             JointTrajectoryPoint(positions=[state[n] for n in names], time_from_start=rospy.Duration(t))
             for t, state in ((0, READY), (2, end))])
-        self.listen()
+        drawn = Drawings()
         response = self.server.distance([], trajectory=trajectory, joint_state=joints(panda_finger_joint1=0.035))
         self.assertTrue(response.success, response.message)
-        shown = self.markers({'robot', 'swept', 'sweep'})
-        links = [m for m in shown if m.ns == 'robot']
+        shown = drawn.shown(lambda s: True, 'robot', 'swept', 'sweep')
+        links = shown['robot']
         self.assertEqual(len(links), 11)
         self.assertGreater(len({(m.color.r, m.color.g, m.color.b) for m in links}), 2)  # each in the colour of its clearance
         legend = [clearance_colour(0.0005 * i) for i in range(601)]
         for link in links:
             self.assertLess(min(math.dist(c, (link.color.r, link.color.g, link.color.b)) for c in legend), 0.01)
-        self.assertEqual(len([m for m in shown if m.ns == 'swept']) % 11, 0)
+        self.assertEqual(len(shown['swept']) % 11, 0)
 
 
 if __name__ == '__main__':

@@ -29,6 +29,7 @@ from sensor_msgs.msg import JointState, PointCloud2, PointField
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
 from trajectory_msgs.msg import (JointTrajectory, JointTrajectoryPoint, MultiDOFJointTrajectory,
                                  MultiDOFJointTrajectoryPoint)
+from visualization_msgs.msg import MarkerArray
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'scripts'))
 from free_port import free_port  # noqa: E402,F401 (for the tests that start masters)
@@ -494,6 +495,26 @@ def _sends_here(uri, topic):
     with xmlrpc.client.ServerProxy(uri) as node:
         links = node.getBusInfo(rospy.get_name())[2]
     return any(to == rospy.get_name() and direction == 'o' and name == topic for _, to, direction, _, name, *_ in links)
+
+
+class Drawings:
+    """What the node draws, from now on: nothing is drawn where nobody listens."""
+
+    def __init__(self):
+        self.arrays = []
+        self.subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, self.arrays.append)
+        assert connected(self.subscriber)
+
+    def shown(self, condition, *spaces):
+        """The markers of the first array in which those of these namespaces meet the condition, by namespace."""
+        def look():
+            for array in self.arrays[-3:]:
+                found = {space: [m for m in array.markers if m.ns == space] for space in spaces}
+                if all(found.values()) and condition(found):
+                    return found
+        found = until(look, 10)
+        assert found, [(m.ns, m.type) for a in self.arrays[-1:] for m in a.markers]
+        return found
 
 
 def ring_and_shells(shells=200, n=20000):

@@ -7,8 +7,8 @@ import unittest
 
 import rospy
 from curve_proximity.msg import Body, Octree
-from helpers import Server, bezier, body, connected, run, sphere, thing, until
-from visualization_msgs.msg import Marker, MarkerArray
+from helpers import Drawings, Server, bezier, body, run, sphere, thing
+from visualization_msgs.msg import Marker
 
 LINE = bezier((-1, 0, 1), (1, 0, 1), id='line', radius=0.05)
 
@@ -20,29 +20,11 @@ def coordinates(points):
 class Markers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server = Server()
-        cls.arrays = []
-        cls.listen()
-
-    @classmethod
-    def listen(cls):
-        cls.subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, cls.arrays.append)
-        assert connected(cls.subscriber)
-
-    def shown(self, condition, *spaces):
-        """The markers of the first array from now on in which those of these namespaces meet the condition, by namespace."""
-        def look():
-            for array in self.arrays[-3:]:
-                found = {space: [m for m in array.markers if m.ns == space] for space in spaces}
-                if all(found.values()) and condition(found):
-                    return found
-        found = until(look, 10)
-        self.assertTrue(found, [(m.ns, m.type) for a in self.arrays[-1:] for m in a.markers])
-        return found
+        cls.server, cls.drawn = Server(), Drawings()
 
     def scene_of(self, object_, kind):
         self.server.replace(object_)
-        shown = self.shown(lambda s: len(s['scene']) >= 1 and s['scene'][0].type == kind, 'scene')['scene']
+        shown = self.drawn.shown(lambda s: len(s['scene']) >= 1 and s['scene'][0].type == kind, 'scene')['scene']
         self.assertEqual({m.header.frame_id for m in shown}, {'world'})
         return shown
 
@@ -53,7 +35,7 @@ class Markers(unittest.TestCase):
             data = list(struct.unpack('%db' % len(one + leaf), one + leaf))
             map_ = thing('map', bodies=[Body(type='octree', octree=Octree(binary=True, id='OcTree', resolution=0.5, data=data))])
             self.server.replace(map_)
-            shown = self.shown(lambda s: {(m.type, m.scale.x) for m in s['scene']} == {(Marker.CUBE_LIST, x) for x in sizes}, 'scene')['scene']
+            shown = self.drawn.shown(lambda s: {(m.type, m.scale.x) for m in s['scene']} == {(Marker.CUBE_LIST, x) for x in sizes}, 'scene')['scene']
             for marker in shown:
                 self.assertEqual(marker.type, Marker.CUBE_LIST)
                 self.assertEqual(sorted(coordinates(marker.points)), sizes[marker.scale.x])
@@ -72,23 +54,22 @@ class Markers(unittest.TestCase):
         """What is drawn holds the scene of its time: without a listener there is neither. The scene itself is shown."""
         self.server.replace(sphere('ball', 0.1))
         self.server.distance(LINE)
-        self.shown(lambda s: True, 'curves')
-        self.subscriber.unregister()
+        self.drawn.shown(lambda s: True, 'curves')
+        self.drawn.subscriber.unregister()
         rospy.sleep(1.0)  # until the node knows
         self.server.distance(LINE)
         self.server.replace(sphere('ball', 0.1), sphere('other', 0.1, (0, 0, 3)))
-        del self.arrays[:]
-        self.listen()
-        self.shown(lambda s: len(s['scene']) == 2, 'scene')
-        self.assertFalse([m for m in self.arrays[-1].markers if m.ns == 'curves'])
+        type(self).drawn = Drawings()
+        self.drawn.shown(lambda s: len(s['scene']) == 2, 'scene')
+        self.assertFalse([m for m in self.drawn.arrays[-1].markers if m.ns == 'curves'])
         self.server.distance(LINE)
-        self.shown(lambda s: True, 'curves')
+        self.drawn.shown(lambda s: True, 'curves')
 
     def test_the_pair_is_the_answers_and_the_curve_has_the_colour_of_its_clearance(self):
         self.server.replace(sphere('ball', 0.25, (0.2, 0, 0.6)))
         row, = self.server.distance(LINE).results
         ends = [row.witness_a, row.witness_b]
-        shown = self.shown(lambda s: any(m.points == ends for m in s['pairs']), 'pairs', 'labels', 'curves')
+        shown = self.drawn.shown(lambda s: any(m.points == ends for m in s['pairs']), 'pairs', 'labels', 'curves')
         line = next(m for m in shown['pairs'] if m.type == Marker.LINE_LIST)
         self.assertEqual(line.points, ends)
         self.assertEqual([m.text for m in shown['labels']], ['100.0 mm'])
@@ -106,10 +87,10 @@ class Markers(unittest.TestCase):
     def test_a_pair_of_another_scene_is_not_shown(self):
         self.server.replace(sphere('ball', 0.25, (0.2, 0, 0.6)))
         self.server.distance(LINE)
-        self.shown(lambda s: len(s['scene']) == 1, 'pairs', 'scene', 'curves')
+        self.drawn.shown(lambda s: len(s['scene']) == 1, 'pairs', 'scene', 'curves')
         self.assertTrue(self.server.apply(sphere('other', 0.1, (0.2, 0, 1.4))).success)
-        self.shown(lambda s: len(s['scene']) == 2, 'scene', 'curves')
-        self.assertFalse([m for m in self.arrays[-1].markers if m.ns in ('pairs', 'labels')])
+        self.drawn.shown(lambda s: len(s['scene']) == 2, 'scene', 'curves')
+        self.assertFalse([m for m in self.drawn.arrays[-1].markers if m.ns in ('pairs', 'labels')])
 
 
 if __name__ == '__main__':

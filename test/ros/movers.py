@@ -8,9 +8,9 @@ import rospy
 from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject, LinkPadding, PoseTrajectory, ProximityResults,
                                  RobotTrajectory, Waypoint)
 from curve_proximity.srv import ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest
-from helpers import Case, Server, bezier, box, connected, free_flight, joints, path, pose, query, run, service, sphere, until
+from helpers import Case, Drawings, Server, bezier, box, free_flight, joints, path, pose, query, run, service, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-from visualization_msgs.msg import Marker, MarkerArray
+from visualization_msgs.msg import Marker
 
 READY = dict(panda_joint1=0.0, panda_joint2=0.4, panda_joint3=0.0, panda_joint4=-1.4, panda_joint5=0.0, panda_joint6=1.8,
              panda_joint7=0.785, panda_finger_joint1=0.02, panda_finger_joint2=0.02)
@@ -71,17 +71,11 @@ class Movers(Case):
 
     def test_it_is_shown_at_the_moment_of_closest_approach(self):
         self.server.replace(self.fall(), sphere('ball', 0.1, (0, 3, 2.5)))
-        received = []
-        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
-        self.addCleanup(subscriber.unregister)
-        self.assertTrue(connected(subscriber))
+        drawings = Drawings()
         row, = self.server.distance([], movers=True).results
         self.assertTrue(0.0 < row.t < 0.4, row.t)
-        shown = until(lambda: next((a for a in received if {'movers', 'movers_way', 'pairs'} <= {m.ns for m in a.markers} and
-                                    [m.type for m in a.markers if m.ns == 'movers'] == [Marker.CUBE]), None), 10)
-        self.assertTrue(shown)
-        drawn, = [m for m in shown.markers if m.ns == 'movers']
-        self.assertAlmostEqual(drawn.pose.position.z, 3 - 2.5 * row.t, delta=1e-6)
+        shown = drawings.shown(lambda s: [m.type for m in s['movers']] == [Marker.CUBE], 'movers', 'movers_way', 'pairs')
+        self.assertAlmostEqual(shown['movers'][0].pose.position.z, 3 - 2.5 * row.t, delta=1e-6)
 
     def test_the_scene_keeps_what_moves(self):
         state = self.server.replace(self.fall(start=rospy.Time(1234, 567), turning='screw')).scene
@@ -226,18 +220,14 @@ class Movers(Case):
 
     def shown(self, ask):
         """The markers of what moves after `ask`, and what that returns."""
-        received = []
-        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
-
-        def drawn():
-            return [m for m in received[-1].markers if m.ns == 'movers']
+        drawings = Drawings()
         try:
-            self.assertTrue(until(lambda: received and not drawn(), 10))  # the scene is another one than in earlier drawings
+            # the scene is another one than in earlier drawings
+            self.assertTrue(until(lambda: drawings.arrays and 'movers' not in {m.ns for m in drawings.arrays[-1].markers}, 10))
             answer = ask()
-            self.assertTrue(until(drawn, 10))
-            return drawn(), answer
+            return drawings.shown(lambda s: True, 'movers')['movers'], answer
         finally:
-            subscriber.unregister()
+            drawings.subscriber.unregister()
 
     def test_a_body_along_a_path_is_shown_where_it_comes_closest(self):
         """A crank with a knob at its end turns from 0 to 90 degrees: the ball is 2 m away, in the direction of 30 degrees."""

@@ -1,18 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parameters that are wrong stop the node at start, by name."""
+"""Parameters that are wrong stop the node at start, by name. Every way to name a mesh file."""
 import os
 import tempfile
-import unittest
 
 import rospy
-from helpers import Node, Server, refusal, run
+from helpers import Case, bezier, joints, refusal, run
 
 ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
+PANDA = os.path.realpath(os.path.join(os.path.dirname(ARM), '../../data/robots/panda'))
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+ROBOT = '''<robot name="one"><link name="base"/>
+  <link name="finger"><collision><geometry><mesh filename="%s"/></geometry></collision></link>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="finger"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+</robot>'''
 
 
-class WrongParameters(unittest.TestCase):
-    def setUp(self):
+class WrongParameters(Case):
+    def tearDown(self):
         if rospy.has_param('/robot_description'):
             rospy.delete_param('/robot_description')
 
@@ -49,24 +54,18 @@ class WrongParameters(unittest.TestCase):
     def test_allow_missing_geometry_insists(self):
         urdf = open(ARM).read().replace('<sphere radius="0.1"/>', '<sphere radius="-1"/>')
         rospy.set_param('/robot_description', urdf)
-        node = Node('insisting', allow_missing_geometry=True)
-        try:
-            self.assertTrue(Server('/insisting').scene().success)
-            self.assertIn('arm', node.output())
-        finally:
-            node.end()
+        node, server = self.begin('insisting', allow_missing_geometry=True)
+        self.assertTrue(server.scene().success)
+        self.assertIn('arm', node.output())
 
     def test_a_scene_file_is_there_from_the_start(self):
         with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
             scene.write('world: {collision_objects: [{id: box, header: {frame_id: world}, pose: {position: [1, 2, 3]}, '
                         'primitives: [{type: box, dimensions: [1, 1, 1]}]}]}')
             scene.flush()
-            node = Node('furnished', scene_file=scene.name)
-            try:
-                found, = Server('/furnished').scene().objects
-                self.assertEqual((found.id, found.pose.position.y), ('box', 2.0))
-            finally:
-                node.end()
+            _, server = self.begin('furnished', scene_file=scene.name)
+            found, = server.scene().objects
+            self.assertEqual((found.id, found.pose.position.y), ('box', 2.0))
 
     def test_a_scene_file_with_an_object_in_a_frame_that_nobody_knows_is_refused(self):
         with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
@@ -78,12 +77,27 @@ class WrongParameters(unittest.TestCase):
             self.assertIn('~scene_file', output)
 
     def test_a_misspelt_name_is_warned_of(self):
-        node = Node('misspelt', epsilom=1e-3)
-        try:
-            self.assertTrue(Server('/misspelt').scene().success)
-            self.assertIn('~epsilom', node.output())
-        finally:
-            node.end()
+        node, server = self.begin('misspelt', epsilom=1e-3)
+        self.assertTrue(server.scene().success)
+        self.assertIn('~epsilom', node.output())
+
+    def test_every_form_of_a_mesh_uri_is_the_same_mesh_and_http_is_none(self):
+        distances = []
+        for uri in ('meshes/finger.stl', 'file://' + PANDA + '/meshes/finger.stl',
+                    'package://curve_proximity/test/data/robots/panda/meshes/finger.stl'):
+            rospy.set_param('/robot_description', ROBOT % uri)
+            name = 'meshes%d' % len(distances)
+            _, server = self.begin(name, urdf_dir=PANDA, fixed_frame='base')
+            row, = server.distance(LINE, links=['finger'], joint_state=joints(slide=0.0)).results
+            self.assertEqual(row.status, 'ok', row.message)
+            distances.append((row.lower, row.upper))
+        self.assertEqual(len(set(distances)), 1)
+        self.assertLess(distances[0][1], 1.0)
+        for uri, word in (('http://localhost/finger.stl', 'http'), ('meshes/none.stl', 'none.stl'), ('', "'finger'")):
+            rospy.set_param('/robot_description', ROBOT % uri)
+            self.assertIn(word, self.stopped(urdf_dir=PANDA))
+        rospy.set_param('/robot_description', ROBOT % 'meshes/finger.stl')
+        self.assertIn('finger.stl', self.stopped())  # relative to nothing
 
 
 if __name__ == '__main__':
