@@ -2,12 +2,18 @@
 #include "base/workspace.h"
 
 #include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+/* What stands before a buffer's memory. */
+typedef struct buffer_head {
+  _Alignas(max_align_t) size_t bytes;
+} buffer_head;
+
 struct cprox_workspace {
-  void *memory[WORKSPACE_BUFFERS];
-  size_t bytes[WORKSPACE_BUFFERS];
+  buffer_head *buffer[WORKSPACE_BUFFERS];
   char reason[256];
   bool (*stop)(void *user); /* NULL: never */
   void *stop_user;
@@ -24,14 +30,15 @@ cprox_workspace *cprox_workspace_create(void) {
 
 void cprox_workspace_free(cprox_workspace *workspace) {
   if (!workspace) return;
-  for (int i = 0; i < WORKSPACE_BUFFERS; i++) free(workspace->memory[i]);
+  for (int i = 0; i < WORKSPACE_BUFFERS; i++) free(workspace->buffer[i]);
   free(workspace);
 }
 
 size_t cprox_workspace_bytes(const cprox_workspace *workspace) {
   if (!workspace) return 0;
   size_t sum = sizeof *workspace;
-  for (int i = 0; i < WORKSPACE_BUFFERS; i++) sum += workspace->bytes[i];
+  for (int i = 0; i < WORKSPACE_BUFFERS; i++)
+    if (workspace->buffer[i]) sum += sizeof(buffer_head) + workspace->buffer[i]->bytes;
   return sum;
 }
 
@@ -68,18 +75,22 @@ cprox_status cprox_workspace_take_back(cprox_workspace *workspace, cprox_status 
 /* ---- memory ---- */
 
 void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, size_t bytes) {
-  if (bytes <= workspace->bytes[buffer]) return workspace->memory[buffer];
-  size_t grown = workspace->bytes[buffer] + workspace->bytes[buffer] / 2;
-  if (grown < bytes) grown = bytes;
-  void *memory = realloc(workspace->memory[buffer], grown);
-  if (!memory) return NULL;
-  workspace->memory[buffer] = memory;
-  workspace->bytes[buffer] = grown;
-  return memory;
+  enum { SMALL = 8192 }; /* a curve's query has few open nodes: no room for more is made before it is asked for */
+  buffer_head *head = workspace->buffer[buffer];
+  const size_t before = head ? head->bytes : 0;
+  if (bytes > before) {
+    size_t grown = before + (bytes > SMALL ? before / 2 : 0);
+    if (grown < bytes) grown = bytes;
+    head = grown < SIZE_MAX - sizeof *head ? realloc(head, sizeof *head + grown) : NULL;
+    if (!head) return NULL;
+    head->bytes = grown;
+    workspace->buffer[buffer] = head;
+  }
+  return head ? head + 1 : NULL;
 }
 
 void *workspace_filled(const cprox_workspace *workspace, workspace_buffer buffer) {
-  return workspace->memory[buffer];
+  return workspace->buffer[buffer] ? workspace->buffer[buffer] + 1 : NULL;
 }
 
 void *cprox_workspace_reserve(cprox_workspace *workspace, size_t bytes) {
