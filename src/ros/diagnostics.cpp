@@ -16,17 +16,15 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 
 constexpr double REPORT_PERIOD = 1.0; /* [s] */
-constexpr double OLD_TRANSFORM = 1.0; /* [s] from here on a link pose that changes is a stale one */
 
 } // namespace
 
 Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, Turns &turns, const Pipeline &pipeline,
-                         const PlanningSceneTopic &planning_scene, const Frames &frames, const LiveScene &live)
+                         const PlanningSceneTopic &planning_scene, const LiveScene &live)
     : statistics_(statistics),
       turns_(turns),
       pipeline_(pipeline),
       planning_scene_(planning_scene),
-      frames_(frames),
       live_(live),
       handle_(handle),
       updater_(ros::NodeHandle(), handle, handle.getNamespace()) {
@@ -34,7 +32,6 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
   updater_.add("queries", this, &Diagnostics::queries);
   updater_.add("sensors", this, &Diagnostics::sensors);
   updater_.add("planning_scene", this, &Diagnostics::planningScene);
-  updater_.add("transforms", this, &Diagnostics::transforms);
 
   // By the wall clock: the updater's own period counts in ROS time, which may stand still.
   timer_ = handle_.createWallTimer(ros::WallDuration(REPORT_PERIOD), [this](const ros::WallTimerEvent &) {
@@ -109,32 +106,6 @@ void Diagnostics::planningScene(Status &status) {
   status.add("scenes replaced after a comparison", report.replaced);
   if (!differences.empty()) status.add("differences", differences);
   if (!report.unused.empty()) status.add("not used", boost::algorithm::join(report.unused, "; "));
-}
-
-void Diagnostics::transforms(Status &status) {
-  const SnapshotPtr snapshot = live_.scene.snapshot();
-  if (!snapshot->robot()) return status.summary(DiagnosticStatus::OK, "no robot");
-
-  // The links whose poses queries need; fixed ones have no age.
-  double oldest = 0.0;
-  std::string which;
-  for (const auto &link : snapshot->robot()->links()) {
-    if (link.second.empty()) continue;
-    const std::optional<double> age = frames_.age(link.first);
-    if (!age)
-      return status.summary(DiagnosticStatus::WARN,
-                            "no transform from '" + link.first + "' to '" + frames_.fixedFrame() + "'");
-    if (*age <= oldest) continue;
-    oldest = *age;
-    which = link.first;
-  }
-  if (oldest > OLD_TRANSFORM) {
-    status.summary(DiagnosticStatus::WARN, "transforms are old");
-  } else {
-    status.summary(DiagnosticStatus::OK, "transforms are there");
-  }
-  status.addf("oldest [s]", "%.3f", oldest);
-  status.add("link", which);
 }
 
 } // namespace curve_proximity

@@ -12,19 +12,18 @@
 #include "moveit/planning_scene_topic.h"
 #include "pipeline/pipeline.h"
 #include "transport/statistics.h"
-#include "world/frames.h"
 #include "world/live_scene.h"
 
 namespace curve_proximity {
 
-/** Four statuses: `queries` (rate, mean and longest time of a request, undecided and failed rows, messages dropped),
+/** Three statuses: `queries` (rate, mean and longest time of a request, undecided and failed rows, messages dropped),
  * `sensors` (how old the object of each is, and whether anything is known of it), `planning_scene` (what came of
- * move_group's scene, and whether this one differs), `transforms` (how old the robot's link poses in the fixed frame are). */
+ * move_group's scene, and whether this one differs). */
 class Diagnostics {
  public:
   /** handle: private; its callback queue runs the timer. The others are kept by reference. */
   Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, Turns &turns, const Pipeline &pipeline,
-              const PlanningSceneTopic &planning_scene, const Frames &frames, const LiveScene &live);
+              const PlanningSceneTopic &planning_scene, const LiveScene &live);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
@@ -32,13 +31,11 @@ class Diagnostics {
   void queries(Status &status);
   void sensors(Status &status);
   void planningScene(Status &status);
-  void transforms(Status &status);
 
   Statistics &statistics_;
   Turns &turns_;
   const Pipeline &pipeline_;
   const PlanningSceneTopic &planning_scene_;
-  const Frames &frames_;
   const LiveScene &live_;
   std::uint64_t dropped_ = 0; /* when last told */
   ros::NodeHandle handle_;

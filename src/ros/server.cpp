@@ -289,7 +289,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
   pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, live_, queries_, *markers_, stop_);
   batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, turns_, stop_);
   diagnostics_ =
-      std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *planning_scene_, frames_, live_);
+      std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *planning_scene_, live_);
   reconfigure_ =
       std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { turns_.setSlots(threads); });
   for (ThreadedQueue *queue : {&control_queue_, &objects_queue_, &requests_}) queue->start();

@@ -76,17 +76,6 @@ class Diagnostics(Case):
         status, _ = self.status('sensors', lambda s, v: v.get('cloud') == 'unknown')
         self.assertEqual(status.level, DiagnosticStatus.WARN)
 
-    def test_the_age_of_transforms_is_told(self):
-        status, _ = self.status('transforms', lambda s, v: True)
-        self.assertEqual(status.level, DiagnosticStatus.WARN)
-        self.assertIn("'arm'", status.message)
-        sent = rospy.Time.now()
-        links = [transform(parent, link, stamp=sent) for link, parent in (('base', 'world'), ('arm', 'base'), ('slider', 'base'))]
-        self.publisher('/tf', TFMessage).publish(TFMessage(links))
-        status, values = self.status('transforms', lambda s, v: 'oldest [s]' in v and float(v['oldest [s]']) > 1.0)
-        self.assertEqual(status.level, DiagnosticStatus.WARN)
-        self.assertLess(abs((rospy.Time.now() - sent).to_sec() - float(values['oldest [s]'])), 1.5)
-
     def test_epsilon_budget_and_threads_change_while_it_runs(self):
         client = Client('/curve_proximity', timeout=10)
         before = client.get_configuration()

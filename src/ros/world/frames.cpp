@@ -6,6 +6,7 @@
 #include <curve_proximity/core.hpp>
 #include <curve_proximity/nearest_name.hpp>
 #include <sstream>
+#include <thread>
 #include <vector>
 
 #include "messages/geometry_message.h"
@@ -17,19 +18,14 @@ namespace {
 /** By then what is published regularly, and what is latched, has come. */
 constexpr std::chrono::seconds SETTLED{3};
 
-/** A wait looks again this often, even where no transform has come: the stop flag is nobody's signal. */
-constexpr std::chrono::milliseconds LOOK_AGAIN{20};
+/** A wait looks again this often, as those of tf2_ros do. */
+constexpr std::chrono::milliseconds LOOK_AGAIN{10};
 
 } // namespace
 
 Frames::Frames(const std::string &fixed_frame, double timeout, const std::atomic<bool> &stop)
     : fixed_frame_(withoutSlash(fixed_frame)), timeout_(timeout), stop_(stop), listener_(buffer_, true) {
   buffer_.setUsingDedicatedThread(true);
-  listening_ = buffer_._addTransformsChangedListener([this] { changed_.notify_all(); });
-}
-
-Frames::~Frames() {
-  buffer_._removeTransformsChangedListener(listening_);
 }
 
 Frames::Clock::time_point Frames::deadline() const {
@@ -87,10 +83,7 @@ Frames::Place Frames::place(const std::string &given, const ros::Time &stamp, Cl
   // tf2's own timeout counts in ROS time, which stands still without a clock: so ask without one, again and again.
   const Turn::Pause pause(turn);
   while (!stop_ && Clock::now() < deadline) {
-    {
-      std::unique_lock<std::mutex> lock(mutex_);
-      changed_.wait_until(lock, std::min(deadline, Clock::now() + LOOK_AGAIN));
-    }
+    std::this_thread::sleep_until(std::min(deadline, Clock::now() + LOOK_AGAIN));
     if (const std::optional<Place> found = now(frame, stamp, reason)) return *found;
   }
   std::ostringstream waited;
@@ -102,15 +95,6 @@ bool Frames::has(const std::string &given, const ros::Time &stamp) const {
   const std::string frame = withoutSlash(given);
   std::string reason;
   return frame.empty() || frame == fixed_frame_ || now(frame, stamp, reason);
-}
-
-std::optional<double> Frames::age(const std::string &given) const {
-  const std::string frame = withoutSlash(given);
-  if (frame == fixed_frame_) return 0.0;
-  std::string reason;
-  const std::optional<Place> found = now(frame, ros::Time(), reason);
-  if (!found) return std::nullopt;
-  return std::isnan(found->age) ? 0.0 : found->age;
 }
 
 const Eigen::Isometry3d &FrameLookup::toFixed(const std::string &frame, const ros::Time &stamp) {

@@ -9,11 +9,9 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <Eigen/Geometry>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,7 +27,6 @@ class Frames {
 
   /** timeout: how long a lookup may wait for a transform, on the steady clock [s]. stop: ends every wait. */
   Frames(const std::string &fixed_frame, double timeout, const std::atomic<bool> &stop);
-  ~Frames();
 
   const std::string &fixedFrame() const {
     return fixed_frame_;
@@ -56,10 +53,6 @@ class Frames {
   /** Has the server listened long enough to have heard of static and regular transforms? */
   bool settled() const;
 
-  /** [s] How old the latest pose of `frame` in the fixed frame is, by ROS time; 0 where nothing between them moves.
-   * Does not wait: nothing where there is no transform. */
-  std::optional<double> age(const std::string &frame) const;
-
  private:
   std::optional<Place> now(const std::string &frame, const ros::Time &stamp, std::string &reason) const;
   [[noreturn]] void refuse(const std::string &frame, const ros::Time &stamp, const std::string &reason) const;
@@ -69,10 +62,7 @@ class Frames {
   const std::chrono::duration<double> timeout_;
   const std::atomic<bool> &stop_;
   const Clock::time_point began_ = Clock::now();
-  mutable std::mutex mutex_;
-  mutable std::condition_variable changed_; /* the buffer has taken in transforms */
   tf2_ros::Buffer buffer_;
-  boost::signals2::connection listening_;
   tf2_ros::TransformListener listener_;
 };
 
