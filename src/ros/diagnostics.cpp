@@ -62,7 +62,6 @@ void Diagnostics::queries(Status &status) {
               1e6 * s.busy / static_cast<double>(std::max<std::uint64_t>(s.calls, 1)));
   status.addf("longest time of a request [us]", "%.0f", 1e6 * s.longest);
   status.add("requests that wait", turns_.waiting());
-  status.addf("longest wait [ms]", "%.1f", 1000.0 * turns_.takeLongestWait());
   status.add("resident memory [MB]", memory::resident() >> 20);
   status.add("undecided rows", s.undecided);
   status.add("failed rows", s.failed);

@@ -2,7 +2,6 @@
 #include "transport/turns.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace curve_proximity {
 namespace {
@@ -24,11 +23,6 @@ void Turns::setSlots(int slots) {
   slots_ = slots;
   crowded_ = running_ > slots_;
   grant();
-}
-
-double Turns::takeLongestWait() {
-  const Lock lock(mutex_);
-  return std::exchange(longest_wait_, 0.0);
 }
 
 Turns::Client &Turns::enter(const std::string &name) {
@@ -90,13 +84,10 @@ Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point dea
   Turns::Lock lock(turns_.mutex_);
   ticket_.client = &turns_.enter(client);
   const Turns::Clock::time_point since = Turns::Clock::now();
-  const bool in_time = turns_.wait(ticket_, lock, deadline);
-  const double waited = seconds(Turns::Clock::now() - since);
-  turns_.longest_wait_ = std::max(turns_.longest_wait_, waited);
-  if (in_time) return;
+  if (turns_.wait(ticket_, lock, deadline)) return;
   --ticket_.client->active;
   throw Busy("busy: " + std::to_string(turns_.waiting_.size()) + " other requests wait, and this one has waited for " +
-             std::to_string(static_cast<int>(1000.0 * waited)) + " ms");
+             std::to_string(static_cast<int>(1000.0 * seconds(Turns::Clock::now() - since))) + " ms");
 }
 
 Turn::~Turn() {

@@ -42,9 +42,6 @@ class Turns {
     return waiting_count_.load(std::memory_order_relaxed);
   }
 
-  /** [s] The longest wait for a first turn since the last call. */
-  double takeLongestWait();
-
  private:
   friend class Turn;
 
@@ -69,8 +66,7 @@ class Turns {
   std::mutex mutex_;
   int slots_;
   int running_ = 0;
-  double floor_ = 0.0; /* [s] what the client in turn had used: nobody starts below it */
-  double longest_wait_ = 0.0;
+  double floor_ = 0.0;            /* [s] what the client in turn had used: nobody starts below it */
   std::vector<Ticket *> waiting_; /* in the order of their coming */
   std::map<std::string, Client> clients_;
   std::atomic<std::size_t> waiting_count_{0};
