@@ -1,65 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The messages, services and actions of the package, in msg/, srv/ and action/, and its dynamic parameters, in cfg/.
-set(CURVE_PROXIMITY_MESSAGES
-  AllowedContact.msg
-  AttachedCollisionObject.msg
-  Body.msg
-  Clearance.msg
-  CollisionObject.msg
-  ConstraintQuery.msg
-  ConstraintResult.msg
-  Curve.msg
-  CurvePiece.msg
-  ExecutionErrors.msg
-  Gradient.msg
-  Hyperquadric.msg
-  LinkPadding.msg
-  LinkPair.msg
-  LinkScale.msg
-  ObjectMargins.msg
-  Octree.msg
-  PairQuery.msg
-  PoseTrajectory.msg
-  Profile.msg
-  Proximity.msg
-  ProximityQuery.msg
-  ProximityResults.msg
-  Refusal.msg
-  RobotTrajectory.msg
-  SceneState.msg
-  SensorState.msg
-  SpeedProfile.msg
-  SweptCells.msg
-  TrajectoryConstraint.msg
-  ViolationIntervals.msg
-  Waypoint.msg
-)
-set(CURVE_PROXIMITY_SERVICES
-  ApplyScene.srv
-  CertifyPath.srv
-  ClearanceProfile.srv
-  Collision.srv
-  Distance.srv
-  EvaluateConstraints.srv
-  GetScene.srv
-  LimitSpeed.srv
-  ListLinkPairs.srv
-  ListMargins.srv
-  ListViolations.srv
-  MeasurePairs.srv
-  NearestPairs.srv
-  SweepVolume.srv
-  TimeOfContact.srv
-  Tolerance.srv
-)
-
-set(CURVE_PROXIMITY_ACTIONS
-  Query.action
-)
-
-add_message_files(DIRECTORY msg FILES ${CURVE_PROXIMITY_MESSAGES})
-add_service_files(DIRECTORY srv FILES ${CURVE_PROXIMITY_SERVICES})
-add_action_files(DIRECTORY action FILES ${CURVE_PROXIMITY_ACTIONS})
+foreach(kind msg srv action)
+  file(GLOB definitions_${kind} CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/${kind} ${PROJECT_SOURCE_DIR}/${kind}/*.${kind})
+endforeach()
+add_message_files(DIRECTORY msg FILES ${definitions_msg})
+add_service_files(DIRECTORY srv FILES ${definitions_srv})
+add_action_files(DIRECTORY action FILES ${definitions_action})
 generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs nav_msgs sensor_msgs shape_msgs std_msgs trajectory_msgs)
 
 # What may change while the server runs.

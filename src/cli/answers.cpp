@@ -160,8 +160,9 @@ void addFailure(const Asked &asked, const Arguments &arguments, cprox_status sta
                 Outcome &out) {
   out.complaints.push_back(asked.place + ": " + why);
   if (!arguments.certificate.empty()) out.certificate = emptyRecord();
-  if (!asksFor<question::Search, question::Nearest, question::Contact>(arguments.question)) {
-    out.text += failedLine(headerOf(arguments), asked.id, asked.kind, status, why);
+  const std::string header = headerOf(arguments);
+  if (header != resultsHeader(columnsOf(arguments))) {
+    out.text += failedLine(header, asked.id, asked.kind, status, why);
     return;
   }
   ResultRow row;
