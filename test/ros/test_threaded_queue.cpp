@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "transport/job_queue.h"
 #include "transport/threaded_queue.h"
 
 namespace curve_proximity {
@@ -86,27 +87,44 @@ TEST(ThreadedQueue, callbacks_of_one_at_once_keep_their_order) {
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(order[static_cast<std::size_t>(i)], i);
 }
 
-TEST(ThreadedQueue, the_next_callback_begins_while_a_thread_does_what_follows_the_last_one) {
-  Slow follows;
-  std::atomic<bool> first{true};
-  ThreadedQueue queue(2, [&] {
-    if (first.exchange(false)) follows.work()();
-  });
+TEST(JobQueue, callbacks_are_taken_while_a_job_is_done_and_the_oldest_jobs_are_dropped) {
+  JobQueue queue(3);
+  Slow slow;
+  std::atomic<int> taken{0}, done{0};
   queue.start();
-  std::atomic<int> done{0};
-  queue.post([&] { ++done; });
-  ASSERT_TRUE(comes([&] { return follows.begun == 1; }));
-  queue.post([&] { ++done; });
-  EXPECT_TRUE(comes([&] { return done == 2; }));
-  std::atomic<bool> ended{false};
+  const auto leave = [&](const std::function<void()> &job) {
+    queue.post([&, job] {
+      queue.add(job);
+      ++taken;
+    });
+  };
+  leave(slow.work());
+  ASSERT_TRUE(comes([&] { return slow.begun == 1; }));
+  for (int i = 0; i < 10; ++i) leave([&] { ++done; });
+  ASSERT_TRUE(comes([&] { return taken == 11; }));
+  EXPECT_EQ(queue.dropped(), 7u);
+  EXPECT_EQ(done, 0);
+  slow.ending = true;
+  EXPECT_TRUE(comes([&] { return done == 3; }));
+}
+
+TEST(JobQueue, the_end_waits_for_a_job_and_begins_no_other) {
+  JobQueue queue(3);
+  Slow slow;
+  std::atomic<bool> ended{false}, done{false};
+  queue.start();
+  queue.post([&] { queue.add(slow.work()); });
+  ASSERT_TRUE(comes([&] { return slow.begun == 1; }));
+  queue.add([&] { done = true; });
   std::thread ending([&] {
     queue.end();
     ended = true;
   });
   std::this_thread::sleep_for(A_WHILE);
-  EXPECT_FALSE(ended); // it waits for what follows, too
-  follows.ending = true;
+  EXPECT_FALSE(ended);
+  slow.ending = true;
   ending.join();
+  EXPECT_FALSE(done);
 }
 
 TEST(ThreadedQueue, none_runs_after_the_end) {

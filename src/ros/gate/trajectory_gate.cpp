@@ -46,8 +46,7 @@ std::string idOf(const Message &) {
 TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters,
                                const ProofCheck *proofs)
     : parameters_(parameters),
-      jobs_(static_cast<std::size_t>(parameters.queue_size)),
-      queue_(2, [this] { jobs_.work(); }),
+      queue_(static_cast<std::size_t>(parameters.queue_size)),
       handle_(onQueue(handle, queue_)),
       refused_(handle_.advertise<Refusal>("refused", MOTION_QUEUE)),
       clear_trajectory_(handle_.advertise<JointTrajectory>("clear_trajectory", MOTION_QUEUE)),
@@ -65,7 +64,6 @@ TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParamete
 
 TrajectoryGate::~TrajectoryGate() {
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
-  jobs_.clear();
   calls_.end();
   queue_.end();
   watches_.reset();
@@ -82,7 +80,7 @@ void TrajectoryGate::connect(const std::string &topic, const ros::Publisher &out
         return out.publish(message);
       }
     }
-    jobs_.add([this, topic, out, message] { guarded([&] { judge(topic, message, out); }, logGateError); });
+    queue_.add([this, topic, out, message] { guarded([&] { judge(topic, message, out); }, logGateError); });
   }));
 }
 

@@ -47,8 +47,7 @@ class TrajectoryGate {
   void refuse(Refusal refusal, const Motion &motion);
 
   const GateParameters parameters_;
-  JobQueue jobs_;
-  ThreadedQueue queue_; /* one thread asks, another one takes in what comes meanwhile */
+  JobQueue queue_;
   ros::NodeHandle handle_;
   const ros::Publisher refused_, clear_trajectory_;
   ServerCalls calls_;

@@ -68,8 +68,7 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
       markers_(markers),
       stop_(stop),
       query_type_(*queryTypeFromName(parameters.query_type)),
-      jobs_(static_cast<std::size_t>(parameters.queue_size)),
-      queue_(2, [this] { jobs_.work(); }),
+      queue_(static_cast<std::size_t>(parameters.queue_size)),
       handle_(onQueue(handle, queue_)),
       state_handle_(onQueue(handle, state_queue_)) {
   results_ = handle_.advertise<ProximityResults>("proximity", RESULTS_KEPT);
@@ -107,14 +106,13 @@ Pipeline::~Pipeline() {
   state_queue_.end();
 }
 
-/** roscpp's queue is left without a limit, and emptied at once: one thread answers, and another one takes in what comes
- *  meanwhile. */
+/** roscpp's queue is left without a limit, and emptied at once. */
 template <class Message>
 void Pipeline::listen(const char *topic) {
   using Pointer = boost::shared_ptr<const Message>;
   ros::SubscribeOptions options = checkedSubscription<Message>(topic, 0, [this, topic](const Pointer &message) {
     if (message)
-      jobs_.add([this, topic, message] {
+      queue_.add([this, topic, message] {
         guarded([&] { handle(topic, *message); },
                 [](const std::string &why) { ROS_ERROR("a message is not answered: %s", why.c_str()); });
       });
@@ -138,7 +136,7 @@ void Pipeline::handle(const char *topic, const Message &message) {
   bool published = false;
   const auto publish = [&] {
     published = true;
-    results->dropped = jobs_.dropped();
+    results->dropped = queue_.dropped();
     results_.publish(ProximityResultsPtr(results));
     tellContacts(*results);
     markers_.show(drawing);

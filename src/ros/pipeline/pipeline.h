@@ -45,7 +45,7 @@ class Pipeline {
   ~Pipeline();
 
   std::uint64_t dropped() const {
-    return jobs_.dropped();
+    return queue_.dropped();
   }
 
  private:
@@ -72,8 +72,7 @@ class Pipeline {
   MarkerPublisher &markers_;
   const std::atomic<bool> &stop_;
   const QueryType query_type_;
-  JobQueue jobs_; /* messages that wait to be answered */
-  ThreadedQueue queue_;
+  JobQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher results_, states_, contacts_;
   std::unique_ptr<ClearanceTopics> clearance_; /* null: without ~profile_intervals */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What messages ask for, done one after the other. */
+/** A callback queue whose messages are taken in at once, and answered one after the other. */
 #ifndef CURVE_PROXIMITY_ROS_JOB_QUEUE_H
 #define CURVE_PROXIMITY_ROS_JOB_QUEUE_H
 
@@ -11,29 +11,45 @@
 #include <mutex>
 #include <utility>
 
+#include "transport/threaded_queue.h"
+
 namespace curve_proximity {
 
-/** While one job is done, a few others wait; of more the oldest is dropped and counted. roscpp's own queue drops what is
- *  oldest too, but counts nothing, and keeps all messages of its topic waiting. Any number of threads. */
-class JobQueue {
+/** Callbacks leave jobs here. The thread that has taken a message in does its job, and all that wait; another one takes
+ *  in what comes meanwhile. Of more jobs than may wait the oldest is dropped. roscpp's own queues drop what is oldest,
+ *  too, but tell nobody. */
+class JobQueue : public ThreadedQueue {
  public:
   using Job = std::function<void()>;
 
-  /** most: that may wait. */
-  explicit JobQueue(std::size_t most) : most_(most) {}
+  /** most: so many jobs may wait. */
+  explicit JobQueue(std::size_t most) : ThreadedQueue(2), most_(most) {}
+  ~JobQueue() override {
+    end();
+  }
 
-  /** The job throws nothing. */
+  /** By a callback. The job throws nothing. */
   void add(Job job) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (jobs_.size() == most_) {
-      jobs_.pop_front();
-      ++dropped_;
-    }
+    if (jobs_.size() == most_) jobs_.pop_front(), ++dropped_;
     jobs_.push_back(std::move(job));
   }
 
-  /** Does all that wait, unless another thread is at it. */
-  void work() {
+  /** What waits is not done. */
+  void end() override {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      jobs_.clear();
+    }
+    ThreadedQueue::end();
+  }
+
+  std::uint64_t dropped() const {
+    return dropped_;
+  }
+
+ private:
+  void afterwards() override {
     std::unique_lock<std::mutex> lock(mutex_);
     if (working_) return;
     working_ = true;
@@ -47,17 +63,6 @@ class JobQueue {
     working_ = false;
   }
 
-  /** What waits is not done. */
-  void clear() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    jobs_.clear();
-  }
-
-  std::uint64_t dropped() const {
-    return dropped_;
-  }
-
- private:
   const std::size_t most_;
   std::mutex mutex_;
   std::deque<Job> jobs_;

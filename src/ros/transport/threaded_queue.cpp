@@ -86,7 +86,7 @@ void ThreadedQueue::run(Threads::iterator own) {
     lock.unlock();
     const bool again = callOne() == TryAgain;
     if (again) std::this_thread::sleep_for(TRY_AGAIN);
-    if (afterwards_) afterwards_();
+    afterwards();
     lock.lock();
     waiting_ += again;
     --running_;

@@ -18,19 +18,17 @@ namespace curve_proximity {
  * that a burst has left over end after half a second; the last one stays. */
 class ThreadedQueue : public ros::CallbackQueue {
  public:
-  /** at_once: so many callbacks may run at once; 1: one after the other. afterwards: if set, called by the thread that
-   *  has run a callback. */
-  explicit ThreadedQueue(std::size_t at_once = 1, std::function<void()> afterwards = nullptr)
-      : at_once_(at_once), afterwards_(std::move(afterwards)) {}
+  /** at_once: so many callbacks may run at once; 1: one after the other. */
+  explicit ThreadedQueue(std::size_t at_once = 1) : at_once_(at_once) {}
   ~ThreadedQueue() override {
-    end();
+    ThreadedQueue::end();
   }
 
   /** Once. What has waited in the queue runs at once. */
   void start();
 
   /** No callback runs, nor will one begin. Not to be called by a callback. */
-  void end();
+  virtual void end();
 
   void addCallback(const ros::CallbackInterfacePtr &callback, std::uint64_t removal_id = 0) override;
 
@@ -48,6 +46,10 @@ class ThreadedQueue : public ros::CallbackQueue {
   /** Threads that there are. */
   std::size_t threads();
 
+ protected:
+  /** Called by the thread that has run a callback. */
+  virtual void afterwards() {}
+
  private:
   using Lock = std::unique_lock<std::mutex>;
   using Threads = std::list<std::thread>;
@@ -55,13 +57,12 @@ class ThreadedQueue : public ros::CallbackQueue {
   void run(Threads::iterator own);
 
   const std::size_t at_once_;
-  const std::function<void()> afterwards_;
   std::mutex mutex_; /* of what follows */
   std::condition_variable wake_;
   bool started_ = false, ended_ = false;
   std::size_t waiting_ = 0; /* callbacks that came and that no thread has taken */
   std::size_t idle_ = 0;    /* threads that wait for one */
-  std::size_t running_ = 0; /* threads in callbacks or in afterwards_ */
+  std::size_t running_ = 0; /* threads in callbacks or in afterwards() */
   Threads threads_;
   Threads left_over_; /* that do no more: to be joined */
 };
