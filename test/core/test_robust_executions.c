@@ -242,6 +242,96 @@ CASE(no_execution_brings_two_links_nearer_than_is_certified) {
   if (test_cases(120) >= 60) assert_true(asked > test_cases(60));
 }
 
+/* ---- bounds of a node ---- */
+
+static double farthest_from(const vec3l *x, vec3 centre) {
+  double most = 0.0;
+  for (size_t k = 0; k < TEST_VERTICES; k++) most = fmax(most, (double)ref_norm(ref_sub(x[k], ref_vec(centre))));
+  return most;
+}
+
+/* A part of one segment, and how its axes stand in its middle. */
+typedef struct node {
+  motion_interval over;
+  axis_state *axes;
+  axis_deviations *off;
+} node;
+
+static void draw_node(rng *r, const cprox_motion *m, const robot_errors *errors, double *rows, node *at) {
+  const size_t k = rng_index(r, m->n_segments);
+  const double a = rng_uniform(r, 0, 0.5);
+  at->over = (motion_interval){.a = a, .b = rng_uniform(r, a, 1.0), .first = k, .last = k + 1};
+  motion_node(m, k, at->over.a, at->over.b, rows, at->axes);
+  for (size_t i = 0; i < m->robot->n_axes; i++)
+    at->off[i].of = errors_of_axis(m, errors, (int32_t)i, k, 0.5 * (at->over.a + at->over.b), &at->over);
+}
+
+/* How far a vertex of a geometry is from where the motion has it at a time of the node, in one execution: by its joints,
+ * and by its joints and its base; over what is bounded. */
+static void expect_within(rng *r, const world *w, const node *at, size_t geometry, const robot_errors *errors,
+                          double share[2]) {
+  const cprox_motion *m = w->t.motion;
+  const int32_t axis = m->robot->parts[geometry].axis;
+  if (axis < 0) return;
+  long double values[TEST_MAX_VARIABLES + 1];
+  ref_pose links[TEST_MAX_LINKS];
+  vec3l exact[TEST_VERTICES], off[TEST_VERTICES];
+  robot_ref_values(&w->t, motion_time(m, at->over.first, 0.5 * (at->over.a + at->over.b)), values);
+  robot_ref_links(&w->t, values, links);
+  robot_ref_vertices(&w->t, links, geometry, exact);
+  const vec3 centre = vec((double)exact[0].x, (double)exact[0].y, (double)exact[0].z);
+  const double radius = farthest_from(exact, centre),
+               time = motion_time(m, at->over.first, rng_index(r, 2) ? at->over.a : at->over.b);
+  double travel;
+  const deviation joints = errors_along_chain(m, at->axes, at->off, axis, -1, centre, radius, &travel);
+  const deviation base = errors_of_base(errors, centre, radius, travel);
+
+  robot_ref_values(&w->t, time, values);
+  robot_ref_links(&w->t, values, links);
+  robot_ref_vertices(&w->t, links, geometry, exact);
+  draw_values(r, w, time, time, values);
+  robot_ref_links(&w->t, values, links);
+  robot_ref_vertices(&w->t, links, geometry, off);
+  const cprox_error_bounds *b = &w->bounds;
+  const double most[2] = {joints.middle + joints.growth, base.middle + base.growth};
+  for (size_t k = 0; k < TEST_VERTICES; k++) {
+    const vec3l x = shifted(r, b->base_position, turned(r, b->base_rotation, ref_vec(b->base_origin), off[k]));
+    const double by[2] = {(double)ref_norm(ref_sub(off[k], exact[k])), (double)ref_norm(ref_sub(x, exact[k]))};
+    for (int i = 0; i < 2; i++) {
+      const double bound = most[0] + (i ? most[1] : 0.0);
+      if (by[i] > bound + 1e-9) fail_msg("%s: off by %.12g, bound %.12g", i ? "base" : "joints", by[i], bound);
+      if (bound > 1e-3) share[i] = fmax(share[i], by[i] / bound);
+    }
+  }
+}
+
+CASE(no_point_is_farther_off_than_a_node_says) {
+  rng r = rng_seed(4606);
+  double share[2] = {0.0, 0.0};
+  for (size_t i = 0; i < test_cases(600); i++) {
+    world w;
+    make_world(&r, &w);
+    w.bounds.timing = 0.0;
+    const bool base_alone = rng_index(&r, 2);
+    for (size_t v = 0; base_alone && v < w.t.n_variables; v++) w.tracking[v] = w.speed[v] = w.acceleration[v] = 0.0;
+    const cprox_motion *m = w.t.motion;
+    const robot_errors errors = {.bounds = &w.bounds, .scale = 1.0};
+    double *rows = calloc(MOTION_ROWS * m->row_size + 1, sizeof *rows);
+    node at = {.axes = calloc(m->robot->n_axes + 1, sizeof *at.axes),
+               .off = calloc(m->robot->n_axes + 1, sizeof *at.off)};
+    assert_true(rows && at.axes && at.off);
+    for (int k = 0; k < 20; k++) {
+      draw_node(&r, m, &errors, rows, &at);
+      for (size_t g = 0; g < w.t.n_links; g++) expect_within(&r, &w, &at, g, &errors, share);
+    }
+    free(rows), free(at.axes), free(at.off);
+    free_world(&w);
+  }
+  print_message("points are off by up to %.3f of what joints, and %.3f of what joints and base are bounded by\n",
+                share[0], share[1]);
+  assert_true(share[0] > 0.9 && share[1] > 0.9);
+}
+
 /* ---- lanes ---- */
 
 /* Whether lanes alone prove that all executions are farther than delta. */

@@ -68,3 +68,9 @@ deviation errors_along_chain(const cprox_motion *motion, const axis_state *state
   *travel = ROUND_UP * moved;
   return (deviation){ROUND_UP * middle, ROUND_UP * greater(most - middle, 0.0)};
 }
+
+deviation errors_of_base(const robot_errors *errors, vec3 centre, double radius, double travel) {
+  const cprox_error_bounds *b = errors->bounds;
+  const double arm = vec_norm(vec_sub(centre, b->base_origin)) + radius, scale = ROUND_UP * errors->scale;
+  return (deviation){scale * (b->base_position + b->base_rotation * arm), scale * b->base_rotation * travel};
+}

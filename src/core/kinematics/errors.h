@@ -49,4 +49,7 @@ axis_error errors_of_axis_over(const cprox_motion *motion, const robot_errors *e
 deviation errors_along_chain(const cprox_motion *motion, const axis_state *axes, const axis_deviations *off,
                              int32_t from, int32_t to, vec3 centre, double radius, double *travel);
 
+/* The same by the pose of the base, of what moves so far over the node. */
+deviation errors_of_base(const robot_errors *errors, vec3 centre, double radius, double travel);
+
 #endif

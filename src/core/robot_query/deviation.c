@@ -33,10 +33,8 @@ static part_deviation part_deviation_of(robot_scene *s, int32_t part, const robo
   const int32_t axis = s->motion->robot->parts[part].axis;
   part_deviation d = {.found = s->node};
   d.joints = along_chain(s, axis, -1, body->side.at.p, radius, &d.travel);
-  const double arm = vec_norm(vec_sub(body->side.at.p, b->base_origin)) + radius;
-  d.places.middle = scale * (b->base_position + b->base_rotation * arm + b->object_position + b->sensor);
-  if (axis >= 0) d.places.middle += scale * b->flex;
-  d.places.growth = scale * b->base_rotation * d.travel;
+  d.places = errors_of_base(s->q->errors, body->side.at.p, radius, d.travel);
+  d.places.middle += scale * (b->object_position + b->sensor + (axis >= 0 ? b->flex : 0.0));
   return d;
 }
 

@@ -18,6 +18,12 @@ static cprox_status search(const query *q, const edge_rest *rest, double cutoff,
   return robot_answer(&part, rest->first, rest->last, cutoff, result);
 }
 
+/* What errors leave along the normal of a measured distance is no distance of an execution: another normal may leave more,
+ * which the search can find. */
+static bool is_sure(const query *q) {
+  return !q->errors || q->errors->left + q->errors->loss <= q->limit;
+}
+
 cprox_status robot_verdict(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
   const uint64_t done = workspace_work(q->workspace);
   edge_first known;
@@ -29,7 +35,7 @@ cprox_status robot_verdict(const query *q, size_t first, size_t last, double cut
     const cprox_status status =
         clear && q->is_bare ? CPROX_OK : search(q, clear ? &known.nearest : &known.rest, cutoff, &r);
     if (status < 0) return status;
-    if (!violated || r.verdict == CPROX_VERDICT_VIOLATED) {
+    if (!violated || (r.verdict == CPROX_VERDICT_VIOLATED && is_sure(q))) {
       /* everything else is farther than known.lower */
       r.lower = clear ? known.lower : lesser(violated ? 0.0 : known.lower, r.lower);
       if (q->errors) r.upper = greater(r.lower, r.upper); /* what is left of a pair is bounded in another way */
