@@ -166,7 +166,7 @@ static void verdicts(const problem *problems, size_t n, const bench_size *size, 
 
 /* ---- thin obstacles ---- */
 
-enum { MAX_THIN = 10000, FULL_RUN = 200 };
+enum { FULL_RUN = 200 };
 
 typedef struct thin {
   const robot_case *c;
@@ -180,6 +180,26 @@ static cprox_body *thin_body(rng *r) {
     cprox_body_create_cylinder(length, width, NULL, &body);
   else
     cprox_body_create_box((cprox_vec3){length, rng_index(r, 2) ? length : width, width}, NULL, &body);
+  return body;
+}
+
+/* Blades: superquadrics from round to all but boxes; lenses: two balls and a plane that cuts them. */
+static cprox_body *implicit_body(rng *r) {
+  cprox_body *body = NULL;
+  const double length = rng_uniform(r, 0.05, 0.6), width = rng_log_uniform(r, 5e-4, 3e-3);
+  if (rng_index(r, 2)) {
+    const cprox_vec3 semi_axes = {0.5 * length, rng_index(r, 2) ? 0.5 * length : 0.5 * width, 0.5 * width};
+    const cprox_vec3 exponents = {rng_log_uniform(r, 1.2, 100), rng_log_uniform(r, 1.2, 100),
+                                  rng_log_uniform(r, 1.2, 100)};
+    cprox_body_create_superquadric(semi_axes, exponents, NULL, &body);
+  } else {
+    const double radius = (0.25 * length * length + 0.25 * width * width) / width, off = radius - 0.5 * width;
+    const double balls[2][10] = {{1, 0, 0, 1, 0, 1, 0, 0, 2 * off, off * off - radius * radius},
+                                 {1, 0, 0, 1, 0, 1, 0, 0, -2 * off, off * off - radius * radius}};
+    const double plane[1][4] = {{1, 0, 0, -rng_uniform(r, 0, 0.4) * length}};
+    const cprox_implicit_description lens = {.quadrics = balls, .n_quadrics = 2, .planes = plane, .n_planes = 1};
+    cprox_body_create_implicit(&lens, NULL, NULL, &body);
+  }
   return body;
 }
 
@@ -213,22 +233,29 @@ static void sampled_thin(const void *problems, size_t i, void *state, bench_answ
   answer->wrong = certified.verdict == CPROX_VERDICT_VIOLATED;
 }
 
-static void thin_obstacles(const robot_case *cases, size_t n_cases, const bench_size *size, cprox_workspace *ws) {
-  rng r = rng_seed(77);
+typedef struct thin_family {
+  const char *name;
+  cprox_body *(*make)(rng *r);
+  size_t n, seed;
+} thin_family;
+
+static void thin_obstacles(const thin_family *family, const robot_case *cases, size_t n_cases, const bench_size *size,
+                           cprox_workspace *ws) {
+  rng r = rng_seed(family->seed);
   /* a quick run looks at a few, any other at all of them, once */
-  const size_t n = size->problems < FULL_RUN ? size->problems : MAX_THIN;
+  const size_t n = size->problems < FULL_RUN ? size->problems : family->n;
   const bench_size once = {.problems = n, .rounds = 1};
   thin *problems = calloc(n, sizeof *problems);
   for (size_t i = 0; i < n; i++) {
     const cprox_pose pose = {
         .position = {rng_uniform(&r, -0.9, 0.9), rng_uniform(&r, -0.9, 0.9), rng_uniform(&r, 0, 1.2)},
         .orientation = rng_quat(&r)};
-    problems[i] = (thin){&cases[rng_index(&r, n_cases)], cprox_obstacle_at(thin_body(&r), pose)};
+    problems[i] = (thin){&cases[rng_index(&r, n_cases)], cprox_obstacle_at(family->make(&r), pose)};
   }
   method_state certified = {.workspace = ws}, coarse = {.workspace = ws, .step = 0.05},
                fine = {.workspace = ws, .step = 0.01}, checked = {.workspace = ws, .step = 0.01};
   char parameter[64];
-  snprintf(parameter, sizeof parameter, "wires pins plates %zu cases seed 77", n);
+  snprintf(parameter, sizeof parameter, "%s %zu cases seed %zu", family->name, n, family->seed);
   const bench_workload w = {"robots", "thin obstacles", parameter, problems, n, NULL, 0.0};
   const bench_method methods[] = {{"curve_proximity", ours_thin, &certified},
                                   {"curve_proximity checked", ours_thin, &checked},
@@ -261,7 +288,10 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "environment")) distances(problems, n, false, &size, ws);
   if (bench_wanted(&size, "self")) distances(problems, n, true, &size, ws);
   if (bench_wanted(&size, "tolerance")) verdicts(problems, n, &size, ws);
-  if (bench_wanted(&size, "thin obstacles")) thin_obstacles(cases, n_cases, &size, ws);
+  static const thin_family families[] = {{"wires pins plates", thin_body, 10000, 77},
+                                         {"implicit blades and lenses", implicit_body, 2000, 78}};
+  for (size_t i = 0; i < 2 && bench_wanted(&size, "thin obstacles"); i++)
+    thin_obstacles(&families[i], cases, n_cases, &size, ws);
   if (bench_wanted(&size, "pairs measured")) bench_robot_pairs(cases, n_cases, ws);
   bench_robot_waypoints(cases, n_cases, &size, ws);
   bench_robot_gradients(cases, n_cases, &size, ws);

@@ -69,5 +69,6 @@ def page(figures, out):
                 lambda row: row['workload'][len('gap: '):]),
         section('Implicit bodies', 'Pairs of superquadrics and their like, to a relative gap of 1e-8.', of('implicit', 'hard families'),
                 family_of, ('ipopt',)),
-        section('Robots', 'Thin wires, pins and plates beside arms in motion.', of('robots', 'thin obstacles'), family_of),
+        section('Robots', 'Thin wires, pins and plates beside arms in motion; thin superquadrics of exponents 1.2 to 100, and lenses '
+                'that a plane cuts.', of('robots', 'thin obstacles'), family_of),
     ]))
