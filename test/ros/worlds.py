@@ -10,7 +10,7 @@ import rospy
 from curve_proximity.msg import Body, Octree
 from foreign_types import octomap
 from geometry_msgs.msg import Point
-from helpers import Case, Server, bezier, cloud, connected, run, thing, until
+from helpers import Call, Case, Server, bezier, cloud, connected, run, thing, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import PointCloud2, PointField
 from shape_msgs.msg import MeshTriangle
@@ -185,6 +185,39 @@ class Clouds(TestCase):
             self.assertTrue(min(abs(value - (1 - RADIUS)), abs(value - (1.5 - RADIUS))) < 1e-6, value)
         print('%d answers, %d changes seen of %d clouds' % (len(answers), changes(), sent))
         self.assertGreater(changes(), 10)
+
+
+class Fast(Case):
+    def test_of_clouds_of_a_million_points_at_19_hz_the_newest_is_taken_in(self):
+        """None waits but the newest: when the last has been sent, one is being taken in, one waits, and the last comes."""
+        _, server = self.begin('fast')
+        publisher = self.publisher('/fast/cloud', PointCloud2, queue_size=1)
+        points = numpy.random.RandomState(19).uniform((-2, -2, -9), (4, 2, -8), (10 ** 6, 3))
+        points[0] = 1, 0, 0
+        message, last, step = cloud(points), 57, 0.05
+        data = bytearray(message.data)
+        seen, going = [], True
+
+        def ask():
+            while going:
+                seen.append(round((server.distance(ABOVE).results[0].upper - 1) / step))
+        publisher.publish(message)
+        self.assertTrue(until(lambda: server.scene().objects, PATIENCE))
+        asking = Call(ask)
+        rate = rospy.Rate(19)
+        for i in range(last + 1):
+            struct.pack_into('<3f', data, 0, 1, 0, -i * step)  # the point below the line
+            message.data = bytes(data)
+            publisher.publish(message)
+            rate.sleep()
+        sent = len(seen)
+        self.assertTrue(until(lambda: seen[-1:] == [last], PATIENCE), seen[-5:])
+        going = False
+        asking.join(PATIENCE)
+        self.assertIsNone(asking.failure)
+        print('%d of %d clouds seen, %d since the last was sent' % (len(set(seen)), last + 1, len(set(seen[sent:]))))
+        self.assertEqual(seen, sorted(seen))
+        self.assertLessEqual(len(set(seen[sent:])), 4, seen[sent:])
 
 
 class Octrees(TestCase):
