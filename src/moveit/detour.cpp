@@ -15,6 +15,7 @@ constexpr int SHORTCUTS = 20;              /* of each detour, */
 constexpr std::size_t BESIDE = 4;          /* with so many rows before and behind it */
 constexpr int MOST_RUNS = 64;
 constexpr int SMOOTHINGS = 2;    /* likewise */
+constexpr double CLOSEST = 0.01; /* of the step: rows are taken so close at least */
 constexpr double STEP = 0.3;     /* of the diagonal of the box, at most; */
 constexpr int STEPS = 3;         /* so many lengths are tried, */
 constexpr double SHORTER = 0.25; /* each this part of the one before */
@@ -130,6 +131,22 @@ void smooth(Path &path, const EdgeTest &holds) {
   }
 }
 
+/* Resampled, with rows so close to each other that the edges hold which cut corners; where none are, all corners stay. */
+Path resampledSo(const Path &path, double step, const EdgeTest &holds) {
+  for (double closer = step; closer > CLOSEST * step; closer *= 0.5) {
+    Path out = resampled(path, closer);
+    bool all = true;
+    for (std::size_t i = 0; all && i + 1 < out.size(); ++i) all = holds(out[i], out[i + 1]);
+    if (all) return out;
+  }
+  Path out{path.front()};
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const Path edge = resampled({path[i], path[i + 1]}, step);
+    out.insert(out.end(), edge.begin() + 1, edge.end());
+  }
+  return out;
+}
+
 /* A run of edges that do not hold, and the way round it. */
 struct Way {
   std::size_t begin, end; /* rows of the path */
@@ -205,17 +222,18 @@ Path around(const Path &path, const Detours &detours) {
     const Way way = wayRound(out, i, end, detours, random);
     if (way.rows.empty()) return {};
     const auto row = [&out](std::size_t k) { return out.begin() + static_cast<std::ptrdiff_t>(k); };
-    const std::size_t before = way.begin - std::min(way.begin, BESIDE),
-                      behind = std::min(out.size() - 1, way.end + BESIDE);
+    const std::size_t before = way.begin - std::min(way.begin, BESIDE);
+    std::size_t behind = way.end; // as far as the edges hold
+    while (behind < way.end + BESIDE && behind + 1 < out.size() && stays(out[behind], out[behind + 1])) ++behind;
     Path part(row(before), row(way.begin));
     part.insert(part.end(), way.rows.begin(), way.rows.end());
     part.insert(part.end(), row(way.end) + 1, row(behind) + 1);
     shorten(part, SHORTCUTS, way.holds, random);
     for (int k = 0; k < SMOOTHINGS; ++k) smooth(part, way.holds);
-    part = resampled(part, detours.step);
+    part = resampledSo(part, detours.step, stays);
     out.erase(row(before), row(behind) + 1);
     out.insert(row(before), part.begin(), part.end());
-    i = before;
+    i = before + part.size() - 1;
   }
   return out;
 }

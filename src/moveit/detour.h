@@ -30,7 +30,7 @@ struct Detours {
   std::vector<EdgeTest> wanted; /* of new edges, the most clearance first; each is tried before a search goes farther */
   EdgeTest needed;              /* of new edges that begin or end at a row of the path: it may stand closer */
   JointBox limits;              /* of the joints */
-  double step;                  /* of new rows, at most */
+  double step;                  /* of new rows, at most; less where corners want it */
   std::function<bool()> is_over; /* the time is */
 };
 

@@ -94,6 +94,21 @@ TEST(Detour, leaves_a_path_that_holds_as_it_is) {
   EXPECT_EQ(around(line(), among(discs)), line());
 }
 
+/* Two rows alone: so far from each other that what is new would be cut off by its first edge. */
+TEST(Detour, has_rows_as_close_as_its_corners_want) {
+  std::mt19937_64 random(12);
+  for (int i = 0; i < 100; ++i) {
+    const std::vector<Disc> discs = randomDiscs(random);
+    const Path straight = {line().front(), line().back()};
+    Detours detours = among(discs);
+    detours.step = 4.0;
+    const Path path = around(straight, detours);
+    ASSERT_FALSE(path.empty()) << i;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) ASSERT_TRUE(isFree(discs, path[k], path[k + 1], 0.0)) << i;
+    ASSERT_LE(path.size(), 150u) << i;
+  }
+}
+
 TEST(Detour, is_the_same_for_the_same_path) {
   const std::vector<Disc> discs = {{{0.0, 0.1}, 0.5}, {{1.0, -0.2}, 0.3}};
   const Path once = around(line(), among(discs));
