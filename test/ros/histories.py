@@ -5,7 +5,6 @@ part, crashes, launches with another scene file or robot. Beside it a model of w
 nothing is clear that is not known, and what is known and clear is called clear. Seeded; a longer run:
 scripts/run rostest curve_proximity histories.test histories:=500 seed:=7"""
 import math
-import os
 import random
 import signal
 import tempfile

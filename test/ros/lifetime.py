@@ -5,7 +5,7 @@ import os
 import signal
 import time
 
-from helpers import Call, Case, Node, bezier, ring_and_shells, run, sphere, until
+from helpers import Call, Case, bezier, ring_and_shells, run, sphere
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 CALLS = int(os.environ.get('CURVE_PROXIMITY_CALLS', 20000))  # of the memory test
