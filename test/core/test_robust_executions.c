@@ -361,7 +361,7 @@ static double most_by_lanes(const world *w, cprox_mover mover, size_t n) {
 
 CASE(no_execution_comes_nearer_than_lanes_say) {
   rng r = rng_seed(4604);
-  size_t executions = 0, tight = 0, worlds = 0, more = 0;
+  size_t executions = 0, tight = 0, worlds = 0, more = 0, ended = 0;
   for (size_t i = 0; i < test_cases(800); i++) {
     world w;
     make_world(&r, &w);
@@ -376,8 +376,10 @@ CASE(no_execution_comes_nearer_than_lanes_say) {
       cprox_result d, verdict;
       assert_true(cprox_robust_distance(obstacles, mover, &w.bounds, &options, ws, &d) >= 0);
       more += lanes > d.upper;
+      /* the normal of one distance may leave less than what another normal proves: there a verdict ends undecided */
       assert_true(cprox_robust_tolerance(obstacles, mover, 0.99 * d.lower, &w.bounds, &options, ws, &verdict) >= 0);
-      assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
+      if (verdict.verdict != CPROX_VERDICT_CLEAR) assert_true(verdict.upper <= 0.99 * d.lower);
+      ended += verdict.verdict != CPROX_VERDICT_CLEAR;
       double proven = lanes; /* by a verdict, whoever gave it */
       for (int k = 0; k < 4; k++) {
         const double delta = fmax(d.upper, lanes) * (1.0 + rng_log_uniform(&r, 1e-3, 1.0));
@@ -397,8 +399,9 @@ CASE(no_execution_comes_nearer_than_lanes_say) {
   }
   print_message(
       "%zu executions of %zu motions, none nearer than lanes say; %zu within 3 mm of it; %zu motions by more "
-      "than the search says\n",
-      executions, worlds, tight, more);
+      "than the search says; %zu verdicts end where a distance certifies more\n",
+      executions, worlds, tight, more, ended);
+  assert_true(ended <= worlds / 500);
   if (worlds >= 50) assert_true(tight > 0);
 }
 
