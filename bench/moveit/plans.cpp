@@ -8,7 +8,8 @@
  * goal to its start. Each plan is judged twice: by the capability CertifyPath, and by FCL at many moments of the quintic
  * spline that a controller executes.
  *
- * Prints rows of CSV: robot, scene, way, round, pipeline, plan (1: there is one), ms (of the service call), proven,
+ * Prints rows of CSV: robot, scene, way, round, pipeline, plan (1: there is one), ms (of the service call), cpu_ms (of
+ * all threads of move_group meanwhile: other work on the machine counts little there), proven,
  * certify_ms (of that service), hits (moments at which FCL finds a contact), moments, duration [s] of the plan. Ends with 1
  * where a plan of ompl_certified is not proven or hits something. */
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 
 #include <yaml-cpp/yaml.h>
 
@@ -26,8 +28,11 @@
 #include <moveit_msgs/ApplyPlanningScene.h>
 #include <moveit_msgs/GetMotionPlan.h>
 #include <ros/console.h>
+#include <ros/master.h>
+#include <ros/network.h>
 #include <ros/ros.h>
 #include <urdf_parser/urdf_parser.h>
+#include <XmlRpcClient.h>
 
 #include <curve_proximity/CertifyPath.h>
 
@@ -112,6 +117,29 @@ double millisecondsSince(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
+/* The clock of a node's processor time. */
+clockid_t processorClockOf(const std::string &node) {
+  XmlRpc::XmlRpcValue asked, caller, response, payload;
+  asked[0] = caller[0] = ros::this_node::getName();
+  asked[1] = node;
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::master::execute("lookupNode", asked, response, payload, false) ||
+      !ros::network::splitURI(payload, host, port))
+    throw curve_proximity::Error("there is no node " + node);
+  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
+  clockid_t out;
+  if (!client.execute("getPid", caller, response) || clock_getcpuclockid(static_cast<int>(response[2]), &out) != 0)
+    throw curve_proximity::Error(node + " does not run on this machine");
+  return out;
+}
+
+double millisecondsOf(clockid_t clock) {
+  timespec now;
+  clock_gettime(clock, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
 template <typename Service>
 void call(ros::ServiceClient &client, Service &service) {
   if (!client.call(service))
@@ -167,6 +195,7 @@ class Bench {
  public:
   explicit Bench(ros::NodeHandle &node)
       : model_(robotModel(node)),
+        processor_(processorClockOf("/move_group")),
         apply_(node.serviceClient<moveit_msgs::ApplyPlanningScene>("apply_planning_scene", true)),
         plan_(node.serviceClient<moveit_msgs::GetMotionPlan>("plan_kinematic_path", true)),
         certify_(node.serviceClient<curve_proximity::CertifyPath>("certify_path", true)) {}
@@ -212,12 +241,13 @@ class Bench {
     req.goal_constraints.push_back(kinematic_constraints::constructGoalConstraints(
         *problem.to, model_->getJointModelGroup(problem.group), GOAL_TOLERANCE));
     const Clock::time_point begin = Clock::now();
+    const double processor_begin = millisecondsOf(processor_);
     call(plan_, asked);
-    const double ms = millisecondsSince(begin);
+    const double ms = millisecondsSince(begin), cpu_ms = millisecondsOf(processor_) - processor_begin;
     const moveit_msgs::MotionPlanResponse &res = asked.response.motion_plan_response;
     std::printf("%s,%s,%s,%d,%s,", model_->getName().c_str(), problem.name.c_str(), way, round, PIPELINES[pipeline]);
     if (res.error_code.val != moveit_msgs::MoveItErrorCodes::SUCCESS) {
-      std::printf("0,%.2f,,,,,\n", ms);
+      std::printf("0,%.2f,%.2f,,,,,\n", ms, cpu_ms);
       return;
     }
     curve_proximity::CertifyPath judged;
@@ -227,8 +257,8 @@ class Bench {
     call(certify_, judged);
     const double certify_ms = millisecondsSince(asked_again);
     const Sampled sampled = sample(problem, *problem.from, res.trajectory.joint_trajectory);
-    std::printf("1,%.2f,%d,%.2f,%zu,%zu,%.3f\n", ms, judged.response.certified ? 1 : 0, certify_ms, sampled.hits,
-                sampled.moments, res.trajectory.joint_trajectory.points.back().time_from_start.toSec());
+    std::printf("1,%.2f,%.2f,%d,%.2f,%zu,%zu,%.3f\n", ms, cpu_ms, judged.response.certified ? 1 : 0, certify_ms,
+                sampled.hits, sampled.moments, res.trajectory.joint_trajectory.points.back().time_from_start.toSec());
     std::fflush(stdout);
     if (pipeline == 0) return;
     ++plans_;
@@ -239,6 +269,7 @@ class Bench {
   }
 
   moveit::core::RobotModelPtr model_;
+  clockid_t processor_; /* of move_group */
   ros::ServiceClient apply_, plan_, certify_;
   int plans_ = 0, faults_ = 0;
 };
@@ -261,7 +292,7 @@ int main(int argc, char **argv) {
       if (!ros::service::waitForService(service, ros::Duration(60.0)))
         throw curve_proximity::Error(std::string("there is no service ") + service);
     Bench bench(node);
-    std::printf("robot,scene,way,round,pipeline,plan,ms,proven,certify_ms,hits,moments,duration\n");
+    std::printf("robot,scene,way,round,pipeline,plan,ms,cpu_ms,proven,certify_ms,hits,moments,duration\n");
     for (int i = 2; i + 1 < argc; i += 2) bench.ask(argv[i], argv[i + 1], rounds);
     return bench.isGood() ? 0 : 1;
   } catch (const std::exception &error) {
