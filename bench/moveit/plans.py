@@ -124,7 +124,8 @@ def main():
 A running move_group of MoveIt {version} with OMPL's RRTConnect and MoveIt's default adapters: one pipeline as it is, one
 with `curve_proximity/CertifyTrajectory` besides. Problems of MotionBenchMaker in all seven families, for a Panda and a
 UR5 (without its gripper), from start to goal and back. Both pipelines are asked in turn, up to {rounds} times each; the two
-requests of a pair have the same random numbers, so that OMPL's first plan is the same. `scripts/moveit_beside WORKSPACE --plans` makes this page and [moveit_plans.csv](moveit_plans.csv).
+requests of a pair have the same random numbers, so that OMPL's first plan is the same.
+`scripts/moveit_beside WORKSPACE --plans` makes this page and [moveit_plans.csv](moveit_plans.csv).
 
 Each plan is judged twice: by the capability `curve_proximity/CertifyPath` ("proven"), and by MoveIt's FCL detector at
 moments of the spline at most 1e-3 rad apart, {moments} in all ("hit by samples"). MoveIt has called every plan valid.
