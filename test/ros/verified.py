@@ -12,7 +12,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import AllowedContact, CollisionObject, Refusal
 from curve_proximity.srv import Tolerance, ToleranceResponse
-from gate import Action, Arm, Controller, Goal, actionlib, ends_of, turning
+from gate import Action, Arm, Controller, Goal, ends_of, turning
 from helpers import ActionClient, Server, bezier, box, connected, mesh, run, sphere, transform, until
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
