@@ -58,8 +58,8 @@ typedef enum workspace_buffer {
   WORKSPACE_BUFFERS
 } workspace_buffer;
 
-/* The buffer, grown to at least `bytes` (by half as much again each time); what it held stays. NULL where memory is
- * out. */
+/* The buffer, grown to at least `bytes` (beyond 8 kB by half as much again each time); what it held stays. NULL where
+ * memory is out. */
 void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, size_t bytes);
 
 /* The buffer as it is; NULL: nothing was ever reserved. */
