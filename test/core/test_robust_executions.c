@@ -6,11 +6,18 @@
 
 #include "curve_proximity/cprox.h"
 #include "edges/first_level.h"
+#include "edges/kernels.h"
 #include "kinematics/errors.h"
 #include "problem/problem.h"
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/robots.h"
+
+/* The lanes of any machine, to ask for what they say of one interval. */
+#define EDGE_TARGET
+#define EDGE_KERNEL kernel_of_test
+edge_kernel kernel_of_test;
+#include "edges/kernel.h"
 
 enum { TARGETS = 3, EXECUTIONS = 400 };
 
@@ -357,6 +364,117 @@ static double most_by_lanes(const world *w, cprox_mover mover, size_t n) {
     if (proven < 0.0) return proven;
   }
   return proven;
+}
+
+/* One segment in lanes, at eight intervals of any length. */
+typedef struct segment_in_lanes {
+  cprox_edge_checker *model;
+  edge_motion motion;
+  edge_losses losses;
+  lane_batch batch;
+  size_t number;
+  void *memory[4];
+} segment_in_lanes;
+
+static void *take_lanes(size_t n, size_t size) {
+  void *memory = aligned_alloc(64, (n * size / 64 + 1) * 64);
+  assert_non_null(memory);
+  memset(memory, 0, (n * size / 64 + 1) * 64);
+  return memory;
+}
+
+/* False: not in lanes. */
+static bool begin_lanes(rng *r, const world *w, const query *q, segment_in_lanes *s) {
+  const edge_asked asked = {.robot = w->t.motion->robot, .about_obstacles = true};
+  cprox_edge_checker *c = edge_model_keep(&asked, ws, WORKSPACE_EDGE_ROBOT);
+  if (!c || !c->in_lanes) return false;
+  *s = (segment_in_lanes){.model = c, .number = rng_index(r, w->t.motion->n_segments)};
+  s->memory[0] = take_lanes(1, edge_motion_size(c));
+  s->memory[1] = take_lanes(c->n_frames, sizeof(lane_frame));
+  s->memory[2] = take_lanes(c->n_parts, sizeof(lane_part));
+  s->memory[3] = take_lanes(c->n_frames, sizeof(lane_off));
+  s->motion = edge_motion_in(c, s->memory[0]);
+  const motion_interval over = {.a = 0.0, .b = 1.0, .first = s->number, .last = s->number + 1};
+  assert_true(edge_losses_begin(q, c, 0, TARGETS, &s->losses));
+  if (!edge_motion_fill_along(c, w->t.motion, &over, &s->motion)) return false;
+  edge_losses_over(q, c, &over, &s->motion, &s->losses);
+  s->motion.losses = &s->losses;
+  s->batch.c = c, s->batch.motion = &s->motion;
+  s->batch.frames = s->memory[1], s->batch.parts = s->memory[2], s->batch.off = s->memory[3];
+  for (int k = 0; k < 9; k += 4) s->batch.frames[0].r[k] = lane_all(1.0f);
+  for (int i = 0; i < EDGE_LANES; i++) {
+    s->batch.half[i] = (float)rng_uniform(r, 0, 0.5);
+    s->batch.middle[i] = (0.5f - s->batch.half[i]) * (float)rng_uniform(r, -1, 1);
+  }
+  for (size_t i = 1; i < c->n_frames; i++) place_frame(&s->batch, i);
+  for (size_t i = 0; i < c->n_parts; i++) {
+    const lane_frame *own = &s->batch.frames[c->parts[i].frame];
+    s->batch.parts[i].centre = lane3_add(own->o, lane_turn(own, c->parts[i].centre));
+  }
+  return true;
+}
+
+/* How far the vertices of a part are off at one time of an interval, in any direction and along n, over what is said. */
+static void expect_within_losses(rng *r, const world *w, const segment_in_lanes *s, size_t number, int lane_at, vec3 n,
+                                 double any, double along, double share[2]) {
+  const double u = 0.5 + (double)s->batch.middle[lane_at] + (double)s->batch.half[lane_at] * part(r);
+  const double time = motion_time(w->t.motion, s->number, fmin(fmax(u, 0.0), 1.0));
+  long double values[TEST_MAX_VARIABLES + 1];
+  ref_pose links[TEST_MAX_LINKS];
+  vec3l exact[TEST_VERTICES], off[TEST_VERTICES];
+  const edge_part *p = &s->model->parts[number];
+  robot_ref_values(&w->t, time, values);
+  robot_ref_links(&w->t, values, links);
+  ref_pose other[TEST_MAX_LINKS];
+  draw_values(r, w, time, time, values);
+  robot_ref_links(&w->t, values, other);
+  for (uint32_t g = p->first_member; g < p->first_member + p->n_members; g++) {
+    robot_ref_vertices(&w->t, links, (size_t)s->model->members[g], exact);
+    robot_ref_vertices(&w->t, other, (size_t)s->model->members[g], off);
+    for (size_t k = 0; k < TEST_VERTICES; k++) {
+      const vec3l moved = ref_sub(off[k], exact[k]);
+      const double by[2] = {(double)ref_norm(moved), (double)fabsl(ref_dot(ref_vec(n), moved))}, said[2] = {any, along};
+      for (int i = 0; i < 2; i++) {
+        if (by[i] > said[i] + 1e-9) fail_msg("%s: %.12g, lanes say %.12g", i ? "along" : "any", by[i], said[i]);
+        if (said[i] > 1e-3) share[i] = fmax(share[i], by[i] / said[i]);
+      }
+    }
+  }
+}
+
+CASE(no_point_is_farther_off_than_lanes_say) {
+  rng r = rng_seed(4607);
+  double share[2] = {0.0, 0.0};
+  size_t asked = 0;
+  for (size_t i = 0; i < test_cases(800); i++) {
+    world w;
+    make_world(&r, &w);
+    w.bounds = (cprox_error_bounds){
+        .tracking = w.tracking, .speed = w.speed, .acceleration = w.acceleration, .n_variables = w.t.n_variables};
+    query q = query_create(cprox_robot_along(w.t.motion, NULL, 0), w.targets, TARGETS, 0.0, NULL, ws);
+    assert_int_equal(query_begin(&q, (arguments_query){"the test", ~0u}), CPROX_OK);
+    robot_errors errors = {.bounds = &w.bounds, .scale = 1.0};
+    q.errors = &errors;
+    segment_in_lanes s = {.model = NULL};
+    const bool known = begin_lanes(&r, &w, &q, &s);
+    for (size_t part = 0; known && part < s.model->n_parts; part++) {
+      find_loss(&s.batch, part);
+      for (int k = 0; k < 10; k++) {
+        const vec3 n = rng_unit(&r);
+        const edge_part *p = &s.model->parts[part];
+        const lane3 normal = {lane_all((float)n.x), lane_all((float)n.y), lane_all((float)n.z)};
+        const lane_loss along = loss_along(&s.batch, part, s.batch.parts[part].centre, p->core, normal);
+        for (int l = 0; l < EDGE_LANES; l++)
+          expect_within_losses(&r, &w, &s, part, l, n, (double)s.batch.loss.most[l], (double)along.most[l], share);
+        asked++;
+      }
+    }
+    for (int k = 0; k < 4; k++) free(s.memory[k]);
+    free_world(&w);
+  }
+  print_message("%zu parts along a normal: off by up to %.3f of what is said, %.3f along it\n", asked, share[0],
+                share[1]);
+  assert_true(asked > test_cases(800) && share[0] > 0.9 && share[1] > 0.8);
 }
 
 CASE(no_execution_comes_nearer_than_lanes_say) {
