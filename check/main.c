@@ -73,6 +73,12 @@ static void say(const finding *f) {
   if (f->meets) printf(", and by %.17g not farther than %.17g m", f->meets_by, f->meets_delta);
 }
 
+static void refuse(const finding *f) {
+  fputs(f->fault, stdout);
+  if (f->leaves > 0) printf(", at direction %zu", f->leaves);
+  puts("");
+}
+
 /* Several certificates of one mover: "CPCP", u32 n, n × {u32 length, certificate}. All must hold. */
 static bool report_parts(const problem *p, const unsigned char *bytes, size_t size) {
   reader in = {.at = bytes + 4, .end = bytes + size};
@@ -86,7 +92,8 @@ static bool report_parts(const problem *p, const unsigned char *bytes, size_t si
       const bool cut_off = part.bad || length > reader_left(&part);
       const finding found = cut_off ? (finding){.fault = "it is cut off"} : check(p, part.at, length);
       if (found.fault) {
-        printf("%s: refused: part %u of %u: %s\n", p->mover.id, (unsigned)i + 1, (unsigned)n, found.fault);
+        printf("%s: refused: part %u of %u: ", p->mover.id, (unsigned)i + 1, (unsigned)n);
+        refuse(&found);
         return false;
       }
       part.at += length;
@@ -123,7 +130,8 @@ static bool report(const problem *p, reader *file) {
   if (size >= 4 && memcmp(bytes, "CPCP", 4) == 0) return report_parts(p, bytes, size);
   const finding found = check(p, bytes, size);
   if (found.claim == CLAIM_NONE) {
-    printf("%s: refused: %s\n", p->mover.id, found.fault);
+    printf("%s: refused: ", p->mover.id);
+    refuse(&found);
     return false;
   }
   printf("%s: proven: ", p->mover.id);

@@ -45,8 +45,11 @@ double span_radius(const set *s) {
     case IMPLICIT:
     case CURVE: most = INFINITY; break;
     default:
-      for (size_t i = 0; i < s->n; i++) most = fmax(most, length_of(s->vertices[i]));
-      most += a[0];
+      for (size_t i = 0; i < s->n; i++) {
+        const double *v = s->vertices[i], square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        if (square > most) most = square;
+      }
+      most = sqrt(most) + 0x1p-500 + a[0];
       break;
   }
   return GROW(most);

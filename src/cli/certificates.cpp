@@ -33,11 +33,7 @@ std::string recordOf(const CertificateHandle &certificate) {
 }
 
 std::string recordOf(const std::vector<std::string> &certificates) {
-  if (certificates.empty()) return emptyRecord();
-  std::string all = "CPCP";
-  const std::size_t n = certificates.size();
-  for (int i = 0; i < 4; ++i) all += static_cast<char>(n >> (8 * i) & 255);
-  for (const std::string &one : certificates) all += recordOfBytes(one.data(), one.size());
+  const std::string all = recordOfParts(certificates);
   return recordOfBytes(all.data(), all.size());
 }
 

@@ -25,6 +25,7 @@
 #include "csv.h"
 #include "failure.h"
 #include "json.h"
+#include "library.h"
 #include "moving_world.h"
 #include "trajectory.h"
 #include "world.h"
@@ -319,6 +320,18 @@ void tellPairs(const Arguments &arguments, Checkers &checkers) {
   }
 }
 
+/* Of which files it was, and on what it rests. */
+void explain(const Arguments &arguments, Console &console) {
+  std::vector<std::string> files = inputsOf(arguments);
+  files.push_back(arguments.certificate);
+  for (const std::string &file : files)
+    if (!file.empty())
+      console.say("read: " + file + ", BLAKE2b " + digestOfFile(file, true) + " with the meshes it names");
+  console.say(
+      "what is proven is true of these files as cprox reads them; it rests on that reading, on cprox_check, MPFR "
+      "and the compiler, and not on what wrote the certificates");
+}
+
 } // namespace
 
 int checkCertificates(const Arguments &arguments, Console &console) {
@@ -334,6 +347,7 @@ int checkCertificates(const Arguments &arguments, Console &console) {
   else
     tellPairs(arguments, checkers);
   const int code = checkers.finish();
+  if (arguments.verbose) explain(arguments, console);
   if (checkers.rows() == 0) {
     console.say("warning: the input has no rows");
     return kUnanswered;

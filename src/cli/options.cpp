@@ -302,8 +302,10 @@ const std::vector<Option> &options() {
        "exit code is 2, not 3"},
       {"--quiet", "", "queries report pairs constraints certify merge check robust acm speed margins sweep",
        "no warnings and no progress on standard error, only why a run cannot be made"},
-      {"-v", "", "queries pairs robust acm speed margins sweep",
-       "--skipped and --timings, and at the end how many rows there were, and which"},
+      {"-v", "", "queries pairs check robust acm speed margins sweep",
+       "--skipped and --timings, and at the end how many rows there were, and which; of check the digests of its "
+       "files, "
+       "and on what it rests"},
       {"--replace", "", "send",
        "the file takes the place of the node's scene (default, unless the file says is_diff: true)"},
       {"--add", "", "send", "the file is added to the node's scene"},

@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves against a scene, its robot included. Queries release the GIL. */
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include <curve_proximity/proof.hpp>
+
 #include "robots.h"
 
 namespace curve_proximity::python {
@@ -37,6 +43,50 @@ struct Asked {
 py::dict answer(const Asked &asked) {
   return answerOf(unlocked([&] { return ask(asked.targets, asked.curve, asked.query, threadWorkspace()).front(); }),
                   asked.query.query_type != QueryType::DISTANCE);
+}
+
+/* A curve as the function that made it was told; throws Error for a kind that has no certificates. */
+CurveDescription describe(const Curve &path, double radius) {
+  static constexpr std::array<const char *, 6> bases = {"bezier",   "bspline",  "polynomial",
+                                                        "legendre", "lagrange", "trigonometric"};
+  CurveDescription out;
+  const auto made = path.made.is_none() ? py::tuple() : py::tuple(path.made);
+  out.basis = made.empty() ? "given" : made[0].cast<std::string>();
+  if (std::find(bases.begin(), bases.end(), out.basis) == bases.end())
+    throw Error("no certificate: a " + out.basis + " curve has none");
+  const Array given = made[1].cast<Array>();
+  const Points points(given, "points");
+  out.points = Eigen::Map<const Eigen::Matrix3Xd>(&points.data->x, 3, static_cast<Eigen::Index>(points.size));
+  const auto numbers = [](const Array &row) { return std::vector<double>(row.data(), row.data() + row.size()); };
+  out.degree = out.basis == "trigonometric" ? (points.size - 1) / 2 : points.size - 1;
+  if (out.basis == "bspline") out.degree = made[2].cast<std::size_t>(), out.knots = numbers(made[3].cast<Array>());
+  if (out.basis == "lagrange") out.knots = numbers(made[2].cast<Array>());
+  const cprox_curve_info info = cprox_curve_get_info(path.curve.get());
+  out.id = "curve", out.t0 = info.t0, out.t1 = info.t1, out.radius = radius;
+  return out;
+}
+
+/* An answer with its proof, and the query that it is about as cprox_check reads it. */
+py::dict certificateOf(const PythonScene &scene, const Curve &curve, std::optional<double> delta, const Given &given) {
+  const CurveDescription description = describe(curve, given.radius);
+  const std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)> certificate(cprox_certificate_create(),
+                                                                                          cprox_certificate_free);
+  if (!certificate) throw std::bad_alloc();
+  Asked asked(scene, curve, delta ? "tolerance" : "distance", delta.value_or(0.0), given);
+  asked.query.options.certificate = certificate.get();
+  std::string text;
+  const Answer found = unlocked([&] {
+    text = describeQuery(asked.targets, description);
+    return ask(asked.targets, asked.curve, asked.query, threadWorkspace()).front();
+  });
+  py::dict out = answerOf(found, delta.has_value());
+  if (!found.unproven.empty()) throw Error("no certificate: " + found.unproven);
+  const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
+  if (info.claim == CPROX_CLAIM_NONE) throw Error("no certificate: the answer is not decided");
+  out["claim"] = info.claim == CPROX_CLAIM_APART ? "apart" : "near";
+  out["record"] = py::bytes(static_cast<const char *>(info.bytes), info.size);
+  out["query"] = text;
+  return out;
 }
 
 /* Adds one method: its own arguments come first. */
@@ -81,6 +131,16 @@ void addCurveQueries(SceneClass &scene) {
             {s, curve, "collision", 0.0, {radius, positions, epsilon, max_nodes, objects, links, allow_empty}});
       },
       "Does the curve touch or overlap something? As distance().");
+  add(
+      scene, "certificate",
+      [](Scene s, const Curve &curve, std::optional<double> delta, double radius, const JointPositions &positions,
+         double epsilon, Count max_nodes, const Names &objects, const Names &links, bool allow_empty) {
+        return certificateOf(s, curve, delta, {radius, positions, epsilon, max_nodes, objects, links, allow_empty});
+      },
+      "The answer of tolerance(), or without delta that of distance(), with its proof, as Motion.certificate():\n"
+      "claim, record and query, for check(). Of curves by bezier(), bspline(), polynomial(), legendre(), lagrange()\n"
+      "and trigonometric().",
+      py::arg("delta") = py::none());
   add(
       scene, "time_of_contact",
       [](Scene s, const Curve &curve, double radius, const JointPositions &positions, double epsilon, Count max_nodes,

@@ -240,6 +240,20 @@ class Movers(Case):
                 self.assertEqual(checked.code, 1, checked.out)
                 self.assertIn('refused', checked.out)
 
+    def a_check_says_of_which_files_it_is(self):
+        """By the digest, which changes with the file; and which part of a proof failed."""
+        proofs = self.folder + '/proofs'
+        self.scene('profile', FALL, '--movers', '--intervals', '5', '--certificate', proofs)
+        scene = self.file('scene.yaml', FALL)
+        first = cprox('check', proofs, '--movers', '--scene', scene, '-v').err
+        self.assertRegex(first, 'read: ' + scene + ', BLAKE2b [0-9a-f]{64}')
+        self.assertRegex(first, 'read: ' + proofs + ', BLAKE2b [0-9a-f]{64}')
+        self.assertIn('rests on', first)
+        changed = cprox('check', proofs, '--movers', '--scene', self.file('scene.yaml', FALL + '\n'), '-v').err
+        self.assertNotEqual(first, changed)
+        nearer = self.file('scene.yaml', FALL.replace('-0.8, 0]', '-0.7, 0]'))
+        self.assertRegex(cprox('check', proofs, '--movers', '--scene', nearer).out, 'refused: part [1-5] of 5: .*, at direction [0-9]')
+
     def starts_with_a_tolerance_have_no_proof(self):
         answer = self.robot('distance', BALL.replace('START', '2\n        start_tolerance: 0.5'), '--certificate', self.folder + '/proofs')
         self.assertEqual(answer.row('go')['proof'], 'none')

@@ -1094,6 +1094,30 @@ class Robots(unittest.TestCase):
         with self.assertRaises(FileNotFoundError):
             cprox.check(proof, program='no_such_program')
 
+    def test_a_certificate_of_a_curve_proves_its_answer_and_no_other(self):
+        """One curve in each basis that has certificates, past a ball; 0.3 beside its centre and more."""
+        line = numpy.array([[-1.0, 0.3, 0.0], [0.0, 0.35, 0.0], [1.0, 0.3, 0.2]])
+        scene, larger = cprox.Scene(), cprox.Scene()
+        scene.add('ball', 'sphere', [0.1])
+        larger.add('ball', 'sphere', [0.2])
+        curves = (cprox.bezier(line), cprox.bspline(line, 2, [0, 0, 0, 1, 1, 1]), cprox.polynomial(line, -1.0, 0.5),
+                  cprox.legendre(line), cprox.lagrange(line, [0, 0.5, 1], 0, 1), cprox.trigonometric(line, 0, 1))
+        for curve in curves:
+            least = scene.distance(curve, radius=0.02)['result'].lower
+            self.assertGreater(least, 0.01)
+            for delta in (None, 0.5 * least):
+                proof = scene.certificate(curve, delta, radius=0.02)
+                self.assertEqual(proof['claim'], 'apart')
+                self.assertIn('proven: farther than', cprox.check(proof))
+            nearer = larger.certificate(curve, radius=0.02 + least)
+            self.assertEqual(nearer['claim'], 'near')
+            with self.assertRaisesRegex(ValueError, 'refused'):
+                cprox.check(dict(proof, query=nearer['query']))
+        self.assertEqual(scene.certificate(curves[0], 1.0)['claim'], 'near')
+        for curve in (curves[0].restrict(0.0, 0.5), cprox.clothoid([0, 1, 0], 0.0, 0.1, 0.1, 0.0, 1.0)):
+            with self.assertRaisesRegex(ValueError, 'no certificate'):
+                scene.certificate(curve)
+
     def test_violations_are_where_the_profile_is_below_delta(self):
         scene = cprox.Scene(self.robot)
         scene.add('ball', 'sphere', [0.1], cprox.transform([0.6, 0.5, 1.2]))

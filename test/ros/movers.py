@@ -7,7 +7,8 @@ import math
 import rospy
 from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject, LinkPadding, PoseTrajectory, ProximityResults,
                                  RobotTrajectory, Waypoint)
-from curve_proximity.srv import ClearanceProfile, ClearanceProfileRequest, NearestPairs, NearestPairsRequest
+from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest, NearestPairs,
+                                 NearestPairsRequest)
 from helpers import Case, Drawings, Server, bezier, box, free_flight, joints, path, pose, query, run, service, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker
@@ -49,6 +50,7 @@ class Movers(Case):
         cls.server = Server()
         cls.nearest = service('nearest_pairs', NearestPairs)
         cls.profile = service('clearance_profile', ClearanceProfile)
+        cls.violations = service('violations', ListViolations)
         until(lambda: cls.server.distance([], robot_state=True, joint_state=joints(**READY)).success, 20)
 
     def setUp(self):
@@ -68,6 +70,24 @@ class Movers(Case):
         self.assertEqual((rows[0].id, rows[0].kind, rows[0].b.split('/')[0]), ('trajectory', 'environment', 'right'))
         self.assertEqual(rows[0].upper, math.inf)  # ~max_lod is hull: it bounds from below
         self.assertEqual(*[(row.a, row.b, row.lower, row.upper, row.t) for row in rows])
+
+    def test_what_moves_and_parts_of_its_time_have_proofs(self):
+        """A record of parts of a profile and of violations. The parts are checked by test_certificate and cli.test_movers."""
+        self.server.replace(self.fall(), sphere('ball', 0.1, (0, 3, 2.5)))
+        row, = self.server.distance([], movers=True, certificate=True).results
+        self.assertTrue(row.certificate.startswith(b'CPC1') and row.problem_fingerprint, row.message)
+        curve = bezier([0, 2.6, 0], [0, 2.6, 4])
+        for asked in (dict(movers=True, certificate=True), dict(curves=[curve], joint_state=joints(**READY), certificate=True)):
+            if 'curves' in asked:
+                self.server.replace(sphere('ball', 0.1, (0, 3, 2.5)))
+            with self.subTest(movers='movers' in asked):
+                profile, = self.profile(ClearanceProfileRequest(query=query(**asked), intervals=3)).profiles
+                self.assertEqual(bytes(profile.summary.certificate)[:8], b'CPCP' + bytes((3, 0, 0, 0)), profile.summary.message)
+                found, = self.violations(ListViolationsRequest(query=query(**asked), delta=1.0)).violations
+                self.assertTrue(found.summary.certificate.startswith(b'CPCP') and found.summary.problem_fingerprint,
+                                found.summary.message)
+                refused = self.nearest(NearestPairsRequest(query=query(**asked), count=3))
+                self.assertIn('certificate does not apply', refused.message)
 
     def test_it_is_shown_at_the_moment_of_closest_approach(self):
         self.server.replace(self.fall(), sphere('ball', 0.1, (0, 3, 2.5)))

@@ -45,9 +45,9 @@ def edges(scene, joints, start, end, delta=0.0, self_collision=True, **options):
 
 
 def check(certificate, program=None):
-    """What the certificate of a motion proves: the line that the program cprox_check prints.
+    """What the certificate of a motion or a curve proves: the line that the program cprox_check prints.
 
-    certificate: what Motion.certificate() returned, or a dict with its record (bytes) and query (str). The program shares no
+    certificate: what Motion.certificate() or Scene.certificate() returned, or a dict with its record (bytes) and query (str). The program shares no
     code with this package. Raises ValueError with its line where nothing is proven, and FileNotFoundError where the program
     is not there. program: its path; None: that of this package, else the PATH is searched."""
     if program is None:

@@ -122,7 +122,7 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
     for (Row &found : rows) {
       Proximity &row = work.response.add(toMessage(found));
       fillRow(found.answer, question, query.query_type, row);
-      if (work.certificate) addProof(takeProof(subject, query, found.answer), row);
+      if (work.certificate) addProof(takeProof(subject, query, found), row);
       if (std::isnan(row.lower)) search.fail(row);
       answers.push_back(std::move(found.answer));
     }

@@ -139,7 +139,7 @@ struct Queries::Moving {
       if (row.answer.b.empty()) row.answer.b = row.part.object;
     }
     if (query.options.certificate) // there is one row
-      for (const Row &row : answered) proofs.push_back(takeProof(subject, query, row.answer));
+      for (const Row &row : answered) proofs.push_back(takeProof(subject, query, row));
     if (rows.empty())
       rows = std::move(answered);
     else

@@ -91,9 +91,12 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
     throw Error("body applies to paths and multi_dof_trajectories: there is none");
   if (more.gradient && !asksFor<question::Gradient>(request.question))
     throw Error("gradient does not apply: it is of the service distance");
-  if (more.certificate && (own_rows || more.gradient || more.per_object))
+  const bool proves =
+      asksFor<question::Search, question::Contact, question::Profile, question::Violations>(request.question);
+  if (more.certificate && (!proves || more.per_object || request.per_link))
     throw Error(
-        "certificate does not apply: it is of distance, tolerance and collision, without gradient and per_object");
+        "certificate does not apply: it is of distance, tolerance, collision, time_of_contact, "
+        "clearance_profile and violations, without gradient, per_object and per_link");
   if (more.gradient && more.per_object)
     throw Error("gradient does not apply with per_object: there is one for the nearest object");
   if (request.per_link && motions == 0 && !more.robot_state)

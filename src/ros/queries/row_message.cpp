@@ -159,16 +159,29 @@ Query provable(const Subject &subject, Query query) {
   return query;
 }
 
-Proof takeProof(const Subject &subject, const Query &query, const Answer &answer) {
+Proof takeProof(const Subject &subject, const Query &query, const Row &row) {
   Proof out;
-  if (answer.result.status < 0) return out;
+  if (row.answer.result.status < 0) return out;
   out.unproven = unprovable(subject);
   if (!out.unproven.empty()) return out;
-  out.unproven = answer.unproven;
-  const cprox_certificate_info info = cprox_certificate_get_info(query.options.certificate);
-  const auto *bytes = static_cast<const std::uint8_t *>(info.bytes);
-  if (info.size == 0) return out;
-  out.certificate.assign(bytes, bytes + info.size);
+  std::string record;
+  if (const auto *found = std::get_if<Violations>(&row.detail)) {
+    record = recordOfParts(found->certificates);
+    out.unproven = found->unproven;
+  } else if (const auto *intervals = std::get_if<std::vector<ClearanceInterval>>(&row.detail)) {
+    std::vector<std::string> parts;
+    for (const ClearanceInterval &interval : *intervals) {
+      if (!interval.certificate.empty()) parts.push_back(interval.certificate);
+      if (out.unproven.empty()) out.unproven = interval.unproven;
+    }
+    record = recordOfParts(parts);
+  } else {
+    const cprox_certificate_info info = cprox_certificate_get_info(query.options.certificate);
+    record.assign(static_cast<const char *>(info.bytes), info.size);
+    out.unproven = row.answer.unproven;
+  }
+  if (record.empty()) return out;
+  out.certificate.assign(record.begin(), record.end());
   out.fingerprint = problemOf(subject, query).fingerprint;
   return out;
 }

@@ -71,8 +71,9 @@ struct Proof {
 /** The query, without a certificate where the subject has none. */
 Query provable(const Subject &subject, Query query);
 
-/** What query.options.certificate holds of an answer about a subject. */
-Proof takeProof(const Subject &subject, const Query &query, const Answer &answer);
+/** The proof of a row about a subject: of a profile or of violations those of its parts, else what
+ *  query.options.certificate holds. */
+Proof takeProof(const Subject &subject, const Query &query, const Row &row);
 
 /** Fills in what a row says of it. */
 void addProof(Proof proof, Proximity &row);

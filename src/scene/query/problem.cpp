@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include <curve_proximity/proof.hpp>
+
 #include "answering.h"
 #include "asked_pairs.h"
 #include "base/digest.h"
@@ -63,7 +65,7 @@ Problem problemFor(const CurveSubject &subject, const Query &query) {
   addDoubts(coverageOf(query, data.coverage, data.items.empty() ? NO_OBJECT : ""), unprovable(subject.targets), out);
   if (!out.doubt.empty()) return out;
   out.is_empty = data.items.empty();
-  out.text = problemHead() + describeTargets(subject.targets) + moverLine(*subject.description);
+  out.text = describeQuery(subject.targets, *subject.description);
   return out;
 }
 
@@ -96,6 +98,23 @@ Problem problemFor(const MoversSubject &subject, const Query &query) {
 }
 
 } // namespace
+
+std::string describeQuery(const Targets &targets, const CurveDescription &curve) {
+  if (!unprovable(curve).empty() || !unprovable(targets).empty()) return {};
+  return problemHead() + describeTargets(targets) + moverLine(curve);
+}
+
+std::string recordOfParts(const std::vector<std::string> &certificates) {
+  if (certificates.empty()) return {};
+  const auto number = [](std::size_t n) {
+    std::string bytes;
+    for (int i = 0; i < 4; ++i) bytes += static_cast<char>(n >> (8 * i) & 255);
+    return bytes;
+  };
+  std::string all = "CPCP" + number(certificates.size());
+  for (const std::string &one : certificates) all += number(one.size()) + one;
+  return all;
+}
 
 std::string problemHead() {
   return "cprox-problem 1\n";

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <curve_proximity/query.hpp>
 
@@ -17,6 +18,9 @@ std::string problemHead();
 std::string moverLine(const CurveDescription &curve);
 std::string curveTargetLines(const CurveDescription &curve, bool synchronized = false);
 std::string noMoverLine(const std::string &id);
+
+/** Certificates of one mover as one: "CPCP", their number and each behind its length; empty where there is none. */
+std::string recordOfParts(const std::vector<std::string> &certificates);
 
 /** Why nothing can be proven of a curve: its basis is none of the six of sums, it is restricted, or its radius changes.
  *  Empty where it can. */
