@@ -6,11 +6,13 @@ import os
 
 import cprox
 import numpy
+import rospy
 from curve_proximity.msg import Body, CollisionObject, ExecutionErrors
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, LimitSpeed, LimitSpeedRequest, ListLinkPairs,
                                  ListLinkPairsRequest, ListMargins, ListMarginsRequest, SweepVolume, SweepVolumeRequest,
                                  TimeOfContact, TimeOfContactRequest)
-from helpers import Case, Server, bezier, joint_trajectory, joints, query, run, service, sphere, thing, until
+from helpers import Case, Server, bezier, cloud, joint_trajectory, joints, query, run, service, sphere, thing, until
+from sensor_msgs.msg import PointCloud2
 
 URDF = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
 QUARTER = joint_trajectory(['turn'], [0.0], [math.pi / 2])  # in a second
@@ -180,18 +182,40 @@ class Executions(Case):
         self.assertRefused(self.call('margins', ListMarginsRequest(query=query(line, joint_state=joints(turn=0.0)))), 'margins', 'robot')
         self.assertRefused(self.call('swept_volume', SweepVolumeRequest(query=query(line, joint_state=joints(turn=0.0)))), 'swept volumes', 'robot')
 
-    def test_what_a_sensor_does_not_say_leaves_nothing_certified(self):
-        node, server = self.begin('doubtful', max_age=0.2, robot_description='/robot_description')
-        self.assertTrue(server.apply(sphere('ball', 0.2, BALL)).success)
-        broken = CollisionObject(id='broken', operation=CollisionObject.ADD)
-        publisher = self.publisher('/doubtful/collision_object', CollisionObject)
-        publisher.publish(broken)  # no shape: refused, so what stands there is unknown
-        self.assertTrue(until(lambda: server.tolerance([], 0.0, trajectory=QUARTER).results[0].status == 'unknown', 20))
-        row, = server.tolerance([], 0.0, trajectory=QUARTER, errors=errors()).results
-        self.assertEqual((row.status, row.verdict, row.lower, row.certified_scale), ('unknown', 'undecided', 0.0, 0.0))
-        asked = {'query': query(trajectory=QUARTER)}
-        margins, = service('margins', ListMargins, '/doubtful')(ListMarginsRequest(**asked)).margins
-        self.assertEqual((margins.summary.status, set(margins.free)), ('unknown', {0.0}))
+    def test_what_is_not_known_leaves_nothing_certified_by_any_service(self):
+        """What is dropped, left out or too old, on the way to each service: its status in each row, and no clear."""
+        ball, named = sphere('ball', 0.2, BALL), dict(trajectory=QUARTER, objects=['ball', 'cloud'])
+        broken = CollisionObject(id='broken', operation=CollisionObject.ADD)  # no shape: refused
+        old = cloud([(0, 0, -3)], '', stamp=rospy.Time.now() - rospy.Duration(100))
+        cases = {'dropped': ('unknown', {}, ('collision_object', CollisionObject, broken), dict(trajectory=QUARTER)),
+                 'late': ('stale', dict(max_age=0.5), ('cloud', PointCloud2, old), named),
+                 'blind': ('unknown', {}, ('cloud', PointCloud2, cloud([(math.nan, 0, 0)], '')), dict(trajectory=QUARTER))}
+        for name, (status, parameters, said, asked) in cases.items():
+            _, server = self.begin(name, **dict(dict(robot_description='/robot_description', max_age=0.0), **parameters))
+            self.assertTrue(server.apply(ball).success)
+            self.publisher(f'/{name}/{said[0]}', said[1]).publish(said[2])
+            self.assertTrue(until(lambda: server.tolerance([], 0.0, trajectory=QUARTER).results[0].status == status, 20), name)
+            self.expect_nothing_certified(name, status, asked)
+
+    def expect_nothing_certified(self, name, status, asked):
+        def call(which, kind, **fields):
+            return service(which, kind, '/' + name)(kind._request_class(query=query(**asked), **fields))
+        row, = Server('/' + name).tolerance([], 0.0, errors=errors(), **asked).results
+        self.assertEqual((row.status, row.verdict, row.lower, row.certified_scale), (status, 'undecided', 0.0, 0.0), name)
+        margins, = call('margins', ListMargins).margins
+        self.assertEqual((margins.summary.status, margins.summary.verdict, set(margins.free)), (status, 'undecided', {0.0}), name)
+        for limits in call('speed_limits', LimitSpeed, **PERSON).limits if 'objects' in asked else []:  # it asks for names
+            self.assertEqual((limits.profile.summary.status, set(limits.overrides), limits.constant), (status, {0.0}, 0.0), name)
+        volume, = call('swept_volume', SweepVolume, resolution=0.05).volumes
+        self.assertEqual(volume.summary.status, 'ok', name)  # objects do not matter to it
+
+    def test_joints_that_nobody_has_said_leave_nothing_certified(self):
+        asked = dict(trajectory=joint_trajectory(['trn'], [0.0], [1.0]))
+        self.assertRefused(self.server.tolerance([], 0.0, errors=errors(), **asked), 'trn')
+        for name, request in (('margins', ListMarginsRequest()), ('swept_volume', SweepVolumeRequest()),
+                              ('speed_limits', LimitSpeedRequest(**PERSON))):
+            request.query = query(objects=['ball'] if name == 'speed_limits' else [], **asked)
+            self.assertRefused(self.call(name, request), 'trn')
 
 
 if __name__ == '__main__':
