@@ -10,8 +10,8 @@
 #include "certificate/write.h"
 
 /* Of the errors of places here: the checker's own are up to ten times as large. */
-static const double ERRORS = 64.0;
-#define ROOM 160.0
+static const double ERRORS = 256.0;
+#define ROOM 640.0
 
 /* By so many errors a claim may be lifted: a point that is drawn into a thin body moves by more than the error. */
 static const double LIFTED = 1024.0;
