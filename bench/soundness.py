@@ -18,7 +18,7 @@ ASKED += [('intervals of queries', 1000000, None), ('certificates and mutants', 
 
 
 def judge_all(path=RECORD):
-    """Judgement, name, and a sentence for each campaign that is asked for."""
+    """Judgement, name, and a message for each campaign that is asked for."""
     rows = []
     if os.path.exists(path):
         with open(path, newline='') as text:

@@ -29,11 +29,11 @@ typedef struct section {
   reader *in;
   uint32_t width;
   const set *set;
-  pieces *mover, *target; /* target: of a set that is a curve */
-  pieces *clock[3];       /* NULL, or what else is at the mover's parameter: its growth; the set's ride and growth */
-  const set *carried;     /* by the mover, or NULL */
-  double from, until;     /* the part of the mover that is spoken of, in pieces */
-  double balls[BALLS];    /* delta, radius, margin, that of what is carried */
+  pieces *mover, *obstacle; /* obstacle: of a set that is a curve */
+  pieces *clock[3];         /* NULL, or what else is at the mover's parameter: its growth; the set's ride and growth */
+  const set *carried;       /* by the mover, or NULL */
+  double from, until;       /* the part of the mover that is spoken of, in pieces */
+  double balls[BALLS];      /* delta, radius, margin, that of what is carried */
   size_t *leaves;
 } section;
 
@@ -104,7 +104,7 @@ static sign separation(const section *c, int level, const direction *along, part
   support_of_frame(&w[0], own, c->set, n);
   if (theirs) {
     for (int k = 0; k < 3; k++) iv_neg(&own[k], &own[k]);
-    pieces_least(&w[1], &(pieces_share){c->target, own}, 1, level, theirs->from, theirs->to);
+    pieces_least(&w[1], &(pieces_share){c->obstacle, own}, 1, level, theirs->from, theirs->to);
     iv_neg(&w[1], &w[1]);
   } else if (!implicit) {
     support_of_body(&w[1], c->set, own);
@@ -144,7 +144,7 @@ static bool separates(const section *c, const direction *along, part mine, const
     theirs = NULL;
     c = &of_group;
   }
-  quick_query quick = {.set = c->set, .mover = c->mover, .target = c->target, .from = mine.from, .to = mine.to};
+  quick_query quick = {.set = c->set, .mover = c->mover, .obstacle = c->obstacle, .from = mine.from, .to = mine.to};
   if (theirs) {
     quick.theirs[0] = theirs->from;
     quick.theirs[1] = theirs->to;
@@ -214,7 +214,7 @@ static const char *read_pieces(reader *in, const curve *c, pieces *p, double **b
 static const char *check_section(section *c) {
   const unsigned char wanted = c->set->kind == CURVE ? 2 : c->set->corners > 0 ? 3 : 1;
   const part all = {c->from, c->until};
-  if (reader_byte(c->in) != wanted) return "it is about another kind of target";
+  if (reader_byte(c->in) != wanted) return "it is about another kind of obstacle";
   if (wanted == 1) return check_convex(c);
   if (c->set->kind == SOLID && (c->carried || c->clock[1])) return "what is inside a mesh that moves is not known";
   if (wanted == 3) {
@@ -223,13 +223,13 @@ static const char *check_section(section *c) {
       return broken;
     return "the curve does not begin outside the mesh";
   }
-  pieces target = {0};
+  pieces obstacle = {0};
   double *breaks = NULL;
-  const char *fault = read_pieces(c->in, &c->set->curve, &target, &breaks);
-  c->target = &target;
-  if (!fault) fault = check_tree(c, all, (part){0.0, (double)target.n}, 0);
-  c->target = NULL;
-  pieces_free(&target);
+  const char *fault = read_pieces(c->in, &c->set->curve, &obstacle, &breaks);
+  c->obstacle = &obstacle;
+  if (!fault) fault = check_tree(c, all, (part){0.0, (double)obstacle.n}, 0);
+  c->obstacle = NULL;
+  pieces_free(&obstacle);
   free(breaks);
   return fault;
 }
@@ -359,7 +359,7 @@ static const char *check_claim(const problem *p, reader *in, uint32_t width, uin
   if (!apart && claimed != CLAIM_NEAR) return "it claims nothing that is known";
   if (r && sections != r->n_pairs) return "it is about another number of pairs";
   const size_t loads = p->mover.n_carried > 0 ? p->mover.n_carried : 1;
-  if (!r && apart && sections != loads * p->n_sets) return "it is about another number of targets";
+  if (!r && apart && sections != loads * p->n_sets) return "it is about another number of obstacles";
   if (claimed == CLAIM_NEAR) return check_place(p, in, found->delta);
   if (claimed == CLAIM_BEFORE) return check_before(p, in, width, found);
   const claim of = (claim)claimed;

@@ -54,7 +54,7 @@ static void report_hulls(const problem *p) {
     if (s->name[0])
       printf("'%s'", s->name);
     else
-      printf("target %zu", i);
+      printf("obstacle %zu", i);
     before = ", ";
     named++;
   }

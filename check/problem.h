@@ -104,11 +104,11 @@ typedef struct problem {
   FILE *in;
 } problem;
 
-/* Reads the head. False, with a sentence in fault. */
+/* Reads the head. False, with a message in fault. */
 bool problem_open(problem *p, FILE *in);
 
-/* Reads the next mover, and before it targets that take the place of those there are. False at the end, or with a
- * sentence in fault. */
+/* Reads the next mover, and before it obstacles that take the place of those there are. False at the end, or with a
+ * message in fault. */
 bool problem_next(problem *p);
 
 void problem_close(problem *p);

@@ -119,7 +119,7 @@ bool quick_separates(const quick_query *q) {
   }
   if (s->kind == CURVE) {
     const vec back = vec_scale(num_of(-1.0), &own);
-    far = num_add(far, num_of(-least_of(q->target, &back, q->theirs[0], q->theirs[1])));
+    far = num_add(far, num_of(-least_of(q->obstacle, &back, q->theirs[0], q->theirs[1])));
   } else if (s->kind == HALFSPACE) {
     far = num_sub(far, num_of(s->size[3]));
   } else {

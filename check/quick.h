@@ -10,7 +10,7 @@ struct vec;
 /* A part of the mover's pieces; a set, or the part [theirs] of the pieces of a set that is a curve. */
 typedef struct quick_query {
   const set *set;
-  pieces *mover, *target; /* target: NULL for a set that is no curve */
+  pieces *mover, *obstacle; /* obstacle: NULL for a set that is no curve */
   double from, to, theirs[2];
   double normal[3];
   double balls[3]; /* delta, radius, margin */

@@ -98,7 +98,7 @@ static bool read_lines(problem *p, words *w, robot *r, const char *word, size_t 
   return true;
 }
 
-/* pairs N, then part and other N times: another part, or after all parts a target. */
+/* pairs N, then part and other N times: another part, or after all parts an obstacle. */
 static bool read_pairs(problem *p, words *w, robot *r) {
   words_begin(p, w, "pairs");
   r->n_pairs = words_count(w);

@@ -70,7 +70,7 @@ typedef struct robot {
   hook *links;
   axis *axes; /* parents first */
   set *parts;
-  body *bodies; /* the parts, then the problem's targets */
+  body *bodies; /* the parts, then the problem's obstacles */
   pair *pairs;
   double *rest;
   bool *moved;     /* which variables the motion speaks of */
@@ -80,7 +80,7 @@ typedef struct robot {
   slerp_arc *arcs; /* [segment][axis] */
 } robot;
 
-/* Reads what follows "robot ID"; NULL with a sentence in the problem's fault. */
+/* Reads what follows "robot ID"; NULL with a message in the problem's fault. */
 robot *robot_read(problem *p, struct words *w);
 void robot_forget(robot *r);
 

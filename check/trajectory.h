@@ -7,7 +7,7 @@
 #include "robot.h"
 #include "words.h"
 
-/* False, with a sentence in the problem's fault. */
+/* False, with a message in the problem's fault. */
 bool trajectory_read(problem *p, words *w, robot *r);
 
 /* The right half of a polynomial takes its place, the left half goes to `left`, where it ends in the middle. */

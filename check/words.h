@@ -13,7 +13,7 @@ typedef struct words {
 /* The first word of the next line that is not empty, or NULL. */
 const char *words_line(problem *p, words *w);
 
-/* Nothing was wrong, and nothing is left; else a sentence stands in fault. */
+/* Nothing was wrong, and nothing is left; else a message stands in fault. */
 bool words_end(problem *p, words *w);
 
 /* The next line begins with the word. */

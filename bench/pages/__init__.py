@@ -12,7 +12,7 @@ NEEDS = {'stability.md': {'stability'}, 'optimise.md': {'optimise'}, 'contacts.m
 
 
 def how_made(command, commit):
-    """The sentence that says where the figures come from."""
+    """The message that says where the figures come from."""
     with open('/proc/cpuinfo') as text:
         model = next((line.split(':', 1)[1].strip() for line in text if line.startswith('model name')), 'an unnamed processor')
     return f'Made by `{command}` at commit {commit}, {datetime.date.today()}, on {os.cpu_count()} cores ({model}).'

@@ -662,7 +662,7 @@ inline cprox_obstacle at(const BodyHandle &body, const Eigen::Isometry3d &pose =
   return cprox_with_margin(cprox_obstacle_at(body.get(), toPose(pose)), margin);
 }
 cprox_obstacle at(BodyHandle &&body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
-                  double margin = 0.0) = delete; // the target would dangle
+                  double margin = 0.0) = delete; // the obstacle would dangle
 
 /** A ball of the radius (0: a point) along the curve, which must outlive the mover. */
 inline cprox_mover along(const CurveHandle &curve, double radius = 0.0) {
@@ -681,26 +681,26 @@ cprox_mover along(const CurveHandle &curve, CurveHandle &&radius) = delete;
 cprox_mover along(CurveHandle &&curve, CurveHandle &&radius) = delete;
 
 /** The least distance, as cprox_distance(). */
-inline cprox_result distance(const cprox_mover &mover, const cprox_obstacle &target, const cprox_options &options,
+inline cprox_result distance(const cprox_mover &mover, const cprox_obstacle &obstacle, const cprox_options &options,
                              Workspace &workspace) {
   cprox_result result{};
-  require(cprox_distance(mover, target, &options, workspace.get(), &result), workspace);
+  require(cprox_distance(mover, obstacle, &options, workspace.get(), &result), workspace);
   return result;
 }
 
 /** The tolerance verdict, as cprox_tolerance(). */
-inline cprox_result tolerance(const cprox_mover &mover, const cprox_obstacle &target, double delta,
+inline cprox_result tolerance(const cprox_mover &mover, const cprox_obstacle &obstacle, double delta,
                               const cprox_options &options, Workspace &workspace) {
   cprox_result result{};
-  require(cprox_tolerance(mover, target, delta, &options, workspace.get(), &result), workspace);
+  require(cprox_tolerance(mover, obstacle, delta, &options, workspace.get(), &result), workspace);
   return result;
 }
 
 /** The collision verdict, as cprox_collision(). */
-inline cprox_result collision(const cprox_mover &mover, const cprox_obstacle &target, const cprox_options &options,
+inline cprox_result collision(const cprox_mover &mover, const cprox_obstacle &obstacle, const cprox_options &options,
                               Workspace &workspace) {
   cprox_result result{};
-  require(cprox_collision(mover, target, &options, workspace.get(), &result), workspace);
+  require(cprox_collision(mover, obstacle, &options, workspace.get(), &result), workspace);
   return result;
 }
 
@@ -798,10 +798,10 @@ struct FreeObstacles {
 using ObstaclesHandle = std::unique_ptr<cprox_obstacles, detail::FreeObstacles>;
 
 /** cprox_obstacles_create() without an exception: *handle is untouched on failure, and the workspace says why. */
-inline cprox_status makeObstacles(const std::vector<cprox_obstacle> &targets, cprox_obstacle_index index,
+inline cprox_status makeObstacles(const std::vector<cprox_obstacle> &obstacles, cprox_obstacle_index index,
                                   Workspace &workspace, ObstaclesHandle &handle) {
   cprox_obstacles *made = nullptr;
-  const cprox_status status = cprox_obstacles_create(targets.data(), targets.size(), index, workspace.get(), &made);
+  const cprox_status status = cprox_obstacles_create(obstacles.data(), obstacles.size(), index, workspace.get(), &made);
   if (status == CPROX_OK) handle.reset(made);
   return status;
 }
@@ -810,10 +810,10 @@ inline cprox_status makeObstacles(const std::vector<cprox_obstacle> &targets, cp
  *  Functions throw Error where there is no answer. */
 class Obstacles {
  public:
-  /** What the targets name must outlive this object. */
-  explicit Obstacles(const std::vector<cprox_obstacle> &targets, cprox_obstacle_index index = CPROX_INDEX_BVH) {
+  /** What the obstacles name must outlive this object. */
+  explicit Obstacles(const std::vector<cprox_obstacle> &obstacles, cprox_obstacle_index index = CPROX_INDEX_BVH) {
     Workspace workspace;
-    require(makeObstacles(targets, index, workspace, handle_), workspace);
+    require(makeObstacles(obstacles, index, workspace, handle_), workspace);
   }
 
   /** The least distance to all of them. */

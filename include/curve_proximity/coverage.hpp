@@ -61,7 +61,7 @@ class Coverage {
   bool provesContact() const;
 
   /** The messages, in the order in which they came. */
-  std::vector<std::string> sentences() const;
+  std::vector<std::string> messages() const;
 
   /** The first of the messages as one line, and how many there are more; "" if complete. */
   std::string message() const;

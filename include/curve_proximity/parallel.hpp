@@ -178,8 +178,8 @@ class Batch {
     std::string reason;                /**< the error message, with the number of the mover; "" for CPROX_OK */
   };
 
-  /** What the targets name must outlive the batch. Throws Error as cprox_obstacles_create() fails. */
-  explicit Batch(const std::vector<cprox_obstacle> &targets) : obstacles_(targets, CPROX_INDEX_BATCH) {}
+  /** What the obstacles name must outlive the batch. Throws Error as cprox_obstacles_create() fails. */
+  explicit Batch(const std::vector<cprox_obstacle> &obstacles) : obstacles_(obstacles, CPROX_INDEX_BATCH) {}
 
   /** The distance of each mover. */
   Answers distance(const std::vector<cprox_mover> &movers, const cprox_options &options, Pool &pool) const {

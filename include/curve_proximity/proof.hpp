@@ -9,9 +9,9 @@
 
 namespace curve_proximity {
 
-/** The query of a curve against these targets, with its head; empty where something is of a kind that has no
+/** The query of a curve against these obstacles, with its head; empty where something is of a kind that has no
  *  certificates. */
-std::string describeQuery(const Targets &targets, const CurveDescription &curve);
+std::string describeQuery(const SceneObstacles &obstacles, const CurveDescription &curve);
 
 } // namespace curve_proximity
 #endif

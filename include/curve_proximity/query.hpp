@@ -129,7 +129,7 @@ double radiusAt(const CompiledCurve &curve, double t);
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes, Workspace &workspace);
 
 /** The objects and links of a query, resolved once for all its curves. Immutable; shared by any number of threads. */
-class Targets {
+class SceneObstacles {
  public:
   /** snapshot  is kept.
    *  links     where the robot's links are in the fixed frame, as given (their own rounding is the caller's). Empty:
@@ -137,12 +137,12 @@ class Targets {
    *            missing must never read as free.
    *  Throws Error: names that the query should not have, a link without a pose, poses for what is no link of the
    *  robot, poses that are not finite. */
-  Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &query);
-  ~Targets();
+  SceneObstacles(SnapshotPtr snapshot, const LinkPoses &links, const Query &query);
+  ~SceneObstacles();
   /** Moves. */
-  Targets(Targets &&) noexcept;
+  SceneObstacles(SceneObstacles &&) noexcept;
   /** Moves. */
-  Targets &operator=(Targets &&) noexcept;
+  SceneObstacles &operator=(SceneObstacles &&) noexcept;
 
   /** What curves that are tested against these need. */
   CurveBoxes boxes() const;
@@ -157,29 +157,30 @@ class Targets {
   std::unique_ptr<const Data> data_;
 };
 
-/** All obstacles of a query in the core's form; valid as long as `targets` is. Certificates refer to them: to their
+/** All obstacles of a query in the core's form; valid as long as `obstacles` is. Certificates refer to them: to their
  *  poses in doubles, after the rounding outside the core. */
-std::vector<cprox_obstacle> coreTargets(const Targets &targets);
+std::vector<cprox_obstacle> coreObstacles(const SceneObstacles &obstacles);
 
 /** The index of the obstacle that an answer names; -1 for none. */
-std::int32_t coreTargetOf(const Targets &targets, const Answer &answer);
+std::int32_t coreObstacleOf(const SceneObstacles &obstacles, const Answer &answer);
 
 /** The obstacles as text for the program cprox_check (doc/certificates.md): one line per convex part, mesh, cloud or
  *  octree with the name of its owner. Empty if a kind of body has no certificates. */
-std::string describeTargets(const Targets &targets);
+std::string describeObstacles(const SceneObstacles &obstacles);
 
 /** The bodies that have no certificates, one message each. If there is one, no result can be proven. */
-std::vector<std::string> unprovable(const Targets &targets);
+std::vector<std::string> unprovable(const SceneObstacles &obstacles);
 
 /** Answers a query for one curve. With per_object there is one answer per object and link in the order of their names,
  *  objects first (without any: one answer with b empty); otherwise one answer.
  *
  *  Errors that the core finds (epsilon is NaN, a budget of 0, delta < 0) do not throw: result.status is < 0, and status
  *  and message say why. Any number of threads, each with its own workspace. */
-std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace);
+std::vector<Answer> ask(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query,
+                        Workspace &workspace);
 
 /** The same, appended to `answers`: one list for many curves saves each of them its own. */
-void ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace,
+void ask(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query, Workspace &workspace,
          std::vector<Answer> &answers);
 
 /** Limits of nearestPairs(). */
@@ -192,7 +193,7 @@ struct PairLimits {
  *  shape alone. Where a budget or a stop left the list incomplete, its last answer says so: Answer::is_unlisted. With a
  *  gap and no pair there is one answer with b empty. Takes no other query than DISTANCE, no per_object and no
  *  certificate; throws Error for those, and where the core refuses. */
-std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &curve, const PairLimits &limits,
+std::vector<Answer> nearestPairs(const SceneObstacles &obstacles, const CompiledCurve &curve, const PairLimits &limits,
                                  const Query &query, Workspace &workspace);
 
 /** The clearance of what moves on one interval of its parameter. */
@@ -223,7 +224,7 @@ struct ClearanceInterval {
 /** The clearance profile: the least distance on each interval between two breaks, which ascend within the domain of the
  *  curve. Clearance beyond a horizon >= 0 [m] is only bounded: lower > horizon, which is less work. Takes no query but
  *  DISTANCE, no signed_distance and no per_object; throws Error for those, and where the core refuses. */
-std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
+std::vector<ClearanceInterval> clearanceProfile(const SceneObstacles &obstacles, const CompiledCurve &curve,
                                                 const std::vector<double> &breaks, const Query &query,
                                                 Workspace &workspace,
                                                 double horizon = std::numeric_limits<double>::infinity());
@@ -256,7 +257,7 @@ struct CurveClearance {
  *  gradient (a mesh, a second one that is as near), valid is false and reason says why. The query is DISTANCE without
  *  per_object and without a certificate; throws Error for another, or answers with status "invalid". description: what
  *  the curve was compiled from. Cost: two distances, and with more than one shape the second nearest. */
-CurveClearance clearanceGradient(const Targets &targets, const CompiledCurve &curve,
+CurveClearance clearanceGradient(const SceneObstacles &obstacles, const CompiledCurve &curve,
                                  const CurveDescription &description, const Query &query, Workspace &workspace);
 
 /** An interval of the parameter in which what moves is within delta of something (cprox_obstacles_violations()). */
@@ -291,17 +292,19 @@ struct Violations {
  *  Outside of them it is proven to be farther. Within enter_upper … leave_lower it is proven not to be, but for the
  *  rounding of poses outside the core. resolution > 0, in units of the parameter: as cprox_obstacles_violations() has
  *  it. Takes no other query than TOLERANCE and no per_object; throws Error for those, and where the core refuses. */
-Violations violations(const Targets &targets, const CompiledCurve &curve, double resolution, const Query &query,
-                      Workspace &workspace);
+Violations violations(const SceneObstacles &obstacles, const CompiledCurve &curve, double resolution,
+                      const Query &query, Workspace &workspace);
 
 /** The time of contact: where the curve first touches what it is tested against. The query is COLLISION.
  *  result.t_contact_lower: no contact at any smaller parameter, the rounding outside the core included. Verdict
  *  violated: contact at result.t, within that rounding. clear: no contact at all. undecided: closer than epsilon at
  *  result.t. Refuses per_object and signed_distance as ask() refuses. A certificate is that of
  *  cprox_certify_contact(). */
-Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace);
+Answer timeOfContact(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query,
+                     Workspace &workspace);
 
-/** The same as ask() in one step. An error of compile() or Targets becomes the only answer, with status "invalid". */
+/** The same as ask() in one step. An error of compile() or SceneObstacles becomes the only answer, with status
+ *  "invalid". */
 std::vector<Answer> ask(const SnapshotPtr &snapshot, const LinkPoses &links, const CurveDescription &curve,
                         const Query &query, Workspace &workspace);
 

@@ -92,15 +92,15 @@ struct SceneChange {
 
 /** A body at its pose in the fixed frame. */
 struct PlacedShape {
-  cprox_obstacle target{};  /**< padding included; the body belongs to the owner of this struct */
-  cprox_obstacle hull{};    /**< the same, with a mesh's convex hull */
-  cprox_obstacle surface{}; /**< the same, with a solid mesh as a surface */
-  double hull_excess = 0.0; /**< [m] how far points of the shape may be outside `hull`, beside rounding */
-  Eigen::AlignedBox3d box;  /**< [m] contains the padded body, rounding included; infinite for a halfspace */
-  double rounding = 0.0;    /**< [m] how far the rounding of poses can have moved a point of it */
-  double turning = 0.0;     /**< of a halfspace: the same per metre of distance from target.pose */
-  bool is_mesh = false;     /**< the shape is a mesh */
-  bool is_open = false;     /**< `solid` was requested, but the mesh is not closed */
+  cprox_obstacle obstacle{}; /**< padding included; the body belongs to the owner of this struct */
+  cprox_obstacle hull{};     /**< the same, with a mesh's convex hull */
+  cprox_obstacle surface{};  /**< the same, with a solid mesh as a surface */
+  double hull_excess = 0.0;  /**< [m] how far points of the shape may be outside `hull`, beside rounding */
+  Eigen::AlignedBox3d box;   /**< [m] contains the padded body, rounding included; infinite for a halfspace */
+  double rounding = 0.0;     /**< [m] how far the rounding of poses can have moved a point of it */
+  double turning = 0.0;      /**< of a halfspace: the same per metre of distance from obstacle.pose */
+  bool is_mesh = false;      /**< the shape is a mesh */
+  bool is_open = false;      /**< `solid` was requested, but the mesh is not closed */
 };
 
 /** One shape of an object. */

@@ -88,7 +88,7 @@ int findLinkContacts(const Arguments &arguments, Console &console) {
           console.say("warning: " + arguments.srdf + ": '" + a + "' and '" + b +
                       "' are disabled as Never, and touch at " + postureOf(contact));
       } catch (const Error &e) {
-        out.complaints.push_back(a + " and " + b + ": " + e.what());
+        out.error_messages.push_back(a + " and " + b + ": " + e.what());
       }
       return out;
     });

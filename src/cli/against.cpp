@@ -21,14 +21,14 @@ struct RowPair {
 cprox_status search(const CompiledCurve &a, const CompiledCurve &b, bool synchronized, const Query &query,
                     Workspace &workspace, cprox_result &result) {
   const cprox_mover mover = moverOf(a);
-  const cprox_obstacle target =
+  const cprox_obstacle obstacle =
       synchronized ? cprox_synchronized(moverOf(b)) : cprox_obstacle_curve(b.curve.get(), b.radius);
   if (!synchronized && b.radius_curve) throw Error("the radius of the second curve changes: give --synchronized");
   switch (query.query_type) {
-    case QueryType::DISTANCE: return cprox_distance(mover, target, &query.options, workspace.get(), &result);
+    case QueryType::DISTANCE: return cprox_distance(mover, obstacle, &query.options, workspace.get(), &result);
     case QueryType::TOLERANCE:
-      return cprox_tolerance(mover, target, query.delta, &query.options, workspace.get(), &result);
-    case QueryType::COLLISION: return cprox_collision(mover, target, &query.options, workspace.get(), &result);
+      return cprox_tolerance(mover, obstacle, query.delta, &query.options, workspace.get(), &result);
+    case QueryType::COLLISION: return cprox_collision(mover, obstacle, &query.options, workspace.get(), &result);
   }
   return CPROX_INVALID;
 }
@@ -70,19 +70,19 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Query 
     if (row.result.status != CPROX_OK) row.message = cprox_status_text(row.result.status);
     if (row.result.status < 0) {
       row.message = cprox_workspace_error(workspace.get());
-      out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + row.message);
+      out.error_messages.push_back(placeOf(*rows.first, arguments.curves) + ": " + row.message);
     }
     if (with_proof && row.result.status >= 0 && cprox_certificate_get_info(proof.get()).size == 0)
       out.unproven.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_error(workspace.get()));
   } catch (const std::bad_alloc &) {
     row.result.status = CPROX_MEMORY;
     row.message = cprox_status_text(CPROX_MEMORY);
-    out.complaints.push_back(arguments.curves + ": id '" + row.id + "': " + cprox_status_text(CPROX_MEMORY));
+    out.error_messages.push_back(arguments.curves + ": id '" + row.id + "': " + cprox_status_text(CPROX_MEMORY));
   } catch (const std::exception &e) {
     row.result.status = CPROX_INVALID;
     row.message = e.what();
     const bool own = !rows.second && rows.first;
-    out.complaints.push_back(own ? placeOf(*rows.first, arguments.curves) + ": " + e.what() : e.what());
+    out.error_messages.push_back(own ? placeOf(*rows.first, arguments.curves) + ": " + e.what() : e.what());
   }
   if (with_proof) row.proof = proofOf(proof);
   if (with_proof) out.certificate = recordOf(proof);

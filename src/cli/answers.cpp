@@ -48,7 +48,7 @@ class Lines {
     out_.text += resultsLine(row, columnsOf(arguments_));
     noteVerdict(row, out_);
     if (!answer.unproven.empty()) out_.unproven.push_back(asked_.place + ": no certificate: " + answer.unproven);
-    if (answer.result.status < 0) out_.complaints.push_back(asked_.place + against + ": " + answer.message);
+    if (answer.result.status < 0) out_.error_messages.push_back(asked_.place + against + ": " + answer.message);
   }
 
   void add(std::vector<ClearanceInterval> &profile) {
@@ -158,7 +158,7 @@ std::string headerOf(const Arguments &arguments) {
 
 void addFailure(const Asked &asked, const Arguments &arguments, cprox_status status, const std::string &why,
                 Outcome &out) {
-  out.complaints.push_back(asked.place + ": " + why);
+  out.error_messages.push_back(asked.place + ": " + why);
   if (!arguments.certificate.empty()) out.certificate = emptyRecord();
   const std::string header = headerOf(arguments);
   if (header != resultsHeader(columnsOf(arguments))) {

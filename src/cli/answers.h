@@ -17,7 +17,7 @@ namespace curve_proximity::cli {
 struct Asked {
   Subject subject;
   std::string id, kind;  /**< the columns */
-  std::string place;     /**< for complaints: "curves.csv: row 3 (line 5, id 'a')" */
+  std::string place;     /**< for error messages: "curves.csv: row 3 (line 5, id 'a')" */
   Part part;             /**< rows are about this part alone */
   bool ends_run = false; /**< what is wrong with the query ends the run, and is no row */
 };

@@ -48,8 +48,8 @@ std::string proofOf(const CertificateHandle &certificate) {
   return "none";
 }
 
-void warnOfUnprovable(const std::vector<std::string> &sentences, Warnings &warnings) {
-  for (const std::string &sentence : sentences) warnings.add(sentence + "; no row can be proven");
+void warnOfUnprovable(const std::vector<std::string> &messages, Warnings &warnings) {
+  for (const std::string &message : messages) warnings.add(message + "; no row can be proven");
 }
 
 void requireCheckable(const CurveDescription &curve) {

@@ -30,7 +30,7 @@ std::string recordOf(const std::vector<std::string> &certificates);
 std::string proofOf(const CertificateHandle &certificate);
 
 /** What has no certificates (unprovable() of query.hpp and motion.hpp). */
-void warnOfUnprovable(const std::vector<std::string> &sentences, Warnings &warnings);
+void warnOfUnprovable(const std::vector<std::string> &messages, Warnings &warnings);
 
 /** Throws BadInput for a curve that cprox_check cannot read: bases other than the six of sums, and restrictions. */
 void requireCheckable(const CurveDescription &curve);

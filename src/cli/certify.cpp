@@ -42,7 +42,7 @@ std::string numberField(double value) {
 Outcome unanswered(std::size_t row, const std::string &id, const char *status, const std::string &why) {
   Outcome out;
   out.text = std::to_string(row) + ',' + field(id) + ",," + status + ",,,,,,,,,," + field(why) + '\n';
-  out.complaints.push_back("row " + std::to_string(row) + " (id '" + id + "'): " + why);
+  out.error_messages.push_back("row " + std::to_string(row) + " (id '" + id + "'): " + why);
   return out;
 }
 
@@ -51,7 +51,7 @@ void addAnswer(std::size_t row, const std::string &id, const Answer &answer, Que
   std::string line = std::to_string(row) + ',' + field(id) + ',' + answer.kind + ',';
   if (result.status < 0) {
     out.text += line + "failed,,,,,,,,,," + field(answer.message) + '\n';
-    out.complaints.push_back("row " + std::to_string(row) + " (id '" + id + "'): " + answer.message);
+    out.error_messages.push_back("row " + std::to_string(row) + " (id '" + id + "'): " + answer.message);
     return;
   }
   line += answer.status + ',';
@@ -237,7 +237,7 @@ class Progress {
 /* Whether it came to its end. */
 bool answerShard(const Dataset &dataset, const ShardHead &head, const Arguments &arguments, Library &library,
                  Console &console) {
-  constexpr std::size_t kMostComplaints = 10;
+  constexpr std::size_t kMostMessages = 10;
   ShardWriter file(shardPath(arguments.out, head.shard, head.shards), head, kColumns);
   Dataset::Reader reader(dataset, head.range);
   Progress progress(arguments, head, console);
@@ -252,7 +252,7 @@ bool answerShard(const Dataset &dataset, const ShardHead &head, const Arguments 
   };
   rows.write = [&](const std::string &text) { file.write(text); };
   rows.progress = [&](const Tally &tally) { progress.tell(tally, false); };
-  rows.most_complaints = kMostComplaints;
+  rows.most_messages = kMostMessages;
   const Tally tally = runRows(arguments.threads, rows, console);
   if (tally.interrupted) return false;
   file.finish();

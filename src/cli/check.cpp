@@ -245,13 +245,13 @@ std::string moverOf(const CsvRow &row) {
   }
 }
 
-/* A row of either file; the other curve is the target. */
+/* A row of either file; the other curve is the obstacle. */
 std::string pairOf(const std::optional<CsvRow> &first, const std::optional<CsvRow> &second, bool synchronized) {
   if (!first || !second) return noMoverLine(first ? rowId(first->text) : "");
   try {
-    const CurveDescription target = parseCurve(second->text);
-    compile(target);
-    return curveTargetLines(target, synchronized) + moverOf(*first);
+    const CurveDescription obstacle = parseCurve(second->text);
+    compile(obstacle);
+    return curveObstacleLines(obstacle, synchronized) + moverOf(*first);
   } catch (const std::bad_alloc &) {
     throw;
   } catch (const std::exception &) {
@@ -262,12 +262,12 @@ std::string pairOf(const std::optional<CsvRow> &first, const std::optional<CsvRo
 void tellCurves(const Arguments &arguments, Console &console, Checkers &checkers) {
   Warnings warnings;
   const World world = readStandingWorld(arguments, "'check'", warnings);
-  const Targets targets(world.snapshot, world.links, arguments.query);
-  const std::vector<std::string> none = unprovable(targets);
+  const SceneObstacles obstacles(world.snapshot, world.links, arguments.query);
+  const std::vector<std::string> none = unprovable(obstacles);
   warnOfUnprovable(none, warnings);
   console.warn(warnings);
   CsvFile file(arguments.curves);
-  checkers.begin(problemHead() + (none.empty() ? describeTargets(targets) : ""));
+  checkers.begin(problemHead() + (none.empty() ? describeObstacles(obstacles) : ""));
   while (const std::optional<CsvRow> row = file.next())
     checkers.add(none.empty() ? moverOf(*row) : noMoverLine(rowId(row->text)));
 }
@@ -312,7 +312,7 @@ void tellMoving(const Arguments &arguments, Console &console, Checkers &checkers
 
 void tellPairs(const Arguments &arguments, Checkers &checkers) {
   CsvFile first(arguments.curves), second(arguments.against);
-  checkers.begin(problemHead() + "targets 0\n");
+  checkers.begin(problemHead() + "obstacles 0\n");
   while (true) {
     const std::optional<CsvRow> a = first.next(), b = second.next();
     if (!a && !b) return;

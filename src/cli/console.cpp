@@ -18,13 +18,13 @@ void Console::wipe() {
   shows_progress_ = false;
 }
 
-void Console::say(const std::string &sentence) {
-  if (!is_quiet_) complain(sentence);
+void Console::say(const std::string &message) {
+  if (!is_quiet_) print(message);
 }
 
-void Console::complain(const std::string &sentence) {
+void Console::print(const std::string &message) {
   /* names out of files may hold anything: it stays one line, and nothing that a terminal would obey */
-  std::string line = sentence;
+  std::string line = message;
   for (char &c : line) {
     const auto code = static_cast<unsigned char>(c);
     if (code < 0x20 || code == 0x7f) c = ' ';
@@ -36,7 +36,7 @@ void Console::complain(const std::string &sentence) {
 }
 
 void Console::warn(const Warnings &warnings) {
-  for (const std::string &sentence : warnings.sentences()) say("warning: " + sentence);
+  for (const std::string &message : warnings.messages()) say("warning: " + message);
 }
 
 void Console::progress(const std::string &line) {

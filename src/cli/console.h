@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Standard error: sentences, and a progress line beneath them where a person is looking. */
+/** Standard error: messages, and a progress line beneath them where a person is looking. */
 #ifndef CURVE_PROXIMITY_CLI_CONSOLE_H
 #define CURVE_PROXIMITY_CLI_CONSOLE_H
 
@@ -20,10 +20,10 @@ class Console {
   Console &operator=(const Console &) = delete;
 
   /** A line that stays; nothing where the console is quiet. */
-  void say(const std::string &sentence);
+  void say(const std::string &message);
 
   /** The same, also where the console is quiet. */
-  void complain(const std::string &sentence);
+  void print(const std::string &message);
 
   /** From now on only errors are said. */
   void beQuiet() {

@@ -33,7 +33,7 @@ World readSides(const Arguments &arguments, const ResourceOptions &resources, Wa
 /* The one provider. Whatever is wrong with it, there is nothing to answer. */
 std::unique_ptr<ProviderSet> loadProvider(const Arguments &arguments) {
   std::unique_ptr<ProviderSet> set;
-  const std::string why = sentenceOf([&] {
+  const std::string why = messageOf([&] {
     const std::vector<ProviderSpec> specs = {
         {arguments.provider, arguments.provider, parseParameters(arguments.parameters)}};
     set = std::make_unique<ProviderSet>(specs);
@@ -77,7 +77,7 @@ Outcome answerOne(const Session &session, ConstraintCase described, const std::s
   row.provider = arguments.provider;
   out.stopped = row.status == CPROX_STOPPED || (row.status < 0 && interrupted(nullptr));
   if (row.status >= 0) {
-    const std::string why = sentenceOf([&] { tellAnswer(session, described, row, workspace, out); }, &row.status);
+    const std::string why = messageOf([&] { tellAnswer(session, described, row, workspace, out); }, &row.status);
     out.undecided = out.undecided || row.gap;
     if (row.status >= 0) return out;
     row.message = why;
@@ -86,7 +86,7 @@ Outcome answerOne(const Session &session, ConstraintCase described, const std::s
     out.text = gradientsLine(row, nullptr);
   else
     out.text = described.motion ? constraintsLines(row, described.motion->trajectory) : constraintsLine(row);
-  out.complaints.push_back(place + ": " + row.message);
+  out.error_messages.push_back(place + ": " + row.message);
   return out;
 }
 
@@ -115,11 +115,11 @@ int answerCases(const Arguments &arguments, Console &console) {
     described.id = caseId(entry);
     const std::string place = arguments.cases + ": case " + std::to_string(given) + " (id '" + described.id + "')";
     Warnings own;
-    const std::string fault = sentenceOf([&] { described = parseCase(entry, world, own); });
+    const std::string fault = messageOf([&] { described = parseCase(entry, world, own); });
     described.coverage = files;
     described.coverage.add(own.coverage());
     warnings.add(own);
-    for (; warned < warnings.sentences().size(); ++warned) console.say("warning: " + warnings.sentences()[warned]);
+    for (; warned < warnings.messages().size(); ++warned) console.say("warning: " + warnings.messages()[warned]);
     return [&, described, fault, place](Workspace &workspace) {
       return answerOne(session, described, fault, place, workspace);
     };
@@ -142,7 +142,7 @@ ConstraintCase readMotionCase(const Arguments &arguments, const World &world, Wa
     motion.robot = std::make_shared<const PreparedRobot>(world.snapshot, world.srdf.disabled, motion.trajectory.base,
                                                          motion.trajectory.base_joints, rest.place);
     const RobotMotion tried(*motion.robot, motion.trajectory, motion.rest);
-    for (const std::string &sentence : tried.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
+    for (const std::string &message : tried.warnings()) warnings.add(arguments.trajectory + ": " + message);
     motion.other_robots = furtherRobots(arguments, world);
   } catch (const Error &e) {
     throw BadUsage(arguments.trajectory + ": " + e.what());

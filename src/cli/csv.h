@@ -53,7 +53,7 @@ std::string quotedField(const std::string &text);
 /** A comma, and the number with all its digits where it is known. */
 void appendField(std::string &line, double value, bool known = true);
 
-/** Where a row stands, for a sentence: "curves.csv: row 3 (line 5, id 'a')". */
+/** Where a row stands, for a message: "curves.csv: row 3 (line 5, id 'a')". */
 std::string placeOf(const CsvRow &row, const std::string &file);
 
 /** The id of a row, as far as it can be read: also of rows that are no curve. */

@@ -16,7 +16,7 @@ namespace {
 /* What curves are measured against: everything, or one object or link. */
 struct Side {
   std::string name; /* empty: everything */
-  Targets targets;
+  SceneObstacles obstacles;
 };
 
 /* One side, or one for each object and link, where the query is about each and ask() does not part them itself. */
@@ -31,7 +31,7 @@ std::vector<Side> sidesOf(const World &world, const Arguments &arguments, const 
     Query named = query;
     named.objects.clear(), named.links.clear();
     (named.*names).push_back(name);
-    sides.push_back({name, Targets(world.snapshot, world.links, named)});
+    sides.push_back({name, SceneObstacles(world.snapshot, world.links, named)});
   };
   if (query.per_object && !asksFor<question::Search>(arguments.question)) {
     for (const auto &object : world.snapshot->objects()) add(object.first, &Query::objects);
@@ -40,7 +40,7 @@ std::vector<Side> sidesOf(const World &world, const Arguments &arguments, const 
     }
     for (const auto &object : world.snapshot->attached()) add(object.first, &Query::objects);
   }
-  if (sides.empty()) sides.push_back({"", Targets(world.snapshot, world.links, query)});
+  if (sides.empty()) sides.push_back({"", SceneObstacles(world.snapshot, world.links, query)});
   return sides;
 }
 
@@ -55,12 +55,12 @@ Outcome answerCurve(const CsvRow &csv, const std::vector<Side> &sides, const Arg
     if (!arguments.certificate.empty()) requireCheckable(description);
     curve = compile(description);
     for (const Side &side : sides)
-      answer({CurveSubject{side.targets, curve}, curve.id, "curve", place, {"", side.name}}, arguments, query,
+      answer({CurveSubject{side.obstacles, curve}, curve.id, "curve", place, {"", side.name}}, arguments, query,
              workspace, out);
   };
   attempt(work, [&](cprox_status status, const char *why) {
     out = Outcome();
-    addFailure({CurveSubject{sides.front().targets, curve}, rowId(csv.text), "curve", place, {}}, arguments, status,
+    addFailure({CurveSubject{sides.front().obstacles, curve}, rowId(csv.text), "curve", place, {}}, arguments, status,
                why, out);
   });
   return out;
@@ -77,7 +77,7 @@ int answerCurves(const Arguments &arguments, Console &console) {
 
   CsvFile file(arguments.curves);
   Output output(arguments);
-  if (!arguments.certificate.empty()) warnOfUnprovable(unprovable(sides.front().targets), warnings);
+  if (!arguments.certificate.empty()) warnOfUnprovable(unprovable(sides.front().obstacles), warnings);
   console.warn(warnings);
   if (arguments.timings) tellTimings(world.timings, console);
   if (arguments.skipped) tellSkipped(world.skipped, console);

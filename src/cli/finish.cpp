@@ -28,8 +28,8 @@ int finish(const Tally &tally, const Arguments &arguments, Console &console) {
                 std::to_string(tally.undecided) + " undecided, " + std::to_string(tally.uncovered) + " not covered, " +
                 std::to_string(tally.failed) + " failed");
   if (arguments.strict && tally.uncovered)
-    console.complain("cprox: --strict: " + std::to_string(tally.uncovered) + " of " + std::to_string(tally.rows) +
-                     " rows do not cover all that was given (column message)");
+    console.print("cprox: --strict: " + std::to_string(tally.uncovered) + " of " + std::to_string(tally.rows) +
+                  " rows do not cover all that was given (column message)");
   if (tally.failed || !tally.rows || (arguments.strict && tally.uncovered)) return kUnanswered;
   if (tally.violated) return kSomeViolated;
   return tally.undecided || tally.disputed ? kSomeUndecided : kAllAnswered;
@@ -37,13 +37,13 @@ int finish(const Tally &tally, const Arguments &arguments, Console &console) {
 
 } // namespace
 
-void tellSkipped(const std::vector<std::string> &sentences, Console &console) {
-  for (const std::string &sentence : sentences) console.say("skipped: " + sentence);
-  if (sentences.empty()) console.say("skipped: nothing");
+void tellSkipped(const std::vector<std::string> &messages, Console &console) {
+  for (const std::string &message : messages) console.say("skipped: " + message);
+  if (messages.empty()) console.say("skipped: nothing");
 }
 
-void tellTimings(const std::vector<std::string> &sentences, Console &console) {
-  for (const std::string &sentence : sentences) console.say("timing: " + sentence);
+void tellTimings(const std::vector<std::string> &messages, Console &console) {
+  for (const std::string &message : messages) console.say("timing: " + message);
 }
 
 void noteGap(const std::optional<Gap> &gap, Outcome &outcome) {

@@ -16,10 +16,10 @@
 namespace curve_proximity::cli {
 
 /** --timings: how long loading took. */
-void tellTimings(const std::vector<std::string> &sentences, Console &console);
+void tellTimings(const std::vector<std::string> &messages, Console &console);
 
 /** --skipped: what takes no part. */
-void tellSkipped(const std::vector<std::string> &sentences, Console &console);
+void tellSkipped(const std::vector<std::string> &messages, Console &console);
 
 /** Notes what a row does not cover. */
 void noteGap(const std::optional<Gap> &gap, Outcome &outcome);

@@ -58,14 +58,14 @@ int main(int argc, char **argv) {
   try {
     return run(std::vector<std::string>(argv + 1, argv + argc), console);
   } catch (const BadUsage &e) {
-    console.complain(std::string("cprox: ") + e.what());
+    console.print(std::string("cprox: ") + e.what());
     return kUnanswered;
   } catch (const std::bad_alloc &) {
-    console.complain("cprox: out of memory");
+    console.print("cprox: out of memory");
   } catch (const std::exception &e) {
-    console.complain(std::string("cprox: ") + e.what());
+    console.print(std::string("cprox: ") + e.what());
   } catch (...) {
-    console.complain("cprox: an error without a name");
+    console.print("cprox: an error without a name");
   }
   return kUnanswered;
 }

@@ -45,8 +45,8 @@ int answer(const Arguments &arguments, const World &world, std::shared_ptr<const
   const MovingWorld moving = gatherMovers(arguments, world, std::move(motion));
   const RobotMotion *robot = moving.subject ? moving.subject->motion.get() : nullptr;
   for (const MovingRobot &other : moving.others)
-    for (const std::string &sentence : other.motion->warnings())
-      warnings.add(arguments.scene + ": moving robot '" + other.name + "': " + sentence);
+    for (const std::string &message : other.motion->warnings())
+      warnings.add(arguments.scene + ": moving robot '" + other.name + "': " + message);
   const Query query = queryOf(arguments, world, warnings);
   Output output(arguments);
   console.warn(warnings);
@@ -113,7 +113,7 @@ Asked askedAmong(const MovingWorld &moving, const Arguments &arguments) {
 
 int answerAmongMovers(const Arguments &arguments, const World &world, Warnings &warnings, Console &console) {
   auto motion = std::make_shared<const RobotMotion>(readMotion(arguments, world, warnings));
-  for (const std::string &sentence : motion->warnings()) warnings.add(arguments.trajectory + ": " + sentence);
+  for (const std::string &message : motion->warnings()) warnings.add(arguments.trajectory + ": " + message);
   return answer(arguments, world, std::move(motion), warnings, console);
 }
 

@@ -51,7 +51,7 @@ Outcome failedPair(const PairRow &pair, const std::string &place, const std::str
   row.message = why;
   Outcome out;
   out.text = resultsLine(row, columns);
-  out.complaints.push_back(place + ": " + why);
+  out.error_messages.push_back(place + ": " + why);
   return out;
 }
 
@@ -116,7 +116,7 @@ int answerPairs(const Arguments &arguments, Console &console) {
     if (given == entries.size()) return std::nullopt;
     PairRow pair = toPlain(entries[given], given + 1, warnings);
     ++given;
-    for (; warned < warnings.sentences().size(); ++warned) console.say("warning: " + warnings.sentences()[warned]);
+    for (; warned < warnings.messages().size(); ++warned) console.say("warning: " + warnings.messages()[warned]);
     return [&, pair = std::move(pair)](Workspace &workspace) {
       return answerPair(pair, arguments.pairs, query, resources, columns, workspace);
     };

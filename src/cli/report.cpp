@@ -43,7 +43,7 @@ class Report {
     for (const char *list : {"verdicts", "profiles", "pairs", "curves", "notes"}) data_[list] = Json::listOf({});
   }
 
-  /** Searches, profiles and pairs of one thing. A part that fails is a note on the page and a complaint. */
+  /** Searches, profiles and pairs of one thing. A part that fails is a note on the page and an error message. */
   void ask(const Asked &asked, Workspace &workspace) {
     attempt(asked, "", [&] { addVerdicts(asked, workspace); });
     const bool is_curve = std::holds_alternative<CurveSubject>(asked.subject);
@@ -59,14 +59,14 @@ class Report {
     data_["curves"].items.push_back(drawCurve(curve, workspace));
   }
 
-  void note(const std::string &sentence) {
-    data_["notes"].items.emplace_back(sentence);
+  void note(const std::string &message) {
+    data_["notes"].items.emplace_back(message);
   }
 
-  void failed(const std::string &complaint) {
+  void failed(const std::string &error_message) {
     failed_ = true;
-    note(complaint);
-    console_.say(complaint);
+    note(error_message);
+    console_.say(error_message);
   }
 
   /** The records of all certificates, in the order of the verdicts. */
@@ -290,13 +290,13 @@ void addBasis(const Arguments &arguments, const World &world, Report &report) {
     data["inputs"].items.push_back(
         Json::mapOf({{"what", what}, {"file", *path}, {"digest", digestOfFile(*path, true)}}));
   }
-  for (const std::string &sentence : world.skipped) report.note(sentence);
+  for (const std::string &message : world.skipped) report.note(message);
 }
 
 void askTrajectory(const Arguments &arguments, const World &world, Report &report, Warnings &warnings) {
   const auto motion = std::make_shared<const RobotMotion>(readMotion(arguments, world, warnings));
-  for (const std::string &sentence : motion->warnings()) report.note(sentence);
-  for (const std::string &sentence : motion->skipped()) report.note(sentence);
+  for (const std::string &message : motion->warnings()) report.note(message);
+  for (const std::string &message : motion->skipped()) report.note(message);
   std::optional<MovingWorld> moving;
   if (world.moves()) moving = gatherMovers(arguments, world, motion);
   Workspace workspace;
@@ -313,7 +313,7 @@ void askTrajectory(const Arguments &arguments, const World &world, Report &repor
 }
 
 void askCurves(const Arguments &arguments, const World &world, Report &report) {
-  const Targets targets(world.snapshot, world.links, arguments.query);
+  const SceneObstacles obstacles(world.snapshot, world.links, arguments.query);
   Workspace workspace;
   CsvFile file(arguments.curves);
   std::array<double, 2> all{INFINITY, -INFINITY};
@@ -326,7 +326,7 @@ void askCurves(const Arguments &arguments, const World &world, Report &report) {
       const CurveDescription description = parseCurve(row->text);
       if (!arguments.certificate.empty()) requireCheckable(description);
       const CompiledCurve curve = compile(description);
-      const Asked asked{CurveSubject{targets, curve}, curve.id, "curve", place, {}};
+      const Asked asked{CurveSubject{obstacles, curve}, curve.id, "curve", place, {}};
       report.ask(asked, workspace);
       report.addCurve(curve, workspace);
       const std::array<double, 2> domain = domainOf(asked.subject);
@@ -366,7 +366,7 @@ int writeReport(const Arguments &arguments, Console &console) {
     askTrajectory(arguments, world, report, warnings);
   }
   console.warn(warnings);
-  for (const std::string &sentence : warnings.sentences()) report.note(sentence);
+  for (const std::string &message : warnings.messages()) report.note(message);
   if (interrupted(nullptr)) {
     console.say("interrupted: there is no page");
     return kInterrupted;

@@ -107,12 +107,12 @@ class Run {
       const Outcome &next = it->second;
       stopped_ = next.stopped;
       if (stopped_) break;
-      for (const std::string &complaint : next.complaints) {
-        if (complaints_++ < rows_.most_complaints) console_.say(complaint);
-        if (complaints_ == rows_.most_complaints) console_.say("further rows that fail are counted");
+      for (const std::string &error_message : next.error_messages) {
+        if (messages_++ < rows_.most_messages) console_.say(error_message);
+        if (messages_ == rows_.most_messages) console_.say("further rows that fail are counted");
       }
-      for (const std::string &sentence : next.unproven) {
-        if (tally_.unproven++ < kMostWarnings) console_.say("warning: " + sentence);
+      for (const std::string &message : next.unproven) {
+        if (tally_.unproven++ < kMostWarnings) console_.say("warning: " + message);
       }
       lines += next.text;
       records += next.certificate;
@@ -122,7 +122,7 @@ class Run {
       tally_.uncovered += next.uncovered ? 1 : 0;
       tally_.disputed += next.disputed ? 1 : 0;
       tally_.against_nothing += next.against_nothing ? 1 : 0;
-      tally_.failed += next.complaints.empty() ? 0 : 1;
+      tally_.failed += next.error_messages.empty() ? 0 : 1;
       waiting_.erase(it);
       ++written_;
     }
@@ -150,7 +150,7 @@ class Run {
   std::condition_variable room_, finished_;
   std::map<std::size_t, Outcome> waiting_;
   std::size_t taken_ = 0, written_ = 0, working_ = 0;
-  std::size_t complaints_ = 0;
+  std::size_t messages_ = 0;
   bool exhausted_ = false, stopped_ = false;
   std::exception_ptr failure_;
   std::optional<double> portion_;

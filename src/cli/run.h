@@ -25,9 +25,9 @@ struct Outcome {
   bool uncovered = false;       /**< it does not cover all that was given, though there was something to measure */
   bool disputed = false;        /**< a second opinion disagrees */
   bool against_nothing = false; /**< there was nothing to measure against */
-  std::vector<std::string> complaints; /**< for standard error: why there is no answer */
-  std::vector<std::string> unproven;   /**< likewise, of an answer: why the certificate that is wanted is empty */
-  bool stopped = false;                /**< it was interrupted: it is not to be written */
+  std::vector<std::string> error_messages; /**< for standard error: why there is no answer */
+  std::vector<std::string> unproven;       /**< likewise, of an answer: why the certificate that is wanted is empty */
+  bool stopped = false;                    /**< it was interrupted: it is not to be written */
 };
 
 /** Answers one row; called by one of the threads, each with its own workspace. Must not throw. */
@@ -54,8 +54,8 @@ struct Rows {
   std::function<std::optional<double>()> portion;   /**< of the input that has been read, 0 to 1, if it is known */
   std::function<void(const Tally &)> progress;      /**< instead of the usual progress line; may be empty */
 
-  /** So many complaints are told; all are counted. */
-  std::size_t most_complaints = std::numeric_limits<std::size_t>::max();
+  /** So many error messages are told; all are counted. */
+  std::size_t most_messages = std::numeric_limits<std::size_t>::max();
 };
 
 /** From now on SIGINT and SIGTERM end a run in good order; a second one ends the program at once. */

@@ -63,7 +63,7 @@ int sweepVolume(const Arguments &arguments, Console &console) {
       out.text += ',' + std::to_string(volume.n_poses) + '\n';
     } catch (const Error &e) {
       out.stopped = e.status() == CPROX_STOPPED;
-      out.complaints.push_back(arguments.trajectory + ": " + e.what());
+      out.error_messages.push_back(arguments.trajectory + ": " + e.what());
     }
     return out;
   };

@@ -60,7 +60,7 @@ void warnOfMotion(const RobotMotion &motion, const Arguments &arguments, const W
   if (world.snapshot->robot())
     for (const std::string &link : unknownLinks(world.srdf, *world.snapshot->robot()))
       warnings.add("the SRDF disables link '" + link + "', which the robot does not have");
-  for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
+  for (const std::string &message : motion.warnings()) warnings.add(arguments.trajectory + ": " + message);
 }
 
 std::string stemOf(const std::string &path) {

@@ -35,7 +35,7 @@ PlacedRobot readPlaced(const Arguments &arguments, const SceneFile &file, const 
   if (arguments.robot.empty()) return out;
   out.robot = robots ? robots(arguments.robot)
                      : readRobot(arguments.robot, arguments.mesh_tolerance, arguments.allow_missing_geometry);
-  for (const std::string &sentence : out.robot->warnings()) warnings.add(arguments.robot + ": " + sentence);
+  for (const std::string &message : out.robot->warnings()) warnings.add(arguments.robot + ": " + message);
   if (!arguments.srdf.empty()) out.srdf = readSrdf(arguments.srdf);
   try {
     out.of_scene = placeRobot(file, *out.robot, out.srdf.virtual_joints, warnings);
@@ -139,7 +139,7 @@ const char *sourceName(MeshTiming::Source from) {
   return "the file";
 }
 
-/* One sentence a mesh, and one for all. */
+/* One message a mesh, and one for all. */
 std::vector<std::string> timingsOf(const PlacedRobot &robot, double robot_seconds, double all_seconds) {
   std::vector<std::string> out;
   if (robot.robot) {

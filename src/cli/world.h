@@ -35,8 +35,8 @@ struct World {
   Eigen::Isometry3d base;                     /**< where the scene's robot_state puts the robot's root link */
   JointPositions state;                       /**< --state */
   Srdf srdf;                                  /**< empty without --srdf */
-  std::vector<std::string> skipped;           /**< what takes no part, a sentence each */
-  std::vector<std::string> timings;           /**< how long loading took, a sentence each */
+  std::vector<std::string> skipped;           /**< what takes no part, a message each */
+  std::vector<std::string> timings;           /**< how long loading took, a message each */
   std::vector<MovingRobotFile> moving_robots; /**< of the scene file */
   ResourceOptions resources;                  /**< where files of the scene's objects are */
   std::optional<Ride> ride;                   /**< of --path */

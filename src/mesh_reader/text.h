@@ -78,7 +78,7 @@ std::optional<double> parseNumber(std::string_view word);
 /* Digits with or without a sign; none where it does not fit into 62 bits. */
 std::optional<std::int64_t> parseInteger(std::string_view word);
 
-/* A word for a sentence: short, printable. */
+/* A word for a message: short, printable. */
 std::string in_quotes(std::string_view word);
 
 /* "1 triangle", "2 triangles". */

@@ -104,7 +104,7 @@ class Collector {
 };
 
 /* Seldom, by a clock of its own: ROS's throttle needs ROS time, which may not have begun, or stand still. */
-void complain(const std::string &what) {
+void warn(const std::string &what) {
   using Clock = std::chrono::steady_clock;
   static std::atomic<Clock::rep> next{std::numeric_limits<Clock::rep>::min()};
   const Clock::rep now = Clock::now().time_since_epoch().count();
@@ -115,13 +115,13 @@ void complain(const std::string &what) {
 
 /* What cannot be answered counts as a collision. */
 void fail(const std::string &why, cd::CollisionResult &res) {
-  complain(why + ": the state counts as in collision");
+  warn(why + ": the state counts as in collision");
   res.collision = true;
   res.distance = std::min(res.distance, 0.0);
 }
 
 void fail(const std::string &why, cd::DistanceResult &res) {
-  complain(why + ": the distance counts as 0");
+  warn(why + ": the distance counts as 0");
   res.collision = true;
   res.minimum_distance.distance = std::min(res.minimum_distance.distance, 0.0);
 }

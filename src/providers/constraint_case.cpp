@@ -309,7 +309,7 @@ std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCa
 
   Asked asked;
   cprox_status fault = CPROX_OK;
-  const std::string why = sentenceOf([&] { makeReady(described, asked); }, &fault);
+  const std::string why = messageOf([&] { makeReady(described, asked); }, &fault);
   if (fault < 0) return {failedRow(described.id, why, fault)};
 
   const Coverage coverage = coverageOf(described);
@@ -320,7 +320,7 @@ std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCa
     row.provider = name;
     const LoadedProvider *loaded = providers.find(name);
     bool applies = true;
-    row.message = sentenceOf(
+    row.message = messageOf(
         [&] {
           if (!loaded) throw Error("there is no provider '" + name + "' here");
           try {

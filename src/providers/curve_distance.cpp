@@ -14,7 +14,7 @@ namespace {
 
 /* What rides a curve, and what it is measured against. */
 struct Sides {
-  BodyHandle carried, target; /* carried: null for the curve's ball */
+  BodyHandle carried, obstacle; /* carried: null for the curve's ball */
 };
 
 class CurveDistanceConstraint : public Constraint {
@@ -26,14 +26,14 @@ class CurveDistanceConstraint : public Constraint {
         excess_(excessOf(pair.a) + excessOf(pair.b)) {
     const bool carries = !pair.a.parts.empty(), exact = parameters.meshes == Meshes::EXACT;
     if (carries) hulls_.carried = joinedBody(pair.a);
-    hulls_.target = joinedBody(pair.b);
+    hulls_.obstacle = joinedBody(pair.b);
     if (!has_hulls_) return;
     if (exact) requireShapes(pair.b);
     if (carries && hasShapes(pair.a)) shapes_.carried = joinedBody(pair.a, true);
-    if (hasShapes(pair.b)) shapes_.target = joinedBody(pair.b, true);
+    if (hasShapes(pair.b)) shapes_.obstacle = joinedBody(pair.b, true);
     if (!exact) return;
     measured_.carried = carries && hasHulls(pair.a) ? convexElements(pair.a) : hulls_.carried;
-    measured_.target = shapes_.target;
+    measured_.obstacle = shapes_.obstacle;
   }
 
   void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
@@ -69,15 +69,15 @@ class CurveDistanceConstraint : public Constraint {
     return mover;
   }
 
-  cprox_obstacle targetOf(const Sides &sides, const ConstraintPlace &place) const {
-    return cprox_with_margin(cprox_obstacle_at(sides.target.get(), place.b), pair_.b.padding);
+  cprox_obstacle obstacleOf(const Sides &sides, const ConstraintPlace &place) const {
+    return cprox_with_margin(cprox_obstacle_at(sides.obstacle.get(), place.b), pair_.b.padding);
   }
 
   /* The core's two calls, and what they say in the words of constraint_provider.hpp. */
   cprox_result measure(const Sides &sides, const ConstraintPlace &place, Workspace &workspace) const {
     cprox_result result{};
     require(
-        cprox_distance(moverOf(sides, place), targetOf(sides, place), &parameters_.options, workspace.get(), &result),
+        cprox_distance(moverOf(sides, place), obstacleOf(sides, place), &parameters_.options, workspace.get(), &result),
         workspace);
     return result;
   }
@@ -85,7 +85,7 @@ class CurveDistanceConstraint : public Constraint {
   void fill(const Sides &sides, const cprox_result &result, const ConstraintPlace &place, Workspace &workspace,
             ConstraintValue &out) const {
     cprox_gradient gradient{};
-    require(cprox_distance_gradient(moverOf(sides, place), targetOf(sides, place), &parameters_.options, &result,
+    require(cprox_distance_gradient(moverOf(sides, place), obstacleOf(sides, place), &parameters_.options, &result,
                                     workspace.get(), &gradient),
             workspace);
     fillValue(result, out);
@@ -144,7 +144,7 @@ class CurveDistanceConstraint : public Constraint {
     cprox_result result{};
     result.lower = -infinity();
     result.upper = infinity();
-    if (!shapes_.target || (hulls_.carried && !shapes_.carried)) return result;
+    if (!shapes_.obstacle || (hulls_.carried && !shapes_.carried)) return result;
     cprox_pose at = CPROX_POSE_IDENTITY;
     require(cprox_curve_evaluate(place.curve->curve.get(), t, workspace.get(), &at.position, nullptr, nullptr),
             workspace);
@@ -155,7 +155,7 @@ class CurveDistanceConstraint : public Constraint {
               workspace);
     const double radius = std::max(0.0, place.curve->description.radius + more.x);
     const cprox_obstacle mover = cprox_with_margin(cprox_obstacle_at(carried, at), radius + pair_.a.padding);
-    require(cprox_pair(mover, targetOf(shapes_, place), &parameters_.options, workspace.get(), &result), workspace);
+    require(cprox_pair(mover, obstacleOf(shapes_, place), &parameters_.options, workspace.get(), &result), workspace);
     result.upper += curveError(place.curve->curve.get(), place.curve->description.points);
     if (place.curve->radius_curve) result.upper += curveError(place.curve->radius_curve.get(), Eigen::Matrix3Xd());
     return result;
@@ -197,7 +197,7 @@ class CurveDistanceConstraint : public Constraint {
     out.a.angular = toEigen(at).cross(n);
   }
 
-  /* They overlap, and the target cannot tell how deep. */
+  /* They overlap, and the obstacle cannot tell how deep. */
   void overlapping(const cprox_result &result, const CurveDescription &curve, ConstraintValue &out) const {
     fillValue(result, out);
     out.valid = false;

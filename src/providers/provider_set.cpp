@@ -22,27 +22,27 @@ std::string listed(const std::vector<std::string> &names) {
 
 } // namespace
 
-std::string sentenceOf(const std::function<void()> &work, cprox_status *status) {
+std::string messageOf(const std::function<void()> &work, cprox_status *status) {
   cprox_status code = CPROX_OK;
-  std::string sentence;
+  std::string message;
   try {
     work();
   } catch (const Error &error) {
     code = error.status();
-    sentence = error.what();
+    message = error.what();
   } catch (const std::bad_alloc &) {
     code = CPROX_MEMORY;
-    sentence = "out of memory";
+    message = "out of memory";
   } catch (const std::exception &error) {
     code = CPROX_INVALID;
-    sentence = error.what();
+    message = error.what();
   } catch (...) {
     code = CPROX_INVALID;
-    sentence = "it threw what is no exception";
+    message = "it threw what is no exception";
   }
-  if (code < 0 && sentence.empty()) sentence = "it threw without a word";
+  if (code < 0 && message.empty()) message = "it threw without a word";
   if (status) *status = code;
-  return sentence;
+  return message;
 }
 
 class ProviderSet::Loader {
@@ -82,10 +82,10 @@ ProviderSet::ProviderSet(const std::vector<ProviderSpec> &specs) {
     LoadedProvider loaded;
     loaded.spec = spec;
     std::shared_ptr<ConstraintProvider> made;
-    loaded.failure = sentenceOf([&] { made = loader_->create(spec.type); });
+    loaded.failure = messageOf([&] { made = loader_->create(spec.type); });
     bool wrong = false;
     if (loaded.failure.empty()) {
-      loaded.failure = sentenceOf([&] {
+      loaded.failure = messageOf([&] {
         try {
           made->initialise(spec.parameters);
         } catch (const Error &) {

@@ -41,9 +41,9 @@ struct LoadedProvider {
   std::string failure;
 };
 
-/** Runs `work`, and makes a sentence of whatever it throws, whether an exception or not; "" where it throws nothing.
+/** Runs `work`, and makes a message of whatever it throws, whether an exception or not; "" where it throws nothing.
  * Errors keep their status, all else is CPROX_INVALID. */
-std::string sentenceOf(const std::function<void()> &work, cprox_status *status = nullptr);
+std::string messageOf(const std::function<void()> &work, cprox_status *status = nullptr);
 
 /** Providers, and the pairs that they have made ready lately. Any number of threads. */
 class ProviderSet {

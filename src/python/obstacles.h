@@ -40,7 +40,7 @@ class ObstacleSet {
               std::vector<std::string> names = {});
 
   const Obstacles &get() const {
-    return obstacles_;
+    return set_;
   }
 
   const std::vector<std::string> &names() const {
@@ -54,8 +54,8 @@ class ObstacleSet {
  private:
   std::vector<std::shared_ptr<Obstacle>> list_;
   std::vector<std::string> names_;
-  std::vector<cprox_obstacle> targets_;
-  Obstacles obstacles_;
+  std::vector<cprox_obstacle> obstacles_;
+  Obstacles set_;
   mutable std::mutex mutex_;
   mutable std::unique_ptr<Batch> batch_;
 };

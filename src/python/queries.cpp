@@ -10,7 +10,7 @@ namespace {
 
 /* ---- many obstacles ---- */
 
-std::vector<cprox_obstacle> targetsOf(const std::vector<std::shared_ptr<Obstacle>> &list) {
+std::vector<cprox_obstacle> obstaclesOf(const std::vector<std::shared_ptr<Obstacle>> &list) {
   std::vector<cprox_obstacle> out;
   for (const auto &one : list) {
     if (!one) throw py::type_error("obstacles must be a list of Obstacle, got None in it");
@@ -31,12 +31,12 @@ ObstacleSet::ObstacleSet(std::vector<std::shared_ptr<Obstacle>> list, const std:
                          std::vector<std::string> names)
     : list_(std::move(list)),
       names_(std::move(names)),
-      targets_(targetsOf(list_)),
-      obstacles_(targets_, indexOf(index)) {}
+      obstacles_(obstaclesOf(list_)),
+      set_(obstacles_, indexOf(index)) {}
 
 const Batch &ObstacleSet::batch() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!batch_) batch_ = std::make_unique<Batch>(targets_);
+  if (!batch_) batch_ = std::make_unique<Batch>(obstacles_);
   return *batch_;
 }
 
@@ -282,8 +282,8 @@ Result ask(const py::object &mover, const py::object &obstacles, const py::kwarg
   Workspace &workspace = threadWorkspace();
   cprox_result result{};
   if (py::isinstance<Obstacle>(obstacles)) {
-    const cprox_obstacle &target = obstacles.cast<const Obstacle &>().obstacle;
-    require(unlocked(options, [&] { return one(moving->mover, target, &options, workspace.get(), &result); }),
+    const cprox_obstacle &obstacle = obstacles.cast<const Obstacle &>().obstacle;
+    require(unlocked(options, [&] { return one(moving->mover, obstacle, &options, workspace.get(), &result); }),
             workspace);
   } else {
     const std::shared_ptr<ObstacleSet> set = setOf(obstacles);

@@ -21,7 +21,7 @@ using Packages = std::map<std::string, std::string>;
 ResourceOptions resourcesOf(const std::string &path, const Packages &packages);
 
 /** As Python's warnings, which may be errors. */
-void warn(const std::string &path, const std::vector<std::string> &sentences);
+void warn(const std::string &path, const std::vector<std::string> &messages);
 
 /** A robot with what its SRDF says. */
 struct LoadedRobot {

@@ -24,13 +24,13 @@ struct Given {
 /* A question made ready: the scene as it is now, the robot where its joints say. */
 struct Asked {
   Query query;
-  Targets targets;
+  SceneObstacles obstacles;
   CompiledCurve curve;
 
   Asked(const PythonScene &scene, const Curve &path, const std::string &type, double delta, const Given &given)
       : query(queryOf(type, delta, given.epsilon, given.max_nodes, given.links, given.objects, given.allow_empty)),
-        targets(scene.snapshot(), linksOf(scene, given.positions), query),
-        curve(compile("curve", path.curve, given.radius, targets.boxes())) {}
+        obstacles(scene.snapshot(), linksOf(scene, given.positions), query),
+        curve(compile("curve", path.curve, given.radius, obstacles.boxes())) {}
 
  private:
   static LinkPoses linksOf(const PythonScene &scene, const JointPositions &positions) {
@@ -41,7 +41,7 @@ struct Asked {
 };
 
 py::dict answer(const Asked &asked) {
-  return answerOf(unlocked([&] { return ask(asked.targets, asked.curve, asked.query, threadWorkspace()).front(); }),
+  return answerOf(unlocked([&] { return ask(asked.obstacles, asked.curve, asked.query, threadWorkspace()).front(); }),
                   asked.query.query_type != QueryType::DISTANCE);
 }
 
@@ -76,8 +76,8 @@ py::dict certificateOf(const PythonScene &scene, const Curve &curve, std::option
   asked.query.options.certificate = certificate.get();
   std::string text;
   const Answer found = unlocked([&] {
-    text = describeQuery(asked.targets, description);
-    return ask(asked.targets, asked.curve, asked.query, threadWorkspace()).front();
+    text = describeQuery(asked.obstacles, description);
+    return ask(asked.obstacles, asked.curve, asked.query, threadWorkspace()).front();
   });
   py::dict out = answerOf(found, delta.has_value());
   if (!found.unproven.empty()) throw Error("no certificate: " + found.unproven);
@@ -148,7 +148,8 @@ void addCurveQueries(SceneClass &scene) {
         const Asked asked(s, curve, "collision", 0.0,
                           {radius, positions, epsilon, max_nodes, objects, links, allow_empty});
         return answerOf(
-            unlocked([&] { return timeOfContact(asked.targets, asked.curve, asked.query, threadWorkspace()); }), true);
+            unlocked([&] { return timeOfContact(asked.obstacles, asked.curve, asked.query, threadWorkspace()); }),
+            true);
       },
       "Where the curve first touches: in [t_contact_lower, t] of the result. Never late. As distance().");
   add(
@@ -158,7 +159,7 @@ void addCurveQueries(SceneClass &scene) {
         const Asked asked(s, curve, "distance", 0.0,
                           {radius, positions, epsilon, max_nodes, objects, links, allow_empty});
         return toList(unlocked([&] {
-          return nearestPairs(asked.targets, asked.curve, {k, within}, asked.query, threadWorkspace());
+          return nearestPairs(asked.obstacles, asked.curve, {k, within}, asked.query, threadWorkspace());
         }));
       },
       "The k shapes that come closest, nearest first; each as distance() gives it.", py::arg("k") = 10,
@@ -171,7 +172,7 @@ void addCurveQueries(SceneClass &scene) {
         const Asked asked(s, curve, "distance", 0.0,
                           {radius, positions, epsilon, max_nodes, objects, links, allow_empty});
         return toDict(unlocked([&] {
-          return clearanceProfile(asked.targets, asked.curve, breaks, asked.query, threadWorkspace(), horizon);
+          return clearanceProfile(asked.obstacles, asked.curve, breaks, asked.query, threadWorkspace(), horizon);
         }));
       },
       "The clearance between each two of breaks (n + 1,): a dict of lower, upper, t (n,), witness_a, witness_b (n, 3) "
@@ -188,7 +189,7 @@ void addCurveQueries(SceneClass &scene) {
                           {radius, positions, epsilon, max_nodes, objects, links, allow_empty});
         const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
         return toList(unlocked([&] {
-          return violations(asked.targets, asked.curve, resolution.value_or(PART * (info.t1 - info.t0)), asked.query,
+          return violations(asked.obstacles, asked.curve, resolution.value_or(PART * (info.t1 - info.t0)), asked.query,
                             threadWorkspace());
         }));
       },

@@ -12,9 +12,9 @@
 
 namespace curve_proximity::python {
 
-void warn(const std::string &path, const std::vector<std::string> &sentences) {
-  for (const std::string &sentence : sentences) {
-    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + sentence).c_str(), 1) != 0) throw py::error_already_set();
+void warn(const std::string &path, const std::vector<std::string> &messages) {
+  for (const std::string &message : messages) {
+    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + message).c_str(), 1) != 0) throw py::error_already_set();
   }
 }
 
@@ -93,9 +93,9 @@ std::shared_ptr<ObstacleSet> PythonScene::obstacles(const std::string &index) co
   std::vector<std::string> names;
   for (const auto &[id, object] : now->objects()) {
     for (const ObjectShape &shape : object->shapes) {
-      if (!shape.geometry.body && !shape.placed.target.curve) continue; // an empty octree
+      if (!shape.geometry.body && !shape.placed.obstacle.curve) continue; // an empty octree
       auto one = std::make_shared<Obstacle>();
-      one->owner = now, one->obstacle = shape.placed.target;
+      one->owner = now, one->obstacle = shape.placed.obstacle;
       one->obstacle.margin += shape.placed.rounding;
       list.push_back(std::move(one));
       names.push_back(id);

@@ -14,7 +14,7 @@ namespace curve_proximity {
 
 class ProximityServerNodelet : public nodelet::Nodelet {
  private:
-  /** What this throws fails the load with its sentence and leaves the manager as it was. */
+  /** What this throws fails the load with its message and leaves the manager as it was. */
   void onInit() override {
     server_ = std::make_unique<ProximityServer>(getPrivateNodeHandle(), readParameters(getPrivateNodeHandle()));
   }

@@ -452,7 +452,7 @@ void ProximityServer::applyScene(const Call &call, ApplyScene::Request &request,
 template <class Fill>
 void ProximityServer::changeScene(const char *topic, Fill &&fill) {
   std::string id, about;
-  const auto complain = [&](const std::string &why) {
+  const auto warn = [&](const std::string &why) {
     ROS_ERROR("%s: %s", topic, why.c_str());
     live_.refuse(topic, id, about, why, static_cast<std::size_t>(parameters_.max_name_length));
   };
@@ -462,9 +462,9 @@ void ProximityServer::changeScene(const char *topic, Fill &&fill) {
         id = fill(request);
         if (request.attached_collision_objects.empty()) about = id; // else it is about the robot
         const memory::Share share(SCENE_TIMES_WIRE * ros::serialization::serializationLength(request), requestLimit());
-        for (const std::string &fault : apply(request)) complain(fault);
+        for (const std::string &fault : apply(request)) warn(fault);
       },
-      complain);
+      warn);
 }
 
 /** A publisher numbers its messages: one that is left out was lost, because more than OBJECTS_KEPT came at once. */
@@ -503,7 +503,7 @@ void ProximityServer::loadScene() {
     yaml::Warnings warnings;
     const yaml::SceneFile file = yaml::readScene(parameters_.scene_file, warnings);
     const std::vector<std::string> faults = apply(toMessage(yaml::toChange(file, parameters_.scene_file, warnings)));
-    for (const std::string &warning : warnings.sentences()) ROS_WARN("~scene_file: %s", warning.c_str());
+    for (const std::string &warning : warnings.messages()) ROS_WARN("~scene_file: %s", warning.c_str());
     why = boost::algorithm::join(faults, "; ");
   } catch (const std::exception &error) {
     why = error.what();

@@ -143,7 +143,7 @@ static void check_width(query *q, const cprox_result *x) {
                SHOWN(x), width);
 }
 
-/* Refusals are for bodies and curves that the queries' headers name, each with a sentence. */
+/* Refusals are for bodies and curves that the queries' headers name, each with a message. */
 static bool answered(query *q, cprox_status status) {
   if (status >= 0) return true;
   const char *reason = cprox_workspace_error(q->a->ws);

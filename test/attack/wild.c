@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Wild arguments: not a number, infinities, huge and denormal numbers, sizes of 0, wrong kinds of words, n = 0, NULL
  * where it is allowed. Every constructor and every query either answers with an interval of numbers or refuses with a
- * sentence and leaves its output untouched. Meant for the sanitizers; what no sanitizer sees (a hang, a wrong interval
+ * message and leaves its output untouched. Meant for the sanitizers; what no sanitizer sees (a hang, a wrong interval
  * of a wild query) shows here too. */
 #include <float.h>
 #include <math.h>
@@ -60,7 +60,7 @@ static size_t count(wild *w, size_t most) {
   return rng_index(w->r, 30) ? 1 + rng_index(w->r, most) : 0;
 }
 
-/* A status that there is; a refusal has a sentence. */
+/* A status that there is; a refusal has a message. */
 static void check_status(wild *w, const char *call, cprox_status status, const cprox_workspace *ws) {
   attack_check(w->a, strcmp(cprox_status_name(status), "unknown") != 0, "%s: status %d", call, (int)status);
   if (status < 0 && ws)

@@ -416,7 +416,7 @@ def distance(a, at_a, b, at_b):
 
 
 def refute(robot, data, claim, delta, chance):
-    """A sentence where the claim is not so."""
+    """A message where the claim is not so."""
     if claim == 'near':
         pair, segment, u = struct.unpack_from('<IId', data, 24)
         moving, standing = robot.pairs[pair]

@@ -39,7 +39,7 @@ static void proven(const quick_query *q, double *low, double *high) {
   support_of_frame(&w[0], own, q->set, n);
   if (q->set->kind == CURVE) {
     for (int k = 0; k < 3; k++) iv_neg(&own[k], &own[k]);
-    pieces_least(&w[1], &(pieces_share){q->target, own}, 1, 0, q->theirs[0], q->theirs[1]);
+    pieces_least(&w[1], &(pieces_share){q->obstacle, own}, 1, 0, q->theirs[0], q->theirs[1]);
     iv_neg(&w[1], &w[1]);
   } else {
     support_of_body(&w[1], q->set, own);
@@ -111,18 +111,18 @@ static void examine_query(const asked *given, rng *r, double scale, tally *sum) 
     const bool elements = p.sets[i].corners > 0; /* the hull of all of them */
     const set hull = elements ? set_group(&p.sets[i], 0, set_elements(&p.sets[i])) : p.sets[i];
     quick_query q = {.set = &hull, .mover = &moving};
-    pieces target = {0};
+    pieces obstacle = {0};
     if (q.set->kind == CURVE) {
       const size_t m = breaks_of(&q.set->curve, theirs);
-      assert_null(pieces_make(&target, &q.set->curve, theirs, m));
-      q.target = &target;
+      assert_null(pieces_make(&obstacle, &q.set->curve, theirs, m));
+      q.obstacle = &obstacle;
     }
     for (int k = 0; k < DIRECTIONS; k++) {
       part_of(r, n, &q.from, &q.to);
-      if (q.target) part_of(r, target.n, &q.theirs[0], &q.theirs[1]);
+      if (q.obstacle) part_of(r, obstacle.n, &q.theirs[0], &q.theirs[1]);
       examine(&q, r, scale, sum);
     }
-    pieces_free(&target);
+    pieces_free(&obstacle);
   }
   pieces_free(&moving);
   problem_close(&p);

@@ -20,7 +20,7 @@ LIMIT = 120  # seconds for one call; a call that takes longer is a failure
 
 
 class Answer:
-    """What one call of cprox left: its exit code, its rows and its complaints."""
+    """What one call of cprox left: its exit code, its rows and its error messages."""
 
     def __init__(self, code, out, err):
         self.code, self.out, self.err = code, out, err

@@ -76,7 +76,7 @@ class Streams(Case):
         self.assertEqual(process.wait(20), 0)
 
     def interrupted(self, number):
-        """Ends a run that would take long after its first rows; returns its exit code, rows and complaints."""
+        """Ends a run that would take long after its first rows; returns its exit code, rows and error messages."""
         path, out = self.file('curves.csv', '\n'.join(random_curves(100000, 9))), f'{self.folder}/r{number}.csv'
         process = self.start('distance', '--curves', path, '--scene', SHELF, '--epsilon', '1e-12', '--per-object', '--out', out)
         begin = time.monotonic()

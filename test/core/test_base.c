@@ -15,14 +15,14 @@
 
 /* ---- statuses ---- */
 
-CASE(every_status_has_its_own_name_and_a_sentence) {
-#define STATUS(code, value, name, sentence)           \
+CASE(every_status_has_its_own_name_and_a_message) {
+#define STATUS(code, value, name, message)            \
   assert_int_equal(code, value);                      \
   assert_string_equal(cprox_status_name(code), name); \
-  assert_string_equal(cprox_status_text(code), sentence);
+  assert_string_equal(cprox_status_text(code), message);
   CPROX_STATUS_LIST(STATUS)
 #undef STATUS
-#define NAME(code, value, name, sentence) name,
+#define NAME(code, value, name, message) name,
   const char *const names[] = {CPROX_STATUS_LIST(NAME)};
 #undef NAME
   const size_t n = sizeof names / sizeof names[0];

@@ -19,13 +19,13 @@ static double sampled_distance(const batch_scene *s, size_t i) {
   for (int k = 0; k <= STEPS; k++) {
     cprox_vec3 at;
     cprox_curve_evaluate(s->curves[i], t0 + (t1 - t0) * k / STEPS, NULL, &at, NULL, NULL);
-    for (size_t j = 0; j < s->n_targets; j++) {
-      const cprox_obstacle *target = &s->targets[j];
-      if (!target->body) continue;
-      const frame f = frame_create(&target->pose, vec(0, 0, 0));
+    for (size_t j = 0; j < s->n_obstacles; j++) {
+      const cprox_obstacle *obstacle = &s->obstacles[j];
+      if (!obstacle->body) continue;
+      const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
       double error = 0.0;
-      const double d = cprox_body_nearest(target->body, frame_to_local(&f, at, &error), NULL);
-      least = fmin(least, d - target->margin - s->movers[i].radius);
+      const double d = cprox_body_nearest(obstacle->body, frame_to_local(&f, at, &error), NULL);
+      least = fmin(least, d - obstacle->margin - s->movers[i].radius);
     }
   }
   return fmax(least, 0.0);
@@ -42,9 +42,10 @@ CASE(answers_agree_with_those_of_one_mover) {
     const bool planar = round % 2;
     batch_scene_targets(&r, planar, workspace, &s);
     batch_scene_movers(&r, planar, workspace, &s);
-    if (round % 4 >= 2) s.n_targets = 1 + rng_index(&r, TARGETS - 2); /* sparse: more verdicts are "clear" */
+    if (round % 4 >= 2) s.n_obstacles = 1 + rng_index(&r, TARGETS - 2); /* sparse: more verdicts are "clear" */
     cprox_obstacles *batch = NULL;
-    assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+    assert_int_equal(cprox_obstacles_create(s.obstacles, s.n_obstacles, CPROX_INDEX_BATCH, workspace, &batch),
+                     CPROX_OK);
     for (int v = 0; v < QUERY_TYPES; v++) {
       cprox_result results[MOVERS];
       assert_int_equal(batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, results), CPROX_OK);
@@ -58,7 +59,7 @@ CASE(answers_agree_with_those_of_one_mover) {
         if (v == DISTANCE) assert_true(one->upper - one->lower <= 1e-6);
         settled_by_balls += one->distance_queries == 0 && one->upper == 0.0;
         answers++;
-        if (s.movers[i].body || s.n_targets == TARGETS) continue;
+        if (s.movers[i].body || s.n_obstacles == TARGETS) continue;
         /* plain evaluation is within 1e-12 at this scale */
         const double sampled = sampled_distance(&s, i);
         assert_true(one->lower <= sampled + 1e-12);
@@ -83,7 +84,7 @@ CASE(witnesses_lie_where_they_say) {
   batch_scene_targets(&r, false, workspace, &s);
   batch_scene_movers(&r, false, workspace, &s);
   cprox_obstacles *batch = NULL;
-  assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(s.obstacles, s.n_obstacles, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   for (int v = 0; v < QUERY_TYPES; v++) {
     cprox_result results[MOVERS];
     batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, results);
@@ -94,12 +95,12 @@ CASE(witnesses_lie_where_they_say) {
       cprox_curve_evaluate(s.curves[i], one->t, NULL, &at, NULL, NULL);
       assert_true(vec_norm(vec_sub(at, one->witness_mover)) <= s.movers[i].radius + 1e-9);
       assert_true(fabs(vec_norm(vec_sub(one->witness_mover, one->witness_obstacle)) - one->upper) <= 1e-9);
-      const cprox_obstacle *target = &s.targets[one->obstacle_index];
-      if (!target->body) continue;
-      const frame f = frame_create(&target->pose, vec(0, 0, 0));
+      const cprox_obstacle *obstacle = &s.obstacles[one->obstacle_index];
+      if (!obstacle->body) continue;
+      const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
       double error = 0.0;
       const vec3 local = frame_to_local(&f, one->witness_obstacle, &error);
-      assert_true(cprox_body_nearest(target->body, local, NULL) <= target->margin + 1e-9);
+      assert_true(cprox_body_nearest(obstacle->body, local, NULL) <= obstacle->margin + 1e-9);
     }
   }
   cprox_obstacles_free(batch);
@@ -113,9 +114,9 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
   const double square[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_polygon(square, 4, workspace, &body), CPROX_OK);
-  const cprox_obstacle target = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
+  const cprox_obstacle obstacle = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
   cprox_obstacles *batch = NULL;
-  assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(&obstacle, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   const cprox_vec3 points[3][3] = {{{-1, 0, 0.05}, {0, 0.1, 0.05}, {1, 0, 0.05}},
                                    {{-0.2, 0, 0.05}, {0, 0.1, 0.1}, {0.2, 0, 0.1}},
                                    {{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}}};
@@ -154,9 +155,9 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
     const cprox_body *part = ball;
     cprox_body *body = NULL;
     assert_int_equal(cprox_body_create_compound(&part, &inner, 1, workspace, &body), CPROX_OK);
-    const cprox_obstacle target = cprox_obstacle_at(body, outer);
+    const cprox_obstacle obstacle = cprox_obstacle_at(body, outer);
     cprox_obstacles *batch = NULL;
-    assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+    assert_int_equal(cprox_obstacles_create(&obstacle, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
 
     /* a segment that begins where it is nearest */
     const vec3 out = rng_unit(&r), at = vec((double)centre.x, (double)centre.y, (double)centre.z);
@@ -194,13 +195,13 @@ CASE(a_box_about_a_shape_is_not_the_shape) {
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_body_create_polygon(corners, 3, workspace, &body), CPROX_OK);
   assert_int_equal(curve_from(describe_bezier(points, 3, 0, 1), workspace, &curve), CPROX_OK);
-  const cprox_obstacle target = cprox_obstacle_at(body, (cprox_pose){{0, 0, 0}, {1, 0, 0, 0}});
+  const cprox_obstacle obstacle = cprox_obstacle_at(body, (cprox_pose){{0, 0, 0}, {1, 0, 0, 0}});
   const cprox_mover mover = cprox_tube_along(curve, 3.0);
   cprox_obstacles *batch = NULL;
-  assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(&obstacle, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   cprox_result one, alone;
   assert_int_equal(cprox_obstacles_distance_batch(batch, &mover, 0, 1, NULL, workspace, &one), CPROX_OK);
-  assert_int_equal(cprox_distance(mover, target, NULL, workspace, &alone), CPROX_OK);
+  assert_int_equal(cprox_distance(mover, obstacle, NULL, workspace, &alone), CPROX_OK);
   assert_true(alone.lower > 3.0 && one.lower <= alone.upper && alone.lower <= one.upper);
   assert_int_equal(cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, 0.0, NULL, workspace, &one), CPROX_OK);
   assert_int_equal(one.verdict, CPROX_VERDICT_CLEAR);
@@ -218,15 +219,15 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
   rng r = rng_seed(22);
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_body *bodies[BOXES];
-  cprox_obstacle targets[BOXES];
+  cprox_obstacle obstacles[BOXES];
   for (size_t k = 0; k < BOXES; k++) {
     const vec3 edges = vec(rng_uniform(&r, .01, .06), rng_uniform(&r, .01, .06), rng_uniform(&r, .01, .06));
     assert_int_equal(cprox_body_create_box(edges, workspace, &bodies[k]), CPROX_OK);
-    targets[k] = cprox_obstacle_at(bodies[k], rng_pose(&r, 0.5));
-    if (k % 4 == 0) targets[k].margin = 0.004;
+    obstacles[k] = cprox_obstacle_at(bodies[k], rng_pose(&r, 0.5));
+    if (k % 4 == 0) obstacles[k].margin = 0.004;
   }
   cprox_obstacles *batch = NULL;
-  assert_int_equal(cprox_obstacles_create(targets, BOXES, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(obstacles, BOXES, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   size_t searched = 0, hits = 0;
   for (size_t i = 0; i < CURVES; i++) {
     const vec3 p[6] = {vec(-0.7, 0, 0),      vec(-0.5, 0, 0), rng_in_cube(&r, 0.5),
@@ -239,14 +240,14 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
       cprox_result one, alone;
       if (v == DISTANCE) {
         cprox_obstacles_distance_batch(batch, &mover, 0, 1, NULL, workspace, &one);
-        distance_of_list(mover, targets, BOXES, NULL, workspace, &alone, NULL);
+        distance_of_list(mover, obstacles, BOXES, NULL, workspace, &alone, NULL);
         assert_true(one.upper - one.lower <= 1e-6);
       } else if (v == TOLERANCE) {
         cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, delta, NULL, workspace, &one);
-        tolerance_of_list(mover, targets, BOXES, delta, NULL, workspace, &alone, NULL);
+        tolerance_of_list(mover, obstacles, BOXES, delta, NULL, workspace, &alone, NULL);
       } else {
         cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, 0.0, NULL, workspace, &one);
-        collision_of_list(mover, targets, BOXES, NULL, workspace, &alone, NULL);
+        collision_of_list(mover, obstacles, BOXES, NULL, workspace, &alone, NULL);
       }
       assert_int_equal(one.verdict, alone.verdict);
       assert_true(one.lower <= alone.upper && alone.lower <= one.upper && one.lower <= one.upper);
@@ -255,13 +256,13 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
       hits++;
       cprox_vec3 at;
       cprox_curve_evaluate(curve, one.t, NULL, &at, NULL, NULL);
-      const cprox_obstacle *target = &targets[one.obstacle_index];
-      const frame f = frame_create(&target->pose, vec(0, 0, 0));
+      const cprox_obstacle *obstacle = &obstacles[one.obstacle_index];
+      const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
       double error = 0.0;
-      const double d = cprox_body_nearest(target->body, frame_to_local(&f, at, &error), NULL);
-      assert_true(d - target->margin - mover.radius <= one.upper + 1e-12 && one.upper <= delta);
-      const double surface = cprox_body_nearest(target->body, frame_to_local(&f, one.witness_obstacle, &error), NULL);
-      assert_true(surface <= target->margin + 1e-12);
+      const double d = cprox_body_nearest(obstacle->body, frame_to_local(&f, at, &error), NULL);
+      assert_true(d - obstacle->margin - mover.radius <= one.upper + 1e-12 && one.upper <= delta);
+      const double surface = cprox_body_nearest(obstacle->body, frame_to_local(&f, one.witness_obstacle, &error), NULL);
+      assert_true(surface <= obstacle->margin + 1e-12);
       assert_true(vec_norm(vec_sub(one.witness_mover, at)) <= mover.radius + 1e-12);
       assert_true(fabs(vec_norm(vec_sub(one.witness_mover, one.witness_obstacle)) - one.upper) <= 1e-12);
     }

@@ -243,8 +243,8 @@ CASE(obbs_hold_their_parts) {
     batch_scene s = {0};
     batch_scene_targets(&r, round % 4 == 3, workspace, &s);
     obstacle_batch *batch = NULL;
-    assert_int_equal(obstacle_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
-    const query q = {.targets = s.targets, .n = s.n_targets};
+    assert_int_equal(obstacle_batch_create(s.obstacles, s.n_obstacles, workspace, &batch), CPROX_OK);
+    const query q = {.obstacles = s.obstacles, .n = s.n_obstacles};
     for (size_t k = 0; k < batch->balls.n; k++) {
       const batch_core *core = &batch->cores[k];
       if (!core->has_obb) continue;
@@ -289,7 +289,7 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
   for (size_t round = 0; round < test_cases(100); round++) {
     const size_t n = 1 + rng_index(&r, N);
     cprox_body *box = NULL, *pair = NULL, *half = NULL;
-    cprox_obstacle targets[N];
+    cprox_obstacle obstacles[N];
     assert_int_equal(cprox_body_create_box(vec(0.1, 0.2, 0.3), workspace, &box), CPROX_OK);
     assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0.0, workspace, &half), CPROX_OK);
     const cprox_pose poses[2] = {rng_pose(&r, 0.5), rng_pose(&r, 0.5)};
@@ -300,14 +300,14 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
     for (size_t i = 0; i < n; i++) {
       cprox_pose pose = rng_pose(&r, 2.0);
       pose.position = vec_add(pose.position, offset);
-      targets[i] = cprox_obstacle_at(i % 40 == 20 ? half : i % 4 == 1 ? pair : box, pose);
-      targets[i].margin = i % 3 == 0 ? 0.1 : 0.0;
+      obstacles[i] = cprox_obstacle_at(i % 40 == 20 ? half : i % 4 == 1 ? pair : box, pose);
+      obstacles[i].margin = i % 3 == 0 ? 0.1 : 0.0;
     }
     obstacle_batch *batch = NULL;
-    assert_int_equal(obstacle_batch_create(targets, n, workspace, &batch), CPROX_OK);
+    assert_int_equal(obstacle_batch_create(obstacles, n, workspace, &batch), CPROX_OK);
     int met[N][2] = {{0}};
-    for (size_t k = 0; k < batch->balls.n; k++) met[batch->parts[k].target][batch->parts[k].part]++;
-    for (size_t i = 0; i < n; i++) assert_true(met[i][0] == 1 && met[i][1] == (targets[i].body == pair));
+    for (size_t k = 0; k < batch->balls.n; k++) met[batch->parts[k].obstacle][batch->parts[k].part]++;
+    for (size_t i = 0; i < n; i++) assert_true(met[i][0] == 1 && met[i][1] == (obstacles[i].body == pair));
 
     lanes_box boxes[BOXES];
     for (int i = 0; i < BOXES; i++) {

@@ -16,7 +16,7 @@ CASE(a_mover_that_is_unusable_fails_alone) {
   batch_scene_targets(&r, false, workspace, &s);
   batch_scene_movers(&r, false, workspace, &s);
   cprox_obstacles *batch = NULL;
-  assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(s.obstacles, s.n_obstacles, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   cprox_result good[MOVERS], results[MOVERS];
   assert_int_equal(cprox_obstacles_distance_batch(batch, s.movers, 0, MOVERS, NULL, workspace, good), CPROX_OK);
   s.movers[5].radius = NAN;
@@ -46,7 +46,7 @@ CASE(a_mover_that_is_unusable_fails_alone) {
   cprox_workspace_free(workspace);
 }
 
-CASE(unusable_calls_are_refused_with_a_sentence) {
+CASE(unusable_calls_are_refused_with_a_message) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_result result;
   cprox_obstacles *batch = NULL;
@@ -92,13 +92,13 @@ CASE(a_warm_workspace_allocates_nothing_and_no_memory_is_reported) {
   for (size_t k = 0; k < 5; k++) {
     cprox_obstacles *none = NULL;
     allocations_fail_after(k);
-    const cprox_status status = cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &none);
+    const cprox_status status = cprox_obstacles_create(s.obstacles, s.n_obstacles, CPROX_INDEX_BATCH, workspace, &none);
     allocations_allow();
     assert_int_equal(status, CPROX_MEMORY);
     assert_null(none);
   }
   cprox_obstacles *batch = NULL;
-  assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(s.obstacles, s.n_obstacles, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   cprox_result results[MOVERS];
   for (int v = 0; v < QUERY_TYPES; v++) batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, results);
   const size_t before = allocations_made();

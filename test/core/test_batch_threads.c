@@ -32,7 +32,8 @@ CASE(results_are_the_same_for_every_split_and_number_of_threads) {
     batch_scene_targets(&r, planar, workspace, &s);
     batch_scene_movers(&r, planar, workspace, &s);
     cprox_obstacles *batch = NULL;
-    assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
+    assert_int_equal(cprox_obstacles_create(s.obstacles, s.n_obstacles, CPROX_INDEX_BATCH, workspace, &batch),
+                     CPROX_OK);
     for (int v = 0; v < QUERY_TYPES; v++) {
       cprox_result whole[MOVERS], split[MOVERS];
       batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, whole);

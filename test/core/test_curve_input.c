@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What is wrong is refused in one sentence that says what and where, *curve stays as it was, and nothing leaks. */
+/* What is wrong is refused in one message that says what and where, *curve stays as it was, and nothing leaks. */
 #include <stdio.h>
 #include <string.h>
 

@@ -508,7 +508,7 @@ CASE(what_contradicts_itself_is_refused_at_once) {
   cprox_workspace_free(ws);
 }
 
-/* Distances and times of contact with a curve whose functions go wrong after it was made: an honest status and sentence
+/* Distances and times of contact with a curve whose functions go wrong after it was made: an honest status and message
  * and no result, or an answer that did not need to ask. */
 CASE(what_goes_wrong_midway_ends_the_query) {
   rng r = rng_seed(645);

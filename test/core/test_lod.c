@@ -318,7 +318,7 @@ static void expect_reason(cprox_status status, const char *words) {
   if (!strstr(cprox_workspace_error(ws), words)) fail_msg("'%s' does not say '%s'", cprox_workspace_error(ws), words);
 }
 
-CASE(bad_input_is_refused_with_a_sentence) {
+CASE(bad_input_is_refused_with_a_message) {
   test_mesh torus = mesh_torus(12, 8, 1.0, 0.3, 0.0);
   test_lod l = lod_make(&torus);
   cprox_body *ball = NULL, *made = NULL, *halfspace = NULL;

@@ -486,7 +486,7 @@ static void expect_reason(cprox_status status, cprox_status wanted, const char *
   if (!strstr(cprox_workspace_error(ws), words)) fail_msg("'%s' does not say '%s'", cprox_workspace_error(ws), words);
 }
 
-CASE(bad_input_is_refused_with_a_sentence) {
+CASE(bad_input_is_refused_with_a_message) {
   cprox_body *body = NULL;
   vec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const uint32_t good[1][3] = {{0, 1, 2}}, bad[2][3] = {{0, 1, 2}, {0, 1, 3}};

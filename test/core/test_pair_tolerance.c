@@ -199,7 +199,7 @@ CASE(what_touches_is_never_clear) {
   cprox_body_free(square);
 }
 
-CASE(a_limit_that_is_none_gets_a_sentence) {
+CASE(a_limit_that_is_none_gets_a_message) {
   static const double BAD[4] = {-1e-9, NAN, INFINITY, -INFINITY};
   cprox_body *box = NULL, *plane = NULL;
   assert_int_equal(cprox_body_create_box(vec(1, 1, 1), ws, &box), CPROX_OK);

@@ -627,7 +627,7 @@ static void refused(cprox_status status, const char *because) {
     fail_msg("'%s' does not say '%s'", cprox_workspace_error(ws), because);
 }
 
-CASE(what_cannot_be_joined_gets_a_sentence) {
+CASE(what_cannot_be_joined_gets_a_message) {
   rng r = rng_seed(7005);
   ball a, b;
   ball_make(&r, &a);

@@ -200,7 +200,7 @@ CASE(a_range_holds_all_values_and_is_reached) {
   }
 }
 
-CASE(what_is_no_query_about_pairs_gets_a_sentence) {
+CASE(what_is_no_query_about_pairs_gets_a_message) {
   rng r = rng_seed(3);
   test_robot t;
   robot_make(&r, 1.0, &t);

@@ -495,7 +495,7 @@ CASE(contact_of_faces_is_proven_near_its_time) {
   cprox_body_free(wall);
 }
 
-CASE(bad_input_gets_a_sentence) {
+CASE(bad_input_gets_a_message) {
   rng r = rng_seed(4414);
   test_robot t;
   robot_make(&r, 1.0, &t);

@@ -197,7 +197,7 @@ CASE(a_state_answers_as_a_motion_of_no_length) {
   }
 }
 
-/* A refused state leaves the one before; the sentence says what is wrong. */
+/* A refused state leaves the one before; the message says what is wrong. */
 CASE(a_state_that_is_refused_changes_nothing) {
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);

@@ -386,7 +386,7 @@ static void refused(const cprox_robot *robot, const cprox_motion_description *d,
     fail_msg("'%s' does not say '%s'", cprox_workspace_error(ws), because);
 }
 
-CASE(poses_that_do_not_say_how_they_turn_get_a_sentence) {
+CASE(poses_that_do_not_say_how_they_turn_get_a_message) {
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_sphere(0.1, NULL, &body), CPROX_OK);
   const double zero[7] = {0, 0, 0, 0, 0, 0, 1};

@@ -7,11 +7,11 @@
 namespace curve_proximity {
 namespace {
 
-std::string complaint(const std::function<void()> &work) {
-  return sentenceOf(work);
+std::string error_of(const std::function<void()> &work) {
+  return messageOf(work);
 }
 
-#define EXPECT_SAYS(sentence, word) EXPECT_NE((sentence).find(word), std::string::npos) << (sentence)
+#define EXPECT_SAYS(message, word) EXPECT_NE((message).find(word), std::string::npos) << (message)
 
 std::string refusal(const std::string &type, const ParameterMap &parameters) {
   try {
@@ -58,7 +58,7 @@ TEST(Providers, that_no_package_declares_are_refused_with_those_that_are) {
 }
 
 TEST(Providers, of_the_same_name_are_refused) {
-  EXPECT_SAYS(complaint([] {
+  EXPECT_SAYS(error_of([] {
                 const ProviderSet set(
                     {{"one", "curve_proximity/CurveDistance", {}}, {"one", "curve_proximity/FourierGap", {}}});
               }),
@@ -73,31 +73,31 @@ TEST(Pairs, that_a_provider_cannot_answer_for_are_refused_by_type) {
   standing.b = side({shape(ShapeType::HALFSPACE, {0, 0, 1, 0})});
   ConstraintPair along = standing;
   along.along_curve = true;
-  EXPECT_EQ(complaint([&] { curve->prepare(standing); }), "");
-  EXPECT_EQ(complaint([&] { pair->prepare(along); }), "");
+  EXPECT_EQ(error_of([&] { curve->prepare(standing); }), "");
+  EXPECT_EQ(error_of([&] { pair->prepare(along); }), "");
   standing.is_named = along.is_named = false;
-  EXPECT_SAYS(complaint([&] { curve->prepare(standing); }), "SuperquadricDistance answers about standing bodies");
+  EXPECT_SAYS(error_of([&] { curve->prepare(standing); }), "SuperquadricDistance answers about standing bodies");
   ConstraintPair balls = standing;
   balls.b = balls.a;
   const Loaded growth("curve_proximity/GrowthDistance", {});
-  EXPECT_SAYS(complaint([&] { growth->prepare(balls); }), "SuperquadricDistance answers about standing bodies");
+  EXPECT_SAYS(error_of([&] { growth->prepare(balls); }), "SuperquadricDistance answers about standing bodies");
   balls.is_named = true;
-  EXPECT_EQ(complaint([&] { growth->prepare(balls); }), "");
-  EXPECT_SAYS(complaint([&] { pair->prepare(along); }), "CurveDistance answers about curves");
+  EXPECT_EQ(error_of([&] { growth->prepare(balls); }), "");
+  EXPECT_SAYS(error_of([&] { pair->prepare(along); }), "CurveDistance answers about curves");
   const Loaded round("curve_proximity/SuperquadricDistance", {{"most_exponent", 8.0}});
   along.is_named = true;
-  EXPECT_SAYS(complaint([&] { round->prepare(along); }), "most_exponent is about standing bodies");
-  EXPECT_SAYS(complaint([&] { gap->prepare(along); }), "side b: halfspace");
-  EXPECT_SAYS(complaint([&] { gap->prepare(standing); }), "side b: halfspace");
-  EXPECT_EQ(complaint([&] { pair->prepare(standing); }), "");
+  EXPECT_SAYS(error_of([&] { round->prepare(along); }), "most_exponent is about standing bodies");
+  EXPECT_SAYS(error_of([&] { gap->prepare(along); }), "side b: halfspace");
+  EXPECT_SAYS(error_of([&] { gap->prepare(standing); }), "side b: halfspace");
+  EXPECT_EQ(error_of([&] { pair->prepare(standing); }), "");
   standing.b = side({shape(ShapeType::CONE, {1, 1})});
-  EXPECT_EQ(complaint([&] { gap->prepare(standing); }), "");
-  EXPECT_EQ(complaint([&] { plane->prepare(standing); }), ""); // its section is a disc
+  EXPECT_EQ(error_of([&] { gap->prepare(standing); }), "");
+  EXPECT_EQ(error_of([&] { plane->prepare(standing); }), ""); // its section is a disc
   standing.b = side({shape(ShapeType::HALFSPACE, {0, 0, 1, 0})});
-  EXPECT_SAYS(complaint([&] { plane->prepare(standing); }), "side b: halfspace");
+  EXPECT_SAYS(error_of([&] { plane->prepare(standing); }), "side b: halfspace");
   standing.b = {};
-  EXPECT_SAYS(complaint([&] { pair->prepare(standing); }), "side b has no shape");
-  EXPECT_SAYS(complaint([&] { gap->prepare(standing); }), "side b");
+  EXPECT_SAYS(error_of([&] { pair->prepare(standing); }), "side b has no shape");
+  EXPECT_SAYS(error_of([&] { gap->prepare(standing); }), "side b");
 }
 
 TEST(Places, that_do_not_suit_the_pair_are_refused) {
@@ -112,14 +112,14 @@ TEST(Places, that_do_not_suit_the_pair_are_refused) {
   ConstraintPlace with_curve, without;
   with_curve.curve = &line;
   Workspace workspace;
-  EXPECT_SAYS(complaint([&] { curve->evaluate(along, without, workspace); }), "there is none");
-  EXPECT_SAYS(complaint([&] { pair->evaluate(standing, with_curve, workspace); }), "not along one");
+  EXPECT_SAYS(error_of([&] { curve->evaluate(along, without, workspace); }), "there is none");
+  EXPECT_SAYS(error_of([&] { pair->evaluate(standing, with_curve, workspace); }), "not along one");
   ConstraintPlace broken;
   broken.b.orientation = {0, 0, 0, 0};
-  EXPECT_NE(complaint([&] { pair->evaluate(standing, broken, workspace); }), "");
+  EXPECT_NE(error_of([&] { pair->evaluate(standing, broken, workspace); }), "");
   broken = without;
   broken.a.position.x = NAN;
-  EXPECT_NE(complaint([&] { pair->evaluate(standing, broken, workspace); }), "");
+  EXPECT_NE(error_of([&] { pair->evaluate(standing, broken, workspace); }), "");
 }
 
 TEST(Cases, that_are_wrong_become_rows_and_the_others_are_answered) {
@@ -178,11 +178,11 @@ TEST(Cases, that_are_wrong_become_rows_and_the_others_are_answered) {
 }
 
 TEST(Sentences, are_made_of_whatever_is_thrown) {
-  EXPECT_EQ(sentenceOf([] {}), "");
-  EXPECT_EQ(sentenceOf([] { throw Error("so"); }), "so");
-  EXPECT_EQ(sentenceOf([] { throw std::bad_alloc(); }), "out of memory");
-  EXPECT_EQ(sentenceOf([] { throw 7; }), "it threw what is no exception");
-  EXPECT_NE(sentenceOf([] { throw std::runtime_error(""); }), "");
+  EXPECT_EQ(messageOf([] {}), "");
+  EXPECT_EQ(messageOf([] { throw Error("so"); }), "so");
+  EXPECT_EQ(messageOf([] { throw std::bad_alloc(); }), "out of memory");
+  EXPECT_EQ(messageOf([] { throw 7; }), "it threw what is no exception");
+  EXPECT_NE(messageOf([] { throw std::runtime_error(""); }), "");
 }
 
 } // namespace

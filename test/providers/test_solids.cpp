@@ -343,7 +343,7 @@ TEST(Curves, carry_a_solid_past_another) {
   const Loaded provider("curve_proximity/FourierGap", {{"samples", 9}});
   ConstraintPair pair;
   pair.along_curve = true;
-  EXPECT_NE(sentenceOf([&] { provider->prepare(pair); }).find("give side a a shape"), std::string::npos);
+  EXPECT_NE(messageOf([&] { provider->prepare(pair); }).find("give side a a shape"), std::string::npos);
   pair.a = side({shape(ShapeType::SPHERE, {0.2})});
   pair.b = side({shape(ShapeType::BOX, {0.5, 0.7, 0.6})});
   const auto constraint = provider->prepare(pair);

@@ -97,7 +97,7 @@ def turning(to, seconds, parts=2, first=0):
 
 
 def ends_of(client, seconds=10):
-    """The state and the sentence with which a client's goal ends."""
+    """The state and the message with which a client's goal ends."""
     assert client.wait_for_result(rospy.Duration(seconds))
     return client.get_state(), client.get_result().error_string
 
@@ -123,7 +123,7 @@ class Gate(unittest.TestCase):
         del self.refused[:], self.passed[:]
 
     def sent(self, trajectory):
-        """How its goal ends: the state and the sentence."""
+        """How its goal ends: the state and the message."""
         self.client.send_goal(Goal(trajectory=trajectory))
         return ends_of(self.client)
 

@@ -371,7 +371,7 @@ class PlanningScene(unittest.TestCase):
         type(self).overtake = staticmethod(lambda: None)
         publisher.unregister()
 
-    def test_9_each_message_that_cannot_be_used_is_one_sentence_and_the_rest_of_it_is_used(self):
+    def test_9_each_message_that_cannot_be_used_is_one_message_and_the_rest_of_it_is_used(self):
         def world(*objects):
             return dict(world=moveit.PlanningSceneWorld(collision_objects=list(objects)))
 

@@ -69,7 +69,7 @@ class PythonClient(unittest.TestCase):
         value = self.client.constraint('curve_proximity/SuperquadricDistance', 'ball', sphere('', 0.5, (1, 2, 0)))
         self.assertAlmostEqual(value.value, 1.25, delta=1e-8)
 
-    def test_what_is_refused_is_an_exception_with_the_nodes_sentence(self):
+    def test_what_is_refused_is_an_exception_with_the_nodes_message(self):
         for work, word in ((lambda: self.client.distance(bezier([(0, 0, 0)])), 'curve 0'),
                            (lambda: self.client.add(sphere('bad', -1.0)), "object 'bad'"),
                            (lambda: self.client.constraint('nobody', sphere('', 0.1), curve=LINE), "'nobody'"),

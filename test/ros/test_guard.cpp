@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The shell round every callback: whatever is thrown inside ends there, as a sentence. */
+/* The shell round every callback: whatever is thrown inside ends there, as a message. */
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -17,18 +17,18 @@ struct Response {
 };
 
 template <class Work>
-std::string sentence(Work work) {
+std::string message(Work work) {
   std::string said = "nothing";
   guarded(work, [&](const std::string &why) { said = why; });
   return said;
 }
 
-TEST(Guard, whatever_is_thrown_becomes_a_sentence) {
-  EXPECT_EQ(sentence([] {}), "nothing");
-  EXPECT_EQ(sentence([] { throw std::runtime_error("so"); }), "so");
-  EXPECT_EQ(sentence([] { throw std::bad_alloc(); }), "out of memory");
-  EXPECT_EQ(sentence([] { throw 7; }), "an unknown failure");
-  EXPECT_EQ(sentence([] { throw "a word"; }), "an unknown failure");
+TEST(Guard, whatever_is_thrown_becomes_a_message) {
+  EXPECT_EQ(message([] {}), "nothing");
+  EXPECT_EQ(message([] { throw std::runtime_error("so"); }), "so");
+  EXPECT_EQ(message([] { throw std::bad_alloc(); }), "out of memory");
+  EXPECT_EQ(message([] { throw 7; }), "an unknown failure");
+  EXPECT_EQ(message([] { throw "a word"; }), "an unknown failure");
 }
 
 TEST(Guard, a_handler_says_true_whatever_happens_and_leaves_no_half_answer) {

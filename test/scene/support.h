@@ -123,7 +123,7 @@ inline CurveDescription randomBezier(Random &random, std::size_t degree, double 
   return out;
 }
 
-/* Runs a call that must fail and hands its sentence back. */
+/* Runs a call that must fail and hands its message back. */
 template <typename Call>
 std::string errorOf(Call call) {
   try {

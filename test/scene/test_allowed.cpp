@@ -65,7 +65,7 @@ class SceneText {
     std::ofstream(path_) << "world: {collision_objects: []}\nallowed_collision_matrix: {" << matrix << "}\n";
     yaml::Warnings warnings;
     std::vector<AllowedPair> out = yaml::readScene(path_.string(), warnings).allowed;
-    EXPECT_TRUE(warnings.sentences().empty());
+    EXPECT_TRUE(warnings.messages().empty());
     return out;
   }
   std::string refusal(const std::string &matrix) const {
@@ -171,10 +171,10 @@ TEST(Allowed, pairs_of_every_kind_are_left_out_by_the_matrix_and_by_nothing_else
       t.joints = {"slide", "swing"};
       t.points = {{{0, 0}, {}, {}, 0.0}, {{1, 1}, {}, {}, 1.0}};
       const RobotMotion motion(scene.snapshot(), t, {});
-      const bool out = std::any_of(motion.skipped().begin(), motion.skipped().end(), [&](const std::string &sentence) {
-        return sentence.find("allowed to touch") != std::string::npos &&
-               sentence.find("'" + names[0] + "'") != std::string::npos &&
-               sentence.find("'" + names[1] + "'") != std::string::npos;
+      const bool out = std::any_of(motion.skipped().begin(), motion.skipped().end(), [&](const std::string &message) {
+        return message.find("allowed to touch") != std::string::npos &&
+               message.find("'" + names[0] + "'") != std::string::npos &&
+               message.find("'" + names[1] + "'") != std::string::npos;
       });
       EXPECT_EQ(out, allowedByTheText(pair, a, b)) << names[0] << " " << names[1];
     });
@@ -216,8 +216,8 @@ Asked askedOf(const std::string &inside, const std::vector<AllowedPair> &said = 
   t.points = {{{0, 0}, {}, {}, 0.0}, {{1, 1}, {}, {}, 1.0}};
   const RobotMotion motion(scene.snapshot(), t, {}, srdf.disabled);
   const auto asked = [&](const std::string &a, const std::string &b) {
-    return std::none_of(motion.skipped().begin(), motion.skipped().end(), [&](const std::string &sentence) {
-      return sentence.find("'" + a + "'") != std::string::npos && sentence.find("'" + b + "'") != std::string::npos;
+    return std::none_of(motion.skipped().begin(), motion.skipped().end(), [&](const std::string &message) {
+      return message.find("'" + a + "'") != std::string::npos && message.find("'" + b + "'") != std::string::npos;
     });
   };
   return {asked("cart", "wall"), asked("hand", "wall"), asked("held", "wall"), asked("cart", "hand"),

@@ -318,7 +318,7 @@ TEST_F(Slider, what_is_carried_is_checked_against_links_that_one_joint_moves_unl
   answer = askSelf(motion, Query(), workspace);
   EXPECT_EQ(answer.b, "");
   std::string skipped;
-  for (const std::string &sentence : motion.skipped()) skipped += sentence + "\n";
+  for (const std::string &message : motion.skipped()) skipped += message + "\n";
   expectContains(skipped, "touch_links");
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A URDF whose geometry would go missing is refused, and the sentence names the link. */
+/* A URDF whose geometry would go missing is refused, and the message names the link. */
 #include "support.h"
 
 using namespace curve_proximity;

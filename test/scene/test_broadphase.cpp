@@ -40,7 +40,7 @@ cprox_result byHand(const Snapshot &snapshot, const CompiledCurve &curve, const 
   best.lower = best.upper = INFINITY;
   for (const auto &[id, object] : snapshot.objects()) {
     for (const ObjectShape &s : object->shapes) {
-      const cprox_result r = distance(along(curve.curve, curve.radius), s.placed.target, options, workspace);
+      const cprox_result r = distance(along(curve.curve, curve.radius), s.placed.obstacle, options, workspace);
       const double lower = std::min(best.lower, r.lower);
       if (r.upper < best.upper) {
         best = r;
@@ -150,12 +150,12 @@ TEST(Broadphase, boxes_contain_their_bodies) {
     Scene scene;
     ASSERT_TRUE(scene.apply(change({randomObject(random, 0, std::pow(10.0, random.uniform(-3, 4)))})).empty());
     const PlacedShape &placed = scene.snapshot()->objects().at("o0")->shapes[0].placed;
-    const Eigen::Isometry3d pose = toIsometry(placed.target.pose);
+    const Eigen::Isometry3d pose = toIsometry(placed.obstacle.pose);
     for (int k = 0; k < 20; ++k) {
       const Eigen::Vector3d d = random.vector(1.0);
       cprox_vec3 at;
-      cprox_body_support(placed.target.body, toVec3(d), &at);
-      const Eigen::Vector3d surface = pose * toEigen(at) + (pose.linear() * d).normalized() * placed.target.margin;
+      cprox_body_support(placed.obstacle.body, toVec3(d), &at);
+      const Eigen::Vector3d surface = pose * toEigen(at) + (pose.linear() * d).normalized() * placed.obstacle.margin;
       EXPECT_TRUE(placed.box.contains(surface));
     }
   }

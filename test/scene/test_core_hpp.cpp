@@ -5,7 +5,7 @@
 using namespace curve_proximity;
 using namespace curve_proximity::test;
 
-TEST(CoreHpp, a_failure_is_an_error_with_the_cores_sentence) {
+TEST(CoreHpp, a_failure_is_an_error_with_the_cores_message) {
   const std::string reason = errorOf([] { makeSphere(-1.0); });
   EXPECT_FALSE(reason.empty());
   expectContains(reason, "radius");

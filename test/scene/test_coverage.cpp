@@ -103,7 +103,7 @@ TEST(Coverage, no_answer_with_a_gap_is_clear) {
     if (origin == "trajectory") continue;
     Query query = queryOf(QueryType::COLLISION);
     if (origin == "query") query.coverage.add(Gap::PARTIAL, "a key is unknown");
-    const Targets targets(scene.snapshot(), {}, query);
+    const SceneObstacles targets(scene.snapshot(), {}, query);
     const CompiledCurve curve = compile(line({0, 0, 0}, {1, 0, 0}));
     expectUndecided(ask(targets, curve, query, workspace).front(), "partial");
     expectUndecided(timeOfContact(targets, curve, query, workspace), "partial");

@@ -196,7 +196,7 @@ TEST(Files, unknown_keys_make_what_is_read_partial) {
     const SceneFileContents read = readScene(text);
     EXPECT_EQ(read.change.coverage.status(), "partial") << text;
     ASSERT_EQ(read.warnings.size(), 1u);
-    EXPECT_EQ(read.warnings, read.change.coverage.sentences());
+    EXPECT_EQ(read.warnings, read.change.coverage.messages());
   }
   expectContains(readScene(plain + "worlds: {}\n").warnings.front(), "'worlds' (did you mean 'world'?)");
   EXPECT_EQ(readTrajectory(arm(0, 1) + "fixed_joint: {k: 1}\n").coverage.status(), "partial");

@@ -144,7 +144,7 @@ TEST(Shapes, a_superellipsoid_is_that_of_barr) {
                    e > 0.0 ? "from 0.002 to 2" : "dimension 3");
 }
 
-TEST(Shapes, wrong_dimensions_are_told_in_a_sentence) {
+TEST(Shapes, wrong_dimensions_are_told_in_a_message) {
   EXPECT_EQ(refusal(shape(ShapeType::CYLINDER, {1.0})), "cylinder needs 2 dimensions [height, radius], got 1");
   EXPECT_EQ(refusal(shape(ShapeType::SPHERE, {})), "sphere needs 1 dimension [radius], got 0");
   expectContains(refusal(shape(ShapeType::BOX, {1, 1})), "box needs 3 dimensions");
@@ -182,7 +182,7 @@ TEST(Shapes, vertices_belong_to_points_polytopes_and_meshes) {
   expectContains(refusal(s), "takes no file");
 }
 
-TEST(Meshes, bad_meshes_are_told_in_a_sentence) {
+TEST(Meshes, bad_meshes_are_told_in_a_message) {
   Eigen::Matrix3Xd vertices = Eigen::Matrix3Xd::Random(3, 5);
   expectContains(refusal(mesh(vertices, Triangles(3, 0))), "no triangle");
   Triangles triangles = anyTriangles(5);

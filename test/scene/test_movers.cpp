@@ -618,11 +618,11 @@ TEST_F(Movement, a_scene_keeps_what_moves_apart_from_what_stands) {
   /* what does not know movers refuses, unless it names what stands */
   const std::string because = "object 'ball' moves along a trajectory";
   Query query;
-  expectContains(errorOf([&] { Targets(world.snapshot(), {}, query); }), because);
+  expectContains(errorOf([&] { SceneObstacles(world.snapshot(), {}, query); }), because);
   query.objects = {"ball"};
-  expectContains(errorOf([&] { Targets(world.snapshot(), {}, query); }), because);
+  expectContains(errorOf([&] { SceneObstacles(world.snapshot(), {}, query); }), because);
   query.objects = {"wall"};
-  EXPECT_NO_THROW(Targets(world.snapshot(), {}, query));
+  EXPECT_NO_THROW(SceneObstacles(world.snapshot(), {}, query));
   ASSERT_TRUE(carts.apply(change({launch("ball", way)})).empty());
   const auto motion = slide(carts.snapshot(), 0, 1, 0);
   query.objects.clear();

@@ -69,7 +69,7 @@ std::map<Name, cprox_result> everyPair(const Snapshot &scene, const LinkPoses &p
     }
   for (const auto &[id, object] : scene.objects())
     for (std::size_t i = 0; i < object->shapes.size(); ++i)
-      objects.push_back({id, static_cast<int>(i), object->shapes[i].placed.target});
+      objects.push_back({id, static_cast<int>(i), object->shapes[i].placed.obstacle});
   std::map<Name, cprox_result> out;
   const auto measure = [&](const One &a, const One &b) {
     out[{a.name, a.part, b.name, b.part}] = pair(a.body, b.body, CPROX_OPTIONS_DEFAULT, workspace);

@@ -313,7 +313,7 @@ TEST(Ask, the_stop_function_ends_a_query) {
 TEST(Nearest, shapes_come_in_order_and_within_the_limit) {
   Scene scene;
   fill(scene);
-  const Targets targets(scene.snapshot(), {}, Query());
+  const SceneObstacles targets(scene.snapshot(), {}, Query());
   const CompiledCurve curve = compile(UPRIGHT);
   Workspace workspace;
   std::vector<Answer> answers = nearestPairs(targets, curve, {}, Query(), workspace);
@@ -332,7 +332,8 @@ TEST(Nearest, shapes_come_in_order_and_within_the_limit) {
   each.per_object = true;
   expectContains(errorOf([&] { nearestPairs(targets, curve, {}, each, workspace); }), "per_object");
   const Scene empty;
-  const std::vector<Answer> none = nearestPairs(Targets(empty.snapshot(), {}, Query()), curve, {}, Query(), workspace);
+  const std::vector<Answer> none =
+      nearestPairs(SceneObstacles(empty.snapshot(), {}, Query()), curve, {}, Query(), workspace);
   ASSERT_EQ(none.size(), 1u);
   EXPECT_EQ(none.front().gap, Gap::EMPTY);
 }
@@ -347,7 +348,7 @@ TEST(Profile, each_interval_contains_the_least_distance) {
     for (int k = 0; k < 4; ++k)
       objects.push_back(add("o" + std::to_string(k), {shape(ShapeType::SPHERE, {0.2})}, random.pose(2)));
     ASSERT_TRUE(scene.apply(change(objects)).empty());
-    const Targets targets(scene.snapshot(), {}, Query());
+    const SceneObstacles targets(scene.snapshot(), {}, Query());
     const CompiledCurve curve = compile(randomBezier(random, 4, 2.0));
     std::vector<double> breaks;
     for (int k = 0; k <= INTERVALS; ++k) breaks.push_back(k / static_cast<double>(INTERVALS));
@@ -394,7 +395,7 @@ TEST(Contact, no_sampled_contact_comes_before_the_time) {
     Scene scene;
     const Operation ball = add("ball", {shape(ShapeType::SPHERE, {0.5})}, random.pose(1));
     ASSERT_TRUE(scene.apply(change({ball})).empty());
-    const Targets targets(scene.snapshot(), {}, Query());
+    const SceneObstacles targets(scene.snapshot(), {}, Query());
     const CompiledCurve curve = compile(randomBezier(random, 5, 2.0));
     const Answer answer = timeOfContact(targets, curve, query, workspace);
     ASSERT_GE(answer.result.status, 0) << answer.message;
@@ -417,11 +418,12 @@ TEST(Contact, no_sampled_contact_comes_before_the_time) {
   query.query_type = QueryType::DISTANCE;
   Scene scene;
   fill(scene);
-  expectContains(timeOfContact(Targets(scene.snapshot(), {}, Query()), compile(UPRIGHT), query, workspace).message,
-                 "query_type");
+  expectContains(
+      timeOfContact(SceneObstacles(scene.snapshot(), {}, Query()), compile(UPRIGHT), query, workspace).message,
+      "query_type");
 }
 
-TEST(Compile, curves_that_are_none_are_told_in_a_sentence) {
+TEST(Compile, curves_that_are_none_are_told_in_a_message) {
   CurveDescription curve = UPRIGHT;
   curve.basis = "fourier";
   expectContains(refusal(curve), "basis 'fourier' is not available");
@@ -534,7 +536,7 @@ TEST(Compile, named_curves_stand_where_their_pose_says) {
   }
 }
 
-TEST(Compile, coefficients_that_do_not_fit_the_basis_are_told_in_a_sentence) {
+TEST(Compile, coefficients_that_do_not_fit_the_basis_are_told_in_a_message) {
   CurveDescription curve = UPRIGHT;
   curve.degree = 2;
   for (const char *basis : {"polynomial", "legendre", "lagrange"}) {

@@ -29,7 +29,7 @@ std::vector<std::string> apply(Scene &scene, std::vector<Operation> operations) 
   return scene.apply(change(std::move(operations)));
 }
 
-/* The one sentence of a change that must be refused; the scene stays as it was. */
+/* The one message of a change that must be refused; the scene stays as it was. */
 std::string refused(Scene &scene, const Operation &operation) {
   const auto before = scene.snapshot()->objects();
   const std::vector<std::string> faults = apply(scene, {operation});

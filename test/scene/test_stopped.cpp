@@ -252,7 +252,7 @@ TEST_F(Stopped, a_curve_says_what_it_knows) {
     const CurveDescription description = test::randomBezier(random, 5, 0.9);
     const CompiledCurve curve = compile(description);
     const Count count = stopAll([&](const Query &query, const std::function<void(const Subject &)> &then) {
-      const Targets targets(scene.snapshot(), {}, query);
+      const SceneObstacles targets(scene.snapshot(), {}, query);
       then(CurveSubject{targets, curve, &description});
     });
     EXPECT_GE(count.answered, 11u);

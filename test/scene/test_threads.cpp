@@ -76,7 +76,7 @@ TEST(Threads, one_set_of_targets_serves_many_curves_at_once) {
   scene.apply(generation(0));
   const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
   const Query query;
-  const Targets targets(scene.snapshot(), poses, query);
+  const SceneObstacles targets(scene.snapshot(), poses, query);
   Random random(81);
   std::vector<CompiledCurve> curves;
   std::vector<double> expected;

@@ -4,7 +4,7 @@
 //   (true: lower of the profiles is that of every execution within bounds of its errors)
 //   date (UTC), host, command
 //   inputs    [{what, file, digest}]
-//   notes     [sentence]
+//   notes     [message]
 //   verdicts  [{query, id, kind, a, b, status, verdict, lower, upper, t, points [[x,y,z],[x,y,z]], nodes, microseconds, message,
 //             proof, certificate}], proof and certificate where one was asked for; a number that is not finite is null
 //   profiles  [{name, kind, t [n+1], lower [n], upper [n], against [n]}]

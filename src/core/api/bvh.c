@@ -18,15 +18,15 @@ static bool boxes_hold(const query *q) {
 }
 
 cprox_status bvh_begin(const obstacle_bvh *set, query *q, arguments_query asked) {
-  /* the targets were checked when the set was made, but for what the mover must go with */
+  /* the obstacles were checked when the set was made, but for what the mover must go with */
   const bool robot = q->mover.motion && (set->has_curves || set->has_fields || mover_is_self(&q->mover) ||
                                          mover_is_whole(&q->mover) || q->mover.pairs);
   const bool by_hulls = q->mover.body || (q->mover.motion && q->options.signed_distance);
   const bool all = set->has_clock || (by_hulls && set->has_elements) || robot;
-  q->targets = all ? set->targets : NULL;
+  q->obstacles = all ? set->obstacles : NULL;
   q->n = all ? set->n : 0;
   const cprox_status begun = query_begin(q, asked);
-  q->targets = set->targets;
+  q->obstacles = set->obstacles;
   q->n = set->n;
   if (q->mover.motion && !q->mover.pairs && boxes_hold(q)) q->set = set;
   return begun;
@@ -50,11 +50,11 @@ static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, 
   for (;;) {
     const bool answered = (!q->is_signed && all.upper <= fmax(q->limit, 0.0)) || failure == CPROX_STOPPED;
     const double most = answered ? -INFINITY : query_wants_verdict(q) ? q->limit : all.upper;
-    uint32_t target;
-    if (!traversal_next(&walk, most, &target, &rest)) return out_of_memory(q);
-    if (target == UINT32_MAX || answered) break;
+    uint32_t obstacle;
+    if (!traversal_next(&walk, most, &obstacle, &rest)) return out_of_memory(q);
+    if (obstacle == UINT32_MAX || answered) break;
     cprox_result one = {0};
-    const cprox_status status = solve_query(q, target, (size_t)target + 1, all.upper, &one);
+    const cprox_status status = solve_query(q, obstacle, (size_t)obstacle + 1, all.upper, &one);
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
     query_join(&all, &one);
@@ -97,16 +97,16 @@ cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, con
   if (begun != CPROX_OK) return begun;
   if (q.set) return robot_time_of_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))
-    return list_time_of_contact(mover, set->targets, set->n, &q.options, workspace, result);
+    return list_time_of_contact(mover, set->obstacles, set->n, &q.options, workspace, result);
   set_traversal walk;
   if (!traversal_begin(&walk, set, &q)) return out_of_memory(&q);
   time_of_contact met = time_of_contact_begin();
   double rest;
   for (;;) {
-    uint32_t target;
-    if (!traversal_next(&walk, 0.0, &target, &rest)) return out_of_memory(&q);
-    if (target == UINT32_MAX) break;
-    const cprox_status status = time_of_contact_with(&met, &q, target, (size_t)target + 1);
+    uint32_t obstacle;
+    if (!traversal_next(&walk, 0.0, &obstacle, &rest)) return out_of_memory(&q);
+    if (obstacle == UINT32_MAX) break;
+    const cprox_status status = time_of_contact_with(&met, &q, obstacle, (size_t)obstacle + 1);
     if (status < 0) return status;
   }
   met.lower = fmin(met.lower, rest);
@@ -123,7 +123,7 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one obstacle");
   if (q.mover.motion || !boxes_hold(&q))
-    return list_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, listed);
+    return list_nearest(mover, set->obstacles, set->n, k, &q.options, workspace, nearest, listed);
   set_traversal walk;
   cprox_result *kept = query_reserve_results(&q, set->n);
   if (!kept) return CPROX_MEMORY;
@@ -133,15 +133,15 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
   cprox_status failure = CPROX_OK;
   for (;;) {
     const double cutoff = failure == CPROX_STOPPED ? -INFINITY : found == k ? kept[k - 1].upper : INFINITY;
-    uint32_t target;
-    if (!traversal_next(&walk, cutoff, &target, &rest)) return out_of_memory(&q);
-    if (target == UINT32_MAX || failure == CPROX_STOPPED) break;
+    uint32_t obstacle;
+    if (!traversal_next(&walk, cutoff, &obstacle, &rest)) return out_of_memory(&q);
+    if (obstacle == UINT32_MAX || failure == CPROX_STOPPED) break;
     cprox_result r;
     workspace_forget_work(workspace);
-    const cprox_status status = solve_query(&q, target, (size_t)target + 1, cutoff, &r);
+    const cprox_status status = solve_query(&q, obstacle, (size_t)obstacle + 1, cutoff, &r);
     if (status < 0) return status;
     if (failure == CPROX_OK) failure = status;
-    if (r.obstacle_index < 0) r.obstacle_index = (int32_t)target; /* stopped before anything was measured */
+    if (r.obstacle_index < 0) r.obstacle_index = (int32_t)obstacle; /* stopped before anything was measured */
     query_rank(kept, &found, k, &r, &others);
   }
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);

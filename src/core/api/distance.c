@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Distance, tolerance, collision: of one mover against one target or against many. All six are one search. */
+/* Distance, tolerance, collision: of one mover against one obstacle or against many. All six are one search. */
 #include "base/workspace.h"
 #include "certificate/certificate.h"
 #include "problem/validate.h"
@@ -7,11 +7,11 @@
 #include "solve/solve.h"
 
 /* delta < 0: a distance. */
-static cprox_status ask(const char *name, cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+static cprox_status ask(const char *name, cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double delta,
                         const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                         cprox_result *each) {
   cprox_certificate_clear(arguments_options(options).certificate);
-  query q = query_create(mover, targets, n, delta, options, workspace);
+  query q = query_create(mover, obstacles, n, delta, options, workspace);
   arguments_query asked = {name, ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS};
   if (!each) asked.has |= ARGUMENTS_WHOLE;
   if (!query_wants_verdict(&q)) {
@@ -27,38 +27,39 @@ static cprox_status ask(const char *name, cprox_mover mover, const cprox_obstacl
 
 /* ---- the queries ---- */
 
-cprox_status list_distance(cprox_mover mover, const cprox_obstacle *targets, size_t n, const cprox_options *options,
+cprox_status list_distance(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, const cprox_options *options,
                            cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
-  return ask("distance", mover, targets, n, -1.0, options, workspace, nearest, each);
+  return ask("distance", mover, obstacles, n, -1.0, options, workspace, nearest, each);
 }
 
-cprox_status list_tolerance(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+cprox_status list_tolerance(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double delta,
                             const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                             cprox_result *each) {
   cprox_certificate_clear(arguments_options(options).certificate);
   const cprox_status checked = validate_delta(delta, workspace);
-  return checked == CPROX_OK ? ask("tolerance", mover, targets, n, delta, options, workspace, nearest, each) : checked;
+  return checked == CPROX_OK ? ask("tolerance", mover, obstacles, n, delta, options, workspace, nearest, each)
+                             : checked;
 }
 
-cprox_status list_collision(cprox_mover mover, const cprox_obstacle *targets, size_t n, const cprox_options *options,
+cprox_status list_collision(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, const cprox_options *options,
                             cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
-  return ask("collision", mover, targets, n, 0.0, options, workspace, nearest, each);
+  return ask("collision", mover, obstacles, n, 0.0, options, workspace, nearest, each);
 }
 
-cprox_status cprox_distance(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+cprox_status cprox_distance(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                             cprox_workspace *workspace, cprox_result *result) {
   WORKSPACE_USE(workspace);
-  return list_distance(mover, &target, 1, options, workspace, result, NULL);
+  return list_distance(mover, &obstacle, 1, options, workspace, result, NULL);
 }
 
-cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle target, double delta, const cprox_options *options,
+cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle obstacle, double delta, const cprox_options *options,
                              cprox_workspace *workspace, cprox_result *result) {
   WORKSPACE_USE(workspace);
-  return list_tolerance(mover, &target, 1, delta, options, workspace, result, NULL);
+  return list_tolerance(mover, &obstacle, 1, delta, options, workspace, result, NULL);
 }
 
-cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+cprox_status cprox_collision(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                              cprox_workspace *workspace, cprox_result *result) {
   WORKSPACE_USE(workspace);
-  return list_collision(mover, &target, 1, options, workspace, result, NULL);
+  return list_collision(mover, &obstacle, 1, options, workspace, result, NULL);
 }

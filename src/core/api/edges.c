@@ -81,7 +81,7 @@ static edge_rest open_of(const edges_call *call) {
     const edge_part *part = self ? &c->parts[two->a] : c->parts, *other = self ? &c->parts[two->b] : NULL;
     while (!self && open->pairs[i] >= part->first_near + part->n_near) part++;
     for (uint32_t k = part->first_member; k < part->first_member + part->n_members; k++) {
-      if (!self) add_pair(pairs, &rest.n_pairs, c->members[k], c->obstacles[c->near[open->pairs[i]]].target);
+      if (!self) add_pair(pairs, &rest.n_pairs, c->members[k], c->obstacles[c->near[open->pairs[i]]].obstacle);
       for (uint32_t l = 0; self && l < other->n_members; l++)
         add_pair(self_pairs, &rest.n_self_pairs, c->members[k], c->members[other->first_member + l]);
     }
@@ -126,14 +126,14 @@ static cprox_status search(const edges_call *call, const cprox_motion *motion, c
                            edge_question question, cprox_result *r) {
   const cprox_edge_query *asked = &call->c->asked;
   const bool about_obstacles = rest->n_pairs > 0;
-  const cprox_obstacle *targets = about_obstacles ? obstacles_list(asked->obstacles) : NULL;
+  const cprox_obstacle *obstacles = about_obstacles ? obstacles_list(asked->obstacles) : NULL;
   const size_t n = about_obstacles ? obstacles_count(asked->obstacles) : 0;
   cprox_options options = asked->options ? *asked->options : CPROX_OPTIONS_DEFAULT;
   const double interval[2] = {rest->from, rest->to};
   options.interval = rest->to > rest->from && (rest->from > 0.0 || rest->to < 1.0) ? interval : NULL;
   const cprox_mover mover = mover_of(motion, rest);
-  if (question.first) return list_time_of_contact(mover, targets, n, &options, call->workspace, r);
-  query q = query_create(mover, targets, n, question.beyond, &options, call->workspace);
+  if (question.first) return list_time_of_contact(mover, obstacles, n, &options, call->workspace, r);
+  query q = query_create(mover, obstacles, n, question.beyond, &options, call->workspace);
   const arguments_query has = {"edges", ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL};
   const cprox_status begun = query_begin(&q, has);
   if (rest->at_once) q.t0 = q.t1 = rest->from;

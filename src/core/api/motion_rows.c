@@ -82,18 +82,18 @@ static void rank_rows(row_search *s, size_t first) {
 static cprox_status find_row(row_search *s, const cprox_robot_pair *pair, size_t interval) {
   query *q = &s->q;
   const bool self = mover_is_self(&q->mover);
-  const size_t target = self ? 0 : (size_t)pair->other;
+  const size_t obstacle = self ? 0 : (size_t)pair->other;
   q->t0 = s->breaks[interval], q->t1 = s->breaks[interval + 1];
   cprox_result near;
   workspace_forget_work(q->workspace);
-  cprox_status status = robot_answer(q, target, self ? 0 : target + 1, s->cutoff, &near);
+  cprox_status status = robot_answer(q, obstacle, self ? 0 : obstacle + 1, s->cutoff, &near);
   if (status < 0 || near.lower > s->horizon) return status < 0 ? status : CPROX_OK;
   if (s->count == s->room) {
     s->failure = CPROX_BUDGET;
     return CPROX_OK;
   }
   cprox_motion_row *row = &s->rows[s->count];
-  status = motion_gradient_of(q, target, self ? 0 : target + 1, &row->result, &row->gradient);
+  status = motion_gradient_of(q, obstacle, self ? 0 : obstacle + 1, &row->result, &row->gradient);
   if (status < 0) return status;
   if (status != CPROX_OK && status != CPROX_OVERLAP) s->failure = status;
   if (row->result.lower > s->horizon) return CPROX_OK;
@@ -108,13 +108,13 @@ static cprox_status find_row(row_search *s, const cprox_robot_pair *pair, size_t
 static cprox_status find_rows(row_search *s, const cprox_robot_pair *pair) {
   query *q = &s->q;
   const bool self = mover_is_self(&q->mover);
-  const size_t target = self ? 0 : (size_t)pair->other, first = s->count;
+  const size_t obstacle = self ? 0 : (size_t)pair->other, first = s->count;
   q->mover.pairs = pair, q->mover.n_pairs = 1;
   s->seen = -1;
   q->t0 = s->breaks[0], q->t1 = s->breaks[s->n_intervals];
   cprox_result all;
   workspace_forget_work(q->workspace);
-  cprox_status status = robot_answer(q, target, self ? 0 : target + 1, s->cutoff, &all);
+  cprox_status status = robot_answer(q, obstacle, self ? 0 : obstacle + 1, s->cutoff, &all);
   if (status < 0 || all.lower > s->horizon) return status < 0 ? status : CPROX_OK;
   for (size_t i = 0; i < s->n_intervals && s->failure != CPROX_STOPPED && status >= 0; i++)
     status = find_row(s, pair, i);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The k closest targets, and all targets within a distance: distance searches that end where a target is out of query.
+/* The k closest obstacles, and all obstacles within a distance: distance searches that end where an obstacle is out of query.
  * */
 #include <math.h>
 #include <string.h>
@@ -12,14 +12,14 @@ static cprox_status worse(cprox_status a, cprox_status b) {
   return a != CPROX_OK ? a : b;
 }
 
-/* The targets by their nearest ball; part is not used. NULL where memory is out. */
-static candidate *rank_targets(const query *q) {
+/* The obstacles by their nearest ball; part is not used. NULL where memory is out. */
+static candidate *rank_obstacles(const query *q) {
   candidate *rank = workspace_reserve(q->workspace, WORKSPACE_RANKING, (q->n + 1) * sizeof *rank);
   if (!rank) return NULL;
   for (size_t i = 0; i < q->n; i++) {
     size_t n;
     if (q->mover.motion) { /* its search ranks by itself */
-      rank[i] = (candidate){.lower = q->is_signed ? -INFINITY : 0.0, .target = (int32_t)i};
+      rank[i] = (candidate){.lower = q->is_signed ? -INFINITY : 0.0, .obstacle = (int32_t)i};
       continue;
     }
     const candidate *parts = candidates_list(q, i, i + 1, true, &n);
@@ -30,16 +30,16 @@ static candidate *rank_targets(const query *q) {
   return rank;
 }
 
-cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k,
+cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, size_t k,
                           const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                           cprox_listed *listed) {
-  query q = query_create(mover, targets, n, -1.0, options, workspace);
+  query q = query_create(mover, obstacles, n, -1.0, options, workspace);
   q.is_signed = q.options.signed_distance;
   const cprox_status begun = query_begin(
       &q, (arguments_query){"the nearest obstacles", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS});
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one obstacle");
-  const candidate *rank = rank_targets(&q);
+  const candidate *rank = rank_obstacles(&q);
   if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of obstacles");
   cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
@@ -51,12 +51,12 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
     const double cutoff = found == k ? kept[k - 1].upper : INFINITY;
     if (rank[i].lower > cutoff) break;
     cprox_result r;
-    const size_t target = (size_t)rank[i].target;
+    const size_t obstacle = (size_t)rank[i].obstacle;
     workspace_forget_work(workspace);
-    const cprox_status status = solve_query(&q, target, target + 1, cutoff, &r);
+    const cprox_status status = solve_query(&q, obstacle, obstacle + 1, cutoff, &r);
     if (status < 0) return status;
     failure = worse(failure, status);
-    if (r.obstacle_index < 0) r.obstacle_index = rank[i].target; /* stopped before anything was measured */
+    if (r.obstacle_index < 0) r.obstacle_index = rank[i].obstacle; /* stopped before anything was measured */
     query_rank(kept, &found, k, &r, &others);
   }
   if (i < n) others = fmin(rank[i].lower, others); /* sorted */
@@ -66,12 +66,12 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
   return failure;
 }
 
-cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+cprox_status list_within(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double delta,
                          const cprox_options *options, cprox_workspace *workspace, cprox_result *near,
                          cprox_listed *listed) {
   const cprox_status usable = validate_delta(delta, workspace);
   if (usable != CPROX_OK) return usable;
-  query q = query_create(mover, targets, n, -1.0, options, workspace);
+  query q = query_create(mover, obstacles, n, -1.0, options, workspace);
   q.is_signed = q.options.signed_distance;
   const cprox_status begun = query_begin(
       &q, (arguments_query){"the obstacles within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS});

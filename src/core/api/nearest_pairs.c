@@ -153,10 +153,10 @@ static cprox_status ask_at_once(ranked_pairs *p, size_t i) {
   return CPROX_OK;
 }
 
-cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k, double delta,
+cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, size_t k, double delta,
                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                                 cprox_listed *listed) {
-  query q = query_create(mover, targets, n, -1.0, options, workspace);
+  query q = query_create(mover, obstacles, n, -1.0, options, workspace);
   const cprox_status begun =
       query_begin(&q, (arguments_query){"the nearest pairs", ARGUMENTS_SEARCH | ARGUMENTS_INTERVAL});
   if (begun != CPROX_OK) return begun;

@@ -6,7 +6,7 @@
 #include "curve_proximity/cprox/robot.h"
 #include "problem/problem.h"
 
-/* Lists the pairs of geometries, or of geometries and targets, that are asked about where none are given; counts them
+/* Lists the pairs of geometries, or of geometries and obstacles, that are asked about where none are given; counts them
  * where there is no room (NULL). */
 size_t robot_pairs_list(const query *q, cprox_robot_pair *pairs);
 

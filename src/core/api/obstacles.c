@@ -20,7 +20,7 @@ cprox_status cprox_obstacles_create(const cprox_obstacle *list, size_t n, cprox_
     return workspace_fail(workspace, CPROX_INVALID, "obstacles is NULL: there is no place for the handle");
   if ((unsigned)index > CPROX_INDEX_BATCH)
     return workspace_fail(workspace, CPROX_INVALID, "%d is no kind of index", (int)index);
-  cprox_status status = validate_targets(list, n, workspace);
+  cprox_status status = validate_obstacles(list, n, workspace);
   if (status != CPROX_OK) return status;
   cprox_obstacles *made = calloc(1, sizeof *made);
   cprox_obstacle *copy = n > 0 ? malloc(n * sizeof *copy) : NULL;
@@ -30,7 +30,7 @@ cprox_status cprox_obstacles_create(const cprox_obstacle *list, size_t n, cprox_
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for %zu obstacles", n);
   }
   if (n > 0) memcpy(copy, list, n * sizeof *copy);
-  made->targets = copy;
+  made->obstacles = copy;
   made->n = n;
   if (index == CPROX_INDEX_BVH) status = obstacle_bvh_create(copy, n, workspace, &made->bvh);
   if (index == CPROX_INDEX_BATCH) status = obstacle_batch_create(copy, n, workspace, &made->batch);
@@ -46,7 +46,7 @@ void cprox_obstacles_free(cprox_obstacles *obstacles) {
   if (!obstacles) return;
   obstacle_bvh_free(obstacles->bvh);
   obstacle_batch_free(obstacles->batch);
-  free(obstacles->targets);
+  free(obstacles->obstacles);
   free(obstacles);
 }
 

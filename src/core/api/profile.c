@@ -124,10 +124,10 @@ static cprox_profile_interval unmeasured(const query *q, double t0, double t1) {
                                   .mover_part = -1};
 }
 
-cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size_t n, const double *breaks,
+cprox_status list_profile(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, const double *breaks,
                           size_t n_intervals, double horizon, const cprox_options *options, cprox_workspace *workspace,
                           cprox_profile_interval *intervals) {
-  query q = query_create(mover, targets, n, -1.0, options, workspace);
+  query q = query_create(mover, obstacles, n, -1.0, options, workspace);
   q.is_signed = q.options.signed_distance;
   cprox_status status =
       query_begin(&q, (arguments_query){"a clearance profile",

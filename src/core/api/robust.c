@@ -87,7 +87,7 @@ static cprox_status begin(query *q, const cprox_obstacles *obstacles, const cpro
   const cprox_motion_info info = cprox_motion_get_info(q->mover.motion);
   q->t0 = greater(q->t0 - bounds->timing, info.t0), q->t1 = lesser(q->t1 + bounds->timing, info.t1);
   for (size_t i = 0; q->set && i < q->n; i++) {
-    const double reach = obstacle_reach(&q->targets[i]);
+    const double reach = obstacle_reach(&q->obstacles[i]);
     if (isfinite(reach)) errors->object_size = greater(reach, errors->object_size);
   }
   return CPROX_OK;

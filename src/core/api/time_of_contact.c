@@ -6,9 +6,9 @@
 #include "robot_query/answer.h"
 #include "solve/list.h"
 
-cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targets, size_t n,
+cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *obstacles, size_t n,
                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
-  query q = query_create(mover, targets, n, 0.0, options, workspace);
+  query q = query_create(mover, obstacles, n, 0.0, options, workspace);
   const arguments_query asked = {
       "time of contact", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS};
   const cprox_status begun = query_begin(&q, asked);
@@ -19,8 +19,8 @@ cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targe
   return met < 0 ? met : time_of_contact_conclude(&all, &q, result);
 }
 
-cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                                    cprox_workspace *workspace, cprox_result *result) {
   WORKSPACE_USE(workspace);
-  return list_time_of_contact(mover, &target, 1, options, workspace, result);
+  return list_time_of_contact(mover, &obstacle, 1, options, workspace, result);
 }

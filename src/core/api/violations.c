@@ -101,7 +101,7 @@ static bool add_violated(violation_search *s, const piece *p, const cprox_result
 /* A bound on how far what comes nearest moves between any two places of the section: its capsule's size. */
 static double travel_of_section(const query *q) {
   for (size_t i = 0; i < q->n; i++)
-    if (q->targets[i].synchronized) return INFINITY; /* it moves, too */
+    if (q->obstacles[i].synchronized) return INFINITY; /* it moves, too */
   return vec_norm(vec_sub(q->reach.b, q->reach.a)) + 2.0 * q->reach.radius;
 }
 
@@ -294,10 +294,10 @@ static cprox_status check(const violation_search *s) {
   return CPROX_OK;
 }
 
-cprox_status list_violations(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+cprox_status list_violations(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double delta,
                              double resolution, const cprox_options *options, cprox_workspace *workspace,
                              cprox_violations *violations) {
-  violation_search s = {.q = query_create(mover, targets, n, -1.0, options, workspace),
+  violation_search s = {.q = query_create(mover, obstacles, n, -1.0, options, workspace),
                         .delta = delta,
                         .resolution = resolution,
                         .out = violations};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Many movers against the same targets. doc/batches.md says what is done for each. */
+/* Many movers against the same obstacles. doc/batches.md says what is done for each. */
 #include "batch/batch.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ static cprox_status report_hit(const batch_run *run, const batch_prefilter_answe
                       .t_obstacle = NAN,
                       .witness_mover = hit->point,
                       .witness_obstacle = hit->point,
-                      .obstacle_index = part->target,
+                      .obstacle_index = part->obstacle,
                       .obstacle_part = part->part,
                       .lod = look->lod};
 
@@ -90,7 +90,7 @@ static bool may_be_fast(const batch_run *run, const cprox_mover *mover) {
 
 static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_result *r) {
   const query *q = &run->q;
-  const cprox_obstacle *targets = run->batch->targets;
+  const cprox_obstacle *obstacles = run->batch->obstacles;
   const size_t n = run->batch->n;
   workspace_clear(q->workspace);
   if (may_be_fast(run, mover)) {
@@ -98,8 +98,8 @@ static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_r
     return answer_fast(run, r);
   }
   run->degree = SIZE_MAX; /* a search has bases of its own */
-  if (!query_wants_verdict(q)) return list_distance(*mover, targets, n, &q->options, q->workspace, r, NULL);
-  return list_tolerance(*mover, targets, n, q->limit, &q->options, q->workspace, r, NULL);
+  if (!query_wants_verdict(q)) return list_distance(*mover, obstacles, n, &q->options, q->workspace, r, NULL);
+  return list_tolerance(*mover, obstacles, n, q->limit, &q->options, q->workspace, r, NULL);
 }
 
 static cprox_status check_call(const batch_run *run, const cprox_mover *movers, size_t first, size_t last,
@@ -130,7 +130,7 @@ static cprox_status answer_range(query q, const obstacle_batch *batch, const cpr
   batch_run run = {.batch = batch, .q = q, .degree = SIZE_MAX};
   const cprox_status checked = check_call(&run, movers, first, last, results);
   if (checked != CPROX_OK) return checked;
-  run.q.targets = batch->targets;
+  run.q.obstacles = batch->obstacles;
   run.q.n = batch->n;
   if (!reserve(&run))
     return workspace_fail(q.workspace, CPROX_MEMORY, "no memory for a batch of %zu obstacles", batch->n);

@@ -107,12 +107,12 @@ static void lay_obb(const placed_pair *p, batch_core *core) {
 
 /* ---- the batch ---- */
 
-static obstacle_batch *allocate(size_t n_targets, size_t n_parts) {
+static obstacle_batch *allocate(size_t n_obstacles, size_t n_parts) {
   obstacle_batch *batch = calloc(1, sizeof *batch);
   if (!batch) return NULL;
   const size_t n_blocks = (n_parts + BLOCK - 1) / BLOCK, padded = n_blocks * BLOCK;
   const size_t padded_blocks = (n_blocks + BLOCK - 1) / BLOCK * BLOCK;
-  batch->n = n_targets;
+  batch->n = n_obstacles;
   batch->balls.n = n_parts;
   batch->balls.padded = padded;
   batch->blocks.n = n_blocks;
@@ -141,19 +141,19 @@ static obstacle_batch *allocate(size_t n_targets, size_t n_parts) {
 /* The balls of one part. What is on the mover's clock has none that would hold for every mover. */
 static void describe(obstacle_batch *batch, const query *q, size_t k) {
   const candidate *c = &batch->parts[k];
-  const cprox_obstacle *target = &batch->targets[c->target];
-  if (target->synchronized) return;
+  const cprox_obstacle *obstacle = &batch->obstacles[c->obstacle];
+  if (obstacle->synchronized) return;
   double placing;
   const candidate_ball round = candidate_bounding_ball(q, c, &placing);
   batch->balls.x[k] = round.centre.x;
   batch->balls.y[k] = round.centre.y;
   batch->balls.z[k] = round.centre.z;
-  batch->balls.reach[k] = round.radius + target->margin;
+  batch->balls.reach[k] = round.radius + obstacle->margin;
   batch->balls.sizes[k] = vec_norm(round.centre) + placing + batch->balls.reach[k];
   const placed_pair placed = placed_pair_resolve(q, c);
   batch->cores[k] = core_of(&placed, round);
-  batch->cores[k].plane = target->pose.position.z;
-  batch->cores[k].margin = target->margin;
+  batch->cores[k].plane = obstacle->pose.position.z;
+  batch->cores[k].margin = obstacle->margin;
   lay_obb(&placed, &batch->cores[k]);
 }
 
@@ -164,8 +164,8 @@ static bool list_parts(obstacle_batch *batch, const query *q) {
   if (!places) return false;
   size_t bounded = 0, n = 0;
   for (size_t i = 0; i < batch->n; i++) {
-    for (size_t part = 0; part < body_n_parts(batch->targets[i].body); part++) {
-      batch_place place = {.part = {.target = (int32_t)i, .part = (int32_t)part}};
+    for (size_t part = 0; part < body_n_parts(batch->obstacles[i].body); part++) {
+      batch_place place = {.part = {.obstacle = (int32_t)i, .part = (int32_t)part}};
       double unused;
       const candidate_ball round = candidate_bounding_ball(q, &place.part, &unused);
       place.at = round.centre;
@@ -181,15 +181,15 @@ static bool list_parts(obstacle_batch *batch, const query *q) {
   return true;
 }
 
-cprox_status obstacle_batch_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
+cprox_status obstacle_batch_create(const cprox_obstacle *obstacles, size_t n, cprox_workspace *workspace,
                                    obstacle_batch **batch) {
   size_t n_parts = 0;
-  for (size_t i = 0; i < n; i++) n_parts += body_n_parts(targets[i].body);
+  for (size_t i = 0; i < n; i++) n_parts += body_n_parts(obstacles[i].body);
   obstacle_batch *made = allocate(n, n_parts);
   if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu obstacles", n);
-  made->targets = targets;
-  for (size_t i = 0; i < n; i++) made->synchronized = made->synchronized || targets[i].synchronized;
-  const query q = {.targets = made->targets, .n = n};
+  made->obstacles = obstacles;
+  for (size_t i = 0; i < n; i++) made->synchronized = made->synchronized || obstacles[i].synchronized;
+  const query q = {.obstacles = made->obstacles, .n = n};
   if (!list_parts(made, &q)) {
     obstacle_batch_free(made);
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu obstacles", n);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a batch knows of its targets. */
+/* What a batch knows of its obstacles. */
 #ifndef CPROX_BATCH_OBSTACLES_H
 #define CPROX_BATCH_OBSTACLES_H
 
@@ -7,7 +7,7 @@
 #include "curve_proximity/cprox/query.h"
 #include "problem/candidates.h"
 
-/* A point in a target or near it, in the world, and balls about it: one inside the target, one round it. Margin is left
+/* A point in an obstacle or near it, in the world, and balls about it: one inside the obstacle, one round it. Margin is left
  * out. */
 typedef struct batch_core {
   vec3 centre;
@@ -15,7 +15,7 @@ typedef struct batch_core {
   double outer;
   bool flat;     /* the inner ball is a disc in the plane of constant z: it tells of curves in that plane only */
   double plane;  /* this */
-  double margin; /* of the target, which the radii leave out */
+  double margin; /* of the obstacle, which the radii leave out */
 
   /* a box round the part, in the frame of its shape */
   bool has_obb, is_obb; /* there is one; the part is that box */
@@ -25,10 +25,10 @@ typedef struct batch_core {
 } batch_core;
 
 typedef struct obstacle_batch {
-  const cprox_obstacle *targets; /* not owned */
+  const cprox_obstacle *obstacles; /* not owned */
   size_t n;
   bool synchronized; /* some of them are: where they are depends on the mover */
-  /* one for each target that is a curve, one for each convex part of a body */
+  /* one for each obstacle that is a curve, one for each convex part of a body */
   candidate *parts;
   batch_core *cores;
   lanes_balls balls;
@@ -36,7 +36,7 @@ typedef struct obstacle_batch {
 } obstacle_batch;
 
 /* Makes n obstacles ready, which were checked and must outlive it. */
-cprox_status obstacle_batch_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
+cprox_status obstacle_batch_create(const cprox_obstacle *obstacles, size_t n, cprox_workspace *workspace,
                                    obstacle_batch **batch);
 void obstacle_batch_free(obstacle_batch *batch);
 

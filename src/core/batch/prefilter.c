@@ -140,7 +140,7 @@ static void consider(batch_run *run, size_t k, double most, double *least_upper,
   c->lower = run->lower[k];
   const double beyond = lesser(most, *least_upper);
   double upper = INFINITY;
-  if (!(c->lower > beyond) && run->short_enough && run->batch->targets[c->target].body) {
+  if (!(c->lower > beyond) && run->short_enough && run->batch->obstacles[c->obstacle].body) {
     if (!run->joined && (run->measured || batch_points_ready(run))) batch_points_join(run);
     if (run->joined) upper = measure_pair_at(run, c, k, beyond, look);
   }

@@ -11,51 +11,51 @@
 #include "problem/level_of_detail.h"
 #include "shape/body.h"
 
-/* The box of a target in the world, rounding included. False where it has none. */
-static bool box_of(const cprox_obstacle *target, vec3 *low, vec3 *high) {
-  if (target->synchronized) return false;
-  const query q = {.targets = target, .n = 1};
+/* The box of an obstacle in the world, rounding included. False where it has none. */
+static bool box_of(const cprox_obstacle *obstacle, vec3 *low, vec3 *high) {
+  if (obstacle->synchronized) return false;
+  const query q = {.obstacles = obstacle, .n = 1};
   const candidate c = {0};
-  if (!target->body) {
+  if (!obstacle->body) {
     double sizes;
     const candidate_ball round = candidate_bounding_ball(&q, &c, &sizes);
-    const double r = round.radius + target->margin + 64.0 * ROUND_U * sizes;
+    const double r = round.radius + obstacle->margin + 64.0 * ROUND_U * sizes;
     *low = vec_sub(round.centre, vec(r, r, r));
     *high = vec_add(round.centre, vec(r, r, r));
     return isfinite(r);
   }
-  const cprox_body *body = target->body;
+  const cprox_body *body = obstacle->body;
   if (!isfinite(body->ball_radius)) return false;
-  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
   double reach[6];
-  const double sizes = vec_norm(body->ball_centre) + body->ball_radius + vec_norm(f.position) + target->margin;
+  const double sizes = vec_norm(body->ball_centre) + body->ball_radius + vec_norm(f.position) + obstacle->margin;
   for (int k = 0; k < 6; k++) {
     const double sign = k < 3 ? 1.0 : -1.0;
     const vec3 d = vec(k % 3 == 0 ? sign : 0.0, k % 3 == 1 ? sign : 0.0, k % 3 == 2 ? sign : 0.0);
     const double h = cprox_body_support(body, frame_turn_to_local(&f, d), NULL);
-    reach[k] = h + vec_dot(d, f.position) + target->margin + body->shape.slack + 256.0 * ROUND_U * sizes;
+    reach[k] = h + vec_dot(d, f.position) + obstacle->margin + body->shape.slack + 256.0 * ROUND_U * sizes;
   }
   *high = vec(reach[0], reach[1], reach[2]);
   *low = vec(-reach[3], -reach[4], -reach[5]);
   return vec_finite(*low) && vec_finite(*high);
 }
 
-static bool has_elements(const cprox_obstacle *target) {
-  return target->body && (model_has_tree(target->body, CPROX_LOD_MESH) || target->body->field);
+static bool has_elements(const cprox_obstacle *obstacle) {
+  return obstacle->body && (model_has_tree(obstacle->body, CPROX_LOD_MESH) || obstacle->body->field);
 }
 
-/* Boxes of targets that have one, the others apart. */
-static void sort_targets(obstacle_bvh *set) {
+/* Boxes of obstacles that have one, the others apart. */
+static void sort_obstacles(obstacle_bvh *set) {
   vec3 low = vec(INFINITY, INFINITY, INFINITY), high = vec(-INFINITY, -INFINITY, -INFINITY);
   for (size_t i = 0; i < set->n; i++) {
-    const cprox_obstacle *target = &set->targets[i];
-    set->has_clock = set->has_clock || target->synchronized;
-    set->has_elements = set->has_elements || has_elements(target);
-    set->has_curves = set->has_curves || !target->body;
-    set->has_solids = set->has_solids || (target->body && part_model_is_solid(target->body));
-    set->has_fields = set->has_fields || (target->body && target->body->field);
+    const cprox_obstacle *obstacle = &set->obstacles[i];
+    set->has_clock = set->has_clock || obstacle->synchronized;
+    set->has_elements = set->has_elements || has_elements(obstacle);
+    set->has_curves = set->has_curves || !obstacle->body;
+    set->has_solids = set->has_solids || (obstacle->body && part_model_is_solid(obstacle->body));
+    set->has_fields = set->has_fields || (obstacle->body && obstacle->body->field);
     vec3 *a = &set->low[set->n_boxes], *b = &set->high[set->n_boxes];
-    if (!box_of(target, a, b)) {
+    if (!box_of(obstacle, a, b)) {
       set->unbounded[set->n_unbounded++] = (uint32_t)i;
       continue;
     }
@@ -81,14 +81,14 @@ static obstacle_bvh *allocate(size_t n) {
   return NULL;
 }
 
-cprox_status obstacle_bvh_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
+cprox_status obstacle_bvh_create(const cprox_obstacle *obstacles, size_t n, cprox_workspace *workspace,
                                  obstacle_bvh **set) {
   if (n > TREE_MOST_ELEMENTS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu obstacles, at most %zu are possible", n, TREE_MOST_ELEMENTS);
   obstacle_bvh *made = allocate(n);
   if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a set of %zu obstacles", n);
-  made->targets = targets;
-  sort_targets(made);
+  made->obstacles = obstacles;
+  sort_obstacles(made);
   if (made->n_boxes > 0) {
     const tree_source source = {
         .kind = TREE_BOXES, .n = made->n_boxes, .points = made->low, .high = made->high, .centre = made->centre};

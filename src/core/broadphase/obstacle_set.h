@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The targets of a set, nearest box to the mover's curve first. */
+/* The obstacles of a set, nearest box to the mover's curve first. */
 #ifndef CPROX_BROADPHASE_OBSTACLE_SET_H
 #define CPROX_BROADPHASE_OBSTACLE_SET_H
 
@@ -8,12 +8,12 @@
 #include "problem/candidates.h"
 
 typedef struct obstacle_bvh {
-  const cprox_obstacle *targets; /* not owned */
+  const cprox_obstacle *obstacles; /* not owned */
   size_t n;
-  tree *boxes;         /* round the targets, margin included; NULL where none has bounds */
+  tree *boxes;         /* round the obstacles, margin included; NULL where none has bounds */
   vec3 *low, *high;    /* of the elements of the tree, about the centre */
   uint32_t *of_box;    /* whose box that is */
-  uint32_t *unbounded; /* targets without a box */
+  uint32_t *unbounded; /* obstacles without a box */
   size_t n_boxes, n_unbounded;
   vec3 centre;
   bool has_clock, has_elements, has_fields, has_curves; /* what not every mover goes with */
@@ -21,11 +21,11 @@ typedef struct obstacle_bvh {
 } obstacle_bvh;
 
 /* The BVH over the boxes of n obstacles, which were checked and must outlive it. */
-cprox_status obstacle_bvh_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
+cprox_status obstacle_bvh_create(const cprox_obstacle *obstacles, size_t n, cprox_workspace *workspace,
                                  obstacle_bvh **set);
 void obstacle_bvh_free(obstacle_bvh *set);
 
-/* A node, a pack, or a target. */
+/* A node, a pack, or an obstacle. */
 typedef struct set_entry {
   double lower;
   uint32_t at;
@@ -44,8 +44,8 @@ typedef struct set_traversal {
 /* False where memory is out, here as there. q has been asked about its whole curve. */
 bool traversal_begin(set_traversal *w, const obstacle_bvh *set, const query *q);
 
-/* The next target, if its lower bound is at most `most`; else *target is UINT32_MAX and *lower a bound of all that are
+/* The next obstacle, if its lower bound is at most `most`; else *obstacle is UINT32_MAX and *lower a bound of all that are
  * left. */
-bool traversal_next(set_traversal *w, double most, uint32_t *target, double *lower);
+bool traversal_next(set_traversal *w, double most, uint32_t *obstacle, double *lower);
 
 #endif

@@ -126,11 +126,11 @@ static bool refine(set_traversal *w, set_entry *entry) {
   return push(w, *entry);
 }
 
-bool traversal_next(set_traversal *w, double most, uint32_t *target, double *lower) {
-  *target = UINT32_MAX;
+bool traversal_next(set_traversal *w, double most, uint32_t *obstacle, double *lower) {
+  *obstacle = UINT32_MAX;
   *lower = -INFINITY;
   if (w->unbounded < w->set->n_unbounded) {
-    *target = w->set->unbounded[w->unbounded++];
+    *obstacle = w->set->unbounded[w->unbounded++];
     return true;
   }
   while (w->count > 0) {
@@ -141,7 +141,7 @@ bool traversal_next(set_traversal *w, double most, uint32_t *target, double *low
     }
     set_entry entry = pop(w);
     if (entry.is == SET_TARGET) {
-      *target = w->set->of_box[entry.at];
+      *obstacle = w->set->of_box[entry.at];
       *lower = entry.lower;
       return true;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Targets as text, a line a convex part: what the checker takes as given. doc/certificates.md has the grammar. */
+/* SceneObstacles as text, a line a convex part: what the checker takes as given. doc/certificates.md has the grammar. */
 #include "certificate/describe.h"
 
 #include <stdarg.h>
@@ -146,9 +146,9 @@ static void describe_inequalities(text *t, const cprox_body *body) {
 
 /* ---- obstacles ---- */
 
-static bool describe_one(text *t, const cprox_obstacle *target, const cprox_body *body, const cprox_pose *inner) {
-  say(t, "target %a %d", target->margin, inner ? 2 : 1);
-  describe_pose(t, &target->pose);
+static bool describe_one(text *t, const cprox_obstacle *obstacle, const cprox_body *body, const cprox_pose *inner) {
+  say(t, "obstacle %a %d", obstacle->margin, inner ? 2 : 1);
+  describe_pose(t, &obstacle->pose);
   if (inner) describe_pose(t, inner);
   const cprox_body *elements = elements_body(body);
   if (elements && !describe_elements(t, elements)) return false;
@@ -160,12 +160,12 @@ static bool describe_one(text *t, const cprox_obstacle *target, const cprox_body
   return true;
 }
 
-size_t cprox_obstacle_describe(const cprox_obstacle *target, char *out, size_t size) {
-  const cprox_body *body = target->synchronized && !target->body ? &carried_point : target->body;
+size_t cprox_obstacle_describe(const cprox_obstacle *obstacle, char *out, size_t size) {
+  const cprox_body *body = obstacle->synchronized && !obstacle->body ? &carried_point : obstacle->body;
   if (!body || describe_unknown_obstacle(body)) return 0;
   text t = {.at = out, .size = out ? size : 0};
   const bool compound = body->kind == CPROX_BODY_COMPOUND;
   for (size_t i = 0; i < body_n_parts(body); i++)
-    if (!describe_one(&t, target, body_part_at(body, i), compound ? &body->parts[i].pose : NULL)) return 0;
+    if (!describe_one(&t, obstacle, body_part_at(body, i), compound ? &body->parts[i].pose : NULL)) return 0;
   return t.length;
 }

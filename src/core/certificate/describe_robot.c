@@ -98,12 +98,12 @@ static void describe_motion(text *t, const cprox_motion *motion) {
 size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obstacles, const char *id,
                             cprox_workspace *workspace, char *out, size_t size) {
   WORKSPACE_USE_OR(workspace, 0);
-  const cprox_obstacle *targets = obstacles_list(obstacles);
+  const cprox_obstacle *list = obstacles_list(obstacles);
   const size_t n = obstacles_count(obstacles);
-  query q = query_create(*mover, targets, n, -1.0, NULL, workspace);
+  query q = query_create(*mover, list, n, -1.0, NULL, workspace);
   if (!mover->motion || !motion_is_described(mover->motion) ||
       describe_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
-      validate_query(mover, targets, n, &q.options, (arguments_query){"a description", ARGUMENTS_WHOLE}, workspace) !=
+      validate_query(mover, list, n, &q.options, (arguments_query){"a description", ARGUMENTS_WHOLE}, workspace) !=
           CPROX_OK)
     return 0;
   robot_scene scene;

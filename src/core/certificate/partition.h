@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Covers of a curve by parts, each with a normal that separates it from a set by more than delta: the substance of a
  * certificate. A cover is laid after the answer, at the answer's limit, and not collected from the search: the search
- * settles nodes by tangent balls, bounding balls and other targets' distances, which no checker should have to know,
+ * settles nodes by tangent balls, bounding balls and other obstacles' distances, which no checker should have to know,
  * and in an order of its own. */
 #ifndef CPROX_CERTIFICATE_PARTITION_H
 #define CPROX_CERTIFICATE_PARTITION_H
@@ -24,7 +24,7 @@ typedef struct cover {
   cprox_curve made[2];       /* the two curves, where they were made for this cover */
   double delta;
   double from, until;             /* the part of the curve that is covered: counting parameters */
-  double witness, witness_on_set; /* counting parameters where mover and curve targets are nearest, -1: not known */
+  double witness, witness_on_set; /* counting parameters where mover and curve obstacles are nearest, -1: not known */
   vec3 normal;                    /* unit, from the set to the mover there; (0,0,0): not known */
   uint32_t budget;                /* parts that may be tried */
   double shortest;                /* parts shorter than this are given up, relative to one piece */

@@ -101,10 +101,10 @@ static proven prove(cover *c, const frame *placed, const pair *p, vec3 inherited
 
 cprox_status partition_curves(cover *c) {
   const frame placed = frame_create(&c->pose, vec(0, 0, 0));
-  const cprox_curve *target = c->set.curve;
+  const cprox_curve *obstacle = c->set.curve;
   certificate_byte(c->certificate, SECTION_CURVE);
-  certificate_breaks(c->certificate, target->breaks, target->n_pieces);
+  certificate_breaks(c->certificate, obstacle->breaks, obstacle->n_pieces);
   c->normal = certificate_round(c->certificate, c->normal);
-  const pair whole = {{{c->from, c->until}, {0.0, (double)target->n_pieces}}};
+  const pair whole = {{{c->from, c->until}, {0.0, (double)obstacle->n_pieces}}};
   return prove(c, &placed, &whole, vec(0, 0, 0), 0).status;
 }

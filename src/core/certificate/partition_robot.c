@@ -100,7 +100,7 @@ static bool cut_item(robot_cover *c, int32_t index) {
 static const cprox_body *implicit_of(const robot_cover *c, const robot_pair *pair) {
   if (pair->self) return NULL;
   const robot_body *o = &c->scene->obstacles[pair->standing];
-  const cprox_body *body = body_part_at(c->scene->q->targets[o->index].body, (size_t)o->part);
+  const cprox_body *body = body_part_at(c->scene->q->obstacles[o->index].body, (size_t)o->part);
   return body->shape.implicit ? body : NULL;
 }
 

@@ -32,7 +32,7 @@
 
 typedef struct task {
   const cprox_mover *mover;
-  const cprox_obstacle *targets;
+  const cprox_obstacle *obstacles;
   size_t n;
   claim_wanted wanted;
   double delta;
@@ -63,7 +63,7 @@ static double sum_up(double a, double b) {
 
 static bool is_on_clock(const task *t) {
   bool is_so = t->mover->radius_curve != NULL;
-  for (size_t i = 0; i < t->n; i++) is_so = is_so || t->targets[i].synchronized || t->targets[i].radius_curve;
+  for (size_t i = 0; i < t->n; i++) is_so = is_so || t->obstacles[i].synchronized || t->obstacles[i].radius_curve;
   return is_so;
 }
 
@@ -72,17 +72,17 @@ static int compare_numbers(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Every joint of a curve that is on the clock, of the mover and of all targets, begins a piece; false where memory is
+/* Every joint of a curve that is on the clock, of the mover and of all obstacles, begins a piece; false where memory is
  * out. */
 static bool gather_breaks(const task *t, cprox_curve *like) {
   size_t n = 0;
   double *breaks = NULL;
   for (size_t i = 0; i <= t->n; i++) {
     const bool own = i == t->n;
-    const cprox_curve *of[2] = {own                          ? t->mover->curve
-                                : t->targets[i].synchronized ? t->targets[i].curve
-                                                             : NULL,
-                                own ? t->mover->radius_curve : t->targets[i].radius_curve};
+    const cprox_curve *of[2] = {own                            ? t->mover->curve
+                                : t->obstacles[i].synchronized ? t->obstacles[i].curve
+                                                               : NULL,
+                                own ? t->mover->radius_curve : t->obstacles[i].radius_curve};
     for (int k = 0; k < 2; k++) {
       if (!of[k]) continue;
       breaks = workspace_reserve(t->workspace, WORKSPACE_COVER_ITEMS, (n + of[k]->n_pieces + 1) * sizeof *breaks);
@@ -148,15 +148,15 @@ static bool carry(const cprox_body *whole, size_t part, cover *c) {
   return minkowski_join(c->set.body, &c->pose, c->carried.body, own, &c->joined);
 }
 
-/* A part of a target and one of what is carried. */
+/* A part of an obstacle and one of what is carried. */
 typedef struct section_place {
-  size_t target, part, load;
+  size_t obstacle, part, load;
 } section_place;
 
-/* The set that part of a target is, with the mover's ball, and what the answer knows of it; false where memory is out.
+/* The set that part of an obstacle is, with the mover's ball, and what the answer knows of it; false where memory is out.
  */
 static bool cover_begin(const task *t, section_place of, uint32_t width, cover *c) {
-  const cprox_obstacle *at = &t->targets[of.target];
+  const cprox_obstacle *at = &t->obstacles[of.obstacle];
   *c = (cover){.curve = t->mover->curve,
                .set = {.body = at->body, .curve = at->synchronized ? NULL : at->curve, .poses = 1},
                .outer = at->pose,
@@ -186,7 +186,7 @@ static bool cover_begin(const task *t, section_place of, uint32_t width, cover *
   if (t->like.n_pieces > 0 && !put_on_clock(t, at, c)) return false;
   c->until = (double)c->curve->n_pieces;
   const cprox_result *r = t->answer;
-  const bool found = r && r->obstacle_index == (int32_t)of.target && r->obstacle_part == (int32_t)of.part;
+  const bool found = r && r->obstacle_index == (int32_t)of.obstacle && r->obstacle_part == (int32_t)of.part;
   if (found && isfinite(r->t) && (!t->mover->body || r->mover_part == (int32_t)of.load)) {
     c->witness = count_at(c->curve, r->t);
     if (c->set.curve && isfinite(r->t_obstacle)) c->witness_on_set = count_at(c->set.curve, r->t_obstacle);
@@ -202,10 +202,10 @@ static section_place nearest_section(const task *t) {
                          t->mover->body ? (size_t)r->mover_part : 0};
 }
 
-/* The number of parts of all targets before one. */
-static size_t sections_before(const task *t, size_t target) {
+/* The number of parts of all obstacles before one. */
+static size_t sections_before(const task *t, size_t obstacle) {
   size_t sections = 0;
-  for (size_t i = 0; i < target; i++) sections += body_n_parts(t->targets[i].body);
+  for (size_t i = 0; i < obstacle; i++) sections += body_n_parts(t->obstacles[i].body);
   return sections;
 }
 
@@ -216,7 +216,7 @@ static double size_of(const cprox_curve *curve, vec3 centre) {
   return sqrt(size);
 }
 
-/* What the rounding of the search is relative to, for the nearest target. */
+/* What the rounding of the search is relative to, for the nearest obstacle. */
 static double size_of_problem(const task *t, const cover *c) {
   const double of_set = c->set.curve ? size_of(c->set.curve, c->set.curve->points[0]) : c->set.body->shape.scale;
   const double carried = c->carried.body ? c->carried.body->shape.scale : 0.0;
@@ -243,8 +243,8 @@ static cprox_status attempt(const task *t, uint32_t width, double delta, reach_p
   certificate_breaks(t->certificate, pieces_of(t)->breaks, pieces_of(t)->n_pieces);
   section_place of = {0, 0, 0};
   for (of.load = 0; of.load < loads; of.load++)
-    for (of.target = 0; of.target < t->n; of.target++)
-      for (of.part = 0; of.part < body_n_parts(t->targets[of.target].body); of.part++) {
+    for (of.obstacle = 0; of.obstacle < t->n; of.obstacle++)
+      for (of.part = 0; of.part < body_n_parts(t->obstacles[of.obstacle].body); of.part++) {
         const cprox_status status = attempt_section(t, of, width, delta, part);
         if (status != CPROX_OK) return status;
       }
@@ -296,7 +296,7 @@ static cprox_status certify_near(const task *t) {
   const cprox_result *r = t->answer;
   if (r->obstacle_index < 0 || (size_t)r->obstacle_index >= t->n || !isfinite(r->t)) return CPROX_PRECISION;
   const section_place of = nearest_section(t);
-  const size_t section = sections_before(t, of.target) + of.part + of.load * sections_before(t, t->n);
+  const size_t section = sections_before(t, of.obstacle) + of.part + of.load * sections_before(t, t->n);
   cover c;
   if (!cover_begin(t, of, 8, &c)) return CPROX_MEMORY;
   c.delta = t->delta;
@@ -317,15 +317,15 @@ static cprox_status check_kinds(const task *t) {
   if (mover->curve->arcs)
     return workspace_fail(t->workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
   for (size_t i = 0; i < t->n; i++) {
-    const cprox_obstacle *target = &t->targets[i];
-    if (target->curve && target->curve->arcs)
+    const cprox_obstacle *obstacle = &t->obstacles[i];
+    if (obstacle->curve && obstacle->curve->arcs)
       return workspace_fail(t->workspace, CPROX_INVALID,
                             "obstacle %zu is known by its arc length alone: it has no certificates", i);
-    if (target->body && describe_unknown_obstacle(target->body))
+    if (obstacle->body && describe_unknown_obstacle(obstacle->body))
       return workspace_fail(t->workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
-                            cprox_body_kind_name(describe_unknown_obstacle(target->body)->kind));
-    for (size_t k = 0; k < body_n_parts(target->body) && target->synchronized && target->body; k++) {
-      const cprox_body *elements = elements_body(body_part_at(target->body, k));
+                            cprox_body_kind_name(describe_unknown_obstacle(obstacle->body)->kind));
+    for (size_t k = 0; k < body_n_parts(obstacle->body) && obstacle->synchronized && obstacle->body; k++) {
+      const cprox_body *elements = elements_body(body_part_at(obstacle->body, k));
       if (elements && elements->winding)
         return workspace_fail(t->workspace, CPROX_INVALID,
                               "obstacle %zu is a closed mesh that moves: it has no certificates", i);
@@ -351,7 +351,7 @@ static cprox_status prove(const task *t) {
   if (!t->mover->motion) return certify_curve(t);
   claim_wanted wanted = t->wanted;
   wanted.delta = t->delta;
-  return certify_robot(t->mover, t->targets, t->n, wanted, t->answer, t->options, t->workspace, t->certificate);
+  return certify_robot(t->mover, t->obstacles, t->n, wanted, t->answer, t->options, t->workspace, t->certificate);
 }
 
 /* ---- links that are meshes ---- */
@@ -370,7 +370,7 @@ static cprox_status prove_of_hulls(const task *t) {
   cprox_options options = *t->options;
   options.max_lod = CPROX_LOD_HULL;
   options.signed_distance = false;
-  query q = query_create(*t->mover, t->targets, t->n, -1.0, &options, t->workspace);
+  query q = query_create(*t->mover, t->obstacles, t->n, -1.0, &options, t->workspace);
   query_ask_whole(&q);
   cprox_result hulls;
   const cprox_status status = solve_query(&q, 0, q.n, INFINITY, &hulls);
@@ -396,11 +396,11 @@ static void add_meeting(const task *t) {
   free(near.bytes);
 }
 
-static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, claim_wanted wanted,
+static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *obstacles, size_t n, claim_wanted wanted,
                             const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                             cprox_certificate *certificate) {
   const task t = {.mover = mover,
-                  .targets = targets,
+                  .obstacles = obstacles,
                   .n = n,
                   .wanted = wanted,
                   .delta = wanted.delta,
@@ -438,7 +438,7 @@ static void prove_answer(const query *q, const cprox_result *answer) {
   const double delta = query_wants_verdict(q) ? q->limit
                        : answer->lower > 0.0  ? answer->lower
                                               : fmax(answer->upper, 0.0);
-  const cprox_status status = certify(&q->mover, q->targets, q->n, (claim_wanted){CPROX_CLAIM_APART, delta, 0.0, 0.0},
+  const cprox_status status = certify(&q->mover, q->obstacles, q->n, (claim_wanted){CPROX_CLAIM_APART, delta, 0.0, 0.0},
                                       answer, &q->options, q->workspace, q->options.certificate);
   snprintf(of_proof, sizeof of_proof, "%s", cprox_workspace_error(q->workspace));
   if (status == CPROX_OK)

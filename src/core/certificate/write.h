@@ -17,7 +17,7 @@ typedef struct claim_wanted {
 
 /* Proves an answer of a robot along a motion whose arguments were checked; the reason is told of CPROX_INVALID alone,
  * and what failed may have left something in the certificate. */
-cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, claim_wanted wanted,
+cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *obstacles, size_t n, claim_wanted wanted,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate);
 

@@ -17,7 +17,7 @@ enum { MOST_PAIRS = 0xffff };
 static const double STEPS_BACK = 16.0;
 
 /* CPROX_OK, or what it is that certificates do not know. */
-static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle *targets, size_t n,
+static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle *obstacles, size_t n,
                                 cprox_workspace *workspace) {
   if (!motion_is_described(motion))
     return workspace_fail(
@@ -29,9 +29,9 @@ static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu is of a kind that has no certificates: %s", geometry,
                           cprox_body_kind_name(describe_unknown_kind(robot->given_geometries[geometry].body)->kind));
   for (size_t i = 0; i < n; i++)
-    if (describe_unknown_obstacle(targets[i].body))
+    if (describe_unknown_obstacle(obstacles[i].body))
       return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is of a kind that has no certificates: %s", i,
-                            cprox_body_kind_name(describe_unknown_obstacle(targets[i].body)->kind));
+                            cprox_body_kind_name(describe_unknown_obstacle(obstacles[i].body)->kind));
   return CPROX_OK;
 }
 
@@ -83,7 +83,7 @@ const robot_cover_elements *partition_robot_begin(robot_scene *s) {
     elements[i] = (robot_cover_elements){.order = {.t = NULL}};
     if (!o->tree) continue;
     elements[i].order = elements_order(o->tree, first);
-    elements[i].body = elements_body(body_part_at(s->q->targets[o->index].body, (size_t)o->part));
+    elements[i].body = elements_body(body_part_at(s->q->obstacles[o->index].body, (size_t)o->part));
     elements[i].standing = placed_elements(o);
     first += o->tree->n_packs;
   }
@@ -152,13 +152,13 @@ static cprox_status certify_during(robot_cover *cover, const claim_wanted *wante
   return status;
 }
 
-cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, claim_wanted wanted,
+cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *obstacles, size_t n, claim_wanted wanted,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
   const double delta = wanted.delta;
-  query q = query_create(*mover, targets, n, delta, options, workspace);
+  query q = query_create(*mover, obstacles, n, delta, options, workspace);
   q.options.max_lod = CPROX_LOD_MESH;
-  const cprox_status known = check_kinds(mover->motion, targets, n, workspace);
+  const cprox_status known = check_kinds(mover->motion, obstacles, n, workspace);
   if (known != CPROX_OK) return known;
   robot_scene scene;
   if (!robot_scene_begin(&scene, &q, NULL, 0, n, SIZE_MAX, INFINITY)) return CPROX_MEMORY;

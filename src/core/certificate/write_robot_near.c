@@ -29,7 +29,7 @@ static const cprox_body *body_of_part(const cprox_robot *robot, int32_t part) {
 
 static const cprox_body *body_of_obstacle(const robot_scene *s, int32_t obstacle) {
   const robot_body *o = &s->obstacles[obstacle];
-  return body_part_at(s->q->targets[o->index].body, (size_t)o->part);
+  return body_part_at(s->q->obstacles[o->index].body, (size_t)o->part);
 }
 
 /* What stands in a pair, as answers number it: geometries of the robot itself come after the obstacles. */

@@ -19,7 +19,7 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 
-/* Pieces from the start on: what targets are sorted by, and where a search begins. */
+/* Pieces from the start on: what obstacles are sorted by, and where a search begins. */
 enum { PIECES = 64 };
 
 cprox_status rectifiable_point(const cprox_curve *curve, double t, cprox_workspace *workspace, vec3 *point) {

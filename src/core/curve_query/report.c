@@ -17,7 +17,7 @@ static vec3 witness_direction(vec3 centre, vec3 surface, vec3 normal) {
   return aligned ? normal : vec_scale(1.0 / length, between);
 }
 
-/* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point
+/* The two surface points and their normal: where the ball of the mover and the padded obstacle come closest, or one point
  * of both where they overlap; signed, the two ends of the way out. */
 static void report_points(const query *q, double margin, const curve_finding *seen, vec3 position, cprox_result *r) {
   const vec3 centre = vec_add(seen->centre, position), surface = vec_add(seen->surface, position);
@@ -28,7 +28,7 @@ static void report_points(const query *q, double margin, const curve_finding *se
     r->witness_obstacle = vec_axpy(surface, margin, normal);
     r->witness_mover = vec_axpy(centre, -radius, normal);
   } else {
-    /* the padded target's nearest point to the ball's centre */
+    /* the padded obstacle's nearest point to the ball's centre */
     r->witness_mover = r->witness_obstacle = apart > margin ? vec_axpy(surface, margin, normal) : centre;
   }
 }
@@ -117,7 +117,7 @@ cprox_status report_finding(const query *q, const placed_pair *p, const curve_fi
   } else {
     report_points(q, p->margin, seen, position, r);
   }
-  r->obstacle_index = p->which.target, r->obstacle_part = p->which.part;
+  r->obstacle_index = p->which.obstacle, r->obstacle_part = p->which.part;
   if (seen->is_contact) r->witness_obstacle = r->witness_mover;
   return CPROX_OK;
 }

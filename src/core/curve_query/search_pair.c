@@ -75,7 +75,7 @@ static cprox_status search_model(const query *q, const candidate *c, double cuto
 /* ---- level-of-detail bodies ---- */
 
 bool candidate_may_refine(const query *q, const candidate *c) {
-  const cprox_body *body = q->targets[c->target].body;
+  const cprox_body *body = q->obstacles[c->obstacle].body;
   if (!body || c->lod != CPROX_LOD_NONE || q->options.max_lod != CPROX_LOD_MESH) return false;
   return body_part_at(body, (size_t)c->part)->kind == CPROX_BODY_LOD;
 }

@@ -62,7 +62,7 @@ static cprox_status check(const cprox_robot *robot, const cprox_edge_query *q, c
     return workspace_fail(workspace, CPROX_INVALID,
                           "the time of contact is that of collision: first needs delta = 0 and rounding = 0");
   for (size_t i = 0; i < obstacles_count(q->obstacles); i++) {
-    const cprox_obstacle *o = &q->obstacles->targets[i];
+    const cprox_obstacle *o = &q->obstacles->obstacles[i];
     if (!o->body || o->curve || o->body->field)
       return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is %s: a robot is asked about bodies", i,
                             o->body && o->body->field ? "known by its distance alone" : "a curve");

@@ -45,11 +45,11 @@ bool edge_losses_begin(const query *q, const cprox_edge_checker *c, size_t first
   l->flex = edge_float_above(scale * b->flex);
   double reach = 0.0, far = -INFINITY;
   for (size_t i = first; i < last; i++) {
-    const double ends = obstacle_reach(&q->targets[i]);
+    const double ends = obstacle_reach(&q->obstacles[i]);
     if (ends < INFINITY)
       reach = greater(ends, reach);
     else
-      far = greater(vec_norm(vec_sub(q->targets[i].pose.position, c->base)), far);
+      far = greater(vec_norm(vec_sub(q->obstacles[i].pose.position, c->base)), far);
   }
   l->object_reach = edge_float_above(reach), l->object_far = edge_float_above(far);
   return true;

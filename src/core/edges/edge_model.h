@@ -85,7 +85,7 @@ typedef enum edge_shape {
  * large on that account. */
 typedef struct edge_obstacle {
   edge_shape shape;
-  int32_t target;
+  int32_t obstacle;
   float p[3];
   float r[9];    /* columns are its axes; of a halfspace the first one is the normal */
   float size[3]; /* half extents; radius and half height; a halfspace's offset */
@@ -171,7 +171,8 @@ size_t edge_model_count_pairs(const edge_asked *asked);
 
 /* The bytes that the two sides of a model take. */
 size_t edge_model_robot_size(const edge_asked *asked, const robot_covers *covers);
-size_t edge_model_scene_size(const cprox_edge_checker *model, const cprox_obstacle *targets, size_t first, size_t last);
+size_t edge_model_scene_size(const cprox_edge_checker *model, const cprox_obstacle *obstacles, size_t first,
+                             size_t last);
 
 /* The robot's side, in such memory; all else must be 0. Afterwards in_lanes says whether the robot can be in lanes. */
 void edge_model_fill_robot(cprox_edge_checker *model, const edge_asked *asked, const robot_covers *covers,
@@ -181,9 +182,9 @@ void edge_model_fill_robot(cprox_edge_checker *model, const edge_asked *asked, c
  * what is asked about it is another one. NULL: lanes are no use for it, or memory is out. */
 cprox_edge_checker *edge_model_keep(const edge_asked *asked, cprox_workspace *workspace, workspace_buffer buffer);
 
-/* The scene's side: targets first … last - 1, those given to edge_model_scene_size(). `reach`
+/* The scene's side: obstacles first … last - 1, those given to edge_model_scene_size(). `reach`
  * of each part, from the base; NULL: as far as it can. Obstacles that are out of all reach are left out. */
-void edge_model_fill_scene(cprox_edge_checker *model, const cprox_obstacle *targets, size_t first, size_t last,
+void edge_model_fill_scene(cprox_edge_checker *model, const cprox_obstacle *obstacles, size_t first, size_t last,
                            const double *reach, char *memory);
 
 /* Distances of lanes are held against sums of radii that are grown by this factor: it covers the rounding of squares,

@@ -21,7 +21,7 @@ static bool wants_finest(const cprox_edge_checker *c) {
   return !options || options->max_lod == CPROX_LOD_NONE || options->max_lod == CPROX_LOD_MESH;
 }
 
-/* What a part of a target is made of, which stands in the frame f. All coordinates are within `extent` of its origin:
+/* What a part of an obstacle is made of, which stands in the frame f. All coordinates are within `extent` of its origin:
  * of each place lanes round its origin, its axes as any rotation, and what they turn. */
 static void add_content(cprox_edge_checker *c, const part_model *m, const frame *f, double margin, double world,
                         edge_obstacle *o) {
@@ -48,17 +48,17 @@ static void add_content(cprox_edge_checker *c, const part_model *m, const frame 
   edge_enclose_points(&o->hull, corners);
 }
 
-/* One part of a target. What its own numbers round: its place once, its axes as any rotation (7 u of a vector), its
+/* One part of an obstacle. What its own numbers round: its place once, its axes as any rotation (7 u of a vector), its
  * sizes once; the vector from it is at most |p| and the reach of what is tested long, the latter being counted there.
  */
-static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, size_t index, size_t part) {
+static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *obstacle, size_t index, size_t part) {
   const vec3 base = c->base;
-  const cprox_body *body = body_part_at(target->body, part);
+  const cprox_body *body = body_part_at(obstacle->body, part);
   part_model m = part_model_of(body);
-  const double *size = m.shape->size, margin = m.margin + target->margin;
+  const double *size = m.shape->size, margin = m.margin + obstacle->margin;
   edge_shape shape = EDGE_BALL;
   vec3 middle = vec(0, 0, 0); /* of what lanes see */
-  double sizes[3] = {margin, 0, 0}, extent = m.radius + target->margin;
+  double sizes[3] = {margin, 0, 0}, extent = m.radius + obstacle->margin;
   bool exact = !m.tree;
   switch (m.shape->ops->kind) {
     case CPROX_BODY_BOX: shape = EDGE_BOX, sizes[0] = size[0], sizes[1] = size[1], sizes[2] = size[2]; break;
@@ -73,17 +73,17 @@ static void add_obstacle(cprox_edge_checker *c, const cprox_obstacle *target, si
       exact = false, shape = EDGE_BOX, middle = m.middle;
       sizes[0] = m.half.x, sizes[1] = m.half.y, sizes[2] = m.half.z;
   }
-  cprox_pose pose = target->pose;
-  double world = vec_norm(base) + vec_norm(target->pose.position) + vec_norm(m.centre); /* rounding in double */
-  if (target->body->kind == CPROX_BODY_COMPOUND) {
-    pose = frame_compose(&target->pose, &target->body->parts[part].pose);
-    world += vec_norm(target->body->parts[part].pose.position);
+  cprox_pose pose = obstacle->pose;
+  double world = vec_norm(base) + vec_norm(obstacle->pose.position) + vec_norm(m.centre); /* rounding in double */
+  if (obstacle->body->kind == CPROX_BODY_COMPOUND) {
+    pose = frame_compose(&obstacle->pose, &obstacle->body->parts[part].pose);
+    world += vec_norm(obstacle->body->parts[part].pose.position);
   }
   const frame f = frame_create(&pose, m.centre);
   vec3 p = frame_to_world(&f, middle);
   const vec3 n = shape == EDGE_HALFSPACE ? frame_turn_to_world(&f, vec(size[0], size[1], size[2])) : middle;
-  edge_obstacle o = {.target = (int32_t)index, .shape = shape};
-  add_content(c, &m, &f, target->margin, world + vec_norm(m.tree_at), &o);
+  edge_obstacle o = {.obstacle = (int32_t)index, .shape = shape};
+  add_content(c, &m, &f, obstacle->margin, world + vec_norm(m.tree_at), &o);
   world += vec_norm(middle);
   int32_t from[3] = {0};
   float sign[3];
@@ -143,14 +143,14 @@ static double obstacle_beyond(const cprox_edge_checker *c, double reach, const e
   return o->shape == EDGE_HALFSPACE ? -INFINITY : left_of(c, vec_norm(p), reach, extent);
 }
 
-/* The same of a target's ball, before its parts are looked at. */
-static double target_beyond(const cprox_edge_checker *c, double reach, const cprox_obstacle *target) {
-  const cprox_body *body = target->body;
+/* The same of an obstacle's ball, before its parts are looked at. */
+static double ball_beyond(const cprox_edge_checker *c, double reach, const cprox_obstacle *obstacle) {
+  const cprox_body *body = obstacle->body;
   if (!(body->ball_radius < INFINITY)) return -INFINITY;
-  const frame f = frame_create(&target->pose, body->ball_centre);
+  const frame f = frame_create(&obstacle->pose, body->ball_centre);
   const double apart = vec_norm(vec_sub(frame_to_world(&f, vec(0, 0, 0)), c->base));
-  const double world = vec_norm(c->base) + vec_norm(target->pose.position) + vec_norm(body->ball_centre);
-  return left_of(c, apart - ROUND_WORLD * world, reach, body->ball_radius + target->margin);
+  const double world = vec_norm(c->base) + vec_norm(obstacle->pose.position) + vec_norm(body->ball_centre);
+  return left_of(c, apart - ROUND_WORLD * world, reach, body->ball_radius + obstacle->margin);
 }
 
 static void fill_near(cprox_edge_checker *c, const double *reach) {
@@ -159,7 +159,7 @@ static void fill_near(cprox_edge_checker *c, const double *reach) {
     const double own = reach ? reach[i] : reach_of(c, part);
     part->first_near = (uint32_t)c->n_near;
     for (size_t k = 0; k < c->n_obstacles; k++) {
-      if (!edge_asks_about(&c->rows, c->members[part->first_member], (size_t)c->obstacles[k].target)) continue;
+      if (!edge_asks_about(&c->rows, c->members[part->first_member], (size_t)c->obstacles[k].obstacle)) continue;
       const double left = obstacle_beyond(c, own, &c->obstacles[k]);
       if (left > 0.0)
         c->beyond = lesser(left, c->beyond);
@@ -170,12 +170,12 @@ static void fill_near(cprox_edge_checker *c, const double *reach) {
   }
 }
 
-static void lay_out_scene(cprox_edge_checker *c, const cprox_obstacle *targets, size_t first, size_t last,
+static void lay_out_scene(cprox_edge_checker *c, const cprox_obstacle *obstacles, size_t first, size_t last,
                           edge_arena *a) {
   size_t n_obstacles = 0, n_corners = 0;
   for (size_t i = first; i < last; i++)
-    for (size_t k = 0; k < body_n_parts(targets[i].body); k++, n_obstacles++) {
-      const part_model m = part_model_of(body_part_at(targets[i].body, k));
+    for (size_t k = 0; k < body_n_parts(obstacles[i].body); k++, n_obstacles++) {
+      const part_model m = part_model_of(body_part_at(obstacles[i].body, k));
       n_corners += edge_blocks_of(corners_of(&m));
     }
   c->obstacles = edge_take(a, n_obstacles, sizeof *c->obstacles);
@@ -183,24 +183,24 @@ static void lay_out_scene(cprox_edge_checker *c, const cprox_obstacle *targets, 
   c->corners = edge_take(a, n_corners * 3 * EDGE_BLOCK, sizeof *c->corners);
 }
 
-size_t edge_model_scene_size(const cprox_edge_checker *c, const cprox_obstacle *targets, size_t first, size_t last) {
+size_t edge_model_scene_size(const cprox_edge_checker *c, const cprox_obstacle *obstacles, size_t first, size_t last) {
   cprox_edge_checker none = {.n_parts = c->n_parts};
   edge_arena a = {0};
-  lay_out_scene(&none, targets, first, last, &a);
+  lay_out_scene(&none, obstacles, first, last, &a);
   return a.bytes + 16;
 }
 
-void edge_model_fill_scene(cprox_edge_checker *c, const cprox_obstacle *targets, size_t first, size_t last,
+void edge_model_fill_scene(cprox_edge_checker *c, const cprox_obstacle *obstacles, size_t first, size_t last,
                            const double *reach, char *memory) {
   edge_arena a = {.at = memory};
   double farthest = 0.0;
   for (size_t i = 0; i < c->n_parts; i++) farthest = greater(reach ? reach[i] : reach_of(c, &c->parts[i]), farthest);
-  lay_out_scene(c, targets, first, last, &a);
+  lay_out_scene(c, obstacles, first, last, &a);
   c->n_obstacles = c->n_near = c->n_corners = 0, c->obstacle_reach = 0.0, c->beyond = INFINITY;
   for (size_t i = first; i < last; i++) {
-    const double left = target_beyond(c, farthest, &targets[i]);
+    const double left = ball_beyond(c, farthest, &obstacles[i]);
     if (left > 0.0) c->beyond = lesser(left, c->beyond);
-    for (size_t k = 0; !(left > 0.0) && k < body_n_parts(targets[i].body); k++) add_obstacle(c, &targets[i], i, k);
+    for (size_t k = 0; !(left > 0.0) && k < body_n_parts(obstacles[i].body); k++) add_obstacle(c, &obstacles[i], i, k);
   }
   fill_near(c, reach);
   c->in_lanes = c->in_lanes && c->obstacle_reach <= EDGE_REACH_MOST;

@@ -8,7 +8,7 @@
 #include "edges/kernels.h"
 
 /* Beyond these the trees and groups of the search find what is near sooner than lanes do. */
-enum { MOST_TARGETS = 512, MOST_NEAR = 4096, MOST_OPEN = 256 };
+enum { MOST_OBSTACLES = 512, MOST_NEAR = 4096, MOST_OPEN = 256 };
 
 /* So many times eight intervals: what they leave open is left to the search. */
 enum { MOST_BATCHES = 32 };
@@ -44,8 +44,8 @@ static cprox_edge_checker *model_of(const query *q) {
 
 /* ---- what is left ---- */
 
-static int32_t target_of(const cprox_edge_checker *c, uint32_t near) {
-  return c->obstacles[c->near[near]].target;
+static int32_t obstacle_of(const cprox_edge_checker *c, uint32_t near) {
+  return c->obstacles[c->near[near]].obstacle;
 }
 
 static const edge_part *part_of(const cprox_edge_checker *c, uint32_t near) {
@@ -54,9 +54,9 @@ static const edge_part *part_of(const cprox_edge_checker *c, uint32_t near) {
   return part;
 }
 
-static void add_target(edge_rest *rest, size_t target) {
-  if (rest->n_pairs == 0 || target < rest->first) rest->first = target;
-  if (rest->n_pairs == 0 || target >= rest->last) rest->last = target + 1;
+static void add_obstacle(edge_rest *rest, size_t obstacle) {
+  if (rest->n_pairs == 0 || obstacle < rest->first) rest->first = obstacle;
+  if (rest->n_pairs == 0 || obstacle >= rest->last) rest->last = obstacle + 1;
 }
 
 /* Two geometries of the robot, in the order of the caller's list. */
@@ -75,13 +75,13 @@ static void list_open(const query *q, const cprox_edge_checker *c, const edge_op
     const bool self = number >= c->n_near;
     const edge_pair *two = self ? &c->lane_pairs[number - c->n_near] : NULL;
     const edge_part *part = self ? &c->parts[two->a] : part_of(c, number), *other = self ? &c->parts[two->b] : NULL;
-    bool known = false; /* by another part of the same target */
+    bool known = false; /* by another part of the same obstacle */
     for (uint32_t k = 0; k < i && !self && !known; k++)
-      known = open->pairs[k] < c->n_near && target_of(c, open->pairs[k]) == target_of(c, number) &&
+      known = open->pairs[k] < c->n_near && obstacle_of(c, open->pairs[k]) == obstacle_of(c, number) &&
               part_of(c, open->pairs[k]) == part;
     for (uint32_t k = part->first_member; k < part->first_member + part->n_members && !known; k++) {
-      if (!self) add_target(rest, (size_t)target_of(c, number));
-      if (!self && pairs) pairs[rest->n_pairs] = (cprox_robot_pair){c->members[k], target_of(c, number)};
+      if (!self) add_obstacle(rest, (size_t)obstacle_of(c, number));
+      if (!self && pairs) pairs[rest->n_pairs] = (cprox_robot_pair){c->members[k], obstacle_of(c, number)};
       rest->n_pairs += !self;
       for (uint32_t l = 0; self && l < other->n_members; l++, rest->n_self_pairs++)
         if (selves) selves[rest->n_self_pairs] = as_asked(q, c->members[k], c->members[other->first_member + l]);
@@ -127,7 +127,7 @@ static void add_times(const query *q, const motion_interval *over, const edge_op
 static bool can_ask(const query *q, size_t first, size_t last, motion_interval *over) {
   const cprox_motion *m = q->mover.motion;
   if (!query_wants_verdict(q) || q->choice != PAIRS_ALL || q->options.max_lod != CPROX_LOD_MESH || q->is_signed ||
-      m->n_tracks != 1 || m->tracks[0].tolerance > 0.0 || last - first > MOST_TARGETS || !(q->limit < 1e6))
+      m->n_tracks != 1 || m->tracks[0].tolerance > 0.0 || last - first > MOST_OBSTACLES || !(q->limit < 1e6))
     return false;
   *over = motion_interval_of(m, q->t0, q->t1);
   return over->last - over->first <= MOST_SEGMENTS;
@@ -149,7 +149,7 @@ static bool take_nearest(const query *q, const cprox_edge_checker *c, const edge
   const bool self = f->nearest >= c->n_near;
   const edge_pair *two = self ? &c->lane_pairs[f->nearest - c->n_near] : NULL;
   const edge_part *part = self ? &c->parts[two->a] : part_of(c, f->nearest);
-  const int32_t other = self ? c->members[c->parts[two->b].first_member] : target_of(c, f->nearest);
+  const int32_t other = self ? c->members[c->parts[two->b].first_member] : obstacle_of(c, f->nearest);
   return take_one(q, c->members[part->first_member], other, self, time_of(q, over, (double)f->nearest_at), pair, rest);
 }
 
@@ -189,11 +189,11 @@ static bool fill_reach(const query *q, const cprox_edge_checker *c, const motion
 static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t last, const motion_interval *over,
                   edge_run *run) {
   size_t n_obstacles = 0;
-  for (size_t i = first; i < last; i++) n_obstacles += body_n_parts(q->targets[i].body);
-  if (n_obstacles > MOST_TARGETS) return false;
-  const size_t scene = aligned(edge_model_scene_size(c, q->targets, first, last)), moves = aligned(edge_motion_size(c)),
-               reaches = aligned(c->n_parts * sizeof(double)), near = c->n_parts * n_obstacles,
-               noted = near + c->n_lane_pairs + 1,
+  for (size_t i = first; i < last; i++) n_obstacles += body_n_parts(q->obstacles[i].body);
+  if (n_obstacles > MOST_OBSTACLES) return false;
+  const size_t scene = aligned(edge_model_scene_size(c, q->obstacles, first, last)),
+               moves = aligned(edge_motion_size(c)), reaches = aligned(c->n_parts * sizeof(double)),
+               near = c->n_parts * n_obstacles, noted = near + c->n_lane_pairs + 1,
                rows = aligned(edge_lanes_size(c, near < MOST_NEAR ? near : MOST_NEAR));
   char *memory =
       workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
@@ -205,7 +205,7 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   if (q->errors && !edge_losses_begin(q, c, first, last, &run->losses)) return false;
   if (!fill_reach(q, c, over, run, reach)) return false;
   if (!c->has_scene) /* of many states all are within reach of what the robot can reach */
-    edge_model_fill_scene(c, q->targets, first, last, q->is_bare ? NULL : reach, memory + rows + moves + reaches);
+    edge_model_fill_scene(c, q->obstacles, first, last, q->is_bare ? NULL : reach, memory + rows + moves + reaches);
   uint32_t *marks = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
   memset(marks, 0, 2 * noted * sizeof *marks);
   run->lanes.open.seen = marks, run->known = marks + noted;

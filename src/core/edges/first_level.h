@@ -6,11 +6,11 @@
 #include "curve_proximity/cprox/robot.h"
 #include "problem/problem.h"
 
-/* Pairs of geometries and targets, and of geometries, over a part of the motion. */
+/* Pairs of geometries and obstacles, and of geometries, over a part of the motion. */
 typedef struct edge_rest {
   const cprox_robot_pair *pairs, *self_pairs; /* in the workspace, until the next query */
   size_t n_pairs, n_self_pairs;
-  size_t first, last; /* among these targets */
+  size_t first, last; /* among these obstacles */
   double from, to;    /* [s] */
 } edge_rest;
 
@@ -27,7 +27,7 @@ typedef struct edge_first {
   edge_rest nearest;
 } edge_first;
 
-/* Asks lanes about targets first … last - 1 of a verdict about a robot. With `suspects` they end where they cannot tell
+/* Asks lanes about obstacles first … last - 1 of a verdict about a robot. With `suspects` they end where they cannot tell
  * a pair apart. False: they cannot tell, or memory is out, and all of it is open. */
 bool edge_first_level(const query *q, size_t first, size_t last, bool suspects, edge_first *found);
 

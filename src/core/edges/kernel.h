@@ -343,7 +343,7 @@ EDGE_TARGET static bool part_touches(lane_batch *b, size_t i, const edge_obstacl
   const lane3 *ways = ways_of(b, i);
   for (uint32_t k = part->first; k < part->first + part->n; k++) {
     const edge_ball *ball = &b->c->balls[k];
-    const lane_two two = {ball->geometry, o->target, false};
+    const lane_two two = {ball->geometry, o->obstacle, false};
     const float inner = sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, b->motion->room[i] + o->grown);
     if (inner > 0.0f && proves_contact(b, &two, distance2_from(o, lane3_add(own->o, ways[k])), inner)) return true;
   }
@@ -386,7 +386,7 @@ EDGE_TARGET static bool open_part(lane_batch *b, size_t i, uint32_t near_at, con
     const float outer = ball->outer + beyond + room;
     const uint32_t near = within(b, near_at, distance2, moves, outer) & b->all & ~b->split;
     if (!near) continue;
-    const lane_two two = {ball->geometry, o->target, false};
+    const lane_two two = {ball->geometry, o->obstacle, false};
     if (proves_contact(b, &two, distance2, sure_radius(ball->inner, 0.0f, (float)b->c->hit_within, room + o->grown)))
       return true;
     settle_near(b, near_at, &two, distance2, near, outer);

@@ -404,7 +404,7 @@ EDGE_TARGET static bool open_hulls(lane_batch *b, size_t i, uint32_t near_at, co
       }
       halve(b, near_at, lanes & ~still);
       if (!still) continue;
-      const lane_two both = {hull->geometry, o->target, false};
+      const lane_two both = {hull->geometry, o->obstacle, false};
       if (n == 0 || hull->n_children == 0) {
         const uint32_t touching = touches(&two.a, o, (float)c->hit_within, room + o->grown) & still;
         if (touching) {

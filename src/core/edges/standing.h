@@ -80,7 +80,7 @@ EDGE_TARGET static void open_piece(lane_batch *b, lane_standing *s, const lane_p
     halve(b, s->pair, lanes & ~still);
     if (!still) continue;
     if (!two.opens) {
-      const lane_two both = {hull->geometry, s->o->target, false};
+      const lane_two both = {hull->geometry, s->o->obstacle, false};
       suspect(b, &both, still, depth);
       s->left |= still;
       continue;
@@ -194,7 +194,7 @@ EDGE_TARGET static bool open_pack(lane_batch *b, lane_standing *s, const lane_pi
     const uint32_t lanes = (uint32_t)near_each[e] & ~b->split & ~s->left;
     if (!lanes) continue;
     if (t->kind != TREE_TRIANGLES && piece->number == UINT32_MAX) {
-      const lane_two two = {piece->placed.hull->geometry, s->o->target, false};
+      const lane_two two = {piece->placed.hull->geometry, s->o->obstacle, false};
       const float inner =
           sure_radius(piece->placed.hull->inner, s->o->within, (float)b->c->hit_within, s->room + s->o->costs);
       const float low[3] = {boxes.low.x[e], boxes.low.y[e], boxes.low.z[e]},

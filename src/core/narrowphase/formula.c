@@ -19,12 +19,12 @@ static bool is_ball(const cprox_body *body) {
   return body->kind == CPROX_BODY_POINT || body->kind == CPROX_BODY_SPHERE;
 }
 
-static segment segment_of(const cprox_obstacle *target) {
-  const cprox_body *body = target->body;
-  segment s = {.along = {0, 0, 1}, .margin = body->shape.margin + target->margin};
+static segment segment_of(const cprox_obstacle *obstacle) {
+  const cprox_body *body = obstacle->body;
+  segment s = {.along = {0, 0, 1}, .margin = body->shape.margin + obstacle->margin};
   if (is_ball(body)) return s;
   s.half = body->shape.size[1];
-  const cprox_quat q = target->pose.orientation;
+  const cprox_quat q = obstacle->pose.orientation;
   if (q.x == 0.0 && q.y == 0.0) return s; /* a turn about z leaves the axis as it is */
   const double scale = 2.0 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z); /* as in frame_create() */
   const double xs = q.x * scale, ys = q.y * scale;
@@ -103,20 +103,20 @@ static bool segments(const segment *a, const segment *b, vec3 position, vec3 apa
 
 /* ---- a ball and a shape with a closed form ---- */
 
-static void ball_beside(const cprox_obstacle *target, const cprox_obstacle *ball, bool swapped, pair_answer *answer) {
-  const convex *shape = &target->body->shape;
-  const frame f = frame_create(&target->pose, target->body->centre);
+static void ball_beside(const cprox_obstacle *obstacle, const cprox_obstacle *ball, bool swapped, pair_answer *answer) {
+  const convex *shape = &obstacle->body->shape;
+  const frame f = frame_create(&obstacle->pose, obstacle->body->centre);
   double error = 0.0;
   const vec3 y = frame_to_local(&f, ball->pose.position, &error);
   convex_near near;
   shape->ops->nearest(shape, y, NULL, &near);
   const double radius = ball->body->shape.margin + ball->margin;
-  const double distance = near.distance - target->margin - radius;
+  const double distance = near.distance - obstacle->margin - radius;
   const double rounding =
       ROUND_UP * ROUND_U *
-          (shape->ops->near_rounding * (vec_norm(y) + shape->scale) + 4.0 * (target->margin + radius)) +
+          (shape->ops->near_rounding * (vec_norm(y) + shape->scale) + 4.0 * (obstacle->margin + radius)) +
       error;
-  const vec3 on_shape = frame_to_world(&f, vec_axpy(near.point, target->margin, near.normal));
+  const vec3 on_shape = frame_to_world(&f, vec_axpy(near.point, obstacle->margin, near.normal));
   const vec3 n = frame_turn_to_world(&f, near.normal);
   const vec3 on_ball = vec_axpy(ball->pose.position, -radius, n);
   *answer = (pair_answer){.lower = distance - rounding,
@@ -125,7 +125,7 @@ static void ball_beside(const cprox_obstacle *target, const cprox_obstacle *ball
                           .above = rounding,
                           .on_a = swapped ? on_ball : on_shape,
                           .on_b = swapped ? on_shape : on_ball,
-                          .common = near.distance > target->margin ? on_shape : ball->pose.position,
+                          .common = near.distance > obstacle->margin ? on_shape : ball->pose.position,
                           .normal = swapped ? n : vec_neg(n),
                           .steps = 1,
                           .supports = 1};

@@ -43,8 +43,8 @@ cprox_status growing_begin(growing *g, const cprox_options *options, cprox_works
   cprox_status status;
   if (!workspace) return CPROX_INVALID;
   g->asked = arguments_options(options);
-  if ((status = validate_options(&g->asked, kind, workspace)) || (status = validate_target(&g->a, 0, workspace)) ||
-      (status = validate_target(&g->b, 1, workspace)) || (status = translation_check_body("a", &g->a, workspace)) ||
+  if ((status = validate_options(&g->asked, kind, workspace)) || (status = validate_obstacle(&g->a, 0, workspace)) ||
+      (status = validate_obstacle(&g->b, 1, workspace)) || (status = translation_check_body("a", &g->a, workspace)) ||
       (status = translation_check_body("b", &g->b, workspace)))
     return status;
   if (g->a.margin > 0.0 || g->b.margin > 0.0)

@@ -32,32 +32,33 @@ typedef struct pair_known {
 
 /* ---- arguments ---- */
 
-/* Whether a target is usable, without the reason. Numbers that are none fail each comparison. */
-static bool pair_takes(const cprox_obstacle *target) {
-  const vec3 p = target->pose.position;
-  const cprox_quat q = target->pose.orientation;
+/* Whether an obstacle is usable, without the reason. Numbers that are none fail each comparison. */
+static bool pair_takes(const cprox_obstacle *obstacle) {
+  const vec3 p = obstacle->pose.position;
+  const cprox_quat q = obstacle->pose.orientation;
   const double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  return !target->curve && target->body && !target->body->field && fabs(p.x) <= LENGTH_MOST &&
+  return !obstacle->curve && obstacle->body && !obstacle->body->field && fabs(p.x) <= LENGTH_MOST &&
          fabs(p.y) <= LENGTH_MOST && fabs(p.z) <= LENGTH_MOST && norm2 >= 1e-200 && norm2 <= 1e200 &&
-         target->margin >= 0.0 && target->margin <= LENGTH_MOST && body_is_in_reach(target->body);
+         obstacle->margin >= 0.0 && obstacle->margin <= LENGTH_MOST && body_is_in_reach(obstacle->body);
 }
 
-static cprox_status pair_check_target(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
-  if (pair_takes(target)) return CPROX_OK;
-  if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
-  if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
-  if (target->body->field)
+static cprox_status pair_check_obstacle(const char *name, const cprox_obstacle *obstacle, cprox_workspace *workspace) {
+  if (pair_takes(obstacle)) return CPROX_OK;
+  if (obstacle->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
+  if (!obstacle->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
+  if (obstacle->body->field)
     return workspace_fail(workspace, CPROX_INVALID,
                           "%s is known by its distance alone: ask for the distance of a curve, or cprox_body_nearest()",
                           name);
-  const char *support_failed = frame_pose_error(&target->pose);
+  const char *support_failed = frame_pose_error(&obstacle->pose);
   if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, support_failed);
-  if (!(target->margin >= 0.0) || !isfinite(target->margin))
-    return workspace_fail(workspace, CPROX_INVALID, "%s: margin is %g, must be >= 0 and finite", name, target->margin);
-  if (target->margin > LENGTH_MOST)
-    return workspace_fail(workspace, CPROX_INVALID, "%s: margin is %g, must be at most %g", name, target->margin,
+  if (!(obstacle->margin >= 0.0) || !isfinite(obstacle->margin))
+    return workspace_fail(workspace, CPROX_INVALID, "%s: margin is %g, must be >= 0 and finite", name,
+                          obstacle->margin);
+  if (obstacle->margin > LENGTH_MOST)
+    return workspace_fail(workspace, CPROX_INVALID, "%s: margin is %g, must be at most %g", name, obstacle->margin,
                           LENGTH_MOST);
-  if (!body_is_in_reach(target->body))
+  if (!body_is_in_reach(obstacle->body))
     return workspace_fail(workspace, CPROX_INVALID, "%s: the body reaches farther than %g m", name, LENGTH_MOST);
   return CPROX_OK;
 }
@@ -470,12 +471,12 @@ typedef struct pair_ball_at {
   double radius, error;
 } pair_ball_at;
 
-static pair_ball_at ball_at(const cprox_obstacle *target) {
-  const cprox_body *body = target->body;
-  pair_ball_at ball = {.centre = body->ball_centre, .radius = body->ball_radius + target->margin};
+static pair_ball_at ball_at(const cprox_obstacle *obstacle) {
+  const cprox_body *body = obstacle->body;
+  pair_ball_at ball = {.centre = body->ball_centre, .radius = body->ball_radius + obstacle->margin};
   const double reach2 = vec_norm2(body->ball_centre);
   if (!(reach2 > 0.0)) return ball;
-  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
   ball.centre = frame_turn_to_world(&f, body->ball_centre);
   ball.error = ROUND_ROTATION * sqrt(reach2);
   return ball;
@@ -530,8 +531,8 @@ cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double del
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
   const arguments_query kind = {"a pair's verdict", ARGUMENTS_SEARCH};
   if ((options && (status = validate_options(&asked, kind, workspace))) ||
-      (status = validate_delta(delta, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
-      (status = pair_check_target("b", &b, workspace)))
+      (status = validate_delta(delta, workspace)) || (status = pair_check_obstacle("a", &a, workspace)) ||
+      (status = pair_check_obstacle("b", &b, workspace)))
     return status;
 
   const double apart = balls_apart(&a, &b);
@@ -634,7 +635,7 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
   const arguments_query kind = {"a pair",
                                 ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_START}; /* depths are always measured */
   if ((options && (status = validate_options(&asked, kind, workspace))) ||
-      (status = pair_check_target("a", &a, workspace)) || (status = pair_check_target("b", &b, workspace)) ||
+      (status = pair_check_obstacle("a", &a, workspace)) || (status = pair_check_obstacle("b", &b, workspace)) ||
       (status = pair_measure(&a, &b, &asked, workspace, result)) < 0)
     return status;
   if (status != CPROX_OK) workspace_fail(workspace, status, "%s", cprox_status_text(status));

@@ -3,23 +3,23 @@
 
 #include "base/rounding.h"
 
-pair_side relative_pose_of_model(const cprox_obstacle *target, size_t part, cprox_lod finest) {
-  cprox_pose inner, pose = target->pose;
+pair_side relative_pose_of_model(const cprox_obstacle *obstacle, size_t part, cprox_lod finest) {
+  cprox_pose inner, pose = obstacle->pose;
   bool moved;
-  const model m = model_of_part(target->body, part, finest, &inner, &moved);
+  const model m = model_of_part(obstacle->body, part, finest, &inner, &moved);
   pair_side side = {.body = m.body, .shape = &m.body->shape, .lod = m.lod};
   if (moved) {
-    pose = frame_compose(&target->pose, &inner);
+    pose = frame_compose(&obstacle->pose, &inner);
     const double turned = vec_norm(inner.position) + vec_norm(m.body->centre) + m.body->shape.scale;
     side.error = ROUND_U * (ROUND_ROTATION * turned + 3.0 * vec_norm(pose.position));
   }
   side.f = frame_create(&pose, m.body->centre);
-  side.margin = target->margin + m.excess + m.body->shape.margin;
+  side.margin = obstacle->margin + m.excess + m.body->shape.margin;
   return side;
 }
 
-pair_side relative_pose_of_side(const cprox_obstacle *target, size_t part) {
-  return relative_pose_of_model(target, part, CPROX_LOD_MESH);
+pair_side relative_pose_of_side(const cprox_obstacle *obstacle, size_t part) {
+  return relative_pose_of_model(obstacle, part, CPROX_LOD_MESH);
 }
 
 pair_placement relative_pose_make(const pair_side *a, const pair_side *b) {

@@ -18,9 +18,9 @@ typedef struct pair_side {
   cprox_lod lod;
 } pair_side;
 
-/* Part of a target, by the finest model up to the level of detail; of its finest one. */
-pair_side relative_pose_of_model(const cprox_obstacle *target, size_t part, cprox_lod finest);
-pair_side relative_pose_of_side(const cprox_obstacle *target, size_t part);
+/* Part of an obstacle, by the finest model up to the level of detail; of its finest one. */
+pair_side relative_pose_of_model(const cprox_obstacle *obstacle, size_t part, cprox_lod finest);
+pair_side relative_pose_of_side(const cprox_obstacle *obstacle, size_t part);
 
 /* b in a's frame. Positions are subtracted first: what they share does not enter the rounding. */
 pair_placement relative_pose_make(const pair_side *a, const pair_side *b);

@@ -21,11 +21,11 @@ static bool is_implicit(const cprox_body *body) {
   return body->kind == CPROX_BODY_SUPERQUADRIC || body->kind == CPROX_BODY_IMPLICIT;
 }
 
-cprox_status translation_check_body(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
-  if (target->curve || !target->body) return workspace_fail(workspace, CPROX_INVALID, "%s is not a body", name);
-  if (!target->body->shape.ops)
+cprox_status translation_check_body(const char *name, const cprox_obstacle *obstacle, cprox_workspace *workspace) {
+  if (obstacle->curve || !obstacle->body) return workspace_fail(workspace, CPROX_INVALID, "%s is not a body", name);
+  if (!obstacle->body->shape.ops)
     return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be convex", name,
-                          cprox_body_kind_name(target->body->kind));
+                          cprox_body_kind_name(obstacle->body->kind));
   return CPROX_OK;
 }
 
@@ -33,8 +33,8 @@ static cprox_status check_motion(const cprox_translating *a, const cprox_transla
                                  const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   cprox_status status;
   if (!workspace) return CPROX_INVALID;
-  if ((status = validate_options(options, asked, workspace)) || (status = validate_target(&a->from, 0, workspace)) ||
-      (status = validate_target(&b->from, 1, workspace)) ||
+  if ((status = validate_options(options, asked, workspace)) || (status = validate_obstacle(&a->from, 0, workspace)) ||
+      (status = validate_obstacle(&b->from, 1, workspace)) ||
       (status = translation_check_body("a", &a->from, workspace)) ||
       (status = translation_check_body("b", &b->from, workspace)))
     return status;
@@ -305,13 +305,13 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
 
 /* Whether a ball of the radius `room` about a point is proven to lie in a body. An implicit one is scaled about its
  * centre by more than the ball takes of its inner ball. */
-static bool body_holds(const cprox_obstacle *target, vec3 point, double room) {
-  const pair_side side = relative_pose_of_side(target, 0);
+static bool body_holds(const cprox_obstacle *obstacle, vec3 point, double room) {
+  const pair_side side = relative_pose_of_side(obstacle, 0);
   const convex *shape = side.shape;
   double error = 0.0;
   const vec3 local = frame_to_local(&side.f, point, &error);
   room += error + side.error;
-  if (is_implicit(target->body)) {
+  if (is_implicit(obstacle->body)) {
     const implicit *body = shape->implicit;
     const double part = 1.01 * (room + 2.0 * body->give) / body->inner;
     return part < 0.5 && implicit_value(body, vec_scale(1.0 / (1.0 - part), local)) <= 0.0;

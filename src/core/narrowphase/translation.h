@@ -6,8 +6,8 @@
 #include "base/vec.h"
 #include "curve_proximity/cprox/translation.h"
 
-/* Whether the target, called `name`, is one convex body. */
-cprox_status translation_check_body(const char *name, const cprox_obstacle *target, cprox_workspace *workspace);
+/* Whether the obstacle, called `name`, is one convex body. */
+cprox_status translation_check_body(const char *name, const cprox_obstacle *obstacle, cprox_workspace *workspace);
 
 /* The growth distance by pairs: b comes from far along the line of the centres, which are `apart`, until both touch.
  * inner: the radii of balls inside, summed. growth->status says how it ended; what is returned is an error or CPROX_OK. */

@@ -9,12 +9,12 @@
 
 candidate_ball candidate_bounding_ball(const query *q, const candidate *c, double *sizes) {
   const placed_model m = placed_model_of_obstacle(q, c);
-  return placed_model_ball(&q->targets[c->target], c->part, &m, sizes);
+  return placed_model_ball(&q->obstacles[c->obstacle], c->part, &m, sizes);
 }
 
 /* The mover's capsule against the candidate's ball. */
 double candidate_ball_bound(const query *q, const candidate *c) {
-  const cprox_obstacle *obstacle = &q->targets[c->target];
+  const cprox_obstacle *obstacle = &q->obstacles[c->obstacle];
   const placed_models both = placed_models_resolve(q, c);
   double placing;
   const candidate_ball round = placed_model_ball(obstacle, c->part, &both.obstacle, &placing);
@@ -50,14 +50,14 @@ void candidates_sort(candidate *list, size_t n) {
 candidate *candidates_list(const query *q, size_t first, size_t last, bool ranked, size_t *count) {
   const size_t carried = body_n_parts(q->mover.body);
   size_t n = 0;
-  for (size_t i = first; i < last; i++) n += body_n_parts(q->targets[i].body) * carried;
+  for (size_t i = first; i < last; i++) n += body_n_parts(q->obstacles[i].body) * carried;
   candidate *list = workspace_reserve(q->workspace, WORKSPACE_ORDER, n * sizeof *list);
   if (!list) return NULL;
   size_t k = 0;
   for (size_t i = first; i < last; i++) {
-    for (size_t pair = 0; pair < body_n_parts(q->targets[i].body) * carried; pair++) {
-      list[k] =
-          (candidate){.target = (int32_t)i, .part = (int32_t)(pair / carried), .mover_part = (int32_t)(pair % carried)};
+    for (size_t pair = 0; pair < body_n_parts(q->obstacles[i].body) * carried; pair++) {
+      list[k] = (candidate){
+          .obstacle = (int32_t)i, .part = (int32_t)(pair / carried), .mover_part = (int32_t)(pair % carried)};
       list[k].lower = ranked || n > 1 ? candidate_ball_bound(q, &list[k]) : -INFINITY;
       k++;
     }

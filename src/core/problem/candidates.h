@@ -5,17 +5,17 @@
 
 #include "problem/problem.h"
 
-/* One convex part of one target, or a curve, against one convex part of what is carried, with what their bounding balls
+/* One convex part of one obstacle, or a curve, against one convex part of what is carried, with what their bounding balls
  * say. placed_pair_resolve() looks the indices up. */
 typedef struct candidate {
   double lower;
-  int32_t target, part, mover_part;
+  int32_t obstacle, part, mover_part;
   uint32_t seed_piece; /* where a search against a convex body begins to measure: */
   double seed_s;       /* s of that piece, inside (0, 1); 0: wherever it likes */
   cprox_lod lod;       /* the model that is searched; CPROX_LOD_NONE: the finest that the query allows */
 } candidate;
 
-/* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. `ranked`
+/* The candidates of obstacles first … last - 1, nearest ball first, in the workspace. NULL where memory is out. `ranked`
  * false: of a single candidate nothing is asked, its bound is minus infinity. */
 candidate *candidates_list(const query *q, size_t first, size_t last, bool ranked, size_t *count);
 

@@ -11,7 +11,7 @@ struct obstacle_bvh;
 struct obstacle_batch;
 
 struct cprox_obstacles {
-  cprox_obstacle *targets; /* checked when the handle was made */
+  cprox_obstacle *obstacles; /* checked when the handle was made */
   size_t n;
   struct obstacle_bvh *bvh;     /* CPROX_INDEX_BVH, else NULL */
   struct obstacle_batch *batch; /* CPROX_INDEX_BATCH, else NULL */
@@ -19,7 +19,7 @@ struct cprox_obstacles {
 
 /* NULL stands for no obstacles. */
 static inline const cprox_obstacle *obstacles_list(const cprox_obstacles *obstacles) {
-  return obstacles ? obstacles->targets : NULL;
+  return obstacles ? obstacles->obstacles : NULL;
 }
 
 static inline size_t obstacles_count(const cprox_obstacles *obstacles) {

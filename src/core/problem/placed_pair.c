@@ -24,7 +24,7 @@ static cprox_pose obstacle_pose(const cprox_obstacle *obstacle) {
 }
 
 placed_model placed_model_of_obstacle(const query *q, const candidate *c) {
-  const cprox_obstacle *obstacle = &q->targets[c->target];
+  const cprox_obstacle *obstacle = &q->obstacles[c->obstacle];
   const cprox_body *body = obstacle->synchronized && !obstacle->body ? &carried_point : obstacle->body;
   const cprox_pose pose = obstacle_pose(obstacle);
   placed_model m = model_at(body, c->part, c->lod != CPROX_LOD_NONE ? c->lod : q->options.max_lod);
@@ -84,7 +84,7 @@ placed_pair placed_pair_resolve(const query *q, const candidate *c) {
   const placed_models both = placed_models_resolve(q, c);
   const placed_model *m = &both.obstacle;
   placed_pair p = {.which = *c,
-                   .obstacle = &q->targets[c->target],
+                   .obstacle = &q->obstacles[c->obstacle],
                    .lod = m->lod,
                    .shape = m->body,
                    .pose = m->pose,

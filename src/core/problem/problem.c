@@ -7,10 +7,10 @@
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/robot.h"
 
-query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit,
+query query_create(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double limit,
                    const cprox_options *options, cprox_workspace *workspace) {
   query q = {.mover = mover,
-             .targets = targets,
+             .obstacles = obstacles,
              .n = n,
              .limit = limit,
              .options = arguments_options(options),
@@ -33,7 +33,7 @@ void query_ask_whole(query *q) {
 
 cprox_status query_begin(query *q, arguments_query asked) {
   workspace_clear(q->workspace);
-  const cprox_status checked = validate_query(&q->mover, q->targets, q->n, &q->options, asked, q->workspace);
+  const cprox_status checked = validate_query(&q->mover, q->obstacles, q->n, &q->options, asked, q->workspace);
   if (checked == CPROX_OK) query_ask_whole(q);
   return checked;
 }

@@ -16,7 +16,7 @@ typedef enum pair_choice { PAIRS_ALL, PAIRS_STANDING, PAIRS_MOVING } pair_choice
 /* What every query asks. */
 typedef struct query {
   cprox_mover mover;
-  const cprox_obstacle *targets;
+  const cprox_obstacle *obstacles;
   size_t n;
   double limit;     /* verdicts: delta, 0 for collision; distance: -1 */
   bool is_signed;   /* distance: overlaps are measured, too */
@@ -28,7 +28,7 @@ typedef struct query {
   curve_capsule reach; /* contains that part */
   double t0, t1;       /* that part by the curve's parameter */
   const struct obstacle_bvh
-      *set; /* a robot's query: the set that the targets are, by whose boxes they are found; or NULL */
+      *set; /* a robot's query: the set that the obstacles are, by whose boxes they are found; or NULL */
   pair_choice choice;
   struct robot_errors *errors; /* a robot's: it answers for all executions within them (kinematics/errors.h); NULL */
 } query;
@@ -59,7 +59,7 @@ static inline bool mover_is_whole(const cprox_mover *mover) {
 }
 
 /* options NULL: the default. Nothing is checked. */
-query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit,
+query query_create(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double limit,
                    const cprox_options *options, cprox_workspace *workspace);
 
 /* Forgets the last error, checks all arguments, and asks about the whole curve or motion. CPROX_OK, or a negative
@@ -85,7 +85,7 @@ cprox_result query_nothing(void);
 /* Adds the answer against another set to the union's: the least of both ends, with the witness of the upper one. */
 void query_join(cprox_result *all, const cprox_result *one);
 
-/* Room in the workspace for the results of up to n targets, so that the caller's array is written only when the query
+/* Room in the workspace for the results of up to n obstacles, so that the caller's array is written only when the query
  * has succeeded. NULL where memory is out. */
 cprox_result *query_reserve_results(const query *q, size_t n);
 

@@ -58,21 +58,21 @@ static cprox_status check_radius(const char *whose, const cprox_curve *radius, d
   return check_sign(whose, radius, constant, workspace);
 }
 
-cprox_status radius_check(const cprox_mover *mover, const cprox_obstacle *target, size_t index, arguments_query asked,
+cprox_status radius_check(const cprox_mover *mover, const cprox_obstacle *obstacle, size_t index, arguments_query asked,
                           cprox_workspace *workspace) {
   if (!(asked.has & ARGUMENTS_RADIUS))
     return workspace_fail(workspace, CPROX_INVALID,
                           "a radius that changes does not apply to %s: ask for a distance, a verdict, a profile or a "
                           "time of contact",
                           asked.name);
-  if (!target) return check_radius("the mover's radius", mover->radius_curve, mover->radius, mover->curve, workspace);
-  if (target->curve && target->curve->arcs)
+  if (!obstacle) return check_radius("the mover's radius", mover->radius_curve, mover->radius, mover->curve, workspace);
+  if (obstacle->curve && obstacle->curve->arcs)
     return workspace_fail(workspace, CPROX_INVALID,
                           "a radius that changes: of obstacle %zu only the arc length is known", index);
-  if (!target->radius_curve) return CPROX_OK;
+  if (!obstacle->radius_curve) return CPROX_OK;
   char whose[48];
   snprintf(whose, sizeof whose, "the radius of obstacle %zu", index);
-  return check_radius(whose, target->radius_curve, target->margin, mover->curve, workspace);
+  return check_radius(whose, obstacle->radius_curve, obstacle->margin, mover->curve, workspace);
 }
 
 double radius_at(const cprox_curve *radius, double t, bool from_left, cprox_workspace *workspace) {

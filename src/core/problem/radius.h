@@ -8,14 +8,14 @@
 #include "problem/validate.h"
 
 /* Whether the radius of either changes. */
-static inline bool radius_changes(const cprox_mover *mover, const cprox_obstacle *target) {
-  return mover->radius_curve || (target && target->radius_curve);
+static inline bool radius_changes(const cprox_mover *mover, const cprox_obstacle *obstacle) {
+  return mover->radius_curve || (obstacle && obstacle->radius_curve);
 }
 
-/* Checks the mover's radius, which changes (target NULL), or what radii that change ask of a target: the query knows
+/* Checks the mover's radius, which changes (obstacle NULL), or what radii that change ask of an obstacle: the query knows
  * them, their parameters are those of the curve, and they are never negative. CPROX_OK, or CPROX_INVALID with an error
  * message. */
-cprox_status radius_check(const cprox_mover *mover, const cprox_obstacle *target, size_t index, arguments_query asked,
+cprox_status radius_check(const cprox_mover *mover, const cprox_obstacle *obstacle, size_t index, arguments_query asked,
                           cprox_workspace *workspace);
 
 /* It is never larger than this; 0 where there is none. */

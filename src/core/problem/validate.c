@@ -81,53 +81,54 @@ cprox_status validate_delta(double delta, cprox_workspace *workspace) {
   return validate_length("delta", delta, workspace);
 }
 
-cprox_status validate_target(const cprox_obstacle *target, size_t index, cprox_workspace *workspace) {
-  if (!target->body && !target->curve)
+cprox_status validate_obstacle(const cprox_obstacle *obstacle, size_t index, cprox_workspace *workspace) {
+  if (!obstacle->body && !obstacle->curve)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu has neither a body nor a curve", index);
-  if (target->synchronized && !target->curve)
+  if (obstacle->synchronized && !obstacle->curve)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is on the mover's clock, but has no curve", index);
-  if (target->body && target->curve && !target->synchronized)
+  if (obstacle->body && obstacle->curve && !obstacle->synchronized)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu has both a body and a curve", index);
-  if (target->radius_curve && !target->synchronized)
+  if (obstacle->radius_curve && !obstacle->synchronized)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu has a radius that changes, but is not synchronized",
                           index);
-  const char *support_failed = frame_pose_error(&target->pose);
+  const char *support_failed = frame_pose_error(&obstacle->pose);
   if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: %s", index, support_failed);
-  if (!(target->margin >= 0.0 && isfinite(target->margin)))
+  if (!(obstacle->margin >= 0.0 && isfinite(obstacle->margin)))
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: margin is %g, must be finite and 0 or more", index,
-                          target->margin);
-  if (target->margin > LENGTH_MOST)
+                          obstacle->margin);
+  if (obstacle->margin > LENGTH_MOST)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: margin is %g, must be at most %g", index,
-                          target->margin, LENGTH_MOST);
-  if (target->body && !body_is_in_reach(target->body))
+                          obstacle->margin, LENGTH_MOST);
+  if (obstacle->body && !body_is_in_reach(obstacle->body))
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: the body reaches farther than %g m", index,
                           LENGTH_MOST);
-  if (target->curve && !target->curve->in_reach)
+  if (obstacle->curve && !obstacle->curve->in_reach)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu: the curve reaches farther than %g m", index,
                           LENGTH_MOST);
   return CPROX_OK;
 }
 
-cprox_status validate_targets(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace) {
-  if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "obstacles is NULL, but %zu are announced", n);
+cprox_status validate_obstacles(const cprox_obstacle *obstacles, size_t n, cprox_workspace *workspace) {
+  if (n > 0 && !obstacles)
+    return workspace_fail(workspace, CPROX_INVALID, "obstacles is NULL, but %zu are announced", n);
   if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu obstacles are more than 2147483647", n);
   for (size_t i = 0; i < n; i++) {
-    const cprox_status target = validate_target(&targets[i], i, workspace);
-    if (target != CPROX_OK) return target;
+    const cprox_status obstacle = validate_obstacle(&obstacles[i], i, workspace);
+    if (obstacle != CPROX_OK) return obstacle;
   }
   return CPROX_OK;
 }
 
 /* What is synchronized must run over the same time. */
-static cprox_status check_clock(const cprox_curve *curve, const cprox_obstacle *target, size_t index,
+static cprox_status check_clock(const cprox_curve *curve, const cprox_obstacle *obstacle, size_t index,
                                 cprox_workspace *workspace) {
-  if (!curve || !target->synchronized) return CPROX_OK;
-  if (curve->arcs || target->curve->arcs)
+  if (!curve || !obstacle->synchronized) return CPROX_OK;
+  if (curve->arcs || obstacle->curve->arcs)
     return workspace_fail(
         workspace, CPROX_INVALID,
         "obstacle %zu is on the mover's clock, but of one of the two curves only the arc length is known", index);
   const double t0 = curve->breaks[0], t1 = curve->breaks[curve->n_pieces];
-  const double u0 = target->curve->breaks[0], u1 = target->curve->breaks[target->curve->n_pieces];
+  const double u0 = obstacle->curve->breaks[0], u1 = obstacle->curve->breaks[obstacle->curve->n_pieces];
   if (t0 == u0 && t1 == u1) return CPROX_OK;
   return workspace_fail(
       workspace, CPROX_INVALID,
@@ -166,22 +167,22 @@ static cprox_status check_robot(const cprox_mover *mover, size_t n, cprox_worksp
   return check_pairs(mover, mover->self_pairs, whole ? mover->n_self_pairs : 0, true, n, workspace);
 }
 
-/* Is the target one that the mover can be held against? */
-static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle *target, size_t index,
+/* Is the obstacle one that the mover can be held against? */
+static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle *obstacle, size_t index,
                                   cprox_workspace *workspace) {
-  if (target->body && target->body->field && (mover->motion || mover->body))
+  if (obstacle->body && obstacle->body->field && (mover->motion || mover->body))
     return workspace_fail(workspace, CPROX_INVALID,
                           "obstacle %zu is known by its distance alone: balls on curves are held against it, not %s",
                           index, mover->motion ? "robots" : "bodies");
-  if (!mover->motion) return check_clock(mover->curve, target, index, workspace);
-  if (!target->body || target->curve)
+  if (!mover->motion) return check_clock(mover->curve, obstacle, index, workspace);
+  if (!obstacle->body || obstacle->curve)
     return workspace_fail(workspace, CPROX_INVALID, "obstacle %zu is a curve: a robot is asked about bodies", index);
   return CPROX_OK;
 }
 
 /* What bodies are made of. Convex ones are carried past convex ones: elements, and parts without end, have no Minkowski
  * difference that a search could use. Depths are those of convex bodies and hulls. */
-static cprox_status check_elements(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
+static cprox_status check_elements(const cprox_mover *mover, const cprox_obstacle *obstacles, size_t n,
                                    const cprox_options *options, cprox_workspace *workspace) {
   static const char *const WHY =
       "signed_distance: %s %zu is a mesh without a hull, points or boxes, or has such a part: "
@@ -196,7 +197,7 @@ static cprox_status check_elements(const cprox_mover *mover, const cprox_obstacl
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
   if (body && !body_is_in_reach(body))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body reaches farther than %g m", LENGTH_MOST);
-  /* past some targets it goes by its hull even where balls are asked for */
+  /* past some obstacles it goes by its hull even where balls are asked for */
   if (body && model_has_tree(body, finest == CPROX_LOD_SPHERE ? CPROX_LOD_HULL : finest))
     return workspace_fail(
         workspace, CPROX_INVALID,
@@ -205,7 +206,7 @@ static cprox_status check_elements(const cprox_mover *mover, const cprox_obstacl
     if (robot->parts[i].model.by_ball)
       return workspace_fail(workspace, CPROX_INVALID, WHY, "geometry", (size_t)robot->parts[i].geometry);
   for (size_t i = 0; (robot || body) && i < n; i++) {
-    if (!model_has_tree(targets[i].body, finest)) continue;
+    if (!model_has_tree(obstacles[i].body, finest)) continue;
     if (robot) return workspace_fail(workspace, CPROX_INVALID, WHY, "obstacle", i);
     return workspace_fail(workspace, CPROX_INVALID,
                           "obstacle %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
@@ -250,7 +251,7 @@ static cprox_status check_part(const cprox_mover *mover, const cprox_options *op
   return CPROX_OK;
 }
 
-cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
+cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *obstacles, size_t n,
                             const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
   cprox_status checked = check_kind(mover, workspace);
@@ -270,11 +271,11 @@ cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targ
     return workspace_fail(workspace, CPROX_INVALID, "the mover's curve reaches farther than %g m", LENGTH_MOST);
   checked = check_robot(mover, n, workspace);
   if (checked == CPROX_OK) checked = check_part(mover, options, workspace);
-  if (checked == CPROX_OK) checked = validate_targets(targets, n, workspace);
-  for (size_t i = 0; i < n && checked == CPROX_OK; i++) checked = check_against(mover, &targets[i], i, workspace);
-  if (checked == CPROX_OK) checked = check_elements(mover, targets, n, options, workspace);
+  if (checked == CPROX_OK) checked = validate_obstacles(obstacles, n, workspace);
+  for (size_t i = 0; i < n && checked == CPROX_OK; i++) checked = check_against(mover, &obstacles[i], i, workspace);
+  if (checked == CPROX_OK) checked = check_elements(mover, obstacles, n, options, workspace);
   if (checked == CPROX_OK && mover->radius_curve) checked = radius_check(mover, NULL, 0, asked, workspace);
   for (size_t i = 0; i < n && checked == CPROX_OK; i++)
-    if (radius_changes(mover, &targets[i])) checked = radius_check(mover, &targets[i], i, asked, workspace);
+    if (radius_changes(mover, &obstacles[i])) checked = radius_check(mover, &obstacles[i], i, asked, workspace);
   return checked;
 }

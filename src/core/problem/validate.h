@@ -35,9 +35,9 @@ cprox_status validate_options(const cprox_options *options, arguments_query aske
 /* Finite, 0 or more, and no longer than powers can hold. */
 cprox_status validate_length(const char *name, double value, cprox_workspace *workspace);
 cprox_status validate_delta(double delta, cprox_workspace *workspace);
-cprox_status validate_target(const cprox_obstacle *target, size_t index, cprox_workspace *workspace);
-cprox_status validate_targets(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace);
-cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
+cprox_status validate_obstacle(const cprox_obstacle *obstacle, size_t index, cprox_workspace *workspace);
+cprox_status validate_obstacles(const cprox_obstacle *obstacles, size_t n, cprox_workspace *workspace);
+cprox_status validate_query(const cprox_mover *mover, const cprox_obstacle *obstacles, size_t n,
                             const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
 
 #endif

@@ -6,9 +6,9 @@ cprox_obstacle cprox_obstacle_at(const cprox_body *body, cprox_pose pose) {
   return (cprox_obstacle){.body = body, .pose = pose, .margin = 0.0};
 }
 
-cprox_obstacle cprox_with_margin(cprox_obstacle target, double margin) {
-  target.margin = margin;
-  return target;
+cprox_obstacle cprox_with_margin(cprox_obstacle obstacle, double margin) {
+  obstacle.margin = margin;
+  return obstacle;
 }
 
 cprox_obstacle cprox_obstacle_curve(const cprox_curve *curve, double radius) {

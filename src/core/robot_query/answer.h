@@ -7,10 +7,10 @@
 #include "robot_query/oracle.h"
 
 /* Distance and verdicts over [q->t0, q->t1], as solve_query() has them. In a query about the robot itself there are no
- * targets. */
+ * obstacles. */
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result);
 
-/* The same of all targets. travel: a bound on how far the pair that came nearest moves towards or away from each other
+/* The same of all obstacles. travel: a bound on how far the pair that came nearest moves towards or away from each other
  * between any two times of the interval; infinity where nothing was measured. */
 cprox_status robot_answer_and_travel(const query *q, cprox_result *result, double *travel);
 

@@ -311,7 +311,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   return refine_pair_elements(o, &p, node, entry, &gap);
 }
 
-/* The pairs of a part and the target in a box of the set's tree. */
+/* The pairs of a part and the obstacle in a box of the set's tree. */
 static cprox_status open_box(robot_search *o, const search_node *node, const list_entry *entry) {
   size_t count;
   const int32_t pairs = cluster_pairs(&o->scene, entry->part, entry->under, &count);

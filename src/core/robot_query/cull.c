@@ -13,25 +13,25 @@ static const double LANE_BITS[TREE_LANES] = {1, 2, 4, 8, 16, 32, 64, 128};
 /* ---- pairs ---- */
 
 int32_t cluster_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count) {
-  const uint32_t target = s->q->set->of_box[box];
-  *count = body_n_parts(s->q->targets[target].body);
-  const int32_t known = pair_table_find(&s->met, MADE_PAIRS, part, target);
+  const uint32_t obstacle = s->q->set->of_box[box];
+  *count = body_n_parts(s->q->obstacles[obstacle].body);
+  const int32_t known = pair_table_find(&s->met, MADE_PAIRS, part, obstacle);
   if (known >= 0) return known;
 
-  int32_t obstacle = pair_table_find(&s->met, MADE_OBSTACLES, 0, target);
-  if (obstacle < 0) {
-    obstacle = robot_scene_add_obstacles(s, target);
-    if (obstacle < 0 || !pair_table_note(&s->met, s->q->workspace, MADE_OBSTACLES, 0, target, obstacle)) return -1;
+  int32_t element = pair_table_find(&s->met, MADE_OBSTACLES, 0, obstacle);
+  if (element < 0) {
+    element = robot_scene_add_obstacles(s, obstacle);
+    if (element < 0 || !pair_table_note(&s->met, s->q->workspace, MADE_OBSTACLES, 0, obstacle, element)) return -1;
   }
   int32_t first = -1;
   for (size_t i = 0; i < *count; i++) {
-    const planned_pair two = {.moving = part, .standing = obstacle + (int32_t)i};
+    const planned_pair two = {.moving = part, .standing = element + (int32_t)i};
     const robot_pair pair = robot_scene_pair_of(s, &two, false);
     const int32_t added = robot_scene_add_pair(s, &pair);
     if (added < 0) return -1;
     if (i == 0) first = added;
   }
-  return pair_table_note(&s->met, s->q->workspace, MADE_PAIRS, part, target, first) ? first : -1;
+  return pair_table_note(&s->met, s->q->workspace, MADE_PAIRS, part, obstacle, first) ? first : -1;
 }
 
 /* ---- boxes ---- */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The targets of a set as the parts of a robot come near them, by the tree of their boxes: a part and all that is under
+/* The obstacles of a set as the parts of a robot come near them, by the tree of their boxes: a part and all that is under
  * a node of the tree are one entry of a list until the part comes near, and only then pairs. doc/robot-search.md, Many
  * obstacles */
 #ifndef CPROX_ROBOT_QUERY_CULL_H
@@ -37,7 +37,7 @@ void cluster_measure(const cluster_view *view, uint32_t at, double bar, cluster_
 /* The same lanes by the box round the part, too. */
 void cluster_measure_boxes(const cluster_view *view, uint32_t at, double bar, cluster_lanes *lanes);
 
-/* The pairs of a part and the target in a box, one for each part of that: the first one's number, -1 where memory is
+/* The pairs of a part and the obstacle in a box, one for each part of that: the first one's number, -1 where memory is
  * out. They may move all pairs and obstacles in memory. */
 int32_t cluster_pairs(robot_scene *scene, int32_t part, uint32_t box, size_t *count);
 

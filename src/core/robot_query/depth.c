@@ -20,7 +20,7 @@ bool robot_depth_has_meshes(const query *q, size_t first, size_t last) {
   for (size_t i = 0; i < robot->n_parts; i++)
     if (robot->parts[i].model.tree) return true;
   for (size_t i = first; i < last; i++)
-    if (model_has_tree(q->targets[i].body, CPROX_LOD_MESH)) return true;
+    if (model_has_tree(q->obstacles[i].body, CPROX_LOD_MESH)) return true;
   return false;
 }
 
@@ -30,7 +30,7 @@ static bool nearest_has_mesh(const query *q, const cprox_result *r) {
   if (geometry_has_mesh(robot, r->mover_part)) return true;
   if (mover_is_self(&q->mover)) return geometry_has_mesh(robot, r->obstacle_index);
   if ((size_t)r->obstacle_index >= q->n) return geometry_has_mesh(robot, r->obstacle_index - (int32_t)q->n);
-  return body_part_at(q->targets[r->obstacle_index].body, (size_t)r->obstacle_part)->kind == CPROX_BODY_LOD;
+  return body_part_at(q->obstacles[r->obstacle_index].body, (size_t)r->obstacle_part)->kind == CPROX_BODY_LOD;
 }
 
 /* ---- the two queries ---- */

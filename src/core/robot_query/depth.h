@@ -6,7 +6,7 @@
 
 #include "problem/problem.h"
 
-/* Whether a signed query about these targets has meshes that may answer. */
+/* Whether a signed query about these obstacles has meshes that may answer. */
 bool robot_depth_has_meshes(const query *q, size_t first, size_t last);
 
 /* Then it begins with the query of what is apart, without depths. */

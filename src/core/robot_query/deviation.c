@@ -82,9 +82,9 @@ deviation deviation_of_pair(robot_scene *s, const robot_pair *pair, const robot_
   if (pair->self) return of_self_pair(s, pair, moving, standing, places);
   const part_deviation part = pair->element[0] == ROBOT_WHOLE ? *whole_part(s, pair->moving, moving)
                                                               : part_deviation_of(s, pair->moving, moving);
-  const cprox_obstacle *target = &s->q->targets[standing->index];
-  const double arm = vec_norm(vec_sub(moving->side.at.p, target->pose.position)) + moving->core;
-  *places = deviation_sum(part.places, turn_of_obstacle(s, obstacle_reach(target), ROUND_UP * arm, &part));
+  const cprox_obstacle *obstacle = &s->q->obstacles[standing->index];
+  const double arm = vec_norm(vec_sub(moving->side.at.p, obstacle->pose.position)) + moving->core;
+  *places = deviation_sum(part.places, turn_of_obstacle(s, obstacle_reach(obstacle), ROUND_UP * arm, &part));
   return deviation_sum(part.joints, *places);
 }
 

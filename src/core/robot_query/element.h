@@ -13,7 +13,7 @@ typedef struct robot_body {
   double radius;                 /* of a ball about the shape's origin that contains the part, margin included */
   double core;                   /* robot_core_radius() */
   uint32_t steps;                /* transforms that its place went through */
-  int32_t index, part;           /* target and part of it; or geometry and its number among the robot's parts */
+  int32_t index, part;           /* obstacle and part of it; or geometry and its number among the robot's parts */
   const tree *tree;              /* the elements under the shape, NULL for none; the tree's axes are the shape's, */
   const cluster_hulls *clusters; /* those of the tree, NULL for none */
   vec3 tree_at;                  /* its origin stands here in the shape's frame, */

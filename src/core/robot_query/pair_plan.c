@@ -5,7 +5,7 @@
 
 #include "base/workspace.h"
 
-/* ---- geometries and targets ---- */
+/* ---- geometries and obstacles ---- */
 
 /* The first of n ascending numbers, so many bytes from each other, that is `least` or more. */
 static size_t first_from(const int32_t *number, size_t bytes, size_t n, int32_t least) {
@@ -76,7 +76,7 @@ static bool take_row(pair_plan *p, size_t part, size_t first, size_t last, bool 
   return took;
 }
 
-/* The convex parts of two geometries, or of a geometry and a target. */
+/* The convex parts of two geometries, or of a geometry and an obstacle. */
 static bool take_given(pair_plan *p, const cprox_robot_pair *given, const robot_body *obstacles, size_t n_obstacles,
                        bool self) {
   const cprox_robot *robot = p->q->mover.motion->robot;

@@ -30,8 +30,8 @@ static inline bool pair_plan_has_self(const cprox_mover *mover) {
 }
 size_t pair_plan_count_self(const cprox_mover *mover);
 
-/* Lists the pairs: q, starts and reach are given. obstacles: those of one target side by side, in the order of the
- * targets; grouped: pairs of the robot with itself are left to groups of parts. False where memory is out. */
+/* Lists the pairs: q, starts and reach are given. obstacles: those of one obstacle side by side, in the order of the
+ * obstacles; grouped: pairs of the robot with itself are left to groups of parts. False where memory is out. */
 bool pair_plan_list(pair_plan *plan, const robot_body *obstacles, size_t n_obstacles, bool grouped);
 
 /* The pair with itself that may come nearest, or NULL. */

@@ -17,7 +17,7 @@ typedef struct pair_table {
 
 typedef enum pair_made { MADE_OBSTACLES, MADE_PAIRS, MADE_SELF_PAIRS } pair_made;
 
-/* The number of the first of what was made of a part and a target (of obstacles the part is 0) or of two parts; -1:
+/* The number of the first of what was made of a part and an obstacle (of obstacles the part is 0) or of two parts; -1:
  * nothing was. */
 int32_t pair_table_find(const pair_table *table, pair_made made, int32_t part, uint32_t other);
 

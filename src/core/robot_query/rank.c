@@ -26,7 +26,7 @@ static size_t parts_of_geometry(const ranking *r, int32_t geometry) {
 /* The scene lists the pairs of convex parts of one pair after the other. */
 static size_t parts_of_pair(const ranking *r, const cprox_robot_pair *pair) {
   const size_t others =
-      mover_is_self(&r->q->mover) ? parts_of_geometry(r, pair->other) : body_n_parts(r->q->targets[pair->other].body);
+      mover_is_self(&r->q->mover) ? parts_of_geometry(r, pair->other) : body_n_parts(r->q->obstacles[pair->other].body);
   return parts_of_geometry(r, pair->geometry) * others;
 }
 

@@ -32,43 +32,43 @@ static robot_body with_core(const robot_body *body, const part_model *m) {
 
 /* ---- obstacles ---- */
 
-/* A part of a target; the frames of parts of unions are composed. */
+/* A part of an obstacle; the frames of parts of unions are composed. */
 static robot_body obstacle_of(const query *q, size_t index, size_t part) {
-  const cprox_obstacle *target = &q->targets[index];
-  const cprox_body *body = body_part_at(target->body, part);
+  const cprox_obstacle *obstacle = &q->obstacles[index];
+  const cprox_body *body = body_part_at(obstacle->body, part);
   part_model m = model_for(q, part_model_of(body));
   if (m.shape->ops->kind != CPROX_BODY_HALFSPACE) part_model_find_box(&m);
-  cprox_pose pose = target->pose;
+  cprox_pose pose = obstacle->pose;
   double error = 0.0;
-  if (target->body->kind == CPROX_BODY_COMPOUND) {
-    const body_part *p = &target->body->parts[part];
-    pose = frame_compose(&target->pose, &p->pose);
+  if (obstacle->body->kind == CPROX_BODY_COMPOUND) {
+    const body_part *p = &obstacle->body->parts[part];
+    pose = frame_compose(&obstacle->pose, &p->pose);
     const double turned = vec_norm(p->pose.position) + vec_norm(body->ball_centre) + 2.0 * body->ball_radius;
     error = isfinite(turned) ? turned : vec_norm(p->pose.position) + vec_norm(body->centre) + body->shape.scale;
     error = ROUND_U * (ROUND_ROTATION * error + 3.0 * vec_norm(pose.position));
   }
   const frame f = frame_create(&pose, m.centre);
-  robot_body placed = {.radius = m.radius + target->margin, .index = (int32_t)index, .part = (int32_t)part};
-  placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->margin};
+  robot_body placed = {.radius = m.radius + obstacle->margin, .index = (int32_t)index, .part = (int32_t)part};
+  placed.side = (bound_side){.shape = m.shape, .margin = m.margin + obstacle->margin};
   for (int i = 0; i < 9; i++) placed.side.at.r[i] = f.r[i];
   placed.side.at.p = frame_to_world(&f, vec(0, 0, 0));
   placed.tree = m.tree, placed.clusters = m.tree ? m.clusters : NULL, placed.tree_at = m.tree_at,
-  placed.tree_margin = m.tree_margin + target->margin, placed.winding = m.winding;
+  placed.tree_margin = m.tree_margin + obstacle->margin, placed.winding = m.winding;
   if (robot_body_is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
   const double sizes = vec_norm(m.centre) + placed.radius;
   placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
   return with_core(&placed, &m);
 }
 
-int32_t robot_scene_add_obstacles(robot_scene *s, size_t target) {
-  const size_t parts = body_n_parts(s->q->targets[target].body), n = s->n_obstacles + parts;
+int32_t robot_scene_add_obstacles(robot_scene *s, size_t obstacle) {
+  const size_t parts = body_n_parts(s->q->obstacles[obstacle].body), n = s->n_obstacles + parts;
   if (n > INT32_MAX) return -1;
   robot_body *all = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_OBSTACLES, (n + 1) * sizeof *all);
   if (!all) return -1;
   s->obstacles = all;
   for (size_t i = 0; i < parts; i++) {
     robot_body *made = &all[s->n_obstacles + i];
-    *made = obstacle_of(s->q, target, i);
+    *made = obstacle_of(s->q, obstacle, i);
     s->has_solids = s->has_solids || made->winding;
   }
   s->n_obstacles = n;

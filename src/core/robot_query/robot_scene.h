@@ -80,7 +80,7 @@ typedef struct robot_scene {
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
   pair_plan plan;              /* what was listed in the beginning: these come first */
-  pair_table met;              /* what was made of targets of the set, and of groups */
+  pair_table met;              /* what was made of obstacles of the set, and of groups */
   struct robot_groups *groups; /* of parts, where pairs with itself are found by them (robot_query/groups.h), or NULL */
   robot_element element[2];    /* those of the pair that was placed last: moving, standing */
   uint32_t node;               /* counts the nodes, so that states know whether they are of the present one */
@@ -98,7 +98,7 @@ typedef struct robot_scene {
 #define ROBOT_MOST_LISTED 200
 #endif
 
-/* Makes the scene of targets first … last - 1 ready, for pairs of a class (kept by reference; NULL: all, as if all
+/* Makes the scene of obstacles first … last - 1 ready, for pairs of a class (kept by reference; NULL: all, as if all
  * starts were known); false where memory is out. Of a set, only those without a box; the
  * rest come as they are needed. If the robot could have more than `most_listed` pairs with itself, these come as groups
  * of its parts come near each other; SIZE_MAX: every pair is listed. Otherwise those of several robots that stay too
@@ -132,9 +132,9 @@ static inline bool robot_scene_stands(const robot_scene *scene, const robot_pair
   return scene->parts[pair->moving].carrier == other;
 }
 
-/* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move
+/* The parts of an obstacle are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move
  * all obstacles in memory. */
-int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
+int32_t robot_scene_add_obstacles(robot_scene *scene, size_t obstacle);
 
 /* A new node: of one segment, or of any number; another clock is at the same times, or at its own. */
 void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);

@@ -210,17 +210,17 @@ static double clamp(double x, double least, double most) {
 
 /* Newton on |psi(t) - phi(u)|²/2 from a minimiser that is nearly one; where a radius changes on the distance less the
  * radius, times the distance. Parameters at an end stay there. */
-static void refine_pair(const cprox_mover *mover, const cprox_obstacle *target, cprox_workspace *workspace, double *t,
+static void refine_pair(const cprox_mover *mover, const cprox_obstacle *obstacle, cprox_workspace *workspace, double *t,
                         double *u) {
   enum { MOST_STEPS = 12 };
-  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
   double t0, t1, u0, u1;
   curve_domain(mover->curve, &t0, &t1);
-  curve_domain(target->curve, &u0, &u1);
+  curve_domain(obstacle->curve, &u0, &u1);
   for (int i = 0; i < MOST_STEPS; i++) {
     curve_jet x, y;
     jet_of(mover->curve, NULL, *t, workspace, &x);
-    jet_of(target->curve, &f, *u, workspace, &y);
+    jet_of(obstacle->curve, &f, *u, workspace, &y);
     const vec3 w = vec_sub(x.x, y.x);
     double gt = vec_dot(w, x.d1), gu = -vec_dot(w, y.d1), cross = -vec_dot(x.d1, y.d1);
     double htt = vec_norm2(x.d1) + vec_dot(w, x.d2), huu = vec_norm2(y.d1) - vec_dot(w, y.d2);
@@ -253,7 +253,7 @@ static void refine_pair(const cprox_mover *mover, const cprox_obstacle *target, 
 
 /* Whether the mover is farther than `distance` by more than epsilon in
  * [breaks[0], breaks[1]] and [breaks[2], breaks[3]]. */
-static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *target, const cprox_options *options,
+static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *obstacle, const cprox_options *options,
                                const double breaks[4], double distance, cprox_workspace *workspace, bool *farther) {
   cprox_options few = *options;
   if (few.max_nodes > MOST_NODES) few.max_nodes = MOST_NODES;
@@ -262,7 +262,7 @@ static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *target, 
   for (int i = 0; i < 4 && *farther; i += 2) {
     if (!(breaks[i] < breaks[i + 1])) continue;
     cprox_profile_interval interval;
-    const cprox_status status = list_profile(mover, target, 1, &breaks[i], 1, horizon, &few, workspace, &interval);
+    const cprox_status status = list_profile(mover, obstacle, 1, &breaks[i], 1, horizon, &few, workspace, &interval);
     if (status < 0) return status;
     *farther = interval.lower > distance + options->epsilon;
   }
@@ -271,7 +271,7 @@ static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *target, 
 
 /* Whether the mover is farther than `distance` wherever it is not near t, and
  * closer to t at least not as near. */
-static cprox_status is_alone(cprox_mover mover, const cprox_obstacle *target, const cprox_options *options, double t,
+static cprox_status is_alone(cprox_mover mover, const cprox_obstacle *obstacle, const cprox_options *options, double t,
                              double distance, cprox_workspace *workspace, bool *alone) {
   double t0, t1, outer = 0.0;
   curve_domain(mover.curve, &t0, &t1);
@@ -279,7 +279,7 @@ static cprox_status is_alone(cprox_mover mover, const cprox_obstacle *target, co
   for (size_t k = 0; k < sizeof NEIGHBOURHOOD / sizeof *NEIGHBOURHOOD && !*alone; k++) {
     outer = NEIGHBOURHOOD[k] * (t1 - t0);
     const double breaks[4] = {t0, t - outer, t + outer, t1};
-    const cprox_status status = is_farther(mover, target, options, breaks, distance, workspace, alone);
+    const cprox_status status = is_farther(mover, obstacle, options, breaks, distance, workspace, alone);
     if (status < 0) return status;
   }
   if (!*alone) return CPROX_OK;
@@ -291,17 +291,17 @@ static cprox_status is_alone(cprox_mover mover, const cprox_obstacle *target, co
   for (size_t k = 0; k < sizeof NEARBY / sizeof *NEARBY && !*alone; k++) {
     const double inner = NEARBY[k] * (t1 - t0);
     const double breaks[4] = {fmax(t - outer, t0), t - inner, t + inner, fmin(t + outer, t1)};
-    const cprox_status status = is_farther(mover, target, &fine, breaks, distance, workspace, alone);
+    const cprox_status status = is_farther(mover, obstacle, &fine, breaks, distance, workspace, alone);
     if (status < 0) return status;
   }
   return CPROX_OK;
 }
 
-/* What stands when the mover is stopped where psi is `at`, seen by a target
+/* What stands when the mover is stopped where psi is `at`, seen by an obstacle
  * curve that moves instead. */
-static cprox_obstacle stopped(const cprox_mover *mover, const cprox_obstacle *target, vec3 at, double radius) {
-  const frame f = frame_create(&target->pose, vec(0, 0, 0));
-  const cprox_quat q = target->pose.orientation;
+static cprox_obstacle stopped(const cprox_mover *mover, const cprox_obstacle *obstacle, vec3 at, double radius) {
+  const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
+  const cprox_quat q = obstacle->pose.orientation;
   double unused = 0.0;
   return (cprox_obstacle){.body = mover->body ? mover->body : &carried_point,
                           .pose = {.position = frame_to_local(&f, at, &unused), .orientation = {q.w, -q.x, -q.y, -q.z}},
@@ -310,7 +310,7 @@ static cprox_obstacle stopped(const cprox_mover *mover, const cprox_obstacle *ta
 
 /* Whether no other pair of parts is as near at the minimiser. */
 static cprox_status part_is_alone(const query *q, const placed_pair *best, double t, double distance, bool *alone) {
-  const size_t parts = body_n_parts(q->targets[0].body), own = body_n_parts(q->mover.body);
+  const size_t parts = body_n_parts(q->obstacles[0].body), own = body_n_parts(q->mover.body);
   *alone = true;
   for (size_t i = 0; i < parts * own && *alone; i++) {
     const candidate c = {.part = (int32_t)(i / own), .mover_part = (int32_t)(i % own)};
@@ -359,7 +359,7 @@ static cprox_status normal_is_alone(beside *o, const look *here, bool *alone) {
 
 /* The mover at t, and what stands, or is on its clock, where it is then. */
 static placed_bodies bodies_at(const query *q, const placed_pair *c, double t) {
-  placed_bodies p = {.b = q->targets[0],
+  placed_bodies p = {.b = q->obstacles[0],
                      .part_a = (size_t)c->which.mover_part,
                      .part_b = (size_t)c->which.part,
                      .finest = q->options.max_lod,
@@ -395,12 +395,12 @@ static cprox_status nearest_is_alone(const query *q, const placed_pair *c, doubl
 
 /* ---- the gradient ---- */
 
-static void fill(const cprox_obstacle *target, vec3 n, vec3 witness_obstacle, cprox_gradient *g) {
-  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+static void fill(const cprox_obstacle *obstacle, vec3 n, vec3 witness_obstacle, cprox_gradient *g) {
+  const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
   g->mover = n;
   g->position = vec_neg(n);
-  g->rotation = vec_cross(n, vec_sub(witness_obstacle, target->pose.position));
-  g->obstacle_point = target->curve ? frame_turn_to_local(&f, vec_neg(n)) : vec(0, 0, 0);
+  g->rotation = vec_cross(n, vec_sub(witness_obstacle, obstacle->pose.position));
+  g->obstacle_point = obstacle->curve ? frame_turn_to_local(&f, vec_neg(n)) : vec(0, 0, 0);
   g->radius = g->margin = -1.0;
 }
 
@@ -422,8 +422,8 @@ static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox
   finding_of(&o, &here, &seen);
   status = report_finding(q, c, &seen, &r);
   if (status < 0) return status;
-  fill(&q->targets[0], r.normal, r.witness_obstacle, g);
-  if (q->targets[0].synchronized) g->t_obstacle = g->t;
+  fill(&q->obstacles[0], r.normal, r.witness_obstacle, g);
+  if (q->obstacles[0].synchronized) g->t_obstacle = g->t;
   if (vec_norm2(r.normal) == 0.0) return invalid(q->workspace, g, "there is no normal");
   if ((!q->is_signed || o.is_tree) && !(distance > here.slack)) return invalid(q->workspace, g, "the distance is 0");
 
@@ -439,7 +439,7 @@ static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox
   status = part_is_alone(q, c, g->t, distance, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "two parts are equally near");
-  status = is_alone(q->mover, q->targets, &q->options, g->t, distance, q->workspace, &alone);
+  status = is_alone(q->mover, q->obstacles, &q->options, g->t, distance, q->workspace, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "the distance is as small elsewhere along the curve");
   g->valid = true;
@@ -450,10 +450,10 @@ static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox
 static cprox_status carried_way_out_is_alone(const query *q, const placed_pair *c, vec3 on_curve, double t,
                                              double distance, bool *alone) {
   *alone = true;
-  placed_bodies p = {.b = q->targets[0]};
+  placed_bodies p = {.b = q->obstacles[0]};
   if (q->mover.body) p = bodies_at(q, c, t);
-  if (!q->mover.body || !(distance + p.a.margin + q->targets[0].margin <= 0.0)) return CPROX_OK;
-  p.b = (cprox_obstacle){.body = &carried_point, .pose = {on_curve, {1, 0, 0, 0}}, .margin = q->targets[0].margin};
+  if (!q->mover.body || !(distance + p.a.margin + q->obstacles[0].margin <= 0.0)) return CPROX_OK;
+  p.b = (cprox_obstacle){.body = &carried_point, .pose = {on_curve, {1, 0, 0, 0}}, .margin = q->obstacles[0].margin};
   p.part_b = 0;
   p.size = q->mover.body->ball_radius;
   return ties_normal_is_alone(&p, alone);
@@ -461,20 +461,20 @@ static cprox_status carried_way_out_is_alone(const query *q, const placed_pair *
 
 static cprox_status gradient_of_curve(const query *q, const placed_pair *c, const cprox_result *result,
                                       cprox_gradient *g) {
-  const cprox_obstacle *target = &q->targets[0];
-  if (!q->mover.body) refine_pair(&q->mover, target, q->workspace, &g->t, &g->t_obstacle);
-  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  const cprox_obstacle *obstacle = &q->obstacles[0];
+  if (!q->mover.body) refine_pair(&q->mover, obstacle, q->workspace, &g->t, &g->t_obstacle);
+  const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
   curve_jet x, y;
   jet_of(q->mover.curve, NULL, g->t, q->workspace, &x);
-  jet_of(target->curve, &f, g->t_obstacle, q->workspace, &y);
+  jet_of(obstacle->curve, &f, g->t_obstacle, q->workspace, &y);
   vec3 n = vec_sub(x.x, y.x);
   curve_jet thickness = {.x = vec(0, 0, 0)};
   if (q->mover.radius_curve) jet_of(q->mover.radius_curve, NULL, g->t, q->workspace, &thickness);
   const double radius = q->mover.radius + thickness.x.x;
-  double distance = vec_norm(n) - radius - target->margin;
+  double distance = vec_norm(n) - radius - obstacle->margin;
   n = vec_norm(n) > 0.0 ? vec_scale(1.0 / vec_norm(n), n) : n;
   if (q->mover.body) n = result->normal, distance = result->upper;
-  fill(target, n, y.x, g);
+  fill(obstacle, n, y.x, g);
   double t0, t1;
   curve_domain(q->mover.curve, &t0, &t1);
   if (g->t == t0) g->t0 = fmax(vec_dot(n, x.d1) - thickness.d1.x, 0.0);
@@ -486,11 +486,11 @@ static cprox_status gradient_of_curve(const query *q, const placed_pair *c, cons
   cprox_status status = carried_way_out_is_alone(q, c, y.x, g->t, distance, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "there is more than one way out");
-  status = is_alone(q->mover, target, &q->options, g->t, distance, q->workspace, &alone);
+  status = is_alone(q->mover, obstacle, &q->options, g->t, distance, q->workspace, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "the distance is as small elsewhere along the curve");
-  const cprox_obstacle other = stopped(&q->mover, target, x.x, radius);
-  const cprox_mover moved = cprox_tube_along(target->curve, target->margin);
+  const cprox_obstacle other = stopped(&q->mover, obstacle, x.x, radius);
+  const cprox_mover moved = cprox_tube_along(obstacle->curve, obstacle->margin);
   status = is_alone(moved, &other, &q->options, g->t_obstacle, distance, q->workspace, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "another point of the obstacle's curve is as near");
@@ -498,29 +498,29 @@ static cprox_status gradient_of_curve(const query *q, const placed_pair *c, cons
   return CPROX_OK;
 }
 
-cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle obstacle, const cprox_options *options,
                                      const cprox_result *result, cprox_workspace *workspace, cprox_gradient *gradient) {
   WORKSPACE_USE(workspace);
-  query q = query_create(mover, &target, 1, -1.0, options, workspace);
+  query q = query_create(mover, &obstacle, 1, -1.0, options, workspace);
   workspace_clear(workspace);
   if (mover.motion) return workspace_fail(workspace, CPROX_INVALID, "no gradient is known along a robot's motion");
   const arguments_query asked = {"a gradient", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED | ARGUMENTS_RADIUS};
-  const cprox_status checked = validate_query(&mover, &target, 1, &q.options, asked, workspace);
+  const cprox_status checked = validate_query(&mover, &obstacle, 1, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
   const candidate c = {.part = result->obstacle_part, .mover_part = result->mover_part};
   if (result->obstacle_index < 0 || !isfinite(result->upper))
     return workspace_fail(workspace, CPROX_INVALID, "the result has no witness: ask for a distance");
-  const bool is_field = target.body && target.body->field;
-  if (mover.curve->arcs || (target.curve && target.curve->arcs) || is_field)
+  const bool is_field = obstacle.body && obstacle.body->field;
+  if (mover.curve->arcs || (obstacle.curve && obstacle.curve->arcs) || is_field)
     return workspace_fail(workspace, CPROX_INVALID, "no gradient is known for %s",
                           is_field ? "sets known by their distance" : "a curve without derivatives");
   query_ask_whole(&q);
   if (!(q.t0 <= result->t && result->t <= q.t1))
     return workspace_fail(workspace, CPROX_INVALID, "the result's t = %.17g is not on the mover's curve", result->t);
-  if (target.body && target.body->kind == CPROX_BODY_COMPOUND &&
-      !(result->obstacle_part >= 0 && (size_t)result->obstacle_part < target.body->n_parts))
+  if (obstacle.body && obstacle.body->kind == CPROX_BODY_COMPOUND &&
+      !(result->obstacle_part >= 0 && (size_t)result->obstacle_part < obstacle.body->n_parts))
     return workspace_fail(workspace, CPROX_INVALID, "the result's obstacle_part %d is no part of the obstacle",
                           result->obstacle_part);
 

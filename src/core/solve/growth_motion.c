@@ -469,7 +469,7 @@ static cprox_status begin(robot_growth *o) {
     if (robot->given_geometries[i].margin > 0.0)
       return workspace_fail(q->workspace, CPROX_INVALID, "geometry %zu has a margin, which is not scaled", i);
   for (size_t i = 0; i < q->n; i++)
-    if (q->targets[i].margin > 0.0)
+    if (q->obstacles[i].margin > 0.0)
       return workspace_fail(q->workspace, CPROX_INVALID, "obstacle %zu has a margin, which is not scaled", i);
   robot_scene *s = &o->scene;
   if (!robot_scene_begin(s, q, NULL, 0, q->n, SIZE_MAX, INFINITY))

@@ -239,11 +239,11 @@ static void add_spot(spot_pair *p, const motion_spot *spot, double part, double 
   for (size_t v = 0; v < scene->motion->robot->n_variables; v++) p->sum[v] += part * p->by_variable[v];
   if (p->pair.self) return;
   const vec3 n = spot->gap.normal;
-  const cprox_obstacle *target = &scene->q->targets[scene->obstacles[p->pair.standing].index];
+  const cprox_obstacle *obstacle = &scene->q->obstacles[scene->obstacles[p->pair.standing].index];
   to->base_position = vec_axpy(to->base_position, part, n);
   to->base_rotation = vec_axpy(to->base_rotation, part, vec_cross(spot->gap.on_moving, n));
   to->position = vec_axpy(to->position, -part, n);
-  to->rotation = vec_axpy(to->rotation, part, vec_cross(n, vec_sub(spot->gap.on_standing, target->pose.position)));
+  to->rotation = vec_axpy(to->rotation, part, vec_cross(n, vec_sub(spot->gap.on_standing, obstacle->pose.position)));
 }
 
 void motion_derivatives_fill(spot_pair *p, const motion_spot *at, const spots *by, cprox_motion_gradient *to) {

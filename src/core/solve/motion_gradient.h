@@ -6,7 +6,7 @@
 #include "curve_proximity/cprox/gradient.h"
 #include "problem/problem.h"
 
-/* As cprox_robot_distance_gradient() has it, of targets first … last - 1 over [q->t0, q->t1]; the query must have
+/* As cprox_robot_distance_gradient() has it, of obstacles first … last - 1 over [q->t0, q->t1]; the query must have
  * begun.
  */
 cprox_status motion_gradient_of(const query *q, size_t first, size_t last, cprox_result *result,

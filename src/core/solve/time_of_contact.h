@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Time of contact with a union, some targets at a time. */
+/* Time of contact with a union, some obstacles at a time. */
 #ifndef CPROX_SOLVE_TIME_OF_CONTACT_H
 #define CPROX_SOLVE_TIME_OF_CONTACT_H
 
@@ -22,7 +22,7 @@ typedef struct time_of_contact {
 /* With nothing. */
 time_of_contact time_of_contact_begin(void);
 
-/* Adds targets first … last - 1. CPROX_OK, or a negative status. */
+/* Adds obstacles first … last - 1. CPROX_OK, or a negative status. */
 cprox_status time_of_contact_with(time_of_contact *all, const query *q, size_t first, size_t last);
 
 /* What that says to the caller. */

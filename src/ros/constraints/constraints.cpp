@@ -171,12 +171,12 @@ Constraints::Constraints(const Parameters &parameters, const LiveScene &live, co
 }
 
 std::vector<std::string> Constraints::failures() const {
-  std::vector<std::string> sentences;
+  std::vector<std::string> messages;
   for (const LoadedProvider &loaded : providers_->all())
     if (!loaded.provider)
-      sentences.push_back("constraint provider '" + loaded.spec.name + "' (" + loaded.spec.type +
-                          ") failed to load: " + loaded.failure);
-  return sentences;
+      messages.push_back("constraint provider '" + loaded.spec.name + "' (" + loaded.spec.type +
+                         ") failed to load: " + loaded.failure);
+  return messages;
 }
 
 /** Throws Error for what is beyond a limit; how many bytes the largest case takes, about. */
@@ -317,7 +317,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
     std::vector<ConstraintRow> rows;
     ConstraintCase described;
     cprox_status fault = CPROX_OK;
-    const std::string why = sentenceOf(
+    const std::string why = messageOf(
         [&] {
           budget.demand();
           described = toCase(asked, work);

@@ -35,7 +35,7 @@ class Constraints {
   void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
               const TimeBudget &budget, Turn *turn);
 
-  /** A sentence for each provider that failed to load. */
+  /** A message for each provider that failed to load. */
   std::vector<std::string> failures() const;
 
  private:

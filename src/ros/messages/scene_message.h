@@ -20,7 +20,7 @@ namespace curve_proximity {
 Operation toOperation(const CollisionObject &object);
 
 /** The whole request of ~apply_scene. The poses of objects are brought to the fixed frame by `to_fixed(header)`, which
- * may throw. An object that cannot be converted becomes a sentence in `faults`, and the others stay. */
+ * may throw. An object that cannot be converted becomes a message in `faults`, and the others stay. */
 using ToFixed = std::function<Eigen::Isometry3d(const std_msgs::Header &header)>;
 SceneChange toSceneChange(const ApplySceneRequest &request, const ToFixed &to_fixed, std::vector<std::string> &faults);
 

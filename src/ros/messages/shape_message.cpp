@@ -64,7 +64,7 @@ ShapeDescription toShape(const shape_msgs::Plane &plane) {
   return shape;
 }
 
-/** A flat list as rows of N numbers; `what` names a row in a sentence. */
+/** A flat list as rows of N numbers; `what` names a row in a message. */
 template <std::size_t N>
 std::vector<std::array<double, N>> toRows(const std::vector<double> &numbers, const char *what) {
   if (numbers.size() % N != 0)
@@ -88,7 +88,7 @@ void fillDeformation(const Body &body, ShapeDescription &shape) {
   out.exponents = body.exponents;
 }
 
-/** Appends one list of shapes with their poses; `what` names the list's elements in a sentence. */
+/** Appends one list of shapes with their poses; `what` names the list's elements in a message. */
 template <class Shape>
 void append(const std::vector<Shape> &shapes, const std::vector<geometry_msgs::Pose> &poses, const char *what,
             std::vector<ShapeDescription> &out) {

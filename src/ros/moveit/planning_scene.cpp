@@ -170,7 +170,7 @@ class SceneReader {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /* in the link */
   };
 
-  void complain(const std::string &what) {
+  void warn(const std::string &what) {
     out_.wrong.push_back(what);
   }
 
@@ -180,14 +180,14 @@ class SceneReader {
       work();
     } catch (const std::exception &error) {
       const std::string why = error.what();
-      complain(why.rfind("object '", 0) == 0 ? why : "object '" + id + "': " + why);
+      warn(why.rfind("object '", 0) == 0 ? why : "object '" + id + "': " + why);
     }
   }
 
   void checkModel() {
     const std::string &name = message_.robot_model_name;
     if (!name.empty() && robot_ && name != robot_->name())
-      complain("the scene is of robot '" + name + "', and this server's is '" + robot_->name() + "'");
+      warn("the scene is of robot '" + name + "', and this server's is '" + robot_->name() + "'");
   }
 
   /* ---- frames ---- */
@@ -200,7 +200,7 @@ class SceneReader {
         if (child.empty()) throw Error("it has no name");
         out_.state.transforms[child] = {parent, toIsometry(given.transform)};
       } catch (const Error &error) {
-        complain("fixed_frame_transforms, frame '" + child + "': " + error.what());
+        warn("fixed_frame_transforms, frame '" + child + "': " + error.what());
       }
     }
   }
@@ -255,8 +255,8 @@ class SceneReader {
     bool valid = true;
     if (joints.name.size() != joints.position.size()) {
       valid = false;
-      complain("robot_state: " + std::to_string(joints.name.size()) + " joints have " +
-               std::to_string(joints.position.size()) + " positions");
+      warn("robot_state: " + std::to_string(joints.name.size()) + " joints have " +
+           std::to_string(joints.position.size()) + " positions");
     }
     std::set<std::string> unknown;
     for (std::size_t i = 0; valid && i < joints.name.size(); ++i) {
@@ -265,10 +265,10 @@ class SceneReader {
       } else if (std::isfinite(joints.position[i])) {
         out_.state.joints[joints.name[i]] = joints.position[i];
       } else {
-        complain("robot_state: the position of joint '" + joints.name[i] + "' is not finite");
+        warn("robot_state: the position of joint '" + joints.name[i] + "' is not finite");
       }
     }
-    if (!unknown.empty()) complain("robot_state names joints that the robot does not have: " + listed(unknown));
+    if (!unknown.empty()) warn("robot_state names joints that the robot does not have: " + listed(unknown));
 
     const bool told = !joints.name.empty() || !state.multi_dof_joint_state.joint_names.empty();
     if (valid && told && state.is_diff == 0) {
@@ -374,7 +374,7 @@ class SceneReader {
       out_.state.allowed = toMatrix(matrix);
       out_.change.clear_allowed = true;
     } catch (const Error &error) {
-      complain(std::string("allowed_collision_matrix: ") + error.what() + "; the one before stays");
+      warn(std::string("allowed_collision_matrix: ") + error.what() + "; the one before stays");
     }
   }
 
@@ -384,8 +384,8 @@ class SceneReader {
       if (!hasLink(given.link_name)) {
         unknown.insert(given.link_name);
       } else if (!(std::isfinite(given.padding) && given.padding >= 0.0)) {
-        complain("link_padding: that of link '" + given.link_name + "' is " + std::to_string(given.padding) +
-                 ": it must be finite and not below 0");
+        warn("link_padding: that of link '" + given.link_name + "' is " + std::to_string(given.padding) +
+             ": it must be finite and not below 0");
       } else if (given.padding != context_.before.linkPadding(given.link_name)) {
         out_.change.link_padding[given.link_name] = given.padding;
       }
@@ -396,13 +396,13 @@ class SceneReader {
       if (!hasLink(given.link_name)) {
         unknown.insert(given.link_name);
       } else if (!(std::isfinite(given.scale) && given.scale > 0.0)) {
-        complain("link_scale: that of link '" + given.link_name + "' is " + std::to_string(given.scale) +
-                 ": it must be finite and above 0");
+        warn("link_scale: that of link '" + given.link_name + "' is " + std::to_string(given.scale) +
+             ": it must be finite and above 0");
       } else if (given.scale != (before == scales.end() ? 1.0 : before->second)) {
         out_.change.link_scale[given.link_name] = given.scale;
       }
     }
-    if (!unknown.empty()) complain("paddings or scales name links that the robot does not have: " + listed(unknown));
+    if (!unknown.empty()) warn("paddings or scales name links that the robot does not have: " + listed(unknown));
   }
 
   /* ---- the world ---- */
@@ -510,7 +510,7 @@ class SceneReader {
       out_.change.operations.push_back(std::move(out));
     } catch (const std::exception &error) {
       out_.change.kept.emplace_back(MOVEIT_OCTOMAP);
-      complain(std::string("octomap: ") + error.what() + "; the one before stays");
+      warn(std::string("octomap: ") + error.what() + "; the one before stays");
     }
   }
 

@@ -37,7 +37,7 @@ struct PlanningSceneState {
 struct PlanningSceneChange {
   SceneChange change;             /**< in the fixed frame */
   PlanningSceneState state;       /**< after the message */
-  std::vector<std::string> wrong; /**< what is not used, a sentence each */
+  std::vector<std::string> wrong; /**< what is not used, a message each */
 };
 
 /** What the message is brought into. */
@@ -52,7 +52,7 @@ struct PlanningSceneContext {
   std::function<Eigen::Isometry3d(const std::string &link, const JointPositions &joints)> link_to_fixed;
 };
 
-/** What cannot be used becomes a sentence in `wrong`, and the rest is used. Joint values stay in the state.
+/** What cannot be used becomes a message in `wrong`, and the rest is used. Joint values stay in the state.
  *
  *  As in MoveIt: a full scene replaces transforms' values, attached objects, matrix and world; paddings and scales
  *  change for the links that are named. A diff changes what it names; its matrix replaces the one before as a whole.
@@ -61,7 +61,7 @@ struct PlanningSceneContext {
  *  octomap that cannot be used leaves the one before; types, colours, weights and postures are not used. */
 PlanningSceneChange toSceneChange(const moveit::PlanningScene &message, const PlanningSceneContext &context);
 
-/** How the world of a full scene differs from a snapshot: a sentence for each object, attached object, padding and
+/** How the world of a full scene differs from a snapshot: a message for each object, attached object, padding and
  *  scale that differs or cannot be used, at most `most`. Poses within 1e-6 m are the same. */
 std::vector<std::string> differences(const moveit::PlanningScene &message, const PlanningSceneContext &context,
                                      std::size_t most);

@@ -40,19 +40,19 @@ const char *const NO_FULL_SCENE =
 
 const char *const NO_SCENE = "no planning scene has come: ~ask_planning_scene expects one of move_group";
 
-std::string joined(const std::vector<std::string> &sentences) {
+std::string joined(const std::vector<std::string> &messages) {
   std::string out;
-  for (std::size_t i = 0; i < sentences.size() && i < MOST_SENTENCES; ++i) out += (i ? "; " : "") + sentences[i];
-  if (sentences.size() > MOST_SENTENCES) out += "; and " + std::to_string(sentences.size() - MOST_SENTENCES) + " more";
+  for (std::size_t i = 0; i < messages.size() && i < MOST_SENTENCES; ++i) out += (i ? "; " : "") + messages[i];
+  if (messages.size() > MOST_SENTENCES) out += "; and " + std::to_string(messages.size() - MOST_SENTENCES) + " more";
   return out;
 }
 
 /** Those of the first that are among the others, or are not. */
-std::vector<std::string> chosen(const std::vector<std::string> &sentences, const std::vector<std::string> &others,
+std::vector<std::string> chosen(const std::vector<std::string> &messages, const std::vector<std::string> &others,
                                 bool among) {
   std::vector<std::string> out;
-  std::copy_if(sentences.begin(), sentences.end(), std::back_inserter(out), [&](const std::string &sentence) {
-    return (std::find(others.begin(), others.end(), sentence) != others.end()) == among;
+  std::copy_if(messages.begin(), messages.end(), std::back_inserter(out), [&](const std::string &message) {
+    return (std::find(others.begin(), others.end(), message) != others.end()) == among;
   });
   return out;
 }
@@ -136,7 +136,7 @@ void PlanningSceneTopic::tryToUse(const moveit::PlanningScene &message, const ch
   guarded([&] { use(message); },
           [&](const std::string &why) {
             keepUnused({why}, false);
-            complain(std::string(source) + ": a scene is not used: " + why);
+            warn(std::string(source) + ": a scene is not used: " + why);
           });
 }
 
@@ -161,7 +161,7 @@ void PlanningSceneTopic::use(const moveit::PlanningScene &message) {
     (full ? report_.fingerprint : report_.diff_fingerprint) = fingerprint(message);
   }
   keepUnused(wrong, message.is_diff == 0);
-  if (!wrong.empty()) complain("~planning_scene: " + joined(wrong) + "; the rest is used");
+  if (!wrong.empty()) warn("~planning_scene: " + joined(wrong) + "; the rest is used");
 }
 
 std::vector<std::string> PlanningSceneTopic::differencesTo(const moveit::PlanningScene &message) const {
@@ -187,8 +187,8 @@ bool PlanningSceneTopic::compare(const moveit::PlanningScene &message) {
         beyond_repair_ = chosen(beyond_repair_, now, true); // what has come right may be lost again
         const std::vector<std::string> lost = chosen(both, beyond_repair_, false);
         if (!lost.empty()) {
-          complain("~planning_scene lacked what ~get_planning_scene has, and that scene replaces the one here: " +
-                   joined(lost));
+          warn("~planning_scene lacked what ~get_planning_scene has, and that scene replaces the one here: " +
+               joined(lost));
           tryToUse(message, "~get_planning_scene");
           both = now = beyond_repair_ = differencesTo(message);
         }
@@ -200,9 +200,9 @@ bool PlanningSceneTopic::compare(const moveit::PlanningScene &message) {
         report_.differences = std::move(both);
         if (suspected_.empty()) report_.unused.clear();
       },
-      [&](const std::string &why) { complain("~get_planning_scene: the scene cannot be compared: " + why); });
+      [&](const std::string &why) { warn("~get_planning_scene: the scene cannot be compared: " + why); });
   const std::vector<std::string> found = report().differences;
-  if (!found.empty()) complain("the scene differs from that of ~get_planning_scene: " + joined(found));
+  if (!found.empty()) warn("the scene differs from that of ~get_planning_scene: " + joined(found));
   publishUnknowns();
   return same;
 }
@@ -228,14 +228,14 @@ void PlanningSceneTopic::publishUnknowns() {
   if (!now.differences.empty())
     unknowns.push_back(
         {"the scene differs from that of ~get_planning_scene: " + joined(now.differences), "", Missing::ANYTHING});
-  if (now.full == 0 && now.diffs == 1) complain(NO_FULL_SCENE);
+  if (now.full == 0 && now.diffs == 1) warn(NO_FULL_SCENE);
   live_.unknowns.set("planning scene", std::move(unknowns));
   const bool awaited = now.full == 0 && now.diffs == 0 && parameters_.ask_planning_scene;
   live_.unknowns.set(AWAITED_SCENE, awaited ? std::vector<Unknown>{{NO_SCENE, ""}} : std::vector<Unknown>{});
 }
 
-void PlanningSceneTopic::complain(const std::string &why) {
-  if (complaints_.isDue(why)) ROS_WARN_STREAM(why);
+void PlanningSceneTopic::warn(const std::string &why) {
+  if (log_limit_.isDue(why)) ROS_WARN_STREAM(why);
 }
 
 /* ---- the service ---- */
@@ -307,7 +307,7 @@ bool PlanningSceneTopic::askOnce(moveit::PlanningScene &scene) {
         scene = std::move(response.scene);
         good = true;
       },
-      [&](const std::string &why) { complain("~get_planning_scene: " + why); });
+      [&](const std::string &why) { warn("~get_planning_scene: " + why); });
   if (!good) client.shutdown();
   return good;
 }

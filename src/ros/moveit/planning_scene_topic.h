@@ -19,7 +19,7 @@
 #include "moveit/moveit_messages.h"
 #include "moveit/planning_scene.h"
 #include "parameters/parameters.h"
-#include "transport/complaints.h"
+#include "transport/log_limit.h"
 #include "transport/threaded_queue.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
@@ -71,7 +71,7 @@ class PlanningSceneTopic {
   PlanningSceneContext context(const Snapshot &snapshot, FrameLookup &lookup) const;
   void keepUnused(const std::vector<std::string> &wrong, bool full);
   void publishUnknowns();
-  void complain(const std::string &why);
+  void warn(const std::string &why);
   void ask();
   bool wait(double period, std::uint32_t &publishers, bool &begun);
   bool askOnce(moveit::PlanningScene &scene);
@@ -89,7 +89,7 @@ class PlanningSceneTopic {
   PlanningSceneReport report_;
   std::vector<std::string> suspected_;     /* what differed the last time */
   std::vector<std::string> beyond_repair_; /* what still differed when the last answer had been taken over */
-  Complaints complaints_{std::chrono::seconds(60)};
+  LogLimit log_limit_{std::chrono::seconds(60)};
   ros::Subscriber subscriber_;
   std::mutex asking_; /* of the client and of ending_ */
   std::condition_variable wake_;

@@ -108,7 +108,7 @@ ObjectDescription toBody(Xml &given, const std::string &where) {
   const yaml::YamlValue value(toYaml(given), where);
   yaml::Warnings warnings;
   ObjectDescription body = yaml::readRider(value, warnings);
-  for (const std::string &warning : warnings.sentences()) ROS_WARN("%s", warning.c_str());
+  for (const std::string &warning : warnings.messages()) ROS_WARN("%s", warning.c_str());
   return body;
 }
 

@@ -181,7 +181,7 @@ void Pipeline::requestOfMotions(const Message &message, ProximityQuery &more, Pr
   request.coverage = std::move(motions.coverage);
   for (std::string &remark : motions.remarks) {
     const std::string line = "~" + results.source + ": " + remark;
-    if (complaints_.isDue(line)) ROS_WARN_STREAM(line);
+    if (log_limit_.isDue(line)) ROS_WARN_STREAM(line);
     results.warnings.push_back(std::move(remark));
   }
   ask(request);
@@ -219,7 +219,7 @@ void Pipeline::tellClearance(const QueryRequest &request, const ProximityResults
     QueryResponse answer;
     Drawing not_drawn;
     queries_.answer(again, answer, not_drawn);
-    if (!answer.success && complaints_.isDue(answer.message)) ROS_WARN("~clearance: %s", answer.message.c_str());
+    if (!answer.success && log_limit_.isDue(answer.message)) ROS_WARN("~clearance: %s", answer.message.c_str());
     for (const Profile &profile : takeSummed<Profile>(answer)) clearance_->publish(profile, begin);
   }
 }

@@ -23,8 +23,8 @@
 #include "moveit/moveit_messages.h"
 #include "parameters/parameters.h"
 #include "queries/queries.h"
-#include "transport/complaints.h"
 #include "transport/job_queue.h"
+#include "transport/log_limit.h"
 #include "transport/threaded_queue.h"
 
 namespace curve_proximity {
@@ -76,7 +76,7 @@ class Pipeline {
   ros::NodeHandle handle_;
   ros::Publisher results_, states_, contacts_;
   std::unique_ptr<ClearanceTopics> clearance_; /* null: without ~profile_intervals */
-  Complaints complaints_{std::chrono::seconds(60)};
+  LogLimit log_limit_{std::chrono::seconds(60)};
   ThreadedQueue state_queue_; /* it waits for no message */
   ros::NodeHandle state_handle_;
   ros::WallTimer state_timer_;

@@ -21,7 +21,7 @@ CompiledCurve make(const CurveDescription &curve, CurveBoxes boxes, const cprox_
 /* Where a curve and all that it is measured against stand. */
 struct Queries::CurvePlace {
   const Eigen::Isometry3d *frame = nullptr;
-  const StampedTargets::Stamped *stamped = nullptr;
+  const StampedObstacles::Stamped *stamped = nullptr;
   Coverage coverage;   /* of what is known of them and of its obstacles */
   std::string why_not; /* empty where all is known */
 };
@@ -30,8 +30,8 @@ struct Queries::CurvePlace {
 Queries::CurveSearch &Queries::curveSearch(Work &work) {
   const bool by_joints = !work.joints.positions.empty();
   if (!work.search) {
-    work.search.reset(new CurveSearch{StampedTargets(work.snapshot, work.query, live_.srdf,
-                                                     by_joints ? &work.joints.positions : nullptr, work.lookup),
+    work.search.reset(new CurveSearch{StampedObstacles(work.snapshot, work.query, live_.srdf,
+                                                       by_joints ? &work.joints.positions : nullptr, work.lookup),
                                       WorkspacePool::Lease(workspaces_),
                                       {},
                                       0,
@@ -39,7 +39,7 @@ Queries::CurveSearch &Queries::curveSearch(Work &work) {
                                       nullptr});
   }
   work.doubts.objects(work.query);
-  const bool current = by_joints && work.request.more.current_joints && work.search->targets.withRobot();
+  const bool current = by_joints && work.request.more.current_joints && work.search->obstacles.withRobot();
   work.doubts.joints(
       current ? unknownJoints(*work.snapshot->robot(), {}, work.joints.positions, parameters_.assumed_joints) : "");
   return *work.search;
@@ -79,8 +79,8 @@ Queries::CurvePlace Queries::place(const Curve &curve, CurveSearch &search, Work
     work.lookup.begin();
     place.frame = &work.lookup.toFixed(curve.header.frame_id, curve.header.stamp);
     const double age = work.lookup.age();
-    place.stamped = &search.targets.at(curve.header.stamp);
-    work.doubts.ages(std::fmax(age, place.stamped->age), search.targets.withRobot() ? work.joints.age : NAN);
+    place.stamped = &search.obstacles.at(curve.header.stamp);
+    work.doubts.ages(std::fmax(age, place.stamped->age), search.obstacles.withRobot() ? work.joints.age : NAN);
     place.coverage = work.doubts.coverage();
   } catch (const Error &error) {
     place.why_not = error.what();
@@ -98,7 +98,7 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
     Query of_place;
     if (!where.coverage.complete()) of_place = work.query, of_place.coverage = where.coverage;
     const Query &query = where.coverage.complete() ? work.query : of_place;
-    const Targets &targets = where.stamped->targets;
+    const SceneObstacles &obstacles = where.stamped->obstacles;
     if (!work.request.problems && asksFor<question::Search, question::Gradient>(question) && !query.per_object &&
         TimeBudget::isOver(query.options.stop_user)) {
       const Row row = stoppedCurve(message.id, question, query);
@@ -107,8 +107,8 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
       return;
     }
     toDescription(message, *where.frame, search.description);
-    CompiledCurve curve = make(search.description, targets.boxes(), query.options, *search.workspace);
-    const CurveSubject subject{targets, curve, &search.description};
+    CompiledCurve curve = make(search.description, obstacles.boxes(), query.options, *search.workspace);
+    const CurveSubject subject{obstacles, curve, &search.description};
     if (work.request.problems) {
       work.request.problems->push_back(problemOf(subject, query));
       ++search.curves;

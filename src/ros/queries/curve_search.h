@@ -13,10 +13,10 @@
 namespace curve_proximity {
 
 /** Everything that a query is measured against, for one stamp after the other. For one thread. */
-class StampedTargets {
+class StampedObstacles {
  public:
-  StampedTargets(SnapshotPtr snapshot, const Query &query, const Srdf &srdf, const JointPositions *joints,
-                 FrameLookup &lookup)
+  StampedObstacles(SnapshotPtr snapshot, const Query &query, const Srdf &srdf, const JointPositions *joints,
+                   FrameLookup &lookup)
       : snapshot_(std::move(snapshot)), query_(query), srdf_(srdf), joints_(joints), lookup_(lookup) {
     const bool everything = query.objects.empty() && query.links.empty();
     if (!query.links.empty() && !snapshot_->robot())
@@ -33,7 +33,7 @@ class StampedTargets {
 
   struct Stamped {
     LinkPoses links;
-    Targets targets;
+    SceneObstacles obstacles;
     double age; /* [s] of the transforms */
   };
 
@@ -44,8 +44,8 @@ class StampedTargets {
     if (found == stamped_.end()) {
       lookup_.begin();
       LinkPoses links = with_robot_ ? linkPoses(stamp) : LinkPoses();
-      Targets targets(snapshot_, links, query_);
-      found = stamped_.emplace(key, Stamped{std::move(links), std::move(targets), lookup_.age()}).first;
+      SceneObstacles obstacles(snapshot_, links, query_);
+      found = stamped_.emplace(key, Stamped{std::move(links), std::move(obstacles), lookup_.age()}).first;
     }
     return found->second;
   }
@@ -81,7 +81,7 @@ class StampedTargets {
 
 /* What all curves of a request share. */
 struct Queries::CurveSearch {
-  StampedTargets targets;
+  StampedObstacles obstacles;
   WorkspacePool::Lease workspace;
   CurveDescription description; /* of the curve at hand: its memory serves the next one */
   std::size_t curves;           /* so far */

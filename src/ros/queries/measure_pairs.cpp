@@ -87,7 +87,7 @@ void Pairs::answer(const MeasurePairs::Request &request, MeasurePairs::Response 
   for (std::size_t i = 0; i < request.pairs.size(); ++i) {
     const PairQuery &asked = request.pairs[i];
     Proximity row;
-    const std::string why = sentenceOf([&] {
+    const std::string why = messageOf([&] {
       budget.demand();
       const PairDescription pair = toPairDescription(asked);
       row = toRow(askPair(pair, query, resources, *workspace), pair.asked);

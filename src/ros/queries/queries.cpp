@@ -125,7 +125,7 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   if (more.group.empty()) return query;
   if (!snapshot.robot()) throw Error("group '" + more.group + "': this server has no robot, only objects");
 
-  // Of curves only links with geometry can be targets, and a group may have others.
+  // Of curves only links with geometry can be obstacles, and a group may have others.
   for (const std::string &link : linksOfGroup(live_.srdf, *snapshot.robot(), more.group))
     if (!snapshot.robot()->links().at(link).empty()) query.links.push_back(link);
   if (query.links.empty()) throw Error("group '" + more.group + "': none of its links has collision geometry");
@@ -165,30 +165,30 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
   demandAtMost("max_curves", parameters_.max_curves, request.more.moving_robots.size(), "moving robots");
 
   // With per_object the answer may be far larger than the query.
-  std::size_t targets = 1;
+  std::size_t obstacles = 1;
   if (request.more.per_object) {
     const bool everything = request.more.objects.empty() && request.more.links.empty();
-    targets = request.more.objects.size() + request.more.links.size();
+    obstacles = request.more.objects.size() + request.more.links.size();
     if (everything || !request.more.group.empty())
-      targets += snapshot.objects().size() + snapshot.moving().size() + request.more.moving_robots.size() +
-                 (snapshot.robot() ? snapshot.robot()->links().size() : 0);
+      obstacles += snapshot.objects().size() + snapshot.moving().size() + request.more.moving_robots.size() +
+                   (snapshot.robot() ? snapshot.robot()->links().size() : 0);
   }
   const std::size_t motions =
       request.trajectories.size() + request.multi_dof_trajectories.size() + (request.more.robot_state ? 1 : 0);
-  if (const auto *nearest = std::get_if<question::Nearest>(&request.question)) targets = nearest->limits.count;
+  if (const auto *nearest = std::get_if<question::Nearest>(&request.question)) obstacles = nearest->limits.count;
   if (const auto *profile = std::get_if<question::Profile>(&request.question))
-    targets = std::max(profile->intervals, profile->breaks.size());
-  if (const auto *speed = std::get_if<question::Speed>(&request.question)) targets = speed->profile.intervals;
-  if (asksFor<question::Margins>(request.question)) targets = DIRECTIONS * (snapshot.objects().size() + 1);
-  if (asksFor<question::Violations>(request.question)) targets = MOST_VIOLATIONS;
-  demandAtMost("max_results", parameters_.max_results, targets, "results");
+    obstacles = std::max(profile->intervals, profile->breaks.size());
+  if (const auto *speed = std::get_if<question::Speed>(&request.question)) obstacles = speed->profile.intervals;
+  if (asksFor<question::Margins>(request.question)) obstacles = DIRECTIONS * (snapshot.objects().size() + 1);
+  if (asksFor<question::Violations>(request.question)) obstacles = MOST_VIOLATIONS;
+  demandAtMost("max_results", parameters_.max_results, obstacles, "results");
   const bool often = !asksFor<question::Search, question::Gradient>(request.question) &&
                      request.more.self_collision; // as many rows of kind self
   const std::size_t profiles =
       (request.per_link && snapshot.robot() ? snapshot.robot()->links().size() + snapshot.attached().size() : 1) *
       (often ? 2 : 1);
   const std::size_t movers = request.more.movers ? 1 : 0;
-  const std::size_t rows = (curves + motions * profiles + movers) * targets + motions + movers;
+  const std::size_t rows = (curves + motions * profiles + movers) * obstacles + motions + movers;
   demandAtMost("max_results", parameters_.max_results, rows, "results");
   constexpr std::size_t VECTOR = 3 * sizeof(double), COPIES = 2, KINDS = 2, DERIVATIVES = 3;
   std::size_t bytes = rows * ROW_BYTES + points * memory::OF_POINT + values * memory::OF_VALUE;

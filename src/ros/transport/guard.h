@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The one shell round every callback: whatever is thrown inside becomes a sentence. */
+/** The one shell round every callback: whatever is thrown inside becomes a message. */
 #ifndef CURVE_PROXIMITY_ROS_GUARD_H
 #define CURVE_PROXIMITY_ROS_GUARD_H
 
@@ -11,7 +11,7 @@
 
 namespace curve_proximity {
 
-/** Runs `work`; hands a sentence to `failed` if it throws anything at all. roscpp ends the process for what leaves a
+/** Runs `work`; hands a message to `failed` if it throws anything at all. roscpp ends the process for what leaves a
  *  topic or timer callback, and for a thrown int in a service. */
 template <class Work, class Failed>
 void guarded(Work &&work, Failed &&failed) {
@@ -34,7 +34,7 @@ auto markBusy(Response &response, int) -> decltype(response.status, void()) {
 template <class Response>
 void markBusy(Response &, long) {}
 
-/** A service handler: always true, since `return false` reaches the client as an empty sentence. */
+/** A service handler: always true, since `return false` reaches the client as an empty message. */
 template <class Response, class Work>
 bool answered(Response &response, Work &&work) {
   const auto fail = [&](const std::string &why) {

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <vector>
 
-#include "transport/complaints.h"
+#include "transport/log_limit.h"
 
 namespace curve_proximity {
 
@@ -35,7 +35,7 @@ class Statistics {
   Summary take();
 
  private:
-  Complaints disagreements_{std::chrono::seconds(60)}; /* of second opinions, by row and pair */
+  LogLimit disagreements_{std::chrono::seconds(60)}; /* of second opinions, by row and pair */
   std::mutex mutex_;
   Clock::time_point since_ = Clock::now();
   Summary now_;

@@ -54,7 +54,7 @@ Coverage Doubts::coverage() {
   Coverage out = ages_;
   out.add(joints_);
   out.add(objects_);
-  for (const std::string &sentence : out.sentences()) told_.insert(sentence);
+  for (const std::string &message : out.messages()) told_.insert(message);
   return out;
 }
 

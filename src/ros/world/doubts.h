@@ -39,7 +39,7 @@ class Doubts {
   /** Nothing is proven, with the reason. */
   void apply(ConstraintResult &row);
 
-  /** A sentence for each doubt that a row had, and for all that is unknown of the scene. */
+  /** A message for each doubt that a row had, and for all that is unknown of the scene. */
   void tell(std::vector<std::string> &warnings) const;
 
  private:

@@ -35,7 +35,7 @@ struct LiveScene {
   Unknowns unknowns;
 
   /** An object came by a topic and could not be used. about: the object, or "" for what the robot carries. Of more than
-   *  1000 such objects, or of ids that no object can have, one sentence for all is kept. */
+   *  1000 such objects, or of ids that no object can have, one message for all is kept. */
   void refuse(const std::string &topic, const std::string &id, const std::string &about, const std::string &why,
               std::size_t most_name);
 
@@ -75,7 +75,7 @@ struct CurrentJoints {
 CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, const JointBoard &board,
                             bool may_be_none = false);
 
-/** A sentence about the joints of a robot of which neither `moved` nor `positions` nor `assumed` tells; "": there is
+/** A message about the joints of a robot of which neither `moved` nor `positions` nor `assumed` tells; "": there is
  *  none. Mimic joints follow; planar and floating joints are tf2's. */
 std::string unknownJoints(const Robot &robot, const std::vector<std::string> &moved, const JointPositions &positions,
                           const std::vector<std::string> &assumed);

@@ -32,7 +32,7 @@ template <class Work>
 void Sensors::take(const std::string &topic, const std::string &id, Work &&work) {
   guarded(work, [&](const std::string &why) {
     live_.sensors.refused(id);
-    if (complaints_.isDue(topic + why)) ROS_WARN_STREAM(topic + ": " + why + "; what is there now is unknown");
+    if (log_limit_.isDue(topic + why)) ROS_WARN_STREAM(topic + ": " + why + "; what is there now is unknown");
   });
 }
 

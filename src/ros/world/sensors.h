@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "parameters/parameters.h"
-#include "transport/complaints.h"
+#include "transport/log_limit.h"
 #include "transport/threaded_queue.h"
 #include "world/frames.h"
 #include "world/live_scene.h"
@@ -53,7 +53,7 @@ class Sensors {
   ThreadedQueue queue_;
   ros::NodeHandle handle_; /* its callbacks go to queue_ */
   std::vector<ros::Subscriber> subscribers_;
-  Complaints complaints_{std::chrono::seconds(5)};
+  LogLimit log_limit_{std::chrono::seconds(5)};
 };
 
 } // namespace curve_proximity

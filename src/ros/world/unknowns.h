@@ -13,7 +13,7 @@
 
 namespace curve_proximity {
 
-/** One thing, as a sentence. */
+/** One thing, as a message. */
 struct Unknown {
   std::string message;
   std::string object; /**< what it is about; "": anything, also objects that are named, and what the robot carries */

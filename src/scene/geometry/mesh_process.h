@@ -18,7 +18,7 @@ namespace curve_proximity {
 std::string meshReaderProgram();
 
 /* What `program` says of the file (mesh_reader/protocol.h). The process has limits of memory and time, which grow with
- * the file; one that keeps neither them nor the protocol is ended. Throws Error in one sentence without the file's
+ * the file; one that keeps neither them nor the protocol is ended. Throws Error in one message without the file's
  * name. Thread safety: any number of threads. SIGCHLD and SIGPIPE may be ignored, blocked or handled, and a handler may
  * reap. */
 MeshData readMeshBy(const std::string &program, const std::string &file);
@@ -27,7 +27,7 @@ MeshData readMeshBy(const std::string &program, const std::string &file);
  * meanwhile. */
 class MeshFile {
  public:
-  /* Opens the file and copies it. Throws Error in one sentence without the file's name. */
+  /* Opens the file and copies it. Throws Error in one message without the file's name. */
   explicit MeshFile(const std::string &file);
   ~MeshFile();
   MeshFile(const MeshFile &) = delete;

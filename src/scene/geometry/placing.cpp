@@ -47,7 +47,7 @@ PlacedShape placeCurve(const Geometry &geometry, const Eigen::Isometry3d &outer,
                        double padding) {
   const Eigen::Isometry3d pose = outer * inner;
   PlacedShape out;
-  out.target = out.hull = out.surface = obstacleOf(geometry, pose, padding);
+  out.obstacle = out.hull = out.surface = obstacleOf(geometry, pose, padding);
   const cprox_curve_info info = cprox_curve_get_info(geometry.curve.get());
   const Eigen::Vector3d low = toEigen(info.lowest), high = toEigen(info.highest);
   const double reach = low.cwiseAbs().cwiseMax(high.cwiseAbs()).norm();
@@ -93,7 +93,7 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
   PlacedShape out;
   const BodyHandle &body = geometry.body;
   const double margin = padding + geometry.margin;
-  out.target = at(body, pose, margin);
+  out.obstacle = at(body, pose, margin);
   out.hull = at(geometry.hull, pose, margin);
   out.surface = at(geometry.surface, pose, margin);
   out.hull_excess = geometry.hull_excess;

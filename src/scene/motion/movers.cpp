@@ -214,7 +214,7 @@ void choosePairs(const Allowed &allowed, const Stop &stop, Movers::Data &data) {
   for (const Item &item : items) {
     const PlacedShape &shape = *item.shape;
     requireBody(item);
-    data.targets.push_back(shape.target);
+    data.obstacles.push_back(shape.obstacle);
     rounding = std::max(rounding, shape.rounding);
   }
   const std::vector<bool> named = namedAnywhere(allowed, data);

@@ -41,8 +41,8 @@ struct Movers::Data {
   std::unique_ptr<cprox_robot, void (*)(cprox_robot *)> robot{nullptr, cprox_robot_free};
   std::unique_ptr<cprox_motion, void (*)(cprox_motion *)> motion{nullptr, cprox_motion_free};
   std::vector<MoverGeometry> geometries;
-  std::vector<cprox_obstacle> targets;              /* by item of the snapshot */
-  std::vector<cprox_robot_pair> environment, among; /* geometry against target, against geometry */
+  std::vector<cprox_obstacle> obstacles;            /* by item of the snapshot */
+  std::vector<cprox_robot_pair> environment, among; /* geometry against obstacle, against geometry */
   std::vector<bool> among_moves;                    /* of each of these: is one moved against the other */
   double rounding = 0.0;                            /* [m] that the core does not know of */
   Coverage coverage;                                /* of the scene, and of all robots with their motions */

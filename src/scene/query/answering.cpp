@@ -44,7 +44,7 @@ void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
   } else if (shape.is_open) {
     answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
   } else {
-    answer.message = cprox_body_get_info(shape.target.body).is_solid
+    answer.message = cprox_body_get_info(shape.obstacle.body).is_solid
                          ? "the nearest shape is a closed mesh: its inside counts"
                          : "the nearest shape is a mesh: its surface alone counts";
   }
@@ -122,10 +122,10 @@ cprox_options withoutRounding(cprox_options options, double rounding) {
 }
 
 cprox_status askCore(const Query &query, const cprox_options &options, const cprox_mover &mover,
-                     const std::vector<cprox_obstacle> &targets, Workspace &workspace, cprox_result &result) {
-  ObstaclesHandle obstacles;
-  const cprox_status made = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
-  return made < 0 ? made : askCore(query, options, mover, obstacles.get(), workspace, result);
+                     const std::vector<cprox_obstacle> &obstacles, Workspace &workspace, cprox_result &result) {
+  ObstaclesHandle set;
+  const cprox_status made = makeObstacles(obstacles, CPROX_INDEX_NONE, workspace, set);
+  return made < 0 ? made : askCore(query, options, mover, set.get(), workspace, result);
 }
 
 cprox_status askCore(const Query &query, const cprox_options &options, const cprox_mover &mover,
@@ -173,7 +173,7 @@ ClearanceInterval toInterval(const cprox_profile_interval &found, double roundin
 }
 
 /* That the distance is greater than its lower bound, or at most the upper one. */
-std::string provenInterval(const Query &query, const Stated &stated, const Obstacles &obstacles,
+std::string provenInterval(const Query &query, const Stated &stated, const Obstacles &set,
                            const cprox_profile_interval &found, Workspace &workspace, std::string &unproven) {
   PartialClaim claim{{found.t0, found.t1}, found.lower, !(found.lower > 0.0), true, cprox_result{}};
   if (claim.near) claim.delta = std::max(found.upper, 0.0);
@@ -182,7 +182,7 @@ std::string provenInterval(const Query &query, const Stated &stated, const Obsta
   claim.answer.lower = found.lower, claim.answer.upper = found.upper, claim.answer.t = found.t;
   claim.answer.obstacle_index = found.obstacle_index, claim.answer.mover_part = found.mover_part;
   claim.answer.witness_mover = found.witness_mover, claim.answer.witness_obstacle = found.witness_obstacle;
-  return certificateOf(query, stated.mover, obstacles.get(), claim, workspace, unproven);
+  return certificateOf(query, stated.mover, set.get(), claim, workspace, unproven);
 }
 
 } // namespace
@@ -191,11 +191,11 @@ std::vector<ClearanceInterval> searchProfile(const Stated &stated, const std::ve
                                              const Query &query, Workspace &workspace) {
   if (stated.is_empty) return profileOfNothing(breaks);
   std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
-  const Obstacles obstacles(stated.targets, CPROX_INDEX_NONE);
+  const Obstacles set(stated.obstacles, CPROX_INDEX_NONE);
   cprox_options options = withoutRounding(query.options, stated.rounding);
   options.certificate = nullptr;
   const cprox_status status =
-      cprox_obstacles_profile(obstacles.get(), stated.mover, breaks.data(), intervals.size(), horizon + stated.rounding,
+      cprox_obstacles_profile(set.get(), stated.mover, breaks.data(), intervals.size(), horizon + stated.rounding,
                               &options, workspace.get(), intervals.data());
   if (status < 0) throw Error(workspace.reason(), status);
   std::vector<ClearanceInterval> out;
@@ -209,7 +209,7 @@ std::vector<ClearanceInterval> searchProfile(const Stated &stated, const std::ve
     out.back().b = sides.b, out.back().witness_b = sides.result.witness_obstacle;
     if (std::isinf(sides.result.upper)) out.back().upper = INFINITE;
     if (query.options.certificate)
-      out.back().certificate = provenInterval(query, stated, obstacles, found, workspace, out.back().unproven);
+      out.back().certificate = provenInterval(query, stated, set, found, workspace, out.back().unproven);
   }
   return out;
 }
@@ -226,12 +226,12 @@ std::vector<ClearanceInterval> profileOfNothing(const std::vector<double> &break
 
 void searchContact(const cprox_mover &mover, const std::vector<cprox_obstacle> &enlarged, const Query &query,
                    Workspace &workspace, cprox_result &result) {
-  ObstaclesHandle obstacles;
+  ObstaclesHandle set;
   cprox_options options = query.options;
   options.certificate = nullptr; // it is about obstacles that are not enlarged
-  result.status = makeObstacles(enlarged, CPROX_INDEX_NONE, workspace, obstacles);
+  result.status = makeObstacles(enlarged, CPROX_INDEX_NONE, workspace, set);
   if (result.status >= 0)
-    result.status = cprox_obstacles_time_of_contact(obstacles.get(), mover, &options, workspace.get(), &result);
+    result.status = cprox_obstacles_time_of_contact(set.get(), mover, &options, workspace.get(), &result);
 }
 
 std::string faultOfDistances(const Query &query) {
@@ -257,7 +257,7 @@ std::string faultOfContact(const Query &query) {
 
 double roundingOf(const CompiledCurve &curve, const PlacedShape &shape) {
   if (!(shape.turning > 0.0)) return shape.rounding;
-  return shape.rounding + shape.turning * farthest(curve, shape.target.pose.position);
+  return shape.rounding + shape.turning * farthest(curve, shape.obstacle.pose.position);
 }
 
 void nameItem(const Item &item, cprox_lod max_lod, Answer &answer) {

@@ -25,7 +25,7 @@ double microsecondsSince(Clock::time_point start);
 /* What a reader must know of an answer with Query::moving_only. */
 inline const char *const MOVING_ONLY = "moving_only: what the trajectory does not move is left out";
 
-/* What the query asks for and its answer would not heed, as a sentence; "" where there is nothing. Of a robot in
+/* What the query asks for and its answer would not heed, as a message; "" where there is nothing. Of a robot in
  * motion, of which `in_all` has one answer for all objects or pairs. */
 std::string faultOf(const Query &query);
 std::string faultOfMotion(const Query &query, bool in_all);
@@ -48,7 +48,7 @@ cprox_options withoutRounding(cprox_options options, double rounding);
 
 /* The query that the query asks. */
 cprox_status askCore(const Query &query, const cprox_options &options, const cprox_mover &mover,
-                     const std::vector<cprox_obstacle> &targets, Workspace &workspace, cprox_result &result);
+                     const std::vector<cprox_obstacle> &obstacles, Workspace &workspace, cprox_result &result);
 cprox_status askCore(const Query &query, const cprox_options &options, const cprox_mover &mover,
                      const cprox_obstacles *obstacles, Workspace &workspace, cprox_result &result);
 
@@ -59,14 +59,14 @@ void widen(const Query &query, double rounding, double left_out, cprox_result &r
 /* What a profile or a list of violations is about: the arguments of the core, and what the core does not know. */
 struct Stated {
   cprox_mover mover;
-  std::vector<cprox_obstacle> targets;
+  std::vector<cprox_obstacle> obstacles;
   double rounding;                    /* [m] */
   bool is_empty;                      /* there is nothing to measure against */
   std::function<void(Answer &)> name; /* names both sides of what the core found, as nameItem() does */
 };
 
-/* Of a curve against all targets. The arguments outlive it. */
-Stated statedOf(const Targets &targets, const CompiledCurve &curve, const Query &query);
+/* Of a curve against all obstacles. The arguments outlive it. */
+Stated statedOf(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query);
 
 /* The clearance profile, widened by the rounding that the core does not know. Throws Error where the core refuses. */
 std::vector<ClearanceInterval> searchProfile(const Stated &stated, const std::vector<double> &breaks, double horizon,

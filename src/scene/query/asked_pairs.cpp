@@ -47,11 +47,11 @@ class Named {
 /* Of an answer that there is: what is special about it. */
 void addWarnings(const RobotMotion::Data &data, const Query &query, Answer &answer) {
   if (answer.result.status < 0) return;
-  const auto add = [&](const std::string &sentence) {
-    answer.message += (answer.message.empty() ? "" : "; ") + sentence;
+  const auto add = [&](const std::string &message) {
+    answer.message += (answer.message.empty() ? "" : "; ") + message;
   };
   if (query.moving_only) add(MOVING_ONLY);
-  for (const std::string &sentence : data.warnings) add(sentence);
+  for (const std::string &message : data.warnings) add(message);
 }
 
 void finish(const RobotMotion::Data &data, const Query &query, Answer &answer, Clock::time_point start) {
@@ -72,7 +72,7 @@ cprox_mover Asked::mover() const {
 }
 
 Stated Asked::stated(const Query &query) const {
-  return {mover(), targets, rounding, pairs.empty(), [&](Answer &answer) { nameSides(*this, query, answer); }};
+  return {mover(), obstacles, rounding, pairs.empty(), [&](Answer &answer) { nameSides(*this, query, answer); }};
 }
 
 Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted, const Query &query) {
@@ -83,14 +83,14 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
   for (const std::size_t k : asked.items) {
     const PlacedShape &shape = *items[k].shape;
     requireBody(items[k]);
-    const cprox_body_kind kind = cprox_body_get_info(shape.target.body).kind;
+    const cprox_body_kind kind = cprox_body_get_info(shape.obstacle.body).kind;
     if (kind == CPROX_BODY_DISTANCE_GRID)
       throw Error("object '" + *items[k].owner + "' is a distance_grid: it is asked about curves, not about robots");
     const bool has_hull = kind != CPROX_BODY_MESH && kind != CPROX_BODY_POINTS && kind != CPROX_BODY_OCTREE;
     if (query.options.signed_distance && !has_hull)
       throw Error("signed_distance: object '" + *items[k].owner +
                   "' is a mesh without a hull, points or boxes: how deep a robot overlaps these is not measured");
-    asked.targets.push_back(shape.target);
+    asked.obstacles.push_back(shape.obstacle);
     rounding = std::max(rounding, shape.rounding);
   }
   /* both ascend; what is not among a geometry's pairs is allowed to touch it */
@@ -154,7 +154,7 @@ void nameSides(const Asked &asked, const Query &query, Answer &answer) {
   answer.by_hull = coarse && moving.is_mesh;
   if (asked.isSelf(result)) {
     const MovingGeometry &standing =
-        geometries[asked.against == RobotPairs::WHOLE ? other - asked.targets.size() : other];
+        geometries[asked.against == RobotPairs::WHOLE ? other - asked.obstacles.size() : other];
     answer.b = standing.owner();
     answer.b_is_link = !standing.attached;
     result.obstacle_index = standing.part;
@@ -194,7 +194,7 @@ Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &que
 Coverage coverageOf(const Query &query, const Asked &asked) {
   const char *nothing = "";
   if (asked.pairs.empty()) {
-    const bool no_object = asked.against != RobotPairs::SELF && asked.targets.empty();
+    const bool no_object = asked.against != RobotPairs::SELF && asked.obstacles.empty();
     nothing = no_object ? NO_OBJECT : "there is no pair to measure (--skipped, RobotMotion::skipped() say why)";
   }
   return coverageOf(query, asked.data.coverage, nothing);

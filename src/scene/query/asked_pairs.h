@@ -15,16 +15,16 @@ namespace curve_proximity {
 struct Asked {
   const RobotMotion::Data &data;
   RobotPairs against;
-  std::vector<std::size_t> items; /* by target */
-  std::vector<cprox_obstacle> targets;
-  std::vector<cprox_robot_pair> pairs;      /* with targets; against itself: of geometries */
+  std::vector<std::size_t> items; /* by obstacle */
+  std::vector<cprox_obstacle> obstacles;
+  std::vector<cprox_robot_pair> pairs;      /* with obstacles; against itself: of geometries */
   std::vector<cprox_robot_pair> self_pairs; /* of both at once: of geometries */
   double rounding;                          /* [m] that the core does not know of */
 
   /* Is a result about two geometries of the robot? */
   bool isSelf(const cprox_result &result) const {
     return against == RobotPairs::SELF ||
-           (against == RobotPairs::WHOLE && static_cast<std::size_t>(result.obstacle_index) >= targets.size());
+           (against == RobotPairs::WHOLE && static_cast<std::size_t>(result.obstacle_index) >= obstacles.size());
   }
 
   cprox_mover mover() const;

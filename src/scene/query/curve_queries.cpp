@@ -8,8 +8,8 @@
 
 #include "answering.h"
 #include "proving.h"
+#include "scene_obstacles.h"
 #include "second_opinion.h"
-#include "targets.h"
 
 namespace curve_proximity {
 namespace {
@@ -29,8 +29,8 @@ void requireDistances(const Query &query) {
   if (query.delta != 0.0) throw Error(faultOf(query));
 }
 
-Coverage coverageOf(const Query &query, const Targets &targets) {
-  return coverageOf(query, targets.data().coverage, targets.data().items.empty() ? NO_OBJECT : "");
+Coverage coverageOf(const Query &query, const SceneObstacles &obstacles) {
+  return coverageOf(query, obstacles.data().coverage, obstacles.data().items.empty() ? NO_OBJECT : "");
 }
 
 } // namespace
@@ -41,22 +41,22 @@ double roundingOf(const CompiledCurve &curve, const std::vector<Item> &items) {
   return most;
 }
 
-Stated statedOf(const Targets &targets, const CompiledCurve &curve, const Query &query) {
-  const std::vector<Item> &items = targets.data().items;
+Stated statedOf(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query) {
+  const std::vector<Item> &items = obstacles.data().items;
   const auto name = [&](Answer &answer) {
     answer.a = curve.id;
     const std::int32_t found = answer.result.obstacle_index;
     if (found >= 0) nameItem(items[static_cast<std::size_t>(found)], query.options.max_lod, answer);
   };
-  return {moverOf(curve), coreTargets(targets), roundingOf(curve, items), items.empty(), name};
+  return {moverOf(curve), coreObstacles(obstacles), roundingOf(curve, items), items.empty(), name};
 }
 
-std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &curve, const PairLimits &limits,
+std::vector<Answer> nearestPairs(const SceneObstacles &obstacles, const CompiledCurve &curve, const PairLimits &limits,
                                  const Query &query, Workspace &workspace) {
   const Clock::time_point start = Clock::now();
   requireDistances(query);
-  const std::vector<Item> &items = targets.data().items;
-  const Coverage coverage = coverageOf(query, targets);
+  const std::vector<Item> &items = obstacles.data().items;
+  const Coverage coverage = coverageOf(query, obstacles);
   Answer nothing;
   nothing.id = nothing.a = curve.id;
   std::vector<Answer> answers;
@@ -64,12 +64,12 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
     applyCoverage(coverage, query, nothing, answers);
     return answers;
   }
-  const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
+  const Obstacles set(coreObstacles(obstacles), CPROX_INDEX_NONE);
   const double rounding = roundingOf(curve, items);
   const cprox_options options = withoutRounding(query.options, rounding);
   std::vector<cprox_result> results(std::min(limits.count, items.size()));
   cprox_listed listed{};
-  const cprox_status status = cprox_obstacles_nearest(obstacles.get(), moverOf(curve), limits.count, &options,
+  const cprox_status status = cprox_obstacles_nearest(set.get(), moverOf(curve), limits.count, &options,
                                                       workspace.get(), results.data(), &listed);
   if (status < 0) throw Error(workspace.reason(), status);
 
@@ -80,7 +80,7 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
     if (answer.result.lower > limits.within) continue;
     nameItem(items[static_cast<std::size_t>(answer.result.obstacle_index)], query.options.max_lod, answer);
     finishAnswer(workspace, answer);
-    addSecondOpinion(targets.data(), curve, query, answer);
+    addSecondOpinion(obstacles.data(), curve, query, answer);
     answers.push_back(std::move(answer));
   }
   Unlisted unlisted;
@@ -90,20 +90,21 @@ std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &cu
   return answers;
 }
 
-std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
+std::vector<ClearanceInterval> clearanceProfile(const SceneObstacles &obstacles, const CompiledCurve &curve,
                                                 const std::vector<double> &breaks, const Query &query,
                                                 Workspace &workspace, double horizon) {
   requireDistances(withoutCertificate(query));
   const std::string fault = faultOfProfile(query, breaks, horizon);
   if (!fault.empty()) throw Error(fault);
-  Stated stated = statedOf(targets, curve, query);
+  Stated stated = statedOf(obstacles, curve, query);
   stated.is_empty = false; /* the core checks the breaks, whatever there is to measure against */
   std::vector<ClearanceInterval> profile = searchProfile(stated, breaks, horizon, query, workspace);
-  applyCoverage(coverageOf(query, targets), profile);
+  applyCoverage(coverageOf(query, obstacles), profile);
   return profile;
 }
 
-Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
+Answer timeOfContact(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query,
+                     Workspace &workspace) {
   const Clock::time_point start = Clock::now();
   cprox_certificate_clear(query.options.certificate);
   std::string fault = faultOfContact(query);
@@ -116,13 +117,13 @@ Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Q
   }
 
   /* each obstacle enlarged by what rounding can have moved it, so that no contact comes before the time */
-  const std::vector<Item> &items = targets.data().items;
-  std::vector<cprox_obstacle> obstacles = coreTargets(targets);
+  const std::vector<Item> &items = obstacles.data().items;
+  std::vector<cprox_obstacle> enlarged = coreObstacles(obstacles);
   for (std::size_t i = 0; i < items.size(); ++i)
-    obstacles[i].margin += curve_proximity::roundingOf(curve, *items[i].shape);
+    enlarged[i].margin += curve_proximity::roundingOf(curve, *items[i].shape);
   cprox_result result{};
   result.obstacle_index = -1;
-  searchContact(moverOf(curve), obstacles, query, workspace, result);
+  searchContact(moverOf(curve), enlarged, query, workspace, result);
   Answer answer = answerOf(curve, result, start);
   if (result.status >= 0) {
     widen(query, 2.0 * roundingOf(curve, items), INFINITE, answer.result);
@@ -130,10 +131,10 @@ Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Q
       nameItem(items[static_cast<std::size_t>(result.obstacle_index)], query.options.max_lod, answer);
   }
   finishAnswer(workspace, answer);
-  applyCoverage(coverageOf(query, targets), query, answer);
+  applyCoverage(coverageOf(query, obstacles), query, answer);
   if (query.options.certificate)
-    leaveContactProof(query, moverOf(curve), coreTargets(targets), result, workspace, answer);
-  addSecondOpinion(targets.data(), curve, query, answer);
+    leaveContactProof(query, moverOf(curve), coreObstacles(obstacles), result, workspace, answer);
+  addSecondOpinion(obstacles.data(), curve, query, answer);
   return answer;
 }
 

@@ -29,7 +29,7 @@ EdgeModel::EdgeModel(const PreparedRobot &robot, const std::vector<std::string> 
       options(query.options) {
   cprox_motion_evaluate(motion.data().core.get(), 0.0, rest.data());
   Workspace workspace;
-  if (makeObstacles(asked.targets, CPROX_INDEX_NONE, workspace, obstacles) < 0) throw Error(workspace.reason());
+  if (makeObstacles(asked.obstacles, CPROX_INDEX_NONE, workspace, obstacles) < 0) throw Error(workspace.reason());
   const bool alone = asked.against == RobotPairs::SELF;
   const std::vector<cprox_robot_pair> none, &against_items = alone ? none : asked.pairs,
                                             &against_itself = alone ? asked.pairs : asked.self_pairs;

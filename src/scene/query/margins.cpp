@@ -22,8 +22,8 @@ class Moved {
       : asked_(asked), query_(query), workspace_(workspace), delta_(query.delta) {
     query_.query_type = QueryType::DISTANCE;
     query_.delta = 0.0;
-    for (const cprox_obstacle &target : asked.targets) {
-      const cprox_vec3 &p = target.pose.position;
+    for (const cprox_obstacle &obstacle : asked.obstacles) {
+      const cprox_vec3 &p = obstacle.pose.position;
       size_ = std::max({size_, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
     }
   }
@@ -80,14 +80,14 @@ class Moved {
 
  private:
   Room search(const Eigen::Vector3d &way, const cprox_options &options) {
-    std::vector<cprox_obstacle> targets = asked_.targets;
-    for (cprox_obstacle &target : targets) {
-      cprox_vec3 &p = target.pose.position;
+    std::vector<cprox_obstacle> obstacles = asked_.obstacles;
+    for (cprox_obstacle &obstacle : obstacles) {
+      cprox_vec3 &p = obstacle.pose.position;
       p.x += way.x(), p.y += way.y(), p.z += way.z();
     }
     Room out{0.0, INFINITE, Eigen::Vector3d::Zero(), {}};
     cprox_result &result = out.names.result;
-    result.status = askCore(query_, options, asked_.mover(), targets, workspace_, result);
+    result.status = askCore(query_, options, asked_.mover(), obstacles, workspace_, result);
     if (result.status < 0) throw Error(workspace_.reason(), result.status);
     stopped_ = stopped_ || result.status == CPROX_STOPPED;
     widen(query_, asked_.rounding + 4e-16 * (size_ + way.norm()), INFINITE, result);

@@ -45,12 +45,12 @@ class Arrays {
 /* The core turns an obstacle about its own position, we the object about its origin. */
 void toObject(const Asked &asked, const cprox_result &result, const cprox_motion_gradient &in, ClearanceGradient &out) {
   if (result.obstacle_index < 0 || asked.isSelf(result)) return;
-  const auto target = static_cast<std::size_t>(result.obstacle_index);
-  const Item &item = asked.data.snapshot->world().items()[asked.items[target]];
+  const auto obstacle = static_cast<std::size_t>(result.obstacle_index);
+  const Item &item = asked.data.snapshot->world().items()[asked.items[obstacle]];
   const Eigen::Vector3d origin = asked.data.snapshot->objects().at(*item.owner)->description.pose.translation();
   out.object_linear = toEigen(in.position);
   out.object_angular =
-      toEigen(in.rotation) + (toEigen(asked.targets[target].pose.position) - origin).cross(out.object_linear);
+      toEigen(in.rotation) + (toEigen(asked.obstacles[obstacle].pose.position) - origin).cross(out.object_linear);
 }
 
 ClearanceGradient toGradient(const Asked &asked, const cprox_result &result, const cprox_motion_gradient &in,
@@ -130,7 +130,7 @@ void addRows(const RobotMotion &motion, RobotPairs against, const RowLimits &lim
   wanted.horizon = limits.horizon + asked.rounding;
   wanted.per_pair = limits.per_pair;
   const cprox_options options = withoutRounding(query.options, asked.rounding);
-  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
   std::size_t count = 0;
   const cprox_status status = cprox_robot_rows(obstacles.get(), asked.mover(), &wanted, &options, workspace.get(),
                                                rows.data(), rows.size(), &count);
@@ -187,13 +187,13 @@ using AskRow = cprox_status (*)(const Asked &asked, const cprox_options &options
 
 cprox_status askDistance(const Asked &asked, const cprox_options &options, Workspace &workspace, cprox_result &result,
                          cprox_motion_gradient &gradient, double & /*steepest*/) {
-  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
   return cprox_robot_distance_gradient(obstacles.get(), asked.mover(), &options, workspace.get(), &result, &gradient);
 }
 
 cprox_status askGrowth(const Asked &asked, const cprox_options &options, Workspace &workspace, cprox_result &result,
                        cprox_motion_gradient &gradient, double &steepest) {
-  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
   cprox_motion_growth found{};
   const cprox_status status =
       cprox_robot_growth(obstacles.get(), asked.mover(), &options, workspace.get(), &found, &gradient);

@@ -24,12 +24,12 @@ Answer answerOf(const Asked &asked, const Query &query, Workspace &workspace) {
   } else {
     cprox_options options = withoutRounding(query.options, asked.rounding);
     options.certificate = nullptr;
-    result.status = askCore(query, options, asked.mover(), asked.targets, workspace, result);
+    result.status = askCore(query, options, asked.mover(), asked.obstacles, workspace, result);
   }
   Answer answer = toAnswer(asked, result, query, workspace, start);
   if (!query.options.certificate) return answer;
   if (!asked.pairs.empty() && result.status >= 0) widen(query, asked.rounding, INFINITE, result);
-  leaveProof(query, asked.mover(), asked.targets, result, workspace, answer);
+  leaveProof(query, asked.mover(), asked.obstacles, result, workspace, answer);
   return answer;
 }
 
@@ -55,9 +55,9 @@ double beforeRounding(const Asked &asked, double t, const cprox_options &options
 
 /* The core's answer to the time of contact, true of geometries as rounding may have moved them. */
 void searchContact(const Asked &asked, const Query &query, Workspace &workspace, cprox_result &result) {
-  std::vector<cprox_obstacle> targets = asked.targets;
-  for (cprox_obstacle &target : targets) target.margin += asked.rounding;
-  searchContact(asked.mover(), targets, query, workspace, result);
+  std::vector<cprox_obstacle> obstacles = asked.obstacles;
+  for (cprox_obstacle &obstacle : obstacles) obstacle.margin += asked.rounding;
+  searchContact(asked.mover(), obstacles, query, workspace, result);
   const bool touches = result.status >= 0 && !(result.lower > asked.rounding);
   if (asked.against == RobotPairs::SELF && touches && asked.rounding > 0.0)
     result.t_contact_lower = beforeRounding(asked, result.t_contact_lower, query.options, workspace);
@@ -117,7 +117,7 @@ Answer timeOfContact(const RobotMotion &motion, bool self, const Query &query, W
   }
   Answer answer = toAnswer(asked, result, query, workspace, start);
   if (query.options.certificate && !asked.pairs.empty())
-    leaveContactProof(query, asked.mover(), asked.targets, result, workspace, answer);
+    leaveContactProof(query, asked.mover(), asked.obstacles, result, workspace, answer);
   return answer;
 }
 
@@ -146,22 +146,23 @@ std::string describeQuery(const RobotMotion &motion, bool self, const Query &que
   if (asked.pairs.empty()) return {};
   std::vector<std::string> names;
   for (const std::size_t item : asked.items) names.push_back(*asked.data.snapshot->world().items()[item].owner);
-  return describeQuery(asked.mover(), asked.targets, names, motion.data().id + (self ? ".self" : ".environment"));
+  return describeQuery(asked.mover(), asked.obstacles, names, motion.data().id + (self ? ".self" : ".environment"));
 }
 
 std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Query &query) {
   const Asked asked = askedOf(motion, againstOf(self), query);
-  std::vector<std::string> sentences;
+  std::vector<std::string> messages;
   const auto look = [&](const std::string &who, const cprox_body *body, bool moves) {
-    const std::string sentence = unprovable(who, cprox_obstacle_at(body, CPROX_POSE_IDENTITY), moves);
-    if (!sentence.empty()) sentences.push_back(sentence);
+    const std::string message = unprovable(who, cprox_obstacle_at(body, CPROX_POSE_IDENTITY), moves);
+    if (!message.empty()) messages.push_back(message);
   };
   for (const MovingGeometry &geometry : asked.data.kinematics->geometries)
     if (!geometry.within)
       look((geometry.attached ? "object '" : "link '") + geometry.owner() + "'", geometry.body, true);
   for (std::size_t i = 0; i < asked.items.size(); ++i)
-    look("object '" + *asked.data.snapshot->world().items()[asked.items[i]].owner + "'", asked.targets[i].body, false);
-  return sentences;
+    look("object '" + *asked.data.snapshot->world().items()[asked.items[i]].owner + "'", asked.obstacles[i].body,
+         false);
+  return messages;
 }
 
 std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits, const Query &query,
@@ -180,7 +181,7 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
   const cprox_options options = withoutRounding(query.options, asked.rounding);
   std::vector<cprox_result> results(std::min(limits.count, asked.pairs.size()));
   cprox_listed listed{};
-  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
   const cprox_status status = cprox_obstacles_nearest_pairs(obstacles.get(), asked.mover(), limits.count, limits.within,
                                                             &options, workspace.get(), results.data(), &listed);
   if (status < 0) throw Error(workspace.reason(), status);

@@ -112,8 +112,8 @@ cprox_mover joinedMover(const Movers::Data &data, const Pairs &pairs) {
 }
 
 /* Those that stand, where pairs have one of them. */
-std::vector<cprox_obstacle> targetsOf(const Movers::Data &data, const Pairs &pairs) {
-  return pairs.against == Against::MOVERS ? std::vector<cprox_obstacle>() : data.targets;
+std::vector<cprox_obstacle> obstaclesOf(const Movers::Data &data, const Pairs &pairs) {
+  return pairs.against == Against::MOVERS ? std::vector<cprox_obstacle>() : data.obstacles;
 }
 
 Coverage coverageOf(const Movers::Data &data, const Pairs &pairs, const Query &query) {
@@ -133,7 +133,7 @@ void nameSides(const Movers::Data &data, Against against, const Query &query, An
   cprox_result &result = answer.result;
   if (result.status < 0 || result.obstacle_index < 0) return;
   const MoverGeometry &moving = data.geometries[static_cast<std::size_t>(result.mover_part)];
-  const std::size_t standing = against == Against::MOVERS ? 0 : data.targets.size();
+  const std::size_t standing = against == Against::MOVERS ? 0 : data.obstacles.size();
   const auto index = static_cast<std::size_t>(result.obstacle_index);
   answer.a = moving.name;
   result.mover_part = moving.part;
@@ -193,7 +193,7 @@ struct AskedMovers {
 };
 
 /* Leaves the proof of an answer, by its interval in the core's numbers. */
-using Prove = void (*)(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+using Prove = void (*)(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
                        const cprox_result &result, Workspace &workspace, Answer &answer);
 
 template <class Core>
@@ -221,7 +221,7 @@ Answer answerOf(const Movers &movers, const AskedMovers &asked, const std::strin
     answerNothing(query, answer.result);
     answer.result.t_contact_lower = movers.domain()[1];
   } else {
-    core(joinedMover(data, pairs), targetsOf(data, pairs), answer.result);
+    core(joinedMover(data, pairs), obstaclesOf(data, pairs), answer.result);
     if (answer.result.status < 0) answer.message = workspace.reason();
     found = answer.result;
     nameSides(data, pairs.against, query, answer);
@@ -235,7 +235,7 @@ Answer answerOf(const Movers &movers, const AskedMovers &asked, const std::strin
   applyCoverage(coverageOf(data, pairs, query), query, answer);
   refuseSecondOpinion(query, "the peers are not asked about what moves beside the robot", answer);
   if (query.options.certificate)
-    prove(query, joinedMover(data, pairs), targetsOf(data, pairs), found, workspace, answer);
+    prove(query, joinedMover(data, pairs), obstaclesOf(data, pairs), found, workspace, answer);
   return answer;
 }
 
@@ -244,7 +244,7 @@ Stated statedOf(const Movers::Data &data, const Pairs &pairs, const AskedMovers 
     nameSides(data, pairs.against, asked.query, answer);
     answer = asked.seen(std::move(answer));
   };
-  return {joinedMover(data, pairs), targetsOf(data, pairs), data.rounding,
+  return {joinedMover(data, pairs), obstaclesOf(data, pairs), data.rounding,
           pairs.environment.empty() && pairs.among.empty(), name};
 }
 
@@ -315,11 +315,11 @@ void differentiate(const Movers &movers, const AskedMovers &asked, Workspace &wo
   const double rounding = movers.data().rounding;
   out.answer =
       answerOf(movers, asked, "", leaveProof, workspace,
-               [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
+               [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles, cprox_result &result) {
                  const cprox_options options = withoutRounding(query.options, rounding);
-                 const Obstacles obstacles(targets, CPROX_INDEX_NONE);
-                 const cprox_status status = cprox_robot_distance_gradient(obstacles.get(), mover, &options,
-                                                                           workspace.get(), &result, &out.gradient);
+                 const Obstacles set(obstacles, CPROX_INDEX_NONE);
+                 const cprox_status status =
+                     cprox_robot_distance_gradient(set.get(), mover, &options, workspace.get(), &result, &out.gradient);
                  if (status < 0) throw Error(workspace.reason(), status);
                  out.reason = workspace.reason();
                  widen(query, rounding, INFINITE, result);
@@ -449,12 +449,12 @@ std::vector<Answer> nearestPairs(const Movers &movers, const Whom &whom, const P
     const std::size_t n = some.environment.size() + some.among.size();
     if (n == 0) return;
     const Clock::time_point start = Clock::now();
-    const Obstacles obstacles(targetsOf(data, some), CPROX_INDEX_NONE);
+    const Obstacles set(obstaclesOf(data, some), CPROX_INDEX_NONE);
     std::vector<cprox_result> results(std::min(limits.count, n));
     cprox_listed listed{};
-    const cprox_status status = cprox_obstacles_nearest_pairs(obstacles.get(), joinedMover(data, some), limits.count,
-                                                              limits.within + data.rounding, &options, workspace.get(),
-                                                              results.data(), &listed);
+    const cprox_status status =
+        cprox_obstacles_nearest_pairs(set.get(), joinedMover(data, some), limits.count, limits.within + data.rounding,
+                                      &options, workspace.get(), results.data(), &listed);
     if (status < 0) throw Error(workspace.reason(), status);
     unlisted.add(status, listed, data.rounding);
     for (std::size_t i = 0; i < listed.count; ++i) {
@@ -501,10 +501,10 @@ Answer ask(const Movers &movers, const Whom &whom, const Query &given, Workspace
   const AskedMovers asked(whom, given);
   const Query &query = asked.query;
   const double rounding = movers.data().rounding;
-  const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
+  const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles, cprox_result &result) {
     cprox_options options = withoutRounding(query.options, rounding);
     options.certificate = nullptr;
-    result.status = askCore(query, options, mover, targets, workspace, result);
+    result.status = askCore(query, options, mover, obstacles, workspace, result);
     if (result.status >= 0) widen(query, rounding, INFINITE, result);
   };
   return asked.seen(answerOf(movers, asked, faultOfMovers(query), leaveProof, workspace, core));
@@ -515,10 +515,10 @@ Answer timeOfContact(const Movers &movers, const Whom &whom, const Query &given,
   const Query &query = asked.query;
   std::string fault = faultOfMovers(query);
   if (fault.empty()) fault = faultOfContact(query);
-  const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &targets, cprox_result &result) {
+  const auto core = [&](const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles, cprox_result &result) {
     /* what is nearer than the rounding may be in contact: standing bodies grow by it */
-    std::vector<cprox_obstacle> grown = targets;
-    for (cprox_obstacle &target : grown) target.margin += movers.data().rounding;
+    std::vector<cprox_obstacle> grown = obstacles;
+    for (cprox_obstacle &obstacle : grown) obstacle.margin += movers.data().rounding;
     searchContact(mover, grown, withoutCertificate(query), workspace, result);
   };
   return asked.seen(answerOf(movers, asked, fault, leaveContactProof, workspace, core));
@@ -529,10 +529,10 @@ std::string describeQuery(const Movers &movers, const Whom &whom, const Query &g
   const Movers::Data &data = movers.data();
   const Pairs pairs = pairsOf(data, asked.against, asked.query);
   if (pairs.environment.empty() && pairs.among.empty()) return {};
-  const std::vector<cprox_obstacle> targets = targetsOf(data, pairs);
+  const std::vector<cprox_obstacle> obstacles = obstaclesOf(data, pairs);
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < targets.size(); ++i) names.push_back(*data.snapshot->world().items()[i].owner);
-  return describeQuery(joinedMover(data, pairs), targets, names, asked.robot ? asked.robot->name : "movers");
+  for (std::size_t i = 0; i < obstacles.size(); ++i) names.push_back(*data.snapshot->world().items()[i].owner);
+  return describeQuery(joinedMover(data, pairs), obstacles, names, asked.robot ? asked.robot->name : "movers");
 }
 
 } // namespace curve_proximity

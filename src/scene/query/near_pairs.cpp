@@ -108,7 +108,7 @@ Body bodyOf(const Item &item) {
           nullptr,
           0,
           false,
-          shape.target,
+          shape.obstacle,
           shape.hull,
           0.0,
           shape.rounding,
@@ -139,7 +139,7 @@ void widen(double rounding, cprox_result &result) {
 /* How far rounding can have moved a body against a halfspace, whose turning counts by the distance. */
 double turningOf(const PlacedShape &shape, const Body &body) {
   if (!(shape.turning > 0.0)) return 0.0;
-  const Eigen::Vector3d from = toEigen(shape.target.pose.position);
+  const Eigen::Vector3d from = toEigen(shape.obstacle.pose.position);
   return shape.turning * (body.box.center() - from).norm() + shape.turning * 0.5 * body.box.diagonal().norm();
 }
 

@@ -12,7 +12,7 @@
 #include "base/digest.h"
 #include "motion/movers_data.h"
 #include "proving.h"
-#include "targets.h"
+#include "scene_obstacles.h"
 
 namespace curve_proximity {
 namespace {
@@ -61,11 +61,11 @@ void addDoubts(const Coverage &coverage, const std::vector<std::string> &unprova
 
 Problem problemFor(const CurveSubject &subject, const Query &query) {
   Problem out;
-  const Targets::Data &data = subject.targets.data();
-  addDoubts(coverageOf(query, data.coverage, data.items.empty() ? NO_OBJECT : ""), unprovable(subject.targets), out);
+  const SceneObstacles::Data &data = subject.obstacles.data();
+  addDoubts(coverageOf(query, data.coverage, data.items.empty() ? NO_OBJECT : ""), unprovable(subject.obstacles), out);
   if (!out.doubt.empty()) return out;
   out.is_empty = data.items.empty();
-  out.text = describeQuery(subject.targets, *subject.description);
+  out.text = describeQuery(subject.obstacles, *subject.description);
   return out;
 }
 
@@ -99,9 +99,9 @@ Problem problemFor(const MoversSubject &subject, const Query &query) {
 
 } // namespace
 
-std::string describeQuery(const Targets &targets, const CurveDescription &curve) {
-  if (!unprovable(curve).empty() || !unprovable(targets).empty()) return {};
-  return problemHead() + describeTargets(targets) + moverLine(curve);
+std::string describeQuery(const SceneObstacles &obstacles, const CurveDescription &curve) {
+  if (!unprovable(curve).empty() || !unprovable(obstacles).empty()) return {};
+  return problemHead() + describeObstacles(obstacles) + moverLine(curve);
 }
 
 std::string recordOfParts(const std::vector<std::string> &certificates) {
@@ -120,8 +120,8 @@ std::string problemHead() {
   return "cprox-problem 1\n";
 }
 
-std::string curveTargetLines(const CurveDescription &curve, bool synchronized) {
-  std::string line = "targets 1\ntarget";
+std::string curveObstacleLines(const CurveDescription &curve, bool synchronized) {
+  std::string line = "obstacles 1\ntarget";
   appendExactly(line, curve.radius);
   if (synchronized) return line + " 0 point 0 0 0 riding" + curveWords(curve) + growthWords(curve) + "\n";
   return line + " 0 curve" + curveWords(curve) + "\n";

@@ -16,7 +16,7 @@ namespace curve_proximity {
 /** Lines of a problem. */
 std::string problemHead();
 std::string moverLine(const CurveDescription &curve);
-std::string curveTargetLines(const CurveDescription &curve, bool synchronized = false);
+std::string curveObstacleLines(const CurveDescription &curve, bool synchronized = false);
 std::string noMoverLine(const std::string &id);
 
 /** Certificates of one mover as one: "CPCP", their number and each behind its length; empty where there is none. */

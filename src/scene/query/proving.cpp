@@ -38,7 +38,7 @@ bool isWhole(const double *interval, const cprox_mover &mover) {
 
 } // namespace
 
-void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
                 const cprox_result &result, Workspace &workspace, Answer &answer) {
   cprox_options options;
   if (!beginProof(query, result, options, answer)) return;
@@ -48,29 +48,27 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
     return;
   }
   if (result.upper <= delta || isWhole(options.interval, mover)) options.interval = nullptr; // near is of one time
-  ObstaclesHandle obstacles;
-  cprox_status status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
+  ObstaclesHandle set;
+  cprox_status status = makeObstacles(obstacles, CPROX_INDEX_NONE, workspace, set);
   if (status == CPROX_OK)
-    status =
-        cprox_certify(mover, obstacles.get(), delta, &result, &options, workspace.get(), query.options.certificate);
+    status = cprox_certify(mover, set.get(), delta, &result, &options, workspace.get(), query.options.certificate);
   if (status != CPROX_OK) answer.unproven = workspace.reason();
 }
 
-void leaveContactProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+void leaveContactProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
                        const cprox_result &result, Workspace &workspace, Answer &answer) {
   cprox_options options;
   if (!beginProof(query, result, options, answer)) return;
-  ObstaclesHandle obstacles;
-  cprox_status status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
+  ObstaclesHandle set;
+  cprox_status status = makeObstacles(obstacles, CPROX_INDEX_NONE, workspace, set);
   if (isWhole(options.interval, mover)) options.interval = nullptr;
   std::array<double, 2> before{};
   if (options.interval && status == CPROX_OK) { // what was before its begin is not asked
     before = {options.interval[0], std::min(result.t_contact_lower, options.interval[1])};
     options.interval = before.data();
-    status = cprox_certify(mover, obstacles.get(), 0.0, nullptr, &options, workspace.get(), query.options.certificate);
+    status = cprox_certify(mover, set.get(), 0.0, nullptr, &options, workspace.get(), query.options.certificate);
   } else if (status == CPROX_OK)
-    status =
-        cprox_certify_contact(mover, obstacles.get(), &result, &options, workspace.get(), query.options.certificate);
+    status = cprox_certify_contact(mover, set.get(), &result, &options, workspace.get(), query.options.certificate);
   if (status != CPROX_OK) answer.unproven = workspace.reason();
 }
 
@@ -93,12 +91,12 @@ std::string certificateOf(const Query &query, const cprox_mover &mover, const cp
   return {static_cast<const char *>(info.bytes), info.size};
 }
 
-std::string unprovable(const std::string &who, const cprox_obstacle &target, bool moves) {
-  const cprox_body_kind kind = target.body ? cprox_body_get_info(target.body).kind : CPROX_BODY_POINT;
+std::string unprovable(const std::string &who, const cprox_obstacle &obstacle, bool moves) {
+  const cprox_body_kind kind = obstacle.body ? cprox_body_get_info(obstacle.body).kind : CPROX_BODY_POINT;
   const bool elements = kind == CPROX_BODY_MESH || kind == CPROX_BODY_POINTS || kind == CPROX_BODY_OCTREE;
-  if (!(moves && elements) && !target.curve && cprox_obstacle_describe(&target, nullptr, 0) > 0) return {};
+  if (!(moves && elements) && !obstacle.curve && cprox_obstacle_describe(&obstacle, nullptr, 0) > 0) return {};
   return who + " is of a kind that has no certificates: " +
-         (target.body ? cprox_body_kind_name(cprox_body_get_info(target.body).kind) : "curve");
+         (obstacle.body ? cprox_body_kind_name(cprox_body_get_info(obstacle.body).kind) : "curve");
 }
 
 std::string wordOf(const std::string &text) {
@@ -108,13 +106,13 @@ std::string wordOf(const std::string &text) {
   return word;
 }
 
-std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::vector<std::string> &names) {
+std::string obstacleLines(const std::vector<cprox_obstacle> &obstacles, const std::vector<std::string> &names) {
   std::string all;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    std::string lines(cprox_obstacle_describe(&targets[i], nullptr, 0) + 1, '\0');
-    if (lines.size() == 1 || targets[i].curve) return {};
-    cprox_obstacle_describe(&targets[i], lines.data(), lines.size());
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    std::string lines(cprox_obstacle_describe(&obstacles[i], nullptr, 0) + 1, '\0');
+    if (lines.size() == 1 || obstacles[i].curve) return {};
+    cprox_obstacle_describe(&obstacles[i], lines.data(), lines.size());
     lines.pop_back();
     for (const char c : lines) {
       if (c == '\n') all += " called " + wordOf(names[i]);
@@ -122,18 +120,18 @@ std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::v
       all += c;
     }
   }
-  return "targets " + std::to_string(count) + "\n" + all;
+  return "obstacles " + std::to_string(count) + "\n" + all;
 }
 
-std::string describeQuery(const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+std::string describeQuery(const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
                           const std::vector<std::string> &names, const std::string &id) {
-  const std::string bodies = targetLines(targets, names);
+  const std::string bodies = obstacleLines(obstacles, names);
   if (bodies.empty()) return {};
   Workspace workspace;
-  const Obstacles obstacles(targets, CPROX_INDEX_NONE);
+  const Obstacles set(obstacles, CPROX_INDEX_NONE);
   const std::string word = wordOf(id);
   const auto describe = [&](char *text, std::size_t size) {
-    return cprox_mover_describe(&mover, obstacles.get(), word.c_str(), workspace.get(), text, size);
+    return cprox_mover_describe(&mover, set.get(), word.c_str(), workspace.get(), text, size);
   };
   std::string robot(describe(nullptr, 0) + 1, '\0');
   if (describe(robot.data(), robot.size()) == 0) return {};

@@ -12,13 +12,13 @@
 namespace curve_proximity {
 
 /* Writes the proof of an answer to query.options.certificate, or to answer.unproven why there is none. `result` is the
- * answer in the core's numbers, with the interval of the answer; `targets` are described to the checker by
- * targetLines(). */
-void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+ * answer in the core's numbers, with the interval of the answer; `obstacles` are described to the checker by
+ * obstacleLines(). */
+void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
                 const cprox_result &result, Workspace &workspace, Answer &answer);
 
-/* The same of the time of contact: `result` is the core's, of these targets or of larger ones. */
-void leaveContactProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+/* The same of the time of contact: `result` is the core's, of these obstacles or of larger ones. */
+void leaveContactProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
                        const cprox_result &result, Workspace &workspace, Answer &answer);
 
 /* A claim about a part of the range, or that the distance is at most delta where the answer says. */
@@ -36,15 +36,15 @@ std::string certificateOf(const Query &query, const cprox_mover &mover, const cp
 
 /* Why nothing at all can be proven where this body takes part; empty where it can. `who`: "object 'can'". moves: it
  * is a link, or attached. */
-std::string unprovable(const std::string &who, const cprox_obstacle &target, bool moves = false);
+std::string unprovable(const std::string &who, const cprox_obstacle &obstacle, bool moves = false);
 
 /* The number of lines and a line a convex part, with the name of its owner; empty where a body is of a kind that has no
  * certificates. */
-std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::vector<std::string> &names);
+std::string obstacleLines(const std::vector<cprox_obstacle> &obstacles, const std::vector<std::string> &names);
 
-/* What moves by joints against the targets, as the checker reads it, with these after targetLines(); empty where a body
+/* What moves by joints against the obstacles, as the checker reads it, with these after obstacleLines(); empty where a body
  * or a motion is of a kind that has no certificates. */
-std::string describeQuery(const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
+std::string describeQuery(const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
                           const std::vector<std::string> &names, const std::string &id);
 
 /* The text as one word. */

@@ -9,8 +9,8 @@
 #include "answering.h"
 #include "geometry/placing.h"
 #include "proving.h"
+#include "scene_obstacles.h"
 #include "second_opinion.h"
-#include "targets.h"
 
 namespace curve_proximity {
 namespace {
@@ -57,7 +57,7 @@ struct Seed {
   double gap = INFINITE;
 };
 
-Seed nearestBoxOf(const Search &search, const Targets::Data &data) {
+Seed nearestBoxOf(const Search &search, const SceneObstacles::Data &data) {
   Seed seed;
   const World &world = data.snapshot->world();
   const NearestBox nearest = world.tree().nearest(search.curve.boxes);
@@ -71,7 +71,7 @@ Seed nearestBoxOf(const Search &search, const Targets::Data &data) {
 }
 
 /* Chooses the items whose boxes are within reach of the curve's, the halfspaces and the seed. */
-void chooseWithin(double reach, const Seed &seed, const Targets::Data &data, Search &search) {
+void chooseWithin(double reach, const Seed &seed, const SceneObstacles::Data &data, Search &search) {
   const World &world = data.snapshot->world();
   std::vector<std::uint32_t> &chosen = search.chosen;
   world.tree().within(search.curve.boxes, reach, chosen);
@@ -93,12 +93,12 @@ void chooseAll(Search &search, std::size_t first, std::size_t last) {
 }
 
 /* Distance: nothing whose box is farther than some point of the curve is from the seed can be the nearest. */
-void chooseForDistance(const Seed &seed, const Targets::Data &data, Search &search) {
+void chooseForDistance(const Seed &seed, const SceneObstacles::Data &data, Search &search) {
   cprox_options rough = search.query.options;
   rough.relative_epsilon = std::max(rough.relative_epsilon, 0.1);
   cprox_result result{};
   const cprox_status status =
-      cprox_distance(moverOf(search.curve), search.shape(seed.index).target, &rough, search.workspace.get(), &result);
+      cprox_distance(moverOf(search.curve), search.shape(seed.index).obstacle, &rough, search.workspace.get(), &result);
   if (status < 0) { // the core will refuse again, and say why
     search.chosen.push_back(seed.index);
     return;
@@ -109,7 +109,7 @@ void chooseForDistance(const Seed &seed, const Targets::Data &data, Search &sear
 }
 
 /* Verdicts: nothing whose box is farther than the limit, and a little more, can touch them. */
-void chooseForVerdict(double limit, const Seed &seed, const Targets::Data &data, Search &search) {
+void chooseForVerdict(double limit, const Seed &seed, const SceneObstacles::Data &data, Search &search) {
   const double wide = limit + search.curve.reach;
   const double more = std::max({search.query.options.epsilon, 1e-3 * wide, 1e-6});
   if (!std::isfinite(wide + more) || wide < 0.0) { // the core will refuse, and say why
@@ -121,7 +121,7 @@ void chooseForVerdict(double limit, const Seed &seed, const Targets::Data &data,
   search.left_out = std::max(limit + 0.5 * more, boxes_apart);
 }
 
-void choose(const Targets::Data &data, Search &search) {
+void choose(const SceneObstacles::Data &data, Search &search) {
   const bool with_tree = data.in_tree > 0 && search.items.size() > FEW_SHAPES && !search.curve.boxes.empty();
   const Seed seed = with_tree ? nearestBoxOf(search, data) : Seed();
   if (seed.gap == INFINITE) {
@@ -142,13 +142,13 @@ cprox_status runCore(const Search &search, const cprox_options &options, cprox_r
   const cprox_mover mover = moverOf(search.curve);
   if (search.all && search.chosen.size() == search.items.size())
     return askCore(search.query, options, mover, search.all, search.workspace, result);
-  std::vector<cprox_obstacle> targets;
-  targets.reserve(search.chosen.size());
-  for (const std::uint32_t index : search.chosen) targets.push_back(search.shape(index).target);
-  return askCore(search.query, options, mover, targets, search.workspace, result);
+  std::vector<cprox_obstacle> obstacles;
+  obstacles.reserve(search.chosen.size());
+  for (const std::uint32_t index : search.chosen) obstacles.push_back(search.shape(index).obstacle);
+  return askCore(search.query, options, mover, obstacles, search.workspace, result);
 }
 
-void nameTarget(const Search &search, Answer &answer) {
+void nameObstacle(const Search &search, Answer &answer) {
   const std::int32_t found = answer.result.obstacle_index;
   if (found < 0) return;
   nameItem(search.items[search.chosen[static_cast<std::size_t>(found)]], search.query.options.max_lod, answer);
@@ -167,32 +167,34 @@ void answerOf(const Search &search, const Coverage &given, Answer &answer) {
     answerNothing(search.query, result);
   } else if (result.status >= 0) {
     widen(search.query, rounding, search.left_out, result);
-    nameTarget(search, answer);
+    nameObstacle(search, answer);
   }
   finishAnswer(search.workspace, answer);
   applyCoverage(coverageOf(search.query, given, search.chosen.empty() ? NO_OBJECT : ""), search.query, answer);
 }
 
 /* With the proof of the one answer: about everything that was asked about, and not only what the search chose. */
-Answer askWithProof(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
+Answer askWithProof(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query,
+                    Workspace &workspace) {
   Query bare = query;
   bare.options.certificate = nullptr;
-  Answer answer = ask(targets, curve, bare, workspace).front();
+  Answer answer = ask(obstacles, curve, bare, workspace).front();
   cprox_result named = answer.result;
-  named.obstacle_index = coreTargetOf(targets, answer);
-  leaveProof(query, moverOf(curve), coreTargets(targets), named, workspace, answer);
+  named.obstacle_index = coreObstacleOf(obstacles, answer);
+  leaveProof(query, moverOf(curve), coreObstacles(obstacles), named, workspace, answer);
   return answer;
 }
 
 } // namespace
 
-std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
+std::vector<Answer> ask(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query,
+                        Workspace &workspace) {
   std::vector<Answer> answers;
-  ask(targets, curve, query, workspace, answers);
+  ask(obstacles, curve, query, workspace, answers);
   return answers;
 }
 
-void ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace,
+void ask(const SceneObstacles &obstacles, const CompiledCurve &curve, const Query &query, Workspace &workspace,
          std::vector<Answer> &answers) {
   cprox_certificate_clear(query.options.certificate);
   const std::string fault = faultOf(query);
@@ -202,10 +204,10 @@ void ask(const Targets &targets, const CompiledCurve &curve, const Query &query,
     return;
   }
   if (query.options.certificate) {
-    answers.push_back(askWithProof(targets, curve, query, workspace));
+    answers.push_back(askWithProof(obstacles, curve, query, workspace));
     return;
   }
-  const Targets::Data &data = targets.data();
+  const SceneObstacles::Data &data = obstacles.data();
   const std::vector<Item> &items = data.items;
 
   // One in all.
@@ -249,7 +251,7 @@ void ask(const Targets &targets, const CompiledCurve &curve, const Query &query,
 std::vector<Answer> ask(const SnapshotPtr &snapshot, const LinkPoses &links, const CurveDescription &curve,
                         const Query &query, Workspace &workspace) {
   try {
-    return ask(Targets(snapshot, links, query), compile(curve), query, workspace);
+    return ask(SceneObstacles(snapshot, links, query), compile(curve), query, workspace);
   } catch (const Error &error) {
     Answer answer;
     answer.id = answer.a = curve.id;

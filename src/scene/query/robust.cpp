@@ -93,7 +93,7 @@ RobustAnswer askRobust(const RobotMotion &motion, bool self, const ErrorBounds &
     answerNothing(query, result);
     scale.certified = scale.refused = std::numeric_limits<double>::infinity();
   } else {
-    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+    const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
     const cprox_options options = withoutRounding(query.options, asked.rounding);
     result.status = distance ? cprox_robust_distance(obstacles.get(), asked.mover(), errors.get(), &options,
                                                      workspace.get(), &result)
@@ -108,7 +108,7 @@ RobustAnswer askRobust(const RobotMotion &motion, bool self, const ErrorBounds &
     return out;
   }
   if (!asked.pairs.empty() && !out.answer.gap) {
-    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+    const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
     const cprox_status status = cprox_robust_find_scale(obstacles.get(), asked.mover(), query.delta + asked.rounding,
                                                         errors.get(), &query.options, workspace.get(), &scale);
     if (status < 0) throw Error(workspace.reason(), status);
@@ -135,7 +135,7 @@ std::vector<ClearanceInterval> robustProfile(const RobotMotion &motion, bool sel
   const Asked asked = askedOf(motion, against, query);
   std::vector<ClearanceInterval> profile = profileOfNothing(breaks);
   if (!asked.pairs.empty()) {
-    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+    const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
     for (ClearanceInterval &one : profile) {
       const std::array<double, 2> interval{one.t0, one.t1};
       cprox_options options = withoutRounding(query.options, asked.rounding);
@@ -165,7 +165,7 @@ namespace {
 /* Until when no execution touches anything. What is not certified is halved. */
 double certifiedUntil(const Asked &asked, const CoreErrors &errors, double resolution, const Query &query,
                       Workspace &workspace, cprox_result &total) {
-  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  const Obstacles obstacles(asked.obstacles, CPROX_INDEX_NONE);
   const cprox_motion_info info = cprox_motion_get_info(asked.data.core.get());
   double free = info.t0, refused = INFINITE, end = info.t1;
   while (free < info.t1 && refused - free > resolution) {

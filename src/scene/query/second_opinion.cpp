@@ -423,17 +423,18 @@ void refuseSecondOpinion(const Query &query, const std::string &why, Answer &ans
   tell(std::move(opinion), answer);
 }
 
-void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, const Query &query, Answer &answer) {
+void addSecondOpinion(const SceneObstacles::Data &obstacles, const CompiledCurve &curve, const Query &query,
+                      Answer &answer) {
   if (!isWanted(query, answer) || byBalls(query, answer) || !hasPair(query, answer)) return;
   const SecondOpinions::Data &data = query.second_opinion->data();
-  const Snapshot &snapshot = *targets.snapshot;
+  const Snapshot &snapshot = *obstacles.snapshot;
   const auto part = static_cast<std::size_t>(answer.result.obstacle_index);
 
   /* whose shape it is */
-  const auto item = std::find_if(targets.items.begin(), targets.items.end(), [&](const Item &i) {
+  const auto item = std::find_if(obstacles.items.begin(), obstacles.items.end(), [&](const Item &i) {
     return i.is_link == answer.b_is_link && i.part == answer.result.obstacle_index && *i.owner == answer.b;
   });
-  if (item == targets.items.end()) return refuseSecondOpinion(query, "the pair is not known", answer);
+  if (item == obstacles.items.end()) return refuseSecondOpinion(query, "the pair is not known", answer);
   const auto object = snapshot.objects().find(answer.b);
   const bool stands = !answer.b_is_link && object != snapshot.objects().end();
   const ShapeDescription &shape =
@@ -441,7 +442,7 @@ void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, 
              : shapeOf(snapshot, answer.b, answer.b_is_link, part, false).geometry->description;
   const ResourceOptions &resources = answer.b_is_link ? snapshot.robot()->resources() : data.objects;
 
-  const cprox_obstacle &placed = item->shape->target;
+  const cprox_obstacle &placed = item->shape->obstacle;
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
   Workspace workspace;
   const auto sidesAt = [&](double t) {
@@ -479,7 +480,7 @@ void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answe
       return std::make_pair(sideOfRobot(mover, poses),
                             sideOfRobot(shapeOf(snapshot, answer.b, answer.b_is_link, part, true), poses));
     const SceneObject &object = *snapshot.objects().at(answer.b);
-    const cprox_obstacle &placed = object.shapes.at(part).placed.target;
+    const cprox_obstacle &placed = object.shapes.at(part).placed.obstacle;
     const ShapeDescription &shape = object.description.shapes.at(part);
     return std::make_pair(sideOfRobot(mover, poses),
                           sideOf(shape, toIsometry(placed.pose), placed.margin, by_hull, data.objects, data));

@@ -4,12 +4,13 @@
 #define CURVE_PROXIMITY_SCENE_SECOND_OPINION_H
 
 #include "motion/motion_data.h"
-#include "targets.h"
+#include "scene_obstacles.h"
 
 namespace curve_proximity {
 
-/* Of a curve: answer.b and obstacle_index name a shape of the targets. */
-void addSecondOpinion(const Targets::Data &targets, const CompiledCurve &curve, const Query &query, Answer &answer);
+/* Of a curve: answer.b and obstacle_index name a shape of the obstacles. */
+void addSecondOpinion(const SceneObstacles::Data &obstacles, const CompiledCurve &curve, const Query &query,
+                      Answer &answer);
 
 /* Of a robot in motion: answer.a, mover_part, b and obstacle_index name both shapes. */
 void addSecondOpinion(const RobotMotion::Data &motion, const Query &query, Answer &answer);

@@ -15,7 +15,7 @@ namespace {
 /* Calls with what a function about the subject takes first. */
 template <class Call>
 auto about(const CurveSubject &subject, const Call &call) {
-  return call(subject.targets, subject.curve);
+  return call(subject.obstacles, subject.curve);
 }
 template <class Call>
 auto about(const MotionSubject &subject, const Call &call) {
@@ -32,7 +32,7 @@ auto about(const Subject &subject, const Call &call) {
 }
 
 std::vector<Answer> searched(const CurveSubject &subject, const Query &query, Workspace &workspace) {
-  return ask(subject.targets, subject.curve, query, workspace);
+  return ask(subject.obstacles, subject.curve, query, workspace);
 }
 std::vector<Answer> searched(const MotionSubject &subject, const Query &query, Workspace &workspace) {
   if (subject.self) return {askSelf(subject.motion, query, workspace)};
@@ -43,7 +43,7 @@ std::vector<Answer> searched(const MoversSubject &subject, const Query &query, W
 }
 
 Row differentiated(const CurveSubject &subject, const Query &query, Workspace &workspace) {
-  CurveClearance out = clearanceGradient(subject.targets, subject.curve, *subject.description, query, workspace);
+  CurveClearance out = clearanceGradient(subject.obstacles, subject.curve, *subject.description, query, workspace);
   return {{}, std::move(out.answer), std::move(out.gradient)};
 }
 Row differentiated(const MotionSubject &subject, const Query &query, Workspace &workspace) {

@@ -20,7 +20,7 @@ namespace curve_proximity {
 
 /** A curve. A subject refers to what it is about. */
 struct CurveSubject {
-  const Targets &targets;
+  const SceneObstacles &obstacles;
   const CompiledCurve &curve;
   const CurveDescription *description = nullptr; /**< what the curve was compiled from: a gradient needs it */
 };
@@ -53,7 +53,7 @@ struct Part {
 };
 
 /** The parts that have rows of their own: each link (per_link), each object (Query::per_object), or one for all. A
- *  curve has one: its targets say what it is measured against. A search for a curve or a robot among objects that stand
+ *  curve has one: its obstacles say what it is measured against. A search for a curve or a robot among objects that stand
  *  is one part, with a row an object. */
 std::vector<Part> partsOf(const Subject &subject, const Question &question, const Query &query, bool per_link);
 

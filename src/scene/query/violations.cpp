@@ -10,7 +10,7 @@
 #include "answering.h"
 #include "asked_pairs.h"
 #include "proving.h"
-#include "targets.h"
+#include "scene_obstacles.h"
 
 namespace curve_proximity {
 
@@ -36,10 +36,10 @@ void checkViolations(const Query &query, double resolution) {
 namespace {
 
 /* What lies between the violations, and a place in each of them. */
-void prove(const Stated &stated, const Query &query, const Obstacles &obstacles, const cprox_violation *list,
+void prove(const Stated &stated, const Query &query, const Obstacles &set, const cprox_violation *list,
            std::size_t count, Workspace &workspace, Violations &out) {
   const auto add = [&](const PartialClaim &claim) {
-    std::string one = certificateOf(query, stated.mover, obstacles.get(), claim, workspace, out.unproven);
+    std::string one = certificateOf(query, stated.mover, set.get(), claim, workspace, out.unproven);
     if (!one.empty()) out.certificates.push_back(std::move(one));
   };
   const std::array<double, 2> all = domainOf(query, rangeOf(stated.mover));
@@ -64,14 +64,14 @@ Violations searchViolations(const Stated &stated, double resolution, const Query
   Violations out;
   out.measured = !stated.is_empty;
   if (stated.is_empty) return out;
-  const Obstacles obstacles(stated.targets, CPROX_INDEX_NONE);
+  const Obstacles set(stated.obstacles, CPROX_INDEX_NONE);
   std::vector<cprox_violation> room(FIRST_ROOM);
   cprox_options options = withoutRounding(query.options, stated.rounding);
   options.certificate = nullptr;
   cprox_violations found{};
   while (true) {
     found = {room.data(), room.size(), 0};
-    out.status = cprox_obstacles_violations(obstacles.get(), stated.mover, query.delta + stated.rounding, resolution,
+    out.status = cprox_obstacles_violations(set.get(), stated.mover, query.delta + stated.rounding, resolution,
                                             &options, workspace.get(), &found);
     if (out.status != CPROX_BUDGET || found.count < room.size() || room.size() >= MOST_ROOM) break;
     room.resize(4 * room.size());
@@ -89,19 +89,19 @@ Violations searchViolations(const Stated &stated, double resolution, const Query
                         one_side ? CPROX_VERDICT_UNDECIDED : v.verdict, one_side ? INFINITE : v.upper, v.t, sides.a,
                         sides.b});
   }
-  if (query.options.certificate) prove(stated, query, obstacles, room.data(), found.count, workspace, out);
+  if (query.options.certificate) prove(stated, query, set, room.data(), found.count, workspace, out);
   return out;
 }
 
-Violations violations(const Targets &targets, const CompiledCurve &curve, double resolution, const Query &query,
-                      Workspace &workspace) {
+Violations violations(const SceneObstacles &obstacles, const CompiledCurve &curve, double resolution,
+                      const Query &query, Workspace &workspace) {
   checkViolations(query, resolution);
   const std::string fault = faultOf(query);
   if (!fault.empty()) throw Error(fault);
-  const Stated stated = statedOf(targets, curve, query);
+  const Stated stated = statedOf(obstacles, curve, query);
   Violations found = searchViolations(stated, resolution, query, workspace);
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
-  applyCoverage(coverageOf(query, targets.data().coverage, stated.is_empty ? NO_OBJECT : ""),
+  applyCoverage(coverageOf(query, obstacles.data().coverage, stated.is_empty ? NO_OBJECT : ""),
                 domainOf(query, {info.t0, info.t1}), found);
   return found;
 }

@@ -50,7 +50,7 @@ std::shared_ptr<const Kinematics> makeKinematics(const Snapshot &snapshot, const
                                                  const std::vector<std::string> &base_joints,
                                                  const Eigen::Isometry3d &place);
 
-/* The joints that the motion takes beyond their limits, followers included: a sentence each. */
+/* The joints that the motion takes beyond their limits, followers included: a message each. */
 std::vector<std::string> beyondLimits(const Kinematics &kinematics, const cprox_motion &motion);
 
 } // namespace curve_proximity

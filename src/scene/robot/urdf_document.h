@@ -27,7 +27,7 @@ using UrdfElements = std::map<std::string, std::vector<UrdfElement>>;
 struct UrdfDocument {
   std::shared_ptr<urdf::ModelInterface> model; /**< its tree, with joints, and links without their elements */
   UrdfElements elements;
-  std::vector<std::string> unknown; /**< what is neither used nor known to carry no geometry, a sentence each */
+  std::vector<std::string> unknown; /**< what is neither used nor known to carry no geometry, a message each */
 };
 
 /** Throws Error, which names link or joint and what is wrong: no XML, no URDF, elements that xacro has left, a tree

@@ -112,9 +112,9 @@ class RobotReader {
 
   std::shared_ptr<const Robot> read(const std::string &xml) {
     UrdfDocument document = readUrdf(xml);
-    for (const std::string &sentence : document.unknown) {
-      leaveOut(sentence);
-      robot_->coverage_.add(Gap::PARTIAL, sentence);
+    for (const std::string &message : document.unknown) {
+      leaveOut(message);
+      robot_->coverage_.add(Gap::PARTIAL, message);
     }
     return read(*document.model, std::move(document.elements));
   }
@@ -150,8 +150,8 @@ class RobotReader {
   }
 
   /* What is neither used nor known to say nothing of geometry. */
-  void leaveOut(const std::string &sentence) {
-    robot_->warnings_.push_back(sentence + "; left out");
+  void leaveOut(const std::string &message) {
+    robot_->warnings_.push_back(message + "; left out");
   }
 
   /* The joints from the root outwards; every link must be met. */
@@ -320,10 +320,10 @@ class RobotReader {
     }
   }
 
-  void fault(const std::string &sentence) {
-    if (!options_.allow_missing_geometry) throw Error(sentence);
-    leaveOut(sentence);
-    robot_->coverage_.add(Gap::PARTIAL, sentence, Missing::GEOMETRY);
+  void fault(const std::string &message) {
+    if (!options_.allow_missing_geometry) throw Error(message);
+    leaveOut(message);
+    robot_->coverage_.add(Gap::PARTIAL, message, Missing::GEOMETRY);
   }
 
   struct LoadedMesh {

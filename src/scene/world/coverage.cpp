@@ -68,7 +68,7 @@ bool Coverage::provesContact() const {
   return std::all_of(notes_.begin(), notes_.end(), [](const Note &note) { return note.missing == Missing::GEOMETRY; });
 }
 
-std::vector<std::string> Coverage::sentences() const {
+std::vector<std::string> Coverage::messages() const {
   std::vector<std::string> out;
   for (const Note &note : notes_) out.push_back(note.message);
   return out;

@@ -34,7 +34,7 @@ const Broadphase &World::tree() const {
 }
 
 void requireBody(const Item &item) {
-  if (!item.shape->target.body)
+  if (!item.shape->obstacle.body)
     throw Error("object '" + *item.owner + "' is a curve: it is asked about curves, not about robots");
 }
 

@@ -31,7 +31,7 @@ SceneFileContents loadSceneFile(const std::string &path, const Robot *robot, con
   } catch (const BadUsage &e) {
     throw Error(e.what());
   }
-  out.warnings = warnings.sentences();
+  out.warnings = warnings.messages();
   return out;
 }
 
@@ -39,7 +39,7 @@ TrajectoryDescription loadTrajectoryFile(const std::string &path, std::vector<st
   yaml::Warnings heard;
   try {
     TrajectoryDescription out = yaml::readTrajectory(path, heard);
-    if (warnings) warnings->insert(warnings->end(), heard.sentences().begin(), heard.sentences().end());
+    if (warnings) warnings->insert(warnings->end(), heard.messages().begin(), heard.messages().end());
     return out;
   } catch (const yaml::BadUsage &e) {
     throw Error(e.what());

@@ -24,19 +24,19 @@ namespace curve_proximity::yaml {
 class Warnings {
  public:
   /** Of what cannot change geometry. */
-  void add(const std::string &sentence) {
-    if (known_.insert(sentence).second) sentences_.push_back(sentence);
+  void add(const std::string &message) {
+    if (known_.insert(message).second) messages_.push_back(message);
   }
 
   /** Of what is not used and could be geometry, or its place: what is read is then a part of what was given. */
-  void leaveOut(const std::string &sentence, Missing missing = Missing::ANYTHING) {
-    add(sentence);
-    coverage_.add(Gap::PARTIAL, sentence, missing);
+  void leaveOut(const std::string &message, Missing missing = Missing::ANYTHING) {
+    add(message);
+    coverage_.add(Gap::PARTIAL, message, missing);
   }
 
-  /** The sentences and the coverage of another reading. */
+  /** The messages and the coverage of another reading. */
   void add(const Warnings &other) {
-    for (const std::string &sentence : other.sentences_) add(sentence);
+    for (const std::string &message : other.messages_) add(message);
     coverage_.add(other.coverage_);
   }
 
@@ -44,13 +44,13 @@ class Warnings {
   const Coverage &coverage() const {
     return coverage_;
   }
-  const std::vector<std::string> &sentences() const {
-    return sentences_;
+  const std::vector<std::string> &messages() const {
+    return messages_;
   }
 
  private:
   std::set<std::string> known_;
-  std::vector<std::string> sentences_;
+  std::vector<std::string> messages_;
   Coverage coverage_;
 };
 

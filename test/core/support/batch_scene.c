@@ -38,13 +38,13 @@ void batch_scene_targets(rng *r, bool planar, cprox_workspace *workspace, batch_
     } else {
       const cprox_vec3 points[4] = {rng_in_cube(r, 1), rng_in_cube(r, 1), rng_in_cube(r, 1), rng_in_cube(r, 1)};
       assert_int_equal(curve_from(describe_bezier(points, 4, 0, 1), workspace, &s->standing), CPROX_OK);
-      s->targets[i] = cprox_obstacle_curve(s->standing, 0.02);
+      s->obstacles[i] = cprox_obstacle_curve(s->standing, 0.02);
       continue;
     }
-    s->targets[i] = cprox_obstacle_at(s->bodies[i], pose);
-    if (i % 3 == 2) s->targets[i].margin = 0.03;
+    s->obstacles[i] = cprox_obstacle_at(s->bodies[i], pose);
+    if (i % 3 == 2) s->obstacles[i].margin = 0.03;
   }
-  s->n_targets = TARGETS;
+  s->n_obstacles = TARGETS;
 }
 
 void batch_scene_movers(rng *r, bool planar, cprox_workspace *workspace, batch_scene *s) {
@@ -89,9 +89,9 @@ cprox_status batch_ask(query_type v, const cprox_obstacles *batch, const batch_s
 }
 
 void batch_ask_alone(query_type v, const batch_scene *s, size_t i, cprox_workspace *workspace, cprox_result *r) {
-  if (v == DISTANCE) distance_of_list(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
-  if (v == TOLERANCE) tolerance_of_list(s->movers[i], s->targets, s->n_targets, DELTA, NULL, workspace, r, NULL);
-  if (v == COLLISION) collision_of_list(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
+  if (v == DISTANCE) distance_of_list(s->movers[i], s->obstacles, s->n_obstacles, NULL, workspace, r, NULL);
+  if (v == TOLERANCE) tolerance_of_list(s->movers[i], s->obstacles, s->n_obstacles, DELTA, NULL, workspace, r, NULL);
+  if (v == COLLISION) collision_of_list(s->movers[i], s->obstacles, s->n_obstacles, NULL, workspace, r, NULL);
 }
 
 bool same_answer(const cprox_result *a, const cprox_result *b) {

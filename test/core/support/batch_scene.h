@@ -11,11 +11,11 @@
 
 enum { MOVERS = 64, TARGETS = 12 };
 
-/* A scene with every kind of target, and movers of every kind. */
+/* A scene with every kind of obstacle, and movers of every kind. */
 typedef struct batch_scene {
   cprox_body *bodies[TARGETS];
-  cprox_obstacle targets[TARGETS];
-  size_t n_targets;
+  cprox_obstacle obstacles[TARGETS];
+  size_t n_obstacles;
   cprox_curve *curves[MOVERS];
   cprox_mover movers[MOVERS];
   cprox_body *carried, *ball;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Reads the reference files of test/data: one record a line, fields between commas, lines that begin with # skipped.
- * Whatever is wrong with a file fails the test with a sentence. */
+ * Whatever is wrong with a file fails the test with a message. */
 #ifndef CPROX_TEST_CSV_H
 #define CPROX_TEST_CSV_H
 

@@ -44,7 +44,7 @@ typedef struct robot_case {
 } robot_case;
 
 /* Reads the next case of FOLDER/cases.txt, opened by the caller, who has read the number of cases in its first line.
- * False, with a sentence on stderr, where the file is not as it should be. */
+ * False, with a message on stderr, where the file is not as it should be. */
 bool robot_case_read(FILE *cases, const char *folder, robot_case *c);
 /* FOLDER/ROBOT.robot without a scene, every variable on its way from 0 to 1. */
 bool robot_case_read_robot(const char *folder, const char *robot, robot_case *c);

@@ -16,7 +16,7 @@ int main() {
   cp::SceneChange change;
   change.operations.push_back(add);
   cp::Scene scene;
-  for (const std::string &complaint : scene.apply(change)) std::fprintf(stderr, "%s\n", complaint.c_str());
+  for (const std::string &error_message : scene.apply(change)) std::fprintf(stderr, "%s\n", error_message.c_str());
 
   // A straight line that passes it at a distance of 0.25.
   cp::CurveDescription line;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Keeps the log short: the same complaint once in a while, and never many at a time. */
-#ifndef CURVE_PROXIMITY_ROS_COMPLAINTS_H
-#define CURVE_PROXIMITY_ROS_COMPLAINTS_H
+/** Keeps the log short: the same warning once in a while, and never many at a time. */
+#ifndef CURVE_PROXIMITY_ROS_LOG_LIMIT_H
+#define CURVE_PROXIMITY_ROS_LOG_LIMIT_H
 
 #include <chrono>
 #include <iterator>
@@ -12,10 +12,10 @@
 namespace curve_proximity {
 
 /** Any number of threads. */
-class Complaints {
+class LogLimit {
  public:
-  /** every: in this time the same complaint is made once. */
-  explicit Complaints(std::chrono::seconds every) : every_(every) {}
+  /** every: in this time the same warning is made once. */
+  explicit LogLimit(std::chrono::seconds every) : every_(every) {}
 
   /** Is it to be made now? */
   bool isDue(const std::string &what) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The shapes that a query is about. */
-#ifndef CURVE_PROXIMITY_SCENE_TARGETS_H
-#define CURVE_PROXIMITY_SCENE_TARGETS_H
+#ifndef CURVE_PROXIMITY_SCENE_OBSTACLES_H
+#define CURVE_PROXIMITY_SCENE_OBSTACLES_H
 
 #include <deque>
 #include <vector>
@@ -15,7 +15,7 @@ namespace curve_proximity {
 /* Up to so many shapes the core alone is faster than asking the tree first. */
 constexpr std::size_t FEW_SHAPES = 8;
 
-struct Targets::Data {
+struct SceneObstacles::Data {
   SnapshotPtr snapshot;
 
   /* Objects' shapes first, then the links', then those of what links carry: each owner's stand together. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "targets.h"
+#include "scene_obstacles.h"
 
 #include <set>
 #include <utility>
@@ -39,7 +39,7 @@ void checkLinks(const Names &names, const LinkPoses &poses, const Robot *robot) 
 }
 
 /* All of the world, or the objects that are named. */
-void addObjects(bool everything, const Names &names, Targets::Data &data) {
+void addObjects(bool everything, const Names &names, SceneObstacles::Data &data) {
   const std::vector<Item> &all = data.snapshot->world().items();
   if (everything) {
     data.items = all;
@@ -52,7 +52,7 @@ void addObjects(bool everything, const Names &names, Targets::Data &data) {
 }
 
 /* The links with geometry, each where its pose says. */
-void addLinks(bool everything, const Names &names, const LinkPoses &poses, Targets::Data &data) {
+void addLinks(bool everything, const Names &names, const LinkPoses &poses, SceneObstacles::Data &data) {
   for (const auto &[name, of_robot] : data.snapshot->robot()->links()) {
     if (of_robot.empty() || (!everything && names.count(name) == 0)) continue;
     const std::vector<LinkGeometry> &geometries = data.snapshot->linkGeometry(name);
@@ -67,7 +67,7 @@ void addLinks(bool everything, const Names &names, const LinkPoses &poses, Targe
 }
 
 /* What links carry, each where its link is. */
-void addAttached(bool everything, const Names &names, const LinkPoses &poses, Targets::Data &data) {
+void addAttached(bool everything, const Names &names, const LinkPoses &poses, SceneObstacles::Data &data) {
   for (const auto &[id, object] : data.snapshot->attached()) {
     if (!everything && names.count(id) == 0) continue;
     const auto pose = poses.find(object->link);
@@ -83,7 +83,7 @@ void addAttached(bool everything, const Names &names, const LinkPoses &poses, Ta
 
 } // namespace
 
-Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &query) {
+SceneObstacles::SceneObstacles(SnapshotPtr snapshot, const LinkPoses &links, const Query &query) {
   const Names objects(query.objects.begin(), query.objects.end());
   const Names named_links(query.links.begin(), query.links.end());
   const std::string fault = objects.empty() && !named_links.empty() ? "" : faultOfMoving(*snapshot, query.objects);
@@ -103,46 +103,46 @@ Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &quer
   if (!links.empty() || !named_links.empty()) data->coverage.add(data->snapshot->robot()->coverage());
   if (data->items.size() <= FEW_SHAPES) {
     std::vector<cprox_obstacle> all;
-    for (const Item &item : data->items) all.push_back(item.shape->target);
+    for (const Item &item : data->items) all.push_back(item.shape->obstacle);
     Workspace workspace;
     if (makeObstacles(all, CPROX_INDEX_NONE, workspace, data->few) < 0) data->few.reset(); // ask() finds out why
   }
   data_ = std::move(data);
 }
 
-CurveBoxes Targets::boxes() const {
+CurveBoxes SceneObstacles::boxes() const {
   return data_->items.size() <= FEW_SHAPES ? CurveBoxes::NONE : CurveBoxes::MANY;
 }
 
-Targets::~Targets() = default;
-Targets::Targets(Targets &&) noexcept = default;
-Targets &Targets::operator=(Targets &&) noexcept = default;
+SceneObstacles::~SceneObstacles() = default;
+SceneObstacles::SceneObstacles(SceneObstacles &&) noexcept = default;
+SceneObstacles &SceneObstacles::operator=(SceneObstacles &&) noexcept = default;
 
-std::vector<cprox_obstacle> coreTargets(const Targets &targets) {
+std::vector<cprox_obstacle> coreObstacles(const SceneObstacles &obstacles) {
   std::vector<cprox_obstacle> all;
-  for (const Item &item : targets.data().items) all.push_back(item.shape->target);
+  for (const Item &item : obstacles.data().items) all.push_back(item.shape->obstacle);
   return all;
 }
 
-std::string describeTargets(const Targets &targets) {
+std::string describeObstacles(const SceneObstacles &obstacles) {
   std::vector<std::string> names;
-  for (const Item &item : targets.data().items) names.push_back(*item.owner);
-  return targetLines(coreTargets(targets), names);
+  for (const Item &item : obstacles.data().items) names.push_back(*item.owner);
+  return obstacleLines(coreObstacles(obstacles), names);
 }
 
-std::vector<std::string> unprovable(const Targets &targets) {
-  std::vector<std::string> sentences;
-  for (const Item &item : targets.data().items) {
+std::vector<std::string> unprovable(const SceneObstacles &obstacles) {
+  std::vector<std::string> messages;
+  for (const Item &item : obstacles.data().items) {
     const std::string who = (item.is_link ? "link '" : "object '") + *item.owner + "'";
-    const std::string sentence = unprovable(who, item.shape->target);
-    if (!sentence.empty()) sentences.push_back(sentence);
+    const std::string message = unprovable(who, item.shape->obstacle);
+    if (!message.empty()) messages.push_back(message);
   }
-  return sentences;
+  return messages;
 }
 
-std::int32_t coreTargetOf(const Targets &targets, const Answer &answer) {
+std::int32_t coreObstacleOf(const SceneObstacles &obstacles, const Answer &answer) {
   if (answer.result.obstacle_index < 0) return -1;
-  const std::vector<Item> &items = targets.data().items;
+  const std::vector<Item> &items = obstacles.data().items;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const Item &item = items[i];
     if (item.is_link == answer.b_is_link && item.part == answer.result.obstacle_index && *item.owner == answer.b)
