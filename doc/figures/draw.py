@@ -1,7 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the figures of doc/: /usr/bin/python3 doc/figures/draw.py [NAME ...], each as doc/figures/NAME.png."""
+import csv
+import io
 import os
+import subprocess
 import sys
 
 import matplotlib
@@ -450,11 +453,31 @@ def python():
     }, [('numpy', 'package', ''), ('package', 'scene', ''), ('package', 'core', ''), ('scene', 'core', '')])
 
 
+def bookshelf():
+    """The clearance of a saved plan, and under errors: asks cprox (scripts/run /usr/bin/python3 doc/figures/draw.py bookshelf)."""
+    root = os.path.dirname(os.path.dirname(HERE))
+    words = ['cprox', 'profile', '--intervals', '72', '--robot', 'test/data/robots/panda/panda.urdf', '--srdf',
+             'test/data/robots/panda/panda.srdf', '--scene', 'test/data/scenes/mbm/bookshelf_tall_panda/scene0001.yaml',
+             '--trajectory', 'test/data/trajectories/panda_bookshelf_tall_0001_rrt.yaml']
+    figure, axes = plt.subplots(figsize=(8, 3))
+    for more, colour, label in (([], BLUE, 'the plan'),
+                                (['--errors', 'examples/bookshelf/errors.yaml'], ORANGE, 'its worst execution')):
+        text = subprocess.run(words + more, cwd=root, check=True, capture_output=True, text=True).stdout
+        rows = list(csv.DictReader(io.StringIO(text)))
+        times = [float(rows[0]['t0'])] + [float(row['t1']) for row in rows]
+        axes.stairs([1000 * float(row['lower']) for row in rows], times, baseline=None, color=colour, lw=1.5, label=label)
+    axes.set_yscale('log')
+    axes.set_xlabel('time [s]')
+    axes.set_ylabel('clearance [mm]')
+    axes.legend(frameon=False)
+    return figure
+
+
 def main():
     drawings = {name: value for name, value in globals().items()
                 if callable(value) and name in ('curve_bound', 'batches', 'fourier', 'implicit', 'robot_bounds', 'time_of_contact',
                                                 'convex_pairs', 'non_convex', 'rounding', 'certificates', 'ros', 'command_line',
-                                                'c_api', 'scenes', 'python')}
+                                                'c_api', 'scenes', 'python', 'bookshelf')}
     for name in sys.argv[1:] or drawings:
         figure = drawings[name]()
         figure.savefig(os.path.join(HERE, name + '.png'), dpi=100, bbox_inches='tight', pad_inches=0.08)
