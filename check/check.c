@@ -214,7 +214,7 @@ static const char *read_pieces(reader *in, const curve *c, pieces *p, double **b
 static const char *check_section(section *c) {
   const unsigned char wanted = c->set->kind == CURVE ? 2 : c->set->corners > 0 ? 3 : 1;
   const part all = {c->from, c->until};
-  if (reader_byte(c->in) != wanted) return "it is about another kind of obstacle";
+  if (reader_byte(c->in) != wanted) return "it is about another kind of target";
   if (wanted == 1) return check_convex(c);
   if (c->set->kind == SOLID && (c->carried || c->clock[1])) return "what is inside a mesh that moves is not known";
   if (wanted == 3) {
@@ -359,7 +359,7 @@ static const char *check_claim(const problem *p, reader *in, uint32_t width, uin
   if (!apart && claimed != CLAIM_NEAR) return "it claims nothing that is known";
   if (r && sections != r->n_pairs) return "it is about another number of pairs";
   const size_t loads = p->mover.n_carried > 0 ? p->mover.n_carried : 1;
-  if (!r && apart && sections != loads * p->n_sets) return "it is about another number of obstacles";
+  if (!r && apart && sections != loads * p->n_sets) return "it is about another number of targets";
   if (claimed == CLAIM_NEAR) return check_place(p, in, found->delta);
   if (claimed == CLAIM_BEFORE) return check_before(p, in, width, found);
   const claim of = (claim)claimed;

@@ -54,7 +54,7 @@ static void report_hulls(const problem *p) {
     if (s->name[0])
       printf("'%s'", s->name);
     else
-      printf("obstacle %zu", i);
+      printf("target %zu", i);
     before = ", ";
     named++;
   }

@@ -201,7 +201,7 @@ static const char *check_element(const set *s, iv *y, iv *apart, reader *in, boo
     const vec seen = winding_ball_of(y), centre = vec_of(s->centre), own = vec_sub(&seen, &centre);
     return winding_side(s, &own) == INSIDE ? NULL : "the point is not inside the mesh";
   }
-  if (element >= set_elements(s)) return "it is about no element of the obstacle";
+  if (element >= set_elements(s)) return "it is about no element of the target";
   set one = set_group(s, element, element + (size_t)1);
   one.kind = POLYTOPE;
   iv *ball = iv_new(1);
@@ -225,13 +225,13 @@ const char *near_check_point(const set *s, iv *y, iv *apart, reader *in, bool le
       iv_sub(&v[k], &y[k], &v[k]);
     }
   } else if (s->kind == POLYTOPE) {
-    if (!from_polytope(v, s, y, in)) fault = "the point it names is not in the obstacle";
+    if (!from_polytope(v, s, y, in)) fault = "the point it names is not in the target";
   } else {
     for (int k = 0; k < 3; k++) {
       iv_set_d(&v[k], reader_number(in));
       iv_sub(&y[k], &y[k], &v[k]);
     }
-    if (!contains(s, y)) fault = "the point it names is not in the obstacle";
+    if (!contains(s, y)) fault = "the point it names is not in the target";
   }
   iv_norm(&w[1], v);
   if (!fault && in->bad) fault = "it is cut off or not a number";
@@ -271,7 +271,7 @@ static const char *check_limits(const problem *p, reader *in, double delta, int 
   const uint32_t index = reader_count(in);
   const double t = reader_number(in);
   if (in->bad || p->n_sets == 0 || index / p->n_sets >= (m->n_carried > 0 ? m->n_carried : 1))
-    return "it is about no obstacle of these";
+    return "it is about no target of these";
   const set *s = &p->sets[index % p->n_sets], *carried = m->n_carried > 0 ? &m->carried[index / p->n_sets] : NULL;
   const bool left = (limits & 1) != 0, rides = curve_is_there(&s->ride);
   iv *y = iv_new(3), *own = iv_new(3), *ride = iv_new(3), *w = iv_new(3);
@@ -304,7 +304,7 @@ const char *check_near(const problem *p, reader *in, double delta) {
   const reader start = *in;
   reader ahead = start;
   const uint32_t index = reader_count(&ahead);
-  if (ahead.bad || p->n_sets == 0) return "it is about no obstacle of these";
+  if (ahead.bad || p->n_sets == 0) return "it is about no target of these";
 
   /* splines alone can jump: of other curves both limits are one */
   const set *s = &p->sets[index % p->n_sets];

@@ -283,7 +283,7 @@ static void read_more(words *w, set *s) {
   }
 }
 
-/* The N lines of obstacles, "obstacles" being read. */
+/* The N lines of obstacles, "targets" being read. */
 static bool read_sets(problem *p, words *w) {
   const size_t n = words_size(w);
   if (!words_end(p, w)) return false;
@@ -291,7 +291,7 @@ static bool read_sets(problem *p, words *w) {
   p->sets = words_room(w, n, sizeof *p->sets);
   if (w->wrong) return words_end(p, w);
   while (!w->wrong && p->n_sets < n) {
-    words_begin(p, w, "obstacle");
+    words_begin(p, w, "target");
     set *s = &p->sets[p->n_sets++];
     words_set(w, s);
     read_more(w, s);
@@ -358,7 +358,7 @@ bool problem_next(problem *p) {
   words w = {0};
   free_mover(&p->mover);
   const char *first = words_line(p, &w);
-  while (first && strcmp(first, "obstacles") == 0) {
+  while (first && strcmp(first, "targets") == 0) {
     if (!read_sets(p, &w)) return false;
     first = words_line(p, &w);
   }

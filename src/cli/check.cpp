@@ -312,7 +312,7 @@ void tellMoving(const Arguments &arguments, Console &console, Checkers &checkers
 
 void tellPairs(const Arguments &arguments, Checkers &checkers) {
   CsvFile first(arguments.curves), second(arguments.against);
-  checkers.begin(problemHead() + "obstacles 0\n");
+  checkers.begin(problemHead() + "targets 0\n");
   while (true) {
     const std::optional<CsvRow> a = first.next(), b = second.next();
     if (!a && !b) return;

@@ -147,7 +147,7 @@ static void describe_inequalities(text *t, const cprox_body *body) {
 /* ---- obstacles ---- */
 
 static bool describe_one(text *t, const cprox_obstacle *obstacle, const cprox_body *body, const cprox_pose *inner) {
-  say(t, "obstacle %a %d", obstacle->margin, inner ? 2 : 1);
+  say(t, "target %a %d", obstacle->margin, inner ? 2 : 1);
   describe_pose(t, &obstacle->pose);
   if (inner) describe_pose(t, inner);
   const cprox_body *elements = elements_body(body);

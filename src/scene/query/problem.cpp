@@ -121,7 +121,7 @@ std::string problemHead() {
 }
 
 std::string curveObstacleLines(const CurveDescription &curve, bool synchronized) {
-  std::string line = "obstacles 1\ntarget";
+  std::string line = "targets 1\ntarget";
   appendExactly(line, curve.radius);
   if (synchronized) return line + " 0 point 0 0 0 riding" + curveWords(curve) + growthWords(curve) + "\n";
   return line + " 0 curve" + curveWords(curve) + "\n";

@@ -120,7 +120,7 @@ std::string obstacleLines(const std::vector<cprox_obstacle> &obstacles, const st
       all += c;
     }
   }
-  return "obstacles " + std::to_string(count) + "\n" + all;
+  return "targets " + std::to_string(count) + "\n" + all;
 }
 
 std::string describeQuery(const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
