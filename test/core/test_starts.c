@@ -414,7 +414,7 @@ CASE(there_is_no_gradient_and_no_certificate) {
   assert_string_equal(cprox_workspace_error(ws), "there is no gradient where starts have tolerances");
   cprox_certificate *certificate = cprox_certificate_create();
   assert_int_equal(certify_of_list(mover, NULL, 0, 0.0, NULL, NULL, ws, certificate), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_error(ws), "no certificates: joined motions"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "no certificates: starts with a tolerance"));
   cprox_certificate_free(certificate);
 
   /* nor can it be joined again */
