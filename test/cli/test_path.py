@@ -237,6 +237,6 @@ class Path(Case):
         self.assertRefused(cprox('distance', '--radius', '1', '--scene', 's', '--curves', 'c'), '--radius needs --path')
         self.assertRefused(cprox('distance', '--path', 'p', '--body', 'b'), '--path needs --scene')
         self.assertRefused(cprox('distance', '--body', 'b', '--scene', 's', '--curves', 'c'), '--body needs --path')
-        for more in (('--curves', 'c'), ('--trajectory', 't'), ('--movers',), ('--self',), ('--signed',), ('--certificate', 'c'), ('--links', 'l')):
+        for more in (('--curves', 'c'), ('--trajectory', 't'), ('--movers',), ('--self',), ('--signed',), ('--links', 'l')):
             self.assertRefused(cprox('distance', '--path', 'p', '--body', 'b', '--scene', 's', *more), more[0])
         self.assertRefused(cprox('report', '--path', 'p', '--out', 'r'), "'report' takes no --path")

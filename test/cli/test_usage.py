@@ -147,7 +147,7 @@ print -rn -- $out
                 '--scene', '--srdf', '--state', '--per-object', '--max-lod', '--skipped', '--links', '--objects', '--allow-empty'}
             rows += [(command, ['--curves', 'c', '--robot', 'r'], both),
                      (command, ['--trajectory', 't', '--robot', 'r'], both - {'--signed'} | {'--self', '--per-link', '--moving-links-only'})]
-        rows += [('distance', ['--scene', 's', '--movers'], run | {'--max-lod', '--skipped', '--self', '--allow-empty', '--moving-links-only'})]
+        rows += [('distance', ['--scene', 's', '--movers'], run | {'--certificate', '--max-lod', '--skipped', '--self', '--allow-empty', '--moving-links-only'})]
         for command, inputs, has in rows:
             for name, value in values.items():
                 if name in inputs or name in ('--against', '--scene', '--robot') and '--curves' in inputs:
