@@ -254,7 +254,7 @@ static bool is_source(const cprox_joined_motion *one) {
 static bool copy_sources(cprox_motion *m, const cprox_joined_motion *joined) {
   for (size_t i = 0; i < m->n_joined; i++)
     if (!is_source(&joined[i])) return true;
-  m->sources = calloc(m->n_joined, sizeof *m->sources);
+  m->sources = calloc(m->n_joined > 0 ? m->n_joined : 1, sizeof *m->sources);
   size_t variable = 0;
   for (size_t i = 0; i < m->n_joined && m->sources; i++) {
     const cprox_motion *from = joined[i].motion;
