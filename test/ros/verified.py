@@ -5,6 +5,7 @@ that one could think of: about the scene, the robot, the motion, the verdict, th
 import copy
 import random
 import struct
+import threading
 import time
 import unittest
 
@@ -16,6 +17,7 @@ from gate import Action, Arm, Controller, Goal, ends_of, turning
 from helpers import ActionClient, Server, bezier, box, connected, mesh, run, sphere, transform, until
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
+from trajectory_msgs.msg import JointTrajectory
 
 APART, NEAR = 1, 2
 DELTA = 0.05
@@ -252,6 +254,25 @@ class Verified(unittest.TestCase):
         self.assertTrue(until(lambda: "object 'broken' is not used" in self.send()[1], 5))
         self.assertEqual(self.send()[0], GoalStatus.REJECTED)
 
+    def test_no_trajectory_passes_after_a_stop_that_came_later(self):
+        topic, passed = rospy.Publisher('/gate/trajectory', JointTrajectory, queue_size=5), []
+        heard = rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, passed.append)
+        self.assertTrue(connected(topic, heard))
+        del self.refused[:]
+        asked, going_on = self.liar.asked, threading.Event()
+        self.liar.lie = lambda request: going_on.wait(10) and self.liar.honest(request)
+        for _ in range(2):  # one is asked about, one waits
+            topic.publish(turning(1.0, 2.0))
+        self.assertTrue(until(lambda: self.liar.asked > asked, 5))
+        topic.publish(JointTrajectory(joint_names=['turn']))
+        self.assertTrue(until(lambda: passed, 5))  # at once
+        going_on.set()
+        self.assertTrue(until(lambda: len(self.refused) == 2, 5))
+        self.assertEqual(([len(one.points) for one in passed], {one.message for one in self.refused}), ([0], {'a stop came after it'}))
+        topic.publish(turning(1.0, 2.0))
+        self.assertTrue(until(lambda: len(passed) == 2, 5), [one.message for one in self.refused])
+        heard.unregister()
+
     def test_curves_are_proven_too(self):
         links = rospy.Publisher('/tf_static', TFMessage, queue_size=5, latch=True)  # curves meet the robot where tf2 has it
         links.publish(TFMessage([transform('base', link) for link in ('arm', 'slider')]))
@@ -260,6 +281,7 @@ class Verified(unittest.TestCase):
         heard = rospy.Subscriber('/gate/clear_curve', type(bezier((0, 0, 0))), passed.append)
         self.assertTrue(connected(links, topic, heard))
         curve = bezier((-1, 0.5, 2), (0, 0.7, 2), (1, 0.5, 2), id='c', radius=0.1)
+        self.assertTrue(until(lambda: all(server.distance(curve).success for server in (self.reading, self.server)), 5))
         for blocked, lie in ((False, None), (True, None), (True, self.asking())):
             if blocked:
                 self.everywhere(sphere('post', 0.1, (0, 0.6, 2)))

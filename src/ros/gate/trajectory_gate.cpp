@@ -74,19 +74,24 @@ template <class Message>
 void TrajectoryGate::connect(const std::string &topic, const ros::Publisher &out) {
   using Pointer = boost::shared_ptr<const Message>;
   subscribers_.push_back(handle_.subscribe<Message>(topic, MOTION_QUEUE, [this, topic, out](const Pointer &message) {
-    if constexpr (std::is_same_v<Message, JointTrajectory>) {
-      if (message->points.empty()) { // a stop
-        if (watches_) watches_->forget(message->joint_names);
-        return out.publish(message);
-      }
-    }
-    queue_.add([this, topic, out, message] { guarded([&] { judge(topic, message, out); }, logGateError); });
+    if constexpr (std::is_same_v<Message, JointTrajectory>)
+      if (message->points.empty()) return stop(message);
+    const std::uint64_t stops = stops_;
+    queue_.add(
+        [this, topic, out, message, stops] { guarded([&] { judge(topic, message, stops, out); }, logGateError); });
   }));
+}
+
+void TrajectoryGate::stop(const trajectory_msgs::JointTrajectoryConstPtr &message) {
+  const std::lock_guard<std::mutex> lock(passing_);
+  ++stops_;
+  if (watches_) watches_->forget(message->joint_names);
+  clear_trajectory_.publish(message);
 }
 
 template <class Message>
 void TrajectoryGate::judge(const std::string &topic, const boost::shared_ptr<const Message> &message,
-                           const ros::Publisher &out) {
+                           std::uint64_t stops, const ros::Publisher &out) {
   const Motion motion{topic, idOf(*message), fingerprint(*message)};
   ProximityQuery query;
   addTo(query, *message);
@@ -95,6 +100,9 @@ void TrajectoryGate::judge(const std::string &topic, const boost::shared_ptr<con
   SeenScene scene;
   Refusal refusal;
   if (!calls_.isClear(query, scene, refusal)) return refuse(std::move(refusal), motion);
+  const std::lock_guard<std::mutex> lock(passing_);
+  if (!query.trajectories.empty() && stops_ != stops)
+    return refuse(refusalBecause("a stop came after it", scene.state), motion);
   out.publish(message);
   if (!watches_ || query.trajectories.empty()) return;
   const std::vector<std::string> joints = query.trajectories.front().joint_names;

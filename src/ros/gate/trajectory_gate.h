@@ -5,8 +5,10 @@
 
 #include <ros/node_handle.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -23,8 +25,9 @@ namespace curve_proximity {
  * hands on those that are clear, by pointer: ~clear_curve, ~clear_trajectory, ~clear_multi_dof_trajectory, ~clear_path.
  * ~queue_size messages wait; what is older never passes. What does not pass is told on ~refused. With ~watch it looks on
  * while a trajectory runs (MotionWatches, by ~joint_states); where what is left is not clear, a trajectory without points
- * follows on ~clear_trajectory, at which joint_trajectory_controller stops. A trajectory without points is a stop, and
- * passes at once. With ~controller it is also a FollowJointTrajectory action: see ActionGate. */
+ * follows on ~clear_trajectory, at which joint_trajectory_controller stops. A trajectory without points is a stop: it
+ * passes at once, and no trajectory passes that came before it. With ~controller it is also a FollowJointTrajectory
+ * action: see ActionGate. */
 class TrajectoryGate {
  public:
   /** handle: private. proofs: as of ServerCalls. */
@@ -43,7 +46,9 @@ class TrajectoryGate {
   template <class Message>
   void connect(const std::string &topic, const ros::Publisher &out);
   template <class Message>
-  void judge(const std::string &topic, const boost::shared_ptr<const Message> &message, const ros::Publisher &out);
+  void judge(const std::string &topic, const boost::shared_ptr<const Message> &message, std::uint64_t stops,
+             const ros::Publisher &out);
+  void stop(const trajectory_msgs::JointTrajectoryConstPtr &message);
   void refuse(Refusal refusal, const Motion &motion);
 
   const GateParameters parameters_;
@@ -52,6 +57,8 @@ class TrajectoryGate {
   const ros::Publisher refused_, clear_trajectory_;
   ServerCalls calls_;
   std::unique_ptr<MotionWatches> watches_; /* null: nothing is watched */
+  std::mutex passing_;                     /* one message passes at a time */
+  std::atomic<std::uint64_t> stops_{0};    /* that have passed: no trajectory passes that came before one of them */
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<ActionGate> actions_;
 };
