@@ -37,7 +37,7 @@ class Diagnostics {
   const Pipeline &pipeline_;
   const PlanningSceneTopic &planning_scene_;
   const LiveScene &live_;
-  std::uint64_t dropped_ = 0; /* when last told */
+  std::uint64_t dropped_ = 0; /* when last reported */
   ros::NodeHandle handle_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;

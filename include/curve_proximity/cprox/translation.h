@@ -39,8 +39,8 @@ CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_tra
  *                   t = t_contact_lower the distance is at most epsilon [m], unless the status is not CPROX_OK.
  *  lower, upper, points: of the signed distance at t, as in cprox_pair(). Where contact is found on the way upper = 0,
  *  both points are a common one, and lower is no more than a bound. Where they overlap already at 0: t =
- *  t_contact_lower = 0. Returns as cprox_pair(). Cost: about four pairs, of two superquadrics about
- *  two. */
+ *  t_contact_lower = 0. Returns as cprox_pair(). Cost: about four pairs; of two superquadrics
+ *  about two. */
 CPROX_API cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
                                                  const cprox_options *options, cprox_workspace *workspace,
                                                  cprox_result *result);

@@ -22,8 +22,8 @@
 namespace curve_proximity {
 namespace {
 
-/* The first line of the file. A change of the scene makes it BEHIND, in place,
- * until the file is written anew. */
+/* The first line of the file, of one length: a change of the scene makes it BEHIND in place, until the file is written
+ * anew. */
 constexpr const char *WRITTEN = "written", *BEHIND = "behind ";
 constexpr double WRITING_PERIOD = 1.0; /* [s] */
 constexpr std::size_t MOST_BYTES = std::size_t{64} << 20;
@@ -80,8 +80,7 @@ KeptScene keptOf(const LiveScene &live, const std::string &fixed_frame) {
   out.request.link_padding = std::move(scene.link_padding);
   out.request.link_scale = std::move(scene.link_scale);
   out.request.allowed_contacts = std::move(scene.allowed_contacts);
-  // the rest of an incomplete scene comes with the next whole one, whoever
-  // sends that
+  // the rest of an incomplete scene comes with the next whole one, whoever sends that
   for (const auto &[source, unknowns] : live.unknowns.bySource()) {
     if (source == AWAITED_SCENE) continue;
     const bool is_object = source.rfind(REFUSED_OBJECT, 0) == 0;
@@ -156,9 +155,8 @@ std::optional<KeptScene> StateFile::read() {
   std::optional<KeptScene> out;
   if (of_this_run && !beginning.empty() && beginning != beginning_) {
     ROS_WARN(
-        "the scene of the server before this one is not taken over: it "
-        "began with another scene file, robot or fixed "
-        "frame");
+        "the scene of the server before this one is not taken over: it began with another scene file, robot or "
+        "fixed frame");
   } else {
     if (of_this_run && md5 == ros::message_traits::md5sum<ApplySceneRequest>()) {
       std::ostringstream rest;
@@ -174,14 +172,11 @@ std::optional<KeptScene> StateFile::read() {
 }
 
 void StateFile::lose() {
-  live_.unknowns.set(LOST_SCENE, {{"the scene of the server before this one, or its last "
-                                   "change, is lost, and none has been "
-                                   "sent since: send the whole of it again (clear: true)",
-                                   "", Missing::ANYTHING}}); // what was moved or removed
-                                                             // last is back where it was
-  ROS_WARN(
-      "the scene of the server before this one is lost: answers say so "
-      "until a whole scene is sent");
+  // Missing::ANYTHING: what was moved or removed last is back where it was
+  live_.unknowns.set(LOST_SCENE, {{"the scene of the server before this one, or its last change, is lost, and none has "
+                                   "been sent since: send the whole of it again (clear: true)",
+                                   "", Missing::ANYTHING}});
+  ROS_WARN("the scene of the server before this one is lost: answers say so until a whole scene is sent");
   changed();
 }
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Keeps the scene on disk, so that a server that comes after a crash has it
- * again, or says that it has not. */
+/** Keeps the scene on disk, so that a server that comes after a crash has it again, or says that it has not. */
 #ifndef CURVE_PROXIMITY_ROS_STATE_FILE_H
 #define CURVE_PROXIMITY_ROS_STATE_FILE_H
 
@@ -22,31 +21,28 @@ namespace curve_proximity {
 /** What was read back. */
 struct KeptScene {
   ApplySceneRequest request;        /**< replaces the scene */
-  std::vector<std::string> sensors; /**< objects that sensors kept, and objects
-                                       too large to be written */
-  UnknownsBySource unknowns;        /**< what was not known of the scene, and the new
-                                 server does not find out itself */
+  std::vector<std::string> sensors; /**< objects that sensors kept, or that are too large to be written */
+  UnknownsBySource unknowns;        /**< what was not known, and the new server does not find out itself */
   bool replaces_srdf = false;       /**< Snapshot::replacesSrdf() of the scene */
   bool behind = false;              /**< the last changes are not in it */
 };
 
-/** The file: "written" or, from a change of the scene until it is written,
- * "behind "; the run (/run_id), a digest of what the scene began with (the
- * scene file, the robot, the fixed frame) and the type's MD5, a line each; then
- * the names of sensors' objects, what is unknown, replaces_srdf and the request
- * of ~apply_scene, serialised. */
+/** The file has a line each of:
+ *   - "written" or, from a change of the scene until it is written, "behind ";
+ *   - the run (/run_id);
+ *   - a digest of what the scene began with: the scene file, the robot, the fixed frame;
+ *   - the type's MD5.
+ * Then, serialised: the names of sensors' objects, what is unknown, replaces_srdf and the request of ~apply_scene. */
 class StateFile {
  public:
-  /** handle: private. live: kept by reference. Writes nothing before watch().
-   */
+  /** handle: private. live: kept by reference. Writes nothing before watch(). */
   StateFile(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live);
 
   /** Writes what has changed since the last time. */
   ~StateFile();
 
-  /** The scene of the server before this one; nothing where there is none, or
-   * where it began with another scene file, robot or fixed frame. Where there
-   * was one that cannot be read: lose(). */
+  /** The scene of the server before this one; nothing where there is none, or where it began with another scene file,
+   * robot or fixed frame. Where there was one that cannot be read: lose(). */
   std::optional<KeptScene> read();
 
   /** From now on nothing is known of the scene, until one is sent. */
@@ -55,9 +51,8 @@ class StateFile {
   /** From now on changes are written, once a second at most. */
   void watch();
 
-  /** Somebody has changed the scene, and not by a sensor. When it returns, a
-   * server that is killed leaves a word of it.
-   */
+  /** Somebody has changed the scene, and not by a sensor. When it returns, the file of a server that is killed is
+   * marked as behind. */
   void changed();
 
  private:

@@ -519,7 +519,7 @@ Answer timeOfContact(const Movers &movers, const Whom &whom, const Query &given,
     /* what is nearer than the rounding may be in contact: standing bodies grow by it */
     std::vector<cprox_obstacle> grown = obstacles;
     for (cprox_obstacle &obstacle : grown) obstacle.margin += movers.data().rounding;
-    searchContact(mover, grown, withoutCertificate(query), workspace, result);
+    searchContact(mover, grown, query, workspace, result);
   };
   return asked.seen(answerOf(movers, asked, fault, leaveContactProof, workspace, core));
 }
