@@ -121,69 +121,56 @@ CASE(real_robots_leave_certificates_that_hold) {
   cprox_certificate_free(c);
 }
 
-/* Robots of all joint types, splines and waypoints, bodies of every kind: seed 4, 100 robots. */
+static void print_thrice(const char *what, const tally sum[3]) {
+  static const char *const ASKED[3] = {"distance to 1e-5", ".9 of it", "1.1 of it"};
+  for (int i = 0; i < 3; i++) {
+    char line[80];
+    snprintf(line, sizeof line, "%s, %s", what, ASKED[i]);
+    print_tally(line, &sum[i]);
+  }
+}
+
+/* Random robots; with `add`, which changes a query, some are asked about themselves, too. */
+static void ask_random(size_t n, uint64_t seed, void (*add)(robot_query *q, rng *r, cprox_workspace *workspace),
+                       const char *what, tally sum[3]) {
+  cprox_certificate *c = cprox_certificate_create();
+  rng r = rng_seed(seed);
+  for (size_t i = 0; i < test_cases(n); i++) {
+    robot_query q;
+    robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
+    if (add) {
+      add(&q, &r, ws);
+      robot_query_whole(&q, &r);
+    }
+    char name[40];
+    snprintf(name, sizeof name, "robot %zu", i);
+    ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);
+    robot_query_free(&q);
+  }
+  print_thrice(what, sum);
+  cprox_certificate_free(c);
+}
+
+/* Robots of all joint types, splines and waypoints, bodies of every kind. */
 CASE(random_robots_leave_certificates_that_hold) {
   static tally sum[3];
-  cprox_certificate *c = cprox_certificate_create();
-  rng r = rng_seed(4);
-  for (size_t i = 0; i < test_cases(100); i++) {
-    robot_query q;
-    robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
-    char name[40];
-    snprintf(name, sizeof name, "robot %zu", i);
-    ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);
-    robot_query_free(&q);
-  }
-  print_tally("random robots, distance to 1e-5", &sum[0]);
-  print_tally("random robots, .9 of it", &sum[1]);
-  print_tally("random robots, 1.1 of it", &sum[2]);
+  ask_random(100, 4, NULL, "random robots", sum);
   assert_true(sum[0].apart > 20);
-  cprox_certificate_free(c);
 }
 
-/* 30 robots beside superquadrics and intersections of inequalities, seed 8; some are asked about themselves, too. */
+/* Beside superquadrics and intersections of inequalities. */
 CASE(robots_beside_bodies_by_inequalities_leave_certificates_that_hold) {
   static tally sum[3];
-  cprox_certificate *c = cprox_certificate_create();
-  rng r = rng_seed(8);
-  for (size_t i = 0; i < test_cases(30); i++) {
-    robot_query q;
-    robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
-    robot_query_inequalities(&q, &r, ws);
-    robot_query_whole(&q, &r);
-    char name[40];
-    snprintf(name, sizeof name, "robot %zu", i);
-    ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);
-    robot_query_free(&q);
-  }
-  print_tally("beside inequalities, distance to 1e-5", &sum[0]);
-  print_tally("beside inequalities, .9 of it", &sum[1]);
-  print_tally("beside inequalities, 1.1 of it", &sum[2]);
+  ask_random(30, 8, robot_query_inequalities, "beside inequalities", sum);
   assert_true(sum[0].apart + sum[1].apart > test_cases(10));
-  cprox_certificate_free(c);
 }
 
-/* 60 robots with a body beside them that turns by slerp, on one clock (seed 9); before a motion begins and after it has
- * ended the robot or the body stands. */
+/* With a body beside them that turns by slerp, on one clock; before a motion begins and after it has ended the robot or
+ * the body stands. */
 CASE(bodies_that_turn_by_slerp_beside_robots_leave_certificates_that_hold) {
   static tally sum[3];
-  cprox_certificate *c = cprox_certificate_create();
-  rng r = rng_seed(9);
-  for (size_t i = 0; i < test_cases(60); i++) {
-    robot_query q;
-    robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
-    robot_query_fly(&q, &r, ws);
-    robot_query_whole(&q, &r);
-    char name[40];
-    snprintf(name, sizeof name, "robot %zu", i);
-    ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);
-    robot_query_free(&q);
-  }
-  print_tally("robots and a body by slerp, distance to 1e-5", &sum[0]);
-  print_tally("robots and a body by slerp, .9 of it", &sum[1]);
-  print_tally("robots and a body by slerp, 1.1 of it", &sum[2]);
+  ask_random(60, 9, robot_query_fly, "robots and a body by slerp", sum);
   assert_true(sum[0].apart > test_cases(20));
-  cprox_certificate_free(c);
 }
 
 /* A crank round a coaxial cylinder, and a wheel that turns about its own axis beside a box: the distance stays the same,
