@@ -168,6 +168,10 @@ std::int32_t coreObstacleOf(const SceneObstacles &obstacles, const Answer &answe
  *  octree with the name of its owner. Empty if a kind of body has no certificates. */
 std::string describeObstacles(const SceneObstacles &obstacles);
 
+/** The query of a curve against these obstacles as that program reads it, with its head; empty where something is of a
+ *  kind that has no certificates. */
+std::string describeQuery(const SceneObstacles &obstacles, const CurveDescription &curve);
+
 /** The bodies that have no certificates, one message each. If there is one, no result can be proven. */
 std::vector<std::string> unprovable(const SceneObstacles &obstacles);
 

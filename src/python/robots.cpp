@@ -43,6 +43,23 @@ py::dict answerOf(const Answer &answer, bool asked) {
   return out;
 }
 
+py::dict provenAnswer(Query &query, const std::function<Answer(std::string &text)> &ask) {
+  const std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)> certificate(cprox_certificate_create(),
+                                                                                          cprox_certificate_free);
+  if (!certificate) throw std::bad_alloc();
+  query.options.certificate = certificate.get();
+  std::string text;
+  const Answer answer = unlocked([&] { return ask(text); });
+  py::dict out = answerOf(answer, query.query_type != QueryType::DISTANCE);
+  if (!answer.unproven.empty()) throw Error("no certificate: " + answer.unproven);
+  const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
+  if (info.claim == CPROX_CLAIM_NONE) throw Error("no certificate: the answer is not decided");
+  out["claim"] = info.claim == CPROX_CLAIM_APART ? "apart" : "near";
+  out["record"] = py::bytes(static_cast<const char *>(info.bytes), info.size);
+  out["query"] = text;
+  return out;
+}
+
 void addValidity(const ClearanceGradient &g, py::dict &out) {
   out["valid"] = g.valid, out["reason"] = g.reason, out["t"] = g.t;
 }
@@ -182,28 +199,14 @@ py::dict contactOf(const RobotMotion &motion, bool self, double epsilon, Count m
   return answerOf(answer, true);
 }
 
-/* An answer with its proof, and the query that it is about as cprox_check reads it. */
 py::dict certificateOf(const RobotMotion &motion, std::optional<double> delta, bool self, double epsilon,
                        Count max_nodes, const Names &links, const Names &objects, bool allow_empty, bool moving_only) {
-  using Handle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
-  const Handle certificate(cprox_certificate_create(), cprox_certificate_free);
-  if (!certificate) throw std::bad_alloc();
   Query query = queryOf(delta ? "tolerance" : "distance", delta.value_or(0.0), epsilon, max_nodes, links, objects,
                         allow_empty, moving_only);
-  query.options.certificate = certificate.get();
-  std::string text;
-  const Answer answer = unlocked([&] {
+  return provenAnswer(query, [&](std::string &text) {
     text = "cprox-problem 1\n" + describeQuery(motion, self, query);
     return self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
   });
-  py::dict out = answerOf(answer, delta.has_value());
-  if (!answer.unproven.empty()) throw Error("no certificate: " + answer.unproven);
-  const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
-  if (info.claim == CPROX_CLAIM_NONE) throw Error("no certificate: the answer is not decided");
-  out["claim"] = info.claim == CPROX_CLAIM_APART ? "apart" : "near";
-  out["record"] = py::bytes(static_cast<const char *>(info.bytes), info.size);
-  out["query"] = text;
-  return out;
 }
 
 py::dict gradientOf(const RobotMotion &motion, bool self, double epsilon, Count max_nodes, const Names &links,

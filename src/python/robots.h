@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_PYTHON_ROBOTS_H
 #define CURVE_PROXIMITY_PYTHON_ROBOTS_H
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -110,6 +111,10 @@ Query queryOf(const std::string &type, double delta, double epsilon, std::uint32
 
 /** Throws Error for an answer that is a refusal. asked: a verdict was. */
 py::dict answerOf(const Answer &answer, bool asked = false);
+
+/** The answer to the query with its proof, and the text of the query as cprox_check reads it, which `ask` writes. `ask`
+ *  runs without the GIL. Throws Error where there is no proof. */
+py::dict provenAnswer(Query &query, const std::function<Answer(std::string &text)> &ask);
 
 /** The answer with its derivatives. */
 py::dict toDict(const ClearanceRow &row);

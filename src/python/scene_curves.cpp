@@ -2,9 +2,6 @@
 /* Curves against a scene, its robot included. Queries release the GIL. */
 #include <algorithm>
 #include <array>
-#include <memory>
-
-#include <curve_proximity/proof.hpp>
 
 #include "robots.h"
 
@@ -66,27 +63,13 @@ CurveDescription describe(const Curve &path, double radius) {
   return out;
 }
 
-/* An answer with its proof, and the query that it is about as cprox_check reads it. */
 py::dict certificateOf(const PythonScene &scene, const Curve &curve, std::optional<double> delta, const Given &given) {
   const CurveDescription description = describe(curve, given.radius);
-  const std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)> certificate(cprox_certificate_create(),
-                                                                                          cprox_certificate_free);
-  if (!certificate) throw std::bad_alloc();
   Asked asked(scene, curve, delta ? "tolerance" : "distance", delta.value_or(0.0), given);
-  asked.query.options.certificate = certificate.get();
-  std::string text;
-  const Answer found = unlocked([&] {
+  return provenAnswer(asked.query, [&](std::string &text) {
     text = describeQuery(asked.obstacles, description);
     return ask(asked.obstacles, asked.curve, asked.query, threadWorkspace()).front();
   });
-  py::dict out = answerOf(found, delta.has_value());
-  if (!found.unproven.empty()) throw Error("no certificate: " + found.unproven);
-  const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
-  if (info.claim == CPROX_CLAIM_NONE) throw Error("no certificate: the answer is not decided");
-  out["claim"] = info.claim == CPROX_CLAIM_APART ? "apart" : "near";
-  out["record"] = py::bytes(static_cast<const char *>(info.bytes), info.size);
-  out["query"] = text;
-  return out;
 }
 
 /* Adds one method: its own arguments come first. */

@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <cstring>
 
-#include <curve_proximity/proof.hpp>
-
 #include "answering.h"
 #include "asked_pairs.h"
 #include "base/digest.h"
