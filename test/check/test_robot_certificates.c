@@ -121,7 +121,7 @@ CASE(real_robots_leave_certificates_that_hold) {
   cprox_certificate_free(c);
 }
 
-static void print_thrice(const char *what, const tally sum[3]) {
+static void print_thrice(const char *what, tally sum[3]) {
   static const char *const ASKED[3] = {"distance to 1e-5", ".9 of it", "1.1 of it"};
   for (int i = 0; i < 3; i++) {
     char line[80];
