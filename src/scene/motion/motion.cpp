@@ -266,6 +266,18 @@ bool RobotMotion::stands() const {
   return data_->stands;
 }
 
+const Geometry &shapeOf(const RobotMotion::Data &data, std::size_t geometry) {
+  const MovingGeometry &moving = data.kinematics->geometries[geometry];
+  const auto &shapes = moving.attached ? moving.attached->shapes : data.snapshot->linkGeometry(*moving.link);
+  return shapes.at(static_cast<std::size_t>(moving.part)).geometry;
+}
+
+double marginOf(const RobotMotion::Data &data, std::size_t geometry) {
+  const MovingGeometry &moving = data.kinematics->geometries[geometry];
+  return shapeOf(data, geometry).margin + moving.excess + data.snapshot->linkPadding(*moving.link) +
+         (moving.attached ? moving.attached->description.padding : 0.0);
+}
+
 LinkPoses linkPosesOf(const RobotMotion::Data &data, double t) {
   const Kinematics &kinematics = *data.kinematics;
   std::vector<double> values(kinematics.rest.size());

@@ -54,12 +54,11 @@ struct RobotMotion::Data {
   std::string id;
   std::unique_ptr<cprox_motion, void (*)(cprox_motion *)> core{nullptr, cprox_motion_free};
   TrajectoryShape shape;
-  bool stands = false;                       /* a state: the robot does not move */
-  std::vector<bool> wanted;                  /* of each geometry: does the query name its link */
-  std::vector<bool> moves;                   /* of each geometry: does the motion move it; of a state all */
-  std::vector<cprox_robot_pair> self;        /* geometry against geometry */
-  std::vector<bool> self_moves;              /* of each of these: does the motion move the one against the other */
-  std::vector<cprox_robot_pair> environment; /* geometry against item of the snapshot's world */
+  bool stands = false;                /* a state: the robot does not move */
+  std::vector<bool> wanted;           /* of each geometry: does the query name its link */
+  std::vector<bool> moves;            /* of each geometry: does the motion move it; of a state all */
+  std::vector<cprox_robot_pair> self; /* geometry against geometry */
+  std::vector<bool> self_moves;       /* of each of these: does the motion move the one against the other */
   std::vector<std::string> warnings;
   Coverage coverage;                   /* of the trajectory, the scene and the robot */
   mutable std::once_flag skipped_once; /* the messages are made when somebody asks for them */
@@ -72,7 +71,11 @@ Eigen::MatrixXd toMatrix(const TrajectoryShape &shape, const double *values);
 /* The poses of all links at the time t [s]. */
 LinkPoses linkPosesOf(const RobotMotion::Data &data, double t);
 
-/* Fills wanted, moves, self, self_moves and environment; `links` are the links wanted (empty: all). */
+/* The shape of a geometry, and how far its points may be from its body's core: margin, padding and excess [m]. */
+const Geometry &shapeOf(const RobotMotion::Data &data, std::size_t geometry);
+double marginOf(const RobotMotion::Data &data, std::size_t geometry);
+
+/* Fills wanted, moves, self and self_moves; `links` are the links wanted (empty: all). */
 void choosePairs(const std::vector<std::string> &links, RobotMotion::Data &data);
 
 /* What choosePairs() left out, with the cause, one message each. */

@@ -177,12 +177,7 @@ void choosePairs(const std::vector<std::string> &links, RobotMotion::Data &data)
   for (const MovingGeometry &geometry : kinematics.geometries)
     data.wanted.push_back(links.empty() || std::find(links.begin(), links.end(), *geometry.link) != links.end());
 
-  for (std::size_t i = 0; i < prepared.environment.size(); ++i) {
-    data.moves.push_back(moves(data, i));
-    if (!data.wanted[i]) continue;
-    const std::vector<cprox_robot_pair> &pairs = prepared.environment[i];
-    data.environment.insert(data.environment.end(), pairs.begin(), pairs.end());
-  }
+  for (std::size_t i = 0; i < kinematics.geometries.size(); ++i) data.moves.push_back(moves(data, i));
   JointsBetween between(data);
   for (const SelfPair &pair : prepared.self) {
     if (*pair.exemption != '\0' || !isWanted(data, pair)) continue;

@@ -182,7 +182,7 @@ Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &que
   if (result.status < 0) {
     answer.message = workspace.reason();
   } else {
-    if (!asked.pairs.empty()) widen(query, asked.rounding, INFINITE, answer.result);
+    if (!asked.pairs.empty()) widen(query, asked.rounding, asked.left_out, answer.result);
     nameSides(asked, query, answer);
   }
   finish(asked.data, query, answer, start);

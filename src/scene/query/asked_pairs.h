@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_ASKED_PAIRS_H
 #define CURVE_PROXIMITY_SCENE_ASKED_PAIRS_H
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ struct Asked {
   RobotPairs against;
   std::vector<std::size_t> items; /* by obstacle */
   std::vector<cprox_obstacle> obstacles;
-  std::vector<cprox_robot_pair> pairs;      /* with obstacles; against itself: of geometries */
-  std::vector<cprox_robot_pair> self_pairs; /* of both at once: of geometries */
-  double rounding;                          /* [m] that the core does not know of */
+  std::vector<cprox_robot_pair> pairs;                       /* with obstacles; against itself: of geometries */
+  std::vector<cprox_robot_pair> self_pairs;                  /* of both at once: of geometries */
+  double rounding;                                           /* [m] that the core does not know of */
+  double left_out = std::numeric_limits<double>::infinity(); /* [m] objects that are not among the items are farther */
 
   /* Is a result about two geometries of the robot? */
   bool isSelf(const cprox_result &result) const {

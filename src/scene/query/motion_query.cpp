@@ -6,6 +6,7 @@
 
 #include "answering.h"
 #include "asked_pairs.h"
+#include "near_items.h"
 #include "proving.h"
 
 namespace curve_proximity {
@@ -31,6 +32,17 @@ Answer answerOf(const Asked &asked, const Query &query, Workspace &workspace) {
   if (!asked.pairs.empty() && result.status >= 0) widen(query, asked.rounding, INFINITE, result);
   leaveProof(query, asked.mover(), asked.obstacles, result, workspace, answer);
   return answer;
+}
+
+/* Against the items of a verdict that matter; where nothing of these can be asked about, against all. */
+Asked askedNear(const RobotMotion::Data &data, const std::vector<std::size_t> &items, const Query &query,
+                Workspace &workspace) {
+  NearItems near = nearItems(data, items, query, workspace);
+  if (near.items.size() == items.size()) return askedItems(data, items, query);
+  Asked asked = askedItems(data, std::move(near.items), query);
+  if (asked.pairs.empty()) return askedItems(data, items, query);
+  asked.left_out = near.left_out;
+  return asked;
 }
 
 /* A time no later than `t` before which the geometries, moved by their rounding, do not touch either. Steps back from
@@ -71,7 +83,7 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query
   const std::string fault = faultOfMotion(query, false);
   if (!fault.empty()) return {refusal(data.id, "environment", fault)};
   const std::vector<std::size_t> named = namedItems(data, query.objects);
-  if (!query.per_object || named.empty()) return {answerOf(askedItems(data, named, query), query, workspace)};
+  if (!query.per_object || named.empty()) return {answerOf(askedNear(data, named, query, workspace), query, workspace)};
 
   /* one for each run of items of the same object */
   const std::vector<Item> &items = data.snapshot->world().items();
@@ -106,7 +118,9 @@ Answer timeOfContact(const RobotMotion &motion, bool self, const Query &query, W
   std::string fault = faultOfContact(query);
   if (fault.empty()) fault = faultInAll(againstOf(self), query);
   if (!fault.empty()) return refusal(motion.data().id, self ? "self" : "environment", fault);
-  const Asked asked = askedOf(motion, againstOf(self), query);
+  const RobotMotion::Data &data = motion.data();
+  const Asked asked =
+      self ? askedSelf(data, query) : askedNear(data, namedItems(data, query.objects), query, workspace);
   cprox_result result{};
   result.obstacle_index = -1;
   if (asked.pairs.empty()) {
@@ -131,12 +145,17 @@ std::vector<std::string> askedNames(const RobotMotion &motion, bool self, bool m
   const RobotMotion::Data &data = motion.data();
   const std::vector<MovingGeometry> &geometries = data.kinematics->geometries;
   std::set<std::string> names;
-  const std::vector<cprox_robot_pair> &pairs = self ? data.self : data.environment;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto geometry = static_cast<std::size_t>(pairs[i].geometry);
-    if (moving_only && !(self ? data.self_moves[i] : data.moves[geometry])) continue;
-    names.insert(geometries[geometry].owner());
-    if (self) names.insert(geometries[static_cast<std::size_t>(pairs[i].other)].owner());
+  if (self) {
+    for (std::size_t i = 0; i < data.self.size(); ++i) {
+      if (moving_only && !data.self_moves[i]) continue;
+      for (const std::int32_t side : {data.self[i].geometry, data.self[i].other})
+        names.insert(geometries[static_cast<std::size_t>(side)].owner());
+    }
+    return {names.begin(), names.end()};
+  }
+  for (std::size_t i = 0; i < geometries.size(); ++i) {
+    const bool asked = data.wanted[i] && !data.prepared->environment[i].empty();
+    if (asked && (!moving_only || data.moves[i])) names.insert(geometries[i].owner());
   }
   return {names.begin(), names.end()};
 }

@@ -81,8 +81,6 @@ std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, const std::vec
     const MovingGeometry &geometry = kinematics.geometries[i];
     if (!data.wanted[i] || geometry.within) continue;
     if (!links.empty() && std::find(links.begin(), links.end(), *geometry.link) == links.end()) continue;
-    const auto &shapes = geometry.attached ? geometry.attached->shapes : data.snapshot->linkGeometry(*geometry.link);
-    const Geometry &shape = shapes.at(static_cast<std::size_t>(geometry.part)).geometry;
     std::vector<cprox_swept_pose> poses;
     for (std::size_t n = 0, room = 64;; room = n) {
       poses.resize(room);
@@ -93,8 +91,7 @@ std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, const std::vec
       poses.resize(n);
       break;
     }
-    const double margin = shape.margin + geometry.excess + data.snapshot->linkPadding(*geometry.link) +
-                          (geometry.attached ? geometry.attached->description.padding : 0.0);
+    const double margin = marginOf(data, i);
     const cprox_body_info info = cprox_body_get_info(geometry.body);
     const Eigen::Vector3d middle(info.centre.x, info.centre.y, info.centre.z);
     for (const cprox_swept_pose &pose : poses) {
@@ -104,7 +101,7 @@ std::vector<SweptBody> bodiesAlong(const RobotMotion::Data &data, const std::vec
       const Eigen::Vector3d at(pose.pose.position.x, pose.pose.position.y, pose.pose.position.z);
       out.push_back({static_cast<std::int32_t>(i), hasExactSupport(info.kind),
                      cprox_with_margin(cprox_obstacle_at(geometry.body, pose.pose), margin),
-                     geometry.is_mesh ? shape.surface.get() : nullptr, pose.displacement, at + turn * middle,
+                     geometry.is_mesh ? shapeOf(data, i).surface.get() : nullptr, pose.displacement, at + turn * middle,
                      (info.radius + margin + pose.displacement) * (1.0 + 1e-9), turn.toRotationMatrix(), at});
     }
   }
