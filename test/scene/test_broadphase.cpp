@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support.h"
+#include "world/world.h"
 
 using namespace curve_proximity;
 using namespace curve_proximity::test;
@@ -171,4 +172,104 @@ TEST(Broadphase, objects_at_enormous_distances_are_found) {
   scene.apply(world);
   const Answer far = askOne(scene, {}, line({0, 0, 0}, {1, 0, 0}), Query());
   EXPECT_TRUE(far.result.status < 0 || far.result.upper >= 0.9e200) << far.message;
+}
+
+namespace {
+
+/* What the world's trees find, against all boxes one by one. */
+void expectFound(const World &world, const Eigen::AlignedBox3d &box, double reach) {
+  double nearest = INFINITY;
+  std::vector<std::uint32_t> found, wanted;
+  for (const std::uint32_t item : world.bounded()) {
+    const double gap = boxGap(world.items()[item].shape->box, box);
+    nearest = std::min(nearest, gap);
+    if (gap <= reach) wanted.push_back(item);
+  }
+  const NearestBox best = world.nearest({box});
+  EXPECT_EQ(std::isfinite(best.gap), !world.bounded().empty());
+  if (std::isfinite(nearest)) {
+    EXPECT_NEAR(best.gap, nearest, 1e-12 * nearest);
+    EXPECT_EQ(best.gap, boxGap(world.items().at(best.id).shape->box, box));
+  }
+  world.within({box}, reach, found);
+  std::sort(found.begin(), found.end());
+  EXPECT_TRUE(std::includes(found.begin(), found.end(), wanted.begin(), wanted.end()));
+  // the box grows by the reach: its corners are farther away
+  for (const std::uint32_t item : found)
+    EXPECT_LE(boxGap(world.items().at(item).shape->box, box), std::sqrt(3.0) * reach + 1e-9);
+}
+
+} // namespace
+
+/* Seed 74: 60 scenes of up to 40 objects of one to three shapes and a halfspace, 60 changes each: added, replaced, moved,
+ * appended to, removed, all gone. Asked after each change in half of the scenes, after some in the
+ * others. */
+TEST(Broadphase, trees_are_right_after_any_changes) {
+  Random random(74);
+  for (int i = 0; i < 60; ++i) {
+    Scene scene;
+    for (int k = 0; k < 60; ++k) {
+      SceneChange step;
+      for (std::size_t n = 1 + random.below(4); n > 0; --n) {
+        const int number = static_cast<int>(random.below(40));
+        const std::string id = "o" + std::to_string(number);
+        Operation next = randomObject(random, number, 5.0);
+        switch (random.below(12)) {
+          case 0: next = operation(Operation::Kind::REMOVE, id); break;
+          case 1: next = operation(Operation::Kind::MOVE, id, {}, random.pose(5.0)); break;
+          case 2:
+            next = operation(Operation::Kind::APPEND, id, {shape(ShapeType::SPHERE, {0.3}, random.pose(1.0))});
+            break;
+          case 3: next = add(id, {shape(ShapeType::HALFSPACE, {0, 0, 1, -9})}); break;
+          case 4: next.object.shapes.push_back(shape(ShapeType::BOX, {0.1, 0.2, 0.3}, random.pose(1.0))); break;
+          default: break;
+        }
+        step.operations.push_back(next);
+      }
+      step.clear_objects = random.below(40) == 0;
+      scene.apply(step);
+      if (i % 2 == 0 || random.below(5) == 0) {
+        const Eigen::Vector3d at = random.vector(6.0);
+        const SnapshotPtr now = scene.snapshot();
+        expectFound(now->world(), {at, at + random.vector(1.0).cwiseAbs()}, random.uniform(0.0, 4.0));
+      }
+    }
+  }
+}
+
+/* 4096 objects, and one more, one moved or one replaced after the other: each is asked about. */
+TEST(Broadphase, a_change_costs_few_boxes_and_not_all) {
+  Scene scene;
+  SceneChange all;
+  const auto ball = [](int n, double z) {
+    return add("o" + std::to_string(n), {shape(ShapeType::SPHERE, {0.1})}, translation(n % 64, n / 64 % 64, z));
+  };
+  for (int n = 0; n < 4096; ++n) all.operations.push_back(ball(n, 0.0));
+  ASSERT_TRUE(scene.apply(all).empty());
+  const auto indexed = [&] {
+    const SnapshotPtr now = scene.snapshot();
+    now->world().nearest({Eigen::AlignedBox3d(Eigen::Vector3d::Zero())});
+    return now->world().indexed();
+  };
+  EXPECT_EQ(indexed(), 4096u);
+  EXPECT_EQ(indexed(), 4096u); // of the same world
+
+  std::size_t added = 0, changed = 0, moved = 0;
+  for (int n = 0; n < 1000; ++n) {
+    ASSERT_TRUE(scene.apply(change({ball(5000 + n, 1.0)})).empty());
+    added += indexed();
+  }
+  EXPECT_LE(added, 10000u); // log2 of their number, each
+  for (int n = 0; n < 1000; ++n) {
+    ASSERT_TRUE(scene.apply(change({ball(4 * n, 2.0)})).empty());
+    changed += indexed();
+  }
+  EXPECT_LE(changed, 12000u);
+  for (int n = 0; n < 100; ++n) {
+    ASSERT_TRUE(scene.apply(change({operation(Operation::Kind::MOVE, "o7", {}, translation(n, 0, 3))})).empty());
+    if (n > 0) moved = std::max(moved, indexed());
+  }
+  EXPECT_LE(moved, 4u);
+  ASSERT_TRUE(scene.apply(change({operation(Operation::Kind::REMOVE, "o7")})).empty());
+  EXPECT_EQ(indexed(), 0u);
 }

@@ -256,14 +256,11 @@ class Visit {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!bodies_[i].wanted) continue;
       near_.clear();
-      if (std::isfinite(reach)) world.tree().within({bodies_[i].box}, reach, near_);
+      if (std::isfinite(reach)) world.within({bodies_[i].box}, reach, near_);
       std::sort(near_.begin(), near_.end());
       near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
       if (near_.size() < world.bounded().size()) all = false;
-      for (const std::uint32_t id : near_) {
-        const std::uint32_t k = world.bounded()[id];
-        consider(boxGap(bodies_[i].box, world.items()[k].shape->box), i, k, false);
-      }
+      for (const std::uint32_t k : near_) consider(boxGap(bodies_[i].box, world.items()[k].shape->box), i, k, false);
       for (const std::uint32_t k : world.unbounded()) consider(0.0, i, k, false);
     }
     return all;

@@ -60,8 +60,8 @@ struct Seed {
 Seed nearestBoxOf(const Search &search, const SceneObstacles::Data &data) {
   Seed seed;
   const World &world = data.snapshot->world();
-  const NearestBox nearest = world.tree().nearest(search.curve.boxes);
-  if (nearest.gap < INFINITE) seed = {world.bounded()[nearest.id], nearest.gap};
+  const NearestBox nearest = world.nearest(search.curve.boxes);
+  if (nearest.gap < INFINITE) seed = {nearest.id, nearest.gap};
   for (std::size_t i = data.in_tree; i < search.items.size(); ++i) {
     const auto index = static_cast<std::uint32_t>(i);
     const double gap = unbounded(search.shape(index)) ? INFINITE : gapTo(search.curve, search.shape(index));
@@ -74,8 +74,7 @@ Seed nearestBoxOf(const Search &search, const SceneObstacles::Data &data) {
 void chooseWithin(double reach, const Seed &seed, const SceneObstacles::Data &data, Search &search) {
   const World &world = data.snapshot->world();
   std::vector<std::uint32_t> &chosen = search.chosen;
-  world.tree().within(search.curve.boxes, reach, chosen);
-  for (std::uint32_t &id : chosen) id = world.bounded()[id];
+  world.within(search.curve.boxes, reach, chosen);
   chosen.insert(chosen.end(), world.unbounded().begin(), world.unbounded().end());
   for (std::size_t i = data.in_tree; i < search.items.size(); ++i) {
     const auto index = static_cast<std::uint32_t>(i);

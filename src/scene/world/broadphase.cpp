@@ -51,12 +51,11 @@ class BoxGeometry : public FclGeometry {
 
 /* One box in the tree. */
 struct Entry {
-  Entry(std::uint32_t number, const Eigen::AlignedBox3d &b)
-      : id(number), box(b), object(std::make_shared<BoxGeometry>(b)) {
+  Entry(std::size_t n, const Eigen::AlignedBox3d &b) : number(n), box(b), object(std::make_shared<BoxGeometry>(b)) {
     object.setUserData(this);
   }
 
-  std::uint32_t id;
+  std::size_t number;
   Eigen::AlignedBox3d box;
   FclObject object;
 };
@@ -68,26 +67,30 @@ const Entry &entryOf(FclObject *a, FclObject *b, const FclObject *query) {
 struct NearestQuery {
   const FclObject *object;
   const Eigen::AlignedBox3d *box;
+  const std::vector<std::uint32_t> *names;
   NearestBox best;
 };
 
 bool visitNearest(FclObject *a, FclObject *b, void *data, double &limit) {
   auto &query = *static_cast<NearestQuery *>(data);
   const Entry &entry = entryOf(a, b, query.object);
-  const double gap = boxGap(entry.box, *query.box);
-  if (gap < query.best.gap) query.best = {entry.id, gap};
+  const std::uint32_t name = (*query.names)[entry.number];
+  const double gap = name == NO_BOX ? query.best.gap : boxGap(entry.box, *query.box);
+  if (gap < query.best.gap) query.best = {name, gap};
   limit = query.best.gap;
   return query.best.gap <= 0.0; // nothing can be nearer
 }
 
 struct WithinQuery {
   const FclObject *object;
-  std::vector<std::uint32_t> *ids;
+  const std::vector<std::uint32_t> *names;
+  std::vector<std::uint32_t> *found;
 };
 
 bool visitWithin(FclObject *a, FclObject *b, void *data) {
   const auto &query = *static_cast<WithinQuery *>(data);
-  query.ids->push_back(entryOf(a, b, query.object).id);
+  const std::uint32_t name = (*query.names)[entryOf(a, b, query.object).number];
+  if (name != NO_BOX) query.found->push_back(name);
   return false;
 }
 
@@ -108,7 +111,7 @@ Broadphase::Broadphase(const std::vector<Eigen::AlignedBox3d> &boxes) : tree_(ne
   std::vector<FclObject *> objects;
   objects.reserve(boxes.size());
   for (const Eigen::AlignedBox3d &box : boxes) {
-    tree_->entries.emplace_back(static_cast<std::uint32_t>(objects.size()), box);
+    tree_->entries.emplace_back(objects.size(), box);
     objects.push_back(&tree_->entries.back().object);
   }
   tree_->manager.registerObjects(objects);
@@ -117,11 +120,12 @@ Broadphase::Broadphase(const std::vector<Eigen::AlignedBox3d> &boxes) : tree_(ne
 
 Broadphase::~Broadphase() = default;
 
-NearestBox Broadphase::nearest(const std::vector<Eigen::AlignedBox3d> &to) const {
+NearestBox Broadphase::nearest(const std::vector<Eigen::AlignedBox3d> &to,
+                               const std::vector<std::uint32_t> &names) const {
   NearestBox best;
   for (const Eigen::AlignedBox3d &box : to) {
     FclObject object(std::make_shared<BoxGeometry>(box));
-    NearestQuery query{&object, &box, best};
+    NearestQuery query{&object, &box, &names, best};
     tree_->manager.distance(&object, &query, &visitNearest);
     best = query.best;
     if (best.gap <= 0.0) break;
@@ -130,14 +134,14 @@ NearestBox Broadphase::nearest(const std::vector<Eigen::AlignedBox3d> &to) const
 }
 
 void Broadphase::within(const std::vector<Eigen::AlignedBox3d> &of, double reach,
-                        std::vector<std::uint32_t> &ids) const {
+                        const std::vector<std::uint32_t> &names, std::vector<std::uint32_t> &found) const {
   for (const Eigen::AlignedBox3d &box : of) {
     // Outward by a little more than the reach, so that rounding leaves nothing out.
     const double size = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
     const double by = reach + 1e-14 * (reach + size);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(by);
     FclObject object(std::make_shared<BoxGeometry>(Eigen::AlignedBox3d(box.min() - margin, box.max() + margin)));
-    WithinQuery query{&object, &ids};
+    WithinQuery query{&object, &names, &found};
     tree_->manager.collide(&object, &query, &visitWithin);
   }
 }

@@ -211,31 +211,32 @@ void attach(const Attachment &given, Carrying &scene) {
   if (standing != scene.objects.end()) scene.objects.erase(standing);
 }
 
-/* The object stands in the scene, at its own size. */
-void detach(const AttachedObject &object, const Attachment &given, Carrying &scene) {
+/* The object as it stands in the scene, at its own size. */
+std::shared_ptr<const SceneObject> detached(const AttachedObject &object, const Attachment &given,
+                                            const ResourceOptions &resources) {
   ObjectDescription standing = object.description;
   standing.frame.clear();
   standing.pose = poseOfLink(given, object.link) * standing.pose;
-  Prepared prepared = prepare(standing, scene.resources, {});
-  scene.objects[standing.id] = added(standing, prepared);
+  Prepared prepared = prepare(standing, resources, {});
+  return added(standing, prepared);
 }
 
+/* Throws Error and leaves the scene as it was where it cannot be done. */
 void applyAttachment(const Attachment &given, Carrying &scene) {
   if (given.kind == Attachment::Kind::ATTACH) return attach(given, scene);
   const bool one = !given.object.id.empty();
   if (one && scene.attached.count(given.object.id) == 0) throw Error("no link carries an object of that id");
-  AttachedObjects left;
+  Objects standing;
   for (const auto &[id, object] : scene.attached) {
     const bool meant = one ? id == given.object.id : given.link.empty() || object->link == given.link;
     if (meant && one && !given.link.empty() && object->link != given.link)
       throw Error("link '" + object->link + "' carries it, not '" + given.link + "'");
-    if (meant) {
-      detach(*object, given, scene);
-    } else {
-      left.emplace(id, object);
-    }
+    if (meant) standing[id] = detached(*object, given, scene.resources);
   }
-  scene.attached = std::move(left);
+  for (auto &[id, object] : standing) {
+    scene.attached.erase(id);
+    scene.objects[id] = std::move(object);
+  }
 }
 
 void checkLinkPaddings(const std::map<std::string, double> &paddings, const Robot *robot) {
@@ -384,7 +385,8 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
 
   const std::lock_guard<std::mutex> one_at_a_time(changing_);
   std::vector<std::string> faults;
-  const std::shared_ptr<Snapshot> next(new Snapshot(*snapshot()));
+  const SnapshotPtr before = snapshot();
+  const std::shared_ptr<Snapshot> next(new Snapshot(*before));
   ++next->version_;
   if (change.clear) {
     next->coverage_ = Coverage();
@@ -432,13 +434,10 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
     faults.push_back(error.what());
   }
   for (const Attachment &attachment : change.attachments) {
-    Objects objects = next->objects_;
-    AttachedObjects attached = next->attached_;
-    Carrying carrying{next->robot_.get(), next->link_scale_, resources_, objects, next->moving_, attached};
+    Carrying carrying{next->robot_.get(), next->link_scale_, resources_,
+                      next->objects_,     next->moving_,     next->attached_};
     try {
       applyAttachment(attachment, carrying);
-      next->objects_ = std::move(objects);
-      next->attached_ = std::move(attached);
     } catch (const std::exception &error) {
       faults.push_back("object '" + attachment.object.id + "': " + error.what());
     }
@@ -461,7 +460,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   }
 
   // Made in full before it becomes visible.
-  next->world_ = std::make_shared<const World>(next->objects_);
+  next->world_ = std::make_shared<const World>(next->objects_, &before->world());
   const std::lock_guard<std::mutex> lock(current_);
   snapshot_ = next;
   return faults;

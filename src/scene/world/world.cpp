@@ -9,7 +9,8 @@
 
 namespace curve_proximity {
 
-World::World(const std::map<std::string, std::shared_ptr<const SceneObject>> &objects) {
+World::World(const std::map<std::string, std::shared_ptr<const SceneObject>> &objects, const World *before)
+    : trees_(std::make_shared<const Trees>()) {
   items_.reserve(objects.size());
   for (const auto &[id, object] : objects) {
     for (std::size_t i = 0; i < object->shapes.size(); ++i) {
@@ -21,16 +22,71 @@ World::World(const std::map<std::string, std::shared_ptr<const SceneObject>> &ob
       (curve_proximity::unbounded(shape) ? unbounded_ : bounded_).push_back(index);
     }
   }
+  if (before) takeOver(*before);
 }
 
-const Broadphase &World::tree() const {
-  std::call_once(tree_made_, [this] {
+/* Both worlds are in the order of ids, and an object that did not change is the same one. */
+void World::takeOver(const World &before) {
+  std::vector<std::uint32_t> now(before.items_.size(), NO_BOX);
+  std::size_t was = 0;
+  for (std::uint32_t i = 0; i < items_.size() && was < now.size(); ++i) {
+    const Item &item = items_[i];
+    while (was < now.size() && before.items_[was].shape != item.shape && *before.items_[was].owner < *item.owner) ++was;
+    if (was < now.size() && before.items_[was].shape == item.shape) now[was++] = i;
+  }
+  Trees trees;
+  for (const Tree &old : *std::atomic_load(&before.trees_)) {
+    Tree tree{old.boxes, old.items, 0};
+    for (std::uint32_t &item : tree.items) {
+      if (item != NO_BOX) item = now[item];
+      if (item != NO_BOX) ++tree.here;
+    }
+    if (2 * tree.here > tree.items.size()) trees.push_back(std::move(tree));
+  }
+  trees_ = std::make_shared<const Trees>(std::move(trees));
+}
+
+/* One more tree for what is in none; a tree joins it that is not twice as large. So there are few trees, and a box is
+ * put into a tree about as often as there are trees. */
+const World::Trees &World::trees() const {
+  std::call_once(trees_made_, [this] {
+    Trees trees = *trees_;
+    std::vector<bool> is_in_tree(items_.size());
+    for (const Tree &tree : trees)
+      for (const std::uint32_t item : tree.items)
+        if (item != NO_BOX) is_in_tree[item] = true;
+    Tree added;
+    for (const std::uint32_t item : bounded_)
+      if (!is_in_tree[item]) added.items.push_back(item);
+    if (added.items.empty()) return;
+    while (!trees.empty() && trees.back().here < 2 * added.items.size()) {
+      for (const std::uint32_t item : trees.back().items)
+        if (item != NO_BOX) added.items.push_back(item);
+      trees.pop_back();
+    }
     std::vector<Eigen::AlignedBox3d> boxes;
-    boxes.reserve(bounded_.size());
-    for (const std::uint32_t index : bounded_) boxes.push_back(items_[index].shape->box);
-    tree_ = std::make_unique<const Broadphase>(boxes);
+    boxes.reserve(added.items.size());
+    for (const std::uint32_t item : added.items) boxes.push_back(items_[item].shape->box);
+    added.boxes = std::make_shared<const Broadphase>(boxes);
+    added.here = indexed_ = boxes.size();
+    trees.push_back(std::move(added));
+    std::atomic_store(&trees_, std::make_shared<const Trees>(std::move(trees)));
   });
-  return *tree_;
+  return *trees_;
+}
+
+NearestBox World::nearest(const std::vector<Eigen::AlignedBox3d> &to) const {
+  NearestBox best;
+  for (const Tree &tree : trees()) {
+    const NearestBox found = tree.boxes->nearest(to, tree.items);
+    if (found.gap < best.gap) best = found;
+  }
+  return best;
+}
+
+void World::within(const std::vector<Eigen::AlignedBox3d> &of, double reach,
+                   std::vector<std::uint32_t> &indices) const {
+  for (const Tree &tree : trees()) tree.boxes->within(of, reach, tree.items, indices);
 }
 
 void requireBody(const Item &item) {
