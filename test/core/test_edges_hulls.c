@@ -6,6 +6,8 @@
 
 #include "curve_proximity/cprox.h"
 #include "edges/kernels.h"
+#include "shape/body.h"
+#include "shape/cluster_hulls.h"
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/robots.h"
@@ -367,6 +369,37 @@ CASE(large_polytopes_are_no_farther_than_they_are) {
 }
 
 /* The plain kernel and that of the machine leave the same open, bit by bit (400 worlds, seed 422). */
+/* Along a direction no vertex is farther than the farthest of the few points, but for what is left. */
+static void assert_few(const convex *shape, const few_points *few, rng *r) {
+  assert_in_range(few->n, 1, FEW_POINTS_MOST);
+  for (int k = 0; k < 50; k++) {
+    const vec3 d = rng_unit(r);
+    double most = -INFINITY, of_few = -INFINITY;
+    for (size_t i = 0; i < (size_t)shape->n; i++)
+      most = fmax(most, vec_dot(d, vec(shape->x[i], shape->y[i], shape->z[i])));
+    for (size_t i = 0; i < few->n; i++) of_few = fmax(of_few, vec_dot(d, few->point[i]));
+    assert_true(of_few <= most && most <= of_few + few->left + 0x1p-48 * few->radius);
+  }
+}
+
+/* 40 meshes (seed 425), sizes of 1e-2 to 10 m, 50 directions each. The support of few points is held against that of all
+ * vertices: no nearest point is asked for. */
+CASE(few_points_of_a_mesh_are_made_once_and_have_all_others_near) {
+  enum { MESHES = 40 };
+  rng r = rng_seed(425);
+  for (int i = 0; i < MESHES; i++) {
+    world w = {0};
+    const cluster_hulls *hulls = make_mesh(&r, pow(10.0, rng_uniform(&r, -2, 1)), &w)->clusters;
+    for (size_t k = 0; k < hulls->n; k++) {
+      const few_points *few = cluster_hulls_few(hulls, k);
+      assert_non_null(few);
+      assert_ptr_equal(cluster_hulls_few(hulls, k), few);
+      assert_few(&hulls->hull[k].shape, few, &r);
+    }
+    while (w.n_made > 0) cprox_body_free(w.made[--w.n_made]);
+  }
+}
+
 CASE(all_instruction_sets_hold_the_same_hulls_apart) {
   rng r = rng_seed(422);
   static _Alignas(64) char memory[2][1 << 17];

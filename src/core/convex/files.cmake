@@ -11,6 +11,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/epa.c
   ${CMAKE_CURRENT_LIST_DIR}/epa_ring.c
   ${CMAKE_CURRENT_LIST_DIR}/feature.c
+  ${CMAKE_CURRENT_LIST_DIR}/few_points.c
   ${CMAKE_CURRENT_LIST_DIR}/flat.c
   ${CMAKE_CURRENT_LIST_DIR}/gjk.c
   ${CMAKE_CURRENT_LIST_DIR}/halfspace.c

@@ -23,8 +23,8 @@ typedef struct cover_hull {
   uint32_t child, n_children; /* hulls that together contain what of the part is in this one; 0: there are none */
 } cover_hull;
 
-/* Points of a hull, and hulls of a part, at most. */
-enum { COVER_MOST_POINTS = 48, COVER_MOST_HULLS = 73 };
+/* Hulls of a part, at most. */
+enum { COVER_MOST_HULLS = 73 };
 
 /* Writes up to COVER_MOST balls whose union contains the part; returns their number, at least 1. Of a sphere or a
  * capsule outer and inner differ by rounding, or little. */

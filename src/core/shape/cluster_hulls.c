@@ -165,11 +165,15 @@ cluster_hulls *cluster_hulls_create(const tree *t) {
   free(b.corner);
   free(b.seen);
   free(b.corners);
+  if (!b.failed) {
+    give_back(b.made);
+    b.made->few = calloc(b.made->n, sizeof *b.made->few);
+    b.failed = !b.made->few;
+  }
   if (b.failed) {
     cluster_hulls_free(b.made);
     return NULL;
   }
-  give_back(b.made);
   double *x = b.made->vertices;
   for (size_t i = 0; i < b.made->n; i++) {
     convex *shape = &b.made->hull[i].shape;
@@ -181,11 +185,25 @@ cluster_hulls *cluster_hulls_create(const tree *t) {
 
 void cluster_hulls_free(cluster_hulls *hulls) {
   if (!hulls) return;
+  for (size_t i = 0; hulls->few && i < hulls->n; i++) free(atomic_load_explicit(&hulls->few[i], memory_order_relaxed));
+  free(hulls->few);
   free(hulls->hull);
   free(hulls->vertices);
   free(hulls);
 }
 
+const few_points *cluster_hulls_few(const cluster_hulls *hulls, size_t hull) {
+  _Atomic(few_points *) *few = &hulls->few[hull];
+  few_points *known = atomic_load_explicit(few, memory_order_acquire);
+  if (known) return known;
+  few_points *made = few_points_of(&hulls->hull[hull].shape);
+  if (made && atomic_compare_exchange_strong_explicit(few, &known, made, memory_order_acq_rel, memory_order_acquire))
+    return made;
+  free(made);
+  return known; /* that of another thread, which was faster */
+}
+
 size_t cluster_hulls_bytes(const cluster_hulls *hulls) {
-  return sizeof *hulls + hulls->n * sizeof *hulls->hull + hulls->n_vertices * sizeof *hulls->vertices;
+  return sizeof *hulls + hulls->n * (sizeof *hulls->hull + sizeof *hulls->few) +
+         hulls->n_vertices * sizeof *hulls->vertices;
 }

@@ -4,8 +4,10 @@
 #ifndef CPROX_SHAPE_CLUSTER_HULLS_H
 #define CPROX_SHAPE_CLUSTER_HULLS_H
 
+#include <stdatomic.h>
+
 #include "bvh/bvh.h"
-#include "convex/convex.h"
+#include "convex/few_points.h"
 
 typedef struct cluster_hull {
   convex shape;                /* about the centre */
@@ -20,11 +22,16 @@ typedef struct cluster_hulls {
   cluster_hull *hull; /* the first one is of all elements */
   size_t n_vertices;  /* numbers */
   double *vertices;
+  _Atomic(few_points *) *few; /* of each hull: cluster_hulls_few() */
 } cluster_hulls;
 
 /* Of a tree of triangles. NULL where memory is out. */
 cluster_hulls *cluster_hulls_create(const tree *t);
 void cluster_hulls_free(cluster_hulls *hulls);
+
+/* Few points of a hull, about its centre: made when they are first asked for; any number of threads may ask. NULL where
+ * memory is out. */
+const few_points *cluster_hulls_few(const cluster_hulls *hulls, size_t hull);
 
 /* What they take: about 160 bytes a triangle. */
 size_t cluster_hulls_bytes(const cluster_hulls *hulls);
