@@ -16,6 +16,12 @@ using Env = CollisionEnvCurveProximity;
 
 constexpr double RESOLUTION = 1000.0; /* parts of a duration: how closely intervals are found */
 
+/* What stays of a robot from plan to plan. */
+Workspace &certifierWorkspace() {
+  thread_local Workspace own;
+  return own;
+}
+
 /* Is polled by the search; true: the time is over. */
 bool isOver(void *end) {
   return Clock::now() >= *static_cast<const Clock::time_point *>(end);
@@ -121,7 +127,7 @@ class Look {
   const RobotMotion &motion_;
   const bool self_;
   const CertifySettings &settings_;
-  Workspace workspace_;
+  Workspace &workspace_ = certifierWorkspace();
   Query query_;
   Clock::time_point end_;
 };
@@ -192,8 +198,8 @@ EdgeTest Certifier::edges(const planning_scene::PlanningScene &scene, const move
   query.options.epsilon = settings.epsilon;
   const auto checkers = std::make_shared<std::vector<EdgeChecker>>();
   const auto add = [&](const Env &of, RobotPairs against) {
-    checkers->emplace_back(*of.robot(at, scene.getAllowedCollisionMatrix()), joints, jointPositions(at), against,
-                           query);
+    const Env::Ready ready = of.robot(at, joints, scene.getAllowedCollisionMatrix());
+    checkers->emplace_back(*ready.robot, joints, ready.rest, against, query);
   };
   add(*env, RobotPairs::ENVIRONMENT);
   if (with_self) add(*atItsOwnSize(env), RobotPairs::SELF);

@@ -457,25 +457,38 @@ void CollisionEnvCurveProximity::distanceRobot(const cd::DistanceRequest &req, c
 /* ---- motions ---- */
 
 /* Planners ask about many motions in one scene with one matrix: the last robots are kept. */
-std::shared_ptr<const PreparedRobot> CollisionEnvCurveProximity::prepared(const Current &now, const Matrix *acm) const {
+CollisionEnvCurveProximity::Ready CollisionEnvCurveProximity::prepared(const Current &now, const State &at,
+                                                                       const std::vector<std::string> &joints,
+                                                                       const Matrix *acm) const {
   const SnapshotPtr &scene = now.scene;
+  const moveit::core::JointModel &root = *robot_model_->getRootJoint();
+  const bool base_moves =
+      std::any_of(joints.begin(), joints.end(), [&root](const std::string &name) { return root.hasVariable(name); });
+  const Eigen::Isometry3d base = base_moves ? Eigen::Isometry3d::Identity() : baseAt(at);
+  Ready out{nullptr, jointPositions(at)};
+  if (!base_moves)
+    for (const std::string &variable : root.getVariableNames()) out.rest.erase(variable);
   std::vector<AllowedPair> allowed;
   if (acm) allowed = allowedPairs(*acm, *scene, now.attached);
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto known = std::find_if(prepared_.begin(), prepared_.end(), [&](const Prepared &other) {
     const Snapshot &of_other = *other.robot->snapshot();
     return &of_other.world() == &scene->world() && of_other.version() == scene->version() &&
-           of_other.attached() == now.attached && sameAllowed(other.allowed, allowed);
+           of_other.attached() == now.attached && sameAllowed(other.allowed, allowed) &&
+           other.base_moves == base_moves && other.base.matrix() == base.matrix();
   });
   if (known != prepared_.end()) {
     std::rotate(known, known + 1, prepared_.end());
-    return prepared_.back().robot;
+  } else {
+    if (prepared_.size() == KEPT_PREPARED) prepared_.erase(prepared_.begin());
+    const SnapshotPtr variant = scene->variant({now.attached, allowed});
+    prepared_.push_back({allowed, base_moves, base,
+                         std::make_shared<const PreparedRobot>(variant, std::vector<std::array<std::string, 2>>(),
+                                                               base_moves ? base_ : std::vector<VirtualJoint>(),
+                                                               std::vector<std::string>(), base)});
   }
-  if (prepared_.size() == KEPT_PREPARED) prepared_.erase(prepared_.begin());
-  const SnapshotPtr variant = scene->variant({now.attached, allowed});
-  prepared_.push_back(
-      {allowed, std::make_shared<const PreparedRobot>(variant, std::vector<std::array<std::string, 2>>(), base_)});
-  return prepared_.back().robot;
+  out.robot = prepared_.back().robot;
+  return out;
 }
 
 void CollisionEnvCurveProximity::checkMotion(const Request &req, Result &res, const State &from, const State &to,
@@ -488,7 +501,8 @@ void CollisionEnvCurveProximity::checkMotion(const Request &req, Result &res, co
     const Current now = current(from, false);
     if (!now.fault.empty()) return fail(now.fault, res);
     const std::set<std::string> links = linksOf(req.group_name);
-    const RobotMotion motion(*prepared(now, acm), path, jointPositions(from), {links.begin(), links.end()});
+    const Ready ready = prepared(now, from, path.joints, acm);
+    const RobotMotion motion(*ready.robot, path, ready.rest, {links.begin(), links.end()});
     Query query;
     query.allow_empty = true; // MoveIt's scene is whole
     if (req.distance) {
@@ -532,13 +546,16 @@ void CollisionEnvCurveProximity::checkRobotCollision(const Request &req, Result 
 
 RobotMotion CollisionEnvCurveProximity::motion(const TrajectoryDescription &trajectory, const State &at,
                                                const Matrix &acm) const {
-  return RobotMotion(*robot(at, acm), trajectory, jointPositions(at));
+  const Ready ready = robot(at, trajectory.joints, acm);
+  return RobotMotion(*ready.robot, trajectory, ready.rest);
 }
 
-std::shared_ptr<const PreparedRobot> CollisionEnvCurveProximity::robot(const State &at, const Matrix &acm) const {
+CollisionEnvCurveProximity::Ready CollisionEnvCurveProximity::robot(const State &at,
+                                                                    const std::vector<std::string> &joints,
+                                                                    const Matrix &acm) const {
   const Current now = current(at, true);
   if (!now.fault.empty()) throw Error(now.fault);
-  return prepared(now, &acm);
+  return prepared(now, at, joints, &acm);
 }
 
 const std::string &CollisionDetectorAllocatorCurveProximity::getName() const {

@@ -64,8 +64,15 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
    * and what is attached. Throws Error. */
   RobotMotion motion(const TrajectoryDescription &trajectory, const State &at, const Matrix &acm) const;
 
-  /* The robot among the objects of the world, made ready for motions, with what is attached in `at`. Throws Error. */
-  std::shared_ptr<const PreparedRobot> robot(const State &at, const Matrix &acm) const;
+  /* A robot made ready for motions of some joints, with what is attached in a state, and the values of its joints there.
+   * Its base has joints of its own only where the motions move it: else it stands, as robots do that lanes can ask. */
+  struct Ready {
+    std::shared_ptr<const PreparedRobot> robot;
+    JointPositions rest;
+  };
+
+  /* The robot among the objects of the world, for motions of these joints. Throws Error. */
+  Ready robot(const State &at, const std::vector<std::string> &joints, const Matrix &acm) const;
 
  protected:
   void updatedPaddingOrScaling(const std::vector<std::string> &links) override;
@@ -78,9 +85,11 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
     std::string fault; /* what of the world could not be taken over; "": nothing */
   };
 
-  /* A robot made ready for motions, for as long as attached objects and matrix are these. */
+  /* A robot made ready for motions, for as long as attached objects, matrix and the place of the base are these. */
   struct Prepared {
     std::vector<AllowedPair> allowed; /* in the order of allowedPairs() */
+    bool base_moves;
+    Eigen::Isometry3d base; /* of one that stands */
     std::shared_ptr<const PreparedRobot> robot;
   };
 
@@ -97,7 +106,7 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
   void distances(const collision_detection::DistanceRequest &req, collision_detection::DistanceResult &res,
                  const State &state, RobotPairs pairs) const;
   std::shared_ptr<const StandingRobot> standing(const Current &now) const;
-  std::shared_ptr<const PreparedRobot> prepared(const Current &now, const Matrix *acm) const;
+  Ready prepared(const Current &now, const State &at, const std::vector<std::string> &joints, const Matrix *acm) const;
   std::set<std::string> linksOf(const std::string &group) const;
 
   std::shared_ptr<const Robot> robot_;

@@ -136,6 +136,13 @@ std::vector<VirtualJoint> virtualJoints(const RobotModel &model) {
   return {{root.getName(), type, model.getModelFrame(), model.getRootLinkName()}};
 }
 
+Eigen::Isometry3d baseAt(const RobotState &state) {
+  const JointModel &root = *state.getRobotModel()->getRootJoint();
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  root.computeTransform(state.getJointPositions(&root), out);
+  return out;
+}
+
 std::uint64_t cellsOf(const shapes::Shape &shape) {
   if (shape.type != shapes::OCTREE) return 0;
   const auto &tree = static_cast<const shapes::OcTree &>(shape).octree;

@@ -29,6 +29,9 @@ std::vector<const moveit::core::LinkModel *> linksInOrder(const Robot &robot, co
 /* Its root joint where that moves: no or one virtual joint. */
 std::vector<VirtualJoint> virtualJoints(const moveit::core::RobotModel &model);
 
+/* Where the root link is in a state: on the root joint. */
+Eigen::Isometry3d baseAt(const moveit::core::RobotState &state);
+
 /* Meshes and octrees of MoveIt, taken over once for as long as MoveIt keeps them. Any number of threads. */
 class KnownShapes {
  public:
