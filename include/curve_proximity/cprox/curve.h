@@ -315,6 +315,27 @@ CPROX_API cprox_status cprox_curve_create(const cprox_curve_description *descrip
  *  derivatives of a distance by the coefficients. */
 CPROX_API cprox_status cprox_curve_weights(const cprox_curve_description *description, double t, double *weights);
 
+/** The derivatives of psi(t) by the numbers that define the curve beside its points: the columns of a Jacobian matrix.
+ *
+ *  description  as for cprox_curve_create(), but unchecked. columns receives, in this order:
+ *    CPROX_CURVE_CLOTHOID               by heading, curvature, curvature_rate: 3 columns
+ *    CPROX_CURVE_DUBINS                 by heading, end_heading, radius, start.x, start.y, end.x, end.y: 7. The word
+ *                                       is kept. At the end of the path, psi(t) is the end point, which moves with it.
+ *    CPROX_CURVE_INVOLUTE               by heading, radius: 2
+ *    CPROX_CURVE_PYTHAGOREAN_HODOGRAPH  by w, x, y, z of preimage[0], of preimage[1], …: 4 n
+ *    CPROX_CURVE_RATIONAL_BEZIER, _NURBS  by the weights: n
+ *  t            held fixed, in the range of the curve.
+ *
+ *  By `start`, where a column does not stand for it, the derivative is 1: all of the curve moves with it.
+ *  With cprox_gradient.mover n, at its t, the derivatives of a distance are n · columns[i] (J. M. Danskin, 1967). Those
+ *  by the range of t are cprox_gradient.t0 and t1. Accuracy: about 1e-13 of the size of the largest column.
+ *
+ *  Returns CPROX_OK. CPROX_INVALID for other kinds, for a clothoid that turns too often between 0 and t, and for a
+ *  Dubins path that does not exist or has no derivative (its circles coincide or touch). Then it writes nothing.
+ *  Cost: O(n²) for a preimage, O(n degree) for weights, O(turns) for a clothoid. Source: doc/curve-bound.md,
+ *  "By what defines a curve". */
+CPROX_API cprox_status cprox_curve_jacobian(const cprox_curve_description *description, double t, cprox_vec3 *columns);
+
 /** Frees a curve; NULL is allowed. No query may be using it. */
 CPROX_API void cprox_curve_free(cprox_curve *curve);
 

@@ -159,6 +159,16 @@ typedef void curve_weighting(const cprox_curve_description *d, double t, double 
 curve_weighting curve_weights_bezier, curve_weights_bspline, curve_weights_polynomial, curve_weights_legendre,
     curve_weights_lagrange, curve_weights_trigonometric, curve_weights_rational_bezier, curve_weights_nurbs;
 
+/* The derivatives of a kind's point at t by the numbers that define the curve; the description is not checked. */
+typedef cprox_status curve_differentiator(const cprox_curve_description *d, double t, cprox_vec3 *columns);
+curve_differentiator curve_jacobian_clothoid, curve_jacobian_dubins, curve_jacobian_involute,
+    curve_jacobian_pythagorean_hodograph, curve_jacobian_rational_bezier, curve_jacobian_nurbs;
+
+/* The arcs and the line of a Dubins path as it would be made; false where there is none. */
+bool curve_find_dubins(const cprox_curve_description *d, cprox_dubins_path *path);
+/* Which way part i of a path of this word turns: 1 left, -1 right, 0 straight on. */
+int curve_dubins_turn(cprox_dubins_word word, int i);
+
 /* Checks that constructors share: CPROX_OK, or CPROX_INVALID with the message set. The points: at least 2, finite,
  * small enough that their squares do not overflow. The range: finite, t0 < t1. */
 cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace);

@@ -129,6 +129,25 @@ static cprox_status compile_path(vec3 start, double heading, double radius, cons
   return compile_finish(&pieces, curve);
 }
 
+bool curve_find_dubins(const cprox_curve_description *d, cprox_dubins_path *path) {
+  const double dx = d->end.x - d->start.x, dy = d->end.y - d->start.y, line = atan2(dy, dx);
+  const dubins_poses poses = {.distance = hypot(dx, dy) / d->radius,
+                              .alpha = d->heading - line,
+                              .beta = d->end_heading - line,
+                              .size = fabs(d->heading) + fabs(d->end_heading)};
+  double length[3] = {0.0, 0.0, 0.0};
+  path->word = d->word;
+  if (!find_lengths(d->word, &poses, &path->word, length)) return false;
+  path->ends[0] = d->radius * length[0];
+  path->ends[1] = path->ends[0] + d->radius * length[1];
+  path->ends[2] = path->ends[1] + d->radius * length[2];
+  return true;
+}
+
+int curve_dubins_turn(cprox_dubins_word word, int i) {
+  return turns_of[word][i];
+}
+
 cprox_status curve_create_dubins(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
   const cprox_vec3 start = d->start, end = d->end;
   const double start_heading = d->heading, end_heading = d->end_heading, radius = d->radius;
@@ -138,19 +157,10 @@ cprox_status curve_create_dubins(const cprox_curve_description *d, cprox_workspa
   const cprox_status status = check_poses(start, start_heading, end, end_heading, radius, workspace);
   if (status != CPROX_OK) return status;
 
-  const double dx = end.x - start.x, dy = end.y - start.y, line = atan2(dy, dx);
-  const dubins_poses poses = {.distance = hypot(dx, dy) / radius,
-                              .alpha = start_heading - line,
-                              .beta = end_heading - line,
-                              .size = fabs(start_heading) + fabs(end_heading)};
-  cprox_dubins_path found = {.word = word};
-  double length[3] = {0.0, 0.0, 0.0};
-  if (!find_lengths(word, &poses, &found.word, length))
+  cprox_dubins_path found;
+  if (!curve_find_dubins(d, &found))
     return workspace_fail(workspace, CPROX_INVALID, "the poses are too %s for a path of this word",
                           turns_of[word][1] == TURN_NONE ? "near each other" : "far apart");
-  found.ends[0] = radius * length[0];
-  found.ends[1] = found.ends[0] + radius * length[1];
-  found.ends[2] = found.ends[1] + radius * length[2];
   if (!(found.ends[2] > 0.0))
     return workspace_fail(workspace, CPROX_INVALID, "start and end pose are the same: the path has no length");
 

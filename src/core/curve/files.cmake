@@ -13,6 +13,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/evaluate.c
   ${CMAKE_CURRENT_LIST_DIR}/heading.c
   ${CMAKE_CURRENT_LIST_DIR}/involute.c
+  ${CMAKE_CURRENT_LIST_DIR}/jacobian.c
   ${CMAKE_CURRENT_LIST_DIR}/lagrange.c
   ${CMAKE_CURRENT_LIST_DIR}/legendre.c
   ${CMAKE_CURRENT_LIST_DIR}/pack.c

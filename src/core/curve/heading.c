@@ -46,14 +46,14 @@ dd heading_at(const heading_curve *c, double t, double *error) {
   return dd_add(c->heading, turned);
 }
 
+static const double node[NODES] = {0.019855071751231884, 0.10166676129318663, 0.23723379504183551, 0.40828267875217510,
+                                   0.59171732124782490,  0.76276620495816449, 0.89833323870681337, 0.98014492824876812};
+static const double weight[NODES] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894364,
+                                     0.18134189168918099, 0.18134189168918099, 0.15685332293894364,
+                                     0.11119051722668724, 0.05061426814518813};
+
 /* One step of Gauss' rule. */
 static void step(heading_curve *c, double to) {
-  static const double node[NODES] = {0.019855071751231884, 0.10166676129318663, 0.23723379504183551,
-                                     0.40828267875217510,  0.59171732124782490, 0.76276620495816449,
-                                     0.89833323870681337,  0.98014492824876812};
-  static const double weight[NODES] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894364,
-                                       0.18134189168918099, 0.18134189168918099, 0.15685332293894364,
-                                       0.11119051722668724, 0.05061426814518813};
   double angle_error = 0.0;
   const dd heading = heading_at(c, c->at, &angle_error);
   const double h = to - c->at, curvature = curvature_at(c, c->at).high;
@@ -74,15 +74,39 @@ static void step(heading_curve *c, double to) {
   c->at = to;
 }
 
+/* Steps of Gauss' rule between two parameters. */
+static double steps_between(const heading_curve *c, double from, double to) {
+  const double a_unit = 0.6 * largest_curvature(c, from, to) + 1.2 * sqrt(fabs(c->rate));
+  return fmax(1.0, ceil(a_unit * fabs(to - from)));
+}
+
 bool heading_advance(heading_curve *c, double to) {
-  const double length = fabs(to - c->at);
-  const double steps = fmax(1.0, ceil((0.6 * largest_curvature(c, c->at, to) + 1.2 * sqrt(fabs(c->rate))) * length));
+  const double steps = steps_between(c, c->at, to);
   c->steps += steps;
   if (!(c->steps <= HEADING_MOST_STEPS)) return false;
   const double from = c->at;
   const int n = (int)steps;
   for (int i = 1; i < n; i++) step(c, from + (to - from) * (i / steps));
   step(c, to);
+  return true;
+}
+
+bool heading_moments(const heading_curve *c, double to, vec3 moment[3]) {
+  const double steps = steps_between(c, c->origin, to), h = (to - c->origin) / steps;
+  for (int j = 0; j < 3; j++) moment[j] = vec(0.0, 0.0, 0.0);
+  if (!(steps <= HEADING_MOST_STEPS)) return false;
+  for (int i = 0; i < (int)steps; i++) {
+    for (int k = 0; k < NODES; k++) {
+      const double along = h * (i + node[k]);
+      const dd turned = dd_scale(dd_add(c->curvature, dd_from(0.5 * c->rate * along)), along);
+      const angle at = angle_of(dd_add(c->heading, turned));
+      double share = h * weight[k];
+      for (int j = 0; j < 3; j++, share *= along) {
+        moment[j].x += share * at.cosine;
+        moment[j].y += share * at.sine;
+      }
+    }
+  }
   return true;
 }
 
