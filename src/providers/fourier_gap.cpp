@@ -73,6 +73,10 @@ struct Asked {
   bool isBeyond() const {
     return away > 0.0;
   }
+  /* As far as rounding tells. */
+  bool isTouching() const {
+    return std::abs(away) <= rounding;
+  }
 
   ConstraintPlace place;
   double away = 0.0;     /* [m] between the spheres, negative where they overlap */
@@ -82,9 +86,11 @@ struct Asked {
   Eigen::Vector3d arm_a, arm_b;                     /* from the origins to the centres, fixed frame */
 };
 
-/* A value between its bounds, and its derivatives by the gap's value and by the distance between the spheres. */
+/* A value between its bounds, and its derivatives by the gap's value and by the distance between the spheres. kink:
+ * another part of the value may be the larger one, with other derivatives. */
 struct Mixture {
   double value, lower, upper, by_gap, by_distance;
+  bool kink;
 };
 
 constexpr std::uint32_t PROOF_NODES = 20000;
@@ -147,8 +153,8 @@ class FourierGapConstraint : public Constraint {
     const bool known = status != CPROX_PRECISION && std::isfinite(mixed.value);
     if (!known) mixed.by_gap = 0.0;
     fillGradient(asked, r, mixed, out);
-    out.valid = known || asked.isBeyond(); // beyond the spheres the distance still counts
-    out.reason = out.valid ? "" : "the signal is below its rounding";
+    out.valid = !mixed.kink && (known || asked.isBeyond()); // beyond the spheres the distance still counts
+    out.reason = out.valid ? "" : mixed.kink ? "the value has a kink here" : "the signal is below its rounding";
     out.points.resize(3, 0);
     out.radius = 0.0;
     out.t = std::numeric_limits<double>::quiet_NaN();
@@ -171,15 +177,15 @@ class FourierGapConstraint : public Constraint {
     const cprox_curve_info info = cprox_curve_get_info(place.curve->curve.get());
     ConstraintPlace here;
     const auto slope = [&](double t) { return slopeAt(place, t, workspace, here, out); };
-    const double t = leastAlong(*place.curve, sample_, {}, workspace, slope, out);
-    slope(t);
+    const LeastAlong least = leastAlong(*place.curve, sample_, {}, workspace, slope, out);
+    slope(least.t);
     if (out.bounded) out.bounded = out.value > 0.0 && isProvenClear(place, info, workspace);
     out.lower = 0.0;
 
     // The carried side is the gap's second.
     const Eigen::Vector3d n = out.b.linear;
     out.b = out.a;
-    fillAlong(*place.curve, t, toEigen(here.b.position), n, out);
+    fillAlong(*place.curve, least, toEigen(here.b.position), n, out);
   }
 
   bool isProvenClear(const ConstraintPlace &place, const cprox_curve_info &info, Workspace &workspace) const {
@@ -192,7 +198,7 @@ class FourierGapConstraint : public Constraint {
 
   Mixture mixSignal(const Asked &asked, const cprox_gap_result &r) const {
     const double value = length_ * (r.value - parameters_.level) + std::max(0.0, asked.away);
-    return {value, value, value, length_, asked.isBeyond() ? 1.0 : 0.0};
+    return {value, value, value, length_, asked.isBeyond() ? 1.0 : 0.0, asked.isTouching()};
   }
 
   /* -length log(V/t), and never less than the distance between the spheres. Beyond them what the gap has where they
@@ -205,9 +211,15 @@ class FourierGapConstraint : public Constraint {
     const double lower = at(r.value + r.error, asked.away - asked.rounding),
                  upper = at(r.value - r.error, asked.away + asked.rounding);
     const double metres = length_ * negativeLog(r.value), least = asked.isBeyond() ? 0.0 : asked.away;
-    const bool counts = metres > least;
-    return {at(r.value, asked.away), lower, upper, counts ? -length_ / std::max(r.value, LEAST) : 0.0,
-            asked.isBeyond() || !counts ? 1.0 : 0.0};
+    const double rounding = asked.isBeyond() ? 0.0 : asked.rounding;
+    const bool counts = metres > least, kink = length_ * negativeLog(r.value + r.error) <= least + rounding &&
+                                               length_ * negativeLog(r.value - r.error) >= least - rounding;
+    return {at(r.value, asked.away),
+            lower,
+            upper,
+            counts ? -length_ / std::max(r.value, LEAST) : 0.0,
+            asked.isBeyond() || !counts ? 1.0 : 0.0,
+            kink || asked.isTouching()};
   }
 
   /* With D between the centres, P the part across the line, times `share`, and g the gap's gradient by b's position at

@@ -132,11 +132,11 @@ class GuideAlong : public Constraint {
       standing_->evaluate(here, workspace, out);
       return out.a.linear.dot(velocity);
     };
-    const double t = leastAlong(*place.curve, sample_, out.t, workspace, slope, out);
-    slope(t);
+    const LeastAlong least = leastAlong(*place.curve, sample_, out.t, workspace, slope, out);
+    slope(least.t);
     out.bounded = false;
     const Eigen::Vector3d n = out.a.linear;
-    fillAlong(*place.curve, t, toEigen(here.a.position), n, out);
+    fillAlong(*place.curve, least, toEigen(here.a.position), n, out);
   }
 
  private:

@@ -50,7 +50,7 @@ struct Element {
 std::vector<Element> makeSide(const ConstraintBody &described, const Parameters &parameters, const char *name) {
   const std::string side = std::string("side ") + name;
   if (described.parts.empty()) throw Error(side + " has no shape");
-  if (described.padding > 0.0) throw Error(side + " has padding, which does not grow with a body: it must be 0");
+  if (described.padding != 0.0) throw Error(side + " has padding, which does not grow with a body: it must be 0");
   Workspace workspace;
   std::vector<Element> out;
   for (const ConstraintBody::Part &part : described.parts) {
@@ -68,8 +68,11 @@ std::vector<Element> makeSide(const ConstraintBody &described, const Parameters 
 }
 
 Eigen::Isometry3d toIsometry(const cprox_pose &pose) {
-  const cprox_quat &q = pose.orientation;
-  return Eigen::Translation3d(toEigen(pose.position)) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+  const cprox_quat &given = pose.orientation;
+  const Eigen::Quaterniond q(given.w, given.x, given.y, given.z);
+  if (!(q.squaredNorm() > 0.0) || !std::isfinite(q.squaredNorm()))
+    throw Error("the quaternion of a pose is 0, or its norm is out of range");
+  return Eigen::Translation3d(toEigen(pose.position)) * q.normalized();
 }
 
 cprox_pose toPose(const Eigen::Isometry3d &pose) {

@@ -4,6 +4,8 @@
 #define CURVE_PROXIMITY_PROVIDERS_LEAST_ALONG_H
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <curve_proximity/constraint_provider.hpp>
 #include <limits>
 #include <optional>
@@ -33,11 +35,20 @@ inline double parameterAt(double t0, double t1, int i, int of) {
   return i == of ? t1 : t0 + (t1 - t0) * i / of;
 }
 
-/** The parameter of the least value of many, then of the interval about it by the sign of the derivative. slope(t)
- *  evaluates into out and returns the derivative by t; also: one more parameter to look at. sample [m]. */
+/** Where a value along a curve is least, and whether no other parameter, farther away than two looks, has as small a
+ *  value. */
+struct LeastAlong {
+  double t = 0.0;
+  bool is_alone = true;
+};
+
+/** The parameter of the least value of many, then of the interval about it by the sign of the derivative; so of other
+ *  local minima that may be as low. slope(t) evaluates into out and returns the derivative by t; also: one more parameter
+ *  to look at. sample [m]. */
 template <class Slope>
-double leastAlong(const ConstraintCurve &curve, double sample, std::optional<double> also, Workspace &workspace,
-                  const Slope &slope, const ConstraintValue &out) {
+LeastAlong leastAlong(const ConstraintCurve &curve, double sample, std::optional<double> also, Workspace &workspace,
+                      const Slope &slope, const ConstraintValue &out) {
+  constexpr double ALIKE = 1e-9; // of a sample: values are the same
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
   const double t0 = info.t0, t1 = info.t1;
   double length = 0.0;
@@ -49,32 +60,64 @@ double leastAlong(const ConstraintCurve &curve, double sample, std::optional<dou
   }
   const double wanted = LOOKS_A_SAMPLE * length / sample;
   const int looks = std::max(LEAST_LOOKS, static_cast<int>(std::min(wanted, double{MOST_LOOKS})));
-  double best = t0, least = std::numeric_limits<double>::infinity();
-  const auto look = [&](double t) {
-    slope(t);
-    if (out.value < least) least = out.value, best = t;
-  };
-  for (int i = 0; i <= looks; ++i) look(parameterAt(t0, t1, i, looks));
-  if (also) look(*also);
   const double width = (t1 - t0) / looks;
-  double low = std::max(t0, best - width), high = std::min(t1, best + width);
-  for (int i = 0; i < HALVINGS; ++i) {
-    const double t = 0.5 * (low + high);
-    (slope(t) > 0.0 ? high : low) = t;
+
+  struct Look {
+    double t, value, slope;
+  };
+  std::array<Look, MOST_LOOKS + 1> seen;
+  const auto look = [&](double t) {
+    const double by_t = slope(t);
+    return Look{t, out.value, by_t};
+  };
+  const auto refined = [&](const Look &from) {
+    double low = std::max(t0, from.t - width), high = std::min(t1, from.t + width);
+    for (int i = 0; i < HALVINGS; ++i) {
+      const double t = 0.5 * (low + high);
+      (slope(t) > 0.0 ? high : low) = t;
+    }
+    const Look end = look(0.5 * (low + high));
+    return end.value <= from.value ? end : from;
+  };
+
+  int first = 0;
+  for (int i = 0; i <= looks; ++i) {
+    seen[static_cast<std::size_t>(i)] = look(parameterAt(t0, t1, i, looks));
+    if (seen[static_cast<std::size_t>(i)].value < seen[static_cast<std::size_t>(first)].value) first = i;
   }
-  const double t = 0.5 * (low + high);
-  slope(t);
-  return out.value <= least ? t : best;
+  Look best = refined(seen[static_cast<std::size_t>(first)]);
+  if (also) {
+    const Look other = refined(look(*also));
+    if (other.value < best.value) best = other;
+  }
+  LeastAlong least;
+  for (int i = 0; i <= looks && least.is_alone; ++i) {
+    const Look &one = seen[static_cast<std::size_t>(i)];
+    const bool is_low = (i == 0 || one.value <= seen[static_cast<std::size_t>(i - 1)].value) &&
+                        (i == looks || one.value <= seen[static_cast<std::size_t>(i + 1)].value);
+    const double alike = ALIKE * (sample + std::abs(best.value));
+    if (!is_low || std::abs(one.t - best.t) <= 2.0 * width ||
+        one.value - std::abs(one.slope) * width > best.value + alike)
+      continue;
+    const Look other = refined(one);
+    least.is_alone = std::abs(other.value - best.value) > alike;
+    if (other.value < best.value) best = other;
+  }
+  least.t = best.t;
+  return least;
 }
 
-/** The gradient of a value at t by all of the curve, where n is that by the carried place (Danskin). */
-inline void fillAlong(const ConstraintCurve &curve, double t, const Eigen::Vector3d &position, const Eigen::Vector3d &n,
-                      ConstraintValue &out) {
+/** The gradient of the least value by all of the curve, where n is that by the carried place (Danskin). */
+inline void fillAlong(const ConstraintCurve &curve, const LeastAlong &least, const Eigen::Vector3d &position,
+                      const Eigen::Vector3d &n, ConstraintValue &out) {
   out.a.linear = n;
   out.a.angular = position.cross(n);
-  gradientByPoints(curve.description, t, n, out.points);
-  out.t = t;
+  gradientByPoints(curve.description, least.t, n, out.points);
+  out.t = least.t;
   out.has_points = false;
+  if (least.is_alone || !out.valid) return;
+  out.valid = false;
+  out.reason = "the value is as small elsewhere along the curve";
 }
 
 } // namespace curve_proximity

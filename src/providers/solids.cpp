@@ -612,6 +612,7 @@ SolidHandle spatialSolid(const ConstraintBody::Part &part, double padding, const
 
 SolidHandle makeSolid(const ConstraintBody &side, int dimension, const Stop &stop) {
   if (side.parts.empty()) throw Error("the side has no shape");
+  if (!(side.padding >= 0.0)) throw Error("the padding must be finite and at least 0");
   std::vector<SolidHandle> parts;
   std::vector<cprox_pose> poses;
   bool moved = false;

@@ -20,6 +20,14 @@ constexpr double NEAR = 1e-6, FAR = 1e-4, LEAST_LEFT = 0.25;
 /* What is rounding: of nearest points in sizes, of normals, of distances in sizes. */
 constexpr double POINT_NOISE = 1e-6, NORMAL_NOISE = 2e-5, ALIKE = 1e-9;
 
+/* A difference that is a jump at every step. */
+constexpr double NOT_FOUND = std::numeric_limits<double>::max();
+
+/* Narrower than a tenth of the least step: not where the budget or rounding ended the search long before. */
+bool isFound(const cprox_result &result, double size) {
+  return result.upper - result.lower <= 0.1 * NEAR * size;
+}
+
 bool isJump(double near, double far, double noise) {
   return near > noise && near > LEAST_LEFT * far;
 }
@@ -252,7 +260,7 @@ class SuperquadricConstraint : public Constraint {
       out.reason = "there is no normal";
     } else if (next <= best.result.upper + 2.0 * parameters_.options.epsilon + ALIKE * size) {
       out.reason = "two pairs of parts are equally near";
-    } else if (best.result.upper < 0.0 && !wayOutIsAlone(best, place, size, workspace)) {
+    } else if (best.result.upper < ALIKE * size && !wayOutIsAlone(best, place, size, workspace)) {
       out.reason = "there is more than one way out";
     } else if (best.is_mesh && !wayOutIsAlone(best, place, size, workspace)) {
       out.reason = "the nearest points are not the only ones";
@@ -274,15 +282,16 @@ class SuperquadricConstraint : public Constraint {
     return measure(best.a, best.b, place, exact, workspace);
   }
 
-  /* Inside, the way out may change from one side to another: then the normal jumps nearby. So it does where a mesh has
-   * two nearest points. The search itself mostly tells that no other way out is as near. */
+  /* Inside and in contact the way out may change from one side to another: then the normal jumps nearby. So it does where
+   * a mesh has two nearest points. The search itself mostly tells that no other way out is as near. */
   bool wayOutIsAlone(const Nearest &best, const ConstraintPlace &place, double size, Workspace &workspace) const {
     if (best.shift > NEAR * size) return true;
     const double near = lean(best, place, NEAR * size, workspace);
     return near <= NORMAL_NOISE || !isJump(near, lean(best, place, FAR * size, workspace), NORMAL_NOISE);
   }
 
-  /* How much the normal differs a step to either side, along the axis where that is most. */
+  /* How much the normal differs a step to either side, along the axis where that is most; NOT_FOUND where a search does
+   * not find the way out. */
   double lean(const Nearest &best, const ConstraintPlace &place, double step, Workspace &workspace) const {
     double most = 0.0;
     for (int i = 0; i < 3; ++i) {
@@ -290,7 +299,9 @@ class SuperquadricConstraint : public Constraint {
       for (std::size_t k = 0; k < 2; ++k) {
         cprox_pose moved = place.a;
         moved.position = toVec3(toEigen(moved.position) + (k ? step : -step) * Eigen::Vector3d::Unit(i));
-        normals[k] = toEigen(pairAt(best, moved, place.b, workspace).normal);
+        const cprox_result found = pairAt(best, moved, place.b, workspace);
+        if (!isFound(found, std::min(a_.size, b_.size))) return NOT_FOUND;
+        normals[k] = toEigen(found.normal);
       }
       most = std::max(most, (normals[1] - normals[0]).norm());
     }
@@ -304,7 +315,7 @@ class SuperquadricConstraint : public Constraint {
   }
 
   /* How far apart b's nearest points are when it has turned about its own to one side and to the other, about the axis
-   * across the normal where that is most. */
+   * across the normal where that is most; NOT_FOUND as above. */
   double spread(const Nearest &best, const ConstraintPlace &place, double turn, Workspace &workspace) const {
     const Eigen::Vector3d n = toEigen(best.result.normal), centre = toEigen(best.result.witness_obstacle);
     const Eigen::Vector3d across = n.unitOrthogonal(), other = n.cross(across);
@@ -317,7 +328,9 @@ class SuperquadricConstraint : public Constraint {
         const Eigen::Quaterniond turned = by * Eigen::Quaterniond(q.w, q.x, q.y, q.z);
         const cprox_pose b = {toVec3(centre + by * (toEigen(place.b.position) - centre)),
                               {turned.w(), turned.x(), turned.y(), turned.z()}};
-        points[k] = toEigen(pairAt(best, place.a, b, workspace).witness_obstacle);
+        const cprox_result found = pairAt(best, place.a, b, workspace);
+        if (!isFound(found, std::min(a_.size, b_.size))) return NOT_FOUND;
+        points[k] = toEigen(found.witness_obstacle);
       }
       most = std::max(most, (points[1] - points[0]).norm());
     }

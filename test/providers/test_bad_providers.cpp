@@ -3,6 +3,7 @@
 #include "support.h"
 
 #include <cmath>
+#include <limits>
 
 namespace curve_proximity {
 namespace {
@@ -120,6 +121,25 @@ TEST(Places, that_do_not_suit_the_pair_are_refused) {
   broken = without;
   broken.a.position.x = NAN;
   EXPECT_NE(error_of([&] { pair->evaluate(standing, broken, workspace); }), "");
+}
+
+/* The case reader refuses them too; these come from C++ itself. */
+TEST(Places, without_a_rotation_and_sides_with_a_padding_below_0_are_refused_by_all_providers) {
+  Workspace workspace;
+  for (const char *type : {"CurveDistance", "SuperquadricDistance", "GrowthDistance", "FourierGap"}) {
+    const Loaded provider(std::string("curve_proximity/") + type, {});
+    ConstraintPair standing;
+    standing.a = standing.b = side({shape(ShapeType::BOX, {0.2, 0.3, 0.4})});
+    for (const double x : {0.0, 1e-200, 1e200, std::numeric_limits<double>::quiet_NaN()}) {
+      ConstraintPlace broken;
+      broken.b.orientation = {0.0, x, 0.0, 0.0};
+      EXPECT_SAYS(error_of([&] { provider->evaluate(standing, broken, workspace); }), "quaternion");
+    }
+    for (const double padding : {-0.05, std::numeric_limits<double>::quiet_NaN()}) {
+      standing.a.padding = padding;
+      EXPECT_NE(error_of([&] { provider->evaluate(standing, {}, workspace); }), "") << type << ' ' << padding;
+    }
+  }
 }
 
 TEST(Cases, that_are_wrong_become_rows_and_the_others_are_answered) {

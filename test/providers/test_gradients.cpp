@@ -950,6 +950,123 @@ TEST(Values, of_a_guide_are_the_distance_apart_and_below_0_exactly_where_the_sid
   EXPECT_LT(widest, 1e-5);
 }
 
+/* Seed 824: bodies level with each other, touching, in line, one within the other, and anywhere. */
+TEST(Valid, means_that_the_value_has_this_gradient_to_either_side_whichever_provider_says_so) {
+  const std::pair<const char *, ParameterMap> providers[] = {
+      {"curve_proximity/CurveDistance", {}},
+      {"curve_proximity/SuperquadricDistance", {}},
+      {"curve_proximity/GrowthDistance", {}},
+      {"curve_proximity/FourierGap", {{"samples", 9}}},
+      {"curve_proximity/FourierGap", {{"samples", 9}, {"mode", std::string("guide")}}},
+      {"curve_proximity/FourierGap", {{"samples", 9}, {"mode", std::string("signal")}}}};
+  const ConstraintBody bodies[] = {side({shape(ShapeType::BOX, {0.4, 0.6, 0.8})}),
+                                   side({shape(ShapeType::CYLINDER, {0.8, 0.3})}),
+                                   side({shape(ShapeType::SPHERE, {0.4})}),
+                                   side({polytope(0.4 * (Eigen::Matrix3Xd(3, 6) << 1, -1, 0, 0, 0, 0, //
+                                                         0, 0, 1, -1, 0, 0,                           //
+                                                         0, 0, 0, 0, 1, -1)
+                                                            .finished())})};
+  constexpr double H = 1e-6, TOLERATED = 1e-3;
+  for (const auto &[name, parameters] : providers) {
+    const Loaded provider(name, parameters);
+    Random random(824);
+    Workspace workspace;
+    ConstraintValue value, other;
+    int valid = 0, refused = 0;
+    for (int i = 0; i < 240; ++i) {
+      ConstraintPair pair;
+      pair.a = bodies[i % 4], pair.b = bodies[i / 4 % 4];
+      const auto constraint = provider->prepare(pair);
+      Case c;
+      if (i % 3 == 0) {
+        c.b = random.pose(0.5);
+      } else {
+        const double steps[] = {-1.0, -0.7, -0.6, 0.0, 0.0, 0.2, 0.6, 0.8};
+        const auto step = [&] { return steps[static_cast<std::size_t>(random.uniform(0.0, 7.99))]; };
+        c.b.position = {step(), step(), step()};
+        const double half = std::sqrt(0.5);
+        if (i % 3 == 2) c.b.orientation = {half, 0, 0, half};
+      }
+      const Step way = randomStep(random, c);
+      const double here = valueAt(*constraint, c, way, 0.0, workspace, value);
+      if (!value.valid) {
+        EXPECT_FALSE(value.reason.empty());
+        ++refused;
+        continue;
+      }
+      ++valid;
+      const double slope = value.a.linear.dot(way.linear_a) + value.a.angular.dot(way.angular_a) +
+                           value.b.linear.dot(way.linear_b) + value.b.angular.dot(way.angular_b);
+      for (const double h : {H, -H}) {
+        const double by_side = (valueAt(*constraint, c, way, h, workspace, other) - here) / h;
+        EXPECT_NEAR(by_side, slope, TOLERATED * std::max(1.0, std::abs(slope)))
+            << name << " case " << i << " at " << here;
+      }
+    }
+    std::printf("%s: %d valid, %d refused\n", name, valid, refused);
+    EXPECT_GT(valid, 80) << name;
+  }
+}
+
+/* On one axis a way out leads to every side, and the places beside it are as hard to search. */
+TEST(Valid, is_false_where_bodies_of_revolution_stand_on_one_axis_and_overlap) {
+  const Loaded provider("curve_proximity/SuperquadricDistance", {{"epsilon", 1e-13}});
+  const ShapeDescription upright[] = {shape(ShapeType::CYLINDER, {1.2, 1e-3}), shape(ShapeType::CYLINDER, {0.8, 0.4}),
+                                      shape(ShapeType::CAPSULE, {0.6, 0.2}), shape(ShapeType::CONE, {0.8, 0.3})};
+  Workspace workspace;
+  ConstraintValue value;
+  int sideways = 0;
+  for (const ShapeDescription &one : upright) {
+    ConstraintPair pair;
+    pair.a = side({one});
+    pair.b = side({shape(ShapeType::CONE, {0.8, 0.4})});
+    const auto constraint = provider->prepare(pair);
+    for (int i = -5; i <= 5; ++i) {
+      ConstraintPlace place;
+      place.b.position.z = 0.1 * i;
+      constraint->evaluate(place, workspace, value);
+      if (!(value.upper < 0.0) || std::abs(value.normal.z()) > 0.999) continue;
+      ++sideways;
+      EXPECT_FALSE(value.valid) << shapeTypeName(one.type) << " at " << place.b.position.z;
+    }
+  }
+  EXPECT_GT(sideways, 10);
+}
+
+/* A curve of one point, an arch whose ends are as near as each other, and the same arch a little lower at one end. */
+TEST(Valid, is_false_where_the_least_value_along_a_curve_is_attained_twice_whichever_provider_says_so) {
+  const std::pair<const char *, ParameterMap> providers[] = {
+      {"curve_proximity/CurveDistance", {}},
+      {"curve_proximity/GrowthDistance", {}},
+      {"curve_proximity/FourierGap", {{"samples", 9}}},
+      {"curve_proximity/FourierGap", {{"samples", 9}, {"mode", std::string("guide")}}},
+      {"curve_proximity/FourierGap", {{"samples", 9}, {"mode", std::string("signal")}}}};
+  Workspace workspace;
+  ConstraintPair pair;
+  pair.along_curve = true;
+  pair.a = side({shape(ShapeType::SPHERE, {0.1})});
+  pair.b = side({shape(ShapeType::ELLIPSOID, {0.5, 0.4, 0.3})});
+  for (const auto &[name, parameters] : providers) {
+    const Loaded provider(name, parameters);
+    const auto constraint = provider->prepare(pair);
+    for (const double height : {0.2, 0.7, 2.0}) { // in contact at both ends, and apart
+      for (const double lower : {0.0, 0.05, -1.0}) {
+        ConstraintCurve arch;
+        arch.description.points.resize(3, 3);
+        arch.description.points << -0.3, 0.0, 0.3, 0.0, 0.0, 0.0, height, height + 1.0, height - lower;
+        if (lower < 0.0) arch.description.points.colwise() = Eigen::Vector3d(0.3, 0.0, height);
+        arch.curve = compile(arch.description).curve;
+        ConstraintPlace place;
+        place.curve = &arch;
+        ConstraintValue value;
+        constraint->evaluate(place, workspace, value);
+        EXPECT_EQ(value.valid, lower > 0.0) << name << " at " << height << " lower by " << lower << ' ' << value.reason;
+        EXPECT_EQ(value.reason.empty(), value.valid);
+      }
+    }
+  }
+}
+
 /* Seed 822. The distance is known to 1e-9, and about contact the value changes by up to ten times as much: differences at
  * the best of steps of 1e-5 to 3e-3 err by some 1e-4. */
 TEST(Gradients, of_a_guide_are_those_of_finite_differences_at_every_depth) {
