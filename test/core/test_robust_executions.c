@@ -373,7 +373,7 @@ typedef struct segment_in_lanes {
   edge_losses losses;
   lane_batch batch;
   size_t number;
-  void *memory[4];
+  void *memory[5];
 } segment_in_lanes;
 
 static void *take_lanes(size_t n, size_t size) {
@@ -393,9 +393,10 @@ static bool begin_lanes(rng *r, const world *w, const query *q, segment_in_lanes
   s->memory[1] = take_lanes(c->n_frames, sizeof(lane_frame));
   s->memory[2] = take_lanes(c->n_parts, sizeof(lane_part));
   s->memory[3] = take_lanes(c->n_frames, sizeof(lane_off));
+  s->memory[4] = take_lanes(1, edge_losses_size(c));
   s->motion = edge_motion_in(c, s->memory[0]);
   const motion_interval over = {.a = 0.0, .b = 1.0, .first = s->number, .last = s->number + 1};
-  assert_true(edge_losses_begin(q, c, 0, TARGETS, &s->losses));
+  s->losses = edge_losses_in(c, q, 0, TARGETS, s->memory[4]);
   if (!edge_motion_fill_along(c, w->t.motion, &over, &s->motion)) return false;
   edge_losses_over(q, c, &over, &s->motion, &s->losses);
   s->motion.losses = &s->losses;
@@ -514,7 +515,7 @@ CASE(no_point_is_farther_off_than_lanes_say) {
       }
       for (int k = 0; k < 10; k++) expect_vertex_within_losses(&r, &w, &s, part, &bent);
     }
-    for (int k = 0; k < 4; k++) free(s.memory[k]);
+    for (int k = 0; k < 5; k++) free(s.memory[k]);
     free_world(&w);
   }
   print_message("%zu parts along a normal: off by up to %.3f of what is said, %.3f along it, %.3f across an arc\n",

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What one edge adds to the model: values in the middle, rates, bounds on accelerations, and what rounding may cost.
- * doc/robot-edges.md, doc/rounding.md */
+/* What one edge adds to the model: values in the middle, rates, bounds on accelerations, and what rounding may cost; and
+ * what errors of an execution may cost. doc/robot-edges.md, doc/rounding.md, doc/robust.md */
 #ifndef CPROX_EDGES_EDGE_BOUND_H
 #define CPROX_EDGES_EDGE_BOUND_H
 
 #include "edges/edge_model.h"
 #include "kinematics/motion.h"
+#include "problem/problem.h"
 
 /* The intervals that a search begins with, and half of each by the edge's own parameter. */
 enum { EDGE_LANES = 8 };
@@ -31,16 +32,29 @@ typedef struct edge_half_bound {
   float acceleration, turn;
 } edge_half_bound;
 
+/* Of a query that has errors, over one edge. */
+typedef struct edge_losses {
+  float *still, *by_rate, *most; /* of each frame: it is off by still + by_rate times its rate by the edge's parameter,
+                                    and by no more than `most` */
+  float *slack;                  /* of each part: lever arms of its points are off by this, however lanes round [m] */
+  float *standing, *pairs;       /* what a part may lose against what stands, and each pair, anywhere on the edge [m] */
+  int32_t *axis_of;              /* of each frame; -1: the base */
+  float base_origin[3];          /* seen from the base, as all coordinates */
+  float base_rotation, object_rotation, places, flex; /* places: base, object and sensor together [m] */
+  float object_reach, object_far; /* obstacles that end reach so far from their poses' positions; the others have these
+                                     so far from the base */
+} edge_losses;
+
 typedef struct edge_motion {
-  float *middle, *rate;             /* of each frame's variable */
-  float *more, *more_rate;          /* powers from the second on, and their derivatives: EDGE_POWERS of each frame */
-  size_t degree;                    /* at most 1: those are all 0 */
-  edge_frame_bound *bounds;         /* of each frame */
-  edge_half_bound *frames;          /* of each frame as the base sees it, */
-  edge_half_bound *relations;       /* and as others do */
-  float *room;                      /* of each part: what rounding may cost a distance from it [m] */
-  bool stands;                      /* from = to */
-  const struct edge_losses *losses; /* by errors of an execution; NULL: there are none */
+  float *middle, *rate;       /* of each frame's variable */
+  float *more, *more_rate;    /* powers from the second on, and their derivatives: EDGE_POWERS of each frame */
+  size_t degree;              /* at most 1: those are all 0 */
+  edge_frame_bound *bounds;   /* of each frame */
+  edge_half_bound *frames;    /* of each frame as the base sees it, */
+  edge_half_bound *relations; /* and as others do */
+  float *room;                /* of each part: what rounding may cost a distance from it [m] */
+  bool stands;                /* from = to */
+  const edge_losses *losses;  /* by errors of an execution; NULL: there are none */
 } edge_motion;
 
 /* The bytes that an edge's arrays take, and the arrays in that memory. */
@@ -66,5 +80,13 @@ double edge_motion_reach(const cprox_edge_checker *checker, const edge_motion *m
 
 /* The relations, for pairs of parts. */
 void edge_motion_relate(const cprox_edge_checker *checker, const edge_motion *motion);
+
+/* The bytes that the arrays of losses take; what is the same of all edges, with the arrays in that memory. */
+size_t edge_losses_size(const cprox_edge_checker *checker);
+edge_losses edge_losses_in(const cprox_edge_checker *checker, const query *q, size_t first, size_t last, char *memory);
+
+/* Those of a part of one segment of the motion; `edge` is filled from it. */
+void edge_losses_over(const query *q, const cprox_edge_checker *checker, const motion_interval *over,
+                      const edge_motion *edge, edge_losses *losses);
 
 #endif

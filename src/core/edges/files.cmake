@@ -2,7 +2,6 @@
 target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/edge_bound.c
   ${CMAKE_CURRENT_LIST_DIR}/edge_checker.c
-  ${CMAKE_CURRENT_LIST_DIR}/edge_losses.c
   ${CMAKE_CURRENT_LIST_DIR}/edge_model.c
   ${CMAKE_CURRENT_LIST_DIR}/edge_scene.c
   ${CMAKE_CURRENT_LIST_DIR}/first_level.c

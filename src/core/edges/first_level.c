@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "edges/edge_losses.h"
 #include "edges/kernels.h"
 
 /* Beyond these the trees and groups of the search find what is near sooner than lanes do. */
@@ -68,7 +67,7 @@ static cprox_robot_pair as_asked(const query *q, int32_t a, int32_t b) {
 }
 
 /* The pairs of geometries of what lanes left open, in an order of their own, to lists that have room for them. */
-static void list_open(const query *q, const cprox_edge_checker *c, const edge_open *open, cprox_robot_pair *pairs,
+static void take_open(const query *q, const cprox_edge_checker *c, const edge_open *open, cprox_robot_pair *pairs,
                       cprox_robot_pair *selves, edge_rest *rest) {
   for (uint32_t i = 0; i < open->n; i++) {
     const uint32_t number = open->pairs[i];
@@ -81,24 +80,12 @@ static void list_open(const query *q, const cprox_edge_checker *c, const edge_op
               part_of(c, open->pairs[k]) == part;
     for (uint32_t k = part->first_member; k < part->first_member + part->n_members && !known; k++) {
       if (!self) add_obstacle(rest, (size_t)obstacle_of(c, number));
-      if (!self && pairs) pairs[rest->n_pairs] = (cprox_robot_pair){c->members[k], obstacle_of(c, number)};
-      rest->n_pairs += !self;
-      for (uint32_t l = 0; self && l < other->n_members; l++, rest->n_self_pairs++)
-        if (selves) selves[rest->n_self_pairs] = as_asked(q, c->members[k], c->members[other->first_member + l]);
+      if (!self) pairs[rest->n_pairs++] = (cprox_robot_pair){c->members[k], obstacle_of(c, number)};
+      for (uint32_t l = 0; self && l < other->n_members; l++)
+        selves[rest->n_self_pairs++] = as_asked(q, c->members[k], c->members[other->first_member + l]);
     }
   }
-}
-
-/* False where memory is out. */
-static bool take_open(const query *q, const cprox_edge_checker *c, const edge_open *open, edge_rest *rest) {
-  edge_rest counted = {0};
-  list_open(q, c, open, NULL, NULL, &counted);
-  cprox_robot_pair *pairs = workspace_reserve(q->workspace, WORKSPACE_EDGE_OPEN,
-                                              (counted.n_pairs + counted.n_self_pairs + 2) * sizeof *pairs);
-  if (!pairs) return false;
-  list_open(q, c, open, pairs, pairs + counted.n_pairs + 1, rest);
-  rest->pairs = pairs, rest->self_pairs = pairs + counted.n_pairs + 1;
-  return true;
+  rest->pairs = pairs, rest->self_pairs = selves;
 }
 
 /* ---- times ---- */
@@ -134,23 +121,22 @@ static bool can_ask(const query *q, size_t first, size_t last, motion_interval *
 }
 
 /* One pair at one time. */
-static bool take_one(const query *q, int32_t geometry, int32_t other, bool self, double at, cprox_robot_pair *pair,
+static void take_one(const query *q, int32_t geometry, int32_t other, bool self, double at, cprox_robot_pair *pair,
                      edge_rest *rest) {
   *pair = self ? as_asked(q, geometry, other) : (cprox_robot_pair){geometry, other};
   *rest = (edge_rest){.pairs = pair, .self_pairs = pair, .n_pairs = !self, .n_self_pairs = self, .from = at, .to = at};
   if (!self) rest->first = (size_t)other, rest->last = (size_t)other + 1;
-  return true;
 }
 
-static bool take_nearest(const query *q, const cprox_edge_checker *c, const edge_found *f, const motion_interval *over,
+static void take_nearest(const query *q, const cprox_edge_checker *c, const edge_found *f, const motion_interval *over,
                          cprox_robot_pair *pair, edge_rest *rest) {
   *rest = (edge_rest){.n_pairs = 0};
-  if (f->nearest == UINT32_MAX) return true;
+  if (f->nearest == UINT32_MAX) return;
   const bool self = f->nearest >= c->n_near;
   const edge_pair *two = self ? &c->lane_pairs[f->nearest - c->n_near] : NULL;
   const edge_part *part = self ? &c->parts[two->a] : part_of(c, f->nearest);
   const int32_t other = self ? c->members[c->parts[two->b].first_member] : obstacle_of(c, f->nearest);
-  return take_one(q, c->members[part->first_member], other, self, time_of(q, over, (double)f->nearest_at), pair, rest);
+  take_one(q, c->members[part->first_member], other, self, time_of(q, over, (double)f->nearest_at), pair, rest);
 }
 
 /* All that a query needs in the workspace. */
@@ -158,15 +144,15 @@ typedef struct edge_run {
   edge_motion motion;
   edge_losses losses;
   edge_lanes lanes;
-  edge_open all;          /* what is open in any segment */
-  uint32_t *known;        /* whether it is there */
-  cprox_robot_pair *pair; /* room for the one that is measured */
+  edge_open all;                    /* what is open in any segment */
+  uint32_t *known;                  /* whether it is there */
+  cprox_robot_pair *pairs, *selves; /* room for the rest */
   uint64_t batches;
 } edge_run;
 
 static bool fill_segment(const query *q, const cprox_edge_checker *c, const motion_interval *segment, edge_run *run) {
   if (!edge_motion_fill_along(c, q->mover.motion, segment, &run->motion)) return false;
-  if (q->errors) edge_losses_over(q, c, segment, &run->motion, &run->losses), run->motion.losses = &run->losses;
+  if (q->errors) edge_losses_over(q, c, segment, &run->motion, &run->losses);
   return true;
 }
 
@@ -193,24 +179,30 @@ static bool place(const query *q, cprox_edge_checker *c, size_t first, size_t la
   if (n_obstacles > MOST_OBSTACLES) return false;
   const size_t scene = aligned(edge_model_scene_size(c, q->obstacles, first, last)),
                moves = aligned(edge_motion_size(c)), reaches = aligned(c->n_parts * sizeof(double)),
-               near = c->n_parts * n_obstacles, noted = near + c->n_lane_pairs + 1,
+               losses = q->errors ? aligned(edge_losses_size(c)) : 0, near = c->n_parts * n_obstacles,
+               noted = near + c->n_lane_pairs + 1, listed = c->n_members * n_obstacles + 1,
                rows = aligned(edge_lanes_size(c, near < MOST_NEAR ? near : MOST_NEAR));
-  char *memory =
-      workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
-                        64 + rows + scene + moves + reaches + 4 * noted * sizeof(uint32_t) + sizeof *run->pair);
+  size_t selves = 1;
+  for (size_t i = 0; i < c->n_lane_pairs; i++)
+    selves += (size_t)c->parts[c->lane_pairs[i].a].n_members * c->parts[c->lane_pairs[i].b].n_members;
+  const size_t lists = (listed + selves) * sizeof(cprox_robot_pair);
+  char *memory = workspace_reserve(q->workspace, WORKSPACE_EDGE_SCENE,
+                                   64 + rows + moves + losses + reaches + scene + lists + 4 * noted * sizeof(uint32_t));
   if (!memory) return false;
   memory += 64 - (uintptr_t)memory % 64;
   *run = (edge_run){.motion = edge_motion_in(c, memory + rows), .lanes = {.memory = memory, .measures = true}};
-  double *reach = (double *)(void *)(memory + rows + moves);
-  if (q->errors && !edge_losses_begin(q, c, first, last, &run->losses)) return false;
+  memory += rows + moves;
+  if (q->errors) run->losses = edge_losses_in(c, q, first, last, memory), run->motion.losses = &run->losses;
+  double *reach = (double *)(void *)(memory + losses);
+  memory += losses + reaches;
   if (!fill_reach(q, c, over, run, reach)) return false;
   if (!c->has_scene) /* of many states all are within reach of what the robot can reach */
-    edge_model_fill_scene(c, q->obstacles, first, last, q->is_bare ? NULL : reach, memory + rows + moves + reaches);
-  uint32_t *marks = (uint32_t *)(void *)(memory + rows + moves + reaches + scene);
+    edge_model_fill_scene(c, q->obstacles, first, last, q->is_bare ? NULL : reach, memory);
+  run->pairs = (cprox_robot_pair *)(void *)(memory + scene), run->selves = run->pairs + listed;
+  uint32_t *marks = (uint32_t *)(void *)(run->selves + selves);
   memset(marks, 0, 2 * noted * sizeof *marks);
   run->lanes.open.seen = marks, run->known = marks + noted;
   run->lanes.open.pairs = marks + 2 * noted, run->all.pairs = marks + 3 * noted;
-  run->pair = (cprox_robot_pair *)(marks + 4 * noted);
   const uint64_t done = workspace_work(q->workspace), most = q->options.max_nodes;
   run->batches = done < most ? most - done : 1;
   if (run->batches > MOST_BATCHES + over->last - over->first) run->batches = MOST_BATCHES + over->last - over->first;
@@ -274,11 +266,17 @@ bool edge_first_level(const query *q, size_t first, size_t last, bool suspects, 
   if (!look_along(q, c, &over, &run, &f, &nearest, &found->rest)) return false;
   found->is_suspect = f.is_suspect;
   found->verdict = f.is_suspect ? CPROX_VERDICT_VIOLATED : f.verdict;
-  if (found->verdict == CPROX_VERDICT_VIOLATED)
-    return take_one(q, f.geometry, f.other, f.self, time_of(q, &nearest, (double)f.at), run.pair, &found->rest);
+  if (found->verdict == CPROX_VERDICT_VIOLATED) {
+    take_one(q, f.geometry, f.other, f.self, time_of(q, &nearest, (double)f.at), run.pairs, &found->rest);
+    return true;
+  }
   const double least = lesser((double)f.least * (1.0 - 0x1p-20), c->beyond);
   found->lower = greater(q->limit + greater(least, 0.0) * (1.0 - 0x1p-50), nextafter(q->limit, INFINITY));
-  if (f.verdict == CPROX_VERDICT_CLEAR) return take_nearest(q, c, &f, &nearest, run.pair, &found->nearest);
+  if (f.verdict == CPROX_VERDICT_CLEAR) {
+    take_nearest(q, c, &f, &nearest, run.pairs, &found->nearest);
+    return true;
+  }
   if (!(found->rest.from < found->rest.to)) found->rest.from = q->t0, found->rest.to = q->t1;
-  return take_open(q, c, &run.all, &found->rest);
+  take_open(q, c, &run.all, run.pairs, run.selves, &found->rest);
+  return true;
 }

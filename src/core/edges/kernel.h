@@ -3,7 +3,6 @@
  * of its functions, and EDGE_KERNEL, the name of its function. doc/robot-edges.md derives what is computed here. */
 #include <string.h>
 
-#include "edges/edge_losses.h"
 #include "edges/kernels.h"
 #include "edges/lane.h"
 
