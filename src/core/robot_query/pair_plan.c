@@ -37,13 +37,8 @@ size_t pair_plan_count_self(const cprox_mover *mover) {
   return given && count < all && n == mover->motion->robot->n_geometries ? count : all;
 }
 
-/* False where memory is out. */
-static bool take(pair_plan *p, size_t moving, size_t standing, double apart) {
-  planned_pair *pairs = workspace_reserve(p->q->workspace, WORKSPACE_ROBOT_PLAN, (p->n + 1) * sizeof *pairs);
-  if (!pairs) return false;
-  p->pairs = pairs;
-  pairs[p->n++] = (planned_pair){.moving = (int32_t)moving, .standing = (int32_t)standing, .apart = apart};
-  return true;
+static void take(pair_plan *p, size_t moving, size_t standing, double apart) {
+  p->pairs[p->n++] = (planned_pair){.moving = (int32_t)moving, .standing = (int32_t)standing, .apart = apart};
 }
 
 /* How deep two may overlap sweeps do not say. */
@@ -55,25 +50,32 @@ static double parts_apart(const pair_plan *p, size_t part, size_t other) {
 
 /* What is left out matters only where it is the nearest of that. all: parts of links that the motion cannot move
  * against each other are not asked about. */
-static bool take_parts(pair_plan *p, size_t part, size_t other, bool all) {
+static void take_parts(pair_plan *p, size_t part, size_t other, bool all) {
   const cprox_motion *m = p->q->mover.motion;
   const double apart = parts_apart(p, part, other);
   const bool near = apart <= p->reach;
-  if (!near && apart >= p->beyond) return true;
-  if (all && !motion_relates_links(m, m->robot->parts[part].link, m->robot->parts[other].link)) return true;
-  if (near) return take(p, part, other, apart);
-  p->beyond = apart;
-  return true;
+  if (!near && apart >= p->beyond) return;
+  if (all && !motion_relates_links(m, m->robot->parts[part].link, m->robot->parts[other].link)) return;
+  if (near)
+    take(p, part, other, apart);
+  else
+    p->beyond = apart;
 }
 
-/* A part against obstacles first … last - 1, or against such parts of the robot itself. */
+/* A part against obstacles first … last - 1, or against such parts of the robot itself. False where memory is out. */
 static bool take_row(pair_plan *p, size_t part, size_t first, size_t last, bool self, bool all) {
-  bool took = true;
-  for (size_t k = first; k < last && took; k++) {
+  if (first >= last) return true;
+  planned_pair *pairs = workspace_reserve(p->q->workspace, WORKSPACE_ROBOT_PLAN, (p->n + last - first) * sizeof *pairs);
+  if (!pairs) return false;
+  p->pairs = pairs;
+  for (size_t k = first; k < last; k++) {
     if (!start_class_has(p->q->mover.motion, p->starts, (int32_t)part, self ? (int32_t)k : -1)) continue;
-    took = self ? take_parts(p, part, k, all) : take(p, part, k, -INFINITY);
+    if (self)
+      take_parts(p, part, k, all);
+    else
+      take(p, part, k, -INFINITY);
   }
-  return took;
+  return true;
 }
 
 /* The convex parts of two geometries, or of a geometry and an obstacle. */

@@ -60,19 +60,24 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
   return with_core(&placed, &m);
 }
 
-int32_t robot_scene_add_obstacles(robot_scene *s, size_t obstacle) {
-  const size_t parts = body_n_parts(s->q->obstacles[obstacle].body), n = s->n_obstacles + parts;
-  if (n > INT32_MAX) return -1;
-  robot_body *all = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_OBSTACLES, (n + 1) * sizeof *all);
-  if (!all) return -1;
-  s->obstacles = all;
+/* There is room for them. */
+static void add_parts(robot_scene *s, size_t obstacle) {
+  const size_t parts = body_n_parts(s->q->obstacles[obstacle].body);
   for (size_t i = 0; i < parts; i++) {
-    robot_body *made = &all[s->n_obstacles + i];
+    robot_body *made = &s->obstacles[s->n_obstacles++];
     *made = obstacle_of(s->q, obstacle, i);
     s->has_solids = s->has_solids || made->winding;
   }
-  s->n_obstacles = n;
-  return (int32_t)(n - parts);
+}
+
+int32_t robot_scene_add_obstacles(robot_scene *s, size_t obstacle) {
+  const size_t before = s->n_obstacles, n = before + body_n_parts(s->q->obstacles[obstacle].body);
+  if (n > INT32_MAX) return -1;
+  robot_body *all = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_OBSTACLES, n * sizeof *all);
+  if (!all) return -1;
+  s->obstacles = all;
+  add_parts(s, obstacle);
+  return (int32_t)before;
 }
 
 static robot_body part_body(const query *q, size_t i) {
@@ -210,8 +215,13 @@ bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
                        (MOTION_ROWS * s->motion->row_size + all_displacements) * sizeof *s->rows +
                        (q->errors ? n_axes * sizeof *s->deviations + robot->n_parts * sizeof *s->part_deviations : 0);
+  const uint32_t *listed = q->set ? q->set->unbounded : NULL;
+  const size_t n_listed = q->set ? q->set->n_unbounded : last - first;
+  size_t n_obstacles = 0;
+  for (size_t i = 0; i < n_listed; i++) n_obstacles += body_n_parts(q->obstacles[listed ? listed[i] : first + i].body);
+  s->obstacles = workspace_reserve(q->workspace, WORKSPACE_ROBOT_OBSTACLES, (n_obstacles + 1) * sizeof *s->obstacles);
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
-  if (!memory) return false;
+  if (!memory || !s->obstacles || n_obstacles > INT32_MAX) return false;
   s->parts = (part_state *)(void *)memory;
   s->tracks = (track_state *)(void *)(s->parts + robot->n_parts + 1);
   s->axes = (axis_state *)(void *)(s->tracks + s->motion->n_tracks);
@@ -227,9 +237,7 @@ bool robot_scene_begin(robot_scene *s, const query *q, const start_class *starts
   for (size_t i = 0; i < robot->n_parts && q->errors; i++) s->part_deviations[i].found = 0;
   for (size_t i = 0; i < s->motion->n_tracks; i++) s->tracks[i].found = s->tracks[i].filled = 0;
 
-  const size_t listed = q->set ? q->set->n_unbounded : last - first;
-  for (size_t i = 0; i < listed; i++)
-    if (robot_scene_add_obstacles(s, q->set ? q->set->unbounded[i] : first + i) < 0) return false;
+  for (size_t i = 0; i < n_listed; i++) add_parts(s, listed ? listed[i] : first + i);
   s->has_solids = s->has_solids || (q->set && q->set->has_solids);
   for (size_t i = 0; i < robot->n_parts; i++) {
     s->parts[i] = (part_state){.body = part_body(q, i), .carrier = s->motion->carrier[robot->parts[i].axis + 1]};
