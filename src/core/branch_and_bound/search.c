@@ -17,6 +17,48 @@
 
 enum { STOP_POLL_INTERVAL = 16 };
 
+/* ---- what a goal leaves to do ---- */
+
+bool search_must_end(search_goal *goal, uint64_t work) {
+  enum { WORK_BETWEEN_LOOKS = 64 };
+  if (goal->ended != CPROX_OK) return true;
+  if (work >= goal->max_nodes) {
+    goal->ended = CPROX_BUDGET;
+  } else if (goal->stop && work >= goal->next_look) {
+    goal->next_look = work + WORK_BETWEEN_LOOKS;
+    if (goal->stop(goal->stop_user)) goal->ended = CPROX_STOPPED;
+  }
+  return goal->ended != CPROX_OK;
+}
+
+/* The width that the goal allows at this upper bound. */
+static double search_width(const search_goal *goal, double upper) {
+  return width_allowed(goal->epsilon, goal->relative_epsilon, upper);
+}
+
+double search_pruning_bound(const search_goal *goal, double upper) {
+  if (goal->limit >= 0.0) return goal->limit;
+  const double known = lesser(upper, goal->cutoff);
+  return goal->beyond > 0.0 ? known + goal->beyond : known - search_width(goal, known);
+}
+
+bool search_is_pruned(const search_goal *goal, double upper, double lower) {
+  return goal->limit >= 0.0 ? lower > goal->limit : lower >= search_pruning_bound(goal, upper);
+}
+
+bool search_is_unresolved(const search_goal *goal, const search_best *best, double lower, double slack) {
+  const double gap = lesser(best->upper, goal->cutoff) + goal->beyond - lower;
+  return gap <= 2.0 * (slack + best->slack) || (goal->limit >= 0.0 && gap <= goal->epsilon);
+}
+
+bool search_is_answered(const search_goal *goal, double upper) {
+  if (goal->order == SEARCH_LEFT_TO_RIGHT || goal->is_signed) return false;
+  if (goal->limit >= 0.0) return upper <= goal->limit;
+  return upper <= (goal->beyond > 0.0 ? 0.0 : search_width(goal, upper));
+}
+
+/* ---- open nodes ---- */
+
 /* Open nodes: a binary heap on `lower` (best first) or `start` (left to right), or a stack (depth first), in the
  * workspace. */
 typedef struct frontier {
@@ -60,6 +102,8 @@ static search_node frontier_pop(frontier *f) {
   f->nodes[i] = moved;
   return top;
 }
+
+/* ---- the search ---- */
 
 static double known_upper(const search_goal *goal, const search_best *best) {
   return lesser(best->upper, goal->cutoff);

@@ -9,7 +9,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/vec.h"
 #include "curve_proximity/cprox/base.h"
 
 /* What an oracle knows of a node: the parameters that it covers, and what is left to look at. The engine copies it and
@@ -99,48 +98,20 @@ typedef struct search_effort {
 
 /* For oracles whose nodes take long: whether the search must end within the node at hand, after so much work, nodes
  * included. What is not bounded yet then stays as it is. */
-static inline bool search_must_end(search_goal *goal, uint64_t work) {
-  enum { WORK_BETWEEN_LOOKS = 64 };
-  if (goal->ended != CPROX_OK) return true;
-  if (work >= goal->max_nodes) {
-    goal->ended = CPROX_BUDGET;
-  } else if (goal->stop && work >= goal->next_look) {
-    goal->next_look = work + WORK_BETWEEN_LOOKS;
-    if (goal->stop(goal->stop_user)) goal->ended = CPROX_STOPPED;
-  }
-  return goal->ended != CPROX_OK;
-}
-
-/* The width that the goal allows at this upper bound. */
-static inline double search_width(const search_goal *goal, double upper) {
-  return width_allowed(goal->epsilon, goal->relative_epsilon, upper);
-}
+bool search_must_end(search_goal *goal, uint64_t work);
 
 /* The lower bound from which on a node needs no more work, the best point being `upper` away. */
-static inline double search_pruning_bound(const search_goal *goal, double upper) {
-  if (goal->limit >= 0.0) return goal->limit;
-  const double known = lesser(upper, goal->cutoff);
-  return goal->beyond > 0.0 ? known + goal->beyond : known - search_width(goal, known);
-}
+double search_pruning_bound(const search_goal *goal, double upper);
 
 /* Whether a lower bound says that. */
-static inline bool search_is_pruned(const search_goal *goal, double upper, double lower) {
-  return goal->limit >= 0.0 ? lower > goal->limit : lower >= search_pruning_bound(goal, upper);
-}
+bool search_is_pruned(const search_goal *goal, double upper, double lower);
 
 /* A lower bound that is neither above the limit nor able to say more: closer to the best point than epsilon (verdicts)
  * or than rounding. slack: how much of the bound is rounding. */
-static inline bool search_is_unresolved(const search_goal *goal, const search_best *best, double lower, double slack) {
-  const double gap = lesser(best->upper, goal->cutoff) + goal->beyond - lower;
-  return gap <= 2.0 * (slack + best->slack) || (goal->limit >= 0.0 && gap <= goal->epsilon);
-}
+bool search_is_unresolved(const search_goal *goal, const search_best *best, double lower, double slack);
 
 /* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
-static inline bool search_is_answered(const search_goal *goal, double upper) {
-  if (goal->order == SEARCH_LEFT_TO_RIGHT || goal->is_signed) return false;
-  if (goal->limit >= 0.0) return upper <= goal->limit;
-  return upper <= (goal->beyond > 0.0 ? 0.0 : search_width(goal, upper));
-}
+bool search_is_answered(const search_goal *goal, double upper);
 
 /* Searches from the root on; *outcome is always filled, and true, when the status is not negative. Where bounds are
  * shared goal->cutoff falls meanwhile. */
