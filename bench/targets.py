@@ -9,7 +9,7 @@ import re
 OURS = 'curve_proximity'
 HERE = os.path.dirname(os.path.abspath(__file__))
 
-AT_LEAST = ('ratio', 'each', 'fewer')
+AT_LEAST = ('ratio', 'each', 'fewer', 'smaller')
 # How far a figure may be beyond its limit: two runs on a shared machine differ by so much. Counts do not.
 SLACK = {'ratio': 0.2, 'each': 0.2, 'growth': 0.2, 'tail': 0.5, 'exponent': 0.1}
 # Peers that a machine may lack.
@@ -62,10 +62,10 @@ def figure(rows, target):
     kind = target['kind']
     found = matching(rows, target)
     if kind in AT_LEAST:
-        values = ratios(found, target['baseline'], 'nodes' if kind == 'fewer' else 'median_us')
+        values = ratios(found, target['baseline'], {'fewer': 'nodes', 'smaller': 'error'}.get(kind, 'median_us'))
         if not values:
             return None
-        return min(values) if kind == 'each' else geometric_mean(values)
+        return min(values) if kind in ('each', 'smaller') else geometric_mean(values)
     if kind == 'tail':
         values = ratios(found, target['baseline'] or OURS, 'median_us', 'p95_us')
         return max(1.0 / value for value in values) if values else None

@@ -87,12 +87,11 @@ CASE(distances_from_a_centre_are_never_overstated) {
       arc_random(&r, degree, scale, centre, along, p);
     else
       for (size_t i = 0; i <= degree; i++) p[i] = rng_in_cube(&r, 2.0 * scale);
-    double points[3 * (MAX_DEGREE + 1)], scratch[3 * (MAX_DEGREE + 1)];
+    double points[3 * (MAX_DEGREE + 1)];
     to_arrays(p, degree, points);
-    double tables[4 * (MAX_DEGREE + 1)];
+    double tables[2 * (MAX_DEGREE + 1)];
     curve_fill_tables(degree, tables);
-    const double *square = tables + (degree < 2 ? 0 : degree - 1);
-    const double bound = control_distance_from(points, degree, square, centre, along, scratch);
+    const double bound = control_distance_from(points, degree, tables, centre, along);
     for (int i = 0; i < 4; i++) {
       const double s = i == 0 ? 0.0 : i == 1 ? 1.0 : rng_uniform(&r, 0.0, 1.0);
       vec3l w = ref_sub(ref_bezier(p, degree, s, 0), ref_vec(centre));

@@ -95,11 +95,12 @@ double control_split(double *left, double *right, size_t degree, double s, doubl
 }
 
 SIMD_CLONES
-double control_distance_from(const double *points, size_t degree, const double *square, vec3 centre, const vec3 *axis,
-                             double *scratch) {
+double control_distance_from(const double *points, size_t degree, const double *binomial, vec3 centre,
+                             const vec3 *axis) {
   const double *restrict x = points, *restrict y = points + degree + 1, *restrict z = y + degree + 1;
-  const double *restrict once = square, *restrict per_twice = square + degree + 1;
-  double *restrict wx = scratch, *restrict wy = wx + degree + 1, *restrict wz = wy + degree + 1;
+  const double *restrict per_twice = curve_per_twice(binomial, degree);
+  double once[CPROX_MAX_DEGREE + 1], wx[CPROX_MAX_DEGREE + 1], wy[CPROX_MAX_DEGREE + 1], wz[CPROX_MAX_DEGREE + 1];
+  curve_own_binomials(binomial, degree, once);
 
   /* w_i = C(n, i) (P_i - centre), or its part across the axis, so that products of two of them need no further weight
    */
@@ -127,10 +128,12 @@ double control_distance_from(const double *points, size_t degree, const double *
     for (size_t j = i + 1; j <= degree; j++) at[j] += ax * wx[j] + ay * wy[j] + az * wz[j];
   }
   double least = INFINITY;
+  const double *restrict back = sum + degree;
 #pragma omp simd reduction(min : least)
-  for (size_t k = 0; k <= 2 * degree; k++) {
-    const double coefficient = sum[k] * per_twice[k];
-    least = coefficient < least ? coefficient : least;
+  for (size_t k = 0; k <= degree; k++) {
+    const double first = sum[k] * per_twice[k], second = back[k] * per_twice[degree - k];
+    least = first < least ? first : least;
+    least = second < least ? second : least;
   }
 
   /* the coefficients are convex combinations of products below reach^2; doc/rounding.md counts (14 n + 40) u of them */

@@ -8,10 +8,13 @@
 #include <stddef.h>
 
 #include "base/vec.h"
+#include "curve_proximity/cprox/curve.h"
 
 static inline size_t control_size(size_t degree) {
   return 3 * (degree + 1);
 }
+
+enum { CONTROL_MOST = 3 * (CPROX_MAX_DEGREE + 1) };
 
 /* min over the control points of n·P. */
 double control_least(const double *points, size_t degree, vec3 n);
@@ -28,9 +31,8 @@ double control_magnitude(const double *points, size_t degree);
 double control_split(double *left, double *right, size_t degree, double s, double magnitude);
 
 /* A lower bound of |w| over the piece, w = psi - centre or its part orthogonal to the unit `axis` (NULL for none), from
- * the Bernstein coefficients of |w|^2, rounding included; 0 where they say nothing. Cost: degree^2. `scratch` holds
- * control_size(degree) numbers, `square` is the curve's table. */
-double control_distance_from(const double *points, size_t degree, const double *square, vec3 centre, const vec3 *axis,
-                             double *scratch);
+ * the Bernstein coefficients of |w|^2, rounding included; 0 where they say nothing. Cost: degree^2. `binomial`: curve_binomial(). */
+double control_distance_from(const double *points, size_t degree, const double *binomial, vec3 centre,
+                             const vec3 *axis);
 
 #endif

@@ -114,7 +114,7 @@ size_t curve_arrays_size(size_t degree, size_t n_pieces);
 void curve_lay_out(cprox_curve *c, size_t degree, size_t n_pieces, void *memory);
 
 /* Numbers of a degree: C(degree - 2, k), for evaluation by the last three de Casteljau points, none below 2; and for
- * control_distance_from(): C(degree, k), then 1 / C(2 degree, k). Of low degrees they are constants. */
+ * control_distance_from(): 1 / C(2 degree, k), k <= degree. Of low degrees they are constants. */
 enum { CURVE_LOW_DEGREE = 5 };
 extern const double *const curve_low_tables[CURVE_LOW_DEGREE + 1];
 size_t curve_tables_size(size_t degree);
@@ -128,8 +128,21 @@ static inline const double *curve_binomial(const cprox_curve *c) {
   return c->degree <= CURVE_LOW_DEGREE ? curve_low_tables[c->degree] : curve_own_tables(c);
 }
 
-static inline const double *curve_square(const cprox_curve *c) {
-  return curve_binomial(c) + (c->degree < 2 ? 0 : c->degree - 1);
+static inline const double *curve_per_twice(const double *binomial, size_t degree) {
+  return binomial + (degree < 2 ? 0 : degree - 1);
+}
+
+/* C(degree, k) of C(degree - 2, k), by Pascal's rule twice. */
+static inline void curve_own_binomials(const double *binomial, size_t degree, double own[CPROX_MAX_DEGREE + 1]) {
+  double padded[CPROX_MAX_DEGREE + 3];
+  if (degree < 2) {
+    own[0] = own[degree] = 1.0;
+    return;
+  }
+  padded[0] = padded[1] = 0.0;
+  for (size_t k = 0; k + 2 <= degree; k++) padded[k + 2] = binomial[k];
+  padded[degree + 1] = padded[degree + 2] = 0.0;
+  for (size_t k = 0; k <= degree; k++) own[k] = padded[k] + 2.0 * padded[k + 1] + padded[k + 2];
 }
 
 /* Builds the capsules and tables over pieces that are filled in. */

@@ -6,7 +6,7 @@
 enum { LANES = 4, FEW = 5 };
 
 size_t curve_tables_size(size_t degree) {
-  return (degree < 2 ? 0 : degree - 1) + (degree + 1) + (2 * degree + 1);
+  return (degree < 2 ? 0 : degree - 1) + (degree + 1);
 }
 
 void curve_fill_tables(size_t degree, double *tables) {
@@ -17,27 +17,18 @@ void curve_fill_tables(size_t degree, double *tables) {
     for (size_t k = row; k-- > 1;) binomial[k] += binomial[k - 1];
   }
 
-  /* C(n, k) and 1 / C(2n, k) from the nearer end: two roundings a step, so at most n u each, and u for the reciprocal
-   */
-  double *once = tables + (degree < 2 ? 0 : degree - 1), *twice = once + degree + 1, number = 1.0;
-  for (size_t k = 0; 2 * k <= degree; k++) {
-    once[k] = once[degree - k] = number;
-    number = number * (double)(degree - k) / (double)(k + 1);
-  }
-  number = 1.0;
+  /* 1 / C(2n, k) from the nearer end: two roundings a step, so at most n u each, and u for the reciprocal */
+  double *per_twice = tables + (degree < 2 ? 0 : degree - 1), number = 1.0;
   for (size_t k = 0; k <= degree; k++) {
-    twice[k] = twice[2 * degree - k] = 1.0 / number;
+    per_twice[k] = 1.0 / number;
     number = number * (double)(2 * degree - k) / (double)(k + 1);
   }
 }
 
-static const double low_1[] = {1, 1, 1, 1.0 / 2, 1}, low_2[] = {1, 1, 2, 1, 1, 1.0 / 4, 1.0 / 6, 1.0 / 4, 1},
-                    low_3[] = {1, 1, 1, 3, 3, 1, 1, 1.0 / 6, 1.0 / 15, 1.0 / 20, 1.0 / 15, 1.0 / 6, 1},
-                    low_4[] = {1,       2,        1,        1,        4,        6,        4,       1, 1,
-                               1.0 / 8, 1.0 / 28, 1.0 / 56, 1.0 / 70, 1.0 / 56, 1.0 / 28, 1.0 / 8, 1},
-                    low_5[] = {1,         3,         3,         1,         1,        5,        10,
-                               10,        5,         1,         1,         1.0 / 10, 1.0 / 45, 1.0 / 120,
-                               1.0 / 210, 1.0 / 252, 1.0 / 210, 1.0 / 120, 1.0 / 45, 1.0 / 10, 1};
+static const double low_1[] = {1, 1.0 / 2}, low_2[] = {1, 1, 1.0 / 4, 1.0 / 6},
+                    low_3[] = {1, 1, 1, 1.0 / 6, 1.0 / 15, 1.0 / 20},
+                    low_4[] = {1, 2, 1, 1, 1.0 / 8, 1.0 / 28, 1.0 / 56, 1.0 / 70},
+                    low_5[] = {1, 3, 3, 1, 1, 1.0 / 10, 1.0 / 45, 1.0 / 120, 1.0 / 210, 1.0 / 252};
 const double *const curve_low_tables[CURVE_LOW_DEGREE + 1] = {NULL, low_1, low_2, low_3, low_4, low_5};
 
 /* With m = n - 2, the last three de Casteljau points are Q_j = sum_k B_k^m(s) P_(k+j), j = 0, 1, 2: nine sums of m + 1

@@ -172,28 +172,55 @@ double lanes_nearest_point(const lanes_chords *c, uint32_t first, vec3 from, uin
   return least_of(square, nearest);
 }
 
-SIMD_CLONES
-double lanes_nearest_sample(const double *basis, const double *x, const double *y, const double *z, size_t degree) {
-  /* begun by their first terms: so many sums stay in registers */
-  double px[CHORDS], py[CHORDS], pz[CHORDS], square[CHORDS + 1];
+/* The square distances from the origin of LANES points in one half of a piece: t = (first + k)/CHORDS from its beginning
+ * (step 1) or its end (step -1). With the degree n and c_j = C(n, j) P_j, counted from there, a point is
+ * (1 - t)^n sum c_j (t/(1 - t))^j, by Horner's rule: no table of weights is needed, and t/(1 - t) is at most 1. */
+static inline void half_of_piece(const double *c[3], size_t degree, ptrdiff_t step, double first,
+                                 double square[LANES]) {
+  double ratio[LANES], power[LANES], base[LANES], x[LANES], y[LANES], z[LANES];
+  const ptrdiff_t last = (ptrdiff_t)degree;
+  const size_t end = step > 0 ? degree : 0;
 #pragma omp simd
-  for (int k = 0; k < CHORDS; k++) {
-    px[k] = basis[k] * x[0];
-    py[k] = basis[k] * y[0];
-    pz[k] = basis[k] * z[0];
+  for (int k = 0; k < LANES; k++) {
+    const double t = (first + (double)k) / CHORDS;
+    ratio[k] = t / (1.0 - t), base[k] = 1.0 - t, power[k] = 1.0;
+    x[k] = c[0][end], y[k] = c[1][end], z[k] = c[2][end];
   }
-  for (size_t j = 1; j <= degree; j++) {
-    const double *restrict b = basis + j * CHORDS;
-    const double qx = x[j], qy = y[j], qz = z[j];
+  for (ptrdiff_t j = 1; j <= last; j++) {
+    const ptrdiff_t at = (ptrdiff_t)end - j * step;
+    const double px = c[0][at], py = c[1][at], pz = c[2][at];
 #pragma omp simd
-    for (int k = 0; k < CHORDS; k++) {
-      px[k] += b[k] * qx;
-      py[k] += b[k] * qy;
-      pz[k] += b[k] * qz;
+    for (int k = 0; k < LANES; k++) {
+      x[k] = x[k] * ratio[k] + px;
+      y[k] = y[k] * ratio[k] + py;
+      z[k] = z[k] * ratio[k] + pz;
+    }
+  }
+  for (size_t n = degree; n > 0; n /= 2) {
+#pragma omp simd
+    for (int k = 0; k < LANES; k++) {
+      power[k] *= n % 2 ? base[k] : 1.0;
+      base[k] *= base[k];
     }
   }
 #pragma omp simd
-  for (int k = 0; k < CHORDS; k++) square[k] = px[k] * px[k] + py[k] * py[k] + pz[k] * pz[k];
+  for (int k = 0; k < LANES; k++) {
+    x[k] *= power[k], y[k] *= power[k], z[k] *= power[k];
+    square[k] = x[k] * x[k] + y[k] * y[k] + z[k] * z[k];
+  }
+}
+
+SIMD_CLONES
+double lanes_nearest_sample(const double *binomial, const double *x, const double *y, const double *z, size_t degree) {
+  double own[CPROX_MAX_DEGREE + 1], cx[CPROX_MAX_DEGREE + 1], cy[CPROX_MAX_DEGREE + 1], cz[CPROX_MAX_DEGREE + 1];
+  double square[CHORDS + 1], upper[LANES];
+  curve_own_binomials(binomial, degree, own);
+  for (size_t j = 0; j <= degree; j++) cx[j] = own[j] * x[j], cy[j] = own[j] * y[j], cz[j] = own[j] * z[j];
+  const double *c[3] = {cx, cy, cz};
+  /* s = k/16 from the beginning; from the end, 1 - s = (k + 1)/16 */
+  half_of_piece(c, degree, 1, 0.0, square);
+  half_of_piece(c, degree, -1, 1.0, upper);
+  for (int k = 0; k < LANES; k++) square[LANES + k] = upper[LANES - 1 - k];
   square[CHORDS] = x[degree] * x[degree] + y[degree] * y[degree] + z[degree] * z[degree];
   uint32_t low, high;
   const double left_half = least_of(square, &low), right_half = least_of(square + LANES, &high);

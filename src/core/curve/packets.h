@@ -32,8 +32,8 @@ const double *lanes_basis(size_t degree, cprox_workspace *workspace);
 const double *lanes_fine_basis(size_t degree, size_t chord, cprox_workspace *workspace);
 
 /* Where on a piece (control points one array a coordinate) it comes nearest to the origin, as far as CHORDS + 1 points
- * tell: s. */
-double lanes_nearest_sample(const double *basis, const double *x, const double *y, const double *z, size_t degree);
+ * tell: s. `binomial`: curve_binomial(). */
+double lanes_nearest_sample(const double *binomial, const double *x, const double *y, const double *z, size_t degree);
 
 /* The tables of two degrees at once. False where memory is out. */
 bool lanes_bases(const size_t degree[2], cprox_workspace *workspace, const double *basis[2]);

@@ -17,7 +17,8 @@ enum { ARC_HULL = 6, ARC_SIZE = 8 };
 bool points_pool_begin(points_pool *pool, size_t degree, size_t reserved, cprox_workspace *workspace) {
   const size_t size = control_size(degree);
   *pool = (points_pool){.workspace = workspace, .stride = size > ARC_SIZE ? size : ARC_SIZE, .slots = reserved};
-  pool->points = workspace_reserve(workspace, WORKSPACE_POINTS, reserved * pool->stride * sizeof(double));
+  /* and for the first interval and its half, which most searches need */
+  pool->points = workspace_reserve(workspace, WORKSPACE_POINTS, (reserved + 2) * pool->stride * sizeof(double));
   return pool->points;
 }
 
@@ -477,11 +478,9 @@ curve_reach curve_side_children_reach(const curve_side *side, const curve_pack *
   return (curve_reach){.least = -INFINITY, .error = side->range_error, .magnitude = side->range_magnitude};
 }
 
-double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis,
-                                double *scratch) {
+double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis) {
   const double *points = points_pool_at(side->pool, (size_t)at->slot);
-  const double distance =
-      control_distance_from(points, side->curve->degree, curve_square(side->curve), centre, axis, scratch);
+  const double distance = control_distance_from(points, side->curve->degree, curve_binomial(side->curve), centre, axis);
   double thin, thick;
   if (side->radius) {
     curve_side_radius_range(side, at, &thin, &thick);

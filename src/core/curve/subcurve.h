@@ -26,7 +26,7 @@ typedef struct points_pool {
   cprox_status failure; /* negative where a curve's own functions failed; the workspace has the reason */
 } points_pool;
 
-/* A pool whose first `reserved` slots are never given out: each side's root, scratch. False where memory is out. */
+/* A pool whose first `reserved` slots are never given out: each side's root. False where memory is out. */
 bool points_pool_begin(points_pool *pool, size_t degree, size_t reserved, cprox_workspace *workspace);
 double *points_pool_at(const points_pool *pool, size_t slot);
 void points_pool_release(points_pool *pool, int32_t slot);
@@ -147,9 +147,8 @@ bool curve_side_cut_arcs(const curve_side *side, const curve_interval *piece, co
 vec3 curve_side_end(const curve_side *side, const curve_interval *at, bool last);
 
 /* A lower bound of the distance from a centre, or an axis through it (NULL for none), over an interval with points of
- * its own, as control_distance_from() gives it, less the radius. `scratch` holds a slot's numbers. */
-double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis,
-                                double *scratch);
+ * its own, as control_distance_from() gives it, less the radius. */
+double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis);
 
 /* A point of the loaded piece, and how far a point computed so may be from the exact curve. */
 vec3 curve_side_point(const curve_side *side, double s);

@@ -9,7 +9,7 @@
 static const double FIRST_STEP = 1e-14;
 enum { STEPS = 15 };
 
-/* Some of a piece; its control points stand in the scratch slot. */
+/* Some of a piece. */
 typedef struct segment {
   size_t piece;
   double from, to;
@@ -21,11 +21,11 @@ typedef struct passage {
   double first, last, room;
 } passage;
 
-/* Brings [from, to] of a piece into the scratch slot; returns how far the points are off. */
-static double cut_out(const crossing *o, const segment *of) {
+/* The control points of [from, to] of a piece; returns how far they are off. */
+static double cut_out(const crossing *o, const segment *of, double rest[CONTROL_MOST]) {
   const size_t degree = o->side->curve->degree;
   curve_side_load(o->side, of->piece);
-  double *rest = points_pool_at(o->side->pool, o->slot[0]), *left = points_pool_at(o->side->pool, o->slot[1]);
+  double left[CONTROL_MOST];
   const double *whole = points_pool_at(o->side->pool, o->side->root_slot);
   for (size_t i = 0; i < control_size(degree); i++) rest[i] = whole[i];
   double error = o->side->root_error + control_split(left, rest, degree, of->to, o->side->root_magnitude);
@@ -38,11 +38,12 @@ static double cut_out(const crossing *o, const segment *of) {
 static bool passes_over(const crossing *o, const segment *of, flat_region *region, passage *seen) {
   const flat_shape *flat = o->flat;
   const size_t n = o->side->curve->degree + 1;
-  const double error = cut_out(o, of), size = o->side->root_magnitude + o->shape->scale;
+  double points[CONTROL_MOST];
+  const double error = cut_out(o, of, points), size = o->side->root_magnitude + o->shape->scale;
   seen->room = ROUND_UP * (4.0 * error + 64.0 * ROUND_U * size + o->shape->slack);
 
   /* their places along e and f, and their heights, take the room of x, y and z */
-  double *x = points_pool_at(o->side->pool, o->slot[0]), *y = x + n, *z = y + n;
+  double *x = points, *y = x + n, *z = y + n;
   for (size_t i = 0; i < n; i++) {
     const vec3 p = vec_sub(vec(x[i], y[i], z[i]), flat->origin);
     x[i] = vec_dot(flat->e, p), y[i] = vec_dot(flat->f, p), z[i] = vec_dot(flat->normal, p);
@@ -160,7 +161,7 @@ bool crossing_prove(const crossing *o, crossing_place *place) {
 
 bool crossing_prove_convex(curve_convex *o, curve_sample *sample, crossing_place *place) {
   if (!curve_convex_is_flat(o)) return false;
-  const crossing of = {&o->side, o->shape, &o->flat, {CURVE_CONVEX_SCRATCH, CURVE_CONVEX_LEFT}};
+  const crossing of = {&o->side, o->shape, &o->flat};
   *place = (crossing_place){.piece = sample->piece, .s = sample->s};
   if (!crossing_prove(&of, place)) return false;
   sample->piece = place->piece, sample->s = place->s;

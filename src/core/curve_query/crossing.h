@@ -6,12 +6,11 @@
 
 #include "curve_query/curve_convex.h"
 
-/* A curve, the flat shape in its frame, and slots of its pool that may be written on. */
+/* A curve, and the flat shape in its frame. */
 typedef struct crossing {
   curve_side *side;
   const convex *shape;
   const flat_shape *flat;
-  size_t slot[2];
 } crossing;
 
 /* Near s of a piece. When a crossing is proven: where they meet but for rounding, and by where they certainly have met.

@@ -6,7 +6,7 @@
 #include "curve_query/crossing.h"
 
 /* Slots of the pool that nodes never get. */
-enum { SLOT_ROOT, SLOT_SCRATCH, SLOT_SCRATCH_LEFT, SLOTS_RESERVED };
+enum { SLOT_ROOT, SLOTS_RESERVED };
 
 enum { MOST_STEPS = 10, MOST_ELEMENTS = 8, LEAST_SEEDS = 5, MOST_SEEDS = 65, PIECES_A_SEED = 8 };
 
@@ -118,7 +118,7 @@ static bool goes_through_triangle(curve_tree *o, tree_sample *sample, crossing_p
       .ops = &convex_polytope, .scale = ROUND_UP * scale, .n = 3, .padded = 8, .x = x, .y = y, .z = z};
   flat_shape flat;
   flat_describe(&triangle, &flat);
-  const crossing of = {&o->side, &triangle, &flat, {SLOT_SCRATCH, SLOT_SCRATCH_LEFT}};
+  const crossing of = {&o->side, &triangle, &flat};
   *place = (crossing_place){.piece = sample->piece, .s = sample->s};
   const bool proven = crossing_prove(&of, place);
   sample->piece = place->piece, sample->s = place->s;

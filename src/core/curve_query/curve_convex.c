@@ -75,8 +75,7 @@ static bool has_round_core(const curve_convex *o) {
 static void bound_by_cover(curve_convex *o, search_node *node) {
   curve_convex_node *payload = curve_convex_own(node);
   const double from_centre =
-      curve_side_distance_from(&o->side, &payload->at, o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
-                               points_pool_at(&o->pool, CURVE_CONVEX_SCRATCH));
+      curve_side_distance_from(&o->side, &payload->at, o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL);
   const double bound = from_centre - o->cover.radius - o->offset;
   const double slack = ROUND_UP * (payload->at.error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
   node->lower = greater(bound - slack, node->lower);
@@ -90,8 +89,7 @@ static void bound_all_round(curve_convex *o, search_node *node) {
   const vec3 n = o->best.normal;
   const double across = hypot(n.x, n.y);
   if (!isfinite(o->best.support) || !(across > 0.0)) return;
-  const double from_axis =
-      curve_side_distance_from(&o->side, at, vec(0, 0, 0), &AXIS, points_pool_at(&o->pool, CURVE_CONVEX_SCRATCH));
+  const double from_axis = curve_side_distance_from(&o->side, at, vec(0, 0, 0), &AXIS);
   const curve_reach along = curve_side_reach(&o->side, at, vec(0.0, 0.0, n.z));
   const double bound = across * from_axis + along.least - o->best.support;
   const double slack = 2.0 * bound_slack(o, at->error + along.error, along.magnitude + from_axis, bound);
@@ -306,8 +304,8 @@ static bool normal_from_origin(curve_convex *o, const search_node *node) {
  */
 static double nearest_sample(const curve_convex *o) {
   const size_t degree = o->side.curve->degree;
-  const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
-  return basis ? lanes_nearest_sample(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : 0.5;
+  const double *x = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
+  return lanes_nearest_sample(curve_binomial(o->side.curve), x, x + degree + 1, x + 2 * (degree + 1), degree);
 }
 
 /* Many pieces are so short that their chords tell as much as points on them. */

@@ -63,8 +63,8 @@ typedef struct curve_convex {
   flat_shape flat;
 } curve_convex;
 
-/* Slots of the pool that nodes never get: the loaded piece, and room for whoever asks. */
-enum { CURVE_CONVEX_ROOT, CURVE_CONVEX_SCRATCH, CURVE_CONVEX_LEFT, CURVE_CONVEX_RESERVED };
+/* The slot of the pool that nodes never get: the loaded piece. */
+enum { CURVE_CONVEX_ROOT, CURVE_CONVEX_RESERVED };
 
 /* Makes the oracle ready; false where memory is out. The shape stands in the frame; offset >= 0. */
 bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex *shape, frame placed, double offset,
