@@ -387,8 +387,8 @@ class Node:
         arguments = [executable('curve_proximity', 'curve_proximity_node'), '__name:=' + name]
         if cgroup:
             arguments = ['sh', '-c', 'echo $$ >"$0"/cgroup.procs && exec "$@"', cgroup] + arguments
-        for parameter, value in dict({'state_file': ''}, **parameters).items():
-            if environment is None:
+        for parameter, value in dict({'state_file': '', 'max_age': 0.0}, **parameters).items():  # what a test sends stays fresh
+            if environment is None and value is not None:
                 rospy.set_param('/%s/%s' % (name, parameter), value)
         self._log = open(os.path.join('/tmp', 'curve_proximity_%s_%d_%d.log' % (name, os.getpid(), next(_NODES))), 'w+')
         self.process = subprocess.Popen(arguments, stdout=self._log, stderr=subprocess.STDOUT, env=environment)

@@ -16,6 +16,7 @@ from foreign_types import moveit
 from helpers import (Case, Node, Server, bezier, cloud, joint_trajectory, joints, run, service, sphere, thing, transform,
                      until)
 from sensor_msgs.msg import JointState, PointCloud2
+from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -118,6 +119,15 @@ class Known(Case):
         self.addCleanup(listener.unregister)
         self.assertTrue(until(lambda: told, 10))
         self.assertEqual({(row.status, row.verdict) for row in told[-1].results}, {('stale', 'undecided')})
+
+    def test_a_robot_that_has_not_told_of_itself_for_some_seconds_is_stale_by_default(self):
+        self.set_robot()
+        _, server = self.begin('silent', max_age=None, fixed_frame='base')
+        states = self.publisher('/silent/joint_states', JointState)
+        server.replace(sphere('ball', 0.1, (0, 0, 9)))
+        for age, expected in ((4.0, ('undecided', 'stale')), (0.0, ('clear', 'ok'))):
+            states.publish(JointState(header=Header(stamp=rospy.Time.now() - rospy.Duration(age)), name=['turn'], position=[0.0]))
+            self.assertTrue(until(lambda: [(r.verdict, r.status) for r in server.tolerance([], 0.01, robot_state=True).results] == [expected], 5))
 
     def test_transforms_and_their_age(self):
         _, server = self.begin('placed', max_age=0.5)

@@ -68,7 +68,7 @@ struct Parameters {
   bool empty_cloud_clears = false;
   double least_valid_share = 0.01;
   std::vector<std::string> expected_sensors, assumed_joints;
-  double max_age = 0.0;
+  double max_age = 3.0;
   bool allow_empty = false;
   std::vector<ProviderSpec> constraint_providers = {
       {"curve_proximity/CurveDistance", "curve_proximity/CurveDistance", {}},
