@@ -3,13 +3,15 @@
 """MoveIt's scene by topic and service: its answers are those of ~apply_scene, and what is wrong is told."""
 import copy
 import math
+import subprocess
+import sys
 import unittest
 
 import rospy
 from curve_proximity.msg import AllowedContact, AttachedCollisionObject, LinkPadding, LinkScale, ProximityResults
 from diagnostic_msgs.msg import DiagnosticArray
 from foreign_types import GetPlanningScene, GetPlanningSceneResponse, moveit
-from helpers import Server, bezier, box, connected, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
+from helpers import Node, Server, bezier, box, connected, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 
@@ -259,6 +261,18 @@ class PlanningScene(unittest.TestCase):
         self.scene.world.collision_objects.append(foreign(sphere('lost', .1)))
         self.assertTrue(until(lambda: 'lost' in [thing.id for thing in self.follower.scene().objects], PATIENCE))
 
+    def test_6b_a_scene_whose_move_group_has_died_is_unknown_until_one_answers_again(self):
+        node = Node('orphan', ask_planning_scene=True)
+        self.addCleanup(node.end)
+        server = Server('/orphan')
+        for _ in range(2):
+            with subprocess.Popen([sys.executable, __file__, '--move-group', '/orphan/get_planning_scene']) as move_group:
+                self.addCleanup(move_group.kill)
+                for expected in ('clear', 'ok'), ('undecided', 'unknown'):
+                    ask = lambda: [(r.verdict, r.status) for r in server.tolerance(CURVES[0], .01, objects=['cup']).results]
+                    self.assertTrue(until(lambda: ask() == [expected], PATIENCE), ask())
+                    move_group.kill()
+
     def ask(self, topic, message, stamp):
         """Publishes a trajectory; the answer to it."""
         answers = []
@@ -417,4 +431,9 @@ class PlanningScene(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    run('planning_scene')
+    if '--move-group' in sys.argv:
+        rospy.init_node('move_group', anonymous=True)
+        serving = rospy.Service(sys.argv[2], GetPlanningScene, lambda _: GetPlanningSceneResponse(scene=full_scene()))
+        rospy.spin()
+    else:
+        run('planning_scene')

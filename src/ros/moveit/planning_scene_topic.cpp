@@ -40,6 +40,8 @@ const char *const NO_FULL_SCENE =
 
 const char *const NO_SCENE = "no planning scene has come: ~ask_planning_scene expects one of move_group";
 
+const char *const GONE = "move_group has gone: what it would change of its scene is not known";
+
 std::string joined(const std::vector<std::string> &messages) {
   std::string out;
   for (std::size_t i = 0; i < messages.size() && i < MOST_SENTENCES; ++i) out += (i ? "; " : "") + messages[i];
@@ -223,6 +225,7 @@ void PlanningSceneTopic::publishUnknowns() {
   const PlanningSceneReport now = report();
   std::vector<Unknown> unknowns;
   if (now.full == 0 && now.diffs > 0) unknowns.push_back({NO_FULL_SCENE, ""});
+  if (now.gone) unknowns.push_back({GONE, "", Missing::ANYTHING});
   if (!now.unused.empty())
     unknowns.push_back({"not used of ~planning_scene: " + joined(now.unused), "", Missing::ANYTHING});
   if (!now.differences.empty())
@@ -232,6 +235,16 @@ void PlanningSceneTopic::publishUnknowns() {
   live_.unknowns.set("planning scene", std::move(unknowns));
   const bool awaited = now.full == 0 && now.diffs == 0 && parameters_.ask_planning_scene;
   live_.unknowns.set(AWAITED_SCENE, awaited ? std::vector<Unknown>{{NO_SCENE, ""}} : std::vector<Unknown>{});
+}
+
+void PlanningSceneTopic::setGone(bool gone) {
+  const std::lock_guard<std::mutex> lock(taking_);
+  {
+    const std::lock_guard<std::mutex> report(mutex_);
+    if (std::exchange(report_.gone, gone) == gone) return;
+  }
+  if (gone) warn(GONE);
+  publishUnknowns();
 }
 
 void PlanningSceneTopic::warn(const std::string &why) {
@@ -259,19 +272,22 @@ void PlanningSceneTopic::ask() {
       else
         take(scene, "~get_planning_scene");
       begun = true;
+      setGone(false);
     }
     const bool settled = begun && (same || publishers == 0);
     period = settled ? check : ASK_AGAIN;
   }
 }
 
-/** False: the topic ends. A publisher more ends the waiting, and what had begun. */
+/** False: the topic ends. A publisher more, and a service that goes, end the waiting, and what had begun. */
 bool PlanningSceneTopic::wait(double period, std::uint32_t &publishers, bool &begun) {
   const auto start = std::chrono::steady_clock::now();
   std::unique_lock<std::mutex> lock(asking_);
   while (!ending_) {
     const std::uint32_t before = std::exchange(publishers, subscriber_.getNumPublishers());
-    if (publishers > before) {
+    const bool gone = begun && !client_.isValid(); // the connection ends with move_group
+    if (gone) setGone(true);
+    if (gone || publishers > before) {
       begun = false;
       return true;
     }

@@ -36,6 +36,7 @@ struct PlanningSceneReport {
   std::vector<std::string> differences; /**< from ~get_planning_scene, where that has been asked */
   std::uint64_t checks = 0;             /**< answers of ~get_planning_scene that were compared */
   std::uint64_t replaced = 0;           /**< of these taken over, as the scene lacked a diff */
+  bool gone = false;                    /**< ~get_planning_scene has answered, and is not there any more */
 };
 
 /** ~planning_scene, and ~get_planning_scene as a client. Both have queues of their own: building a scene takes no
@@ -71,6 +72,7 @@ class PlanningSceneTopic {
   PlanningSceneContext context(const Snapshot &snapshot, FrameLookup &lookup) const;
   void keepUnused(const std::vector<std::string> &wrong, bool full);
   void publishUnknowns();
+  void setGone(bool gone);
   void warn(const std::string &why);
   void ask();
   bool wait(double period, std::uint32_t &publishers, bool &begun);
