@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The action ~query: long batches with feedback, cancelled or not."""
+import subprocess
+import sys
 import time
 import unittest
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from curve_proximity.msg import QueryAction, QueryGoal
+from curve_proximity.msg import QueryAction, QueryActionFeedback, QueryActionResult, QueryGoal
 from helpers import ActionClient, Server, bezier, query, ring_and_shells, run, sphere, until
 
 
@@ -72,6 +74,20 @@ class Batches(unittest.TestCase):
         self.assertIn('stopped', {row.status for row in result.results})
         self.assertTrue(self.server.distance(first).success)
 
+    def test_a_batch_ends_when_its_client_is_killed(self):
+        self.server.replace(*ring_and_shells()[1])
+        results, feedback = [], []
+        rospy.Subscriber('/curve_proximity/query/result', QueryActionResult, results.append)
+        rospy.Subscriber('/curve_proximity/query/feedback', QueryActionFeedback, feedback.append)
+        with subprocess.Popen([sys.executable, __file__, '--send', '/curve_proximity']) as client:
+            self.addCleanup(client.kill)
+            self.assertTrue(until(lambda: feedback, 20))
+            self.assertEqual(results, [])
+            client.kill()
+        self.assertTrue(until(lambda: results, 5))  # all of it would take minutes
+        self.assertEqual((results[0].status.status, results[0].result.message), (GoalStatus.PREEMPTED, 'its client has gone'))
+        self.assertTrue(self.server.distance(bezier((0, 0, 5), (1, 0, 5))).success)
+
     def test_a_budget_ends_it_and_without_one_it_outlives_that_of_the_server(self):
         ring, balls, fields = ring_and_shells()
         self.server.replace(*balls)
@@ -89,5 +105,18 @@ class Batches(unittest.TestCase):
             self.assertIn(word, result.message)
 
 
+def send_and_stay(server):
+    """A client as a process of its own, with a goal of minutes. bench/ros/reactions.py starts it, too."""
+    rospy.init_node('client', anonymous=True)
+    client = ActionClient(server + '/query', QueryAction)
+    assert client.wait_for_server(rospy.Duration(20))
+    ring, _, fields = ring_and_shells()
+    client.send_goal(QueryGoal(query_type='distance', query=query([ring] * 50, **fields)))
+    rospy.spin()
+
+
 if __name__ == '__main__':
-    run('batches')
+    if '--send' in sys.argv:
+        send_and_stay(sys.argv[2])
+    else:
+        run('batches')

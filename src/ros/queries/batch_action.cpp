@@ -13,6 +13,7 @@ namespace curve_proximity {
 namespace {
 
 constexpr std::size_t MOST_BATCHES = 10;                  /* that wait, the one at work included */
+constexpr std::uint32_t MOST_GOALS = 50;                  /* that come at once: as actionlib's */
 constexpr std::chrono::milliseconds FEEDBACK_PERIOD{100}; /* at least, between two feedbacks */
 
 /** Counts rows as they come, and says so now and then. */
@@ -60,15 +61,21 @@ void logQueryError(const std::string &why) {
 BatchAction::BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
                          const std::atomic<bool> &stop)
     : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle) {
+  const auto keep = [this](const GoalEvent &goal) { last_ = goal; };
+  goals_ = handle_.subscribe<QueryActionGoal, const GoalEvent &>("query/goal", MOST_GOALS, keep);
   server_ = std::make_unique<Server>(
       handle_, "query", [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, logQueryError); },
       [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, logQueryError); }, false);
   server_->start();
+  results_ = handle_.advertise<QueryActionResult>(
+      "query/result", 1, {}, [this](const ros::SingleSubscriberPublisher &gone) { leave(gone.getSubscriberName()); });
   queue_.start();
 }
 
 BatchAction::~BatchAction() {
   queue_.end();
+  goals_.shutdown();
+  results_.shutdown();
   batches_.clear();
   server_.reset();
 }
@@ -79,6 +86,9 @@ void BatchAction::begin(Server::GoalHandle handle) {
     if (batches_.size() < MOST_BATCHES) {
       handle.setAccepted();
       const auto batch = std::make_shared<Batch>();
+      if (last_.getConstMessage() && &last_.getConstMessage()->goal == handle.getGoal().get())
+        batch->client = last_.getPublisherName();
+      last_ = GoalEvent(); // it may be large
       batch->handle = std::move(handle);
       batches_.push_back(batch);
       queue_.post([this, batch] {
@@ -98,6 +108,12 @@ void BatchAction::cancel(Server::GoalHandle handle) {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (const std::shared_ptr<Batch> &batch : batches_)
     if (batch->handle == handle) batch->cancelled = true;
+}
+
+void BatchAction::leave(const std::string &client) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const std::shared_ptr<Batch> &batch : batches_)
+    if (batch->client == client) batch->left = batch->cancelled = true;
 }
 
 void BatchAction::answer(Batch &batch) {
@@ -136,7 +152,7 @@ void BatchAction::answer(Batch &batch) {
   // How it ended, as actionlib has it: a batch with rows that failed is a result, one without any answer is none.
   if (batch.cancelled || stop_) {
     result.success = false;
-    result.message = stop_ ? "the server is shutting down" : "cancelled";
+    result.message = stop_ ? "the server is shutting down" : batch.left ? "its client has gone" : "cancelled";
     batch.handle.setCanceled(result, result.message);
   } else if (result.results.empty() && !result.success) {
     batch.handle.setAborted(result, result.message);

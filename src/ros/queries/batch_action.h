@@ -5,6 +5,7 @@
 
 #include <actionlib/server/action_server.h>
 #include <curve_proximity/QueryAction.h>
+#include <ros/message_event.h>
 #include <ros/node_handle.h>
 
 #include <atomic>
@@ -19,7 +20,7 @@
 namespace curve_proximity {
 
 /** One batch is answered at a time, and takes turns with the requests; a few others wait, in the order in which they
- * came. */
+ * came. A batch ends when the node that sent its goal no longer listens to the results: it has ended, or is killed. */
 class BatchAction {
  public:
   /** handle: private, on the queue that runs goals and cancellations. The others are kept by reference. stop: as that
@@ -34,11 +35,14 @@ class BatchAction {
   using Server = actionlib::ActionServer<QueryAction>;
   struct Batch {
     Server::GoalHandle handle;
-    std::atomic<bool> cancelled{false};
+    std::string client; /* the node that sent it */
+    std::atomic<bool> cancelled{false}, left{false};
   };
+  using GoalEvent = ros::MessageEvent<const QueryActionGoal>;
 
   void begin(Server::GoalHandle handle);
   void cancel(Server::GoalHandle handle);
+  void leave(const std::string &client);
   void answer(Batch &batch);
 
   const std::string fixed_frame_;
@@ -47,9 +51,12 @@ class BatchAction {
   const std::atomic<bool> &stop_;
   std::mutex mutex_;
   std::deque<std::shared_ptr<Batch>> batches_; /* the first is being answered */
-  ros::NodeHandle handle_;
+  ros::NodeHandle handle_;                     /* one callback at a time */
+  GoalEvent last_;                             /* actionlib does not say who sent a goal: it comes here first */
+  ros::Subscriber goals_;
   std::unique_ptr<Server> server_;
-  ThreadedQueue queue_; /* of the batches */
+  ros::Publisher results_; /* the server's too: it says who no longer listens */
+  ThreadedQueue queue_;    /* of the batches */
 };
 
 } // namespace curve_proximity
