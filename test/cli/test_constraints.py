@@ -186,6 +186,19 @@ joint_trajectory:
         row = answer.row('t')
         self.assertEqual((answer.code, float(row['value']), float(row['upper']), row['kind'], row['q0_lift']), (0, 0.3, float('inf'), '', ''))
 
+    def a_robot_that_stands_still_is_as_near_with_a_horizon_as_without(self):
+        for height, value in ((0.05, 0.0), (0.4, 0.3)):
+            words = list(self.inputs())
+            words[5] = self.file('t.yaml', 'joint_trajectory: {joint_names: [lift], points: ['
+                                 + ', '.join(f'{{positions: [{height}], time_from_start: {t}}}' for t in range(3)) + ']}')
+            for parameters in ('margin: 0', 'horizon: 0.5', 'horizon: 0.5, smoothing: 1.0e-6'):
+                row = cprox('constraints', '--provider', ROBOT, *words, '--parameters', parameters).rows[0]
+                self.assertAlmostEqual(float(row['value']), value, delta=1e-5, msg=parameters)
+                self.assertLessEqual(float(row['lower']), value)
+                self.assertEqual((row['a'], row['b']), ('tool', 'table'))
+            growth = cprox('constraints', '--provider', 'curve_proximity/GrowthDistance', *words).rows[0]
+            self.assertEqual(float(growth['value']) < 0.0, value == 0.0)
+
     def gradients_are_held_against_differences(self):
         answer = self.constraints('--check-gradient')
         self.assertEqual((answer.code, answer.err), (0, ''))

@@ -218,6 +218,31 @@ static cprox_motion_gradient slide(vec3 size, const double (*rows)[2], size_t n,
   return g;
 }
 
+/* Two waypoints alike: a step of either would move the ball. */
+CASE(a_robot_that_stands_still_has_rows) {
+  cprox_body *box = NULL;
+  assert_int_equal(cprox_body_create_box(vec(1, 1, 1), ws, &box), CPROX_OK);
+  const cprox_obstacle at = cprox_obstacle_at(box, CPROX_POSE_IDENTITY);
+  for (size_t i = 0; i < 3; i++) {
+    const double y = (const double[]){0.0, 0.7, 0.9}[i], least = y < 0.6 ? 0.0 : y - 0.6;
+    slider s;
+    slider_make(&s, vec(0, 0, 0), (const double[][2]){{0.2, y}, {0.2, y}}, 2);
+    cprox_obstacles *all = NULL;
+    assert_int_equal(cprox_obstacles_create(&at, 1, CPROX_INDEX_NONE, ws, &all), CPROX_OK);
+    double positions[2][4];
+    cprox_motion_row rows[2] = {{.gradient = {.positions = positions[0]}}, {.gradient = {.positions = positions[1]}}};
+    const cprox_rows_query asked = {.horizon = 0.2, .per_pair = 1};
+    size_t count = 0;
+    assert_int_equal(cprox_robot_rows(all, cprox_robot_along(s.motion, NULL, 0), &asked, NULL, ws, rows, 2, &count),
+                     CPROX_OK);
+    assert_int_equal(count, least < 0.2);
+    if (count > 0) assert_true(rows[0].result.lower <= least && fabs(rows[0].result.upper - least) < 1e-9);
+    cprox_obstacles_free(all);
+    slider_free(&s);
+  }
+  cprox_body_free(box);
+}
+
 CASE(the_reason_says_why_there_is_no_gradient) {
   const char *elsewhere = "no gradient: the distance is as small elsewhere along the motion, or of another pair",
              *interval = "no gradient: the distance is as small on an interval of the motion",

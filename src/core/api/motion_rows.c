@@ -154,7 +154,6 @@ cprox_status cprox_robot_rows(const cprox_obstacles *obstacles, cprox_mover move
     robot_pairs_list(q, listed);
     pairs = listed;
   }
-  q->choice = PAIRS_MOVING; /* no step of the motion changes the others' distance along it */
   for (size_t i = 0; i < n && s.failure != CPROX_STOPPED; i++) {
     status = find_rows(&s, &pairs[i]);
     if (status < 0) return status;
