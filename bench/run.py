@@ -22,11 +22,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 PREFIX = 'curve_proximity_bench_'
 NOT_GROUPS = {'core'}  # Google benchmark's: no rows of results.csv
 # Groups that ask the command line or the Python package, where these are.
-SCRIPTS = {'lod': 'lod.py', 'errors': 'errors.py'}
+SCRIPTS = {'lod': 'lod.py', 'errors': 'errors.py', 'reactions': 'ros/reactions.py'}
 TABLES = {'hulls.csv': 'hulls.py'}  # tables beside results.csv, of the command line too
 MADE = 'made.txt'  # how the results came to be
 PASSES, ROUNDS = 3, '3'
-ONCE = {'ros', 'lod', 'errors', 'stability', 'optimise'}  # asked for counts, or too long: in the first pass only
+ONCE = {'ros', 'reactions', 'lod', 'errors', 'stability', 'optimise'}  # asked for counts, or too long: in the first pass only
 LONG = {'fourier', 'implicit', 'robots', 'worlds'}  # these, too, where the run is to be quick
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'distance_queries', 'error', 'unsound', 'failures']
 
