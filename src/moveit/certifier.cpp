@@ -188,26 +188,19 @@ Finding Certifier::find(const planning_scene::PlanningScene &scene, const robot_
 }
 
 EdgeTest Certifier::edges(const planning_scene::PlanningScene &scene, const moveit::core::RobotState &at,
-                          const std::vector<std::string> &joints, bool with_self,
+                          const std::vector<std::string> &joints, RobotPairs against,
                           const CertifySettings &settings) const {
-  const std::shared_ptr<const Env> env = envOf(scene);
+  const std::shared_ptr<const Env> env = against == RobotPairs::SELF ? atItsOwnSize(envOf(scene)) : envOf(scene);
   Query query;
   query.query_type = settings.clearance > 0.0 ? QueryType::TOLERANCE : QueryType::COLLISION;
   query.delta = settings.clearance;
   query.allow_empty = true; // MoveIt's scene is whole
   query.options.epsilon = settings.epsilon;
-  const auto checkers = std::make_shared<std::vector<EdgeChecker>>();
-  const auto add = [&](const Env &of, RobotPairs against) {
-    const Env::Ready ready = of.robot(at, joints, scene.getAllowedCollisionMatrix());
-    checkers->emplace_back(*ready.robot, joints, ready.rest, against, query);
-  };
-  add(*env, RobotPairs::ENVIRONMENT);
-  if (with_self) add(*atItsOwnSize(env), RobotPairs::SELF);
+  const Env::Ready ready = env->robot(at, joints, scene.getAllowedCollisionMatrix());
+  const auto checker = std::make_shared<EdgeChecker>(*ready.robot, joints, ready.rest, against, query);
   const auto workspace = std::make_shared<Workspace>();
-  return [checkers, workspace](const Row &from, const Row &to) {
-    return std::all_of(checkers->begin(), checkers->end(), [&](const EdgeChecker &checker) {
-      return checker.ask(from.data(), to.data(), *workspace) == CPROX_VERDICT_CLEAR;
-    });
+  return [checker, workspace](const Row &from, const Row &to) {
+    return checker->ask(from.data(), to.data(), *workspace) == CPROX_VERDICT_CLEAR;
   };
 }
 

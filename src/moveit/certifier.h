@@ -47,10 +47,10 @@ class Certifier {
   Finding judge(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,
                 const CertifySettings &settings) const;
 
-  /* Are straight motions of these joints, all others at `at`, proven? Against the objects, and `with_self` against the
-   * robot: that takes long where two of its meshes are always close. No budget; not for several threads. Throws Error. */
+  /* Are straight motions of these joints, all others at `at`, proven? Against the objects, or the robot itself: that
+   * takes long where two of its meshes are always close. No budget; not for several threads. Throws Error. */
   EdgeTest edges(const planning_scene::PlanningScene &scene, const moveit::core::RobotState &at,
-                 const std::vector<std::string> &joints, bool with_self, const CertifySettings &settings) const;
+                 const std::vector<std::string> &joints, RobotPairs against, const CertifySettings &settings) const;
 
  private:
   Finding find(const planning_scene::PlanningScene &scene, const robot_trajectory::RobotTrajectory &trajectory,

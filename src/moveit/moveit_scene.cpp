@@ -307,17 +307,23 @@ TrajectoryDescription timed(const robot_trajectory::RobotTrajectory &trajectory)
     appendNames(*joint, out.joints);
   }
   if (joints.empty()) throw Error("group '" + trajectory.getGroupName() + "' has no joint that can move");
+  out.points.reserve(n);
+  double time = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const RobotState &state = trajectory.getWayPoint(i);
+    const double *velocities = state.hasVelocities() ? state.getVariableVelocities() : nullptr,
+                 *accelerations = velocities && state.hasAccelerations() ? state.getVariableAccelerations() : nullptr;
     TrajectoryPoint point;
-    point.time = trajectory.getWayPointDurationFromStart(i);
+    point.time = time += trajectory.getWayPointDurationFromPrevious(i);
+    point.positions.reserve(out.joints.size());
+    if (velocities) point.velocities.reserve(out.joints.size());
+    if (accelerations) point.accelerations.reserve(out.joints.size());
     for (const JointModel *joint : joints) {
       appendJoint(*joint, state, i > 0 ? &out.points[i - 1] : nullptr, point);
-      for (const std::string &variable : joint->getVariableNames()) {
-        if (state.hasVelocities()) point.velocities.push_back(state.getVariableVelocity(variable));
-        if (state.hasVelocities() && state.hasAccelerations())
-          point.accelerations.push_back(state.getVariableAcceleration(variable));
-      }
+      const std::size_t first = joint->getFirstVariableIndex(), last = first + joint->getVariableCount();
+      if (velocities) point.velocities.insert(point.velocities.end(), velocities + first, velocities + last);
+      if (accelerations)
+        point.accelerations.insert(point.accelerations.end(), accelerations + first, accelerations + last);
     }
     out.points.push_back(std::move(point));
   }

@@ -19,12 +19,13 @@ using moveit::core::JointModel;
 using robot_trajectory::RobotTrajectory;
 using robot_trajectory::RobotTrajectoryPtr;
 
-/* [m] more than the clearance asked for, of new edges: the first for which there is a way. */
+/* [m] more than the clearance asked for, of new edges from objects: the first for which there is a way. */
 constexpr double MARGINS[] = {0.01, 0.003, 0.001, 0.0};
 
 /* The spline goes beside the straight edges: what is tried until it is proven. */
 struct Try {
-  double stays; /* [m] more than the clearance asked for, of edges that stay as they are */
+  double stays; /* [m] more than the clearance asked for, of edges that stay as they are, and of all from the robot
+                 * itself: links side by side are always close */
   int halvings; /* of edges: the spline comes closer to them */
 };
 constexpr Try TRIES[] = {{0.0, 0}, {0.0, 1}, {0.001, 0}, {0.001, 1}, {0.003, 1}, {0.003, 2}};
@@ -78,16 +79,21 @@ RobotTrajectoryPtr repaired(const Certifier &certifier, const planning_scene::Pl
   if (!(step > 0.0)) return nullptr;
 
   bool with_self = why.of_self;
-  std::map<std::pair<double, bool>, EdgeTest> known; // each is made when it is first asked: that takes a millisecond
+  double of_self = 0.0;                                    // what new edges keep from the robot itself
+  std::map<std::pair<RobotPairs, double>, EdgeTest> known; // each is made when it is first asked
+  const auto holds = [&](RobotPairs against, double more, const Row &from, const Row &to) {
+    EdgeTest &test = known[{against, more}];
+    if (!test) {
+      CertifySettings wider = settings;
+      wider.clearance += more;
+      test = certifier.edges(scene, trajectory.getFirstWayPoint(), spline.joints, against, wider);
+    }
+    return test(from, to);
+  };
   const auto edges = [&](double more) -> EdgeTest {
     return [&, more](const Row &from, const Row &to) {
-      EdgeTest &test = known[{more, with_self}];
-      if (!test) {
-        CertifySettings wider = settings;
-        wider.clearance += more;
-        test = certifier.edges(scene, trajectory.getFirstWayPoint(), spline.joints, with_self, wider);
-      }
-      return test(from, to);
+      return holds(RobotPairs::ENVIRONMENT, more, from, to) &&
+             (!with_self || holds(RobotPairs::SELF, std::min(more, of_self), from, to));
     };
   };
   for (const Row &row : {path.front(), path.back()})
@@ -97,6 +103,7 @@ RobotTrajectoryPtr repaired(const Certifier &certifier, const planning_scene::Pl
     return Clock::now() >= end;
   };
   for (const Try &one : TRIES) {
+    of_self = one.stays;
     Detours detours{edges(one.stays), {}, edges(0.0), limits, step, is_over};
     for (const double margin : MARGINS)
       if (margin >= one.stays) detours.wanted.push_back(edges(margin));
