@@ -195,13 +195,13 @@ static void figure_seven(const tools *t) {
     if (r.upper - r.lower < last) print_width("paper", nodes, last = r.upper - r.lower);
   }
   last = INFINITY;
-  for (uint32_t nodes = 1; nodes < 400 && last > EPSILON; nodes++) {
+  for (uint32_t budget = 1; budget < 400 && last > EPSILON; budget++) { /* it counts distance queries, too */
     cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = EPSILON;
-    options.max_nodes = nodes;
+    options.max_nodes = budget;
     cprox_result r;
     if (cprox_distance(cprox_point_along(p->curve), p->target, &options, t->workspace, &r) < 0) break;
-    if (r.upper - r.lower < last) print_width("curve_proximity", nodes, last = r.upper - r.lower);
+    if (r.upper - r.lower < last) print_width("curve_proximity", r.nodes, last = r.upper - r.lower);
   }
   curve_problems_free(p, 1);
 }
