@@ -52,6 +52,7 @@ void certifyPath(const CertifyPath::Request &req, const planning_scene::Planning
     settings.clearance = req.clearance;
     const Finding finding = certifier.certify(scene, toTrajectory(req, startOf(req, scene)), settings);
     res.message = finding.why;
+    res.warnings = finding.warnings;
     res.clear_until = finding.clear_until;
     for (const Doubt &doubt : finding.doubts) res.violations.push_back(toMessage(doubt));
     res.certified = finding.why.empty();

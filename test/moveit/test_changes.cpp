@@ -4,6 +4,7 @@
 #include <moveit/collision_detection/occupancy_map.h>
 #include <moveit/planning_scene/planning_scene.h>
 #include <moveit/utils/robot_model_test_utils.h>
+#include <tf2_eigen/tf2_eigen.h>
 
 #include <thread>
 
@@ -201,6 +202,49 @@ TEST(Changes, an_object_that_cannot_be_used_stays_so_when_it_is_moved) {
   EXPECT_TRUE(scene->isStateColliding(ready()));
   world->removeObject("odd");
   EXPECT_TRUE(isProven(certifier, *scene));
+}
+
+/* A scene that changes after a motion was made of it: the motion is about the scene before, the next one about the new. */
+TEST(Changes, a_motion_is_about_the_scene_that_it_was_made_in) {
+  const auto scene = sceneOf(true);
+  const Eigen::Vector3d hand = ready().getGlobalLinkTransform("panda_hand").translation();
+  const auto make = [&] {
+    const auto plan = standing(ready());
+    return envOf(*scene).motion(curve_proximity::timed(plan), ready(), scene->getAllowedCollisionMatrix());
+  };
+  const auto isClear = [](const curve_proximity::RobotMotion &motion) {
+    curve_proximity::Query query;
+    query.query_type = curve_proximity::QueryType::COLLISION;
+    query.allow_empty = true;
+    curve_proximity::Workspace workspace;
+    return askEnvironment(motion, query, workspace).front().result.verdict == CPROX_VERDICT_CLEAR;
+  };
+  const curve_proximity::RobotMotion before = make();
+  std::thread changes([&] {
+    scene->getWorldNonConst()->addToObject("post", std::make_shared<shapes::Box>(0.05, 0.05, 0.05),
+                                           at(hand.x(), hand.y(), hand.z()));
+  });
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(isClear(before));
+  changes.join();
+  EXPECT_TRUE(isClear(before));
+  EXPECT_FALSE(isClear(make()));
+}
+
+TEST(Changes, a_plan_of_a_group_without_a_joint_that_moves_is_refused_in_one_line) {
+  moveit::core::RobotModelBuilder builder("crane", "base");
+  builder.addChain("base->arm", "revolute");
+  builder.addChain("arm->tool", "fixed");
+  for (const char *link : {"base", "arm", "tool"})
+    builder.addCollisionBox(link, {0.1, 0.1, 0.1}, tf2::toMsg(Eigen::Isometry3d::Identity()));
+  builder.addGroup({}, {"arm-tool-joint"}, "mount");
+  ASSERT_TRUE(builder.isValid());
+  const moveit::core::RobotModelPtr model = builder.build();
+  const planning_scene::PlanningScene scene(model);
+  robot_trajectory::RobotTrajectory plan(model, "mount");
+  plan.addSuffixWayPoint(scene.getCurrentState(), 0.0);
+  const std::string why = curve_proximity::Certifier().certify(scene, plan, {}).why;
+  EXPECT_NE(why.find("group 'mount' has no joint that can move"), std::string::npos) << why;
+  EXPECT_EQ(why.find('\n'), std::string::npos);
 }
 
 /* One certifier, scenes of FCL's detector in turn. */

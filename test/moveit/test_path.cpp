@@ -90,6 +90,15 @@ TEST_F(Path, begins_where_start_state_says) {
   EXPECT_TRUE(ask(req).certified);
 }
 
+TEST_F(Path, beyond_a_limit_is_certified_with_a_warning_that_names_the_joint) {
+  EXPECT_TRUE(ask(turnTo(-0.4)).warnings.empty());
+  const CertifyPath::Response res = ask(turnTo(-3.0)); // the limit is -2.9 rad
+  EXPECT_TRUE(res.certified) << res.message;
+  ASSERT_EQ(res.warnings.size(), 1u);
+  EXPECT_NE(res.warnings[0].find("panda_joint1"), std::string::npos) << res.warnings[0];
+  EXPECT_EQ(res.warnings[0].find('\n'), std::string::npos);
+}
+
 TEST_F(Path, that_cannot_be_used_is_refused_in_one_line) {
   CertifyPath::Request req = turnTo(-0.4);
   req.clearance = -1.0;
