@@ -17,7 +17,7 @@ using Box = Eigen::AlignedBox3d;
 constexpr std::size_t MANY_ITEMS = 64, MOST_SEGMENTS = 256;
 
 /* Of the sizes that enter a box: some roundings of doubles. */
-constexpr double SUMS = 1e-12;
+constexpr double BOX_ROUNDING = 1e-12;
 
 /* Round all that a geometry passes through; nothing where that is not known. */
 std::optional<Box> sweptBox(const RobotMotion::Data &data, std::size_t geometry, Workspace &workspace) {
@@ -37,7 +37,7 @@ std::optional<Box> sweptBox(const RobotMotion::Data &data, std::size_t geometry,
         at + Eigen::Quaterniond(turn.w, turn.x, turn.y, turn.z).normalized() * toEigen(info.centre);
     const double sizes = info.radius + margin + poses[i].displacement;
     const Eigen::Vector3d half =
-        Eigen::Vector3d::Constant(sizes + SUMS * (sizes + at.lpNorm<1>() + centre.lpNorm<1>()));
+        Eigen::Vector3d::Constant(sizes + BOX_ROUNDING * (sizes + at.lpNorm<1>() + centre.lpNorm<1>()));
     out.extend(Box(centre - half, centre + half));
   }
   return out;
@@ -95,7 +95,7 @@ NearItems nearItems(const RobotMotion::Data &data, std::vector<std::size_t> item
     }
   }
   if (out.items.empty()) out.items.push_back(nearest);
-  out.left_out *= 1.0 - SUMS;
+  out.left_out *= 1.0 - BOX_ROUNDING;
   return out;
 }
 
