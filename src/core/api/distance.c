@@ -10,7 +10,7 @@
 static cprox_status ask(const char *name, cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double delta,
                         const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                         cprox_result *each) {
-  cprox_certificate_clear(arguments_options(options).certificate);
+  cprox_certificate_clear(validate_defaults(options).certificate);
   query q = query_create(mover, obstacles, n, delta, options, workspace);
   arguments_query asked = {name, ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE | ARGUMENTS_INTERVAL | ARGUMENTS_RADIUS};
   if (!each) asked.has |= ARGUMENTS_WHOLE;
@@ -35,7 +35,7 @@ cprox_status list_distance(cprox_mover mover, const cprox_obstacle *obstacles, s
 cprox_status list_tolerance(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double delta,
                             const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                             cprox_result *each) {
-  cprox_certificate_clear(arguments_options(options).certificate);
+  cprox_certificate_clear(validate_defaults(options).certificate);
   const cprox_status checked = validate_delta(delta, workspace);
   return checked == CPROX_OK ? ask("tolerance", mover, obstacles, n, delta, options, workspace, nearest, each)
                              : checked;

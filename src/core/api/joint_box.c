@@ -497,7 +497,7 @@ cprox_status cprox_robot_box_collision(const cprox_robot *robot, const cprox_rob
   WORKSPACE_USE(workspace);
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
-  const cprox_options copy = arguments_options(options);
+  const cprox_options copy = validate_defaults(options);
   cprox_status status = box_check(robot, pairs, n_pairs, box, &copy, workspace);
   if (status < 0) return status;
   box_search s = {.robot = robot, .given = pairs, .n_pairs = n_pairs, .free_slot = -1, .least = INFINITY};

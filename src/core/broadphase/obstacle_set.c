@@ -41,7 +41,7 @@ static bool box_of(const cprox_obstacle *obstacle, vec3 *low, vec3 *high) {
 }
 
 static bool has_elements(const cprox_obstacle *obstacle) {
-  return obstacle->body && (model_has_tree(obstacle->body, CPROX_LOD_MESH) || obstacle->body->field);
+  return obstacle->body && (lod_has_tree(obstacle->body, CPROX_LOD_MESH) || obstacle->body->field);
 }
 
 /* Boxes of obstacles that have one, the others apart. */

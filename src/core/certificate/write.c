@@ -494,7 +494,7 @@ cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, 
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
   WORKSPACE_USE(workspace);
-  cprox_options chosen = arguments_options(options);
+  cprox_options chosen = validate_defaults(options);
   claim_wanted wanted = {CPROX_CLAIM_APART, delta, 0.0, 0.0};
   const double *interval = chosen.interval;
   chosen.interval = NULL;
@@ -511,7 +511,7 @@ cprox_status cprox_certify_contact(cprox_mover mover, const cprox_obstacles *obs
                                    const cprox_options *options, cprox_workspace *workspace,
                                    cprox_certificate *certificate) {
   WORKSPACE_USE(workspace);
-  const cprox_options chosen = arguments_options(options);
+  const cprox_options chosen = validate_defaults(options);
   const cprox_status status = validate(&mover, obstacles, &chosen, workspace, certificate);
   if (status != CPROX_OK) return status;
   if (!answer || answer->status < 0 || isnan(answer->t_contact_lower))

@@ -8,6 +8,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/convert.c
   ${CMAKE_CURRENT_LIST_DIR}/create.c
   ${CMAKE_CURRENT_LIST_DIR}/curve.c
+  ${CMAKE_CURRENT_LIST_DIR}/curve_side.c
   ${CMAKE_CURRENT_LIST_DIR}/dubins.c
   ${CMAKE_CURRENT_LIST_DIR}/ellipsoid.c
   ${CMAKE_CURRENT_LIST_DIR}/evaluate.c
@@ -28,7 +29,6 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/rectifiable.c
   ${CMAKE_CURRENT_LIST_DIR}/relative_curve.c
   ${CMAKE_CURRENT_LIST_DIR}/smooth.c
-  ${CMAKE_CURRENT_LIST_DIR}/subcurve.c
   ${CMAKE_CURRENT_LIST_DIR}/trigonometric.c
   ${CMAKE_CURRENT_LIST_DIR}/weights.c
 )

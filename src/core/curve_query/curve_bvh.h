@@ -7,7 +7,7 @@
 
 #include "branch_and_bound/search.h"
 #include "bvh/bvh.h"
-#include "curve/subcurve.h"
+#include "curve/curve_side.h"
 #include "shape/body.h"
 
 /* The payload of a node, and how to get at it. */

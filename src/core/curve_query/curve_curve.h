@@ -5,7 +5,7 @@
 #define CPROX_CURVE_QUERY_CURVE_CURVE_H
 
 #include "branch_and_bound/search.h"
-#include "curve/subcurve.h"
+#include "curve/curve_side.h"
 #include "shape/body.h"
 
 /* The payload of a node, and how to get at it. */

@@ -341,7 +341,7 @@ cprox_status cprox_ccd_vertex_face(const cprox_vec3 start[4], const cprox_vec3 e
                                    const cprox_options *options, cprox_workspace *workspace, cprox_ccd *ccd) {
   WORKSPACE_USE(workspace);
   workspace_clear(workspace);
-  const cprox_options asked = arguments_options(options);
+  const cprox_options asked = validate_defaults(options);
   const cprox_status status = ccd_validate(start, end, margin, &asked, ccd, workspace);
   if (status != CPROX_OK) return status;
   vec3 from[3], to[3];
@@ -368,7 +368,7 @@ cprox_status cprox_ccd_edge_edge(const cprox_vec3 start[4], const cprox_vec3 end
                                  const cprox_options *options, cprox_workspace *workspace, cprox_ccd *ccd) {
   WORKSPACE_USE(workspace);
   workspace_clear(workspace);
-  const cprox_options asked = arguments_options(options);
+  const cprox_options asked = validate_defaults(options);
   const cprox_status status = ccd_validate(start, end, margin, &asked, ccd, workspace);
   if (status != CPROX_OK) return status;
   vec3 from[4], to[4];

@@ -42,7 +42,7 @@ cprox_status growing_begin(growing *g, const cprox_options *options, cprox_works
   const arguments_query kind = {"the growth distance", ARGUMENTS_STOP};
   cprox_status status;
   if (!workspace) return CPROX_INVALID;
-  g->asked = arguments_options(options);
+  g->asked = validate_defaults(options);
   if ((status = validate_options(&g->asked, kind, workspace)) || (status = validate_obstacle(&g->a, 0, workspace)) ||
       (status = validate_obstacle(&g->b, 1, workspace)) || (status = translation_check_body("a", &g->a, workspace)) ||
       (status = translation_check_body("b", &g->b, workspace)))

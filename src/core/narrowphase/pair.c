@@ -359,7 +359,7 @@ static double pair_deepest(const pair_task *task) {
 static cprox_status pair_bound_depth(const pair_task *task, size_t i, size_t j, pair_reply *reply) {
   pair_answer *answer = &reply->answer;
   const cprox_body *a = body_part_at(task->a->body, i), *b = body_part_at(task->b->body, j);
-  const bool elements = model_of(a, task->finest).body->tree || model_of(b, task->finest).body->tree;
+  const bool elements = lod_model_of(a, task->finest).body->tree || lod_model_of(b, task->finest).body->tree;
   if (!elements || !(answer->upper < 0.0 || answer->overlap)) return CPROX_OK;
   answer->overlap = true, answer->measured = false;
   answer->lower = fmin(answer->lower, -pair_deepest(task));
@@ -526,7 +526,7 @@ cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double del
                                   cprox_workspace *workspace, cprox_result *result) {
   WORKSPACE_USE(workspace);
   workspace_clear(workspace);
-  const cprox_options asked = arguments_options(options);
+  const cprox_options asked = validate_defaults(options);
   cprox_status status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
   const arguments_query kind = {"a pair's verdict", ARGUMENTS_SEARCH};
@@ -629,7 +629,7 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
                         cprox_result *result) {
   WORKSPACE_USE(workspace);
   workspace_clear(workspace);
-  const cprox_options asked = arguments_options(options);
+  const cprox_options asked = validate_defaults(options);
   cprox_status status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
   const arguments_query kind = {"a pair",

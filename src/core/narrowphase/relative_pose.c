@@ -6,7 +6,7 @@
 pair_side relative_pose_of_model(const cprox_obstacle *obstacle, size_t part, cprox_lod finest) {
   cprox_pose inner, pose = obstacle->pose;
   bool moved;
-  const model m = model_of_part(obstacle->body, part, finest, &inner, &moved);
+  const model m = lod_model_of_part(obstacle->body, part, finest, &inner, &moved);
   pair_side side = {.body = m.body, .shape = &m.body->shape, .lod = m.lod};
   if (moved) {
     pose = frame_compose(&obstacle->pose, &inner);

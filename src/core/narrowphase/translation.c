@@ -189,7 +189,7 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
                                         cprox_result *result) {
   WORKSPACE_USE(workspace);
   workspace_clear(workspace);
-  const cprox_options asked = arguments_options(options);
+  const cprox_options asked = validate_defaults(options);
   const arguments_query kind = {"the distance of bodies that translate", ARGUMENTS_RELATIVE};
   const cprox_status status = check_motion(&a, &b, duration, &asked, kind, workspace);
   if (status) return status;
@@ -365,7 +365,7 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   WORKSPACE_USE(workspace);
   workspace_clear(workspace);
-  const cprox_options asked = arguments_options(options);
+  const cprox_options asked = validate_defaults(options);
   const arguments_query kind = {"contact of bodies that translate", ARGUMENTS_STOP};
   cprox_status status = check_motion(&a, &b, duration, &asked, kind, workspace);
   if (status) return status;

@@ -9,7 +9,7 @@ static bool has_ball(const cprox_body *body) {
   return !body_kind_of(body->kind)->is_own_sphere && isfinite(body->ball_radius);
 }
 
-model model_of(const cprox_body *body, cprox_lod finest) {
+model lod_model_of(const cprox_body *body, cprox_lod finest) {
   if (finest == CPROX_LOD_SPHERE && has_ball(body)) {
     /* the point that stands for the ball is placed by one more composition of poses */
     const double moved = ROUND_UP * ROUND_U * 2.0 * ROUND_ROTATION * (vec_norm(body->ball_centre) + body->ball_radius);
@@ -28,16 +28,16 @@ model model_of(const cprox_body *body, cprox_lod finest) {
   return m;
 }
 
-bool model_has_tree(const cprox_body *body, cprox_lod finest) {
+bool lod_has_tree(const cprox_body *body, cprox_lod finest) {
   if (!body) return false;
   for (size_t i = 0; i < body_n_parts(body); i++)
-    if (model_of(body_part_at(body, i), finest).body->tree) return true;
+    if (lod_model_of(body_part_at(body, i), finest).body->tree) return true;
   return false;
 }
 
-model model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox_pose *inner, bool *moved) {
+model lod_model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox_pose *inner, bool *moved) {
   const bool compound = body->kind == CPROX_BODY_COMPOUND;
-  const model m = model_of(body_part_at(body, part), finest);
+  const model m = lod_model_of(body_part_at(body, part), finest);
   const bool shifted = vec_norm2(m.shift) > 0.0;
   *inner = compound ? body->parts[part].pose : CPROX_POSE_IDENTITY;
   *moved = compound || shifted;

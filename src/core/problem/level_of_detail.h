@@ -17,18 +17,18 @@ typedef struct model {
 /* The finest model up to the level of detail; CPROX_LOD_NONE: the finest of all. Bodies that are no level-of-detail
  * bodies are their own models from the hull on; so are points and boxes always, and what has no bounding ball. `body`
  * is no compound. */
-model model_of(const cprox_body *body, cprox_lod finest);
+model lod_model_of(const cprox_body *body, cprox_lod finest);
 
 /* Whether the body, or a part of it where it is a compound, is made of many elements up to the level of detail. */
-bool model_has_tree(const cprox_body *body, cprox_lod finest);
+bool lod_has_tree(const cprox_body *body, cprox_lod finest);
 
 /* Most bodies are their own only model. */
-static inline bool model_is_body(const cprox_body *body, cprox_lod finest) {
+static inline bool lod_is_body(const cprox_body *body, cprox_lod finest) {
   return body->kind != CPROX_BODY_COMPOUND && body->kind != CPROX_BODY_LOD && finest != CPROX_LOD_SPHERE;
 }
 
 /* Of a part of a compound, or of the body where it is none; *inner becomes the pose of the model in the frame of the
  * body. False in *moved: that is the identity. */
-model model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox_pose *inner, bool *moved);
+model lod_model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox_pose *inner, bool *moved);
 
 #endif

@@ -10,8 +10,8 @@
 /* Most bodies are their own model. */
 static inline placed_model model_at(const cprox_body *body, int32_t part, cprox_lod finest) {
   placed_model m = {.body = body, .lod = body && (body->tree || body->field) ? CPROX_LOD_MESH : CPROX_LOD_HULL};
-  if (!body || model_is_body(body, finest)) return m;
-  const model is = model_of_part(body, (size_t)part, finest, &m.inner, &m.moved);
+  if (!body || lod_is_body(body, finest)) return m;
+  const model is = lod_model_of_part(body, (size_t)part, finest, &m.inner, &m.moved);
   m.body = is.body, m.excess = is.excess, m.lod = is.lod;
   return m;
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "base/check.h"
-#include "curve/subcurve.h"
+#include "curve/curve_side.h"
 #include "curve_proximity/cprox/robot.h"
 
 query query_create(cprox_mover mover, const cprox_obstacle *obstacles, size_t n, double limit,
@@ -13,7 +13,7 @@ query query_create(cprox_mover mover, const cprox_obstacle *obstacles, size_t n,
              .obstacles = obstacles,
              .n = n,
              .limit = limit,
-             .options = arguments_options(options),
+             .options = validate_defaults(options),
              .workspace = workspace};
   if (q.options.max_lod == CPROX_LOD_NONE) q.options.max_lod = CPROX_LOD_MESH;
   return q;

@@ -5,7 +5,7 @@
 
 #include "base/workspace.h"
 #include "branch_and_bound/search.h"
-#include "curve/subcurve.h"
+#include "curve/curve_side.h"
 #include "curve_proximity/cprox/query.h"
 #include "problem/validate.h"
 

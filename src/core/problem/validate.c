@@ -51,7 +51,7 @@ static cprox_status check_applies(const cprox_options *options, arguments_query 
                         all[first].hint);
 }
 
-cprox_options arguments_options(const cprox_options *options) {
+cprox_options validate_defaults(const cprox_options *options) {
   cprox_options copy = CPROX_OPTIONS_DEFAULT;
   if (options && options->size == sizeof copy)
     copy = *options;
@@ -198,7 +198,7 @@ static cprox_status check_elements(const cprox_mover *mover, const cprox_obstacl
   if (body && !body_is_in_reach(body))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body reaches farther than %g m", LENGTH_MOST);
   /* past some obstacles it goes by its hull even where balls are asked for */
-  if (body && model_has_tree(body, finest == CPROX_LOD_SPHERE ? CPROX_LOD_HULL : finest))
+  if (body && lod_has_tree(body, finest == CPROX_LOD_SPHERE ? CPROX_LOD_HULL : finest))
     return workspace_fail(
         workspace, CPROX_INVALID,
         "the mover's body is a mesh, points or boxes, or has such a part: only convex parts are carried");
@@ -206,7 +206,7 @@ static cprox_status check_elements(const cprox_mover *mover, const cprox_obstacl
     if (robot->parts[i].model.by_ball)
       return workspace_fail(workspace, CPROX_INVALID, WHY, "geometry", (size_t)robot->parts[i].geometry);
   for (size_t i = 0; (robot || body) && i < n; i++) {
-    if (!model_has_tree(obstacles[i].body, finest)) continue;
+    if (!lod_has_tree(obstacles[i].body, finest)) continue;
     if (robot) return workspace_fail(workspace, CPROX_INVALID, WHY, "obstacle", i);
     return workspace_fail(workspace, CPROX_INVALID,
                           "obstacle %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "

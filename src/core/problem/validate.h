@@ -26,11 +26,11 @@ typedef struct arguments_query {
   unsigned has;
 } arguments_query;
 
-/* CPROX_OK, or CPROX_INVALID with an error message that names the argument. */
 /* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default
  * with their size, which validate_options() refuses. */
-cprox_options arguments_options(const cprox_options *options);
+cprox_options validate_defaults(const cprox_options *options);
 
+/* These return CPROX_OK, or CPROX_INVALID with an error message that names the argument. */
 cprox_status validate_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
 /* Finite, 0 or more, and no longer than powers can hold. */
 cprox_status validate_length(const char *name, double value, cprox_workspace *workspace);

@@ -20,7 +20,7 @@ bool robot_depth_has_meshes(const query *q, size_t first, size_t last) {
   for (size_t i = 0; i < robot->n_parts; i++)
     if (robot->parts[i].model.tree) return true;
   for (size_t i = first; i < last; i++)
-    if (model_has_tree(q->obstacles[i].body, CPROX_LOD_MESH)) return true;
+    if (lod_has_tree(q->obstacles[i].body, CPROX_LOD_MESH)) return true;
   return false;
 }
 

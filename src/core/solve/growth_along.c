@@ -9,7 +9,7 @@
 #include "base/workspace.h"
 #include "branch_and_bound/search.h"
 #include "convex/feature.h"
-#include "curve/subcurve.h"
+#include "curve/curve_side.h"
 #include "narrowphase/growth.h"
 
 /* The part of the width that may be left where the centres meet and a relative width is none. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "curve/subcurve.h"
+#include "curve/curve_side.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One curve as a search sees it: its control points brought into a frame, a piece or a range of pieces at a time, and
  * what they say of an interval. Oracles have one side or two. */
-#ifndef CPROX_CURVE_SUBCURVE_H
-#define CPROX_CURVE_SUBCURVE_H
+#ifndef CPROX_CURVE_CURVE_SIDE_H
+#define CPROX_CURVE_CURVE_SIDE_H
 
 #include "base/frame.h"
 #include "base/workspace.h"
