@@ -10,6 +10,18 @@ enum { CENTRE_MAX_CUTS = 4000 };
 /* Nothing lies farther out. */
 static const double CENTRE_REACH = 2e10;
 
+/* What a cut and its few products round, with much to spare: ellipsoids grow and radii shrink by it. */
+static const double CENTRE_ROUNDING = 1e-12;
+
+/* The deepest cut: a deeper one would leave an ellipsoid without a volume. */
+static const double DEEPEST_CUT = 1.0 - 1e-9;
+
+/* Of an inner radius, which need not be the largest; and what sums of powers round. */
+static const double RADIUS_KNOWN = 1e-3, SUM_ROUNDING = 1e-9;
+
+/* The determinant of a matrix by the cube of its trace: below it the rows do not span the space, but for rounding. */
+static const double GRAM_SPANS = 1e-14;
+
 /* The constraint that a point breaks most, as a cut g·(x - point) <= -depth that every point of the body obeys; false
  * where it breaks none. Depths are compared in the ellipsoid's own measure. */
 typedef struct cut {
@@ -73,14 +85,14 @@ static cut worst_cut(const implicit *body, const ellipsoid *e, vec3 at) {
 /* The least ellipsoid about what the cut leaves (Grötschel, Lovász and Schrijver 1988, ch. 3), grown by what rounding
  * may take. */
 static void shrink(ellipsoid *e, const cut *c) {
-  const double n = 3.0, alpha = fmin(c->depth, 1.0 - 1e-9);
+  const double n = 3.0, alpha = fmin(c->depth, DEEPEST_CUT);
   const double shift = (1.0 + n * alpha) / (n + 1.0), grow = sqrt(n * n * (1.0 - alpha * alpha) / (n * n - 1.0));
   const double squeeze = 2.0 * (1.0 + n * alpha) / ((n + 1.0) * (1.0 + alpha)), less = 1.0 - sqrt(1.0 - squeeze);
   double *b = e->b;
   for (int i = 0; i < 3; i++) {
     const double along = b[3 * i] * c->g.x + b[3 * i + 1] * c->g.y + b[3 * i + 2] * c->g.z;
     (&e->centre.x)[i] -= shift * along;
-    const double by = (1.0 + 1e-12) * grow;
+    const double by = (1.0 + CENTRE_ROUNDING) * grow;
     b[3 * i] = by * (b[3 * i] - less * along * c->g.x);
     b[3 * i + 1] = by * (b[3 * i + 1] - less * along * c->g.y);
     b[3 * i + 2] = by * (b[3 * i + 2] - less * along * c->g.z);
@@ -132,14 +144,14 @@ bool implicit_find_interior(const implicit *body, vec3 *point, double *reach) {
 /* The radius of a ball about the centre inside the power body, by the triangle inequality: sum (|d| + |a| r)^p <= 1. */
 static double power_inner(const implicit *body, const implicit_power *power, double most) {
   double inside = 0.0, outside = most;
-  for (int step = 0; step < 60 && outside - inside > 1e-3 * outside; step++) {
+  for (int step = 0; step < 60 && outside - inside > RADIUS_KNOWN * outside; step++) {
     const double r = 0.5 * (inside + outside);
     double sum = 0.0;
     for (int32_t i = power->first; i < power->first + power->n; i++) {
       const implicit_term *term = &body->term[i];
       sum += pow(fabs(term->d) + vec_norm(term->a) * r, term->p);
     }
-    if (sum <= 1.0 - 1e-9)
+    if (sum <= 1.0 - SUM_ROUNDING)
       inside = r;
     else
       outside = r;
@@ -159,7 +171,7 @@ static bool power_gram(const implicit *body, implicit_power *power) {
   }
   const double c00 = g[3] * g[5] - g[4] * g[4], c01 = g[2] * g[4] - g[1] * g[5], c02 = g[1] * g[4] - g[2] * g[3];
   const double det = g[0] * c00 + g[1] * c01 + g[2] * c02, trace = g[0] + g[3] + g[5];
-  if (!(det > 1e-14 * trace * trace * trace)) return false;
+  if (!(det > GRAM_SPANS * trace * trace * trace)) return false;
   const double inverse[6] = {
       c00, c01, c02, g[0] * g[5] - g[2] * g[2], g[1] * g[2] - g[0] * g[4], g[0] * g[3] - g[1] * g[1]};
   static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -219,7 +231,7 @@ bool implicit_measure(implicit *body) {
     inner = fmin(inner, power_inner(body, &body->power[k], inner));
     body->power[k].spans = power_gram(body, &body->power[k]);
   }
-  body->inner = inner * (1.0 - 1e-12);
+  body->inner = inner * (1.0 - CENTRE_ROUNDING);
   body->closed = implicit_is_closed(body, body->inverse);
   body->orthogonal = body->closed && isfinite(implicit_closed_radius(body));
   body->give = body_shrinkage(body);

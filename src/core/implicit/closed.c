@@ -4,12 +4,24 @@
 #include "base/rounding.h"
 #include "implicit/implicit.h"
 
+/* The determinant of three unit rows: from here on their inverse loses no more than six digits. */
+static const double ROWS_SPAN = 1e-6;
+
+/* The cosine of two rows that stand across each other: what rounding makes of 0. */
+static const double ACROSS = 1e-14;
+
+/* What powers and roots round, with much to spare. */
+static const double POWER_ROUNDING = 1e-12;
+
+/* Of logarithms: Newton's steps that are shorter have converged to rounding; quadratic ones, to its root. */
+static const double LOG_CONVERGED = 1e-14, ROOT_CONVERGED = 1e-15, SQUARE_CONVERGED = 1e-8;
+
 bool implicit_is_closed(const implicit *body, double inverse[9]) {
   if (body->n_powers != 1 || body->n_planes + body->n_quadrics > 0 || body->n_terms != 3) return false;
   const vec3 a = body->term[0].a, b = body->term[1].a, c = body->term[2].a;
   const vec3 bc = vec_cross(b, c), ca = vec_cross(c, a), ab = vec_cross(a, b);
   const double det = vec_dot(a, bc);
-  if (!(fabs(det) > 1e-6 * vec_norm(a) * vec_norm(b) * vec_norm(c))) return false;
+  if (!(fabs(det) > ROWS_SPAN * vec_norm(a) * vec_norm(b) * vec_norm(c))) return false;
   const vec3 column[3] = {vec_scale(1.0 / det, bc), vec_scale(1.0 / det, ca), vec_scale(1.0 / det, ab)};
   for (int i = 0; i < 3; i++) {
     inverse[i] = column[i].x;
@@ -24,11 +36,11 @@ double implicit_closed_radius(const implicit *body) {
   double most = 0.0, exponent = 1.0, sum = 0.0;
   for (int i = 0; i < 3; i++) {
     const vec3 a = term[i].a, b = term[(i + 1) % 3].a;
-    if (fabs(vec_dot(a, b)) > 1e-14 * vec_norm(a) * vec_norm(b)) return INFINITY;
+    if (fabs(vec_dot(a, b)) > ACROSS * vec_norm(a) * vec_norm(b)) return INFINITY;
     most = fmax(most, 1.0 / vec_norm(a));
     exponent = fmax(exponent, term[i].p);
   }
-  const double up = 1.0 + 1e-12;
+  const double up = 1.0 + POWER_ROUNDING;
   if (exponent <= 2.0) return up * most;
   /* sum (x_i/a_i)^p <= 1 for the largest p, so |x|² <= (sum a_i^2q)^(1/q), 1/p/2 + 1/q = 1, by Hölder's inequality */
   const double q = exponent / (exponent - 2.0);
@@ -146,7 +158,7 @@ static double closest_row(closest *c, int i) {
     const double steep = (near + p1 * pushed) / whole, down = (most + log(whole) - c->v[i]) / steep;
     slope = -pushed / whole / steep;
     t -= down;
-    if (!(fabs(down) > 1e-14 * (1.0 + fabs(t)))) break;
+    if (!(fabs(down) > LOG_CONVERGED * (1.0 + fabs(t)))) break;
   }
   c->t[i] = t;
   return slope;
@@ -197,7 +209,7 @@ static bool closest_together(closest *c) {
       c->t[i] = fmin(c->t[i] - down, c->v[i]); /* u_i <= |v_i| */
       longest = fmax(longest, fabs(down));
     }
-    if (longest < 1e-8) return true; /* what is left is the square */
+    if (longest < SQUARE_CONVERGED) return true; /* what is left is the square */
   }
   return false;
 }
@@ -216,7 +228,7 @@ static bool closest_outside(closest *c) {
     double next = here - miss / slope;
     if (!isfinite(next) || fabs(next - here) > 30.0) next = here + (miss > 0.0 ? 30.0 : -30.0);
     if (!(next > low && next < high)) next = isfinite(low) && isfinite(high) ? 0.5 * (low + high) : next;
-    if (fabs(next - here) <= 1e-15 * (1.0 + fabs(here)) || fabs(miss) <= 4.0 * ROUND_U) return true;
+    if (fabs(next - here) <= ROOT_CONVERGED * (1.0 + fabs(here)) || fabs(miss) <= 4.0 * ROUND_U) return true;
     c->log_lambda = next;
   }
   return true;

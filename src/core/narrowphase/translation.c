@@ -15,6 +15,18 @@
 
 enum { TRANSLATION_STEPS = 200 };
 
+/* A distance is known to this part of epsilon, so that what two of them enclose is within epsilon. */
+static const double PART_OF_EPSILON = 0.25;
+
+/* Of a distance: so rough a lower bound still steps within 1e-3 of as far as the exact one. */
+static const double ROUGH_STEP = 1e-3;
+
+/* Of a step: 1000 times what its few operations round. */
+static const double STEP_ROUNDING = 1e-12;
+
+/* Of the way between the bodies: what values of the two lines may round where the lines meet. */
+static const double MEET_ROUNDING = 1e-14;
+
 /* ---- arguments ---- */
 
 static bool is_implicit(const cprox_body *body) {
@@ -141,13 +153,13 @@ static cprox_status cut_at(const cprox_translating *a, const cprox_translating *
 static cprox_status distance_of_convex(const cprox_translating *a, const cprox_translating *b, double duration,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   cprox_options asked = *options;
-  asked.epsilon = 0.25 * options->epsilon;
+  asked.epsilon = PART_OF_EPSILON * options->epsilon;
   cprox_result best = {.upper = INFINITY};
   time_cut falling, rising, cut;
   cprox_status status = cut_at(a, b, 0.0, &asked, workspace, &falling, &best);
   if (status >= 0) status = cut_at(a, b, duration, &asked, workspace, &rising, &best);
   if (status < 0) return status;
-  const double room = 1e-14 * vec_norm(vec_sub(b->velocity, a->velocity)) * duration;
+  const double room = MEET_ROUNDING * vec_norm(vec_sub(b->velocity, a->velocity)) * duration;
   double lower = 0.0;
   for (int i = 0; i < TRANSLATION_STEPS; i++) {
     const bool inner = falling.slope < 0.0 && rising.slope > 0.0;
@@ -244,7 +256,8 @@ static bool approach_implicit(approach *p, const cprox_options *options, cprox_w
     implicit_query there = query;
     there.moving = false;
     there.t = vec_axpy(query.t, found.time, query.velocity);
-    const implicit_goal goal = {.epsilon = 0.25 * epsilon, .relative_epsilon = 1e-5, .max_steps = options->max_nodes};
+    const implicit_goal goal = {
+        .epsilon = PART_OF_EPSILON * epsilon, .relative_epsilon = 1e-5, .max_steps = options->max_nodes};
     implicit_answer stood;
     implicit_solve(&there, &goal, &warm, memory, &stood);
     p->pairs++;
@@ -274,8 +287,8 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
   for (; p->pairs < TRANSLATION_STEPS; p->pairs++) {
     if (options->stop && p->pairs > 0 && options->stop(options->stop_user)) return CPROX_STOPPED;
     /* far away a rough answer steps as far as a fine one */
-    asked.epsilon = 0.25 * options->epsilon;
-    asked.relative_epsilon = 1e-3;
+    asked.epsilon = PART_OF_EPSILON * options->epsilon;
+    asked.relative_epsilon = ROUGH_STEP;
     const cprox_status status =
         WORKSPACE_LEND(workspace, cprox_pair(p->a, approach_at(p, p->free_until), &asked, workspace, &p->last));
     if (status < 0) return status;
@@ -290,7 +303,7 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
       return CPROX_OK;
     }
     const double rounded = 8.0 * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
-    const double step = (r->lower - rounded) / (towards + 8.0 * ROUND_U * speed) * (1.0 - 1e-12);
+    const double step = (r->lower - rounded) / (towards + 8.0 * ROUND_U * speed) * (1.0 - STEP_ROUNDING);
     const double next = step > 0.0 ? nextafter(p->free_until + step, -INFINITY) : 0.0; /* below the exact sum */
     if (!(next > p->free_until)) return CPROX_PRECISION;
     p->free_until = next;
@@ -329,7 +342,7 @@ static bool body_holds(const cprox_obstacle *obstacle, vec3 point, double room) 
 static cprox_status approach_prove(approach *p, const cprox_options *options, cprox_workspace *workspace, double *at) {
   enum { MOST_STEPS = 12 };
   cprox_options fine = *options;
-  fine.epsilon = fmin(0.25 * options->epsilon, 1e-3 * fabs(p->last.upper));
+  fine.epsilon = fmin(PART_OF_EPSILON * options->epsilon, ROUGH_STEP * fabs(p->last.upper));
   fine.relative_epsilon = 0.0;
   cprox_result r = p->last;
   const double speed = vec_norm(p->velocity), towards = vec_dot(r.normal, p->velocity),
@@ -339,7 +352,7 @@ static cprox_status approach_prove(approach *p, const cprox_options *options, cp
                                       speed * p->duration + p->a.body->ball_radius + p->b.body->ball_radius);
   hidden = fmax(hidden, 0.01 * options->epsilon);
   for (int i = 0; i < MOST_STEPS && t < p->duration && r.upper > 0.0 && towards > 0.0; i++, hidden *= 8.0) {
-    const double next = fmin(t + (r.upper + hidden) / towards * (1.0 + 1e-12), p->duration);
+    const double next = fmin(t + (r.upper + hidden) / towards * (1.0 + STEP_ROUNDING), p->duration);
     if (!(next > t)) break;
     t = next;
     const cprox_obstacle then = approach_at(p, t);

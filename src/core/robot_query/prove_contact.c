@@ -71,6 +71,10 @@ static int32_t whole_pair(const robot_search *o, int32_t index) {
   return index;
 }
 
+/* Of the time that is left: the first step by speed; the first of steps that double, which 24 of them outgrow; and how
+ * near the beginning of what is proven is brought to the end of what is not. */
+static const double FIRST_BY_SPEED = 1e-6, FIRST_DOUBLED = 1e-7, CUT_TO = 1e-9;
+
 cprox_status robot_search_prove(robot_search *o, double end) {
   enum { MOST_STEPS = 24, MOST_CUTS = 40, EVERY_PAIR = -1 };
   const double begin = time_of(o, &o->best), range = end - begin;
@@ -78,11 +82,11 @@ cprox_status robot_search_prove(robot_search *o, double end) {
     return CPROX_OK;
   const double known = time_of(o, &o->touch);
   search_best unused;
-  cprox_status status = prove_by_speed(o, whole_pair(o, o->best.pair), begin, 1e-6 * range, end);
+  cprox_status status = prove_by_speed(o, whole_pair(o, o->best.pair), begin, FIRST_BY_SPEED * range, end);
   if (status < 0 || time_of(o, &o->touch) < known) return status;
 
   /* farther along in growing steps, and then back to where it is not proven */
-  double step = 1e-7 * range, before = begin;
+  double step = FIRST_DOUBLED * range, before = begin;
   for (int i = 0; i < MOST_STEPS && step < range && begin + step < known; i++, step *= 2.0) {
     status = measure_pair_at(o, EVERY_PAIR, begin + step, &unused);
     if (status < 0 || time_of(o, &o->touch) < known) break;
@@ -90,7 +94,7 @@ cprox_status robot_search_prove(robot_search *o, double end) {
   }
   if (status < 0 || !(time_of(o, &o->touch) < known)) return status;
   const int32_t pair = o->touch.pair;
-  for (int i = 0; i < MOST_CUTS && time_of(o, &o->touch) - before > 1e-9 * range; i++) {
+  for (int i = 0; i < MOST_CUTS && time_of(o, &o->touch) - before > CUT_TO * range; i++) {
     const double middle = 0.5 * (before + time_of(o, &o->touch));
     status = measure_pair_at(o, pair, middle, &unused);
     if (status < 0) return status;

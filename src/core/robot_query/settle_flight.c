@@ -23,6 +23,9 @@ typedef struct stretch {
   double lowest; /* x where to look */
 } stretch;
 
+/* Of an interval: places that are nearer to each other, or to an end, are one. */
+static const double SAME_PLACE = 1e-9;
+
 enum { MOST_STRETCHES = 64, FEW_STRETCHES = 4 };
 
 typedef struct settling {
@@ -185,13 +188,13 @@ static cprox_status refine(settling *s, double from, double to) {
       const double fall = here[1] + bend * (x - s->x), curve = here[2] + bend;
       double next = curve > 0.0 ? x - fall / curve : fall > 0.0 ? low : high;
       next = lesser(greater(next, low), high);
-      if (fabs(next - x) <= 1e-9 * (to - from)) {
+      if (fabs(next - x) <= SAME_PLACE * (to - from)) {
         x = next;
         break;
       }
       x = next;
     }
-    if (fabs(x - s->x) <= 1e-9 * (to - from)) return CPROX_OK;
+    if (fabs(x - s->x) <= SAME_PLACE * (to - from)) return CPROX_OK;
     last_slope = slope, last_x = s->x;
     const robot_gap before = s->gap;
     const cprox_status status = measure(s, x, 0.0);
@@ -263,7 +266,7 @@ static cprox_status work_on(settling *s, const stretch *whole, stretch part[2]) 
     }
   }
   const double width = whole->to - whole->from;
-  const bool inside = s->x > whole->from + 1e-9 * width && s->x < whole->to - 1e-9 * width;
+  const bool inside = s->x > whole->from + SAME_PLACE * width && s->x < whole->to - SAME_PLACE * width;
   const double ends[3] = {whole->from, inside ? s->x : 0.5 * (whole->from + whole->to), whole->to};
   for (int k = 0; k < 2; k++) {
     stretch *c = &part[k];

@@ -27,6 +27,9 @@ static const double NEIGHBOURHOOD[] = {1e-4, 1e-3, 1e-2, 3e-2};
  * rounding. */
 static const double NEARBY[] = {1e-6, 1e-5, 1e-4, 1e-3};
 
+/* Of the range: the first step away from the minimiser, near the root of rounding, and where steps end that grow. */
+static const double FIRST_STEP = 1e-8, LAST_STEP = 0.05;
+
 /* How narrowly those are searched, in lengths of the curve and distances. */
 static const double HARDLY = 1e-14;
 
@@ -170,8 +173,8 @@ static cprox_status refine(beside *o, double t0, double t1, double *t, int *end)
   enum { MOST_STEPS = 8 };
   const double range = t1 - t0;
   *end = 0;
-  double step = 1e-8 * range;
-  for (int i = 0; i < MOST_STEPS && step < 0.05 * range; i++, step *= 8.0) {
+  double step = FIRST_STEP * range;
+  for (int i = 0; i < MOST_STEPS && step < LAST_STEP * range; i++, step *= 8.0) {
     const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
     look a = {.slope = 0.0}, b = {.slope = 0.0};
     cprox_status status = look_at(o, left, true, &a);

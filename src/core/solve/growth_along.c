@@ -15,6 +15,9 @@
 /* The part of the width that may be left where the centres meet and a relative width is none. */
 static const double AT_CENTRES = 1e-3;
 
+/* Of the range: the first step away from the minimiser, near the root of rounding, and where steps end that grow. */
+static const double FIRST_STEP = 1e-8, LAST_STEP = 0.05;
+
 /* How near another minimiser must not come, as a part of the value; the neighbourhoods of the minimiser that are tried,
  * as fractions of the curve, until all beyond is greater, and by how much their ends are; where within them the value
  * must fall towards the minimiser. */
@@ -156,12 +159,15 @@ static double filter(void *self, search_node *node, double goal) {
   return node->lower;
 }
 
+/* A place nearer to an end, by the interval, does not cut it. */
+static const double CUT_INSIDE = 1e-3;
+
 /* Where the best place cuts the node's interval; -1: it does not. */
 static double best_inside(const along *o, search_node *node) {
   const curve_interval *at = &own(node)->at;
   if (o->known == 0 || curve_side_piece(&o->side, at) != o->best.piece) return -1.0;
   const double s = (o->best.s - at->a) / (at->b - at->a);
-  return s > 1e-3 && s < 1.0 - 1e-3 ? s : -1.0;
+  return s > CUT_INSIDE && s < 1.0 - CUT_INSIDE ? s : -1.0;
 }
 
 /* Where the control point lies that reaches farthest towards b, but well inside. */
@@ -314,8 +320,8 @@ static cprox_status find_root(along *o, double left, double right, double fa, do
 /* The minimiser near *t, as exactly as its slope tells it. */
 static cprox_status refine(along *o, double t0, double t1, double *t) {
   const double range = t1 - t0;
-  double step = 1e-8 * range;
-  while (step < 0.05 * range) {
+  double step = FIRST_STEP * range;
+  while (step < LAST_STEP * range) {
     const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
     place a, b;
     cprox_status status = look_at(o, left, true, &a);

@@ -17,6 +17,9 @@
 /* The part of the width that may be left where the centres meet and a relative width is none. */
 static const double AT_CENTRES = 1e-3;
 
+/* Of the range: the first step away from the minimiser, near the root of rounding, and where steps end that grow. */
+static const double FIRST_STEP = 1e-8, LAST_STEP = 0.05;
+
 /* How near another minimiser must not come, as a part of the value; the neighbourhoods of the minimiser that are tried,
  * as fractions of the motion, until their ends are greater by FARTHER times that; where within them the value must fall
  * towards the minimiser. */
@@ -313,8 +316,8 @@ static cprox_status find_root(robot_growth *o, double left, double right, double
 static cprox_status refine(robot_growth *o, double t0, double t1, double *t) {
   place p;
   motion_spot before, behind;
-  double step = 1e-8 * (t1 - t0);
-  while (step < 0.05 * (t1 - t0)) {
+  double step = FIRST_STEP * (t1 - t0);
+  while (step < LAST_STEP * (t1 - t0)) {
     const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
     cprox_status status = look_at(o, left, false, &p, &before, NULL);
     if (status >= 0) status = look_at(o, right, true, &p, &behind, NULL);

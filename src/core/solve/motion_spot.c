@@ -29,6 +29,16 @@ static const double TWO_NORMALS = 2e-5;
 static const double CLEAR_OF_OTHER = 3e-5, SAME_WAY = 1e-6, SAME_WAY_BENT = 0.1, STRAIGHT_WAY = 1e-6,
                     STRAIGHT_SLOPE = 2e-3;
 
+/* Along a segment: the first of five steps downhill, each eight times as long, which together cross a segment. */
+static const double FIRST_STEP = 1e-3;
+
+/* In sizes: nearest points that move by less in a turn stay where they are; some units of rounding. */
+static const double STANDS_STILL = 1e-15;
+
+/* In radii: how well hulls tell where to begin, how well elements are told apart, and how much farther than the nearest
+ * ones of before it is looked, which is ten times that. */
+static const double HULLS_KNOWN = 1e-3, ELEMENTS_KNOWN = 1e-9, ELEMENTS_BEYOND = 10.0 * 1e-9;
+
 bool spot_begin(robot_scene *scene, int32_t index, spot_pair *p) {
   const cprox_robot *robot = scene->motion->robot;
   *p = (spot_pair){.scene = scene, .pair = scene->pairs[index], .index = index};
@@ -111,7 +121,7 @@ static void sharpen(const robot_body *moving, const robot_body *standing, robot_
     const vec3 next = nearest_on_core(moving, y);
     const double moved = vec_norm(vec_sub(next, x));
     x = next;
-    if (!(moved > 1e-15 * size)) break;
+    if (!(moved > STANDS_STILL * size)) break;
   }
   const vec3 v = vec_sub(x, y);
   const double distance = vec_norm(v);
@@ -128,16 +138,16 @@ static cprox_status measure_trees(spot_pair *p, robot_gap *gap) {
   const robot_body *moving = p->placed.moving, *standing = p->placed.standing;
   const double radii = moving->radius + (robot_body_is_halfspace(standing) ? 0.0 : standing->radius);
   robot_gap hulls;
-  cprox_status status = measure(p, moving, standing, (robot_accuracy){.epsilon = 1e-3 * moving->radius}, &hulls);
+  cprox_status status = measure(p, moving, standing, (robot_accuracy){.epsilon = HULLS_KNOWN * moving->radius}, &hulls);
   if (status < 0) return status;
   robot_refinement c = {.pair = &p->placed,
                         .reach = fmax(hulls.upper, 0.0) + 4.0 * radii,
-                        .accuracy = 1e-9 * radii,
+                        .accuracy = ELEMENTS_KNOWN * radii,
                         .normal = hulls.upper > 0.0 ? hulls.normal : vec(0, 0, 0)};
   if (p->element[0] >= 0 || p->element[1] >= 0) {
     status = measure_elements(p, p->element, gap);
     if (status < 0) return status;
-    c.reach = fmin(c.reach, fmax(gap->upper, 0.0) + 1e-8 * radii);
+    c.reach = fmin(c.reach, fmax(gap->upper, 0.0) + ELEMENTS_BEYOND * radii);
   }
   robot_refinement_run(&c);
   p->gaps += c.gaps;
@@ -224,7 +234,7 @@ static cprox_status refine_on_segment(spot_pair *p, double low, double high, mot
   *found = false;
   enum { MOST_STEPS = 5 };
   motion_spot near = *spot;
-  double step = 1e-3;
+  double step = FIRST_STEP;
   for (int i = 0; i < MOST_STEPS; i++, step *= 8.0) {
     /* downhill; from where it is flat forwards, but from the end, where a motion may rest, backwards */
     const bool backwards = near.slope > 0.0 || (near.slope == 0.0 && near.u >= high);
