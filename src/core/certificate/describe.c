@@ -12,7 +12,7 @@
 #include "problem/minkowski.h"
 #include "shape/kinds.h"
 
-void say(text *t, const char *format, ...) {
+void describe_text(text *t, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   const size_t left = t->length < t->size ? t->size - t->length : 0;
@@ -22,18 +22,18 @@ void say(text *t, const char *format, ...) {
 }
 
 void describe_vector(text *t, vec3 v) {
-  say(t, " %a %a %a", v.x, v.y, v.z);
+  describe_text(t, " %a %a %a", v.x, v.y, v.z);
 }
 
 void describe_pose(text *t, const cprox_pose *pose) {
   const cprox_quat q = pose->orientation;
   describe_vector(t, pose->position);
-  say(t, " %a %a %a %a", q.w, q.x, q.y, q.z);
+  describe_text(t, " %a %a %a %a", q.w, q.x, q.y, q.z);
 }
 
 static void describe_vertices(text *t, const cprox_body *body) {
   describe_vector(t, body->centre);
-  say(t, " %d", (int)body->shape.n);
+  describe_text(t, " %d", (int)body->shape.n);
   for (int32_t i = 0; i < body->shape.n; i++)
     describe_vector(t, vec(body->shape.x[i], body->shape.y[i], body->shape.z[i]));
 }
@@ -70,19 +70,19 @@ bool describe_has_mesh(const cprox_body *body) {
 void describe_body(text *t, const cprox_body *body) {
   const double *size = body->shape.size;
   if (body->mesh) {
-    say(t, " hull %a", body->excess);
+    describe_text(t, " hull %a", body->excess);
     describe_vertices(t, body->hull);
     return;
   }
   if (body->shape.n > 0) { /* a polygon, too, is the hull of its vertices */
-    say(t, " polytope");
+    describe_text(t, " polytope");
     describe_vertices(t, body);
     return;
   }
   const body_kind *kind = body_kind_of(body->kind);
-  say(t, " %s", kind->name);
+  describe_text(t, " %s", kind->name);
   if (body->kind == CPROX_BODY_POINT) describe_vector(t, body->centre);
-  for (int i = 0; i < kind->n_sizes; i++) say(t, " %a", size[kind->sizes[i]]);
+  for (int i = 0; i < kind->n_sizes; i++) describe_text(t, " %a", size[kind->sizes[i]]);
 }
 
 /* ---- elements ---- */
@@ -107,11 +107,11 @@ static bool describe_elements(text *t, const cprox_body *body) {
   const element_order order = elements_order(elements, first);
   const element_range all = elements_all(&order);
   if (elements->kind == TREE_POINTS)
-    say(t, " points %a", body->shape.margin);
+    describe_text(t, " points %a", body->shape.margin);
   else
-    say(t, elements->kind == TREE_BOXES ? " cells" : body->winding ? " solid" : " triangles");
+    describe_text(t, elements->kind == TREE_BOXES ? " cells" : body->winding ? " solid" : " triangles");
   describe_vector(t, body->centre);
-  say(t, " %zu", elements->n);
+  describe_text(t, " %zu", elements->n);
   listed l = {t, elements};
   elements_each(&order, &all, describe_element, &l);
   free(first);
@@ -122,32 +122,32 @@ static bool describe_elements(text *t, const cprox_body *body) {
 
 static void describe_inequalities(text *t, const cprox_body *body) {
   const implicit *shape = body->shape.implicit;
-  say(t, " implicit");
+  describe_text(t, " implicit");
   describe_vector(t, body->centre);
-  say(t, " %d", (int)shape->n_planes);
+  describe_text(t, " %d", (int)shape->n_planes);
   for (int32_t i = 0; i < shape->n_planes; i++) {
     describe_vector(t, shape->plane[i].b);
-    say(t, " %a", shape->plane[i].c);
+    describe_text(t, " %a", shape->plane[i].c);
   }
-  say(t, " %d", (int)shape->n_quadrics);
+  describe_text(t, " %d", (int)shape->n_quadrics);
   for (int32_t i = 0; i < shape->n_quadrics; i++) {
-    for (int k = 0; k < 6; k++) say(t, " %a", shape->quadric[i].q[k]);
+    for (int k = 0; k < 6; k++) describe_text(t, " %a", shape->quadric[i].q[k]);
     describe_vector(t, shape->quadric[i].b);
-    say(t, " %a", shape->quadric[i].c);
+    describe_text(t, " %a", shape->quadric[i].c);
   }
-  say(t, " %d %d", (int)shape->n_powers, (int)shape->n_terms);
+  describe_text(t, " %d %d", (int)shape->n_powers, (int)shape->n_terms);
   for (int32_t k = 0; k < shape->n_powers; k++)
     for (int32_t i = shape->power[k].first; i < shape->power[k].first + shape->power[k].n; i++) {
-      say(t, " %d", (int)k);
+      describe_text(t, " %d", (int)k);
       describe_vector(t, shape->term[i].a);
-      say(t, " %a %a", shape->term[i].d, shape->term[i].p);
+      describe_text(t, " %a %a", shape->term[i].d, shape->term[i].p);
     }
 }
 
 /* ---- obstacles ---- */
 
 static bool describe_one(text *t, const cprox_obstacle *obstacle, const cprox_body *body, const cprox_pose *inner) {
-  say(t, "target %a %d", obstacle->margin, inner ? 2 : 1);
+  describe_text(t, "target %a %d", obstacle->margin, inner ? 2 : 1);
   describe_pose(t, &obstacle->pose);
   if (inner) describe_pose(t, inner);
   const cprox_body *elements = elements_body(body);
@@ -156,7 +156,7 @@ static bool describe_one(text *t, const cprox_obstacle *obstacle, const cprox_bo
     describe_inequalities(t, body);
   else if (!elements)
     describe_body(t, body);
-  say(t, "\n");
+  describe_text(t, "\n");
   return true;
 }
 

@@ -13,7 +13,7 @@ typedef struct text {
   size_t size, length;
 } text;
 
-void say(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void describe_text(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void describe_vector(text *t, vec3 v);
 void describe_pose(text *t, const cprox_pose *pose);
 

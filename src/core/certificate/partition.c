@@ -63,7 +63,7 @@ static bool separates(const cover *c, const trial *t, reach_part part) {
   return reach_separates(c->curve, c->radius, part, &t->direction, &t->reach, c->delta);
 }
 
-const convex *cover_shape(const cover *c, frame *placed) {
+const convex *partition_shape(const cover *c, frame *placed) {
   *placed = c->carried.body ? c->joined.placed : frame_create(&c->pose, c->set.body->centre);
   return c->carried.body ? &c->joined.shape : &c->set.body->shape;
 }
@@ -71,7 +71,7 @@ const convex *cover_shape(const cover *c, frame *placed) {
 /* The direction away from the body at a point of the curve; (0,0,0) inside, where there may be none. */
 static vec3 normal_at(const cover *c, const frame *f, double sigma, convex_hint *hint) {
   frame unused;
-  const convex *shape = cover_shape(c, &unused);
+  const convex *shape = partition_shape(c, &unused);
   double error = 0.0;
   convex_near near;
   shape->ops->nearest(shape, frame_to_local(f, partition_point(c->curve, sigma), &error), hint, &near);
@@ -152,7 +152,7 @@ static void join_neighbours(const cover *c, const frame *f, size_t *n) {
 
 cprox_status partition_convex(cover *c) {
   frame f;
-  cover_shape(c, &f);
+  partition_shape(c, &f);
   size_t n;
   const cprox_status status = lay(c, &f, &n);
   if (status != CPROX_OK) return status;

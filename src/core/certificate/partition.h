@@ -40,7 +40,7 @@ vec3 partition_point(const cprox_curve *curve, double sigma);
 double partition_cut(const cover *c, reach_part part, double witness);
 
 /* The shape that the curve keeps away from, and where it stands. */
-const convex *cover_shape(const cover *c, frame *placed);
+const convex *partition_shape(const cover *c, frame *placed);
 
 /* Writes the section: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
 cprox_status partition_convex(cover *c);
@@ -49,7 +49,7 @@ cprox_status partition_elements(cover *c);
 
 /* The surface point of the convex body next to a point, drawn in so that rounding does not leave it outside; false
  * where it cannot be. */
-bool cover_draw_in(const cprox_body *body, const convex_near *near, double by, vec3 *drawn);
+bool partition_draw_in(const cprox_body *body, const convex_near *near, double by, vec3 *drawn);
 
 /* Writes how a body's point is found that is near y, a point of the frame about its centre that is within error of the
  * exact one; returns how far y is from it: 0 inside, infinity for none. */

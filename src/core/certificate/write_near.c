@@ -20,7 +20,7 @@ static vec3 local_point(const cover *c, const frame *f, vec3 world, double *erro
   return y;
 }
 
-bool cover_draw_in(const cprox_body *body, const convex_near *near, double by, vec3 *drawn) {
+bool partition_draw_in(const cprox_body *body, const convex_near *near, double by, vec3 *drawn) {
   const body_kind *kind = body_kind_of(body->kind);
   const double inner = kind->inner_radius     ? kind->inner_radius(&body->shape)
                        : body->shape.implicit ? body->shape.implicit->inner
@@ -79,7 +79,7 @@ double partition_near_point(const cprox_body *body, cprox_certificate *certifica
     vec3 x;
     if (kind == CPROX_BODY_HALFSPACE)
       v = vec_scale(near.distance + drawn, near.normal);
-    else if (cover_draw_in(body, &near, drawn, &x))
+    else if (partition_draw_in(body, &near, drawn, &x))
       v = vec_sub(y, x);
     else
       return INFINITY;
@@ -112,7 +112,7 @@ vec3 partition_point_of(const cprox_body *body, cprox_certificate *c, vec3 y) {
   shape->ops->nearest(shape, y, &hint, &near);
   const double drawn = ROOM * ROUND_U * (vec_norm(y) + shape->scale);
   vec3 x = y;
-  if (near.distance >= -drawn && !cover_draw_in(body, &near, drawn, &x)) return vec(NAN, NAN, NAN);
+  if (near.distance >= -drawn && !partition_draw_in(body, &near, drawn, &x)) return vec(NAN, NAN, NAN);
   certificate_vector(c, x);
   return x;
 }
