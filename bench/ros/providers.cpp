@@ -129,6 +129,73 @@ std::vector<std::pair<const char *, ConstraintBody>> bodiesOfAllKinds() {
           {"mesh", sideOf(octahedron)}};
 }
 
+/* The medians of times that several calls take at each place, in turns; the least of several rounds at a place. */
+std::vector<std::vector<double>> inTurns(std::size_t n, int rounds, const std::vector<Ask> &calls) {
+  std::vector<std::vector<double>> times(calls.size(), std::vector<double>(n, INFINITY));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int round = 0; round < rounds; ++round) {
+      for (std::size_t k = 0; k < calls.size(); ++k) {
+        const double begin = now();
+        calls[k](i);
+        times[k][i] = std::min(times[k][i], now() - begin);
+      }
+    }
+  }
+  return times;
+}
+
+/* What a value with its gradient costs beside the distance, or the depth, of the same pair: the provider also asks
+ * whether there is one minimiser alone. And what the same distance costs from the answer 1 mm beside. */
+void gradientsBesidePairs(pluginlib::ClassLoader<ConstraintProvider> &plugins, const bench_size &size) {
+  const auto provider = plugins.createUniqueInstance("curve_proximity/SuperquadricDistance");
+  provider->initialise({});
+  const auto bodies = bodiesOfAllKinds();
+  const std::pair<std::size_t, std::size_t> pairs[] = {{1, 1}, {1, 4}, {1, 8}, {2, 6}, {4, 6}, {6, 6}};
+  for (const bool overlaps : {false, true}) {
+    const std::string workload = std::string("value and gradient ") + (overlaps ? "in overlap" : "apart");
+    for (const auto &[i, j] : pairs) {
+      Random random;
+      ConstraintPair pair;
+      pair.a = bodies[i].second, pair.b = bodies[j].second;
+      const auto constraint = provider->prepare(pair);
+      Places at = randomPlaces(size.problems, false, random);
+      if (overlaps)
+        for (ConstraintPlace &place : at.places) place.a.position.x -= 1.8;
+      Workspace workspace;
+      ConstraintValue value;
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
+      options.epsilon = 1e-9;
+      const auto ask = [&](const ConstraintPlace &place, cprox_pair_start *start) {
+        cprox_result result;
+        options.start = start;
+        cprox_pair(cprox_obstacle_at(pair.a.parts[0].body.get(), place.a),
+                   cprox_obstacle_at(pair.b.parts[0].body.get(), place.b), &options, workspace.get(), &result);
+      };
+      std::vector<cprox_pair_start> starts(at.places.size());
+      for (std::size_t k = 0; k < starts.size(); ++k) {
+        ConstraintPlace beside = at.places[k];
+        beside.b.position.z += 1e-3;
+        starts[k] = {};
+        ask(beside, &starts[k]);
+      }
+      const Ask alone = [&](std::size_t k) { ask(at.places[k], nullptr); };
+      const Ask warm = [&](std::size_t k) {
+        cprox_pair_start start = starts[k];
+        ask(at.places[k], &start);
+      };
+      const Ask whole = [&](std::size_t k) {
+        value.start = {};
+        constraint->evaluate(at.places[k], workspace, value);
+      };
+      const auto times = inTurns(at.places.size(), size.rounds, {alone, warm, whole});
+      const std::string kinds = std::string(bodies[i].first) + " and " + bodies[j].first;
+      printRow("providers", workload, "core", times[0], kinds);
+      printRow("providers", workload, "core from beside", times[1], kinds);
+      printRow("providers", workload, "curve_proximity", times[2], kinds);
+    }
+  }
+}
+
 /* Of each two kinds in space: what prepare() takes, and a value with its gradient at places where the spheres meet. */
 void gapsOfAllKinds(pluginlib::ClassLoader<ConstraintProvider> &plugins, const bench_size &size) {
   const auto bodies = bodiesOfAllKinds();
@@ -239,6 +306,8 @@ int main(int argc, char **argv) {
     measure("SuperquadricDistance", n, size.rounds, core,
             [&](std::size_t i) { constraint->evaluate(at.places[i], workspace, value); });
   }
+
+  if (bench_wanted(&size, "SuperquadricDistance beside its distance")) gradientsBesidePairs(plugins, size);
 
   if (bench_wanted(&size, "FourierGap")) {
     const auto provider = plugins.createUniqueInstance("curve_proximity/FourierGap");

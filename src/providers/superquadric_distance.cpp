@@ -32,6 +32,48 @@ bool isJump(double near, double far, double noise) {
   return near > noise && near > LEAST_LEFT * far;
 }
 
+/* Edges cross where their angle's sine is above this. */
+constexpr double CROSSING = 1e-2;
+
+/* Where a convex body meets the plane across a direction that supports it. */
+struct Touch {
+  bool is_point = false;                          /* as a jump is told: small turns of the plane move it a little */
+  Eigen::Vector3d edge = Eigen::Vector3d::Zero(); /* [m] along the edge, or 0 where it meets in a face */
+};
+
+/* Of these kinds a support point is the nearest point of a plane outside. */
+bool isConvexKind(const cprox_body *body) {
+  switch (cprox_body_get_info(body).kind) {
+    case CPROX_BODY_BOX:
+    case CPROX_BODY_CAPSULE:
+    case CPROX_BODY_CYLINDER:
+    case CPROX_BODY_CONE:
+    case CPROX_BODY_POLYTOPE: return true;
+    default: return false;
+  }
+}
+
+/* outward: unit. The plane is turned to both sides about two axes, as a body is by `spread`. */
+Touch touchOf(const cprox_body *body, const cprox_pose &pose, const Eigen::Vector3d &outward, double noise) {
+  const cprox_quat &q = pose.orientation;
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+  const Eigen::Vector3d u = turn.conjugate() * outward, across = u.unitOrthogonal(), other = u.cross(across);
+  const auto between = [&](const Eigen::Vector3d &step) {
+    cprox_vec3 one, two;
+    cprox_body_support(body, toVec3(u + step), &one);
+    cprox_body_support(body, toVec3(u - step), &two);
+    return Eigen::Vector3d(toEigen(one) - toEigen(two));
+  };
+  const Eigen::Vector3d first = between(NEAR * across), second = between(NEAR * other);
+  const double near = std::max(first.norm(), second.norm());
+  Touch out;
+  out.is_point =
+      near <= noise || !isJump(near, std::max(between(FAR * across).norm(), between(FAR * other).norm()), noise);
+  const Eigen::Vector3d &longer = first.norm() > second.norm() ? first : second;
+  if (!out.is_point && first.cross(second).norm() <= noise * longer.norm()) out.edge = turn * longer;
+  return out;
+}
+
 using Parameters = StandingDistanceParameters;
 
 /* A part as single bodies. */
@@ -308,9 +350,20 @@ class SuperquadricConstraint : public Constraint {
     return most;
   }
 
-  /* Two flat faces, or an edge along a face: a turn to either side moves the nearest points to either end. */
+  /* Two flat faces, or an edge along a face: a turn to either side moves the nearest points to either end. Where one of
+   * two convex bodies touches in a point, or both in edges that cross, the nearest points are alone without a look. */
   bool nearestIsAlone(const Nearest &best, const ConstraintPlace &place, double size, Workspace &workspace) const {
-    const double noise = POINT_NOISE * size, near = spread(best, place, NEAR, workspace);
+    const double noise = POINT_NOISE * size;
+    if (isConvexKind(best.a) && isConvexKind(best.b)) {
+      const cprox_result here = pairAt(best, place.a, place.b, workspace); // whose normal is exact enough
+      const Eigen::Vector3d n = toEigen(here.normal);
+      if (isFound(here, size) && !n.isZero(0.0)) {
+        const Touch a = touchOf(best.a, place.a, -n, noise), b = touchOf(best.b, place.b, n, noise);
+        if (a.is_point || b.is_point || a.edge.cross(b.edge).norm() > CROSSING * a.edge.norm() * b.edge.norm())
+          return true;
+      }
+    }
+    const double near = spread(best, place, NEAR, workspace);
     return near <= noise || !isJump(near, spread(best, place, FAR, workspace), noise);
   }
 
