@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 #include <moveit/utils/robot_model_test_utils.h>
 
+#include <fstream>
+#include <iterator>
 #include <limits>
+
+#include <ros/package.h>
 
 #include "certify_path.h"
 
@@ -11,10 +15,23 @@ namespace {
 
 using curve_proximity::CertifyPath;
 
+/* On a joint that is fixed in MoveIt's files, and was floating in earlier ones. */
+moveit::core::RobotModelPtr pandaOn(const std::string &joint) {
+  std::ifstream file(ros::package::getPath("moveit_resources_panda_moveit_config") + "/config/panda.srdf");
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string fixed = "type=\"fixed\"";
+  text.replace(text.find(fixed), fixed.size(), "type=\"" + joint + "\"");
+  const auto urdf = moveit::core::loadModelInterface("panda");
+  const auto srdf = std::make_shared<srdf::Model>();
+  srdf->initString(*urdf, text);
+  return std::make_shared<moveit::core::RobotModel>(urdf, srdf);
+}
+
 /* A Panda, and a post that its hand passes when joint 1 turns through .3 rad. */
 class Path : public testing::Test {
  protected:
-  Path() : scene_(std::make_shared<planning_scene::PlanningScene>(moveit::core::loadTestingRobotModel("panda"))) {
+  explicit Path(const std::string &joint = "fixed")
+      : scene_(std::make_shared<planning_scene::PlanningScene>(pandaOn(joint))) {
     moveit::core::RobotState &state = scene_->getCurrentStateNonConst();
     state.setToDefaultValues();
     state.setToDefaultValues(scene_->getRobotModel()->getJointModelGroup("panda_arm"), "ready");
@@ -59,7 +76,22 @@ class Path : public testing::Test {
   curve_proximity::Certifier certifier_;
 };
 
+class FloatingPath : public Path {
+ protected:
+  FloatingPath() : Path("floating") {}
+};
+
 } // namespace
+
+/* Of a base that no motion of the group moves. */
+TEST_F(FloatingPath, is_where_the_base_stands) {
+  moveit::core::RobotState &state = scene_->getCurrentStateNonConst();
+  for (const double x : {0.0, 3.0, 0.0}) {
+    state.setVariablePosition("virtual_joint/trans_x", x);
+    state.update();
+    EXPECT_EQ(ask(turnTo(1.2)).certified, x > 0.0) << x;
+  }
+}
 
 TEST_F(Path, is_certified_where_it_keeps_the_clearance) {
   EXPECT_TRUE(ask(turnTo(-0.4)).certified);
