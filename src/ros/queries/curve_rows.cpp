@@ -99,7 +99,7 @@ void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work)
     if (!where.coverage.complete()) of_place = work.query, of_place.coverage = where.coverage;
     const Query &query = where.coverage.complete() ? work.query : of_place;
     const SceneObstacles &obstacles = where.stamped->obstacles;
-    if (!work.request.problems && asksFor<question::Search, question::Gradient>(question) && !query.per_object &&
+    if (!work.request.problems && asksFor<question::Search, question::Gradient>(question) &&
         TimeBudget::isOver(query.options.stop_user)) {
       const Row row = stoppedCurve(message.id, question, query);
       fillRow(row.answer, query.query_type, work.response.add(toMessage(row)));
