@@ -98,15 +98,15 @@ struct ConstraintValue {
   double touching_least = 0.0; /**< of a penalty: below it the sides overlap */
   double touching_most = 0.0;  /**< of a penalty: above it the sides do not meet */
 
-  bool valid = false;   /**< the gradient exists; false: not differentiable here, or not shown to be */
-  std::string reason;   /**< why valid is false, in a few words */
-  ConstraintGradient a; /**< by side a; if valid is false: that of one of the minimisers, or 0 */
-  ConstraintGradient b; /**< by side b, likewise */
-  /** Gradient by the curve's control points or coefficients, axes of the fixed frame, one a column; of clothoids,
-   *  involutes and Pythagorean hodographs by the start. 0 columns without a curve, and for dubins and piecewise curves,
-   *  which have a gradient by their pose alone (a). */
-  Eigen::Matrix3Xd points;
-  double radius = 0.0;                                 /**< gradient by the curve's radius; 0 without a curve */
+  bool valid = false;         /**< the gradient exists; false: not differentiable here, or not shown to be */
+  std::string reason;         /**< why valid is false, in a few words */
+  ConstraintGradient a;       /**< by side a; if valid is false: that of one of the minimisers, or 0 */
+  ConstraintGradient b;       /**< by side b, likewise */
+  Eigen::Matrix3Xd points;    /**< gradient by the curve's points, as gradientByCurve(); 0 columns without a curve */
+  Eigen::VectorXd parameters; /**< gradient by the curve's parameters, likewise */
+  double range_start = 0.0;   /**< gradient by the start of the curve's range, the curve itself going on as it is */
+  double range_end = 0.0;     /**< gradient by the end of the range, likewise; both are 0 where t is elsewhere */
+  double radius = 0.0;        /**< gradient by the curve's radius; 0 without a curve */
   double t = std::numeric_limits<double>::quiet_NaN(); /**< the curve's parameter at which the value is attained */
   bool has_points = false;                             /**< the witness points and the normal are set */
   Eigen::Vector3d witness_a = Eigen::Vector3d::Zero(); /**< [m] witness point of a, fixed frame */
@@ -139,7 +139,7 @@ struct ConstraintMotion {
 
 /** One clearance of a robot along its trajectory. Of the members of ConstraintValue, t is in seconds; a is by a rigid
  *  step of the whole robot, which turns about the origin of the fixed frame; b is by one of the object side_b, 0 for a
- *  link of the robot; points and radius are not used. */
+ *  link of the robot; points, parameters, range and radius are not used. */
 struct MotionRow : ConstraintValue {
   std::string kind;   /**< "environment" or "self" */
   std::string side_a; /**< the link or the attached object */
@@ -212,7 +212,7 @@ class Constraint {
 
 /** The version of the plugin interface. It is raised when the order of virtual functions or the meaning of a member
  *  changes. */
-constexpr std::uint64_t PROVIDER_VERSION = 5;
+constexpr std::uint64_t PROVIDER_VERSION = 6;
 
 /** One number that a plugin and its loader must have in common: the interface version, the sizes of all shared types,
  *  and Eigen's alignment (-mavx changes how Eigen frees memory). */
@@ -279,43 +279,6 @@ class LayoutProvider {
 using ConstraintProvider = LayoutProvider<providerLayout()>;
 
 /* ---- for plugins ---- */
-
-/** The weight of each control point or coefficient in the curve's point at t; n = description.points.cols() of them.
- *  false: the basis has none, and nothing is written. */
-inline bool findCurveWeights(const CurveDescription &curve, double t, double *weights) {
-  for (const char *name : {"clothoid", "involute", "pythagorean_hodograph"})
-    if (curve.basis == name) return weights[0] = 1.0, true; /* the start, with which the whole curve moves */
-  static constexpr std::pair<const char *, cprox_curve_kind> kinds[] = {
-      {"bezier", CPROX_CURVE_BEZIER},         {"bspline", CPROX_CURVE_BSPLINE},
-      {"polynomial", CPROX_CURVE_POLYNOMIAL}, {"legendre", CPROX_CURVE_LEGENDRE},
-      {"lagrange", CPROX_CURVE_LAGRANGE},     {"trigonometric", CPROX_CURVE_TRIGONOMETRIC},
-      {"nurbs", CPROX_CURVE_NURBS},           {"rational_bezier", CPROX_CURVE_RATIONAL_BEZIER}};
-  for (const auto &[name, kind] : kinds) {
-    if (curve.basis != name) continue;
-    cprox_curve_description d = detail::describe(kind, curve.points, curve.t0, curve.t1);
-    d.degree = curve.degree, d.knots = curve.knots.data(), d.n_knots = curve.knots.size();
-    d.weights = curve.parameters.data();
-    return cprox_curve_weights(&d, t, weights) == CPROX_OK;
-  }
-  return false;
-}
-
-/** The derivative of a value by the curve's points, n being that by its point at t. 0 columns where the basis has no
- *  weights. */
-inline void gradientByPoints(const CurveDescription &curve, double t, const Eigen::Vector3d &n,
-                             Eigen::Matrix3Xd &points) {
-  points.resize(3, curve.points.cols());
-  /* the weights stand at the front of the matrix; from the back, a column covers none that is still to be read */
-  double *weights = points.data();
-  if (!findCurveWeights(curve, t, weights)) {
-    points.resize(3, 0);
-    return;
-  }
-  for (Eigen::Index i = points.cols(); i-- > 0;) {
-    const double w = weights[i];
-    points.col(i) = w * n;
-  }
-}
 
 /** The side as one body: its only part if that stands at the side's origin, otherwise a compound of all parts. exact:
  * of meshes with all of their triangles. */

@@ -512,6 +512,15 @@ inline CurveHandle restrictCurve(const CurveHandle &curve, double t0, double t1,
   return detail::makeCurve(d, curve);
 }
 
+/** The derivatives of the curve's point at t by the n numbers that define it, one a column, as cprox_curve_jacobian().
+ *  Throws Error where there are none. */
+inline Eigen::Matrix3Xd curveJacobian(const cprox_curve_description &description, double t, std::size_t n) {
+  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(n));
+  if (cprox_curve_jacobian(&description, t, reinterpret_cast<cprox_vec3 *>(out.data())) != CPROX_OK)
+    throw Error("the curve has no numbers beside its points, or no derivatives by them", CPROX_INVALID);
+  return out;
+}
+
 /** A clothoid: at `start` with the heading and curvature at t = 0, t being arc length. */
 inline CurveHandle makeClothoid(const Eigen::Vector3d &start, double heading, double curvature, double curvature_rate,
                                 double t0, double t1) {

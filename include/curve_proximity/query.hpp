@@ -239,10 +239,11 @@ struct CurveGradient {
   std::string reason; /**< why valid is false */
   double t = std::numeric_limits<double>::quiet_NaN(); /**< the minimiser; NaN: none was found */
 
-  /** By the control points or coefficients of the description, one a column [m/m]; no column for a basis in which the
-   *  curve is no sum of weighted points. */
-  Eigen::Matrix3Xd points;
-  double radius = 0.0; /**< by the radius of the tube: -1 */
+  Eigen::Matrix3Xd points;    /**< by the points of the description [m/m], as gradientByCurve() */
+  Eigen::VectorXd parameters; /**< by its parameters, likewise [m/unit of each] */
+  double range_start = 0.0;   /**< by the start of the range, the curve itself going on as it is [m/unit of t] */
+  double range_end = 0.0;     /**< by its end, likewise; both are 0 where the minimiser is elsewhere */
+  double radius = 0.0;        /**< by the radius of the tube: -1 */
 
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();        /**< by a shift of the whole curve, fixed frame */
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();       /**< [m/rad] by its small turn about the frame's origin */
@@ -250,6 +251,17 @@ struct CurveGradient {
   Eigen::Vector3d object_angular =
       Eigen::Vector3d::Zero(); /**< [m/rad] by its small turn about its own origin; 0 for a link */
 };
+
+/** The derivatives of a value by what defines a curve, n being that by the curve's point at t.
+ *
+ *  points      by the points of the description, one a column, axes of the fixed frame: control points, coefficients;
+ *              of a clothoid, an involute and a Pythagorean hodograph the start; of a Dubins path start and end, whose
+ *              height is one number (it stands with the start).
+ *  parameters  by the parameters of the description, in their order: headings, curvatures, radii, a preimage, weights.
+ *
+ *  Both are empty for piecewise curves, and for a Dubins path that has no derivative (cprox_curve_jacobian()). */
+void gradientByCurve(const CurveDescription &curve, double t, const Eigen::Vector3d &n, Eigen::Matrix3Xd &points,
+                     Eigen::VectorXd &parameters);
 
 /** The clearance of a curve with its gradient. */
 struct CurveClearance {

@@ -10,8 +10,8 @@ namespace {
 
 const char *kHeader =
     "id,provider,status,value,lower,upper,valid,t,ga_vx,ga_vy,ga_vz,ga_wx,ga_wy,ga_wz,gb_vx,gb_vy,gb_vz,gb_wx,gb_wy,"
-    "gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_radius,touching_least,touching_most,"
-    "microseconds,message,n,g0x,g0y,g0z\n";
+    "gb_wz,a_x,a_y,a_z,b_x,b_y,b_z,n_x,n_y,n_z,g_radius,g_start,g_end,g_parameters,touching_least,"
+    "touching_most,microseconds,message,n,g0x,g0y,g0z\n";
 
 const char *kMotionHeader =
     "id,provider,status,value,lower,upper,valid,t,t0,t1,kind,a,b,ga_vx,ga_vy,ga_vz,ga_wx,ga_wy,ga_wz,gb_vx,gb_vy,gb_vz,"
@@ -36,6 +36,17 @@ void appendValue(std::string &line, double value, bool bounded, double lower, do
   appendField(line, value);
   appendField(line, lower, bounded);
   appendField(line, upper, bounded);
+}
+
+/* Numbers in one field, with blanks between them. */
+std::string listed(const Eigen::VectorXd &numbers) {
+  std::string text;
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
+    std::string field;
+    appendField(field, numbers[i]);
+    text += (i == 0 ? "" : " ") + field.substr(1);
+  }
+  return text;
 }
 
 std::string microseconds(const ConstraintRow &row) {
@@ -120,7 +131,7 @@ std::string gradientsHeader() {
 std::string constraintsLine(const ConstraintRow &row) {
   const ConstraintValue &value = row.value;
   std::string line = quotedField(row.id) + ',' + quotedField(row.provider) + ',' + statusName(row);
-  if (row.status < 0) return line + std::string(31, ',') + quotedField(row.message) + ",,,,\n";
+  if (row.status < 0) return line + std::string(34, ',') + quotedField(row.message) + ",,,,\n";
   appendValue(line, value.value, value.bounded, value.lower, value.upper);
   line += value.valid ? ",true" : ",false";
   const bool along = value.points.cols() > 0;
@@ -128,7 +139,8 @@ std::string constraintsLine(const ConstraintRow &row) {
   appendGradient(line, value.a);
   appendGradient(line, value.b);
   appendWitness(line, value);
-  appendField(line, value.radius);
+  for (const double by : {value.radius, value.range_start, value.range_end}) appendField(line, by);
+  line += ',' + listed(value.parameters);
   appendField(line, value.touching_least, value.penalty);
   appendField(line, value.touching_most, value.penalty);
   line += microseconds(row) + quotedField(row.message) + ',' + std::to_string(value.points.cols());

@@ -43,7 +43,8 @@ constexpr const char *VIOLATIONS =
     "without numbers";
 constexpr const char *CONSTRAINTS =
     "id,provider,status,value,lower,upper,valid,t, gradients ga_ and gb_ by a step of side a and b (v: position, w: "
-    "turning), a_, b_ and n_ (nearest points, normal), g_radius,touching_least,touching_most (of a "
+    "turning), a_, b_ and n_ (nearest points, normal), g_radius,g_start,g_end (by the ends of the "
+    "curve's range),g_parameters (by its parameters, with blanks between them),touching_least,touching_most (of a "
     "penalty),microseconds,message,n,g0x,g0y,g0z,... by the curve's "
     "points. Of trajectories: t0,t1,kind,a,b (as of distance), g_duration, g_start, and a column for each number of "
     "each "

@@ -77,14 +77,7 @@ class Checker {
       checkSide("a", value.a, &ConstraintCase::a);
       return;
     }
-    for (Eigen::Index k = 0; k < value.points.cols(); ++k)
-      for (int i = 0; i < 3; ++i)
-        compare("point " + std::to_string(k) + ' ' + AXES[i], value.points(i, k),
-                [&](ConstraintCase &moved, double step) {
-                  Eigen::Vector3d by = step * Eigen::Vector3d::Unit(i);
-                  if (moved.curve->pose) by = moved.curve->pose->linear().transpose() * by;
-                  moved.curve->points.col(k) += by;
-                });
+    checkCurve(*asked_.curve, value);
     /* the curve as a whole moves, and turns about the origin */
     for (int i = 0; i < 3; ++i) {
       const auto step_by = [i](ConstraintCase &moved, double along, double angle) {
@@ -100,6 +93,30 @@ class Checker {
     }
     if (asked_.curve->radius > STEP)
       compare("radius", value.radius, [](ConstraintCase &moved, double step) { moved.curve->radius += step; });
+  }
+
+  /* By the numbers that define the curve. Points move along the axes of their own frame: those of a Dubins path stay in
+   * its plane. */
+  void checkCurve(const CurveDescription &curve, const ConstraintValue &value) {
+    const Eigen::Matrix3d frame = curve.pose.value_or(Eigen::Isometry3d::Identity()).linear();
+    const bool is_planar = curve.basis.rfind("dubins", 0) == 0;
+    for (Eigen::Index k = 0; k < value.points.cols(); ++k)
+      for (int i = 0; i < (is_planar ? 2 : 3); ++i)
+        compare("point " + std::to_string(k) + ' ' + AXES[i], frame.col(i).dot(value.points.col(k)),
+                [&](ConstraintCase &moved, double step) { moved.curve->points(i, k) += step; });
+    for (Eigen::Index k = 0; k < value.parameters.size(); ++k)
+      compare("parameter " + std::to_string(k), value.parameters[k], [&](ConstraintCase &moved, double step) {
+        moved.curve->parameters[static_cast<std::size_t>(k)] += step;
+      });
+    /* the other bases are reparametrised by their range, or have none of their own */
+    if (curve.basis != "clothoid" && curve.basis != "involute") return;
+    const bool restricts = curve.restrict_t0 != 0.0 || curve.restrict_t1 != 0.0;
+    compare("range start", value.range_start, [&](ConstraintCase &moved, double step) {
+      (restricts ? moved.curve->restrict_t0 : moved.curve->t0) += step;
+    });
+    compare("range end", value.range_end, [&](ConstraintCase &moved, double step) {
+      (restricts ? moved.curve->restrict_t1 : moved.curve->t1) += step;
+    });
   }
 
   void checkList(const char *name, const Eigen::MatrixXd &gradient, std::vector<double> TrajectoryPoint::*list) {

@@ -95,6 +95,7 @@ class CurveDistanceConstraint : public Constraint {
     out.b.linear = toEigen(gradient.position);
     out.b.angular = toEigen(gradient.rotation);
     out.radius = gradient.radius;
+    out.range_start = gradient.t0, out.range_end = gradient.t1;
     fillCurve(*place.curve, gradient.t, toEigen(gradient.mover), workspace, out);
   }
 
@@ -187,10 +188,10 @@ class CurveDistanceConstraint : public Constraint {
     out.normal = toEigen(result.normal);
   }
 
-  /* By the curve's points, and by the curve as a whole: its point at t moves and turns with it. */
+  /* By what defines the curve, and by the curve as a whole: its point at t moves and turns with it. */
   static void fillCurve(const ConstraintCurve &curve, double t, const Eigen::Vector3d &n, Workspace &workspace,
                         ConstraintValue &out) {
-    gradientByPoints(curve.description, t, n, out.points);
+    gradientByCurve(curve.description, t, n, out.points, out.parameters);
     cprox_vec3 at{};
     require(cprox_curve_evaluate(curve.curve.get(), t, workspace.get(), &at, nullptr, nullptr), workspace);
     out.a.linear = n;
@@ -204,6 +205,8 @@ class CurveDistanceConstraint : public Constraint {
     out.reason = "they overlap, and how deep is not known";
     out.a = out.b = ConstraintGradient();
     out.points.setZero(3, curve.points.cols());
+    out.parameters.setZero(static_cast<Eigen::Index>(curve.parameters.size()));
+    out.range_start = out.range_end = 0.0;
     out.radius = 0.0;
     out.t = result.t;
   }

@@ -155,8 +155,8 @@ class FourierGapConstraint : public Constraint {
     fillGradient(asked, r, mixed, out);
     out.valid = !mixed.kink && (known || asked.isBeyond()); // beyond the spheres the distance still counts
     out.reason = out.valid ? "" : mixed.kink ? "the value has a kink here" : "the signal is below its rounding";
-    out.points.resize(3, 0);
-    out.radius = 0.0;
+    out.points.resize(3, 0), out.parameters.resize(0);
+    out.radius = out.range_start = out.range_end = 0.0;
     out.t = std::numeric_limits<double>::quiet_NaN();
     out.has_points = false;
   }
@@ -185,7 +185,7 @@ class FourierGapConstraint : public Constraint {
     // The carried side is the gap's second.
     const Eigen::Vector3d n = out.b.linear;
     out.b = out.a;
-    fillAlong(*place.curve, least, toEigen(here.b.position), n, out);
+    fillAlong(*place.curve, least, toEigen(here.b.position), n, workspace, out);
   }
 
   bool isProvenClear(const ConstraintPlace &place, const cprox_curve_info &info, Workspace &workspace) const {

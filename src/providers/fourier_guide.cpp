@@ -136,7 +136,7 @@ class GuideAlong : public Constraint {
     slope(least.t);
     out.bounded = false;
     const Eigen::Vector3d n = out.a.linear;
-    fillAlong(*place.curve, least, toEigen(here.a.position), n, out);
+    fillAlong(*place.curve, least, toEigen(here.a.position), n, workspace, out);
   }
 
  private:

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "distance_constraints.h"
+#include "least_along.h"
 #include "motion_row.h"
 #include "outline.h"
 
@@ -201,15 +202,15 @@ class GrowthConstraint : public Constraint {
     out.a.linear = -best.by_b;
     out.b.linear = best.by_b;
     out.normal = toEigen(best.growth.normal);
-    out.points.resize(3, 0);
-    out.radius = 0.0;
+    out.points.resize(3, 0), out.parameters.resize(0);
+    out.radius = out.range_start = out.range_end = 0.0;
     out.t = best.t;
     cprox_pose place_a = place.a;
     if (place.curve) {
       require(
           cprox_curve_evaluate(place.curve->curve.get(), best.t, workspace.get(), &place_a.position, nullptr, nullptr),
           workspace);
-      gradientByPoints(place.curve->description, best.t, out.a.linear, out.points);
+      fillByCurve(*place.curve, best.t, out.a.linear, workspace, out);
     }
     out.has_points = best.touch.allFinite() && best.value > 0.0;
     if (!out.has_points) {

@@ -107,12 +107,26 @@ LeastAlong leastAlong(const ConstraintCurve &curve, double sample, std::optional
   return least;
 }
 
-/** The gradient of the least value by all of the curve, where n is that by the carried place (Danskin). */
+/** The gradient of a value at t by what defines the curve and by its range, n being that by the carried place (Danskin).
+ */
+inline void fillByCurve(const ConstraintCurve &curve, double t, const Eigen::Vector3d &n, Workspace &workspace,
+                        ConstraintValue &out) {
+  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  const double end = 1e-12 * (info.t1 - info.t0);
+  const bool at_start = t <= info.t0 + end, at_end = t >= info.t1 - end;
+  cprox_pose place;
+  const double slope = at_start || at_end ? n.dot(carryTo(curve, t, workspace, place)) : 0.0;
+  out.range_start = at_start ? slope : 0.0;
+  out.range_end = at_end ? slope : 0.0;
+  gradientByCurve(curve.description, at_end ? info.t1 : t, n, out.points, out.parameters);
+}
+
+/** The gradient of the least value by all of the curve, where n is that by the carried place. */
 inline void fillAlong(const ConstraintCurve &curve, const LeastAlong &least, const Eigen::Vector3d &position,
-                      const Eigen::Vector3d &n, ConstraintValue &out) {
+                      const Eigen::Vector3d &n, Workspace &workspace, ConstraintValue &out) {
   out.a.linear = n;
   out.a.angular = position.cross(n);
-  gradientByPoints(curve.description, least.t, n, out.points);
+  fillByCurve(curve, least.t, n, workspace, out);
   out.t = least.t;
   out.has_points = false;
   if (least.is_alone || !out.valid) return;

@@ -286,8 +286,8 @@ class SuperquadricConstraint : public Constraint {
     out.b.linear = -out.normal;
     out.a.angular = (out.witness_a - toEigen(place.a.position)).cross(out.normal);
     out.b.angular = out.normal.cross(out.witness_b - toEigen(place.b.position));
-    out.points.resize(3, 0);
-    out.radius = 0.0;
+    out.points.resize(3, 0), out.parameters.resize(0);
+    out.radius = out.range_start = out.range_end = 0.0;
     out.t = std::numeric_limits<double>::quiet_NaN();
   }
 

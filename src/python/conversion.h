@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_PYTHON_CONVERSION_H
 #define CURVE_PROXIMITY_PYTHON_CONVERSION_H
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,10 +27,20 @@ struct Shape {
   py::object made = py::none();
 };
 
+/** What cprox_curve_jacobian() reads of a curve: its description, and what that refers to. */
+struct CurveNumbers {
+  cprox_curve_description description{};
+  std::size_t n = 0; /**< of derivatives */
+  Eigen::Matrix3Xd points;
+  std::vector<double> weights, knots;
+  std::vector<cprox_quat> preimage;
+};
+
 /** A curve, as Python holds it. */
 struct Curve {
   CurveHandle curve;
   py::object made = py::none();
+  std::shared_ptr<const CurveNumbers> numbers = nullptr; /**< null: its points alone define it, or other curves */
 };
 
 /** An answer of the core. asked: a verdict was; of a distance it has no meaning. */

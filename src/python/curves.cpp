@@ -14,6 +14,41 @@ Curve make(cprox_curve_kind kind, const Array &points, double t0, double t1) {
   return Curve{detail::makeCurve(d)};
 }
 
+std::shared_ptr<CurveNumbers> numbersOf(cprox_curve_kind kind, const Array &start, double t0, double t1,
+                                        std::size_t n) {
+  auto out = std::make_shared<CurveNumbers>();
+  out->description = detail::describe(kind, t0, t1);
+  out->description.start = toVector(start, kind == CPROX_CURVE_INVOLUTE ? "centre" : "start");
+  out->n = n;
+  return out;
+}
+
+/* Rational, with weights. */
+std::shared_ptr<CurveNumbers> numbersOf(cprox_curve_kind kind, const Eigen::Matrix3Xd &points,
+                                        const std::vector<double> &weights, double t0, double t1) {
+  if (weights.size() != static_cast<std::size_t>(points.cols())) throw Error("a curve needs as many weights as points");
+  auto out = std::make_shared<CurveNumbers>();
+  out->points = points, out->weights = weights, out->n = weights.size();
+  out->description = detail::describe(kind, out->points, t0, t1);
+  out->description.weights = out->weights.data();
+  return out;
+}
+
+Curve make(const std::shared_ptr<CurveNumbers> &numbers) {
+  return Curve{detail::makeCurve(numbers->description), py::none(), numbers};
+}
+
+Array jacobian(const Curve &curve, double t) {
+  if (!curve.numbers) throw Error("the points of this curve alone define it, or other curves do: it has no Jacobian");
+  if (!(t >= cprox_curve_get_info(curve.curve.get()).t0 && t <= cprox_curve_get_info(curve.curve.get()).t1))
+    throw Error("t is not in the range of the curve");
+  Array out({static_cast<py::ssize_t>(curve.numbers->n), py::ssize_t{3}});
+  auto *to = reinterpret_cast<cprox_vec3 *>(out.mutable_data());
+  if (cprox_curve_jacobian(&curve.numbers->description, t, to) != CPROX_OK)
+    throw Error("the curve has no derivatives here: it turns too often, or the circles of its Dubins path coincide");
+  return out;
+}
+
 std::vector<double> toNumbers(const Array &array, const char *name) {
   if (array.ndim() != 1) throw Error(std::string(name) + " must be an array of shape (n,)");
   return {array.data(), array.data() + array.size()};
@@ -66,10 +101,19 @@ void addCurves(py::module &module) {
           "n_pieces", [](const Curve &c) { return cprox_curve_get_info(c.curve.get()).n_pieces; }, "Polynomial pieces.")
       .def("restrict",
            recorded("Curve.restrict",
-                    [](const Curve &c, double t0, double t1) { return Curve{restrictCurve(c.curve, t0, t1)}; }),
+                    [](const Curve &c, double t0, double t1) {
+                      return Curve{restrictCurve(c.curve, t0, t1), py::none(), c.numbers};
+                    }),
            py::arg("t0"), py::arg("t1"), "The part of the curve on [t0, t1]; its points keep their parameters.")
       .def("__call__", &evaluate, py::arg("t"), py::arg("derivative") = 0,
            "The point at t, or the first or second derivative: (3,) for a number, (n, 3) for an array (n,).")
+      .def(
+          "jacobian", &jacobian, py::arg("t"),
+          "The derivatives of the point at t by the numbers that define the curve: (n, 3), in the order of\n"
+          "cprox_curve_jacobian(). clothoid: heading, curvature, curvature_rate. dubins: start_heading, end_heading,\n"
+          "radius, x and y of start, of end. involute: heading, radius. pythagorean_hodograph: the preimage, row by "
+          "row.\nrational_bezier, nurbs: the weights. jacobian(g['t']) @ g['mover'] are the derivatives of a distance\n"
+          "whose distance_gradient() is g. By start or centre they are g['mover'].")
       .def("__reduce__", [](const Curve &c) { return remake(c.made, "this Curve cannot be pickled"); });
 
   define(
@@ -110,7 +154,10 @@ void addCurves(py::module &module) {
   define(
       module, "clothoid",
       [](const Array &start, double heading, double curvature, double curvature_rate, double t0, double t1) {
-        return Curve{makeClothoid(toEigen(toVector(start, "start")), heading, curvature, curvature_rate, t0, t1)};
+        const auto numbers = numbersOf(CPROX_CURVE_CLOTHOID, start, t0, t1, 3);
+        cprox_curve_description &d = numbers->description;
+        d.heading = heading, d.curvature = curvature, d.curvature_rate = curvature_rate;
+        return make(numbers);
       },
       py::arg("start"), py::arg("heading"), py::arg("curvature"), py::arg("curvature_rate"), py::arg("t0"),
       py::arg("t1"),
@@ -119,15 +166,20 @@ void addCurves(py::module &module) {
       module, "dubins",
       [](const Array &start, double start_heading, const Array &end, double end_heading, double radius,
          const std::string &word) {
-        return Curve{makeDubins(toEigen(toVector(start, "start")), start_heading, toEigen(toVector(end, "end")),
-                                end_heading, radius, toWord(word))};
+        const auto numbers = numbersOf(CPROX_CURVE_DUBINS, start, 0.0, 0.0, 7);
+        cprox_curve_description &d = numbers->description;
+        d.heading = start_heading, d.end = toVector(end, "end"), d.end_heading = end_heading, d.radius = radius;
+        d.word = toWord(word);
+        return make(numbers);
       },
       py::arg("start"), py::arg("start_heading"), py::arg("end"), py::arg("end_heading"), py::arg("radius"),
       py::arg("word") = "shortest", "The shortest Dubins path, or that of a word ('lsl', …); t is the arc length.");
   define(
       module, "involute",
       [](const Array &centre, double heading, double radius, double t0, double t1) {
-        return Curve{makeInvolute(toEigen(toVector(centre, "centre")), radius, heading, t0, t1)};
+        const auto numbers = numbersOf(CPROX_CURVE_INVOLUTE, centre, t0, t1, 2);
+        numbers->description.heading = heading, numbers->description.radius = radius;
+        return make(numbers);
       },
       py::arg("centre"), py::arg("heading"), py::arg("radius"), py::arg("t0"), py::arg("t1"),
       "The involute of a circle; it leaves the circle at t = 0 in the direction of the heading [rad].");
@@ -135,10 +187,13 @@ void addCurves(py::module &module) {
       module, "pythagorean_hodograph",
       [](const Array &start, const Array &preimage, double t0, double t1) {
         if (preimage.ndim() != 2 || preimage.shape(1) != 4) throw Error("preimage must be an array of shape (n, 4)");
-        std::vector<Eigen::Quaterniond> quaternions;
+        const auto numbers =
+            numbersOf(CPROX_CURVE_PYTHAGOREAN_HODOGRAPH, start, t0, t1, static_cast<std::size_t>(preimage.size()));
         for (const double *q = preimage.data(); q != preimage.data() + preimage.size(); q += 4)
-          quaternions.emplace_back(q[0], q[1], q[2], q[3]);
-        return Curve{makePythagoreanHodograph(toEigen(toVector(start, "start")), quaternions, t0, t1)};
+          numbers->preimage.push_back({q[0], q[1], q[2], q[3]});
+        cprox_curve_description &d = numbers->description;
+        d.preimage = numbers->preimage.data(), d.n = numbers->preimage.size();
+        return make(numbers);
       },
       py::arg("start"), py::arg("preimage"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
       "A Pythagorean-hodograph curve by the Bernstein coefficients of its preimage, quaternions (w, x, y, z): (n, 4).");
@@ -157,7 +212,7 @@ void addCurves(py::module &module) {
   define(
       module, "rational_bezier",
       [](const Array &points, const Array &weights, double t0, double t1) {
-        return Curve{makeRationalBezier(toColumns(points), toNumbers(weights, "weights"), t0, t1)};
+        return make(numbersOf(CPROX_CURVE_RATIONAL_BEZIER, toColumns(points), toNumbers(weights, "weights"), t0, t1));
       },
       py::arg("points"), py::arg("weights"), py::arg("t0") = 0.0, py::arg("t1") = 1.0,
       "A rational Bézier curve; points (n, 3) [m], weights (n,) > 0.");
@@ -169,8 +224,12 @@ void addCurves(py::module &module) {
         const auto columns = toColumns(points);
         const auto n = static_cast<std::size_t>(columns.cols());
         const bool fits = degree < k.size() && n < k.size();
-        return Curve{makeNurbs(columns, toNumbers(weights, "weights"), degree, k, t0.value_or(fits ? k[degree] : 0.0),
-                               t1.value_or(fits ? k[n] : 1.0))};
+        const auto numbers = numbersOf(CPROX_CURVE_NURBS, columns, toNumbers(weights, "weights"),
+                                       t0.value_or(fits ? k[degree] : 0.0), t1.value_or(fits ? k[n] : 1.0));
+        numbers->knots = k;
+        cprox_curve_description &d = numbers->description;
+        d.degree = degree, d.knots = numbers->knots.data(), d.n_knots = k.size();
+        return make(numbers);
       },
       py::arg("points"), py::arg("weights"), py::arg("degree"), py::arg("knots"), py::arg("t0") = py::none(),
       py::arg("t1") = py::none(), "A NURBS curve: a B-spline with weights (n,) > 0.");

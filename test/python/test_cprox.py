@@ -424,6 +424,32 @@ class Curves(unittest.TestCase):
                     low, high = (cprox.distance(cprox.bezier(m), obstacle, epsilon=1e-12).upper for m in moved)
                     self.assertAlmostEqual((high - low) / (2 * step), weights[i] * gradient['mover'][k], places=6)
 
+    def test_gradients_by_the_numbers_of_a_curve_are_those_of_differences(self):
+        ball = cprox.Obstacle(cprox.sphere(0.3), cprox.transform([0.4, 0.9, 0.1]))
+        points = numpy.array([[-1, 0, 0], [0, 0.5, 0], [1, 0, 0.1]], float)
+        curves = {
+            'clothoid': (lambda v: cprox.clothoid([-0.5, 0, 0], *v, 0, 1.5), [0.1, 0.3, 0.2]),
+            'dubins': (lambda v: cprox.dubins([v[3], v[4], 0], v[0], [v[5], v[6], 0], v[1], v[2]),
+                       [0.3, -1.2, 0.25, -1.0, 0.1, 1.0, 0.2]),
+            'involute': (lambda v: cprox.involute([0, 0, 0], *v, 0, 3), [-1.0, 0.3]),
+            'pythagorean_hodograph': (lambda v: cprox.pythagorean_hodograph([-0.5, 0, 0], numpy.reshape(v, (2, 4))),
+                                      [1, 0.1, 0, 0.2, 0.9, 0, 0.1, 0.3]),
+            'rational_bezier': (lambda v: cprox.rational_bezier(points, v), [1.0, 2.0, 0.7]),
+            'nurbs': (lambda v: cprox.nurbs(points, v, 2, [0, 0, 0, 1, 1, 1]), [1.0, 2.0, 0.7])}
+        for name, (make, values) in curves.items():
+            found = cprox.distance_gradient(make(values), ball, epsilon=1e-12)
+            self.assertTrue(found['valid'], found['reason'])
+            columns = make(values).jacobian(found['t'])
+            self.assertEqual(columns.shape, (len(values), 3))
+            for i, by in enumerate(columns @ found['mover']):
+                moved = [numpy.array(values, float), numpy.array(values, float)]
+                moved[0][i] -= 1e-6
+                moved[1][i] += 1e-6
+                low, high = (cprox.distance(make(m), ball, epsilon=1e-12).upper for m in moved)
+                self.assertAlmostEqual((high - low) / 2e-6, by, places=6, msg=f'{name} {i}')
+        with self.assertRaisesRegex(ValueError, 'no Jacobian'):
+            cprox.bezier(points).jacobian(0.5)
+
 
 class SceneCurves(unittest.TestCase):
     """Curves against a scene: the same as the core says of its objects one by one."""

@@ -134,7 +134,10 @@ ConstraintResult constraintMessage(const ConstraintRow &row, const ConstraintCas
   message.gradient_b = toTwistMessage(answered ? value.b : none);
   for (Eigen::Index i = 0; answered && i < value.points.cols(); ++i)
     message.gradient_points.push_back(toVectorMessage(value.points.col(i)));
+  if (answered)
+    message.gradient_parameters.assign(value.parameters.data(), value.parameters.data() + value.parameters.size());
   message.gradient_radius = answered ? value.radius : NONE;
+  message.gradient_range = {answered ? value.range_start : NONE, answered ? value.range_end : NONE};
   message.t = answered ? value.t : NONE;
   fillWitness(value, answered, message);
   if (answered && row.motion) {

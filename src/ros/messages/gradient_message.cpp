@@ -32,6 +32,8 @@ Gradient toMessage(const CurveGradient &gradient) {
   message.message = gradient.reason;
   for (Eigen::Index i = 0; i < gradient.points.cols(); ++i)
     message.points.push_back(toVectorMessage(gradient.points.col(i)));
+  message.parameters.assign(gradient.parameters.data(), gradient.parameters.data() + gradient.parameters.size());
+  message.range = {gradient.range_start, gradient.range_end};
   message.radius = gradient.radius;
   message.moving = toTwistMessage(gradient.linear, gradient.angular);
   message.obstacle = toTwistMessage(gradient.object_linear, gradient.object_angular);

@@ -111,14 +111,6 @@ std::vector<Eigen::AlignedBox3d> splineBoxes(const CurveDescription &description
   return cutBoxes(curve, breaks, parts);
 }
 
-/* A curve of one of the bases that take coefficients or values. */
-CurveHandle makeSeries(const CurveDescription &curve) {
-  if (curve.basis == "trigonometric") return makeTrigonometric(curve.points, curve.t0, curve.t1);
-  if (curve.basis == "lagrange") return makeLagrange(curve.points, curve.knots, curve.t0, curve.t1);
-  if (curve.basis == "legendre") return makeLegendre(curve.points, curve.t0, curve.t1);
-  return makePolynomial(curve.points, curve.t0, curve.t1);
-}
-
 /* As many points, knots and parameters as the basis takes. */
 void checkCounts(const CurveDescription &curve) {
   const auto n = static_cast<std::size_t>(curve.points.cols());
@@ -144,17 +136,47 @@ cprox_dubins_word dubinsWordOf(const std::string &basis) {
   throw Error("basis '" + basis + "' is not available");
 }
 
-/* A curve that start, headings and lengths describe. */
-CurveHandle makeNamed(const CurveDescription &curve) {
-  const cprox_dubins_word word = hasOwnRange(curve.basis) ? dubinsWordOf(curve.basis) : CPROX_DUBINS_SHORTEST;
-  const Eigen::Vector3d start = curve.points.col(0);
+cprox_curve_kind kindOf(const std::string &basis) {
+  static constexpr std::pair<const char *, cprox_curve_kind> kinds[] = {
+      {"bezier", CPROX_CURVE_BEZIER},
+      {"bspline", CPROX_CURVE_BSPLINE},
+      {"polynomial", CPROX_CURVE_POLYNOMIAL},
+      {"legendre", CPROX_CURVE_LEGENDRE},
+      {"lagrange", CPROX_CURVE_LAGRANGE},
+      {"trigonometric", CPROX_CURVE_TRIGONOMETRIC},
+      {"clothoid", CPROX_CURVE_CLOTHOID},
+      {"involute", CPROX_CURVE_INVOLUTE},
+      {"pythagorean_hodograph", CPROX_CURVE_PYTHAGOREAN_HODOGRAPH},
+      {"rational_bezier", CPROX_CURVE_RATIONAL_BEZIER},
+      {"nurbs", CPROX_CURVE_NURBS}};
+  for (const auto &[name, kind] : kinds)
+    if (basis == name) return kind;
+  return CPROX_CURVE_DUBINS;
+}
+
+/* What the core makes of a curve that is not piecewise, and whose counts are right; the numbers stay the curve's. */
+cprox_curve_description descriptionOf(const CurveDescription &curve) {
   const std::vector<double> &p = curve.parameters;
-  if (curve.basis == "clothoid") return makeClothoid(start, p[0], p[1], p[2], curve.t0, curve.t1);
-  if (curve.basis == "involute") return makeInvolute(start, p[1], p[0], curve.t0, curve.t1);
-  if (hasOwnRange(curve.basis)) return makeDubins(start, p[0], curve.points.col(1), p[1], p[2], word);
-  std::vector<Eigen::Quaterniond> preimage;
-  for (std::size_t i = 0; i < p.size(); i += 4) preimage.emplace_back(p[i], p[i + 1], p[i + 2], p[i + 3]);
-  return makePythagoreanHodograph(start, preimage, curve.t0, curve.t1);
+  cprox_curve_description d = detail::describe(kindOf(curve.basis), curve.points, curve.t0, curve.t1);
+  d.degree = curve.degree, d.knots = curve.knots.data(), d.n_knots = curve.knots.size();
+  if (!isNamedBasis(curve.basis)) {
+    d.weights = p.data();
+    return d;
+  }
+  d.start = toVec3(curve.points.col(0));
+  if (d.kind == CPROX_CURVE_PYTHAGOREAN_HODOGRAPH) {
+    static_assert(sizeof(cprox_quat) == 4 * sizeof(double), "four numbers a quaternion, w first");
+    d.preimage = reinterpret_cast<const cprox_quat *>(p.data()), d.n = p.size() / 4;
+    return d;
+  }
+  d.heading = p[0];
+  if (d.kind == CPROX_CURVE_CLOTHOID) d.curvature = p[1], d.curvature_rate = p[2];
+  if (d.kind == CPROX_CURVE_INVOLUTE) d.radius = p[1];
+  if (d.kind == CPROX_CURVE_DUBINS) {
+    d.word = dubinsWordOf(curve.basis);
+    d.end = toVec3(curve.points.col(1)), d.end_heading = p[1], d.radius = p[2];
+  }
+  return d;
 }
 
 CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace);
@@ -186,27 +208,13 @@ CurveHandle joinPieces(const CurveDescription &curve, Workspace &workspace) {
   return makePiecewise(handles, {}, curve.parameters.empty() ? 0.0 : curve.parameters.front());
 }
 
-/* A B-spline, or with weights a NURBS curve. */
-CurveHandle makeSpline(const CurveDescription &curve, Workspace &workspace) {
-  const bool rational = curve.basis == "nurbs";
-  cprox_curve_description d =
-      detail::describe(rational ? CPROX_CURVE_NURBS : CPROX_CURVE_BSPLINE, curve.points, curve.t0, curve.t1);
-  d.degree = curve.degree, d.knots = curve.knots.data(), d.n_knots = curve.knots.size();
-  if (rational) d.weights = curve.parameters.data();
-  return detail::createCurve(d, workspace);
-}
-
-/* Without restriction and pose. The usual basis is asked for first. */
+/* Without restriction and pose. */
 CurveHandle makeWhole(const CurveDescription &curve, Workspace &workspace) {
   if (curve.basis == "piecewise") return joinPieces(curve, workspace);
   if (!curve.pieces.empty())
     throw Error("a " + curve.basis + " curve has no pieces, got " + std::to_string(curve.pieces.size()));
   checkCounts(curve);
-  if (curve.basis == "bezier")
-    return detail::createCurve(detail::describe(CPROX_CURVE_BEZIER, curve.points, curve.t0, curve.t1), workspace);
-  if (curve.basis == "bspline" || curve.basis == "nurbs") return makeSpline(curve, workspace);
-  if (curve.basis == "rational_bezier") return makeRationalBezier(curve.points, curve.parameters, curve.t0, curve.t1);
-  return isNamedBasis(curve.basis) ? makeNamed(curve) : makeSeries(curve);
+  return detail::createCurve(descriptionOf(curve), workspace);
 }
 
 /* What a radius that changes adds: a polynomial over the range of the curve, as the x of a curve. */
@@ -226,6 +234,23 @@ CurveHandle makeRadius(const std::vector<double> &coefficients, const CurveHandl
   return makePolynomial(points, info.t0, info.t1);
 }
 
+/* At the end of a Dubins path the parameter is its length, and so a radius that depends on it changes with what the
+ * length depends on: by the step from the point that keeps its parameter to the end point, along the path. */
+void takeGrowthAtEnd(const CurveDescription &curve, const cprox_curve_description &d, double t,
+                     const Eigen::Vector3d &n, std::vector<cprox_vec3> &columns) {
+  std::vector<cprox_vec3> kept(columns.size());
+  if (!(n.squaredNorm() > 0.0)) return;
+  if (cprox_curve_jacobian(&d, std::nextafter(t, 0.0), kept.data()) != CPROX_OK) return;
+  double growth = 0.0; // of the radius, by t
+  for (std::size_t k = curve.radius_polynomial.size(); k > 0; --k)
+    growth = growth * t + static_cast<double>(k) * curve.radius_polynomial[k - 1];
+  const Eigen::Vector3d tangent(std::cos(d.end_heading), std::sin(d.end_heading), 0.0);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const double longer = tangent.dot(toEigen(columns[i]) - toEigen(kept[i]));
+    columns[i] = toVec3(toEigen(columns[i]) - growth * longer / n.squaredNorm() * n);
+  }
+}
+
 void checkRadius(double radius) {
   if (!std::isfinite(radius) || radius < 0.0) throw Error("the radius must be finite and not below 0");
 }
@@ -242,6 +267,39 @@ double radiusAt(const CompiledCurve &curve, double t) {
   cprox_vec3 more{};
   if (curve.radius_curve) cprox_curve_evaluate(curve.radius_curve.get(), t, nullptr, &more, nullptr, nullptr);
   return std::max(0.0, curve.radius + more.x);
+}
+
+void gradientByCurve(const CurveDescription &curve, double t, const Eigen::Vector3d &n, Eigen::Matrix3Xd &points,
+                     Eigen::VectorXd &parameters) {
+  points.resize(3, 0), parameters.resize(0);
+  if (curve.basis == "piecewise") return;
+  const cprox_curve_description d = descriptionOf(curve);
+  const Eigen::Matrix3d turned = curve.pose.value_or(Eigen::Isometry3d::Identity()).linear();
+  const Eigen::Vector3d own = turned.transpose() * n;
+  const bool is_dubins = d.kind == CPROX_CURVE_DUBINS;
+  thread_local std::vector<cprox_vec3> columns;
+  columns.resize(curve.parameters.size() + (is_dubins ? 4 : 0));
+  const bool differentiable = cprox_curve_jacobian(&d, t, columns.data()) == CPROX_OK;
+  if (is_dubins && differentiable && !curve.radius_polynomial.empty()) takeGrowthAtEnd(curve, d, t, own, columns);
+  const auto along = [&](std::size_t i) { return own.dot(toEigen(columns[i])); };
+  if (is_dubins && !differentiable) return;
+  if (differentiable) {
+    parameters.resize(static_cast<Eigen::Index>(curve.parameters.size()));
+    for (std::size_t i = 0; i < curve.parameters.size(); ++i) parameters[static_cast<Eigen::Index>(i)] = along(i);
+  }
+  points.resize(3, curve.points.cols());
+  if (is_dubins) {
+    points.col(0) = turned * Eigen::Vector3d(along(3), along(4), own.z());
+    points.col(1) = turned * Eigen::Vector3d(along(5), along(6), 0.0);
+    return;
+  }
+  /* the weights stand at the front of the matrix; from the back, a column covers none that is still to be read */
+  double *weights = points.data();
+  if (cprox_curve_weights(&d, t, weights) != CPROX_OK) weights[0] = 1.0; /* the start, with which all of it moves */
+  for (Eigen::Index i = points.cols(); i-- > 0;) {
+    const double w = weights[i];
+    points.col(i) = w * n;
+  }
 }
 
 CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes) {

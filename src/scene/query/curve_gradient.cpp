@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The gradient of a curve's clearance, by its control points and by what it is near. */
-#include <curve_proximity/constraint_provider.hpp>
 #include <curve_proximity/query.hpp>
 
 #include "answering.h"
@@ -9,12 +8,13 @@
 namespace curve_proximity {
 namespace {
 
-/* By the control points, and by the curve as a whole: its point at t changes by their weights, and the clearance by n
- * for that point. Bases without weights have the second alone. */
+/* By what defines the curve, and by the curve as a whole: its point at t changes by them, and the clearance by n for
+ * that point. */
 void fillCurve(const CurveDescription &curve, const cprox_gradient &in, CurveGradient &out) {
   const Eigen::Vector3d n = toEigen(in.mover);
   out.linear = n;
-  gradientByPoints(curve, in.t, n, out.points);
+  gradientByCurve(curve, in.t, n, out.points, out.parameters);
+  out.range_start = in.t0, out.range_end = in.t1;
 }
 
 /* The core turns an obstacle about its own position, we the object about its origin. */
