@@ -26,6 +26,10 @@ class PreparedRobot {
                          const std::vector<std::string> &base_joints = {},
                          const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity());
 
+  /** The same in another snapshot, with the same arguments: where the snapshots have the same robot, with the same
+   *  scales, paddings and attached objects, its kinematics is shared, and only the pairs with objects are new. */
+  PreparedRobot(const PreparedRobot &before, SnapshotPtr snapshot);
+
   /** The snapshot that it was made of. */
   const SnapshotPtr &snapshot() const;
 

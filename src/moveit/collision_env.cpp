@@ -264,7 +264,6 @@ void CollisionEnvCurveProximity::applyChanges(bool sees_octrees) const {
   resized_ = false;
   if (isEmpty(change)) return;
   standing_.reset();
-  prepared_.clear();
   if (scene_->apply(change).empty()) return;
 
   /* One by one, to tell whose fault it is; what cannot be taken over must not stay as it was before. */
@@ -480,12 +479,21 @@ CollisionEnvCurveProximity::Ready CollisionEnvCurveProximity::prepared(const Cur
   if (known != prepared_.end()) {
     std::rotate(known, known + 1, prepared_.end());
   } else {
-    if (prepared_.size() == KEPT_PREPARED) prepared_.erase(prepared_.begin());
     const SnapshotPtr variant = scene->variant({now.attached, allowed});
-    prepared_.push_back({allowed, base_moves, base,
-                         std::make_shared<const PreparedRobot>(variant, std::vector<std::array<std::string, 2>>(),
-                                                               base_moves ? base_ : std::vector<VirtualJoint>(),
-                                                               std::vector<std::string>(), base)});
+    const auto like = std::find_if(prepared_.rbegin(), prepared_.rend(), [&](const Prepared &other) {
+      return other.robot->snapshot()->attached() == now.attached && other.base_moves == base_moves &&
+             other.base.matrix() == base.matrix();
+    });
+    std::shared_ptr<const PreparedRobot> made;
+    if (like != prepared_.rend()) {
+      made = std::make_shared<const PreparedRobot>(*like->robot, variant);
+    } else {
+      made = std::make_shared<const PreparedRobot>(variant, std::vector<std::array<std::string, 2>>(),
+                                                   base_moves ? base_ : std::vector<VirtualJoint>(),
+                                                   std::vector<std::string>(), base);
+    }
+    if (prepared_.size() == KEPT_PREPARED) prepared_.erase(prepared_.begin());
+    prepared_.push_back({allowed, base_moves, base, made});
   }
   out.robot = prepared_.back().robot;
   return out;

@@ -127,7 +127,7 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
   mutable bool resized_ = true;                                    /* paddings or scales have changed */
   mutable std::shared_ptr<const StandingRobot> standing_;
   mutable AttachedBodies bodies_;
-  mutable std::vector<Prepared> prepared_; /* of the scene as it is, the latest last */
+  mutable std::vector<Prepared> prepared_; /* of the scene as it is or was, the latest last */
 };
 
 /* What MoveIt's planning scene makes such environments with. */

@@ -192,3 +192,37 @@ TEST(PreparedRobots, verdicts_among_many_objects_are_those_of_each_alone) {
   EXPECT_GT(contacts[CPROX_VERDICT_CLEAR], 1);
   EXPECT_GT(contacts[CPROX_VERDICT_VIOLATED], 1);
 }
+
+/* Changes of objects, of the matrix, of a padding, of a scale and of what is attached, in turn. */
+TEST(PreparedRobots, in_another_snapshot_answer_as_if_made_of_it) {
+  Random random(74);
+  Scene world(scene(random));
+  const Srdf srdf = pandaSrdf();
+  auto prepared = std::make_unique<const PreparedRobot>(world.snapshot(), srdf.disabled);
+  Workspace workspace;
+  for (int i = 0; i < 20; ++i) {
+    SceneChange change;
+    if (i % 5 == 0)
+      change.operations.push_back(add("box1", {shape(ShapeType::BOX, {0.2, 0.1, 0.1})}, random.pose(1.0)));
+    if (i % 5 == 1) change.allowed.push_back({"box2", "panda_link5", i < 10});
+    if (i % 5 == 2) change.link_padding["panda_link4"] = random.uniform(0.0, 0.05);
+    if (i % 5 == 3) change.link_scale["panda_link3"] = random.uniform(1.0, 1.2);
+    if (i % 5 == 4) {
+      Attachment cup;
+      cup.link = "panda_hand";
+      cup.object.id = "cup";
+      cup.object.shapes = {shape(ShapeType::SPHERE, {random.uniform(0.01, 0.1)})};
+      change.attachments.push_back(cup);
+    }
+    ASSERT_TRUE(world.apply(change).empty()) << i;
+    prepared = std::make_unique<const PreparedRobot>(*prepared, world.snapshot());
+    const PreparedRobot fresh(world.snapshot(), srdf.disabled);
+    for (int k = 0; k < 3; ++k) {
+      const TrajectoryDescription path = edge(randomState(random), randomState(random));
+      const RobotMotion plain(fresh, path), shared(*prepared, path);
+      EXPECT_EQ(plain.skipped(), shared.skipped());
+      expectSame(askSelf(plain, Query(), workspace), askSelf(shared, Query(), workspace));
+      expectSame(askEnvironment(plain, Query(), workspace).front(), askEnvironment(shared, Query(), workspace).front());
+    }
+  }
+}

@@ -169,6 +169,34 @@ void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &r
   createCore(description, data);
 }
 
+/* Is all that kinematics is made of the same? What it points to then belongs to both snapshots. */
+bool hasSameRobot(const Snapshot &a, const Snapshot &b) {
+  if (a.robot() != b.robot() || !a.robot() || a.attached() != b.attached()) return false;
+  const auto &links = a.robot()->links();
+  return std::all_of(links.begin(), links.end(), [&](const auto &link) {
+    return &a.linkGeometry(link.first) == &b.linkGeometry(link.first) &&
+           a.linkPadding(link.first) == b.linkPadding(link.first);
+  });
+}
+
+std::shared_ptr<const PreparedRobot::Data> preparedIn(SnapshotPtr snapshot, PreparedWith with,
+                                                      const PreparedRobot::Data *before) {
+  auto data = std::make_shared<PreparedRobot::Data>();
+  data->snapshot = std::move(snapshot);
+  data->with = std::move(with);
+  if (before && hasSameRobot(*before->snapshot, *data->snapshot)) {
+    data->kinematics = before->kinematics;
+  } else {
+    data->kinematics =
+        makeKinematics(*data->snapshot, data->with.virtual_joints, data->with.base_joints, data->with.base);
+  }
+  if (data->kinematics->geometries.empty())
+    throw Error("robot '" + data->kinematics->robot->name() +
+                "' has no collision geometry: nothing of it can come close to anything");
+  preparePairs(data->with.disabled, *data);
+  return data;
+}
+
 std::unique_ptr<RobotMotion::Data> startOf(const PreparedRobot &robot, const std::string &id) {
   auto data = std::make_unique<RobotMotion::Data>();
   data->prepared = robot.data();
@@ -199,16 +227,11 @@ void finish(const std::vector<std::string> &links, RobotMotion::Data &data) {
 
 PreparedRobot::PreparedRobot(SnapshotPtr snapshot, const std::vector<std::array<std::string, 2>> &disabled,
                              const std::vector<VirtualJoint> &virtual_joints,
-                             const std::vector<std::string> &base_joints, const Eigen::Isometry3d &base) {
-  auto data = std::make_shared<Data>();
-  data->snapshot = std::move(snapshot);
-  data->kinematics = makeKinematics(*data->snapshot, virtual_joints, base_joints, base);
-  if (data->kinematics->geometries.empty())
-    throw Error("robot '" + data->kinematics->robot->name() +
-                "' has no collision geometry: nothing of it can come close to anything");
-  preparePairs(disabled, *data);
-  data_ = std::move(data);
-}
+                             const std::vector<std::string> &base_joints, const Eigen::Isometry3d &base)
+    : data_(preparedIn(std::move(snapshot), {disabled, virtual_joints, base_joints, base}, nullptr)) {}
+
+PreparedRobot::PreparedRobot(const PreparedRobot &before, SnapshotPtr snapshot)
+    : data_(preparedIn(std::move(snapshot), before.data_->with, before.data_.get())) {}
 
 const SnapshotPtr &PreparedRobot::snapshot() const {
   return data_->snapshot;

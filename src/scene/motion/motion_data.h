@@ -24,8 +24,17 @@ struct SelfPair {
   const char *exemption; /* why they are not measured, whatever moves; "": they are */
 };
 
+/* What a robot was prepared with, beside its snapshot. */
+struct PreparedWith {
+  std::vector<std::array<std::string, 2>> disabled;
+  std::vector<VirtualJoint> virtual_joints;
+  std::vector<std::string> base_joints;
+  Eigen::Isometry3d base;
+};
+
 /* What all motions of a robot in a snapshot share. */
 struct PreparedRobot::Data {
+  PreparedWith with;
   SnapshotPtr snapshot;
   std::shared_ptr<const Kinematics> kinematics;
   std::vector<std::int32_t> link;                         /* of each geometry, its number in the core */
