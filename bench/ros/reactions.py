@@ -20,6 +20,7 @@ TESTS = os.path.join(HERE, '..', '..', 'test', 'ros')
 sys.path.append(TESTS)
 from helpers import ActionClient, Node, Server, bezier, executable, free_port, ring_and_shells, sphere, start_master, thing, until  # noqa: E402
 
+ROWS, sys.stdout = sys.stdout, sys.stderr  # rospy's log goes there
 LIMIT = 0.05  # [m]
 IN_THE_WAY, AT_THE_END = (0, 0.5, 0.5), (-0.5, -0.1, 0.5)  # of the arm's ball after a quarter turn; after the long goals, the other way round
 
@@ -27,7 +28,7 @@ IN_THE_WAY, AT_THE_END = (0, 0.5, 0.5), (-0.5, -0.1, 0.5)  # of the arm's ball a
 def row(workload, parameter, seconds):
     times = sorted(1e6 * s for s in seconds)
     print('reactions,%s,curve_proximity,%s,%.0f,%.0f,0,0,%.0f,0,0' % (
-        workload, parameter, statistics.median(times), times[int(0.95 * (len(times) - 1))], times[-1]), flush=True)
+        workload, parameter, statistics.median(times), times[int(0.95 * (len(times) - 1))], times[-1]), file=ROWS, flush=True)
 
 
 class Cell:
@@ -100,7 +101,7 @@ def send_long_goals():
     while not rospy.is_shutdown():
         client.send_goal(goal)
         client.wait_for_result(rospy.Duration(60))
-        print(client.get_state(), flush=True)
+        print(client.get_state(), file=ROWS, flush=True)
 
 
 def measure_gate(rounds):
