@@ -254,7 +254,7 @@ static double share_clear(asker ask, const void *asked, const sample *s, cprox_w
   return (double)clear / (double)beyond;
 }
 
-/* A gap of the same samples at `share` of the least period that keeps bounding balls apart: a verdict is as good with
+/* A gap of the same samples at `share` of the least period that keeps bounding spheres apart: a verdict is as good with
  * images, which only add to V. */
 static cprox_gap *gap_of_period(const solid_in_space *a, const solid_in_space *b, uint32_t samples, double share,
                                 cprox_workspace *ws) {

@@ -75,7 +75,7 @@ struct Answer {
   std::string a;          /**< the moving object: the curve's id */
   std::string b;          /**< the nearest object or link; empty where there is none */
   bool b_is_link = false; /**< b names a link of the robot */
-  /** The nearest shape is a mesh that was replaced by its convex hull or bounding ball: because options.max_lod says
+  /** The nearest shape is a mesh that was replaced by its convex hull or bounding sphere: because options.max_lod says
    *  so, or because a robot overlaps it and a signed distance was asked for. */
   bool by_hull = false;
   double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */

@@ -7,7 +7,7 @@
 #include "fourier/grid.h"
 #include "fourier/raster.h"
 
-/* Images need a period of at least this: both bounding balls' diameters. */
+/* Images need a period of at least this: both bounding spheres' diameters. */
 static double solids_size(const cprox_solid *a, const cprox_solid *b) {
   return 2.0 * (a->radius + b->radius);
 }

@@ -40,7 +40,7 @@ cprox_status solid_check_grid(const cprox_solid_description *d, cprox_workspace 
 /* A solid with room for n empty pieces, or NULL. */
 cprox_solid *solid_allocate(int dimension, size_t n);
 
-/* Sets the bounding ball once the pieces are there. */
+/* Sets the bounding sphere once the pieces are there. */
 void solid_bound(cprox_solid *solid);
 
 /* One piece as a solid: takes the piece over, also on failure (memory out). */

@@ -29,7 +29,7 @@ class Robust(Case):
                     self.assertEqual((answer.code, answer.err), (0, ''))
                     row = answer.row('go')
                     self.assertEqual((row['status'], row['verdict']), ('ok', 'clear'))
-                    self.assertIn(row['b'], ('wall', ''))  # '': bounding balls alone have decided
+                    self.assertIn(row['b'], ('wall', ''))  # '': bounding spheres alone have decided
                     self.assertGreater(float(row['lower']), delta)
                     self.assertLessEqual(float(row['lower']), GAP - loss + 1e-9)
                     certified, refused = float(row['certified_scale']), float(row['refused_scale'])

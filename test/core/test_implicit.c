@@ -144,7 +144,7 @@ CASE(maps_that_are_singular_and_lists_that_are_too_long_are_refused) {
 
 /* ---- centre, radius ---- */
 
-/* Seed 1, 200 points a body: every point of the set is in the bounding ball, and the inner ball is in the set (Object
+/* Seed 1, 200 points a body: every point of the set is in the bounding sphere, and the inner ball is in the set (Object
  * IV's origin is not). */
 CASE(the_bounding_ball_holds_the_body_and_the_inner_ball_is_in_it) {
   rng r = rng_seed(1);

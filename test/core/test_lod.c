@@ -188,7 +188,7 @@ CASE(a_curve_through_the_hull_but_clear_of_the_mesh_is_clear) {
 
 /* ---- what the hull spares ---- */
 
-/* 30 tori (seed 87) in a cube, their bounding balls overlapping; 60 curves. All ways to ask about many answer as the
+/* 30 tori (seed 87) in a cube, their bounding spheres overlapping; 60 curves. All ways to ask about many answer as the
  * meshes would. Together with a small box the answer is level of detail hull, no mesh looked into, where every hull is
  * farther than the box by the hundredth part that ranking may give away; where one is nearer, level of detail mesh. */
 CASE(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best) {
@@ -253,7 +253,7 @@ CASE(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best) {
   mesh_free(&torus);
 }
 
-/* Within the bracket's bounding ball and 0.495 off its hull, a box 0.25 away: the ball says bracket first, the hull
+/* Within the bracket's bounding sphere and 0.495 off its hull, a box 0.25 away: the ball says bracket first, the hull
  * says that it need not be looked into. */
 CASE(a_mesh_waits_until_it_is_the_nearest_by_its_hull) {
   test_mesh bracket = mesh_bracket();

@@ -118,7 +118,7 @@ TEST(Ask, a_link_whose_pose_is_unknown_never_reads_as_free) {
 TEST(Ask, meshes_say_which_model_answered) {
   Scene scene(dataRobot("panda"));
   const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
-  const char *words[] = {"bounding ball", "convex hull", "mesh"};
+  const char *words[] = {"bounding sphere", "convex hull", "mesh"};
   double above = 0.0;
   for (const cprox_lod lod : {CPROX_LOD_SPHERE, CPROX_LOD_HULL, CPROX_LOD_MESH}) {
     Query query;

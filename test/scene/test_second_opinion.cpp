@@ -177,7 +177,7 @@ TEST(SecondOpinion, answers_about_curves_carry_it) {
     query.query_type = QueryType::DISTANCE;
     query.delta = 0.0;
     query.options.max_lod = CPROX_LOD_SPHERE;
-    expectContains(askOne(scene, {}, curve, query).message, "bounding balls have answered");
+    expectContains(askOne(scene, {}, curve, query).message, "bounding spheres have answered");
     query.options.max_lod = CPROX_LOD_MESH;
   }
 }

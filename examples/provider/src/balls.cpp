@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A whole provider: the distance of two standing bodies' bounding balls, which is never more than that of the bodies.
+/** A whole provider: the distance of two standing bodies' bounding spheres, which is never more than that of the bodies.
  */
 #include <pluginlib/class_list_macros.hpp>
 

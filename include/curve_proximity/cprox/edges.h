@@ -64,7 +64,7 @@ CPROX_API void cprox_edge_checker_free(cprox_edge_checker *checker);
 typedef enum cprox_edge_level {
   /** nothing did: the edge was refused, or there is nothing to ask about */
   CPROX_EDGE_NONE = 0,
-  /** bounding balls of whole geometries, in single precision */
+  /** bounding spheres of whole geometries, in single precision */
   CPROX_EDGE_BALL = 1,
   /** the balls that cover each geometry, in single precision */
   CPROX_EDGE_COVER = 2,

@@ -204,7 +204,7 @@ typedef struct cprox_options {
    *  so; points, octrees and meshes without a hull are refused. Default false: distances are 0 at least */
   bool signed_distance;
   /** the finest model of obstacles that may answer, CPROX_LOD_MESH (or NONE): any. HULL: convex hulls
-   *  replace level-of-detail bodies. SPHERE: bounding balls replace all bodies except points, octrees and halfspaces.
+   *  replace level-of-detail bodies. SPHERE: bounding spheres replace all bodies except points, octrees and halfspaces.
    *  A coarser model contains the body: lower and clear hold for the body itself as well, but upper, the witness
    *  points and violated are the model's */
   cprox_lod max_lod;
@@ -236,7 +236,7 @@ typedef struct cprox_result {
   /** clear: farther than delta everywhere, of a collision farther than 0; violated: a point at most delta away, of a
    *  collision a common point, is proven; undecided: neither, which counts as unsafe. Of a distance: undecided */
   cprox_verdict verdict;
-  /** [m] certified: lower <= true value <= upper. upper = infinity where bounding balls (in batches also boxes) alone
+  /** [m] certified: lower <= true value <= upper. upper = infinity where bounding spheres (in batches also boxes) alone
    *  decided a verdict: then there is no witness, and obstacle_index is -1 */
   double lower;
   /** [m] certified: not below the true value. */
@@ -356,7 +356,7 @@ CPROX_API cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cpro
  *  ends at the first two points that prove it, or where the bodies have a point in common (upper is 0 then, and both
  *  witness points are that one). undecided: the distance is within epsilon of delta, or the budget was too small. How
  *  deep bodies overlap is not measured: lower <= 0 bounds the signed distance of cprox_pair(). upper = infinity where
- *  bounding balls or boxes alone proved the bodies clear: then there is no witness, and the points are NaN.
+ *  bounding spheres or boxes alone proved the bodies clear: then there is no witness, and the points are NaN.
  *  Bodies as for cprox_pair(); options too, but for start and signed_distance, which are refused.
  *  Returns as cprox_distance(). Cost: at most about that of cprox_pair(); bodies far apart: one look at their balls. */
 CPROX_API cprox_status cprox_pair_tolerance(cprox_obstacle a, cprox_obstacle b, double delta,

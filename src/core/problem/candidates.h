@@ -5,7 +5,7 @@
 
 #include "problem/problem.h"
 
-/* One convex part of one obstacle, or a curve, against one convex part of what is carried, with what their bounding balls
+/* One convex part of one obstacle, or a curve, against one convex part of what is carried, with what their bounding spheres
  * say. placed_pair_resolve() looks the indices up. */
 typedef struct candidate {
   double lower;

@@ -15,7 +15,7 @@ typedef struct model {
 } model;
 
 /* The finest model up to the level of detail; CPROX_LOD_NONE: the finest of all. Bodies that are no level-of-detail
- * bodies are their own models from the hull on; so are points and boxes always, and what has no bounding ball. `body`
+ * bodies are their own models from the hull on; so are points and boxes always, and what has no bounding sphere. `body`
  * is no compound. */
 model lod_model_of(const cprox_body *body, cprox_lod finest);
 

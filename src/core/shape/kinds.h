@@ -16,7 +16,7 @@ typedef struct body_kind {
   /* Batches: the nearest point is cheap and certain, and tells how deep a point lies inside. */
   bool has_cheap_depth;
 
-  /* Level of detail: the bounding ball never stands in for it. */
+  /* Level of detail: the bounding sphere never stands in for it. */
   bool is_own_sphere;
 
   /* Certificates: the checker knows the kind. It is described by so many entries of shape.size, in this order; kinds

@@ -39,7 +39,7 @@ void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
   const bool coarse = max_lod == CPROX_LOD_SPHERE || max_lod == CPROX_LOD_HULL;
   answer.by_hull = coarse;
   if (coarse) {
-    const std::string model = max_lod == CPROX_LOD_HULL ? "convex hull" : "bounding ball";
+    const std::string model = max_lod == CPROX_LOD_HULL ? "convex hull" : "bounding sphere";
     answer.message = "the nearest shape is a mesh: its " + model + " answers for it";
   } else if (shape.is_open) {
     answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";

@@ -316,10 +316,10 @@ bool hullsAnswer(const Query &query) {
   return query.options.max_lod == CPROX_LOD_HULL;
 }
 
-/* Bounding balls have answered, not the shapes. */
+/* Bounding spheres have answered, not the shapes. */
 bool byBalls(const Query &query, Answer &answer) {
   if (query.options.max_lod != CPROX_LOD_SPHERE) return false;
-  refuseSecondOpinion(query, "bounding balls have answered", answer);
+  refuseSecondOpinion(query, "bounding spheres have answered", answer);
   return true;
 }
 
