@@ -269,8 +269,8 @@ class PlanningScene(unittest.TestCase):
             with subprocess.Popen([sys.executable, __file__, '--move-group', '/orphan/get_planning_scene']) as move_group:
                 self.addCleanup(move_group.kill)
                 for expected in ('clear', 'ok'), ('undecided', 'unknown'):
-                    ask = lambda: [(r.verdict, r.status) for r in server.tolerance(CURVES[0], .01, objects=['cup']).results]
-                    self.assertTrue(until(lambda: ask() == [expected], PATIENCE), ask())
+                    rows = lambda: server.tolerance(CURVES[0], .01, objects=['cup']).results
+                    self.assertTrue(until(lambda: [(r.verdict, r.status) for r in rows()] == [expected], PATIENCE), rows())
                     move_group.kill()
 
     def ask(self, topic, message, stamp):
