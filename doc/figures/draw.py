@@ -123,7 +123,7 @@ def batches():
         part = knots[i:i + 5]
         low, high = part.min(0), part.max(0)
         left.add_patch(Rectangle(low, *(high - low), fill=False, ec=RED, lw=0.9))
-    left.text(0.9, -1.15, 'bounding ball', color=GREY)
+    left.text(0.9, -1.15, 'bounding sphere', color=GREY)
     left.text(-0.5, -0.05, 'inscribed\nball', color=GREEN, fontsize=8, va='center')
     left.text(1.3, 1.75, 'AABBs of four chords', color=RED, fontsize=9, ha='center')
     left.set_title('steps 1 and 2', fontsize=10)
