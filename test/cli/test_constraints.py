@@ -284,7 +284,27 @@ class Gradients(Case):
   b: {{bodies: [{{type: ellipsoid, dimensions: [0.3, 0.2, 0.25]}}], pose: {{position: [1, 0, 0]}}}}
 ''')
         self.assertEqual((answer.code, answer.err), (0, ''))
-        self.assertEqual([(row['verdict'], row['derivatives']) for row in answer.rows], [('clear', '22'), ('clear', '21')])
+        self.assertEqual([(row['verdict'], row['derivatives']) for row in answer.rows], [('clear', '25'), ('clear', '24')])
+
+    def gradients_by_what_defines_a_curve_agree(self):
+        cases = '''
+- id: drive
+  a: {bodies: [{type: sphere, dimensions: [0.05]}]}
+  curve: {basis: dubins, points: [[-1, 0, 0], [1, 0.2, 0]], parameters: [0.3, -0.6, 0.3]}
+  b: {bodies: [{type: sphere, dimensions: [0.25]}], pose: {position: [0.2, 0.9, 0.1]}}
+- id: unwound
+  a: {bodies: [{type: sphere, dimensions: [0.05]}]}
+  curve: {basis: involute, t0: 0.2, t1: 3, points: [[0, 0, 0]], parameters: [-1.0, 0.3]}
+  b: {bodies: [{type: box, dimensions: [0.4, 0.4, 0.4]}], pose: {position: [0.4, 1.6, 0.1]}}
+- id: bend
+  a: {bodies: [{type: sphere, dimensions: [0.05]}]}
+  curve: {basis: pythagorean_hodograph, degree: 1, points: [[-0.5, 0, 0]], parameters: [1, 0.1, 0, 0.2, 0.9, 0, 0.1, 0.3]}
+  b: {bodies: [{type: sphere, dimensions: [0.25]}], pose: {position: [0.2, 0.9, 0.1]}}
+'''
+        for provider in (CURVES, GAP):
+            rows = self.check(provider, cases).rows
+            self.assertEqual([(row['id'], row['verdict'], row['derivatives']) for row in rows],
+                             [('drive', 'clear', '19'), ('unwound', 'clear', '19'), ('bend', 'clear', '23')], provider)
 
     def where_there_is_no_gradient_nothing_is_decided(self):
         answer = self.check(CURVES, f'''
