@@ -11,6 +11,7 @@
 #include <moveit/collision_detection/occupancy_map.h>
 #include <moveit/planning_scene/planning_scene.h>
 #include <moveit/utils/robot_model_test_utils.h>
+#include <ros/console.h>
 
 #include "certifier.h"
 
@@ -159,6 +160,9 @@ void octomapOf(const moveit::core::RobotModelPtr &model, int n) {
 
 int main() try {
   ros::Time::init();
+  ros::console::set_logger_level(ROSCONSOLE_ROOT_LOGGER_NAME,
+                                 ros::console::levels::Error); // its other lines go to stdout
+  ros::console::notifyLoggerLevelsChanged();
   const moveit::core::RobotModelPtr model = moveit::core::loadTestingRobotModel("panda");
   std::printf("what,first_ms,again_ms,changed_ms\n");
   attachedMesh(model);
