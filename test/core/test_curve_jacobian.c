@@ -286,6 +286,8 @@ CASE(kinds_without_numbers_of_their_own_are_refused) {
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
     if (cprox_curve_jacobian(&refused[i], 0.5, columns) != CPROX_INVALID) fail_msg("description %zu", i);
   assert_int_equal(cprox_curve_jacobian(NULL, 0.5, columns), CPROX_INVALID);
+  const cprox_curve_description line = describe_clothoid(vec(0, 0, 0), 0.0, 0.0, 0.0, 0.0, 1.0);
+  assert_int_equal(cprox_curve_jacobian(&line, NAN, columns), CPROX_INVALID);
   for (int i = 0; i < MOST; i++) assert_true(columns[i].x == 7.0);
 }
 

@@ -330,8 +330,9 @@ CPROX_API cprox_status cprox_curve_weights(const cprox_curve_description *descri
  *  With cprox_gradient.mover n, at its t, the derivatives of a distance are n · columns[i] (J. M. Danskin, 1967). Those
  *  by the range of t are cprox_gradient.t0 and t1. Accuracy: about 1e-13 of the size of the largest column.
  *
- *  Returns CPROX_OK. CPROX_INVALID for other kinds, for a clothoid that turns too often between 0 and t, and for a
- *  Dubins path that does not exist or has no derivative (its circles coincide or touch). Then it writes nothing.
+ *  Returns CPROX_OK. CPROX_INVALID for other kinds, for t that is not finite, for a clothoid that turns too often
+ *  between 0 and t, and for a Dubins path that does not exist or has no derivative (its circles coincide or touch).
+ *  Then it writes nothing.
  *  Cost: O(n²) for a preimage, O(n degree) for weights, O(turns) for a clothoid. Source: doc/curve-bound.md,
  *  "By what defines a curve". */
 CPROX_API cprox_status cprox_curve_jacobian(const cprox_curve_description *description, double t, cprox_vec3 *columns);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Every kind of curve, one line each: how it is made, how its coefficients weigh at a parameter, and how its
  * point there changes by the numbers that define it. */
+#include <math.h>
+
 #include "base/workspace.h"
 #include "curve/curve.h"
 
@@ -64,5 +66,5 @@ cprox_status cprox_curve_weights(const cprox_curve_description *description, dou
 
 cprox_status cprox_curve_jacobian(const cprox_curve_description *description, double t, cprox_vec3 *columns) {
   const curve_maker *maker = description ? maker_of(description->kind) : NULL;
-  return maker && maker->differentiate ? maker->differentiate(description, t, columns) : CPROX_INVALID;
+  return maker && maker->differentiate && isfinite(t) ? maker->differentiate(description, t, columns) : CPROX_INVALID;
 }
