@@ -281,8 +281,8 @@ def profile_of(motion, self):
 def rows_of(motion, self):
     found = motion.rows(1e3, self_collision=self)
     if not len(found['lower']) and not found['gap']:
-        raise ValueError('nothing moves')
-    return least_of(found['lower'])[0] and not found['gap'], None  # there are none of pairs that stand
+        raise ValueError('nothing moves: there are no rows')
+    return (False, None) if found['gap'] else least_of(found['lower'])
 
 
 def proof_of(motion, self):
@@ -431,8 +431,6 @@ def robot_case(r, folder, program):
         return case.judge_code('cprox ' + command[0], truth, code, errors, measures), None
     door, self, said, remarks = ask_python(r, folder)
     whole_truth = truth
-    if door.startswith('rows') and truth is not None:  # of what moves
-        truth = model.truth_of(places, seen, False)
     if door == 'edges' and kind.startswith('way'):  # edges are not from the file
         said = None
     if door == 'edges' and truth is not None:  # from the first to the last posture, and with it the robot itself
