@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -107,6 +108,13 @@ class Workers(Case):
         changed = [i for i, path in enumerate(shards) if os.stat(path).st_mtime_ns != before[i]]
         self.assertEqual(changed, [1, 4])
         self.assertEqual(table_of(self.out()), self.truth)
+
+    def test_no_run_takes_up_a_task_of_another_one(self):
+        with unittest.mock.patch.object(self.client, 'submit', wraps=self.client.submit) as submit:
+            for _ in range(5):
+                self.assertEqual(cprox_dask.certify(self.client, self.manifest, self.out(), 2, CPROX), [])
+        keys = [call.kwargs['key'] for call in submit.call_args_list]
+        self.assertEqual((len(keys), len(set(keys))), (10, 10))
 
     def test_a_disk_that_is_full_is_an_error_and_the_run_goes_on_later(self):
         """A limit of file sizes stands for the disk; test/python/dataset_faults.py fills a real one."""

@@ -14,6 +14,7 @@ import signal
 import subprocess
 import sys
 import time
+import uuid
 
 __all__ = ['Failure', 'certify', 'certify_shard']
 
@@ -55,13 +56,14 @@ def certify(client, dataset, out, shards, cprox='cprox', options=(), attempts=3,
 
     base = [cprox, 'certify', '--dataset', os.path.abspath(dataset), '--out', os.path.abspath(out), '--shards', str(shards),
             '--threads', '1', *options]
+    run = uuid.uuid4().hex  # Dask takes a task of the same key for the same task, done already
     asked = {}  # future: shard, attempt, what the attempt before said where this one marks the shard
 
     def submit(shard, attempt, fault=None):
         command = base + ['--shard', str(shard)]
         if fault is not None:
             command += ['--failed', f'the shard was given up after {attempts} attempts: {fault}']
-        future = client.submit(certify_shard, command, timeout, key=f'cprox-{os.getpid()}-{id(asked)}-{shard}-{attempt}', pure=False)
+        future = client.submit(certify_shard, command, timeout, key=f'cprox-{run}-{shard}-{attempt}', pure=False)
         asked[future] = (shard, attempt, fault)
         return future
 
