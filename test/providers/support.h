@@ -36,6 +36,16 @@ inline ConstraintBody side(const std::vector<ShapeDescription> &shapes, double p
   return out;
 }
 
+/** The convex pieces of two unions of boxes, which overlap each other at places. */
+inline ConstraintPair unions() {
+  ShapeDescription arm = shape(ShapeType::BOX, {0.3, 0.8, 0.6}), foot = shape(ShapeType::BOX, {0.9, 0.25, 0.6});
+  arm.pose.translation() = Eigen::Vector3d(-0.3, 0.3, 0.0);
+  ConstraintPair pair;
+  pair.a = side({arm, foot}, 0.02);
+  pair.b = side({shape(ShapeType::CAPSULE, {0.5, 0.2}), shape(ShapeType::ELLIPSOID, {0.5, 0.3, 0.4})});
+  return pair;
+}
+
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
