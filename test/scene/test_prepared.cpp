@@ -226,3 +226,23 @@ TEST(PreparedRobots, in_another_snapshot_answer_as_if_made_of_it) {
     }
   }
 }
+
+/* A collision query among 101 objects, of which one is none that robots are asked about, 50 m away. */
+TEST(PreparedRobots, a_distance_grid_among_many_objects_is_refused_wherever_it_stands) {
+  Scene world(panda());
+  SceneChange change;
+  for (int i = 0; i < 100; ++i)
+    change.operations.push_back(
+        add("box" + std::to_string(i), {shape(ShapeType::BOX, {0.1, 0.1, 0.1})}, translation(i, 20, 0)));
+  ShapeDescription grid = shape(ShapeType::DISTANCE_GRID, {0.5, 2, 2, 2, 0.01});
+  for (int i = 0; i < 8; ++i) grid.values.push_back(0.5 * Eigen::Vector3d(i % 2, i / 2 % 2, i / 4).norm());
+  change.operations.push_back(add("grid", {grid}, translation(50, 0, 0)));
+  ASSERT_TRUE(world.apply(change).empty());
+  const PreparedRobot robot(world.snapshot());
+  Random random(74);
+  const RobotMotion motion(robot, edge(randomState(random), randomState(random)));
+  Query query;
+  query.query_type = QueryType::COLLISION;
+  Workspace workspace;
+  expectContains(errorOf([&] { askEnvironment(motion, query, workspace); }), "object 'grid' is a distance_grid");
+}

@@ -60,6 +60,11 @@ double apart(const Box &a, const Box &b) {
   return (a.min() - b.max()).cwiseMax(b.min() - a.max()).maxCoeff();
 }
 
+/* What robots are not asked about is refused wherever it stands. */
+bool isAnswered(const PlacedShape &shape) {
+  return shape.obstacle.body && cprox_body_get_info(shape.obstacle.body).kind != CPROX_BODY_DISTANCE_GRID;
+}
+
 bool wantsVerdictAlone(const Query &query) {
   return query.query_type != QueryType::DISTANCE && !query.options.certificate && !query.options.signed_distance;
 }
@@ -82,7 +87,7 @@ NearItems nearItems(const RobotMotion::Data &data, std::vector<std::size_t> item
   for (const std::size_t k : all.items) {
     const PlacedShape &shape = *data.snapshot->world().items()[k].shape;
     double gap = -INFINITE;
-    if (shape.obstacle.body && !unbounded(shape)) gap = apart(whole, shape.box);
+    if (isAnswered(shape) && !unbounded(shape)) gap = apart(whole, shape.box);
     if (gap <= reach && gap > -INFINITE) {
       gap = INFINITE;
       for (const Box &box : boxes) gap = std::min(gap, apart(box, shape.box));
