@@ -81,14 +81,14 @@ BatchAction::~BatchAction() {
 }
 
 void BatchAction::begin(Server::GoalHandle handle) {
+  const GoalEvent sent = std::exchange(last_, GoalEvent()); // it may be large
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (batches_.size() < MOST_BATCHES) {
       handle.setAccepted();
       const auto batch = std::make_shared<Batch>();
-      if (last_.getConstMessage() && &last_.getConstMessage()->goal == handle.getGoal().get())
-        batch->client = last_.getPublisherName();
-      last_ = GoalEvent(); // it may be large
+      if (sent.getConstMessage() && &sent.getConstMessage()->goal == handle.getGoal().get())
+        batch->client = sent.getPublisherName();
       batch->handle = std::move(handle);
       batches_.push_back(batch);
       queue_.post([this, batch] {
