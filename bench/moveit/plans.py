@@ -137,8 +137,8 @@ A plan that is not proven is led round what it hits (`certify_repair_ms` 200); e
 
 Times are of the whole service call: by the clock, or of the processor in all threads of move_group, which other work on
 the machine changes less. A ratio is that of a pair: with the adapter to without. Means are those of the problems' means,
-with one standard error. The adapter may add 5 % to the processor's time of all requests: that is what a user waits for. A certification is a call of the service `certify_path` for a plan of the pipeline without the
-adapter, by the clock.
+with one standard error. The adapter may add 5 % to the processor's time of all requests: that is what a user waits for.
+A certification is a call of the service `certify_path` for a plan of the pipeline without the adapter, by the clock.
 
 {second}
 

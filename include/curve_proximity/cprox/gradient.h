@@ -175,7 +175,7 @@ typedef struct cprox_motion_row {
  *    is nearest at the break to the neighbouring interval, and comes as near or nearer there: that one has a row, or
  *    the same is true of it, or
  *    has per_pair rows that come as near or nearer.
- *  So it is of pairs whose sides the motion does not move against each other: a step of its points may.
+ *  Pairs whose sides the motion does not move against each other have rows, too: a step of its points may move them.
  *  So each row is a local minimum along the motion, as far as minimisers at breaks are known exactly. Minima within an
  *  interval besides its least one have no row: choose shorter intervals. Where `room` is too small CPROX_BUDGET is
  *  returned: then some rows are left out. So they may be where CPROX_STOPPED is returned.

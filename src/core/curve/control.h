@@ -31,7 +31,8 @@ double control_magnitude(const double *points, size_t degree);
 double control_split(double *left, double *right, size_t degree, double s, double magnitude);
 
 /* A lower bound of |w| over the piece, w = psi - centre or its part orthogonal to the unit `axis` (NULL for none), from
- * the Bernstein coefficients of |w|^2, rounding included; 0 where they say nothing. Cost: degree^2. `binomial`: curve_binomial(). */
+ * the Bernstein coefficients of |w|^2, rounding included; 0 where they say nothing. Cost: degree^2. `binomial` is that
+ * of curve_binomial(). */
 double control_distance_from(const double *points, size_t degree, const double *binomial, vec3 centre,
                              const vec3 *axis);
 

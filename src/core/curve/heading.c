@@ -46,6 +46,7 @@ dd heading_at(const heading_curve *c, double t, double *error) {
   return dd_add(c->heading, turned);
 }
 
+/* Gauss' rule of NODES points on [0, 1]. */
 static const double node[NODES] = {0.019855071751231884, 0.10166676129318663, 0.23723379504183551, 0.40828267875217510,
                                    0.59171732124782490,  0.76276620495816449, 0.89833323870681337, 0.98014492824876812};
 static const double weight[NODES] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894364,
