@@ -214,7 +214,8 @@ void addScenes(py::module &module) {
       .def_property_readonly("objects",
                              [](const PythonScene &s) {
                                py::list out;
-                               for (const auto &[id, object] : s.snapshot()->objects()) out.append(id);
+                               const SnapshotPtr snapshot = s.snapshot();
+                               for (const auto &[id, object] : snapshot->objects()) out.append(id);
                                return out;
                              })
       .def("obstacles", &PythonScene::obstacles, py::arg("index") = "bvh",

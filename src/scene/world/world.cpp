@@ -34,8 +34,10 @@ void World::takeOver(const World &before) {
     while (was < now.size() && before.items_[was].shape != item.shape && *before.items_[was].owner < *item.owner) ++was;
     if (was < now.size() && before.items_[was].shape == item.shape) now[was++] = i;
   }
+  // of one's own: queries in other threads may put others in their place meanwhile
+  const std::shared_ptr<const Trees> of_before = std::atomic_load(&before.trees_);
   Trees trees;
-  for (const Tree &old : *std::atomic_load(&before.trees_)) {
+  for (const Tree &old : *of_before) {
     Tree tree{old.boxes, old.items, 0};
     for (std::uint32_t &item : tree.items) {
       if (item != NO_BOX) item = now[item];
