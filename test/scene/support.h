@@ -3,7 +3,9 @@
 #ifndef CURVE_PROXIMITY_TEST_SCENE_SUPPORT_H
 #define CURVE_PROXIMITY_TEST_SCENE_SUPPORT_H
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -53,6 +55,12 @@ class Random {
  private:
   std::uint64_t state_;
 };
+
+/* CI asks few cases; CPROX_TEST_SCALE raises the number. */
+inline int cases(int n) {
+  const char *scale = std::getenv("CPROX_TEST_SCALE");
+  return scale ? n * std::max(1, std::atoi(scale)) : n;
+}
 
 inline std::string readText(const std::string &path) {
   std::ifstream file(path);

@@ -58,6 +58,40 @@ JointPositions byName(const std::vector<double> &values) {
   return out;
 }
 
+constexpr double SLIDE_RADIUS = 0.1, SLIDE_PADDING = 0.05; /* [m] */
+
+/* A sphere that a prismatic joint moves along the base's x axis, among objects, of which the link's padding counts. */
+PreparedRobot slideAmong(const Eigen::Isometry3d &base, const std::vector<Operation> &objects) {
+  static const std::shared_ptr<const Robot> robot = Robot::fromUrdf(
+      "<robot name='slide'><link name='base'/><link name='ball'><collision><geometry><sphere radius='0.1'/></geometry>"
+      "</collision></link><joint name='j' type='prismatic'><parent link='base'/><child link='ball'/>"
+      "<axis xyz='1 0 0'/><limit lower='-9' upper='9'/></joint></robot>");
+  Scene world(robot);
+  SceneChange change;
+  change.operations = objects;
+  change.link_padding["ball"] = SLIDE_PADDING;
+  EXPECT_TRUE(world.apply(change).empty());
+  return PreparedRobot(world.snapshot(), {}, {}, {}, base);
+}
+
+TrajectoryDescription slide(double from, double to) {
+  TrajectoryDescription out;
+  out.id = "slide";
+  out.joints = {"j"};
+  out.points.resize(2);
+  out.points[0].positions = {from};
+  out.points[1].positions = {to};
+  out.points[1].time = 1.0;
+  return out;
+}
+
+/* With all named objects at once; with none named, with all of the scene. */
+cprox_result resultOf(const RobotMotion &motion, Query query, const std::vector<std::string> &objects = {}) {
+  Workspace workspace;
+  query.objects = objects;
+  return askEnvironment(motion, query, workspace).front().result;
+}
+
 void expectSame(const Answer &a, const Answer &b) {
   EXPECT_EQ(a.result.lower, b.result.lower);
   EXPECT_EQ(a.result.upper, b.result.upper);
@@ -191,6 +225,80 @@ TEST(PreparedRobots, verdicts_among_many_objects_are_those_of_each_alone) {
   EXPECT_GT(verdicts[CPROX_VERDICT_VIOLATED], 5);
   EXPECT_GT(contacts[CPROX_VERDICT_CLEAR], 1);
   EXPECT_GT(contacts[CPROX_VERDICT_VIOLATED], 1);
+}
+
+/* One of 81 boxes stands where the way of 2 m, or a robot that stands at its end, comes within .01 m of the limit. The
+ * way's box is as large as the way, the sphere and the padding make it, to some roundings: without one of these the box
+ * at the end is left out. */
+TEST(PreparedRobots, the_one_near_object_of_many_counts_at_the_end_of_the_way) {
+  for (const double delta : {0.0, 0.3}) {
+    for (const double gap : {-0.01, 0.01}) {
+      const double face = 2.0 + SLIDE_RADIUS + SLIDE_PADDING + delta + gap;
+      const ShapeDescription box = shape(ShapeType::BOX, {0.5, 0.5, 0.5});
+      std::vector<Operation> objects = {add("near", {box}, translation(face + 0.25, 0, 0))};
+      for (int i = 0; i < 80; ++i) objects.push_back(add("far" + std::to_string(i), {box}, translation(i, 20, 0)));
+      const PreparedRobot robot = slideAmong(Eigen::Isometry3d::Identity(), objects);
+      Query query;
+      query.query_type = delta > 0.0 ? QueryType::TOLERANCE : QueryType::COLLISION;
+      query.delta = delta;
+      const cprox_verdict expected = gap < 0.0 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR;
+      EXPECT_EQ(resultOf(RobotMotion(robot, slide(0.0, 2.0)), query).verdict, expected) << delta << " " << gap;
+      EXPECT_EQ(resultOf(RobotMotion(robot, slide(2.0, 0.0)), query).verdict, expected) << delta << " " << gap;
+      const RobotMotion stands(robot, JointPositions{{"j", 2.0}});
+      EXPECT_EQ(resultOf(stands, query).verdict, expected) << delta << " " << gap;
+    }
+  }
+}
+
+/* 1000 ways (seed 75), half of them along a coordinate axis, a fifth of them a robot that stands. 69 spheres are
+ * anywhere, one is within .02 m of the limit, to either side: all at once leave out what is far, 35 at a time nothing.
+ * The distance of a sphere from the way is that of its centre from a segment, less radii and padding. */
+TEST(PreparedRobots, verdicts_that_leave_out_what_is_far_are_those_of_all) {
+  Random random(75);
+  int violated = 0;
+  const int n = cases(1000);
+  for (int i = 0; i < n; ++i) {
+    Eigen::Isometry3d base = random.pose(1.0);
+    if (i % 2 == 0) {
+      const Eigen::Vector3d x = Eigen::Vector3d::Unit(i / 2 % 3) * (i / 6 % 2 == 0 ? 1.0 : -1.0);
+      base.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), x).toRotationMatrix();
+    }
+    const double from = random.uniform(-2.0, 2.0), to = i % 5 == 0 ? from : random.uniform(-2.0, 2.0);
+    Query query;
+    query.query_type = i % 4 < 2 ? QueryType::COLLISION : QueryType::TOLERANCE;
+    query.delta = i % 4 < 2 ? 0.0 : random.uniform(0.0, 0.2);
+
+    std::vector<Operation> objects;
+    std::vector<std::string> halves[2];
+    const double limit = SLIDE_RADIUS + SLIDE_PADDING + query.delta;
+    double least = INFINITY; /* distance from the way, less the limit */
+    for (int k = 0; k < 70; ++k) {
+      double radius = random.uniform(0.01, 0.1);
+      Eigen::Vector3d at = random.vector(4.0); /* in the base's frame */
+      if (k == 0) {
+        const double turn = random.below(3) == 0 ? random.uniform(0.0, 1.5) : 0.0; /* from straight ahead */
+        const double away = limit + radius + random.uniform(-0.02, 0.02);
+        at = {to + std::copysign(away * std::cos(turn), to - from), away * std::sin(turn), 0.0};
+      }
+      const Eigen::Vector3d nearest(std::clamp(at.x(), std::min(from, to), std::max(from, to)), 0.0, 0.0);
+      least = std::min(least, (at - nearest).norm() - radius - limit);
+      halves[k % 2].push_back("o" + std::to_string(k));
+      const Eigen::Vector3d there = base * at;
+      objects.push_back(add(halves[k % 2].back(), {shape(ShapeType::SPHERE, {radius})},
+                            translation(there.x(), there.y(), there.z())));
+    }
+    if (std::abs(least) < 1e-5) continue; /* epsilon is 1e-6 */
+    const RobotMotion motion(slideAmong(base, objects), slide(from, to));
+    const cprox_result all = resultOf(motion, query);
+    ASSERT_EQ(all.verdict, least < 0.0 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR) << i << " " << least;
+    ASSERT_LE(all.lower, std::max(0.0, least + query.delta) + 1e-12) << i;
+    const bool either = resultOf(motion, query, halves[0]).verdict == CPROX_VERDICT_VIOLATED ||
+                        resultOf(motion, query, halves[1]).verdict == CPROX_VERDICT_VIOLATED;
+    ASSERT_EQ(either, least < 0.0) << i << " " << least;
+    violated += least < 0.0;
+  }
+  EXPECT_GT(violated, n / 5);
+  EXPECT_LT(violated, n - n / 5);
 }
 
 /* Changes of objects, of the matrix, of a padding, of a scale and of what is attached, in turn. */

@@ -14,12 +14,6 @@ namespace {
 
 constexpr Peer PEERS[] = {Peer::FCL, Peer::LIBCCD};
 
-/* CI asks few cases; CPROX_TEST_SCALE raises the number. */
-int cases(int n) {
-  const char *scale = std::getenv("CPROX_TEST_SCALE");
-  return scale ? n * std::max(1, std::atoi(scale)) : n;
-}
-
 ShapeDescription cube(bool solid = false) {
   ShapeDescription out = shape(ShapeType::MESH, {});
   out.vertices.resize(3, 8);
