@@ -60,8 +60,10 @@ JointPositions byName(const std::vector<double> &values) {
 
 constexpr double SLIDE_RADIUS = 0.1, SLIDE_PADDING = 0.05; /* [m] */
 
-/* A sphere that a prismatic joint moves along the base's x axis, among objects, of which the link's padding counts. */
-PreparedRobot slideAmong(const Eigen::Isometry3d &base, const std::vector<Operation> &objects) {
+/* A sphere that a prismatic joint moves along the base's x axis, among objects. The link's
+ * padding counts, for what it carries, too. */
+PreparedRobot slideAmong(const Eigen::Isometry3d &base, const std::vector<Operation> &objects,
+                         const std::vector<Attachment> &carried = {}) {
   static const std::shared_ptr<const Robot> robot = Robot::fromUrdf(
       "<robot name='slide'><link name='base'/><link name='ball'><collision><geometry><sphere radius='0.1'/></geometry>"
       "</collision></link><joint name='j' type='prismatic'><parent link='base'/><child link='ball'/>"
@@ -69,6 +71,7 @@ PreparedRobot slideAmong(const Eigen::Isometry3d &base, const std::vector<Operat
   Scene world(robot);
   SceneChange change;
   change.operations = objects;
+  change.attachments = carried;
   change.link_padding["ball"] = SLIDE_PADDING;
   EXPECT_TRUE(world.apply(change).empty());
   return PreparedRobot(world.snapshot(), {}, {}, {}, base);
@@ -250,9 +253,35 @@ TEST(PreparedRobots, the_one_near_object_of_many_counts_at_the_end_of_the_way) {
   }
 }
 
-/* 1000 ways (seed 75), half of them along a coordinate axis, a fifth of them a robot that stands. 69 spheres are
- * anywhere, one is within .02 m of the limit, to either side: all at once leave out what is far, 35 at a time nothing.
- * The distance of a sphere from the way is that of its centre from a segment, less radii and padding. */
+/* The sphere carries a cube of .04 m whose vertices are .6 m ahead of its frame, and its base is turned by a quarter: so
+ * the cube is in the middle of its body neither along the base's x axis nor along that of the world. */
+TEST(PreparedRobots, a_carried_body_far_from_its_frame_counts_where_it_is) {
+  Attachment cube;
+  cube.link = "ball";
+  cube.object.id = "cube";
+  cube.object.shapes = {shape(ShapeType::POLYTOPE, {})};
+  Eigen::Matrix3Xd &vertices = cube.object.shapes.front().vertices;
+  vertices.resize(3, 8);
+  for (int i = 0; i < 8; ++i) vertices.col(i) << 0.58 + 0.04 * (i & 1), 0.04 * (i >> 1 & 1), 0.04 * (i >> 2);
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+  base.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  Query query;
+  query.query_type = QueryType::COLLISION;
+  for (const double gap : {-0.01, 0.01}) {
+    const ShapeDescription box = shape(ShapeType::BOX, {0.5, 0.5, 0.5});
+    std::vector<Operation> objects = {add("near", {box}, translation(0, 1.0 + 0.62 + SLIDE_PADDING + gap + 0.25, 0))};
+    for (int i = 0; i < 80; ++i) objects.push_back(add("far" + std::to_string(i), {box}, translation(i, 20, 0)));
+    const PreparedRobot robot = slideAmong(base, objects, {cube});
+    const cprox_verdict expected = gap < 0.0 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR;
+    EXPECT_EQ(resultOf(RobotMotion(robot, slide(0.0, 1.0)), query).verdict, expected) << gap;
+    EXPECT_EQ(resultOf(RobotMotion(robot, JointPositions{{"j", 1.0}}), query).verdict, expected) << gap;
+  }
+}
+
+/* 1000 ways (seed 75), half of them along a coordinate axis, a fifth of them a robot that stands, a third there and
+ * back. 69 spheres are anywhere, one is within .02 m of the limit, to either side: all at once leave out what is far, 35
+ * at a time nothing. The distance of a sphere from the way is that of its centre from a segment, less radii and padding.
+ */
 TEST(PreparedRobots, verdicts_that_leave_out_what_is_far_are_those_of_all) {
   Random random(75);
   int violated = 0;
@@ -288,7 +317,12 @@ TEST(PreparedRobots, verdicts_that_leave_out_what_is_far_are_those_of_all) {
                             translation(there.x(), there.y(), there.z())));
     }
     if (std::abs(least) < 1e-5) continue; /* epsilon is 1e-6 */
-    const RobotMotion motion(slideAmong(base, objects), slide(from, to));
+    TrajectoryDescription way = slide(from, to);
+    if (i % 3 == 0) { /* and back, and stay there */
+      way.points.insert(way.points.end(), 2, way.points.front());
+      way.points[2].time = 2.0, way.points[3].time = 3.0;
+    }
+    const RobotMotion motion(slideAmong(base, objects), way);
     const cprox_result all = resultOf(motion, query);
     ASSERT_EQ(all.verdict, least < 0.0 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR) << i << " " << least;
     ASSERT_LE(all.lower, std::max(0.0, least + query.delta) + 1e-12) << i;
