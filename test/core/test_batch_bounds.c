@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "batch/obstacles.h"
+#include "batch/obstacle_batch.h"
 #include "problem/placed_pair.h"
 #include "shape/body.h"
 #include "support/batch_scene.h"
@@ -19,7 +19,7 @@ CASE(ball_bounds_are_never_above_the_true_distance) {
   rng r = rng_seed(14);
   for (size_t round = 0; round < test_cases(2000); round++) {
     double numbers[5][PADDED] = {{0}}, lower[PADDED];
-    const lanes_balls balls = {BALLS, PADDED, numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]};
+    const packet_balls balls = {BALLS, PADDED, numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]};
     const double scale = rng_log_uniform(&r, 1e-6, 1e6);
     const vec3 offset = vec_scale(round % 2 ? 0.0 : 1e6 * scale, rng_unit(&r));
     curve_capsule c = {vec_add(offset, rng_in_cube(&r, scale)), vec_add(offset, rng_in_cube(&r, scale)), scale};
@@ -30,7 +30,7 @@ CASE(ball_bounds_are_never_above_the_true_distance) {
       balls.reach[k] = rng_uniform(&r, 0, scale);
       balls.sizes[k] = vec_norm(x) + balls.reach[k];
     }
-    lanes_ball_bounds(&balls, &c, 0.25 * scale, lower);
+    packet_ball_bounds(&balls, &c, 0.25 * scale, lower);
     for (int k = 0; k < BALLS; k++) {
       const vec3 x = vec(balls.x[k], balls.y[k], balls.z[k]);
       const long double apart = ref_point_segment(ref_vec(x), ref_vec(c.a), ref_vec(c.b));
@@ -51,17 +51,17 @@ CASE(chords_are_those_of_the_piece) {
     const size_t degree = random_degree(&r);
     vec3 points[CPROX_MAX_DEGREE + 1], begin[CHORDS + 1];
     random_points(&r, degree + 1, points);
-    const double *basis = lanes_basis(degree, workspace);
-    lanes_chords chords;
+    const double *basis = packet_basis(degree, workspace);
+    packet_chords chords;
     for (uint32_t first = 0; first < CHORDS; first += LANES) {
       const vec3 from = rng_in_cube(&r, 1.0);
       uint32_t nearest, again;
-      const double square = lanes_points(basis, points, degree, false, first, from, &chords, &nearest);
-      assert_true(square == lanes_nearest_point(&chords, first, from, &again) && nearest == again);
+      const double square = packet_points(basis, points, degree, false, first, from, &chords, &nearest);
+      assert_true(square == packet_nearest_point(&chords, first, from, &again) && nearest == again);
       for (uint32_t k = first; k < first + LANES; k++)
         assert_true(square <= vec_norm2(vec_sub(from, vec(chords.x[k], chords.y[k], chords.z[k]))));
     }
-    lanes_join(&chords);
+    packet_join(&chords);
     const double size = ref_largest(points, degree + 1);
     const double allowed = (10.0 * (double)degree + 16) * 0x1p-53 * size;
     for (size_t k = 0; k < CHORDS; k++) {
@@ -73,7 +73,7 @@ CASE(chords_are_those_of_the_piece) {
     const vec3 from = vec_axpy(points[0], size, rng_unit(&r));
     size_t chord;
     double s;
-    const double distance = sqrt(lanes_closest(&chords, from, &chord, &s));
+    const double distance = sqrt(packet_closest(&chords, from, &chord, &s));
     long double least = INFINITY;
     for (size_t k = 0; k < CHORDS; k++)
       least = fminl(least, ref_point_segment(ref_vec(from), ref_vec(begin[k]), ref_vec(begin[k + 1])));
@@ -85,7 +85,7 @@ CASE(chords_are_those_of_the_piece) {
 }
 
 /* The square distance of a point from a box. */
-static long double square_from_box(const lanes_box *box, vec3 p) {
+static long double square_from_box(const packet_box *box, vec3 p) {
   const long double beyond[3] = {
       fmaxl(fmaxl((long double)box->low.x - (long double)p.x, (long double)p.x - (long double)box->high.x), 0.0L),
       fmaxl(fmaxl((long double)box->low.y - (long double)p.y, (long double)p.y - (long double)box->high.y), 0.0L),
@@ -105,12 +105,12 @@ CASE(boxes_bound_the_chords_in_them) {
     vec3 points[CPROX_MAX_DEGREE + 1];
     random_points(&r, degree + 1, points);
     for (size_t i = 0; i <= degree; i++) points[i] = vec_add(points[i], offset);
-    lanes_chords chords;
+    packet_chords chords;
     uint32_t unused;
     for (uint32_t first = 0; first < CHORDS; first += LANES)
-      lanes_points(lanes_basis(degree, workspace), points, degree, false, first, offset, &chords, &unused);
-    lanes_box boxes[PACKET_INTERVALS];
-    lanes_boxes(&chords, boxes);
+      packet_points(packet_basis(degree, workspace), points, degree, false, first, offset, &chords, &unused);
+    packet_box boxes[PACKET_INTERVALS];
+    packet_boxes(&chords, boxes);
 
     double x[BALLS], y[BALLS], z[BALLS], reach[BALLS], sizes[BALLS], lower[BALLS];
     for (int k = 0; k < BALLS; k++) {
@@ -119,9 +119,9 @@ CASE(boxes_bound_the_chords_in_them) {
       sizes[k] = vec_norm(c) + reach[k];
       lower[k] = k == 0 ? 1e300 : -INFINITY;
     }
-    const lanes_balls balls = {.n = BALLS, .padded = BALLS, .x = x, .y = y, .z = z, .reach = reach, .sizes = sizes};
+    const packet_balls balls = {.n = BALLS, .padded = BALLS, .x = x, .y = y, .z = z, .reach = reach, .sizes = sizes};
     const double radius = rng_uniform(&r, 0, 0.5);
-    lanes_box_bounds(&balls, boxes, PACKET_INTERVALS, radius, 0.0, lower);
+    packet_box_bounds(&balls, boxes, PACKET_INTERVALS, radius, 0.0, lower);
     assert_true(lower[0] == 1e300);
     for (int k = 1; k < BALLS; k++) {
       const vec3 c = vec(x[k], y[k], z[k]);
@@ -150,11 +150,11 @@ CASE(chords_are_cut_again_where_the_piece_goes) {
     const size_t degree = random_degree(&r), chord = rng_index(&r, CHORDS);
     vec3 points[CPROX_MAX_DEGREE + 1];
     random_points(&r, degree + 1, points);
-    const double *basis = lanes_fine_basis(degree, chord, workspace);
-    lanes_chords fine;
+    const double *basis = packet_fine_basis(degree, chord, workspace);
+    packet_chords fine;
     uint32_t unused;
     for (uint32_t first = 0; first < CHORDS; first += LANES)
-      lanes_points(basis, points, degree, false, first, vec(0, 0, 0), &fine, &unused);
+      packet_points(basis, points, degree, false, first, vec(0, 0, 0), &fine, &unused);
     const double allowed = (10.0 * (double)degree + 16) * 0x1p-53 * ref_largest(points, degree + 1);
     for (size_t k = 0; k < CHORDS; k++) {
       const long double s = ((long double)chord + (long double)k / CHORDS) / CHORDS;
@@ -167,7 +167,7 @@ CASE(chords_are_cut_again_where_the_piece_goes) {
 
 /* The distance of a point of the chord from the OBB, in long double; the frame's matrix is taken as it is, which a
  * rotation is but for 20 u. */
-static long double from_obb(const lanes_obb *b, const lanes_chords *c, size_t k, long double s) {
+static long double from_obb(const packet_obb *b, const packet_chords *c, size_t k, long double s) {
   const long double v[3] = {(long double)c->x[k] + s * (long double)c->dx[k] - (long double)b->position.x,
                             (long double)c->y[k] + s * (long double)c->dy[k] - (long double)b->position.y,
                             (long double)c->z[k] + s * (long double)c->dz[k] - (long double)b->position.z};
@@ -197,19 +197,19 @@ CASE(obbs_bound_chords_from_below) {
     const vec3 offset = vec_scale(far, rng_unit(&r));
     for (size_t i = 0; i <= degree; i++) points[i] = vec_add(offset, rng_in_cube(&r, 1.0));
     if (round % 11 == 0) points[1] = points[0];
-    lanes_chords chords;
+    packet_chords chords;
     uint32_t unused;
     for (uint32_t first = 0; first < CHORDS; first += LANES)
-      lanes_points(lanes_basis(degree, workspace), points, degree, false, first, offset, &chords, &unused);
-    lanes_join(&chords);
+      packet_points(packet_basis(degree, workspace), points, degree, false, first, offset, &chords, &unused);
+    packet_join(&chords);
     const cprox_pose pose = rng_pose(&r, 1.0);
     const frame f = frame_create(&pose, vec(0, 0, 0));
-    lanes_obb obb = {.position = vec_add(offset, pose.position), .centre = rng_in_cube(&r, 0.2)};
+    packet_obb obb = {.position = vec_add(offset, pose.position), .centre = rng_in_cube(&r, 0.2)};
     memcpy(obb.r, f.r, sizeof obb.r);
     obb.half = vec(rng_uniform(&r, 0, 0.5), rng_uniform(&r, 0, 0.5), round % 5 ? rng_uniform(&r, 0, 0.5) : 0.0);
     if (round % 7 == 0) obb.half = vec(0, 0, 0);
-    lanes_sample sight;
-    lanes_see_obb(&chords, &obb, &sight);
+    packet_sample sight;
+    packet_see_obb(&chords, &obb, &sight);
     const long double allowed = 128 * 0x1p-53L * (long double)(far + 4.0);
     for (size_t k = 0; k < CHORDS; k++) {
       long double a = 0.0L, b = 1.0L;
@@ -309,19 +309,19 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
     for (size_t k = 0; k < batch->balls.n; k++) met[batch->parts[k].obstacle][batch->parts[k].part]++;
     for (size_t i = 0; i < n; i++) assert_true(met[i][0] == 1 && met[i][1] == (obstacles[i].body == pair));
 
-    lanes_box boxes[BOXES];
+    packet_box boxes[BOXES];
     for (int i = 0; i < BOXES; i++) {
       const vec3 at = vec_add(offset, rng_in_cube(&r, 4.0)),
                  size = vec(rng_uniform(&r, 0, 1), rng_uniform(&r, 0, 1), 0);
-      boxes[i] = (lanes_box){at, vec_add(at, size)};
+      boxes[i] = (packet_box){at, vec_add(at, size)};
     }
     double lower[N];
     const double radius = rng_uniform(&r, 0, 0.2);
-    const lanes_blocks *blocks = &batch->blocks;
+    const packet_blocks *blocks = &batch->blocks;
     assert_true(blocks->padded <= N && blocks->n == (batch->balls.n + BLOCK - 1) / BLOCK);
-    lanes_block_bounds(blocks, boxes, BOXES, radius, 0.0, lower);
+    packet_block_bounds(blocks, boxes, BOXES, radius, 0.0, lower);
     for (size_t k = 0; k < batch->balls.n; k++) {
-      const lanes_balls *balls = &batch->balls;
+      const packet_balls *balls = &batch->balls;
       if (isinf(balls->reach[k])) {
         assert_true(lower[k / BLOCK] == -INFINITY);
         continue;

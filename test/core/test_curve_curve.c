@@ -362,8 +362,9 @@ CASE(the_first_pair_is_the_nearest_of_all_points_looked_at) {
     double points[2][3 * (MAX_DEGREE + 1)], s[2];
     const size_t degree[2] = {random_piece(&r, points[0]), random_piece(&r, points[1])};
     const double *basis[2];
-    assert_true(lanes_bases(degree, ws, basis));
-    lanes_first_pair(&(lanes_piece){basis[0], points[0], degree[0]}, &(lanes_piece){basis[1], points[1], degree[1]}, s);
+    assert_true(packet_bases(degree, ws, basis));
+    packet_first_pair(&(packet_piece){basis[0], points[0], degree[0]}, &(packet_piece){basis[1], points[1], degree[1]},
+                      s);
     const vec3l found[2] = {point_of(points[0], degree[0], s[0]), point_of(points[1], degree[1], s[1])};
     const long double nearest =
         ref_norm(ref_sub(found[0], found[1])) - 4.0L * (10.0L * MAX_DEGREE + 16.0L) * (long double)ROUND_U;

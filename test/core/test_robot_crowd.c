@@ -7,7 +7,7 @@
 #include "broadphase/obstacle_set.h"
 #include "curve_proximity/cprox.h"
 #include "problem/obstacles.h"
-#include "robot_query/cull.h"
+#include "robot_query/cluster.h"
 #include "solve/solve.h"
 #include "support/builders.h"
 #include "support/cases.h"

@@ -1,6 +1,6 @@
 # The files of this room. A new file is one line here.
 target_sources(cprox_objects PRIVATE
-  ${CMAKE_CURRENT_LIST_DIR}/bvh.c
+  ${CMAKE_CURRENT_LIST_DIR}/obstacle_bvh.c
   ${CMAKE_CURRENT_LIST_DIR}/distance.c
   ${CMAKE_CURRENT_LIST_DIR}/edges.c
   ${CMAKE_CURRENT_LIST_DIR}/joint_box.c

@@ -2,7 +2,7 @@
 /* The gradient of a robot's clearance; its least growth distance with its gradient. */
 #include "solve/motion_gradient.h"
 
-#include "api/bvh.h"
+#include "api/obstacle_bvh.h"
 #include "base/workspace.h"
 #include "kinematics/motion.h"
 #include "problem/obstacles.h"

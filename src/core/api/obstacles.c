@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/bvh.h"
+#include "api/obstacle_bvh.h"
 #include "base/workspace.h"
 #include "batch/batch.h"
 #include "problem/validate.h"

@@ -2,7 +2,7 @@
 /* Queries that answer for every execution of a robot's motion within bounds of its errors. doc/robust.md */
 #include <math.h>
 
-#include "api/bvh.h"
+#include "api/obstacle_bvh.h"
 #include "base/workspace.h"
 #include "broadphase/obstacle_set.h"
 #include "problem/obstacles.h"

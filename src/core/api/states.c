@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Many states of a robot: each is a motion that stands still. */
-#include "api/bvh.h"
+#include "api/obstacle_bvh.h"
 #include "base/workspace.h"
 #include "curve_proximity/cprox/obstacles.h"
 #include "curve_proximity/cprox/robot.h"

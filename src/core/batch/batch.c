@@ -7,7 +7,7 @@
 
 #include "base/workspace.h"
 #include "batch/prefilter.h"
-#include "curve_query/search_pair.h"
+#include "curve_query/search_candidate.h"
 #include "problem/validate.h"
 #include "solve/list.h"
 #include "solve/solve.h"
@@ -116,7 +116,7 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
 }
 
 static bool reserve(batch_run *run) {
-  const lanes_balls *balls = &run->batch->balls;
+  const packet_balls *balls = &run->batch->balls;
   const size_t numbers = balls->padded + run->batch->blocks.padded + 1;
   run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, numbers * sizeof(double));
   run->block_lower = run->lower ? run->lower + balls->padded : NULL;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "batch/obstacles.h"
+#include "batch/obstacle_batch.h"
 
 static int by(double a, double b) {
   return (a > b) - (a < b);
@@ -39,8 +39,8 @@ void batch_blocks_gather(batch_place *places, size_t n) {
 }
 
 void batch_blocks_surround(obstacle_batch *batch) {
-  const lanes_balls *balls = &batch->balls;
-  lanes_blocks *blocks = &batch->blocks;
+  const packet_balls *balls = &batch->balls;
+  packet_blocks *blocks = &batch->blocks;
   const double *centre[3] = {balls->x, balls->y, balls->z};
   for (size_t b = 0; b < blocks->n; b++) {
     const size_t first = b * BLOCK, end = first + BLOCK < balls->n ? first + BLOCK : balls->n;

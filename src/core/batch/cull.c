@@ -5,10 +5,10 @@
 #include <math.h>
 
 /* The balls of one block, as if there were no others. */
-static lanes_balls balls_of(const obstacle_batch *batch, size_t block) {
-  const lanes_balls *all = &batch->balls;
+static packet_balls balls_of(const obstacle_batch *batch, size_t block) {
+  const packet_balls *all = &batch->balls;
   const size_t at = block * BLOCK;
-  return (lanes_balls){BLOCK, BLOCK, all->x + at, all->y + at, all->z + at, all->reach + at, all->sizes + at};
+  return (packet_balls){BLOCK, BLOCK, all->x + at, all->y + at, all->z + at, all->reach + at, all->sizes + at};
 }
 
 void batch_open_begin(batch_run *run) {
@@ -21,25 +21,25 @@ void batch_open_begin(batch_run *run) {
   }
   batch_points_join(run);
   for (size_t i = 0; i < run->q.mover.curve->n_pieces; i++) {
-    lanes_boxes(&run->chords[i], run->boxes + run->n_boxes);
+    packet_boxes(&run->chords[i], run->boxes + run->n_boxes);
     run->n_boxes += PACKET_INTERVALS;
   }
   const double radius = run->q.mover.radius + run->beside;
-  lanes_block_bounds(&batch->blocks, run->boxes, run->n_boxes, radius, run->slack, run->block_lower);
+  packet_block_bounds(&batch->blocks, run->boxes, run->n_boxes, radius, run->slack, run->block_lower);
 }
 
 /* Bounds each part of a block. */
 static void open_block(batch_run *run, size_t block) {
-  const lanes_balls balls = balls_of(run->batch, block);
+  const packet_balls balls = balls_of(run->batch, block);
   double *lower = run->lower + block * BLOCK;
   const double radius = run->q.mover.radius;
   if (run->n_boxes == 0) {
     const curve_capsule whole = curve_whole(run->q.mover.curve);
-    lanes_ball_bounds(&balls, &whole, radius, lower);
+    packet_ball_bounds(&balls, &whole, radius, lower);
     return;
   }
   for (size_t k = 0; k < BLOCK; k++) lower[k] = run->block_lower[block];
-  lanes_box_bounds(&balls, run->boxes, run->n_boxes, radius + run->beside, run->slack, lower);
+  packet_box_bounds(&balls, run->boxes, run->n_boxes, radius + run->beside, run->slack, lower);
 }
 
 static size_t end_of(const obstacle_batch *batch, size_t block) {

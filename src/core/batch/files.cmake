@@ -4,7 +4,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/clusters.c
   ${CMAKE_CURRENT_LIST_DIR}/cull.c
   ${CMAKE_CURRENT_LIST_DIR}/obb.c
-  ${CMAKE_CURRENT_LIST_DIR}/obstacles.c
-  ${CMAKE_CURRENT_LIST_DIR}/points.c
+  ${CMAKE_CURRENT_LIST_DIR}/obstacle_batch.c
+  ${CMAKE_CURRENT_LIST_DIR}/curve_points.c
   ${CMAKE_CURRENT_LIST_DIR}/prefilter.c
 )

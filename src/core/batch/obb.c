@@ -25,7 +25,7 @@ static double slack_of(const batch_run *run, const batch_core *core, double marg
 /* ---- points ---- */
 
 /* The part is a obb: how far a point is from it, and which point of it is nearest. */
-static double from_obb(const lanes_obb *b, vec3 x, vec3 *surface) {
+static double from_obb(const packet_obb *b, vec3 x, vec3 *surface) {
   const vec3 y = vec_sub(rotate_back(b->r, vec_sub(x, b->position)), b->centre);
   const vec3 h = b->half;
   const vec3 on =
@@ -56,31 +56,31 @@ static bool hits_at(const look *l, uint32_t piece, double s, batch_hit *hit) {
 /* ---- chords ---- */
 
 /* Chord k of a piece, cut into CHORDS itself. */
-static bool cut_chord(batch_run *run, uint32_t piece, uint32_t k, lanes_chords *fine) {
+static bool cut_chord(batch_run *run, uint32_t piece, uint32_t k, packet_chords *fine) {
   const cprox_curve *curve = run->q.mover.curve;
   const vec3 *points = curve_piece(curve, piece);
-  const lanes_chords *chords = &run->chords[piece];
-  const double *basis = lanes_fine_basis(curve->degree, k, run->q.workspace);
+  const packet_chords *chords = &run->chords[piece];
+  const double *basis = packet_fine_basis(curve->degree, k, run->q.workspace);
   if (!basis) return false;
   uint32_t unused;
   for (uint32_t first = 0; first < CHORDS; first += LANES)
-    lanes_points(basis, points, curve->degree, curve->flat, first, vec(0, 0, 0), fine, &unused);
+    packet_points(basis, points, curve->degree, curve->flat, first, vec(0, 0, 0), fine, &unused);
   fine->x[CHORDS] = chords->x[k + 1], fine->y[CHORDS] = chords->y[k + 1], fine->z[CHORDS] = chords->z[k + 1];
-  lanes_join(fine);
+  packet_join(fine);
   return true;
 }
 
 /* A chord that may come too near is cut again: raises *lower, its bound. True for a hit. */
 static bool subdivide_chord(look *l, uint32_t piece, uint32_t k, double *lower, batch_hit *hit) {
-  lanes_chords fine;
+  packet_chords fine;
   if (!cut_chord(l->run, piece, k, &fine)) return false;
-  lanes_sample sample;
-  lanes_see_obb(&fine, &l->core->obb, &sample);
+  packet_sample sample;
+  packet_see_obb(&fine, &l->core->obb, &sample);
   const double beside = l->run->beside * (1.0 / (CHORDS * CHORDS));
   uint32_t nearest, unused;
-  *lower = greater(*lower, lanes_least(sample.lower, &unused) - beside - l->margin - l->slack);
+  *lower = greater(*lower, packet_least(sample.lower, &unused) - beside - l->margin - l->slack);
   if (!(l->limit >= 0.0)) return false;
-  const double square = lanes_least(sample.square, &nearest);
+  const double square = packet_least(sample.square, &nearest);
   const double s = ((double)k + ((double)nearest + sample.s[nearest]) / CHORDS) / CHORDS;
   return sqrt(square) - beside - l->margin <= l->limit && hits_at(l, piece, s, hit);
 }
@@ -94,15 +94,15 @@ bool batch_bound_by_obb(batch_run *run, size_t part, double most, candidate *c, 
   if (core->is_obb) l.limit = greater(run->q.limit, 0.0);
 
   /* all chords */
-  lanes_sample sample[BATCH_MOST_PIECES];
+  packet_sample sample[BATCH_MOST_PIECES];
   double lower = INFINITY, square = INFINITY, s = 0.0;
   uint32_t piece = 0;
   for (uint32_t i = 0; i < pieces; i++) {
-    lanes_see_obb(&run->chords[i], &core->obb, &sample[i]);
+    packet_see_obb(&run->chords[i], &core->obb, &sample[i]);
     uint32_t k, unused;
-    const double least = lanes_least(sample[i].square, &k);
+    const double least = packet_least(sample[i].square, &k);
     if (least < square) square = least, piece = i, s = ((double)k + sample[i].s[k]) / CHORDS;
-    lower = lesser(lower, lanes_least(sample[i].lower, &unused));
+    lower = lesser(lower, packet_least(sample[i].lower, &unused));
   }
   const double off = run->beside + l.margin + l.slack, distance = sqrt(square);
   c->lower = greater(c->lower, lower - off);

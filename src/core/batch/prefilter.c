@@ -39,7 +39,7 @@ static bool hits(batch_run *run, size_t part, uint32_t half, double limit, batch
   const double distance = sqrt(square);
   const double upper = distance - core->inner - margin + slack_at(run, part, distance, margin);
   if (upper > limit) return false;
-  const lanes_chords *chords = &run->chords[half / 2];
+  const packet_chords *chords = &run->chords[half / 2];
   const vec3 point = vec(chords->x[k], chords->y[k], chords->z[k]);
   const vec3 outwards = distance > 0.0 ? vec_scale(1.0 / distance, vec_sub(point, core->centre)) : vec(0, 0, 0);
   *hit = (batch_hit){.upper = greater(upper, 0.0),
@@ -91,7 +91,7 @@ static double bound_by_balls(const batch_run *run, candidate *c, size_t part) {
   for (size_t i = 0; i < run->q.mover.curve->n_pieces; i++) {
     size_t k;
     double s;
-    const double square = lanes_closest(&run->chords[i], core->centre, &k, &s);
+    const double square = packet_closest(&run->chords[i], core->centre, &k, &s);
     if (square >= least) continue;
     least = square;
     piece = i, chord = k, along = s;

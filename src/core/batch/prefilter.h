@@ -4,7 +4,7 @@
 #ifndef CPROX_BATCH_PREFILTER_H
 #define CPROX_BATCH_PREFILTER_H
 
-#include "batch/obstacles.h"
+#include "batch/obstacle_batch.h"
 
 enum {
   BATCH_MOST_PIECES = 4
@@ -18,16 +18,16 @@ typedef struct batch_run {
   double *lower;       /* of each part's ball, padded; not known in blocks that are beyond what matters */
   uint32_t *open;      /* the n_open parts whose bound does not settle them */
   size_t n_open;
-  bool short_enough;                                     /* for points and chords */
-  lanes_box boxes[BATCH_MOST_PIECES * PACKET_INTERVALS]; /* round intervals of the curve's chords: n_boxes, */
-  size_t n_boxes;                                        /* or 0, where the curve's capsule has to do */
-  candidate *near;                                       /* what may matter to the mover */
-  const double *basis;                                   /* of the degree, */
-  size_t degree;                                         /* this one; SIZE_MAX: of none */
-  bool measured;                                         /* `slack` is known */
+  bool short_enough;                                      /* for points and chords */
+  packet_box boxes[BATCH_MOST_PIECES * PACKET_INTERVALS]; /* round intervals of the curve's chords: n_boxes, */
+  size_t n_boxes;                                         /* or 0, where the curve's capsule has to do */
+  candidate *near;                                        /* what may matter to the mover */
+  const double *basis;                                    /* of the degree, */
+  size_t degree;                                          /* this one; SIZE_MAX: of none */
+  bool measured;                                          /* `slack` is known */
   uint32_t cut; /* which halves of the pieces have points at equal parameters below: */
   bool joined;  /* and the chords between all of them are known */
-  lanes_chords chords[BATCH_MOST_PIECES];
+  packet_chords chords[BATCH_MOST_PIECES];
   double beside; /* how far the curve may be from the chords' points of the same parameter */
   double slack;  /* how much rounding may add to that */
 } batch_run;

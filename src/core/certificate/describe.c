@@ -6,10 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "certificate/elements.h"
+#include "certificate/element_order.h"
 #include "curve_proximity/cprox/certificate.h"
 #include "implicit/implicit.h"
-#include "problem/minkowski.h"
+#include "problem/carried_shape.h"
 #include "shape/kinds.h"
 
 void describe_text(text *t, const char *format, ...) {

@@ -3,7 +3,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/certificate.c
   ${CMAKE_CURRENT_LIST_DIR}/describe.c
   ${CMAKE_CURRENT_LIST_DIR}/describe_robot.c
-  ${CMAKE_CURRENT_LIST_DIR}/elements.c
+  ${CMAKE_CURRENT_LIST_DIR}/element_order.c
   ${CMAKE_CURRENT_LIST_DIR}/multipliers.c
   ${CMAKE_CURRENT_LIST_DIR}/partition.c
   ${CMAKE_CURRENT_LIST_DIR}/partition_curves.c

@@ -10,7 +10,7 @@
 #include "base/workspace.h"
 #include "certificate/certificate.h"
 #include "certificate/multipliers.h"
-#include "problem/minkowski.h"
+#include "problem/carried_shape.h"
 
 /* What is to be proven, and what may help. It refers to itself. */
 typedef struct cover {

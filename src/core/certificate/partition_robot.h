@@ -5,7 +5,7 @@
 #define CPROX_CERTIFICATE_PARTITION_ROBOT_H
 
 #include "certificate/certificate.h"
-#include "certificate/elements.h"
+#include "certificate/element_order.h"
 #include "robot_query/placed_robot_pair.h"
 
 /* An obstacle of the scene that is made of elements; order.t NULL: it is not. */

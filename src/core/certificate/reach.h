@@ -7,7 +7,7 @@
 #define CPROX_CERTIFICATE_REACH_H
 
 #include "base/double_double.h"
-#include "certificate/elements.h"
+#include "certificate/element_order.h"
 #include "curve/curve.h"
 #include "implicit/implicit.h"
 #include "shape/body.h"

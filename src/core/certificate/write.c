@@ -13,7 +13,7 @@
 #include "certificate/partition.h"
 #include "curve/relative_curve.h"
 #include "kinematics/motion.h"
-#include "problem/minkowski.h"
+#include "problem/carried_shape.h"
 #include "problem/obstacles.h"
 #include "problem/radius.h"
 #include "problem/validate.h"
@@ -145,7 +145,7 @@ static bool carry(const cprox_body *whole, size_t part, cover *c) {
   c->set.carried = &c->carried;
   if (!c->set.body || c->set.body->tree) return true;
   const cprox_pose *own = compound ? c->carried.pose[0] : &CPROX_POSE_IDENTITY;
-  return minkowski_join(c->set.body, &c->pose, c->carried.body, own, &c->joined);
+  return carried_shape_join(c->set.body, &c->pose, c->carried.body, own, &c->joined);
 }
 
 /* A part of an obstacle and one of what is carried. */

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 
 #include "base/rounding.h"
-#include "convex/double_double.h"
+#include "convex/double_double_cross.h"
 #include "convex/feature.h"
 
 enum {

@@ -6,7 +6,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/cone.c
   ${CMAKE_CURRENT_LIST_DIR}/cylinder.c
   ${CMAKE_CURRENT_LIST_DIR}/depth.c
-  ${CMAKE_CURRENT_LIST_DIR}/double_double.c
+  ${CMAKE_CURRENT_LIST_DIR}/double_double_cross.c
   ${CMAKE_CURRENT_LIST_DIR}/ellipsoid.c
   ${CMAKE_CURRENT_LIST_DIR}/epa.c
   ${CMAKE_CURRENT_LIST_DIR}/epa_ring.c

@@ -4,7 +4,7 @@
 #include "convex/simplex.h"
 
 #include "base/rounding.h"
-#include "convex/double_double.h"
+#include "convex/double_double_cross.h"
 #include "convex/feature.h"
 
 const vec3 simplex_spread[4] = {{0.46, 0.71, 0.53}, {0.62, -0.49, -0.61}, {-0.73, 0.41, -0.55}, {-0.35, -0.63, 0.69}};

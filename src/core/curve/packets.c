@@ -10,7 +10,7 @@ enum { SAMPLES = CHORDS + LANES };
 static const double LEAST_SQUARE = 1e-280;
 
 SIMD_CLONES
-void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, double radius, double *lower) {
+void packet_ball_bounds(const packet_balls *balls, const curve_capsule *capsule, double radius, double *lower) {
   const double *restrict x = balls->x, *restrict y = balls->y, *restrict z = balls->z;
   const double *restrict reach = balls->reach, *restrict sizes = balls->sizes;
   double *restrict out = lower;
@@ -63,18 +63,18 @@ static const double *basis_in(workspace_buffer which, size_t degree, cprox_works
   return buffer + 1;
 }
 
-const double *lanes_basis(size_t degree, cprox_workspace *workspace) {
+const double *packet_basis(size_t degree, cprox_workspace *workspace) {
   return basis_in(WORKSPACE_BASIS, degree, workspace);
 }
 
-bool lanes_bases(const size_t degree[2], cprox_workspace *workspace, const double *basis[2]) {
+bool packet_bases(const size_t degree[2], cprox_workspace *workspace, const double *basis[2]) {
   basis[0] = basis_in(WORKSPACE_BASIS, degree[0], workspace);
   basis[1] = degree[1] == degree[0] ? basis[0] : basis_in(WORKSPACE_BASIS_OF_SECOND, degree[1], workspace);
   return basis[0] && basis[1];
 }
 
 /* This one begins with the degree and with which chords' tables are there, a bit each: most are never asked for. */
-const double *lanes_fine_basis(size_t degree, size_t chord, cprox_workspace *workspace) {
+const double *packet_fine_basis(size_t degree, size_t chord, cprox_workspace *workspace) {
   enum { HEAD = 2 };
   const size_t each = CHORDS * (degree + 1);
   const bool fresh = !workspace_reserve(workspace, WORKSPACE_FINE_BASIS, 0);
@@ -104,8 +104,8 @@ static inline double least_of(const double square[LANES], uint32_t *which) {
 }
 
 SIMD_CLONES
-double lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, uint32_t first, vec3 from,
-                    lanes_chords *chords, uint32_t *nearest) {
+double packet_points(const double *basis, const vec3 *points, size_t degree, bool flat, uint32_t first, vec3 from,
+                     packet_chords *chords, uint32_t *nearest) {
   /* begun by their first terms: so many sums stay in registers */
   double x[LANES], y[LANES], z[LANES], square[LANES];
   const double *restrict b = basis + first;
@@ -148,7 +148,7 @@ double lanes_points(const double *basis, const vec3 *points, size_t degree, bool
 }
 
 SIMD_CLONES
-void lanes_join(lanes_chords *chords) {
+void packet_join(packet_chords *chords) {
 #pragma omp simd
   for (int k = 0; k < CHORDS; k++) {
     const double dx = chords->x[k + 1] - chords->x[k], dy = chords->y[k + 1] - chords->y[k];
@@ -161,7 +161,7 @@ void lanes_join(lanes_chords *chords) {
 }
 
 SIMD_CLONES
-double lanes_nearest_point(const lanes_chords *c, uint32_t first, vec3 from, uint32_t *nearest) {
+double packet_nearest_point(const packet_chords *c, uint32_t first, vec3 from, uint32_t *nearest) {
   double square[LANES];
   const double *restrict x = c->x + first, *restrict y = c->y + first, *restrict z = c->z + first;
 #pragma omp simd
@@ -211,7 +211,7 @@ static inline void half_of_piece(const double *c[3], size_t degree, ptrdiff_t st
 }
 
 SIMD_CLONES
-double lanes_nearest_sample(const double *binomial, const double *x, const double *y, const double *z, size_t degree) {
+double packet_nearest_sample(const double *binomial, const double *x, const double *y, const double *z, size_t degree) {
   double own[CPROX_MAX_DEGREE + 1], cx[CPROX_MAX_DEGREE + 1], cy[CPROX_MAX_DEGREE + 1], cz[CPROX_MAX_DEGREE + 1];
   double square[CHORDS + 1], upper[LANES];
   curve_own_binomials(binomial, degree, own);
@@ -256,7 +256,7 @@ static inline void sample(const double *basis, const double *points, size_t degr
 }
 
 SIMD_CLONES
-void lanes_first_pair(const lanes_piece *first, const lanes_piece *second, double s[2]) {
+void packet_first_pair(const packet_piece *first, const packet_piece *second, double s[2]) {
   double p[3][SAMPLES], q[3][SAMPLES], least[LANES], which[LANES];
   sample(first->basis, first->points, first->degree, p);
   sample(second->basis, second->points, second->degree, q);
@@ -283,7 +283,7 @@ void lanes_first_pair(const lanes_piece *first, const lanes_piece *second, doubl
 }
 
 SIMD_CLONES
-double lanes_closest(const lanes_chords *c, vec3 point, size_t *chord, double *along) {
+double packet_closest(const packet_chords *c, vec3 point, size_t *chord, double *along) {
   double square[CHORDS], at[CHORDS];
 #pragma omp simd
   for (int k = 0; k < CHORDS; k++) {
@@ -307,7 +307,7 @@ double lanes_closest(const lanes_chords *c, vec3 point, size_t *chord, double *a
   return least[0];
 }
 
-double lanes_bend2(const vec3 *p, size_t degree) {
+double packet_bend2(const vec3 *p, size_t degree) {
   double most = 0.0;
   for (size_t i = 0; i + 2 <= degree; i++) {
     const double x = p[i].x - 2.0 * p[i + 1].x + p[i + 2].x, y = p[i].y - 2.0 * p[i + 1].y + p[i + 2].y;

@@ -4,7 +4,7 @@
 #include "curve/packets.h"
 #include "simd/dispatch.h"
 
-void lanes_boxes(const lanes_chords *c, lanes_box boxes[PACKET_INTERVALS]) {
+void packet_boxes(const packet_chords *c, packet_box boxes[PACKET_INTERVALS]) {
   for (size_t q = 0; q < PACKET_INTERVALS; q++) {
     const size_t first = q * INTERVAL;
     vec3 low = vec(c->x[first], c->y[first], c->z[first]), high = low;
@@ -12,7 +12,7 @@ void lanes_boxes(const lanes_chords *c, lanes_box boxes[PACKET_INTERVALS]) {
       low = vec(lesser(low.x, c->x[k]), lesser(low.y, c->y[k]), lesser(low.z, c->z[k]));
       high = vec(greater(high.x, c->x[k]), greater(high.y, c->y[k]), greater(high.z, c->z[k]));
     }
-    boxes[q] = (lanes_box){low, high};
+    boxes[q] = (packet_box){low, high};
   }
 }
 
@@ -22,7 +22,7 @@ typedef struct spans {
 } spans;
 
 /* The squared distance of each from the nearest of the n boxes. Inlined into each clone, it is compiled for it. */
-static inline __attribute__((always_inline)) void nearest_squares(const lanes_box *boxes, size_t n, spans s,
+static inline __attribute__((always_inline)) void nearest_squares(const packet_box *boxes, size_t n, spans s,
                                                                   double least[BLOCK]) {
   for (size_t l = 0; l < BLOCK; l++) least[l] = INFINITY;
   for (size_t b = 0; b < n; b++) {
@@ -42,8 +42,8 @@ static inline __attribute__((always_inline)) void nearest_squares(const lanes_bo
 }
 
 SIMD_CLONES
-void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n, double radius, double slack,
-                      double *lower) {
+void packet_box_bounds(const packet_balls *balls, const packet_box *boxes, size_t n, double radius, double slack,
+                       double *lower) {
   const double *restrict x = balls->x, *restrict y = balls->y, *restrict z = balls->z;
   const double *restrict reach = balls->reach, *restrict sizes = balls->sizes;
   double *restrict out = lower;
@@ -61,8 +61,8 @@ void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n
 }
 
 SIMD_CLONES
-void lanes_block_bounds(const lanes_blocks *blocks, const lanes_box *boxes, size_t n, double radius, double slack,
-                        double *lower) {
+void packet_block_bounds(const packet_blocks *blocks, const packet_box *boxes, size_t n, double radius, double slack,
+                         double *lower) {
   const double *restrict low_x = blocks->low[0], *restrict low_y = blocks->low[1], *restrict low_z = blocks->low[2];
   const double *restrict high_x = blocks->high[0], *restrict high_y = blocks->high[1];
   const double *restrict high_z = blocks->high[2], *restrict sizes = blocks->sizes;

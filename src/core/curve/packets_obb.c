@@ -10,7 +10,7 @@ enum { STEPS = 2 };
 static const double LEAST_SQUARE = 1e-280;
 
 SIMD_CLONES
-double lanes_least(const double *values, uint32_t *which) {
+double packet_least(const double *values, uint32_t *which) {
   double best[LANES];
 #pragma omp simd
   for (int k = 0; k < LANES; k++) best[k] = values[k] < values[k + LANES] ? values[k] : values[k + LANES];
@@ -28,7 +28,7 @@ static inline double held(double x, double half) {
 }
 
 SIMD_CLONES
-void lanes_see_obb(const lanes_chords *c, const lanes_obb *obb, lanes_sample *sample) {
+void packet_see_obb(const packet_chords *c, const packet_obb *obb, packet_sample *sample) {
   const double *r = obb->r;
   const vec3 at = obb->position, m = obb->centre, h = obb->half;
   double px[CHORDS], py[CHORDS], pz[CHORDS], dx[CHORDS], dy[CHORDS], dz[CHORDS];

@@ -305,7 +305,7 @@ static bool normal_from_origin(curve_convex *o, const search_node *node) {
 static double nearest_sample(const curve_convex *o) {
   const size_t degree = o->side.curve->degree;
   const double *x = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
-  return lanes_nearest_sample(curve_binomial(o->side.curve), x, x + degree + 1, x + 2 * (degree + 1), degree);
+  return packet_nearest_sample(curve_binomial(o->side.curve), x, x + degree + 1, x + 2 * (degree + 1), degree);
 }
 
 /* Many pieces are so short that their chords tell as much as points on them. */

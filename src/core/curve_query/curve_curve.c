@@ -6,7 +6,7 @@
 #include "curve/packets.h"
 #include "curve_query/bent_pieces.h"
 #include "curve_query/newton_curves.h"
-#include "problem/minkowski.h"
+#include "problem/carried_shape.h"
 
 /* Slots of the pool that nodes never get: each side's loaded piece. */
 enum { SLOT_FIRST, SLOT_SECOND, SLOTS_RESERVED };
@@ -259,15 +259,15 @@ curve_meeting curve_curve_meeting_near(curve_curve *o, const search_node *node, 
 /* Where the two pieces that the search begins with come nearest, as far as a few points of each tell. */
 static bool nearest_sample(const curve_curve *o, const search_node *node, double fraction[2]) {
   const curve_curve_node *payload = curve_curve_known(node);
-  lanes_piece piece[2];
+  packet_piece piece[2];
   const double *basis[2];
   const size_t degree[2] = {o->side[0].curve->degree, o->side[1].curve->degree};
   for (int k = 0; k < 2; k++)
     if (o->side[k].curve->arcs || payload->side[k].a > 0.0 || payload->side[k].b < 1.0) return false;
-  if (o->carries || !lanes_bases(degree, o->workspace, basis)) return false;
+  if (o->carries || !packet_bases(degree, o->workspace, basis)) return false;
   for (size_t k = 0; k < 2; k++)
-    piece[k] = (lanes_piece){basis[k], points_pool_at(&o->pool, (size_t)payload->side[k].slot), degree[k]};
-  lanes_first_pair(&piece[0], &piece[1], fraction);
+    piece[k] = (packet_piece){basis[k], points_pool_at(&o->pool, (size_t)payload->side[k].slot), degree[k]};
+  packet_first_pair(&piece[0], &piece[1], fraction);
   return true;
 }
 
@@ -454,7 +454,7 @@ bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_cur
 bool curve_curve_carry(curve_curve *o, const cprox_pose *placed, const cprox_body *carried, const cprox_pose *pose) {
   carried_shape joined;
   const cprox_pose turn = {.orientation = placed->orientation};
-  if (!minkowski_join(&carried_point, &turn, carried, pose, &joined)) return false;
+  if (!carried_shape_join(&carried_point, &turn, carried, pose, &joined)) return false;
   o->carries = true;
   o->joined = joined.shape;
   o->shift = vec_neg(joined.placed.centre);

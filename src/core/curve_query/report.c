@@ -4,7 +4,7 @@
 #include "base/rounding.h"
 #include "curve/relative_curve.h"
 #include "narrowphase/witness.h"
-#include "problem/minkowski.h"
+#include "problem/carried_shape.h"
 #include "problem/radius.h"
 
 /* The direction from a surface point to the moving object's centre. The normal is that of the best lower bound: a

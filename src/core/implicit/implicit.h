@@ -121,7 +121,7 @@ double implicit_quadric_at(const implicit_quadric *quadric, vec3 x, vec3 *gradie
  * inside. */
 double implicit_gauge(const implicit *body, vec3 x, double tolerance);
 
-/* ---- support (power.c, certificate.c, solve.c) ---- */
+/* ---- support (power.c, support_height.c, solve.c) ---- */
 
 /* A point u >= 0 with sum u^p = 1 + miss and sum p u^p = slope may be drawn to the surface by the one factor 1 -
  * miss/slope: the sum is convex in the logarithm of the factor, with a second derivative of at most the largest p times

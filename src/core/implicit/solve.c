@@ -5,7 +5,7 @@
  *   1. Begin at a strictly feasible point between the centre and the surface of each body.
  *   2. Solve the Newton system of the optimality conditions for the present barrier parameter.
  *   3. Go along the step until the next constraint is close, and lower the barrier parameter.
- *   4. Now and then turn the multipliers into a separating plane: it proves a lower bound (certificate.c).
+ *   4. Now and then turn the multipliers into a separating plane: it proves a lower bound (support_height.c).
  *   5. End when this bound and the distance of the points are as close as asked.
  *
  * Departures: all points stay feasible, so each gives an upper bound. The search ends with a proven interval, not

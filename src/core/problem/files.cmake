@@ -2,7 +2,7 @@
 target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/candidates.c
   ${CMAKE_CURRENT_LIST_DIR}/level_of_detail.c
-  ${CMAKE_CURRENT_LIST_DIR}/minkowski.c
+  ${CMAKE_CURRENT_LIST_DIR}/carried_shape.c
   ${CMAKE_CURRENT_LIST_DIR}/placed_pair.c
   ${CMAKE_CURRENT_LIST_DIR}/problem.c
   ${CMAKE_CURRENT_LIST_DIR}/radius.c

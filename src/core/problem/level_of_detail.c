@@ -2,7 +2,7 @@
 #include "problem/level_of_detail.h"
 
 #include "base/rounding.h"
-#include "problem/minkowski.h"
+#include "problem/carried_shape.h"
 #include "shape/kinds.h"
 
 static bool has_ball(const cprox_body *body) {

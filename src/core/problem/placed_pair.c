@@ -2,8 +2,8 @@
 #include "problem/placed_pair.h"
 
 #include "base/rounding.h"
+#include "problem/carried_shape.h"
 #include "problem/level_of_detail.h"
-#include "problem/minkowski.h"
 #include "problem/radius.h"
 #include "shape/body.h"
 

@@ -5,9 +5,9 @@
 
 #include "base/rounding.h"
 #include "problem/problem.h"
-#include "robot_query/depth.h"
 #include "robot_query/deviation.h"
 #include "robot_query/oracle.h"
+#include "robot_query/robot_depth.h"
 
 /* ---- the search ---- */
 

@@ -6,7 +6,7 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "broadphase/obstacle_set.h"
-#include "robot_query/cull.h"
+#include "robot_query/cluster.h"
 #include "robot_query/deviation.h"
 #include "robot_query/groups.h"
 #include "robot_query/measure.h"

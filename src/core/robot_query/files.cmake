@@ -2,8 +2,8 @@
 target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/answer.c
   ${CMAKE_CURRENT_LIST_DIR}/bound_node.c
-  ${CMAKE_CURRENT_LIST_DIR}/cull.c
-  ${CMAKE_CURRENT_LIST_DIR}/depth.c
+  ${CMAKE_CURRENT_LIST_DIR}/cluster.c
+  ${CMAKE_CURRENT_LIST_DIR}/robot_depth.c
   ${CMAKE_CURRENT_LIST_DIR}/deviation.c
   ${CMAKE_CURRENT_LIST_DIR}/element.c
   ${CMAKE_CURRENT_LIST_DIR}/flight.c

@@ -5,7 +5,7 @@
 
 #include "base/workspace.h"
 #include "broadphase/obstacle_set.h"
-#include "robot_query/cull.h"
+#include "robot_query/cluster.h"
 #include "robot_query/deviation.h"
 
 /* Of each part with groups of others about so many are tested. */

@@ -10,7 +10,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/height_field.c
   ${CMAKE_CURRENT_LIST_DIR}/implicit_body.c
   ${CMAKE_CURRENT_LIST_DIR}/kinds.c
-  ${CMAKE_CURRENT_LIST_DIR}/level_of_detail.c
+  ${CMAKE_CURRENT_LIST_DIR}/lod_body.c
   ${CMAKE_CURRENT_LIST_DIR}/mesh.c
   ${CMAKE_CURRENT_LIST_DIR}/places.c
   ${CMAKE_CURRENT_LIST_DIR}/points.c

@@ -11,7 +11,7 @@
 #include "base/workspace.h"
 #include "convex/feature.h"
 #include "narrowphase/growth.h"
-#include "robot_query/depth.h"
+#include "robot_query/robot_depth.h"
 #include "solve/motion_derivatives.h"
 
 /* The part of the width that may be left where the centres meet and a relative width is none. */

@@ -11,8 +11,8 @@
 
 #include "base/workspace.h"
 #include "robot_query/answer.h"
-#include "robot_query/depth.h"
 #include "robot_query/measure.h"
+#include "robot_query/robot_depth.h"
 #include "solve/motion_derivatives.h"
 
 /* How near another minimiser must not come, in sizes of the robot, and at least in roundings of distances. */

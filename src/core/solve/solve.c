@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "curve_query/search_pair.h"
+#include "curve_query/search_candidate.h"
 #include "solve/robot_verdict.h"
 
 cprox_status solve_query(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {

@@ -4,7 +4,7 @@
 
 #include "base/check.h"
 #include "curve_query/report.h"
-#include "curve_query/search_pair.h"
+#include "curve_query/search_candidate.h"
 #include "solve/solve.h"
 #include "solve/time_of_contact.h"
 

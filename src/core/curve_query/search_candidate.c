@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One search: the engine with the oracle that the candidate asks for, and what it found in the terms of the caller. */
-#include "curve_query/search_pair.h"
+#include "curve_query/search_candidate.h"
 #include "curve_query/report.h"
 #include "shape/body.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "robot_query/cull.h"
+#include "robot_query/cluster.h"
 
 #include <math.h>
 

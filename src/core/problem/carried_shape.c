@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "problem/minkowski.h"
+#include "problem/carried_shape.h"
 
 #include "base/rounding.h"
 #include "convex/minkowski.h"
@@ -10,8 +10,8 @@ static bool is_ball(const cprox_body *body) {
   return body->kind == CPROX_BODY_POINT || body->kind == CPROX_BODY_SPHERE;
 }
 
-bool minkowski_join(const cprox_body *standing, const cprox_pose *pose, const cprox_body *carried,
-                    const cprox_pose *carried_pose, carried_shape *joined) {
+bool carried_shape_join(const cprox_body *standing, const cprox_pose *pose, const cprox_body *carried,
+                        const cprox_pose *carried_pose, carried_shape *joined) {
   /* the carried shape's own origin, seen from the curve's point along the standing body's axes */
   const frame own = frame_create(carried_pose, carried->centre);
   frame placed = frame_create(pose, standing->centre);

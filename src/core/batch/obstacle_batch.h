@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a batch knows of its obstacles. */
-#ifndef CPROX_BATCH_OBSTACLES_H
-#define CPROX_BATCH_OBSTACLES_H
+#ifndef CPROX_BATCH_OBSTACLE_BATCH_H
+#define CPROX_BATCH_OBSTACLE_BATCH_H
 
 #include "curve/packets.h"
 #include "curve_proximity/cprox/query.h"
@@ -19,7 +19,7 @@ typedef struct batch_core {
 
   /* a box round the part, in the frame of its shape */
   bool has_obb, is_obb; /* there is one; the part is that box */
-  lanes_obb obb;
+  packet_obb obb;
   double obb_sizes;                 /* the sum of the lengths that entered, for rounding: this times obb_turned u, */
   double obb_turned, obb_misplaced; /* and this [m] are what placing it may be off */
 } batch_core;
@@ -31,8 +31,8 @@ typedef struct obstacle_batch {
   /* one for each obstacle that is a curve, one for each convex part of a body */
   candidate *parts;
   batch_core *cores;
-  lanes_balls balls;
-  lanes_blocks blocks; /* of BLOCK parts each, that stand together */
+  packet_balls balls;
+  packet_blocks blocks; /* of BLOCK parts each, that stand together */
 } obstacle_batch;
 
 /* Makes n obstacles ready, which were checked and must outlive it. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Elements of a tree in the order that certificates count them in: a node's lanes one after the other. Groups of
  * elements are ranges of this order. */
-#ifndef CPROX_CERTIFICATE_ELEMENTS_H
-#define CPROX_CERTIFICATE_ELEMENTS_H
+#ifndef CPROX_CERTIFICATE_ELEMENT_ORDER_H
+#define CPROX_CERTIFICATE_ELEMENT_ORDER_H
 
 #include "base/workspace.h"
 #include "bvh/bvh.h"

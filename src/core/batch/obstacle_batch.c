@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "batch/obstacles.h"
+#include "batch/obstacle_batch.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -91,7 +91,7 @@ static void lay_obb(const placed_pair *p, batch_core *core) {
   if (!body || !body_kind_of(body->kind)->has_cheap_depth || body->kind == CPROX_BODY_SPHERE) return;
   const convex *shape = &body->shape;
   const frame f = p->frame;
-  lanes_obb *obb = &core->obb;
+  packet_obb *obb = &core->obb;
   memcpy(obb->r, f.r, sizeof obb->r);
   obb->position = f.position;
   obb->centre = f.centre;

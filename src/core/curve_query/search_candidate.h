@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One search against one candidate: the oracle that it asks for, and what that found in the terms of the caller. */
-#ifndef CPROX_CURVE_QUERY_SEARCH_PAIR_H
-#define CPROX_CURVE_QUERY_SEARCH_PAIR_H
+#ifndef CPROX_CURVE_QUERY_SEARCH_CANDIDATE_H
+#define CPROX_CURVE_QUERY_SEARCH_CANDIDATE_H
 
 #include "problem/candidates.h"
 

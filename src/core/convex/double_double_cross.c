@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "convex/double_double.h"
+#include "convex/double_double_cross.h"
 
 typedef struct double_double {
   double high, low;

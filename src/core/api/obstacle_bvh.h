@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The queries that find obstacles by their BVH. */
-#ifndef CPROX_API_BVH_H
-#define CPROX_API_BVH_H
+#ifndef CPROX_API_OBSTACLE_BVH_H
+#define CPROX_API_OBSTACLE_BVH_H
 
 #include "broadphase/obstacle_set.h"
 #include "curve_proximity/cprox/obstacles.h"

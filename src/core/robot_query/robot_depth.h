@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Signed distances of a robot where there are meshes. A mesh tells whether it is apart, and how far; its hull tells how
  * deep it overlaps at most. doc/robot-depth.md, Depth */
-#ifndef CPROX_ROBOT_QUERY_DEPTH_H
-#define CPROX_ROBOT_QUERY_DEPTH_H
+#ifndef CPROX_ROBOT_QUERY_ROBOT_DEPTH_H
+#define CPROX_ROBOT_QUERY_ROBOT_DEPTH_H
 
 #include "problem/problem.h"
 

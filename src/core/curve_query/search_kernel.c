@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "curve_query/kernel.h"
+#include "curve_query/search_kernel.h"
 
 #include "base/rounding.h"
 #include "curve/relative_curve.h"
 #include "curve_query/crossing.h"
-#include "problem/minkowski.h"
+#include "problem/carried_shape.h"
 #include "problem/radius.h"
 #include "shape/body.h"
 
@@ -84,7 +84,7 @@ static void begin_finding(curve_finding *seen, bool found, const search_best *bo
 /* A carried body and what stands make one shape. */
 static bool begin_carried(const query *q, const placed_pair *p, const cprox_curve *curve, curve_convex *o) {
   carried_shape joined = {.placed = p->frame};
-  if (!minkowski_join(p->shape, &p->pose, p->carried, &p->carried_pose, &joined)) return false;
+  if (!carried_shape_join(p->shape, &p->pose, p->carried, &p->carried_pose, &joined)) return false;
   joined.shape.slack += p->position_error, joined.shape.outside += p->position_error;
   const double offset = p->offset + joined.offset;
   if (!curve_convex_begin(o, curve, &p->shape->shape, joined.placed, offset, q->workspace)) return false;

@@ -2,8 +2,8 @@
 /* The four kernels of a mover's curve against one obstacle: a convex shape, the elements of a BVH, another curve, a set
  * known by its distance. Each knows a radius that changes along the curve. Searches for distances, for verdicts and for the time
  * of contact are the same for all of them; what differs between the kernels is one row of operations each. */
-#ifndef CPROX_CURVE_QUERY_KERNEL_H
-#define CPROX_CURVE_QUERY_KERNEL_H
+#ifndef CPROX_CURVE_QUERY_SEARCH_KERNEL_H
+#define CPROX_CURVE_QUERY_SEARCH_KERNEL_H
 
 #include "curve_query/contact_bvh.h"
 #include "curve_query/contact_convex.h"

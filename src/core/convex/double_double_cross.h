@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Arithmetic in sums of two doubles (Dekker 1971), for the few places where a rounding error outweighs the result. */
-#ifndef CPROX_CONVEX_DOUBLE_DOUBLE_H
-#define CPROX_CONVEX_DOUBLE_DOUBLE_H
+#ifndef CPROX_CONVEX_DOUBLE_DOUBLE_CROSS_H
+#define CPROX_CONVEX_DOUBLE_DOUBLE_CROSS_H
 
 #include "base/vec.h"
 

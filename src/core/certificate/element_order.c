@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "certificate/elements.h"
+#include "certificate/element_order.h"
 
 #include "base/rounding.h"
 

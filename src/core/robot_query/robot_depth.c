@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "robot_query/depth.h"
+#include "robot_query/robot_depth.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The queries that find obstacles by their BVH. */
-#include "api/bvh.h"
+#include "api/obstacle_bvh.h"
 
 #include <math.h>
 #include <string.h>

@@ -10,7 +10,7 @@
 bool batch_points_ready(batch_run *run) {
   const cprox_curve *curve = run->q.mover.curve;
   if (run->degree != curve->degree) {
-    run->basis = lanes_basis(curve->degree, run->q.workspace);
+    run->basis = packet_basis(curve->degree, run->q.workspace);
     run->degree = run->basis ? curve->degree : SIZE_MAX;
   }
   if (!run->basis) return false;
@@ -25,13 +25,13 @@ bool batch_points_ready(batch_run *run) {
 double batch_points_nearest(batch_run *run, uint32_t half, vec3 from, uint32_t *nearest) {
   const cprox_curve *curve = run->q.mover.curve;
   const uint32_t piece = half / 2, first = half % 2 * LANES;
-  lanes_chords *chords = &run->chords[piece];
+  packet_chords *chords = &run->chords[piece];
   double square;
   if (run->cut >> half & 1)
-    square = lanes_nearest_point(chords, first, from, nearest);
+    square = packet_nearest_point(chords, first, from, nearest);
   else
     square =
-        lanes_points(run->basis, curve_piece(curve, piece), curve->degree, curve->flat, first, from, chords, nearest);
+        packet_points(run->basis, curve_piece(curve, piece), curve->degree, curve->flat, first, from, chords, nearest);
   run->cut |= 1u << half;
   *nearest += first;
   return square;
@@ -45,8 +45,8 @@ void batch_points_join(batch_run *run) {
     uint32_t unused;
     for (uint32_t half = 2 * i; half < 2 * i + 2; half++)
       if (!(run->cut >> half & 1)) batch_points_nearest(run, half, vec(0, 0, 0), &unused);
-    lanes_join(&run->chords[i]);
-    bend2 = greater(bend2, lanes_bend2(curve_piece(curve, i), curve->degree));
+    packet_join(&run->chords[i]);
+    bend2 = greater(bend2, packet_bend2(curve_piece(curve, i), curve->degree));
   }
   const double n = (double)curve->degree;
   run->beside = ROUND_UP * n * (n - 1.0) * sqrt(bend2) / (8.0 * CHORDS * CHORDS);
