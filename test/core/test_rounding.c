@@ -107,6 +107,30 @@ CASE(a_cut_adds_no_more_than_it_says) {
   tell(&others, "T1, cut anywhere");
 }
 
+/* ---- counts that recur ---- */
+
+/* Seed 8. Of the count 3.5 of 8 are the norm itself: other operations with it are not made here. */
+CASE(a_length_and_a_speed_along_a_normal_are_as_near_as_their_counts) {
+  rng r = rng_seed(8);
+  fraction lengths = {0}, speeds = {0};
+  for (size_t i = 0; i < test_cases(CASES); i++) {
+    exact_reset();
+    const double scale = rng_log_uniform(&r, 1e-6, 1e6);
+    const vec3 a = rng_in_cube(&r, scale), b = rng_in_cube(&r, rng_index(&r, 2) ? scale : 1e-3 * scale);
+    const num3 difference = exact3_sub(exact3(a), exact3(b));
+    const double measured = vec_norm(vec_sub(a, b));
+    hold(&lengths, fabs(exact_double(exact_sub(exact3_norm(difference), exact(measured)))),
+         ROUND_LENGTH * ROUND_U * measured, "ROUND_LENGTH");
+
+    const vec3 n = vec_scale(1.0 / measured, vec_sub(a, b)), v = rng_in_cube(&r, scale);
+    const num towards = exact_div(exact3_dot(exact3(n), exact3(v)), exact3_norm(exact3(n)));
+    const double off = fabs(exact_double(exact_sub(towards, exact(vec_dot(n, v)))));
+    hold(&speeds, off, ROUND_TOWARDS * ROUND_U * vec_norm(v), "ROUND_TOWARDS");
+  }
+  tell(&lengths, "the norm of a difference");
+  tell(&speeds, "a speed along a normal");
+}
+
 /* ---- T3, T7 ---- */
 
 /* Seed 2. Points up to 1e6 sizes from the origin; the bound speaks of the difference to the pose's position alone. */

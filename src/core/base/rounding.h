@@ -15,6 +15,13 @@
 /* A computed support value of a convex core in its own frame, for a direction of norm 1: per unit of its scale. */
 #define ROUND_SUPPORT 8.0
 
+/* Counts that recur, rounded up to a power of two, of all lengths that enter; doc/rounding.md, Counts that recur. */
+#define ROUND_LENGTH 8.0   /* the norm of a difference, and a few operations with it */
+#define ROUND_BALLS 64.0   /* a distance of bounding spheres, of boxes round them or from a chord */
+#define ROUND_NORMAL 4.0   /* n counts as a unit vector where |n|² is so near to 1 */
+#define ROUND_TOWARDS 8.0  /* the part of a velocity along a normal, of the speed */
+#define ROUND_WITNESS 16.0 /* a distance of two witness points, one of them turned and moved */
+
 /* No length that takes part in a query is longer [m]: the searches multiply up to four of them. */
 #define LENGTH_MOST 1e60
 

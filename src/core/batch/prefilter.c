@@ -12,7 +12,7 @@ static double margin_of(const batch_run *run, size_t part) {
 /* Placing the centre of a compound's part costs (26 + 16) u of its lengths, all of which are in the part's sizes, the
  * rest 18 u. */
 static double slack_at(const batch_run *run, size_t part, double distance, double margin) {
-  return ROUND_UP * (run->slack + 64.0 * ROUND_U * (distance + margin + run->batch->balls.sizes[part]));
+  return ROUND_UP * (run->slack + ROUND_BALLS * ROUND_U * (distance + margin + run->batch->balls.sizes[part]));
 }
 
 /* ---- points against inner balls ---- */

@@ -19,7 +19,7 @@ static bool box_of(const cprox_obstacle *obstacle, vec3 *low, vec3 *high) {
   if (!obstacle->body) {
     double sizes;
     const candidate_ball round = candidate_bounding_ball(&q, &c, &sizes);
-    const double r = round.radius + obstacle->margin + 64.0 * ROUND_U * sizes;
+    const double r = round.radius + obstacle->margin + ROUND_BALLS * ROUND_U * sizes;
     *low = vec_sub(round.centre, vec(r, r, r));
     *high = vec_add(round.centre, vec(r, r, r));
     return isfinite(r);

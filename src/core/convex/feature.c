@@ -75,6 +75,6 @@ bool feature_cover(const convex_near *near, int32_t n, const double *x, const do
     const vec3 w = partition_across(cover, vec_sub(vec(x[i], y[i], z[i]), cover->centre));
     measured = greater(vec_norm2(w), measured);
   }
-  cover->radius = sqrt(measured) * (1.0 + 8.0 * ROUND_U) + 16.0 * ROUND_U * (radius + 2.0 * scale);
+  cover->radius = sqrt(measured) * (1.0 + ROUND_LENGTH * ROUND_U) + 16.0 * ROUND_U * (radius + 2.0 * scale);
   return true;
 }

@@ -10,7 +10,7 @@ static void polytope_nearest(const convex *shape, vec3 y, convex_hint *hint, con
   gjk_nearest(shape, y, hint, &answer);
   *near = (convex_near){.distance = answer.distance, .point = answer.point, .normal = answer.normal};
   if (!(answer.distance > 0.0)) return;
-  near->height_known = fabs(vec_norm2(answer.normal) - 1.0) <= 4.0 * ROUND_U;
+  near->height_known = fabs(vec_norm2(answer.normal) - 1.0) <= ROUND_NORMAL * ROUND_U;
   near->height = answer.height;
 
   /* the feature is what the nearest point needs: one vertex, an edge, a face */

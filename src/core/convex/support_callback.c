@@ -13,7 +13,7 @@ static double callback_support(const convex *shape, vec3 d, convex_hint *hint, v
   /* an answer that is not a number or breaks the promise must not pass as a bound */
   const vec3 x = vec_sub(vec(point[0], point[1], point[2]), shape->user_centre);
   if (at) *at = x;
-  const double reach = (shape->size[0] + shape->slack) * (1.0 + 8.0 * ROUND_U);
+  const double reach = (shape->size[0] + shape->slack) * (1.0 + ROUND_LENGTH * ROUND_U);
   return vec_norm2(x) <= reach * reach ? vec_dot(d, x) : NAN;
 }
 

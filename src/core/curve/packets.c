@@ -31,7 +31,7 @@ void packet_ball_bounds(const packet_balls *balls, const curve_capsule *capsule,
       s = s > 1.0 ? 1.0 : s;
       const double dx = px - s * ab.x, dy = py - s * ab.y, dz = pz - s * ab.z;
       const double distance = sqrt(dx * dx + dy * dy + dz * dz);
-      out[k] = distance - (own + reach[k]) - 64.0 * ROUND_U * (own_sizes + sizes[k]);
+      out[k] = distance - (own + reach[k]) - ROUND_BALLS * ROUND_U * (own_sizes + sizes[k]);
     }
   }
 }

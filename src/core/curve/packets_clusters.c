@@ -54,7 +54,8 @@ void packet_box_bounds(const packet_balls *balls, const packet_box *boxes, size_
     for (size_t l = 0; l < BLOCK; l++) {
       const size_t k = i + l;
       const double distance = sqrt(least[l]), margin = radius + reach[k];
-      const double bound = distance - margin - ROUND_UP * (slack + 64.0 * ROUND_U * (distance + margin + sizes[k]));
+      const double bound =
+          distance - margin - ROUND_UP * (slack + ROUND_BALLS * ROUND_U * (distance + margin + sizes[k]));
       out[k] = bound > out[k] ? bound : out[k];
     }
   }
@@ -74,7 +75,7 @@ void packet_block_bounds(const packet_blocks *blocks, const packet_box *boxes, s
     for (size_t l = 0; l < BLOCK; l++) {
       const size_t k = i + l;
       const double distance = sqrt(least[l]);
-      out[k] = distance - radius - ROUND_UP * (slack + 64.0 * ROUND_U * (distance + radius + sizes[k]));
+      out[k] = distance - radius - ROUND_UP * (slack + ROUND_BALLS * ROUND_U * (distance + radius + sizes[k]));
     }
   }
 }

@@ -243,7 +243,7 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
       fabs(d) <= rounding && bound->upper > greater(o->effort.good_enough, o->settled) && !piece_is_planar(o);
   if (touching) sample->normal = touching_normal(o, y, sample->normal, rounding);
   const double length2 = vec_norm2(sample->normal);
-  if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0)
+  if (fabs(length2 - 1.0) > ROUND_NORMAL * ROUND_U && length2 > 0.0)
     sample->normal = vec_scale(1.0 / sqrt(length2), sample->normal);
   sample->support = INFINITY;
   if (length2 > 0.0) {

@@ -156,7 +156,8 @@ static void measure_carried(curve_curve *o, curve_meeting *m, double offset, dou
   m->distance = m->near.distance;
   m->normal = m->near.normal;
   const double length2 = vec_norm2(m->normal);
-  if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0) m->normal = vec_scale(1.0 / sqrt(length2), m->normal);
+  if (fabs(length2 - 1.0) > ROUND_NORMAL * ROUND_U && length2 > 0.0)
+    m->normal = vec_scale(1.0 / sqrt(length2), m->normal);
   const double sizes = vec_norm(apart) + 2.0 * vec_norm(o->shift) + shape->scale + shape->margin;
   bound->slack = ROUND_UP * (error + shape->ops->near_rounding * ROUND_U * sizes + shape->slack +
                              ROUND_U * (8.0 * fabs(m->distance) + 2.0 * offset));

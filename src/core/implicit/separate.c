@@ -24,6 +24,10 @@ static const double SEPARATE_FLAT = 30.0;
 /* How much of the gap the points are expected to move. */
 static const double SEPARATE_CHANGE = 0.1;
 
+/* phi beside the supports' own error, in u of both bodies' radii and their distance: M turns by 20, a product with it
+ * costs 6, u·t 3, |u| 4, the sums 3. */
+static const double SEPARATE_ROUND = 64.0;
+
 typedef struct ascent {
   const implicit_query *q;
   double mu[2]; /* where Newton's method for the supports ended */
@@ -100,7 +104,7 @@ bool implicit_separate(const implicit_query *query, const implicit_goal *goal, i
   const double far = vec_norm(q->t), reach = q->a->radius + q->b->radius;
   if (!(far > 0.0) || (has_flat(q->a) && has_flat(q->b))) return false;
   /* the supports' own error, twice for the two ends, and that of turning and adding */
-  const double rounding = q->a->give + q->b->give + ROUND_UP * 64.0 * ROUND_U * (reach + far);
+  const double rounding = q->a->give + q->b->give + ROUND_UP * SEPARATE_ROUND * ROUND_U * (reach + far);
 
   ascent c = {.q = q};
   simplex hull = {.n = 0};
@@ -156,7 +160,7 @@ bool implicit_approach(const implicit_query *query, double epsilon, double lost,
   *answer = (implicit_answer){.lower = -INFINITY, .upper = INFINITY, .time = passed};
   if (!(far > 0.0) || !(speed > 0.0)) return false;
   const double rounding =
-      query->a->give + query->b->give + ROUND_UP * 64.0 * ROUND_U * (reach + far + speed * query->duration);
+      query->a->give + query->b->give + ROUND_UP * SEPARATE_ROUND * ROUND_U * (reach + far + speed * query->duration);
   moved.t = vec_axpy(query->t, passed, query->velocity);
 
   ascent c = {.q = &moved};
@@ -169,9 +173,9 @@ bool implicit_approach(const implicit_query *query, double epsilon, double lost,
     if (between > 0.0) {
       const double towards = vec_dot(c.u, query->velocity);
       answer->normal = c.u;
-      const double step = between / (towards + 8.0 * ROUND_U * speed) * (1.0 - 1e-12),
+      const double step = between / (towards + ROUND_TOWARDS * ROUND_U * speed) * (1.0 - 1e-12),
                    then = fmax(nextafter(answer->time + step, -INFINITY), answer->time);
-      if (towards <= -8.0 * ROUND_U * speed || then >= query->duration) return false;
+      if (towards <= -ROUND_TOWARDS * ROUND_U * speed || then >= query->duration) return false;
       const vec3 ahead = vec_scale(then - answer->time, query->velocity);
       answer->time = then;
       moved.t = vec_axpy(query->t, then, query->velocity);

@@ -9,6 +9,10 @@
 #include "base/rounding.h"
 #include "kinematics/lanes.h"
 
+/* Velocity and acceleration of a ball are off by less than 64 u of (1 + w)² + a (doc/rounding.md, Counts that recur).
+ * Four times that is an allowance. */
+static const double ROUND_RATES = 256.0;
+
 /* ---- one variable ---- */
 
 /* The coefficients of the derivative take the place of those of the polynomial. */
@@ -131,7 +135,7 @@ static void ball_over_span(const cprox_motion *m, size_t axis_index, const doubl
   state->line = 2.0 * lesser(ROUND_UP * line / norm, 1.0);
   state->stray = least > NEAREST_LINE * norm ? 2.0 * lesser(ROUND_UP * stray / least, 1.0) : NO_LINE;
   state->variation = INFINITY;
-  state->error = 256.0 * ROUND_U * (1.0 + state->w) * (1.0 + state->w);
+  state->error = ROUND_RATES * ROUND_U * (1.0 + state->w) * (1.0 + state->w);
   find_ball(p, before, state);
 }
 
@@ -219,7 +223,7 @@ static void vector_over(const cprox_motion *m, const motion_interval *own, const
   state->variation = r1;
   state->stray = 0.0;
   state->error = 4.0 * (2.0 * n + 1.0) * (2.0 * n + 1.0) * (1.0 + r1) * (1.0 + r1) * error +
-                 256.0 * ROUND_U * ((1.0 + r1) * (1.0 + r1) + r2);
+                 ROUND_RATES * ROUND_U * ((1.0 + r1) * (1.0 + r1) + r2);
   find_vector(p, before, state);
 }
 
@@ -245,7 +249,7 @@ static void vector_over_span(const cprox_motion *m, const robot_axis *axis, cons
   state->g = ROUND_UP * 0.5 * rate * rate * rate;
   state->shift = lesser(shift, 2.0), state->line = lesser(line, 2.0), state->stray = lesser(stray, 2.0);
   state->variation = INFINITY;
-  state->error = 256.0 * ROUND_U * (1.0 + rate) * (1.0 + rate);
+  state->error = ROUND_RATES * ROUND_U * (1.0 + rate) * (1.0 + rate);
   find_vector(p, before, state);
 }
 
@@ -288,7 +292,7 @@ static void arc_over(const cprox_motion *m, const motion_interval *own, size_t i
     state->g = ROUND_UP * ds * ds * ds * across * arc->angle * arc->angle;
   }
   state->shift = state->line = 0.5 * state->w, state->variation = state->w;
-  state->error = 256.0 * ROUND_U * (state->w + state->a);
+  state->error = ROUND_RATES * ROUND_U * (state->w + state->a);
 }
 
 static void line_over(const cprox_motion *m, const motion_interval *own, const robot_axis *axis, const double *rows,

@@ -109,7 +109,7 @@ double sweep_boxes_apart(const sweep_box *a, const sweep_box *b, double radii) {
   const double x = beside(a->low.x, a->high.x, b->low.x, b->high.x),
                y = beside(a->low.y, a->high.y, b->low.y, b->high.y),
                z = beside(a->low.z, a->high.z, b->low.z, b->high.z);
-  return (1.0 - 8.0 * ROUND_U) * sqrt(x * x + y * y + z * z) - ROUND_UP * radii;
+  return (1.0 - ROUND_LENGTH * ROUND_U) * sqrt(x * x + y * y + z * z) - ROUND_UP * radii;
 }
 
 double part_sweeps_apart(const part_sweep *a, const part_sweep *b) {

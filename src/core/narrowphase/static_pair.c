@@ -148,7 +148,7 @@ static void pair_take(const implicit_answer *found, const pair_side *a, const pa
   const vec3 x = convex_drawn(a->shape, found->x), y = convex_drawn(b->shape, found->y);
   const vec3 on_b = vec_add(rotate(place->r, y), place->t);
   const double sizes = a->shape->scale + b->shape->scale + vec_norm(place->t) + margins;
-  answer->upper = vec_norm(vec_sub(x, on_b)) - margins + rounding + ROUND_UP * 16.0 * ROUND_U * sizes;
+  answer->upper = vec_norm(vec_sub(x, on_b)) - margins + rounding + ROUND_UP * ROUND_WITNESS * ROUND_U * sizes;
   answer->normal = found->normal;
   /* where the margins overlap: as far from x towards y as a's own margin reaches */
   const vec3 between = vec_sub(on_b, x);

@@ -268,14 +268,14 @@ static bool approach_implicit(approach *p, const cprox_options *options, cprox_w
   const vec3 on_a = convex_drawn(x.shape, found.x), b_is_at = vec_axpy(place.t, found.time, query.velocity),
              on_b = vec_add(rotate(query.m, convex_drawn(y.shape, found.y)), b_is_at);
   const double sizes = x.shape->scale + y.shape->scale + vec_norm(b_is_at) + margins;
-  p->last =
-      (cprox_result){.lower = found.lower - margins - rounding,
-                     .upper = vec_norm(vec_sub(on_a, on_b)) - margins + rounding + ROUND_UP * 16.0 * ROUND_U * sizes,
-                     .t_obstacle = NAN,
-                     .witness_mover = frame_to_world(&x.f, vec_axpy(on_a, -x.margin, found.normal)),
-                     .witness_obstacle = frame_to_world(&x.f, vec_axpy(on_b, y.margin, found.normal)),
-                     .normal = frame_turn_to_world(&x.f, found.normal),
-                     .lod = CPROX_LOD_HULL};
+  p->last = (cprox_result){
+      .lower = found.lower - margins - rounding,
+      .upper = vec_norm(vec_sub(on_a, on_b)) - margins + rounding + ROUND_UP * ROUND_WITNESS * ROUND_U * sizes,
+      .t_obstacle = NAN,
+      .witness_mover = frame_to_world(&x.f, vec_axpy(on_a, -x.margin, found.normal)),
+      .witness_obstacle = frame_to_world(&x.f, vec_axpy(on_b, y.margin, found.normal)),
+      .normal = frame_turn_to_world(&x.f, found.normal),
+      .lod = CPROX_LOD_HULL};
   return p->last.upper <= options->epsilon;
 }
 
@@ -298,12 +298,12 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
 
     /* what is between them along the normal shrinks by their speed along it; positions are rounded */
     const double towards = vec_dot(r->normal, p->velocity), speed = vec_norm(p->velocity);
-    if (towards <= -8.0 * ROUND_U * speed || speed == 0.0) {
+    if (towards <= -ROUND_TOWARDS * ROUND_U * speed || speed == 0.0) {
       p->never = true;
       return CPROX_OK;
     }
     const double rounded = 8.0 * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
-    const double step = (r->lower - rounded) / (towards + 8.0 * ROUND_U * speed) * (1.0 - STEP_ROUNDING);
+    const double step = (r->lower - rounded) / (towards + ROUND_TOWARDS * ROUND_U * speed) * (1.0 - STEP_ROUNDING);
     const double next = step > 0.0 ? nextafter(p->free_until + step, -INFINITY) : 0.0; /* below the exact sum */
     if (!(next > p->free_until)) return CPROX_PRECISION;
     p->free_until = next;

@@ -32,7 +32,7 @@ double candidate_ball_bound(const query *q, const candidate *c) {
   /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
   const double sizes = placed_size(capsule->a) + placed_size(capsule->b) + placed_size(centre) + placing +
                        2.0 * placed_size(own.centre) + reach;
-  return vec_to_segment(centre, capsule->a, capsule->b) - reach - 64.0 * ROUND_U * sizes;
+  return vec_to_segment(centre, capsule->a, capsule->b) - reach - ROUND_BALLS * ROUND_U * sizes;
 }
 
 /* Shell's sort by lower: qsort may allocate. */

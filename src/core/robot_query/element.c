@@ -67,7 +67,7 @@ static void make_element(const robot_body *owner, int32_t code, robot_element *e
     e->x[i] = corner.x, e->y[i] = corner.y, e->z[i] = corner.z;
     reach = greater(reach, vec_norm(corner));
   }
-  reach *= 1.0 + 8.0 * ROUND_U;
+  reach *= 1.0 + ROUND_LENGTH * ROUND_U;
   e->shape = (convex){.ops = n == 3 ? &convex_polytope : n == 2 ? &convex_box : &convex_point, .scale = reach};
   if (n == 3) e->shape.n = 3, e->shape.padded = 8, e->shape.x = e->x, e->shape.y = e->y, e->shape.z = e->z;
 

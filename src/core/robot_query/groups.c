@@ -295,7 +295,7 @@ double robot_group_displacement(robot_scene *s, int32_t group, int32_t from) {
 double robot_groups_apart(robot_scene *s, group_pair pair) {
   const group_state *a = group_at(s, pair.group[0]), *b = group_at(s, pair.group[1]);
   const double between = vec_norm(vec_sub(a->centre, b->centre)), radii = a->radius + b->radius;
-  return between - radii - ROUND_UP * 8.0 * ROUND_U * (between + radii);
+  return between - radii - ROUND_UP * ROUND_LENGTH * ROUND_U * (between + radii);
 }
 
 double robot_groups_radius(robot_scene *s, group_pair pair) {

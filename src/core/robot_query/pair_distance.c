@@ -28,7 +28,8 @@ double robot_pair_balls(const robot_body *moving, const robot_body *standing) {
   if (robot_body_is_halfspace(standing)) return -INFINITY;
   const double between = vec_norm(vec_sub(moving->side.at.p, standing->side.at.p));
   const double radii = moving->radius + standing->radius;
-  return between - radii - ROUND_UP * (moving->side.error + standing->side.error + 8.0 * ROUND_U * (between + radii));
+  return between - radii -
+         ROUND_UP * (moving->side.error + standing->side.error + ROUND_LENGTH * ROUND_U * (between + radii));
 }
 
 double robot_pair_ball_distance(const robot_body *moving, const robot_body *standing) {

@@ -73,7 +73,7 @@ cprox_status body_out_of_memory(cprox_workspace *workspace) {
 }
 
 static double round_up(double length) {
-  return length * (1.0 + 8.0 * ROUND_U);
+  return length * (1.0 + ROUND_LENGTH * ROUND_U);
 }
 
 /* A primitive about the origin: its sizes, its margin, and the radius of a ball about the origin that holds it. */

@@ -124,7 +124,7 @@ static uint32_t add_hull(builder *b, uint32_t at) {
     hull.half = vec(greater(hull.half.x, fabs(p.x)), greater(hull.half.y, fabs(p.y)), greater(hull.half.z, fabs(p.z)));
     hull.radius = greater(hull.radius, vec_norm(p));
   }
-  hull.radius *= 1.0 + 8.0 * ROUND_U;
+  hull.radius *= 1.0 + ROUND_LENGTH * ROUND_U;
   hull.shape.scale = hull.radius;
   const uint32_t number = (uint32_t)b->made->n++;
   b->made->hull[number] = hull;

@@ -33,7 +33,7 @@ static void compound_bound(cprox_body *body) {
     const double r = part_ball(&body->parts[i], &c);
     body->ball_radius = fmax(body->ball_radius, vec_norm(vec_sub(c, body->ball_centre)) + r);
   }
-  body->ball_radius *= 1.0 + 8.0 * ROUND_U;
+  body->ball_radius *= 1.0 + ROUND_LENGTH * ROUND_U;
 }
 
 cprox_status cprox_body_create_compound(const cprox_body *const *parts, const cprox_pose *poses, size_t n,

@@ -189,7 +189,7 @@ static cprox_status create_body(cprox_body_kind kind, distance_field *field, cpr
   }
   made->field = field;
   made->centre = made->ball_centre = field->centre;
-  made->shape.scale = made->ball_radius = field->radius * (1.0 + 8.0 * ROUND_U);
+  made->shape.scale = made->ball_radius = field->radius * (1.0 + ROUND_LENGTH * ROUND_U);
   *body = made;
   return CPROX_OK;
 }
@@ -348,7 +348,7 @@ cprox_status cprox_body_create_distance_grid(const cprox_distance_grid *grid, cp
                             .error = grid->error + 0.8661 * grid->cell, /* half a cell's diagonal */
                             .lipschitz = INFINITY,
                             .centre = vec_add(grid->origin, half),
-                            .radius = vec_norm(half) * (1.0 + 8.0 * ROUND_U),
+                            .radius = vec_norm(half) * (1.0 + ROUND_LENGTH * ROUND_U),
                             .step = 0.5 * grid->cell,
                             .source = "the grid of distances",
                             .n = {grid->n[0], grid->n[1], grid->n[2]},

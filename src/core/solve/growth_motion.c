@@ -119,8 +119,8 @@ static cprox_status measure(robot_growth *o, bool wants_derivatives, place *p) {
   if (far > GROWING_COINCIDE * reach)
     ray_leave(a.shape, a.margin, inner_a, b.shape, b.margin, inner_b, &at, wants_derivatives, &ray);
   /* the balls in both touch no earlier, and those round them no later */
-  p->lower = fmax((far - at.error) / reach * (1.0 - 8.0 * ROUND_U), 0.0);
-  p->upper = (far + at.error) / (inner_a + inner_b) * (1.0 + 8.0 * ROUND_U);
+  p->lower = fmax((far - at.error) / reach * (1.0 - ROUND_LENGTH * ROUND_U), 0.0);
+  p->upper = (far + at.error) / (inner_a + inner_b) * (1.0 + ROUND_LENGTH * ROUND_U);
   p->tie = growing_tie(&ray);
   if (ray.found) {
     p->lower = fmax(p->lower, ray.lower), p->upper = fmin(p->upper, ray.upper);
