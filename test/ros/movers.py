@@ -9,7 +9,7 @@ from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject,
                                  RobotTrajectory, Waypoint)
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest, NearestPairs,
                                  NearestPairsRequest)
-from helpers import Case, Drawings, Server, bezier, box, free_flight, joints, path, pose, query, run, service, sphere, until
+from helpers import Case, Drawings, Server, bezier, box, connected, free_flight, joints, path, pose, query, run, service, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker
 
@@ -212,7 +212,7 @@ class Movers(Case):
             point.transforms[0].rotation.x, point.transforms[0].rotation.w = math.sin(half), math.cos(half)
         for topic, message, name in (('path', way, 'path'), ('multi_dof_trajectory', flight, 'drone')):
             publisher = rospy.Publisher('/curve_proximity/' + topic, type(message), queue_size=1)
-            self.assertTrue(until(publisher.get_num_connections, 10))
+            self.assertTrue(connected(publisher, results))
             del received[:]
             publisher.publish(message)
             self.assertTrue(until(lambda: received, 10))

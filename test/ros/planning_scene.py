@@ -11,7 +11,7 @@ import rospy
 from curve_proximity.msg import AllowedContact, AttachedCollisionObject, LinkPadding, LinkScale, ProximityResults
 from diagnostic_msgs.msg import DiagnosticArray
 from foreign_types import GetPlanningScene, GetPlanningSceneResponse, moveit
-from helpers import Node, Server, bezier, box, connected, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
+from helpers import Node, Server, bezier, box, bus_links, connected, joint_trajectory, joints, mesh, pose, run, sphere, transform, until
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 
@@ -96,6 +96,10 @@ class PlanningScene(unittest.TestCase):
         names = NODE, '/told', '/late', '/follower', '/beginner'
         cls.server, cls.told, cls.late, cls.follower, cls.beginner = [Server(name) for name in names]
         cls.scenes = cls.publisher(NODE)
+        # they stay: a connection may be counted that the node is about to close, as it hears late of a publisher that went
+        cls.answers, topics = [], dict(robot_trajectory=moveit.RobotTrajectory, display_trajectory=moveit.DisplayTrajectory)
+        cls.answer_reader = rospy.Subscriber(NODE + '/proximity', ProximityResults, cls.answers.append)
+        cls.asking = {name: rospy.Publisher('%s/%s' % (NODE, name), kind, queue_size=10) for name, kind in topics.items()}
 
     @classmethod
     def answer(cls, request):
@@ -275,18 +279,11 @@ class PlanningScene(unittest.TestCase):
 
     def ask(self, topic, message, stamp):
         """Publishes a trajectory; the answer to it."""
-        answers = []
-        reader = rospy.Subscriber(NODE + '/proximity', ProximityResults, answers.append)
-        publisher = rospy.Publisher('%s/%s' % (NODE, topic), type(message), queue_size=10)
-        try:
-            self.assertTrue(connected(publisher, reader))
-            publisher.publish(message)
-            found = until(lambda: [a for a in answers if a.source == topic and a.header.stamp == stamp], PATIENCE)
-            self.assertTrue(found, 'no answer')
-            return found[0]
-        finally:
-            reader.unregister()
-            publisher.unregister()
+        self.assertTrue(connected(self.asking[topic], self.answer_reader))
+        self.asking[topic].publish(message)
+        found = until(lambda: [a for a in self.answers if a.source == topic and a.header.stamp == stamp], PATIENCE)
+        self.assertTrue(found, 'no answer')
+        return found[0]
 
     def assertSameRows(self, rows, expected):
         self.assertEqual([(r.kind, r.a, r.b, r.lower, r.upper) for r in rows],
@@ -361,6 +358,7 @@ class PlanningScene(unittest.TestCase):
         self.assertTrue(until(lambda: objects() == ['can', 'cup', 'part', 'table'], PATIENCE), objects())
         self.assertStatus('beginner', 0, 'comparisons with ~get_planning_scene=1')    # and asks no more
         publisher.unregister()
+        self.assertTrue(until(lambda: not bus_links('/beginner', '/beginner/planning_scene', 'i'), PATIENCE))
         rospy.sleep(.5)                                              # the node looks for publishers each 100 ms
 
         # a diff that overtakes an older answer of the service
