@@ -68,8 +68,8 @@ class ActionGate {
   ros::NodeHandle handle_;
   ros::Publisher refused_;
   ServerCalls calls_; /* of new goals */
-  std::mutex
-      mutex_; /* of the list and its entries; no action is called while it is held: they have locks of their own */
+  /* Of the list and its entries; no action is called while it is held: they have locks of their own. */
+  std::mutex mutex_;
   std::list<RunningPointer> running_;
   std::unique_ptr<MotionWatches> watches_;
   std::unique_ptr<Client> client_;
