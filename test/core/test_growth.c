@@ -191,6 +191,65 @@ CASE(values_of_all_kinds_are_those_at_which_pairs_touch) {
   printf("widest: %.1e of the value\n", widest);
 }
 
+/* What a plane with the unit normal n bounds the growth by, from below, in long double: n·d over what both bodies reach
+ * from their centres, d from one centre to the other. */
+static long double bound_of_plane(const test_shape shape[2], const cprox_obstacle x[2], vec3l n) {
+  vec3l apart = ref_sub(ref_vec(x[1].pose.position), ref_vec(x[0].pose.position));
+  long double reach = 0.0L;
+  for (int k = 0; k < 2; k++) {
+    const cprox_pose turned = {.orientation = x[k].pose.orientation};
+    const vec3l centre = pose_turn(&turned, ref_vec(cprox_body_get_info(shape[k].body).centre));
+    const vec3l out = ref_scale(k ? -1.0L : 1.0L, n);
+    reach += ref_dot(out, ref_sub(shape_extreme(&shape[k], &turned, out), centre));
+    apart = ref_add(apart, ref_scale(k ? 1.0L : -1.0L, centre));
+  }
+  return ref_dot(n, apart) / reach;
+}
+
+/* Seed 38, 20 places for each pair of eight kinds, 1 to 1e9 m from the origin, with centres 1e-9 to 1e6 m apart: no plane
+ * bounds the growth by more than the upper end, neither the one that is named nor one beside it. Boxes in line and balls
+ * have their formula, which both ends hold. */
+CASE(values_hold_far_from_the_origin_and_where_centres_all_but_coincide) {
+  cprox_workspace *workspace = *state;
+  rng r = rng_seed(38);
+  for (size_t i = 0; i < test_cases(20) * N_SHAPES * N_SHAPES; i++) {
+    const size_t pair = i % (N_SHAPES * N_SHAPES), kind[2] = {pair % N_SHAPES, pair / N_SHAPES};
+    test_shape shape[2];
+    cprox_obstacle x[2];
+    vec3 step[2];
+    const cprox_quat first = rng_quat(&r), second = kind[0] == kind[1] ? first : rng_quat(&r);
+    for (int k = 0; k < 2; k++) {
+      make_body(&r, kind[k], workspace, &shape[k]);
+      x[k] = cprox_obstacle_at(shape[k].body, (cprox_pose){.orientation = k ? second : first});
+      const frame f = frame_create(&x[k].pose, vec(0, 0, 0));
+      step[k] = frame_to_world(&f, cprox_body_get_info(shape[k].body).centre);
+    }
+    x[0].pose.position = rng_in_cube(&r, rng_log_uniform(&r, 1.0, 1e9));
+    const vec3 apart = vec_scale(rng_log_uniform(&r, 1e-9, 1e6), rng_unit(&r));
+    x[1].pose.position = vec_add(x[0].pose.position, vec_add(apart, vec_sub(step[0], step[1])));
+    const cprox_growth growth = growth_of(x[0], x[1], workspace);
+    assert_true(growth.lower <= growth.upper);
+    for (int k = 0; k < 5 && vec_norm2(growth.normal) > 0.0; k++) {
+      const vec3 m = k ? vec_axpy(growth.normal, rng_log_uniform(&r, 1e-8, 1.0), rng_unit(&r)) : growth.normal;
+      const long double bound = bound_of_plane(shape, x, ref_scale(-1.0L / ref_norm(ref_vec(m)), ref_vec(m)));
+      if (!(growth.upper >= bound * (1.0L - 1e-15L)))
+        fail_msg("[%.17g, %.17g] and a bound of %.17Lg: %zu %zu", growth.lower, growth.upper, bound, kind[0], kind[1]);
+    }
+    if (kind[0] == kind[1] && (SHAPES[kind[0]] == CPROX_BODY_SPHERE || SHAPES[kind[0]] == CPROX_BODY_BOX)) {
+      const vec3l d = pose_turn_back(&x[0].pose, ref_sub(ref_vec(x[1].pose.position), ref_vec(x[0].pose.position)));
+      const long double along[3] = {d.x, d.y, d.z};
+      long double value = ref_norm(d) / ((long double)shape[0].size[0] + shape[1].size[0]);
+      if (SHAPES[kind[0]] == CPROX_BODY_BOX) {
+        value = 0.0L;
+        for (int k = 0; k < 3; k++)
+          value = fmaxl(value, fabsl(along[k]) / ((long double)shape[0].size[k] + shape[1].size[k]));
+      }
+      assert_true(growth.lower <= value * (1.0L + 1e-15L) && growth.upper >= value * (1.0L - 1e-15L));
+    }
+    for (int k = 0; k < 2; k++) cprox_body_free(shape[k].body);
+  }
+}
+
 /* Seed 33, 10 places for each pair of eight kinds: the second derivative by a's position, along a random direction, is
  * the central difference of the first, at the best of three steps. Tolerance: 1e-4. */
 CASE(hessians_are_differences_of_gradients) {

@@ -35,7 +35,6 @@ static cprox_status check_growing(const char *name, const cprox_body *body, doub
 void growing_place(growing *g) {
   g->x = relative_pose_of_side(&g->a, 0), g->y = relative_pose_of_side(&g->b, 0);
   g->place = relative_pose_make(&g->x, &g->y);
-  g->apart = frame_turn_to_world(&g->x.f, g->place.t);
 }
 
 cprox_status growing_begin(growing *g, const cprox_options *options, cprox_workspace *workspace) {
@@ -59,7 +58,7 @@ cprox_status growing_begin(growing *g, const cprox_options *options, cprox_works
 
 cprox_status growing_measure(const growing *g, bool wants_derivatives, cprox_workspace *workspace, cprox_growth *growth,
                              ray_answer *ray) {
-  const double far = vec_norm(g->apart), reach = g->a.body->ball_radius + g->b.body->ball_radius;
+  const double far = vec_norm(g->place.t), reach = g->a.body->ball_radius + g->b.body->ball_radius;
   *growth = (cprox_growth){.status = CPROX_OK};
   *ray = (ray_answer){.found = false};
   if (far <= GROWING_COINCIDE * reach) {
@@ -76,7 +75,7 @@ cprox_status growing_measure(const growing *g, bool wants_derivatives, cprox_wor
     growth->pairs = 1;
     return CPROX_OK;
   }
-  cprox_status status = translation_growth(g->a, g->b, g->apart, g->inner_a + g->inner_b, &g->asked, workspace, growth);
+  cprox_status status = translation_growth(g->a, g->b, g->inner_a + g->inner_b, &g->asked, workspace, growth);
   if (status < 0) return status;
   if (ray->found) {
     growth->lower = fmax(growth->lower, ray->lower), growth->upper = fmin(growth->upper, ray->upper);

@@ -22,7 +22,6 @@ typedef struct growing {
   cprox_options asked;
   pair_side x, y;
   pair_placement place;
-  vec3 apart;              /* from a's centre to b's, world */
   double inner_a, inner_b; /* radii of balls about the centres that lie in the bodies, > 0 */
 } growing;
 

@@ -409,35 +409,44 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
 
 /* ---- growth, by an approach ---- */
 
-cprox_status translation_growth(cprox_obstacle a, cprox_obstacle b, vec3 apart, double inner,
-                                const cprox_options *asked, cprox_workspace *workspace, cprox_growth *growth) {
+cprox_status translation_growth(cprox_obstacle a, cprox_obstacle b, double inner, const cprox_options *asked,
+                                cprox_workspace *workspace, cprox_growth *growth) {
+  /* a's centre stands at 0, and b's comes along the line of the centres: what the positions share does not enter */
+  const pair_side x = relative_pose_of_side(&a, 0), y = relative_pose_of_side(&b, 0);
+  const vec3 centre_a = frame_turn_to_world(&x.f, x.f.centre), centre_b = frame_turn_to_world(&y.f, y.f.centre);
+  const vec3 between = vec_sub(b.pose.position, a.pose.position), apart = vec_add(between, vec_sub(centre_b, centre_a));
+  const double turned = ROUND_UP * (ROUND_ROTATION + 2.0) * ROUND_U * (vec_norm(centre_a) + vec_norm(centre_b)),
+               apart_error = turned + ROUND_UP * ROUND_U * (vec_norm(between) + vec_norm(apart));
   const double reach = a.body->ball_radius + b.body->ball_radius, far = vec_norm(apart);
   *growth = (cprox_growth){.status = CPROX_OK};
 
   /* time runs from `most` centre distances down to 0; an error of the distance costs its part of the time */
-  const double most = 1.01 * reach / far + 1e-6;
+  const double most = 1.01 * reach / far + 1e-6, begins = most * far;
+  a.pose.position = vec_neg(centre_a);
   approach p = {.a = a, .b = b, .velocity = vec_neg(apart), .duration = most};
-  p.b.pose.position = vec_axpy(b.pose.position, most - 1.0, apart);
+  p.b.pose.position = vec_axpy(vec_neg(centre_b), most, apart);
   cprox_options fine = *asked;
-  fine.epsilon = fmax(0.1 * fmin(asked->epsilon, 0.1) * inner, 1e-13 * (reach + far));
+  fine.epsilon = fmax(0.1 * fmin(asked->epsilon, 0.1) * inner, 1e-13 * (reach + begins));
   const cprox_status status = approach_run(&p, &fine, workspace);
   if (status < 0) return status;
-  const double rounding = 16.0 * ROUND_U * most;
-  growth->lower = 1.0 / (most - p.free_until + rounding);
+  const double rounding = 16.0 * ROUND_U * most, placed = turned + 8.0 * ROUND_U * (begins + vec_norm(centre_b));
+  const double least = most - p.free_until + rounding;
+  growth->lower = fmax(1.0 - (placed + least * apart_error) / inner, 0.0) / least;
   growth->normal = p.last.normal;
   growth->upper = INFINITY;
 
-  /* from above by a place where they are proven to overlap: a little further on, and further until it is */
+  /* from above by a place where they are proven to overlap: a little further on, and further until it is. The ball of
+   * the radius `inner` within the difference of both bounds what the places' errors do to the factor */
   double beyond = 2.0 * fine.epsilon / far;
   for (int i = 0; i < 60 && isinf(growth->upper); i++, beyond *= 4.0) {
     const double s = most - p.free_until - beyond;
     cprox_result r;
-    if (s <= 0.0) break;
+    if (s <= rounding) break;
     const cprox_status found =
         WORKSPACE_LEND(workspace, cprox_pair(a, approach_at(&p, p.free_until + beyond), &fine, workspace, &r));
     if (found < 0) return found;
     p.pairs++;
-    if (r.upper <= 0.0) growth->upper = 1.0 / (s - rounding);
+    if (r.upper <= 0.0) growth->upper = (1.0 + (placed + s * apart_error) / inner) / (s - rounding);
   }
   growth->pairs = p.pairs + 1;
   const bool narrow = growth->upper - growth->lower <= asked->epsilon * fmax(growth->upper, 1e-300);
