@@ -15,6 +15,9 @@ enum { SEPARATE_STEPS = 20 };
  * method on. */
 enum { APPROACH_BEHIND = 2, APPROACH_LATER = 12 };
 
+/* Behind them, the next plane lies between the hull's and the last one that parted them, of which it takes this part. */
+static const double APPROACH_BACK = 0.5;
+
 /* An ascent whose gap shrinks less in two steps has stalled. */
 static const double SEPARATE_GAIN = 0.25;
 
@@ -165,14 +168,14 @@ bool implicit_approach(const implicit_query *query, double epsilon, double lost,
 
   ascent c = {.q = &moved};
   simplex hull = {.n = 0};
-  vec3 next = unit(former.usable ? former.apart : vec_neg(moved.t));
+  vec3 next = unit(former.usable ? former.apart : vec_neg(moved.t)), parting = vec(0, 0, 0);
   for (int behind = 0; behind <= (former.usable ? APPROACH_LATER : APPROACH_BEHIND) && answer->steps < SEPARATE_STEPS;
        answer->steps++) {
     look(&c, next);
     const double between = c.phi - rounding - lost;
     if (between > 0.0) {
       const double towards = vec_dot(c.u, query->velocity);
-      answer->normal = c.u;
+      answer->normal = parting = c.u;
       const double step = between / (towards + ROUND_TOWARDS * ROUND_U * speed) * (1.0 - 1e-12),
                    then = fmax(nextafter(answer->time + step, -INFINITY), answer->time);
       if (towards <= -ROUND_TOWARDS * ROUND_U * speed || then >= query->duration) return false;
@@ -200,7 +203,7 @@ bool implicit_approach(const implicit_query *query, double epsilon, double lost,
     double step[2];
     next = between > 0.0 && newton(&c, nearest.distance, step)
                ? unit(vec_axpy(vec_axpy(c.u, step[0], c.e), step[1], c.f))
-               : unit(nearest.v);
+               : unit(vec_axpy(unit(nearest.v), APPROACH_BACK, parting));
   }
   return false;
 }
