@@ -2,6 +2,7 @@
 /* Motions and states of a prepared robot: the same answers as those of a robot that is not prepared. */
 #include <curve_proximity/motion.hpp>
 
+#include "query/near_items.h"
 #include "support.h"
 
 using namespace curve_proximity;
@@ -387,4 +388,42 @@ TEST(PreparedRobots, a_distance_grid_among_many_objects_is_refused_wherever_it_s
   query.query_type = QueryType::COLLISION;
   Workspace workspace;
   expectContains(errorOf([&] { askEnvironment(motion, query, workspace); }), "object 'grid' is a distance_grid");
+}
+
+/* A collision query among 100 objects far away: to leave them out must cost little beside a budget, whatever the robot
+ * and its way. The boxes of a chain of links cost as the square of their number. */
+TEST(PreparedRobots, far_objects_are_left_out_where_that_is_cheap) {
+  std::vector<Operation> objects;
+  for (int i = 0; i < 100; ++i)
+    objects.push_back(add("far" + std::to_string(i), {shape(ShapeType::SPHERE, {0.1})}, translation(i, 2000, 0)));
+  Query query;
+  query.query_type = QueryType::COLLISION;
+  Workspace workspace;
+  for (const int links : {20, 1000}) {
+    std::string text = "<robot name='chain'><link name='l0'/>";
+    TrajectoryDescription way;
+    for (int i = 1; i <= links; ++i) {
+      const std::string name = std::to_string(i);
+      text += "<link name='l" + name + "'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>";
+      text += "<joint name='j" + name + "' type='prismatic'><parent link='l" + std::to_string(i - 1);
+      text += "'/><child link='l" + name + "'/><axis xyz='1 0 0'/><limit lower='-9' upper='9'/></joint>";
+      way.joints.push_back("j" + name);
+    }
+    Scene world(Robot::fromUrdf(text + "</robot>"));
+    SceneChange change;
+    change.operations = objects;
+    ASSERT_TRUE(world.apply(change).empty());
+    for (const int segments : {1, 100}) {
+      way.points.assign(static_cast<std::size_t>(segments) + 1, {});
+      for (std::size_t i = 0; i < way.points.size(); ++i) {
+        way.points[i].time = static_cast<double>(i);
+        way.points[i].positions.assign(way.joints.size(), 1e-3 * static_cast<double>(i % 7));
+      }
+      const RobotMotion motion(PreparedRobot(world.snapshot()), way);
+      std::vector<std::size_t> all(100);
+      for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+      const NearItems near = nearItems(motion.data(), all, query, workspace);
+      EXPECT_EQ(near.items.size(), links == 20 ? 1u : 100u) << links << " links, " << segments << " segments";
+    }
+  }
 }

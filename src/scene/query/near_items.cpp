@@ -13,8 +13,12 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/* Up to so many items the core alone is faster: boxes cost a forward kinematics for each geometry and segment. */
-constexpr std::size_t MANY_ITEMS = 64, MOST_SEGMENTS = 256;
+/* Up to so many items the core alone is faster. */
+constexpr std::size_t MANY_ITEMS = 64;
+
+/* Boxes cost a forward kinematics for each geometry and segment: a million of placed links and geometries is some 5 ms,
+ * which is little beside a budget. */
+constexpr std::size_t MOST_SEGMENTS = 256, MOST_PLACED = 1000000;
 
 /* Of the sizes that enter a box: some roundings of doubles. */
 constexpr double BOX_ROUNDING = 1e-12;
@@ -43,9 +47,13 @@ std::optional<Box> sweptBox(const RobotMotion::Data &data, std::size_t geometry,
   return out;
 }
 
-/* Boxes round all geometries that have pairs with items; empty where one is not known. */
+/* Boxes round all geometries that have pairs with items; empty where one is not known, or too dear. */
 std::vector<Box> sweptBoxes(const RobotMotion::Data &data, Workspace &workspace) {
   std::vector<Box> out;
+  const cprox_motion_info info = cprox_motion_get_info(data.core.get());
+  const std::size_t geometries = data.kinematics->geometries.size();
+  if (info.n_pieces > MOST_SEGMENTS || geometries * info.n_pieces * (geometries + info.n_variables) > MOST_PLACED)
+    return out;
   for (std::size_t i = 0; i < data.wanted.size(); ++i) {
     if (!data.wanted[i] || data.prepared->environment[i].empty()) continue;
     const std::optional<Box> box = sweptBox(data, i, workspace);
