@@ -17,9 +17,9 @@ class CertifyPathCapability : public move_group::MoveGroupCapability {
   }
 
  private:
+  /* Without the monitor's updateFrameTransforms(): no certificate needs transforms, and it counts as an update. */
   bool answer(CertifyPath::Request &req, CertifyPath::Response &res) {
     const planning_scene_monitor::PlanningSceneMonitorPtr &monitor = context_->planning_scene_monitor_;
-    monitor->updateFrameTransforms();
     const planning_scene_monitor::LockedPlanningSceneRO scene(monitor); // it cannot change
     const planning_scene::PlanningSceneConstPtr &locked = scene;
     certifyPath(req, *locked, certifier_, res);

@@ -11,6 +11,10 @@
 #include <sensor_msgs/JointState.h>
 #include <tf2_eigen/tf2_eigen.h>
 
+#include <atomic>
+#include <map>
+#include <thread>
+
 #include <curve_proximity/CertifyPath.h>
 #include <curve_proximity/GetScene.h>
 
@@ -59,16 +63,33 @@ class MoveGroup : public testing::Test {
     return out;
   }
 
+  moveit_msgs::CollisionObject plateInTheWay() const {
+    const Eigen::Vector3d fingers = ready_.getGlobalLinkTransform("panda_leftfinger").translation();
+    return plateAt("plate", fingers.x() + WAY / 2.0, 0.0, fingers.z() - 0.03);
+  }
+
+  /* One change: a name, and the plate there or not there. */
+  void changeScene(const std::string &name, bool has_plate) {
+    moveit_msgs::ApplyPlanningScene applied;
+    applied.request.scene.is_diff = applied.request.scene.robot_state.is_diff = true;
+    applied.request.scene.name = name;
+    moveit_msgs::CollisionObject plate = plateInTheWay();
+    if (!has_plate) plate.operation = moveit_msgs::CollisionObject::REMOVE;
+    applied.request.scene.world.collision_objects = {plate};
+    call("apply_planning_scene", applied);
+    EXPECT_TRUE(applied.response.success);
+  }
+
   /* A plate beside the path, as nothing is proven against no object, and perhaps one between the fingers' first place and
    * their last. */
   void setPlates(bool one_in_the_way) {
     moveit_msgs::ApplyPlanningScene applied;
     applied.request.scene.is_diff = applied.request.scene.robot_state.is_diff = true;
-    const Eigen::Vector3d fingers = ready_.getGlobalLinkTransform("panda_leftfinger").translation();
-    const double x = fingers.x() + WAY / 2.0, z = fingers.z() - 0.03;
+    const moveit_msgs::CollisionObject plate = plateInTheWay();
+    const geometry_msgs::Point &at = plate.primitive_poses[0].position;
     std::vector<moveit_msgs::CollisionObject> &objects = applied.request.scene.world.collision_objects;
-    objects = {plateAt("shelf", x, 0.8, z)};
-    if (one_in_the_way) objects.push_back(plateAt("plate", x, 0.0, z));
+    objects = {plateAt("shelf", at.x, 0.8, at.z)};
+    if (one_in_the_way) objects.push_back(plate);
     call("apply_planning_scene", applied);
     ASSERT_TRUE(applied.response.success);
     curve_proximity::GetScene known;
@@ -143,6 +164,41 @@ TEST_F(MoveGroup, certifies_no_path_through_a_plate_and_the_gate_refuses_it) {
   ASSERT_EQ(res.violations.size(), 1u);
   EXPECT_EQ(res.violations[0].summary.b, "plate");
   EXPECT_EQ(execute(path), moveit_msgs::MoveItErrorCodes::CONTROL_FAILED);
+}
+
+TEST_F(MoveGroup, certifies_again_in_the_same_scene_where_nothing_has_changed) {
+  const moveit_msgs::RobotTrajectory path = cartesianPath();
+  ros::Time before, stamp = certify(path).scene_stamp;
+  for (int i = 0; i < 50 && stamp != before; ++i) { // the robot's state may still come in
+    before = stamp;
+    stamp = certify(path).scene_stamp;
+  }
+  EXPECT_EQ(stamp, before);
+  changeScene("changed", true);
+  EXPECT_NE(certify(path).scene_stamp, before);
+}
+
+/* While another client puts the plate there and takes it away, and names the scene anew each time. */
+TEST_F(MoveGroup, certifies_in_the_scene_that_the_answer_names) {
+  const moveit_msgs::RobotTrajectory path = cartesianPath();
+  changeScene("blocked", true);
+  std::atomic<bool> is_over{false};
+  std::thread other([&] {
+    for (bool is_free = true; !is_over; is_free = !is_free) changeScene(is_free ? "free" : "blocked", !is_free);
+  });
+  std::map<std::string, int> answers;
+  std::map<ros::Time, std::string> scenes;
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(60.0);
+  while ((answers["free"] < 10 || answers["blocked"] < 10) && ros::WallTime::now() < end) {
+    const curve_proximity::CertifyPath::Response res = certify(path);
+    EXPECT_EQ(res.certified, res.scene == "free") << res.scene << ": " << res.message;
+    EXPECT_EQ(scenes.emplace(res.scene_stamp, res.scene).first->second, res.scene) << "the same stamp";
+    ++answers[res.scene];
+  }
+  is_over = true;
+  other.join();
+  EXPECT_GE(answers["free"], 10);
+  EXPECT_GE(answers["blocked"], 10);
 }
 
 int main(int argc, char **argv) {
