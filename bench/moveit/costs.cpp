@@ -4,9 +4,11 @@
  * Prints rows of CSV: what, first_ms, again_ms, changed_ms: the first question, the median of those after it, and that of
  * those after one change each. Times of this thread's processor. */
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <functional>
+#include <thread>
 
 #include <moveit/collision_detection/occupancy_map.h>
 #include <moveit/planning_scene/planning_scene.h>
@@ -21,6 +23,13 @@ namespace cd = collision_detection;
 using Steps = std::function<void()>;
 
 constexpr int TIMES = 31;
+
+void noPause() {}
+
+/* Longer than a detector takes octrees' cells for what they were, as between plans. */
+void longPause() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(110));
+}
 
 double milliseconds() {
   timespec now;
@@ -44,8 +53,9 @@ double medianOf(const Steps &before, const Steps &question) {
   return all[TIMES / 2];
 }
 
-void print(const std::string &what, const Steps &question, const Steps &change) {
-  const double first = timeOf(question), again = medianOf([] {}, question), changed = medianOf(change, question);
+/* `pause` comes before each question that no change comes before. */
+void print(const std::string &what, const Steps &question, const Steps &change, const Steps &pause = noPause) {
+  const double first = timeOf(question), again = medianOf(pause, question), changed = medianOf(change, question);
   std::printf("%s,%.3f,%.3f,%.3f\n", what.c_str(), first, again, changed);
 }
 
@@ -153,7 +163,8 @@ void octomapOf(const moveit::core::RobotModelPtr &model, int n) {
         tree->setNodeValue(cell(0, 0, 0), occupied ? 2.0F : -2.0F);
         tree->updateInnerOccupancy();
         scene->processOctomapPtr(tree, Eigen::Isometry3d::Identity());
-      });
+      },
+      longPause);
 }
 
 } // namespace

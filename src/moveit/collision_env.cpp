@@ -172,7 +172,7 @@ CollisionEnvCurveProximity::CollisionEnvCurveProximity(const CollisionEnvCurvePr
       shapes_(other.shapes_) {
   {
     const std::lock_guard<std::mutex> lock(other.mutex_);
-    other.applyChanges(false);
+    other.applyChanges();
     scene_ = std::make_unique<Scene>(other.scene_->snapshot());
     taken_ = other.taken_;
     faults_ = other.faults_;
@@ -236,8 +236,7 @@ void CollisionEnvCurveProximity::compareOctrees(bool now) const {
 }
 
 /* One change for all that has come since the last query. An object that cannot be taken over leaves a fault. */
-void CollisionEnvCurveProximity::applyChanges(bool sees_octrees) const {
-  compareOctrees(sees_octrees);
+void CollisionEnvCurveProximity::applyChanges() const {
   if (!resized_ && changed_.empty() && moved_.empty()) return;
   const SnapshotPtr before = scene_->snapshot();
   SceneChange change;
@@ -327,7 +326,8 @@ void CollisionEnvCurveProximity::checkModel(const State &state) const {
 CollisionEnvCurveProximity::Current CollisionEnvCurveProximity::current(const State &state, bool sees_octrees) const {
   checkModel(state);
   const std::lock_guard<std::mutex> lock(mutex_);
-  applyChanges(sees_octrees);
+  compareOctrees(sees_octrees);
+  applyChanges();
   const SnapshotPtr scene = scene_->snapshot();
   Current out{scene, bodies_.of(state, *scene, *shapes_), {}};
   for (const auto &[id, fault] : faults_) out.fault += (out.fault.empty() ? "" : "; ") + fault;

@@ -95,7 +95,7 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
 
   void checkModel(const State &state) const;
   Current current(const State &state, bool sees_octrees) const;
-  void applyChanges(bool sees_octrees) const;
+  void applyChanges() const;
   void compareOctrees(bool now) const;
   void changeObject(const std::string &id, bool only_moved, const Snapshot &before, SceneChange &change) const;
   void compareWorld(const collision_detection::World &world);

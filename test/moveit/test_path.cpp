@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The service CertifyPath: trajectories beside an object that a waypoint does not touch. */
 #include <gtest/gtest.h>
+#include <moveit/collision_detection/occupancy_map.h>
 #include <moveit/utils/robot_model_test_utils.h>
 
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <limits>
+#include <thread>
 
 #include <ros/package.h>
 
@@ -76,6 +79,21 @@ class Path : public testing::Test {
   curve_proximity::Certifier certifier_;
 };
 
+/* An octree that says when its cells are compared: a certificate is then at work, and has its world. */
+class WatchedTree : public collision_detection::OccMapTree {
+ public:
+  WatchedTree() : OccMapTree(0.05) {
+    updateNode(octomap::point3d(5.0F, 0.0F, 0.5F), true);
+  }
+
+  std::size_t size() const override {
+    if (on_compare) on_compare();
+    return OccMapTree::size();
+  }
+
+  std::function<void()> on_compare;
+};
+
 class FloatingPath : public Path {
  protected:
   FloatingPath() : Path("floating") {}
@@ -129,6 +147,48 @@ TEST_F(Path, beyond_a_limit_is_certified_with_a_warning_that_names_the_joint) {
   ASSERT_EQ(res.warnings.size(), 1u);
   EXPECT_NE(res.warnings[0].find("panda_joint1"), std::string::npos) << res.warnings[0];
   EXPECT_EQ(res.warnings[0].find('\n'), std::string::npos);
+}
+
+/* Another thread changes the scene while the certificate is at work. */
+TEST_F(Path, is_certified_in_the_scene_that_the_answer_names) {
+  const auto tree = std::make_shared<WatchedTree>();
+  scene_->processOctomapPtr(tree, Eigen::Isometry3d::Identity());
+  const auto post = scene_->getWorld()->getObject("post");
+  const CertifyPath::Request req = turnTo(1.2);
+  for (int i = 0; i < 3; ++i) {
+    for (const bool removed : {true, false}) {
+      int changes = 0;
+      tree->on_compare = [&] {
+        if (changes++ > 0) return;
+        std::thread([&] {
+          if (removed) {
+            scene_->getWorldNonConst()->removeObject("post");
+          } else {
+            scene_->getWorldNonConst()->addToObject("post", post->pose_, post->shapes_, post->shape_poses_);
+          }
+          scene_->setName(removed ? "yard without the post" : "yard");
+        }).join();
+      };
+      CertifyPath::Response res;
+      curve_proximity::certifyPath(req, *scene_, certifier_, res);
+      EXPECT_GE(changes, 1) << "the scene did not change";
+      EXPECT_EQ(res.scene, removed ? "yard" : "yard without the post");
+      EXPECT_EQ(res.certified, !removed) << res.message;
+    }
+  }
+}
+
+TEST_F(Path, compares_an_octree_once) {
+  const auto tree = std::make_shared<WatchedTree>();
+  scene_->processOctomapPtr(tree, Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(ask(turnTo(-0.4)).certified);
+  int compared = 0;
+  tree->on_compare = [&compared] { ++compared; };
+  for (int i = 1; i <= 3; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(110)); // states would compare it again
+    EXPECT_TRUE(ask(turnTo(-0.4)).certified);
+    EXPECT_EQ(compared, i);
+  }
 }
 
 TEST_F(Path, that_cannot_be_used_is_refused_in_one_line) {
