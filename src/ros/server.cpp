@@ -175,7 +175,8 @@ void warnOfOtherLinks(const LiveScene &live) {
 
 /** By the joints of the request, else by tf2, else by the latest joint states. */
 Eigen::Isometry3d linkPose(const std::string &link, const ros::Time &stamp, const sensor_msgs::JointState &given,
-                           const LiveScene &live, const Snapshot &snapshot, FrameLookup &lookup) {
+                           const Parameters &parameters, const LiveScene &live, const Snapshot &snapshot,
+                           FrameLookup &lookup) {
   const Robot *robot = snapshot.robot().get();
   if (!robot) throw Error("link '" + link + "' is unknown: this server has no robot");
   if (robot->links().count(link) == 0)
@@ -184,6 +185,8 @@ Eigen::Isometry3d linkPose(const std::string &link, const ros::Time &stamp, cons
   if (!by_joints && (lookup.frames().has(link, stamp) || live.joints.joints().empty()))
     return lookup.toFixed(link, stamp);
   const CurrentJoints joints = currentJoints(given, !by_joints, live.joints);
+  const std::string unknown = unknownJoints(*robot, {}, joints.positions, parameters.assumed_joints, link);
+  if (!unknown.empty()) throw Error("link '" + link + "': " + unknown);
   return robot->linkPoses(joints.positions, rootPose(*robot, live.srdf, stamp, lookup)).at(link);
 }
 
@@ -284,7 +287,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
           given.name.push_back(name);
           given.position.push_back(position);
         }
-        return linkPose(link, ros::Time(), given, live_, snapshot, lookup);
+        return linkPose(link, ros::Time(), given, parameters_, live_, snapshot, lookup);
       });
   pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, live_, queries_, *markers_, stop_);
   batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, turns_, stop_);
@@ -392,7 +395,7 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
     return lookup.toFixed(header.frame_id, header.stamp);
   };
   const LinkToFixed link_to_fixed = [&](const std::string &link, const ros::Time &stamp) {
-    return linkPose(link, stamp, request.joint_state, live_, *before, lookup);
+    return linkPose(link, stamp, request.joint_state, parameters_, live_, *before, lookup);
   };
   SceneChange change = toSceneChange(request, to_fixed, faults);
   addAttachments(request, to_fixed, link_to_fixed, *before, change, faults);

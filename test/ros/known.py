@@ -414,24 +414,60 @@ class Known(Case):
         self.set_robot('<joint name="lift" type="prismatic"><parent link="arm"/><child link="hand"/><axis xyz="0 0 1"/>'
                        '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint><link name="hand"/>')
         turning, whole = joint_trajectory(['turn'], (0.0,), (0.5,)), joint_trajectory(['turn', 'lift'], (0.0, 0.0), (0.5, 0.0))
-        _, server = self.begin('untold', fixed_frame='base')
+        _, server = self.begin('untold', fixed_frame='base', constraint_providers=['curve_proximity/RobotDistance'])
+        evaluate = service('evaluate_constraints', EvaluateConstraints, '/untold')
         states = self.publisher('/untold/joint_states', JointState)
         server.replace(sphere('ball', 0.1, (0, 0, 9)))
-        self.assertEqual(server.tolerance([], 0.01, trajectory=whole, current_joints=True).results[0].verdict, 'clear')
-        row = server.tolerance([], 0.01, trajectory=turning, current_joints=True).results[0]
-        self.assertEqual((row.status, row.verdict), ('unknown', 'undecided'))
-        self.assertIn("where joint 'lift' is was not told", row.message)
+
+        def row(curves=(), **fields):
+            return self.row(server.tolerance(curves, 0.01, **fields))
+
+        def constraint(**fields):
+            one, = evaluate(cases=[ConstraintQuery(**fields)]).results
+            return one.status
+        self.assertEqual(row(trajectory=whole, current_joints=True).verdict, 'clear')
+        for fields in (dict(current_joints=True), {}, dict(joint_state=joints(turn=0.3))):
+            self.assertEqual((row(trajectory=turning, **fields).status, row(trajectory=turning, **fields).verdict), ('unknown', 'undecided'))
+            self.assertIn("where joint 'lift' is was not told", row(trajectory=turning, **fields).message)
+            self.assertEqual(row(trajectory=turning, **dict(fields, joint_state=joints(lift=0.0))).verdict, 'clear')
+        self.assertEqual(row(LINE, joint_state=joints(turn=0.0)).status, 'unknown')  # curves meet links there
+        self.assertEqual(row(LINE, joint_state=joints(turn=0.0, lift=0.0)).verdict, 'clear')
+        self.assertEqual([constraint(trajectory=of) for of in (turning, whole)], ['unknown', 'ok'])
         states.publish(joints(turn=0.0))
-        row = until(lambda: (lambda r: r.results and r.results[0])(server.tolerance([], 0.01, robot_state=True)), 5)
-        self.assertEqual(row.status, 'unknown')
-        self.assertEqual(server.tolerance(LINE, 0.01, current_joints=True).results[0].status, 'unknown')  # curves meet links there
+        self.assertEqual(until(lambda: [r.status for r in server.tolerance([], 0.01, robot_state=True).results], 5), ['unknown'])
+        self.assertEqual(row(LINE, current_joints=True).status, 'unknown')
+        self.assertEqual(constraint(trajectory=turning, current_joints=True), 'unknown')
+
+        def hold(link):
+            tool = sphere('tool', 0.05, (0.5, 0, 0.2), frame='base')
+            return server.apply(attached_collision_objects=[AttachedCollisionObject(link_name=link, object=tool)])
+        self.assertRefused(hold('hand'), "'hand'", "where joint 'lift' is was not told")
+        self.succeeded(hold('arm'))  # lift does not move it
         states.publish(joints(lift=0.0))
-        self.assertTrue(until(lambda: server.tolerance([], 0.01, robot_state=True).results[0].verdict == 'clear', 5))
-        self.assertEqual(server.tolerance(LINE, 0.01, current_joints=True).results[0].verdict, 'clear')
+        self.assertTrue(until(lambda: row(robot_state=True).verdict == 'clear', 5))
+        self.assertEqual(row(LINE, current_joints=True).verdict, 'clear')
+        self.assertEqual(constraint(trajectory=turning, current_joints=True), 'ok')
+        self.assertEqual(row(trajectory=turning).status, 'unknown')  # the request does not ask for the current joints
         _, assuming = self.begin('assuming', fixed_frame='base', assumed_joints=['lift'])
         assuming.replace(sphere('ball', 0.1, (0, 0, 9)))
-        for fields in (dict(current_joints=True), {}):  # {}: at 0 by the request's own words
+        for fields in (dict(current_joints=True), {}):
             self.assertEqual(assuming.tolerance([], 0.01, trajectory=turning, **fields).results[0].verdict, 'clear')
+
+    def test_a_planar_joint_is_known_by_all_of_its_variables(self):
+        self.set_robot('<joint name="drive" type="planar"><parent link="arm"/><child link="cart"/><axis xyz="0 0 1"/></joint>'
+                       '<link name="cart"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>')
+        turning, names = joint_trajectory(['turn'], (0.0,), (0.5,)), ('drive/x', 'drive/y', 'drive/theta')
+        _, server = self.begin('driven', fixed_frame='base')
+        server.replace(sphere('ball', 0.1, (0, 0, 9)))
+        for n in range(4):
+            response = server.tolerance([], 0.01, trajectory=turning, joint_state=joints(**dict.fromkeys(names[:n], 0.0)))
+            self.assertEqual(self.row(response).status, 'unknown' if n < 3 else 'ok')
+            self.assertEqual("'drive'" in self.row(response).message, n < 3)
+        driving = joint_trajectory(['turn', *names], (0.0, 0.0, 0.0, 0.0), (0.5, 1.0, 0.0, 0.0))
+        self.assertEqual(self.row(server.tolerance([], 0.01, trajectory=driving)).verdict, 'clear')
+        _, assuming = self.begin('parked', fixed_frame='base', assumed_joints=['drive'])
+        assuming.replace(sphere('ball', 0.1, (0, 0, 9)))
+        self.assertEqual(self.row(assuming.tolerance([], 0.01, trajectory=turning)).verdict, 'clear')
 
     def test_a_request_that_asks_nothing_is_an_error(self):
         _, server = self.begin('asked')

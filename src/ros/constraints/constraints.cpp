@@ -208,7 +208,8 @@ struct Constraints::Work {
   TimeBudget budget;
   FrameLookup lookup;
   std::size_t derivatives = 0; /* of all rows so far */
-  double joints_age = NONE;    /* [s] of the case at hand */
+  CurrentJoints joints = {};   /* of the case at hand */
+  std::string unknown = {};    /* which of them nobody told, as a message */
 
   /* The robot made ready last, for trajectories that begin at the same base. */
   std::shared_ptr<const PreparedRobot> robot = nullptr;
@@ -223,16 +224,17 @@ MotionCase Constraints::toMotionCase(const ConstraintQuery &message, Work &work)
   if (isNamed(message.a) || isNamed(message.b) || isSet(message.curve))
     throw Error("a case is about a trajectory or about two sides: give one of them");
   MotionCase out;
-  const CurrentJoints joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
-  work.joints_age = joints.age;
+  work.joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
   std::string remark;
-  out.trajectory = toDescription(message.trajectory, joints.positions, remark);
+  out.trajectory = toDescription(message.trajectory, work.joints.positions, remark);
   out.trajectory.id = message.id;
-  out.rest = joints.positions;
+  out.rest = work.joints.positions;
   checkTrajectory(out.trajectory);
 
   // Where the robot stands, or the frame that its virtual joint moves in.
   adoptBase(live_.srdf.virtual_joints, *work.snapshot->robot(), out.trajectory);
+  work.unknown =
+      unknownJoints(*work.snapshot->robot(), out.trajectory.joints, work.joints.positions, parameters_.assumed_joints);
   const bool on_joint = !out.trajectory.base.empty();
   const ros::Time &stamp = message.trajectory.header.stamp;
   const Eigen::Isometry3d base = on_joint ? work.lookup.toFixed(out.trajectory.base.front().parent_frame, stamp)
@@ -264,12 +266,13 @@ void Constraints::gatherOthers(const ConstraintQuery &message, MotionCase &out, 
 Eigen::Isometry3d Constraints::linkPose(const ConstraintQuery &message, const std::string &link, LinkPoses &poses,
                                         Work &work) const {
   if (message.joint_state.name.empty() && !message.current_joints) return work.lookup.toFixed(link, ros::Time());
+  const Robot &robot = *work.snapshot->robot();
   if (poses.empty()) {
-    const Robot &robot = *work.snapshot->robot();
-    const CurrentJoints joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
-    work.joints_age = joints.age;
-    poses = robot.linkPoses(joints.positions, rootPose(robot, live_.srdf, ros::Time(), work.lookup));
+    work.joints = currentJoints(message.joint_state, message.current_joints, live_.joints);
+    poses = robot.linkPoses(work.joints.positions, rootPose(robot, live_.srdf, ros::Time(), work.lookup));
   }
+  const std::string unknown = unknownJoints(robot, {}, work.joints.positions, parameters_.assumed_joints, link);
+  if (!unknown.empty()) work.unknown = unknown;
   return poses.at(link);
 }
 
@@ -315,7 +318,8 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
     const ConstraintQuery &asked = request.cases[i];
     if (turn) turn->yield();
     work.lookup.begin();
-    work.joints_age = NONE;
+    work.joints = CurrentJoints();
+    work.unknown.clear();
     work.share.reset();
     std::vector<ConstraintRow> rows;
     ConstraintCase described;
@@ -335,8 +339,9 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
     Query about;
     if (!described.motion) about.objects = {asked.a.id, asked.b.id};
     doubts.objects(about);
-    doubts.ages(work.lookup.age(), work.joints_age);
-    response.scene.joint_state_age = std::fmax(response.scene.joint_state_age, work.joints_age);
+    doubts.ages(work.lookup.age(), work.joints.age);
+    doubts.joints(work.unknown);
+    response.scene.joint_state_age = std::fmax(response.scene.joint_state_age, work.joints.age);
 
     for (const ConstraintRow &row : rows) {
       if (row.status < 0)

@@ -39,9 +39,9 @@ Queries::CurveSearch &Queries::curveSearch(Work &work) {
                                       nullptr});
   }
   work.doubts.objects(work.query);
-  const bool current = by_joints && work.request.more.current_joints && work.search->obstacles.withRobot();
+  const bool placed = by_joints && work.search->obstacles.withRobot();
   work.doubts.joints(
-      current ? unknownJoints(*work.snapshot->robot(), {}, work.joints.positions, parameters_.assumed_joints) : "");
+      placed ? unknownJoints(*work.snapshot->robot(), {}, work.joints.positions, parameters_.assumed_joints) : "");
   return *work.search;
 }
 

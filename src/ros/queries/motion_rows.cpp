@@ -310,9 +310,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     demandTime(work.query);
     const Robot &robot = *work.snapshot->robot();
     adoptBase(live_.srdf.virtual_joints, robot, trajectory);
-    const bool current = request.more.current_joints || request.more.robot_state;
-    work.doubts.joints(
-        current ? unknownJoints(robot, trajectory.joints, work.joints.positions, parameters_.assumed_joints) : "");
+    work.doubts.joints(unknownJoints(robot, trajectory.joints, work.joints.positions, parameters_.assumed_joints));
     out.remark = remark;
     const Eigen::Isometry3d base = trajectory.base.empty()
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <utility>
 
+#include "../../scene/robot/free_joints.h"
 #include "messages/trajectory_message.h"
 
 namespace curve_proximity {
@@ -15,6 +17,13 @@ const VirtualJoint *fixedJointOf(const Robot &robot, const Srdf &srdf) {
   for (const VirtualJoint &joint : srdf.virtual_joints)
     if (joint.type == "fixed" && joint.child_link == robot.rootLink()) return &joint;
   return nullptr;
+}
+
+/** The names of the values that say where a joint is. */
+std::vector<std::string> variablesOf(const Robot::Joint &joint) {
+  const bool planar = joint.type == Robot::JointType::PLANAR;
+  if (planar || joint.type == Robot::JointType::FLOATING) return variablesOf(FreeJoint{joint.name, planar, "", false});
+  return {joint.leader.empty() ? joint.name : joint.leader};
 }
 
 } // namespace
@@ -100,20 +109,28 @@ CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, 
 }
 
 std::string unknownJoints(const Robot &robot, const std::vector<std::string> &moved, const JointPositions &positions,
-                          const std::vector<std::string> &assumed) {
+                          const std::vector<std::string> &assumed, const std::string &link) {
   constexpr std::size_t MOST = 5;
   const auto among = [](const std::vector<std::string> &names, const std::string &name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
+  const auto is_told = [&](const std::string &variable) {
+    return positions.count(variable) > 0 || among(moved, variable) || among(assumed, variable);
+  };
+  std::set<std::string> above{link}, unknown; // links from `link` to the root; joints
+  for (auto joint = robot.joints().rbegin(); joint != robot.joints().rend(); ++joint) { // children first
+    if (!link.empty() && above.count(joint->child) == 0) continue;
+    above.insert(joint->parent);
+    if (joint->type == Robot::JointType::FIXED) continue;
+    const std::string &name = joint->leader.empty() ? joint->name : joint->leader;
+    const std::vector<std::string> variables = variablesOf(*joint);
+    if (!among(assumed, name) && !std::all_of(variables.begin(), variables.end(), is_told)) unknown.insert(name);
+  }
+  if (unknown.empty()) return "";
   std::string names;
   std::size_t n = 0;
-  for (const Robot::Joint &joint : robot.joints()) {
-    const bool turns = joint.type == Robot::JointType::REVOLUTE || joint.type == Robot::JointType::PRISMATIC;
-    if (!turns || !joint.leader.empty() || positions.count(joint.name) > 0) continue;
-    if (among(moved, joint.name) || among(assumed, joint.name)) continue;
-    if (n++ < MOST) names += (names.empty() ? "'" : ", '") + joint.name + "'";
-  }
-  if (n == 0) return "";
+  for (const std::string &name : unknown)
+    if (n++ < MOST) names += (names.empty() ? "'" : ", '") + name + "'";
   if (n > MOST) names += " and " + std::to_string(n - MOST) + " more";
   return "where joint " + names + " is was not told: neither by the request nor on ~joint_states (~assumed_joints)";
 }

@@ -76,9 +76,10 @@ CurrentJoints currentJoints(const sensor_msgs::JointState &given, bool current, 
                             bool may_be_none = false);
 
 /** A message about the joints of a robot of which neither `moved` nor `positions` nor `assumed` tells; "": there is
- *  none. Mimic joints follow; planar and floating joints are tf2's. */
+ *  none. link: of those alone that move it; "": of all. Mimic joints follow; a planar or floating joint is known by all
+ *  of its variables. */
 std::string unknownJoints(const Robot &robot, const std::vector<std::string> &moved, const JointPositions &positions,
-                          const std::vector<std::string> &assumed);
+                          const std::vector<std::string> &assumed, const std::string &link = "");
 
 } // namespace curve_proximity
 #endif
