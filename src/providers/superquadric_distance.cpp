@@ -78,9 +78,13 @@ using Parameters = StandingDistanceParameters;
 
 /* A part as single bodies. */
 struct Element {
-  BodyHandle body;  /* what is measured */
-  BodyHandle hull;  /* contains it; what is measured where depths are asked for */
-  BodyHandle shape; /* the part itself, or null where it is not known: what bounds the distance from above */
+  BodyHandle body;          /* what is measured */
+  BodyHandle hull;          /* contains it; what is measured where depths are asked for */
+  BodyHandle shape;         /* the part itself, or null where it is not known: what bounds the distance from above */
+  bool may_be_flat = false; /* there may be faces or edges, or surfaces that are all but flat */
+  /* of a superquadric: its axes in the side's frame, each as long as the semi-axis; 0 where none are */
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Zero();
+  std::array<bool, 3> is_flat_across{}; /* across the axis, where the normal has hardly a part along it */
 
   bool isMesh() const {
     return body != hull;
@@ -91,12 +95,15 @@ struct Element {
 struct Side {
   std::vector<Element> elements;
   double size = 0.0; /* [m] of the smallest of them: the radius of a ball that contains it; infinite of halfspaces */
-  bool may_be_flat = false; /* there may be faces or edges, or surfaces that are all but flat */
   double padding = 0.0, excess = 0.0, missing = 0.0; /* [m]; missing: of hulls that are measured */
 };
 
-/* Exponents between these give a surface that is curved nearly everywhere. */
-constexpr double LEAST_ROUND = 1.05, MOST_ROUND = 64.0;
+/* Exponents between these give a surface that is curved nearly everywhere. Above the third it has spots at which a turn
+ * of NEAR moves the extreme point by more than LEAST_LEFT of what one of FAR does: (NEAR/FAR)^(1/(p-1)) at exponent p. */
+constexpr double LEAST_ROUND = 1.05, MOST_ROUND = 64.0, MOST_CURVED = 4.3;
+
+/* Those are where the normal's part along the axis is less than this of its largest part. */
+constexpr double FLAT_PART = 10.0 * FAR;
 
 bool mayBeFlat(const ShapeDescription &shape) {
   if (shape.type == ShapeType::POINT || shape.type == ShapeType::SPHERE || shape.type == ShapeType::ELLIPSOID)
@@ -104,6 +111,25 @@ bool mayBeFlat(const ShapeDescription &shape) {
   if (shape.type != ShapeType::SUPERQUADRIC || shape.deformed) return true;
   for (std::size_t i = 3; i < 6; ++i)
     if (shape.dimensions[i] < LEAST_ROUND || shape.dimensions[i] > MOST_ROUND) return true;
+  return false;
+}
+
+void findFlatSpots(const ShapeDescription &shape, Element &out) {
+  out.may_be_flat = mayBeFlat(shape);
+  if (out.may_be_flat || shape.type != ShapeType::SUPERQUADRIC) return;
+  const std::vector<double> &d = shape.dimensions;
+  out.rows = Eigen::Vector3d(d[0], d[1], d[2]).asDiagonal() * shape.pose.linear().transpose();
+  for (std::size_t i = 0; i < 3; ++i) out.is_flat_across[i] = d[3 + i] > MOST_CURVED;
+}
+
+/* Whether its surface may be flat where its normal is along n. */
+bool isFlatAlong(const Element &element, const cprox_pose &pose, const Eigen::Vector3d &n) {
+  if (element.may_be_flat) return true;
+  const cprox_quat &q = pose.orientation;
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+  const Eigen::Vector3d part = (element.rows * (turn.conjugate() * n)).cwiseAbs();
+  for (Eigen::Index i = 0; i < 3; ++i)
+    if (element.is_flat_across[static_cast<std::size_t>(i)] && part[i] < FLAT_PART * part.maxCoeff()) return true;
   return false;
 }
 
@@ -158,9 +184,9 @@ Element makeElement(const ConstraintBody::Part &part, const Parameters &paramete
   if (exact && !is_convex && !part.exact)
     throw Error(std::string("side ") + name +
                 ": a mesh that was simplified has no exact distance: ask with meshes: hull, or without a tolerance");
-  side.may_be_flat = side.may_be_flat || mayBeFlat(hull.shape);
   if (!is_convex) side.missing = std::max(side.missing, part.excess);
   Element out;
+  findFlatSpots(hull.shape, out);
   out.hull = bodyOf(hull, false);
   out.body = is_convex || !exact ? out.hull : bodyOf(part, true);
   if (is_convex)
@@ -214,6 +240,7 @@ class SuperquadricConstraint : public Constraint {
    * result's upper is the value, whose gradient is known. */
   struct Nearest {
     const cprox_body *a = nullptr, *b = nullptr;
+    const Element *part_a = nullptr, *part_b = nullptr;
     cprox_result result{};
     double upper = std::numeric_limits<double>::infinity();
     bool is_mesh = false; /* not convex: there may be several nearest points */
@@ -246,6 +273,8 @@ class SuperquadricConstraint : public Constraint {
     Nearest out;
     out.a = a.body.get();
     out.b = b.body.get();
+    out.part_a = &a;
+    out.part_b = &b;
     out.result = measure(out.a, out.b, place, options, workspace);
     out.shift = start.shift;
     out.is_mesh = meshes && out.result.upper > 0.0;
@@ -306,7 +335,8 @@ class SuperquadricConstraint : public Constraint {
       out.reason = "there is more than one way out";
     } else if (best.is_mesh && !wayOutIsAlone(best, place, size, workspace)) {
       out.reason = "the nearest points are not the only ones";
-    } else if (a_.may_be_flat && b_.may_be_flat && !nearestIsAlone(best, place, size, workspace)) {
+    } else if (isFlatAlong(*best.part_a, place.a, out.normal) && isFlatAlong(*best.part_b, place.b, out.normal) &&
+               !nearestIsAlone(best, place, size, workspace)) {
       out.reason = "the nearest points are not the only ones";
     } else {
       out.reason.clear();
