@@ -4,6 +4,7 @@
  * Prints rows of CSV: what, first_ms, again_ms, changed_ms: the first question, the median of those after it, and that of
  * those after one change each. Times of this thread's processor. */
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -135,16 +136,19 @@ void boxes(const moveit::core::RobotModelPtr &model, int n) {
   });
 }
 
-void octomapOf(const moveit::core::RobotModelPtr &model, int n) {
+/* Occupied cells beside the robot, `step` cells from one to the next. */
+void octomapOf(const moveit::core::RobotModelPtr &model, const std::string &what, const std::array<int, 3> &counts,
+               int step) {
   const auto scene = sceneOf(model, false);
   const auto tree = std::make_shared<cd::OccMapTree>(0.02);
-  const auto cell = [](int i, int k, int j) {
-    return octomap::point3d(1.5F + 0.04F * static_cast<float>(i), -0.9F + 0.04F * static_cast<float>(k),
-                            0.04F * static_cast<float>(j));
+  const auto cell = [step](int i, int k, int j) {
+    const float apart = 0.02F * static_cast<float>(step);
+    return octomap::point3d(1.51F + apart * static_cast<float>(i), -0.89F + apart * static_cast<float>(k),
+                            0.01F + apart * static_cast<float>(j));
   };
-  for (int i = 0; i < n; ++i)
-    for (int k = 0; k < n; ++k)
-      for (int j = 0; j < n; ++j) tree->updateNode(cell(i, k, j), true);
+  for (int i = 0; i < counts[0]; ++i)
+    for (int k = 0; k < counts[1]; ++k)
+      for (int j = 0; j < counts[2]; ++j) tree->updateNode(cell(i, k, j), true);
   scene->processOctomapPtr(tree, Eigen::Isometry3d::Identity());
   robot_trajectory::RobotTrajectory plan(model, "panda_arm");
   plan.addSuffixWayPoint(scene->getCurrentState(), 0.0);
@@ -152,8 +156,8 @@ void octomapOf(const moveit::core::RobotModelPtr &model, int n) {
   const curve_proximity::Certifier certifier;
   bool occupied = true;
   print(
-      "a plan beside an octomap of " + std::to_string(tree->getNumLeafNodes()) +
-          " leaves (FCL's detector); one cell changes",
+      "a plan beside an octomap of " + std::to_string(tree->getNumLeafNodes()) + " leaves " + what +
+          " (FCL's detector); one cell changes",
       [&] {
         const std::string why = certifier.certify(*scene, plan, {}).why;
         if (!why.empty()) throw curve_proximity::Error(why);
@@ -178,8 +182,9 @@ int main() try {
   std::printf("what,first_ms,again_ms,changed_ms\n");
   attachedMesh(model);
   boxes(model, 1000);
-  octomapOf(model, 17);
-  octomapOf(model, 47);
+  octomapOf(model, "apart", {17, 17, 17}, 2);
+  octomapOf(model, "apart", {47, 47, 47}, 2);
+  octomapOf(model, "of a wall", {1, 322, 322}, 1);
   return 0;
 } catch (const std::exception &error) {
   std::fprintf(stderr, "moveit_costs: %s\n", error.what());

@@ -59,7 +59,9 @@ its first to its last pose: rotations between them are not swept. Ours is certif
 ## After one change of the scene
 
 Ours alone, a Panda: the first question, the median of 31 more, and that of 31 after one change each, in milliseconds of
-the processor ([moveit_costs.csv](moveit_costs.csv)). Leaves are occupied cells that touch no other.
+the processor ([moveit_costs.csv](moveit_costs.csv)). Leaves are occupied cells. Where they are apart,
+no cell touches another one, and each has a parent of its own: that is the largest tree. Between two plans beside an
+octomap 110 ms pass.
 
 | question; what changes | first [ms] | again [ms] | after a change [ms] |
 |---|---|---|---|''')
