@@ -233,13 +233,17 @@ TEST(PreparedRobots, verdicts_among_many_objects_are_those_of_each_alone) {
 
 /* One of 81 boxes stands where the way of 2 m, or a robot that stands at its end, comes within .01 m of the limit. The
  * way's box is as large as the way, the sphere and the padding make it, to some roundings: without one of these the box
- * at the end is left out. */
+ * at the end is left out. A small sphere in a corner of the way's box, farther than the limit, is always nearer to what
+ * is left of that: were it not there, the box would be asked about as the nearest of what is far. */
 TEST(PreparedRobots, the_one_near_object_of_many_counts_at_the_end_of_the_way) {
   for (const double delta : {0.0, 0.3}) {
     for (const double gap : {-0.01, 0.01}) {
       const double face = 2.0 + SLIDE_RADIUS + SLIDE_PADDING + delta + gap;
       const ShapeDescription box = shape(ShapeType::BOX, {0.5, 0.5, 0.5});
-      std::vector<Operation> objects = {add("near", {box}, translation(face + 0.25, 0, 0))};
+      const double corner = 0.12 + 0.75 * delta;
+      std::vector<Operation> objects = {
+          add("near", {box}, translation(face + 0.25, 0, 0)),
+          add("corner", {shape(ShapeType::SPHERE, {0.005})}, translation(2.0 + corner, corner, corner))};
       for (int i = 0; i < 80; ++i) objects.push_back(add("far" + std::to_string(i), {box}, translation(i, 20, 0)));
       const PreparedRobot robot = slideAmong(Eigen::Isometry3d::Identity(), objects);
       Query query;
@@ -255,7 +259,8 @@ TEST(PreparedRobots, the_one_near_object_of_many_counts_at_the_end_of_the_way) {
 }
 
 /* The sphere carries a cube of .04 m whose vertices are .6 m ahead of its frame, and its base is turned by a quarter: so
- * the cube is in the middle of its body neither along the base's x axis nor along that of the world. */
+ * the cube is in the middle of its body neither along the base's x axis nor along that of the world. The small sphere is
+ * as above. */
 TEST(PreparedRobots, a_carried_body_far_from_its_frame_counts_where_it_is) {
   Attachment cube;
   cube.link = "ball";
@@ -270,7 +275,8 @@ TEST(PreparedRobots, a_carried_body_far_from_its_frame_counts_where_it_is) {
   query.query_type = QueryType::COLLISION;
   for (const double gap : {-0.01, 0.01}) {
     const ShapeDescription box = shape(ShapeType::BOX, {0.5, 0.5, 0.5});
-    std::vector<Operation> objects = {add("near", {box}, translation(0, 1.0 + 0.62 + SLIDE_PADDING + gap + 0.25, 0))};
+    std::vector<Operation> objects = {add("near", {box}, translation(0, 1.0 + 0.62 + SLIDE_PADDING + gap + 0.25, 0)),
+                                      add("corner", {shape(ShapeType::SPHERE, {0.005})}, translation(0.06, 1.6, 0.1))};
     for (int i = 0; i < 80; ++i) objects.push_back(add("far" + std::to_string(i), {box}, translation(i, 20, 0)));
     const PreparedRobot robot = slideAmong(base, objects, {cube});
     const cprox_verdict expected = gap < 0.0 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR;
