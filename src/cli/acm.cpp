@@ -7,11 +7,11 @@
 
 #include "commands.h"
 #include "csv.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 #include "robot_file.h"
 #include "run.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 namespace {

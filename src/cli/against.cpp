@@ -6,7 +6,7 @@
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 #include "run.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "certificates.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 
 namespace curve_proximity::cli {

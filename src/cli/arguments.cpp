@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "../scene/yaml/numbers.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "options.h"
 
 namespace curve_proximity::cli {

@@ -3,8 +3,8 @@
 
 #include <new>
 
-#include "../scene/query/problem.h"
-#include "failure.h"
+#include "../scene/query/certificate_problem.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "commands.h"
 #include "csv.h"
 #include "dataset.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 #include "json.h"
 #include "library.h"

@@ -19,16 +19,16 @@
 #include <string_view>
 #include <utility>
 
-#include "../scene/query/problem.h"
+#include "../scene/query/certificate_problem.h"
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "json.h"
 #include "library.h"
 #include "moving_world.h"
 #include "trajectory.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "../scene/yaml/yaml_value.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 

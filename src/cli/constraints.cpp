@@ -9,14 +9,14 @@
 #include "commands.h"
 #include "constraint_lines.h"
 #include "constraints_yaml.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 #include "moving_world.h"
 #include "packages.h"
 #include "results.h"
 #include "run.h"
 #include "trajectory.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 namespace {

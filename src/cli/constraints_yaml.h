@@ -10,8 +10,8 @@
 
 #include "../providers/constraint_case.h"
 #include "../scene/yaml/yaml_value.h"
-#include "failure.h"
-#include "world.h"
+#include "exit_code.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 

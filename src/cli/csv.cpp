@@ -8,7 +8,7 @@
 
 #include "../scene/motion/curve_basis.h"
 #include "../scene/yaml/numbers.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "../scene/yaml/scene_change.h"
 #include "../scene/yaml/trajectory_yaml.h"
 #include "csv.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "json.h"
 
 namespace curve_proximity::cli {

@@ -13,7 +13,7 @@
 #include <curve_proximity/trajectory.hpp>
 
 #include "../scene/yaml/yaml_value.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 

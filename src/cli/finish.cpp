@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../scene/yaml/yaml_value.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 

@@ -12,7 +12,7 @@
 
 #include <curve_proximity/motion.hpp>
 
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 

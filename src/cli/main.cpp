@@ -11,7 +11,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "console.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "help.h"
 #include "packages.h"
 

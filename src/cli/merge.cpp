@@ -8,7 +8,7 @@
 
 #include "commands.h"
 #include "csv.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "results.h"
 #include "row_text.h"
 #include "run.h"

@@ -5,7 +5,7 @@
 #include <curve_proximity/movers.hpp>
 
 #include "commands.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 #include "robot_file.h"
 #include "trajectory.h"

@@ -12,7 +12,7 @@
 
 #include "answers.h"
 #include "console.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 

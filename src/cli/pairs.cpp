@@ -4,14 +4,14 @@
 #include "../scene/query/pair_query.h"
 #include "../scene/yaml/scene_change.h"
 #include "commands.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 #include "packages.h"
 #include "pairs_yaml.h"
 #include "results.h"
 #include "robot_file.h"
 #include "run.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 namespace {

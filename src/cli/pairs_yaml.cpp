@@ -2,7 +2,7 @@
 #include "pairs_yaml.h"
 
 #include "../scene/yaml/body_yaml.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "../scene/query/pair_query.h"
 #include "../scene/yaml/yaml_value.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 

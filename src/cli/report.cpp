@@ -19,14 +19,14 @@
 #include "certificates.h"
 #include "commands.h"
 #include "csv.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "library.h"
 #include "moving_world.h"
 #include "report_drawing.h"
 #include "report_page.h"
 #include "results.h"
 #include "trajectory.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "json.h"
 #include "moving_world.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 

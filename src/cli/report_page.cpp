@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <report_parts.h>
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "csv.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "../scene/yaml/scene_change.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "packages.h"
 
 namespace curve_proximity::cli {

@@ -9,7 +9,7 @@
 #include "../ros/messages/scene_message.h"
 #include "../scene/yaml/scene_change.h"
 #include "commands.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 namespace {

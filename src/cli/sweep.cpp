@@ -6,11 +6,11 @@
 
 #include "commands.h"
 #include "csv.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 #include "run.h"
 #include "trajectory.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -9,10 +9,10 @@
 #include "../scene/yaml/trajectory_yaml.h"
 #include "certificates.h"
 #include "commands.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "finish.h"
 #include "moving_world.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <curve_proximity/motion.hpp>
 
 #include "answers.h"
-#include "world.h"
+#include "world_files.h"
 
 namespace curve_proximity::cli {
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What the commands say that need ROS, in a build without it. */
 #include "commands.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "mesh.h"
+#include "mesh_builder.h"
 
 namespace curve_proximity::mesh_reader {
 

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "mesh.h"
+#include "mesh_builder.h"
 
 namespace curve_proximity::mesh_reader {
 

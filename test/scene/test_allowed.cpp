@@ -12,7 +12,7 @@
 #include <curve_proximity/srdf.hpp>
 
 #include "support.h"
-#include "yaml/failure.h"
+#include "yaml/bad_input.h"
 #include "yaml/scene_yaml.h"
 
 namespace curve_proximity {

@@ -3,7 +3,6 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/answer.c
   ${CMAKE_CURRENT_LIST_DIR}/bound_node.c
   ${CMAKE_CURRENT_LIST_DIR}/cluster.c
-  ${CMAKE_CURRENT_LIST_DIR}/robot_depth.c
   ${CMAKE_CURRENT_LIST_DIR}/deviation.c
   ${CMAKE_CURRENT_LIST_DIR}/element.c
   ${CMAKE_CURRENT_LIST_DIR}/flight.c
@@ -19,6 +18,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/prove_contact.c
   ${CMAKE_CURRENT_LIST_DIR}/rank.c
   ${CMAKE_CURRENT_LIST_DIR}/refine.c
+  ${CMAKE_CURRENT_LIST_DIR}/robot_depth.c
   ${CMAKE_CURRENT_LIST_DIR}/robot_scene.c
   ${CMAKE_CURRENT_LIST_DIR}/settle_flight.c
   ${CMAKE_CURRENT_LIST_DIR}/starts.c

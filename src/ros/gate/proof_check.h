@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "../scene/query/problem.h"
+#include "../scene/query/certificate_problem.h"
 
 namespace curve_proximity {
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "../../scene/yaml/failure.h"
+#include "../../scene/yaml/bad_input.h"
 #include "../../scene/yaml/path_yaml.h"
 
 namespace curve_proximity {

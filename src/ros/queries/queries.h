@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "../scene/query/problem.h"
+#include "../scene/query/certificate_problem.h"
 #include "../scene/query/subject.h"
 #include "parameters/parameters.h"
 #include "parameters/tuning.h"

@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-#include "../scene/query/problem.h"
+#include "../scene/query/certificate_problem.h"
 #include "../scene/query/subject.h"
 
 namespace curve_proximity {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "answering.h"
-#include "edge_model.h"
 #include "robot/short_way.h"
+#include "robot_edges.h"
 
 namespace curve_proximity {
 namespace {
@@ -128,7 +128,7 @@ class Lanes {
   }
 
   const EdgeList &edges_;
-  EdgeModel model_;
+  RobotEdges model_;
   std::shared_ptr<const Robot> robot_; /* where edges go the shorter way */
 };
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <limits>
 
+#include "bad_input.h"
 #include "curve_yaml.h"
-#include "failure.h"
 
 namespace curve_proximity::yaml {
 namespace {

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <vector>
 
-#include "failure.h"
+#include "bad_input.h"
 #include "numbers.h"
 
 namespace curve_proximity::yaml {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "curve_yaml.h"
 
+#include "bad_input.h"
 #include "body_yaml.h"
-#include "failure.h"
 #include "motion/curve_basis.h"
 
 namespace curve_proximity::yaml {

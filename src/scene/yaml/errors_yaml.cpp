@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "errors_yaml.h"
 
-#include "failure.h"
+#include "bad_input.h"
 #include "yaml_value.h"
 
 namespace curve_proximity::yaml {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <curve_proximity/files.hpp>
 
-#include "failure.h"
+#include "bad_input.h"
 #include "scene_change.h"
 #include "trajectory_yaml.h"
 

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <utility>
 
-#include "failure.h"
+#include "bad_input.h"
 #include "motion/path_times.h"
 #include "numbers.h"
 

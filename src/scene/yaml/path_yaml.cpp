@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "failure.h"
+#include "bad_input.h"
 #include "motion/path_times.h"
 #include "path_text.h"
 #include "scene_yaml.h"

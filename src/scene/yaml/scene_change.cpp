@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <set>
 
-#include "failure.h"
+#include "bad_input.h"
 #include "robot/free_joints.h"
 
 namespace curve_proximity::yaml {

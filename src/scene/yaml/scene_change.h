@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "frames.h"
+#include "scene_frames.h"
 #include "scene_yaml.h"
 
 namespace curve_proximity::yaml {

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "failure.h"
+#include "bad_input.h"
 #include "numbers.h"
 
 namespace curve_proximity::yaml {

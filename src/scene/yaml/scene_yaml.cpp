@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
+#include "bad_input.h"
 #include "body_yaml.h"
 #include "cloud_file.h"
-#include "failure.h"
 #include "numbers.h"
 #include "robot_state_yaml.h"
 #include "scene_change.h"

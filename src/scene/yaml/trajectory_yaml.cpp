@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "failure.h"
+#include "bad_input.h"
 #include "motion/trajectory_points.h"
 #include "robot_state_yaml.h"
 

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <map>
 
-#include "failure.h"
+#include "bad_input.h"
 #include "numbers.h"
 
 namespace curve_proximity::yaml {

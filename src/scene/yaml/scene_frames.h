@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Frames of a scene file: from their names to poses in the fixed frame. */
-#ifndef CURVE_PROXIMITY_YAML_FRAMES_H
-#define CURVE_PROXIMITY_YAML_FRAMES_H
+#ifndef CURVE_PROXIMITY_YAML_SCENE_FRAMES_H
+#define CURVE_PROXIMITY_YAML_SCENE_FRAMES_H
 
 #include <map>
 #include <set>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "edge_model.h"
+#include "robot_edges.h"
 
 #include <curve_proximity/roadmap.hpp>
 
@@ -21,8 +21,8 @@ TrajectoryDescription everyJoint(const std::vector<std::string> &joints) {
 
 } // namespace
 
-EdgeModel::EdgeModel(const PreparedRobot &robot, const std::vector<std::string> &joints,
-                     const JointPositions &others_at, RobotPairs against, const Query &query)
+RobotEdges::RobotEdges(const PreparedRobot &robot, const std::vector<std::string> &joints,
+                       const JointPositions &others_at, RobotPairs against, const Query &query)
     : motion(robot, everyJoint(joints), others_at, query.links),
       asked(askedOf(motion, against, query)),
       rest(cprox_motion_get_info(motion.data().core.get()).n_variables),
@@ -49,24 +49,24 @@ EdgeModel::EdgeModel(const PreparedRobot &robot, const std::vector<std::string> 
   checker.reset(made);
 }
 
-std::vector<double> EdgeModel::rowsFor(std::size_t n) const {
+std::vector<double> RobotEdges::rowsFor(std::size_t n) const {
   std::vector<double> rows(2 * n * rest.size());
   for (auto row = rows.begin(); row != rows.end();) row = std::copy(rest.begin(), rest.end(), row);
   return rows;
 }
 
-void EdgeModel::fill(const double *joints, double *row) const {
+void RobotEdges::fill(const double *joints, double *row) const {
   const TrajectoryShape &shape = motion.data().shape;
   for (std::size_t k = 0; k < shape.column.size(); ++k) row[shape.variable[k]] = joints[shape.column[k]];
 }
 
-bool EdgeModel::allMove(const double *from, const double *to) const {
+bool RobotEdges::allMove(const double *from, const double *to) const {
   const std::vector<std::size_t> &column = motion.data().shape.column;
   return std::all_of(column.begin(), column.end(), [&](std::size_t k) { return from[k] != to[k]; });
 }
 
-void EdgeModel::ask(const std::vector<double> &rows, std::size_t n, std::uint8_t *verdicts,
-                    Workspace &workspace) const {
+void RobotEdges::ask(const std::vector<double> &rows, std::size_t n, std::uint8_t *verdicts,
+                     Workspace &workspace) const {
   std::fill(verdicts, verdicts + n, static_cast<std::uint8_t>(CPROX_VERDICT_UNDECIDED));
   cprox_robot_edges(checker.get(), rows.data(), rows.data() + rows.size() / 2, n, workspace.get(), verdicts, nullptr);
 }
@@ -76,7 +76,7 @@ struct EdgeChecker::Data {
        RobotPairs against, const Query &query)
       : model(robot, joints, rest, against, query), coverage(coverageOf(query, model.asked)) {}
 
-  EdgeModel model;
+  RobotEdges model;
   Coverage coverage;
 };
 
@@ -95,7 +95,7 @@ EdgeChecker::EdgeChecker(EdgeChecker &&) noexcept = default;
 EdgeChecker &EdgeChecker::operator=(EdgeChecker &&) noexcept = default;
 
 cprox_verdict EdgeChecker::ask(const double *from, const double *to, Workspace &workspace) const {
-  const EdgeModel &model = data_->model;
+  const RobotEdges &model = data_->model;
   std::vector<double> rows = model.rowsFor(1);
   model.fill(from, rows.data());
   model.fill(to, rows.data() + rows.size() / 2);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "problem.h"
+#include "certificate_problem.h"
 
 #include <array>
 #include <cstdio>

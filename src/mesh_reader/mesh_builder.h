@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* From positions and polygons to vertices and triangles. */
-#ifndef CURVE_PROXIMITY_MESH_READER_MESH_H
-#define CURVE_PROXIMITY_MESH_READER_MESH_H
+#ifndef CURVE_PROXIMITY_MESH_READER_MESH_BUILDER_H
+#define CURVE_PROXIMITY_MESH_READER_MESH_BUILDER_H
 
 #include <array>
 #include <cstdint>

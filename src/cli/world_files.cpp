@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "world.h"
+#include "world_files.h"
 
 #include <chrono>
 #include <cstdio>
@@ -8,11 +8,11 @@
 #include <curve_proximity/mesh_remarks.hpp>
 
 #include "../scene/yaml/cloud_file.h"
-#include "../scene/yaml/frames.h"
 #include "../scene/yaml/path_yaml.h"
 #include "../scene/yaml/scene_change.h"
+#include "../scene/yaml/scene_frames.h"
 #include "../scene/yaml/scene_yaml.h"
-#include "failure.h"
+#include "exit_code.h"
 #include "packages.h"
 #include "robot_file.h"
 #include "run.h"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The two ways in which the command line gives up: BadUsage and BadInput, as its readers of files have them. */
-#ifndef CURVE_PROXIMITY_CLI_FAILURE_H
-#define CURVE_PROXIMITY_CLI_FAILURE_H
+#ifndef CURVE_PROXIMITY_CLI_EXIT_CODE_H
+#define CURVE_PROXIMITY_CLI_EXIT_CODE_H
 
 #include <curve_proximity/core.hpp>
 #include <new>
 
-#include "../scene/yaml/failure.h"
+#include "../scene/yaml/bad_input.h"
 
 namespace curve_proximity::cli {
 

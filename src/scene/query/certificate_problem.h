@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What the checker of certificates reads beside a certificate: the scene, and what moves (doc/certificates.md). */
-#ifndef CURVE_PROXIMITY_SCENE_PROBLEM_H
-#define CURVE_PROXIMITY_SCENE_PROBLEM_H
+#ifndef CURVE_PROXIMITY_SCENE_CERTIFICATE_PROBLEM_H
+#define CURVE_PROXIMITY_SCENE_CERTIFICATE_PROBLEM_H
 
 #include <cstdint>
 #include <string>

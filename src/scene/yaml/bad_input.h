@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What is wrong with an input file. */
-#ifndef CURVE_PROXIMITY_YAML_FAILURE_H
-#define CURVE_PROXIMITY_YAML_FAILURE_H
+#ifndef CURVE_PROXIMITY_YAML_BAD_INPUT_H
+#define CURVE_PROXIMITY_YAML_BAD_INPUT_H
 
 #include <stdexcept>
 

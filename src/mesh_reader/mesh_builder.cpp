@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "mesh.h"
+#include "mesh_builder.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "frames.h"
+#include "scene_frames.h"
 
-#include "failure.h"
+#include "bad_input.h"
 
 namespace curve_proximity::yaml {
 namespace {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The core's handle for edges of a robot in a scene, for all pairs that an edge of some joints can have. */
-#ifndef CURVE_PROXIMITY_SCENE_EDGE_MODEL_H
-#define CURVE_PROXIMITY_SCENE_EDGE_MODEL_H
+#ifndef CURVE_PROXIMITY_SCENE_ROBOT_EDGES_H
+#define CURVE_PROXIMITY_SCENE_ROBOT_EDGES_H
 
 #include <cstdint>
 #include <memory>
@@ -12,9 +12,9 @@
 
 namespace curve_proximity {
 
-struct EdgeModel {
-  EdgeModel(const PreparedRobot &robot, const std::vector<std::string> &joints, const JointPositions &rest,
-            RobotPairs against, const Query &query);
+struct RobotEdges {
+  RobotEdges(const PreparedRobot &robot, const std::vector<std::string> &joints, const JointPositions &rest,
+             RobotPairs against, const Query &query);
 
   /* Rows of all variables: of n edges where they begin, then where they end. */
   std::vector<double> rowsFor(std::size_t n) const;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** From files to what curves are measured against. */
-#ifndef CURVE_PROXIMITY_CLI_WORLD_H
-#define CURVE_PROXIMITY_CLI_WORLD_H
+#ifndef CURVE_PROXIMITY_CLI_WORLD_FILES_H
+#define CURVE_PROXIMITY_CLI_WORLD_FILES_H
 
 #include <cstdint>
 #include <functional>
@@ -16,7 +16,7 @@
 
 #include "../scene/yaml/yaml_value.h"
 #include "arguments.h"
-#include "failure.h"
+#include "exit_code.h"
 
 namespace curve_proximity::cli {
 
