@@ -9,6 +9,7 @@
 #include "answering.h"
 #include "geometry/placing.h"
 #include "proving.h"
+#include "world/attaching.h"
 
 namespace curve_proximity {
 namespace {
@@ -23,15 +24,11 @@ void checkObjects(const Names &names, const Snapshot &snapshot) {
 }
 
 void checkLinks(const Names &names, const LinkPoses &poses, const Robot *robot) {
-  if (!robot && !names.empty()) throw Error("link '" + *names.begin() + "' is unknown: the scene has no robot");
-  if (!robot && !poses.empty()) throw Error("poses of links were given, but the scene has no robot");
   for (const std::string &name : names) {
-    const auto it = robot->links().find(name);
-    if (it == robot->links().end())
-      throw Error("robot '" + robot->name() + "' has no link '" + name + "'" +
-                  didYouMean(name, namesOf(robot->links())));
-    if (it->second.empty()) throw Error("link '" + name + "' has no collision geometry");
+    checkLink(name, robot);
+    if (robot->links().at(name).empty()) throw Error("link '" + name + "' has no collision geometry");
   }
+  if (!robot && !poses.empty()) throw Error("poses of links were given, but the scene has no robot");
   for (const auto &[name, pose] : poses) {
     if (robot->links().count(name) == 0) throw Error("robot '" + robot->name() + "' has no link '" + name + "'");
     checkPose(pose, "the pose of link '" + name + "'");

@@ -45,11 +45,11 @@ void makeShapes(AttachedObject &object, double scale, const ResourceOptions &res
 
 } // namespace
 
-void checkLink(const std::string &link, const Robot *robot) {
+void checkLink(const std::string &link, const Robot *robot, const char *what) {
   if (robot && robot->links().count(link) > 0) return;
-  throw Error(robot ? "robot '" + robot->name() + "' has no link '" + link + "'" +
-                          didYouMean(link, namesOf(robot->links()))
-                    : "link '" + link + "' is unknown: the scene has no robot");
+  throw Error(what + (robot ? "robot '" + robot->name() + "' has no link '" + link + "'" +
+                                  didYouMean(link, namesOf(robot->links()))
+                            : "link '" + link + "' is unknown: the scene has no robot"));
 }
 
 void checkLinkScales(const std::map<std::string, double> &scales, const Robot *robot) {
@@ -58,11 +58,7 @@ void checkLinkScales(const std::map<std::string, double> &scales, const Robot *r
       throw Error("link scale: that of link '" + link + "' is " + std::to_string(scale) +
                   ": it must be finite and above 0");
     }
-    try {
-      checkLink(link, robot);
-    } catch (const Error &error) {
-      throw Error(std::string("link scale: ") + error.what());
-    }
+    checkLink(link, robot, "link scale: ");
   }
 }
 

@@ -26,8 +26,8 @@ std::shared_ptr<const std::vector<LinkGeometry>> scaledLink(const Robot &robot, 
 /* Throws Error for a scale that is not finite and above 0, and a link that the robot does not have. */
 void checkLinkScales(const std::map<std::string, double> &scales, const Robot *robot);
 
-/* Throws Error, naming the link, where it is not the robot's. */
-void checkLink(const std::string &link, const Robot *robot);
+/* Throws Error, naming the link, where it is not the robot's. what: how the message begins. */
+void checkLink(const std::string &link, const Robot *robot, const char *what = "");
 
 /* Where the attachment says that the link is. Throws Error where it does not. */
 const Eigen::Isometry3d &poseOfLink(const Attachment &given, const std::string &link);

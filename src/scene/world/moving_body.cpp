@@ -2,7 +2,6 @@
 #include "moving_body.h"
 
 #include <array>
-#include <cmath>
 
 #include "geometry/placing.h"
 
@@ -15,8 +14,7 @@ void expect(cprox_status status, const Workspace &workspace) {
 
 void makeRobot(const ObjectDescription &object, MovingBody &out) {
   if (object.shapes.empty()) throw Error("it has no shapes");
-  if (!(object.padding >= 0.0) || !std::isfinite(object.padding))
-    throw Error("its padding must be finite and not below 0");
+  checkPadding(object.padding);
   std::vector<cprox_link_geometry> geometries;
   for (std::size_t i = 0; i < object.shapes.size(); ++i) {
     if (out.geometries[i].curve) throw Error("a curve stands where it is: it takes no trajectory");

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <iterator>
 #include <tuple>
 #include <utility>
 
-#include <curve_proximity/nearest_name.hpp>
 #include <curve_proximity/scene.hpp>
 
 #include "attaching.h"
@@ -246,11 +244,7 @@ void checkLinkPaddings(const std::map<std::string, double> &paddings, const Robo
     } catch (const Error &error) {
       throw Error("link '" + link + "': " + error.what());
     }
-    if (!robot || robot->links().count(link) == 0) {
-      throw Error("link padding: " + (robot ? "robot '" + robot->name() + "' has no link '" + link + "'" +
-                                                  didYouMean(link, namesOf(robot->links()))
-                                            : "link '" + link + "' is unknown: the scene has no robot"));
-    }
+    checkLink(link, robot, "link padding: ");
   }
 }
 
