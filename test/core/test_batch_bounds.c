@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The bounds of a batch (balls, boxes, OBBs, blocks) are never above the true distance. */
+/* The bounds of a batch (balls, boxes, OBBs, clusters) are never above the true distance. */
 #include <curve_proximity/cprox.h>
 #include <math.h>
 #include <string.h>
@@ -279,10 +279,10 @@ CASE(obbs_hold_their_parts) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 24: 75 boxes, compounds of two, and two halfspaces, which have no balls. Each part is in one block; the bound of
- * a block is above the distance of none of its balls from 4 boxes, in long double, and no more than 160 u of the sizes
- * below that of the box round its balls. */
-CASE(blocks_hold_each_part_once_and_bound_it) {
+/* Seed 24: 75 boxes, compounds of two, and two halfspaces, which have no balls. Each part is in one cluster; the bound
+ * of a cluster is above the distance of none of its balls from 4 boxes, in long double, and no more than 160 u of the
+ * sizes below that of the box round its balls. */
+CASE(clusters_hold_each_part_once_and_bound_it) {
   enum { N = 75, BOXES = 4 };
   rng r = rng_seed(24);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -317,22 +317,22 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
     }
     double lower[N];
     const double radius = rng_uniform(&r, 0, 0.2);
-    const packet_blocks *blocks = &batch->blocks;
-    assert_true(blocks->padded <= N && blocks->n == (batch->balls.n + BLOCK - 1) / BLOCK);
-    packet_block_bounds(blocks, boxes, BOXES, radius, 0.0, lower);
+    const packet_clusters *clusters = &batch->clusters;
+    assert_true(clusters->padded <= N && clusters->n == (batch->balls.n + CLUSTER - 1) / CLUSTER);
+    packet_cluster_bounds(clusters, boxes, BOXES, radius, 0.0, lower);
     for (size_t k = 0; k < batch->balls.n; k++) {
       const packet_balls *balls = &batch->balls;
       if (isinf(balls->reach[k])) {
-        assert_true(lower[k / BLOCK] == -INFINITY);
+        assert_true(lower[k / CLUSTER] == -INFINITY);
         continue;
       }
       const vec3 c = vec(balls->x[k], balls->y[k], balls->z[k]);
       long double least = INFINITY;
       for (int i = 0; i < BOXES; i++) least = fminl(least, square_from_box(&boxes[i], c));
       const long double truth = fmaxl(sqrtl(least) - (long double)balls->reach[k], 0.0L) - (long double)radius;
-      assert_true((long double)lower[k / BLOCK] <= truth);
+      assert_true((long double)lower[k / CLUSTER] <= truth);
     }
-    for (size_t b = 0; b < blocks->n; b++) {
+    for (size_t b = 0; b < clusters->n; b++) {
       if (lower[b] == -INFINITY) continue;
       long double least = INFINITY;
       for (int i = 0; i < BOXES; i++) {
@@ -340,15 +340,15 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
         const double high[3] = {boxes[i].high.x, boxes[i].high.y, boxes[i].high.z};
         long double square = 0.0L;
         for (int j = 0; j < 3; j++) {
-          const long double over = (long double)low[j] - (long double)blocks->high[j][b];
-          const long double under = (long double)blocks->low[j][b] - (long double)high[j];
+          const long double over = (long double)low[j] - (long double)clusters->high[j][b];
+          const long double under = (long double)clusters->low[j][b] - (long double)high[j];
           const long double gap = fmaxl(fmaxl(over, under), 0.0L);
           square += gap * gap;
         }
         least = fminl(least, square);
       }
       const long double below = sqrtl(least) - (long double)radius - (long double)lower[b];
-      assert_true(below >= 0.0L && below <= 160 * 0x1p-53L * (sqrtl(least) + 1.0L + (long double)blocks->sizes[b]));
+      assert_true(below >= 0.0L && below <= 160 * 0x1p-53L * (sqrtl(least) + 1.0L + (long double)clusters->sizes[b]));
     }
     obstacle_batch_free(batch);
     cprox_body_free(pair);

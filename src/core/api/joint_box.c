@@ -72,7 +72,7 @@ static void place_side(box_search *s, const box_pair *pair, int k) {
   for (size_t i = 0; i < side->n_axes; i++) {
     const int32_t index = chain[k == 0 ? side->n_axes - 1 - i : i].axis;
     const robot_axis *axis = &s->robot->axes[index];
-    s->frames[index] = axis_move(axis, i > 0 ? &s->frames[axis->parent] : NULL, value_of(s, axis), NULL);
+    s->frames[index] = robot_axis_move(axis, i > 0 ? &s->frames[axis->parent] : NULL, value_of(s, axis), NULL);
   }
 }
 

@@ -117,9 +117,9 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
 
 static bool reserve(batch_run *run) {
   const packet_balls *balls = &run->batch->balls;
-  const size_t numbers = balls->padded + run->batch->blocks.padded + 1;
+  const size_t numbers = balls->padded + run->batch->clusters.padded + 1;
   run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, numbers * sizeof(double));
-  run->block_lower = run->lower ? run->lower + balls->padded : NULL;
+  run->cluster_lower = run->lower ? run->lower + balls->padded : NULL;
   run->near = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_NEAR, (balls->n + 1) * sizeof *run->near);
   run->open = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_OPEN, (balls->n + 1) * sizeof *run->open);
   return run->lower && run->near && run->open;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Parts that stand together make blocks. */
+/* Parts that stand together make clusters. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,9 +21,9 @@ static int by_z(const void *a, const void *b) {
   return by(((const batch_place *)a)->at.z, ((const batch_place *)b)->at.z);
 }
 
-/* Halves, by whole blocks, along the axis on which the places differ most. */
-void batch_blocks_gather(batch_place *places, size_t n) {
-  if (n <= BLOCK) return;
+/* Halves, by whole clusters, along the axis on which the places differ most. */
+void batch_clusters_gather(batch_place *places, size_t n) {
+  if (n <= CLUSTER) return;
   vec3 low = places[0].at, high = low;
   for (size_t i = 1; i < n; i++) {
     const vec3 p = places[i].at;
@@ -33,24 +33,24 @@ void batch_blocks_gather(batch_place *places, size_t n) {
   const vec3 run = vec_sub(high, low);
   const bool along_x = run.x >= run.y && run.x >= run.z;
   qsort(places, n, sizeof *places, along_x ? by_x : run.y >= run.z ? by_y : by_z);
-  const size_t half = (n / 2 + BLOCK - 1) / BLOCK * BLOCK;
-  batch_blocks_gather(places, half);
-  batch_blocks_gather(places + half, n - half);
+  const size_t half = (n / 2 + CLUSTER - 1) / CLUSTER * CLUSTER;
+  batch_clusters_gather(places, half);
+  batch_clusters_gather(places + half, n - half);
 }
 
-void batch_blocks_surround(obstacle_batch *batch) {
+void batch_clusters_surround(obstacle_batch *batch) {
   const packet_balls *balls = &batch->balls;
-  packet_blocks *blocks = &batch->blocks;
+  packet_clusters *clusters = &batch->clusters;
   const double *centre[3] = {balls->x, balls->y, balls->z};
-  for (size_t b = 0; b < blocks->n; b++) {
-    const size_t first = b * BLOCK, end = first + BLOCK < balls->n ? first + BLOCK : balls->n;
-    for (int axis = 0; axis < 3; axis++) blocks->low[axis][b] = INFINITY, blocks->high[axis][b] = -INFINITY;
+  for (size_t b = 0; b < clusters->n; b++) {
+    const size_t first = b * CLUSTER, end = first + CLUSTER < balls->n ? first + CLUSTER : balls->n;
+    for (int axis = 0; axis < 3; axis++) clusters->low[axis][b] = INFINITY, clusters->high[axis][b] = -INFINITY;
     for (size_t k = first; k < end; k++) {
       for (int axis = 0; axis < 3; axis++) {
-        blocks->low[axis][b] = lesser(centre[axis][k] - balls->reach[k], blocks->low[axis][b]);
-        blocks->high[axis][b] = greater(centre[axis][k] + balls->reach[k], blocks->high[axis][b]);
+        clusters->low[axis][b] = lesser(centre[axis][k] - balls->reach[k], clusters->low[axis][b]);
+        clusters->high[axis][b] = greater(centre[axis][k] + balls->reach[k], clusters->high[axis][b]);
       }
-      blocks->sizes[b] = greater(balls->sizes[k], blocks->sizes[b]);
+      clusters->sizes[b] = greater(balls->sizes[k], clusters->sizes[b]);
     }
   }
 }

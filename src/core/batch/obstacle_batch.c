@@ -110,16 +110,16 @@ static void lay_obb(const placed_pair *p, batch_core *core) {
 static obstacle_batch *allocate(size_t n_obstacles, size_t n_parts) {
   obstacle_batch *batch = calloc(1, sizeof *batch);
   if (!batch) return NULL;
-  const size_t n_blocks = (n_parts + BLOCK - 1) / BLOCK, padded = n_blocks * BLOCK;
-  const size_t padded_blocks = (n_blocks + BLOCK - 1) / BLOCK * BLOCK;
+  const size_t n_clusters = (n_parts + CLUSTER - 1) / CLUSTER, padded = n_clusters * CLUSTER;
+  const size_t padded_clusters = (n_clusters + CLUSTER - 1) / CLUSTER * CLUSTER;
   batch->n = n_obstacles;
   batch->balls.n = n_parts;
   batch->balls.padded = padded;
-  batch->blocks.n = n_blocks;
-  batch->blocks.padded = padded_blocks;
+  batch->clusters.n = n_clusters;
+  batch->clusters.padded = padded_clusters;
   batch->parts = calloc(n_parts + 1, sizeof *batch->parts);
   batch->cores = calloc(n_parts + 1, sizeof *batch->cores);
-  batch->balls.x = calloc(5 * padded + 7 * padded_blocks + 1, sizeof(double));
+  batch->balls.x = calloc(5 * padded + 7 * padded_clusters + 1, sizeof(double));
   if (!batch->parts || !batch->cores || !batch->balls.x) {
     obstacle_batch_free(batch);
     return NULL;
@@ -130,11 +130,11 @@ static obstacle_batch *allocate(size_t n_obstacles, size_t n_parts) {
   batch->balls.sizes = batch->balls.reach + padded;
   double *next = batch->balls.sizes + padded;
   for (int axis = 0; axis < 3; axis++) {
-    batch->blocks.low[axis] = next;
-    batch->blocks.high[axis] = next + padded_blocks;
-    next += 2 * padded_blocks;
+    batch->clusters.low[axis] = next;
+    batch->clusters.high[axis] = next + padded_clusters;
+    next += 2 * padded_clusters;
   }
-  batch->blocks.sizes = next;
+  batch->clusters.sizes = next;
   return batch;
 }
 
@@ -175,7 +175,7 @@ static bool list_parts(obstacle_batch *batch, const query *q) {
       places[bounded++] = place;
     }
   }
-  batch_blocks_gather(places, bounded);
+  batch_clusters_gather(places, bounded);
   for (size_t k = 0; k < n; k++) batch->parts[k] = places[k].part;
   free(places);
   return true;
@@ -195,7 +195,7 @@ cprox_status obstacle_batch_create(const cprox_obstacle *obstacles, size_t n, cp
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu obstacles", n);
   }
   for (size_t k = 0; k < n_parts; k++) describe(made, &q, k);
-  batch_blocks_surround(made);
+  batch_clusters_surround(made);
   *batch = made;
   return CPROX_OK;
 }
@@ -204,6 +204,6 @@ void obstacle_batch_free(obstacle_batch *batch) {
   if (!batch) return;
   free(batch->parts);
   free(batch->cores);
-  free(batch->balls.x); /* all arrays of the balls are in one block */
+  free(batch->balls.x); /* all arrays of the balls are one allocation */
   free(batch);
 }

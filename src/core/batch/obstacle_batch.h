@@ -32,7 +32,7 @@ typedef struct obstacle_batch {
   candidate *parts;
   batch_core *cores;
   packet_balls balls;
-  packet_blocks blocks; /* of BLOCK parts each, that stand together */
+  packet_clusters clusters; /* of CLUSTER parts each, that stand together */
 } obstacle_batch;
 
 /* Makes n obstacles ready, which were checked and must outlive it. */
@@ -40,14 +40,14 @@ cprox_status obstacle_batch_create(const cprox_obstacle *obstacles, size_t n, cp
                                    obstacle_batch **batch);
 void obstacle_batch_free(obstacle_batch *batch);
 
-/* Where a part stands, as far as its place in a block is concerned. */
+/* Where a part stands, as far as its place in a cluster is concerned. */
 typedef struct batch_place {
   candidate part;
   vec3 at;
 } batch_place;
 
-/* Puts n places in the order of blocks; and boxes round the blocks of the batch's balls. */
-void batch_blocks_gather(batch_place *places, size_t n);
-void batch_blocks_surround(obstacle_batch *batch);
+/* Puts n places in the order of clusters; and boxes round the clusters of the batch's balls. */
+void batch_clusters_gather(batch_place *places, size_t n);
+void batch_clusters_surround(obstacle_batch *batch);
 
 #endif

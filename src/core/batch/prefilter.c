@@ -163,17 +163,17 @@ void batch_prefilter(batch_run *run, batch_prefilter_answer *look) {
   run->short_enough = q->mover.curve->n_pieces <= BATCH_MOST_PIECES;
   run->measured = run->joined = false;
   run->cut = 0;
-  batch_open_begin(run);
+  batch_cull_begin(run);
 
   /* a distance begins with the part that may be nearest: what is farther than that one's upper bound need not be listed
    */
-  const size_t first = decides ? SIZE_MAX : batch_open_nearest(run);
+  const size_t first = decides ? SIZE_MAX : batch_cull_nearest(run);
   look->beyond = INFINITY;
   look->is_hit = false;
   run->n_open = 0;
   if (first != SIZE_MAX) consider(run, first, most, &least_upper, &promising, look);
   if (!look->is_hit) {
-    look->beyond = lesser(look->beyond, batch_open_list(run, lesser(most, least_upper)));
+    look->beyond = lesser(look->beyond, batch_cull_list(run, lesser(most, least_upper)));
     look->is_hit = run->short_enough && find_hit(run, greater(q->limit, 0.0), &look->hit);
   }
   for (size_t i = 0; i < run->n_open && !look->is_hit; i++)

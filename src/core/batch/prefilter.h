@@ -14,9 +14,9 @@ enum {
 typedef struct batch_run {
   const obstacle_batch *batch;
   query q;
-  double *block_lower; /* of each block of parts, */
-  double *lower;       /* of each part's ball, padded; not known in blocks that are beyond what matters */
-  uint32_t *open;      /* the n_open parts whose bound does not settle them */
+  double *cluster_lower; /* of each cluster of parts, */
+  double *lower;         /* of each part's ball, padded; not known in clusters that are beyond what matters */
+  uint32_t *open;        /* the n_open parts whose bound does not settle them */
   size_t n_open;
   bool short_enough;                                      /* for points and chords */
   packet_box boxes[BATCH_MOST_PIECES * PACKET_INTERVALS]; /* round intervals of the curve's chords: n_boxes, */
@@ -54,12 +54,12 @@ typedef struct batch_prefilter_answer {
 /* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. Fills *look. */
 void batch_prefilter(batch_run *run, batch_prefilter_answer *look);
 
-/* Which parts may matter: bounds the blocks of them, by boxes round the curve's chords where there are many; the part
+/* Which parts may matter: bounds the clusters of them, by boxes round the curve's chords where there are many; the part
  * that may be nearest, or SIZE_MAX where there is none; lists in run->open what is not farther than `most`, and returns
  * the least bound of the others. */
-void batch_open_begin(batch_run *run);
-size_t batch_open_nearest(batch_run *run);
-double batch_open_list(batch_run *run, double most);
+void batch_cull_begin(batch_run *run);
+size_t batch_cull_nearest(batch_run *run);
+double batch_cull_list(batch_run *run, double most);
 
 /* The basis and run->slack; false where memory is out. The least square distance of the points of half a piece from a
  * point, and which one of the piece has it. The chords between all points, and run->beside. */

@@ -13,7 +13,7 @@ box box_empty(void);
 void box_add(box *b, const box *other);
 
 /* The box of an element, about the centre. */
-box element_box(const tree_source *source, uint32_t element);
+box tree_element_box(const tree_source *source, uint32_t element);
 
 /* Writes elements into the next pack, the last one repeated; returns the pack's box. The tree has room for it. */
 box tree_append_pack(tree *t, const tree_source *source, const uint32_t *elements, size_t n);

@@ -193,7 +193,7 @@ bool tree_build_by_area(tree *t, const tree_source *source) {
   bool made = b.items != NULL;
   if (made) {
     for (size_t i = 0; i < source->n; i++) {
-      const box of = element_box(source, (uint32_t)i);
+      const box of = tree_element_box(source, (uint32_t)i);
       b.items[i] =
           (item){.b = {{of.low.x, of.low.y, of.low.z, -of.high.x, -of.high.y, -of.high.z}}, .element = (uint32_t)i};
     }

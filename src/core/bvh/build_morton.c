@@ -26,7 +26,7 @@ static uint64_t spread(uint64_t x) {
 
 static vec3 middle2(const tree_source *source, uint32_t element) {
   if (source->kind == TREE_POINTS) return vec_scale(2.0, vec_sub(source->points[element], source->centre));
-  const box b = element_box(source, element);
+  const box b = tree_element_box(source, element);
   return vec_add(b.low, b.high);
 }
 

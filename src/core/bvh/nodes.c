@@ -33,7 +33,7 @@ static int corners_of(const tree_source *source, uint32_t element, vec3 corner[3
   return 2;
 }
 
-box element_box(const tree_source *source, uint32_t element) {
+box tree_element_box(const tree_source *source, uint32_t element) {
   vec3 corner[3];
   const int n = corners_of(source, element, corner);
   box b = {corner[0], corner[0]};

@@ -20,9 +20,9 @@ void packet_ball_bounds(const packet_balls *balls, const curve_capsule *capsule,
   const double own = capsule->radius + radius + (length2 > LEAST_SQUARE ? 0.0 : 1e-140);
   const vec3 b = capsule->b; /* sums of coordinates are no less than lengths */
   const double own_sizes = fabs(a.x) + fabs(a.y) + fabs(a.z) + fabs(b.x) + fabs(b.y) + fabs(b.z) + own;
-  for (size_t i = 0; i < balls->padded; i += BLOCK) {
+  for (size_t i = 0; i < balls->padded; i += CLUSTER) {
 #pragma omp simd
-    for (size_t l = 0; l < BLOCK; l++) {
+    for (size_t l = 0; l < CLUSTER; l++) {
       /* the nearest point of the chord; any other would only lie farther away, by no more than the rounding of s */
       const size_t k = i + l;
       const double px = x[k] - a.x, py = y[k] - a.y, pz = z[k] - a.z;

@@ -9,10 +9,10 @@
 /* A piece is cut into CHORDS of equal parameter length, of which LANES at a time are worked on. */
 enum { LANES = 8, CHORDS = 16 };
 
-/* Parts are looked at in blocks. */
-enum { BLOCK = 4 };
+/* Parts are bounded in clusters of so many. */
+enum { CLUSTER = 4 };
 
-/* Balls, one array a number, `padded` of each: n up to a multiple of BLOCK. */
+/* Balls, one array a number, `padded` of each: n up to a multiple of CLUSTER. */
 typedef struct packet_balls {
   size_t n, padded;
   double *x, *y, *z;
@@ -99,16 +99,16 @@ double packet_least(const double *values, uint32_t *which);
 
 void packet_see_obb(const packet_chords *chords, const packet_obb *obb, packet_sample *sample);
 
-/* Boxes round the balls of blocks, one array a number, padded likewise. */
-typedef struct packet_blocks {
+/* Boxes round the balls of clusters, one array a number, padded likewise. */
+typedef struct packet_clusters {
   size_t n, padded;
   double *low[3], *high[3];
   double *sizes; /* the largest of the balls' */
-} packet_blocks;
+} packet_clusters;
 
-/* lower[b]: the distance of block b from the nearest of n boxes, likewise. */
-void packet_block_bounds(const packet_blocks *blocks, const packet_box *boxes, size_t n, double radius, double slack,
-                         double *lower);
+/* lower[b]: the distance of cluster b from the nearest of n boxes, likewise. */
+void packet_cluster_bounds(const packet_clusters *clusters, const packet_box *boxes, size_t n, double radius,
+                           double slack, double *lower);
 
 /* max|P_(i+2) - 2 P_(i+1) + P_i|² over the control points. */
 double packet_bend2(const vec3 *points, size_t degree);

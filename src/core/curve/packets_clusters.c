@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Balls and blocks of them against boxes round intervals of a curve. */
+/* Balls and clusters of them against boxes round intervals of a curve. */
 #include "base/rounding.h"
 #include "curve/packets.h"
 #include "simd/dispatch.h"
@@ -16,19 +16,19 @@ void packet_boxes(const packet_chords *c, packet_box boxes[PACKET_INTERVALS]) {
   }
 }
 
-/* The ends of BLOCK boxes, one array a coordinate; of points both ends are one. */
+/* The ends of CLUSTER boxes, one array a coordinate; of points both ends are one. */
 typedef struct spans {
   const double *low_x, *low_y, *low_z, *high_x, *high_y, *high_z;
 } spans;
 
 /* The squared distance of each from the nearest of the n boxes. Inlined into each clone, it is compiled for it. */
 static inline __attribute__((always_inline)) void nearest_squares(const packet_box *boxes, size_t n, spans s,
-                                                                  double least[BLOCK]) {
-  for (size_t l = 0; l < BLOCK; l++) least[l] = INFINITY;
+                                                                  double least[CLUSTER]) {
+  for (size_t l = 0; l < CLUSTER; l++) least[l] = INFINITY;
   for (size_t b = 0; b < n; b++) {
     const vec3 low = boxes[b].low, high = boxes[b].high;
 #pragma omp simd
-    for (size_t l = 0; l < BLOCK; l++) {
+    for (size_t l = 0; l < CLUSTER; l++) {
       double dx = low.x - s.high_x[l] > s.low_x[l] - high.x ? low.x - s.high_x[l] : s.low_x[l] - high.x;
       double dy = low.y - s.high_y[l] > s.low_y[l] - high.y ? low.y - s.high_y[l] : s.low_y[l] - high.y;
       double dz = low.z - s.high_z[l] > s.low_z[l] - high.z ? low.z - s.high_z[l] : s.low_z[l] - high.z;
@@ -47,11 +47,11 @@ void packet_box_bounds(const packet_balls *balls, const packet_box *boxes, size_
   const double *restrict x = balls->x, *restrict y = balls->y, *restrict z = balls->z;
   const double *restrict reach = balls->reach, *restrict sizes = balls->sizes;
   double *restrict out = lower;
-  for (size_t i = 0; i < balls->padded; i += BLOCK) {
-    double least[BLOCK];
+  for (size_t i = 0; i < balls->padded; i += CLUSTER) {
+    double least[CLUSTER];
     nearest_squares(boxes, n, (spans){x + i, y + i, z + i, x + i, y + i, z + i}, least);
 #pragma omp simd
-    for (size_t l = 0; l < BLOCK; l++) {
+    for (size_t l = 0; l < CLUSTER; l++) {
       const size_t k = i + l;
       const double distance = sqrt(least[l]), margin = radius + reach[k];
       const double bound =
@@ -62,17 +62,18 @@ void packet_box_bounds(const packet_balls *balls, const packet_box *boxes, size_
 }
 
 SIMD_CLONES
-void packet_block_bounds(const packet_blocks *blocks, const packet_box *boxes, size_t n, double radius, double slack,
-                         double *lower) {
-  const double *restrict low_x = blocks->low[0], *restrict low_y = blocks->low[1], *restrict low_z = blocks->low[2];
-  const double *restrict high_x = blocks->high[0], *restrict high_y = blocks->high[1];
-  const double *restrict high_z = blocks->high[2], *restrict sizes = blocks->sizes;
+void packet_cluster_bounds(const packet_clusters *clusters, const packet_box *boxes, size_t n, double radius,
+                           double slack, double *lower) {
+  const double *restrict low_x = clusters->low[0], *restrict low_y = clusters->low[1],
+                         *restrict low_z = clusters->low[2];
+  const double *restrict high_x = clusters->high[0], *restrict high_y = clusters->high[1];
+  const double *restrict high_z = clusters->high[2], *restrict sizes = clusters->sizes;
   double *restrict out = lower;
-  for (size_t i = 0; i < blocks->padded; i += BLOCK) {
-    double least[BLOCK];
+  for (size_t i = 0; i < clusters->padded; i += CLUSTER) {
+    double least[CLUSTER];
     nearest_squares(boxes, n, (spans){low_x + i, low_y + i, low_z + i, high_x + i, high_y + i, high_z + i}, least);
 #pragma omp simd
-    for (size_t l = 0; l < BLOCK; l++) {
+    for (size_t l = 0; l < CLUSTER; l++) {
       const size_t k = i + l;
       const double distance = sqrt(least[l]);
       out[k] = distance - radius - ROUND_UP * (slack + ROUND_BALLS * ROUND_U * (distance + radius + sizes[k]));

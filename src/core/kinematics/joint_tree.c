@@ -42,7 +42,7 @@ static void turn_about(const robot_axis *axis, const double *from, double q, dou
   multiply(from, r, to);
 }
 
-void axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved) {
+void robot_axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved) {
   *moved = *before;
   if (axis->kind == AXIS_PRISMATIC)
     moved->p = vec_axpy(before->p, value, placement_turn(before, axis->z));
@@ -58,7 +58,7 @@ void rotation_vector_quaternion(const double vector[3], double quaternion[4]) {
   quaternion[3] = cos(0.5 * angle);
 }
 
-placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *ball) {
+placement robot_axis_move(const robot_axis *axis, const placement *parent, double value, const double *ball) {
   placement moved = axis->at;
   if (axis->kind == AXIS_BALL || axis->kind == AXIS_VECTOR) {
     double of_vector[4];
@@ -68,7 +68,7 @@ placement axis_move(const robot_axis *axis, const placement *parent, double valu
     const frame f = frame_create(&pose, vec(0, 0, 0));
     multiply(axis->at.r, f.r, moved.r);
   } else {
-    axis_advance(axis, &axis->at, value, &moved);
+    robot_axis_advance(axis, &axis->at, value, &moved);
   }
   return parent ? placement_compose(parent, &moved) : moved;
 }
@@ -77,8 +77,8 @@ void robot_place_axes(const cprox_robot *robot, const double *variables, placeme
   for (size_t i = 0; i < robot->n_axes; i++) {
     const robot_axis *axis = &robot->axes[i];
     const double *q = variables + axis->variable;
-    frames[i] =
-        axis_move(axis, axis->parent < 0 ? NULL : &frames[axis->parent], axis->multiplier * q[0] + axis->offset, q);
+    frames[i] = robot_axis_move(axis, axis->parent < 0 ? NULL : &frames[axis->parent],
+                                axis->multiplier * q[0] + axis->offset, q);
   }
 }
 
@@ -112,7 +112,7 @@ void cprox_robot_link_frame(const cprox_robot *robot, const double *variables, s
   for (int32_t i = l->axis; i >= 0; i = robot->axes[i].parent) {
     const robot_axis *axis = &robot->axes[i];
     const double *q = variables + axis->variable;
-    const placement moved = axis_move(axis, NULL, axis->multiplier * q[0] + axis->offset, q);
+    const placement moved = robot_axis_move(axis, NULL, axis->multiplier * q[0] + axis->offset, q);
     at = placement_compose(&moved, &at);
   }
   *position = at.p;

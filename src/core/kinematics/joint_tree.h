@@ -81,11 +81,11 @@ placement placement_compose(const placement *outer, const placement *inner);
 void rotation_vector_quaternion(const double vector[3], double quaternion[4]);
 
 /* The axis moved to the value, from where it stands at 0: in the same frame as `before`. Not of a ball. */
-void axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved);
+void robot_axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved);
 
 /* The moved frame of an axis at the value, its parent's being given (NULL: the world). `ball` are the
  * values of a ball. */
-placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *ball);
+placement robot_axis_move(const robot_axis *axis, const placement *parent, double value, const double *ball);
 
 /* The moved frames of all axes, for values of all variables. */
 void robot_place_axes(const cprox_robot *robot, const double *variables, placement *frames);

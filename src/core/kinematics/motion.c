@@ -199,7 +199,7 @@ void motion_place_axis(const cprox_motion *m, size_t own, double u, size_t i, ax
     motion_arc_values(m, i, own, u, joint);
     values += axis->variable - (m->robot->axes[ball].variable - 3);
   }
-  state->frame = axis_move(axis, parent, axis->multiplier * values[0] + axis->offset, values);
+  state->frame = robot_axis_move(axis, parent, axis->multiplier * values[0] + axis->offset, values);
 }
 
 static void values_at(const cprox_motion *m, size_t segment, double at, double *values) {

@@ -275,7 +275,7 @@ static void arc_over(const cprox_motion *m, const motion_interval *own, size_t i
   if (axis->kind != AXIS_PRISMATIC) {
     double q[4];
     arc_orientation(arc, s, q);
-    placement here = axis_move(axis, NULL, 0.0, q);
+    placement here = robot_axis_move(axis, NULL, 0.0, q);
     here.p = p[0];
     state->frame = placement_compose(before, &here);
     state->velocity = vec_scale(ds * arc->angle, placement_turn(before, arc->z));
@@ -311,7 +311,7 @@ static void line_over(const cprox_motion *m, const motion_interval *own, const r
   state->z = world_axis(axis, before);
   state->velocity = vec_scale(axis->multiplier * of[MOTION_FIRST * stride], state->z);
   state->acceleration = vec_scale(axis->multiplier * of[MOTION_SECOND * stride], state->z);
-  axis_advance(axis, before, value, &state->frame);
+  robot_axis_advance(axis, before, value, &state->frame);
 }
 
 void motion_find_axis(const cprox_motion *m, const motion_interval *own, const double *rows, size_t i,
@@ -341,7 +341,7 @@ void motion_find_axis(const cprox_motion *m, const motion_interval *own, const d
       ball_over_span(m, i, rows, &before, values, state);
     else
       ball_over(m, own, i, &before, values, state);
-    const placement moved = axis_move(axis, NULL, 0.0, values[0]);
+    const placement moved = robot_axis_move(axis, NULL, 0.0, values[0]);
     state->frame = parent ? placement_compose(parent, &moved) : moved;
   }
 }

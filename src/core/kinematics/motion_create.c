@@ -295,7 +295,7 @@ static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
       m->axis_moves[i] = m->axis_moves[i] || (m->slot[axis->variable + k] >= 0 && axis->multiplier != 0.0);
     m->carrier[i + 1] = m->axis_moves[i] ? (int32_t)i : m->carrier[axis->parent + 1];
     const double *rest = m->rest + axis->variable;
-    if (!m->axis_moves[i]) m->still[i] = axis_move(axis, NULL, axis->multiplier * rest[0] + axis->offset, rest);
+    if (!m->axis_moves[i]) m->still[i] = robot_axis_move(axis, NULL, axis->multiplier * rest[0] + axis->offset, rest);
     if (axis->kind != AXIS_BALL) continue;
     m->norm[i] = least_norm_of(m, axis->variable);
     if (!(m->norm[i] > 1e-9))

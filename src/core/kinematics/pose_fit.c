@@ -90,7 +90,7 @@ static void turn_at(const pose_chain *chain, size_t own, double u, double r[9], 
   for (int32_t k = 0; k < axis_variables(axis->kind); k++) values[k] = motion_value(m, axis->variable + k, own, u);
   if (axis->kind == AXIS_REVOLUTE) {
     placement moved;
-    axis_advance(axis, &STRAIGHT, axis->multiplier * values[0] + axis->offset, &moved);
+    robot_axis_advance(axis, &STRAIGHT, axis->multiplier * values[0] + axis->offset, &moved);
     for (int i = 0; i < 9; i++) r[i] = moved.r[i];
   } else if (axis->kind == AXIS_VECTOR) {
     double quaternion[4];
