@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** JSON: read as YAML is, for the lines of a dataset, which must cost little beside a search; and written, for reports. */
+/** JSON: read as YAML is, for the lines of a dataset, which must cost little beside a search; and written, for
+ * reports. */
 #ifndef CURVE_PROXIMITY_CLI_JSON_H
 #define CURVE_PROXIMITY_CLI_JSON_H
 

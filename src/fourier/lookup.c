@@ -30,7 +30,8 @@ static double period_of(const piece *grid, int j) {
   return PERIOD * fmax(fabs(low), fabs(high));
 }
 
-/* Of a layer of cells: one over the window's least value, that times its largest, and that times the images' windows. */
+/* Of a layer of cells: one over the window's least value, that times its largest, and that times the images'
+ * windows. */
 typedef struct layer {
   double weight, central, images;
 } layer;

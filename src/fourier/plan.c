@@ -67,8 +67,8 @@ static void tabulate(const gap_plan *plan, const cprox_solid *fixed, double peak
   for (int j = 0; j < 3; j++) e->table_period[j] = t.period[j];
 }
 
-/* Both solids at the plan's offset. A cover is within the closed form that is enlarged by what the cells add: its bounds
- * are those of that form, and its peak is 1. */
+/* Both solids at the plan's offset. A cover is within the closed form that is enlarged by what the cells add: its
+ * bounds are those of that form, and its peak is 1. */
 static enlarged enlarge(const gap_plan *plan, const cprox_solid *a, const cprox_solid *b) {
   double reach[2];
   solid_bounds bounds[2];
@@ -198,8 +198,8 @@ static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_wor
 /* Above this a solid that is not turned is covered by cells, too: the transforms of so many triangles. */
 enum { MOST_TRIANGLES = 400 };
 
-/* Up to so many samples covers and tables take the place of what costs too much: beyond, images of 1e-5 of a solid are no
- * longer small beside the threshold, and tables take more memory than a gap should. */
+/* Up to so many samples covers and tables take the place of what costs too much: beyond, images of 1e-5 of a solid are
+ * no longer small beside the threshold, and tables take more memory than a gap should. */
 enum { TABLE_MOST_N = 32 };
 
 /* Cells that cover a solid have this share of the certified offset as their edge. */

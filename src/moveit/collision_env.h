@@ -64,8 +64,9 @@ class CollisionEnvCurveProximity : public collision_detection::CollisionEnv {
    * and what is attached. Throws Error. */
   RobotMotion motion(const TrajectoryDescription &trajectory, const State &at, const Matrix &acm) const;
 
-  /* A robot made ready for motions of some joints, with what is attached in a state, and the values of its joints there.
-   * Its base has joints of its own only where the motions move it: else it stands, as robots do that lanes can ask. */
+  /* A robot made ready for motions of some joints, with what is attached in a state, and the values of its joints
+   * there. Its base has joints of its own only where the motions move it: else it stands, as robots do that lanes can
+   * ask. */
   struct Ready {
     std::shared_ptr<const PreparedRobot> robot;
     JointPositions rest;

@@ -69,7 +69,8 @@ struct Tree {
   }
 };
 
-/* Steps from a row of the tree towards the target, as long as they hold, at most `steps`; the last row that was reached. */
+/* Steps from a row of the tree towards the target, as long as they hold, at most `steps`; the last row that was
+ * reached. */
 std::size_t extend(Tree &tree, std::size_t at, const Row &target, double step, int steps, const EdgeTest &holds) {
   for (int shorter = 0; steps > 0 && shorter < STEPS;) {
     const double way = distanceOf(tree.rows[at], target);
@@ -121,8 +122,8 @@ void shorten(Path &path, int tries, const EdgeTest &holds, std::mt19937_64 &rand
   }
 }
 
-/* Halves edges, whose halves hold as they do, and rounds corners, where that holds: each row moves half of the way to the
- * middle of those beside it. */
+/* Halves edges, whose halves hold as they do, and rounds corners, where that holds: each row moves half of the way to
+ * the middle of those beside it. */
 void smooth(Path &path, const EdgeTest &holds) {
   path = halved(path);
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
@@ -131,7 +132,8 @@ void smooth(Path &path, const EdgeTest &holds) {
   }
 }
 
-/* Resampled, with rows so close to each other that the edges hold which cut corners; where none are, all corners stay. */
+/* Resampled, with rows so close to each other that the edges hold which cut corners; where none are, all corners
+ * stay. */
 Path resampledSo(const Path &path, double step, const EdgeTest &holds) {
   for (double closer = step; closer > CLOSEST * step; closer *= 0.5) {
     Path out = resampled(path, closer);

@@ -41,9 +41,9 @@ inline cprox_verdict verdictOf(const GradientCheck &check) {
 constexpr double GRADIENT_TOLERANCE = 1e-3;
 
 /** By the steps of both sides; or by the curve's points, parameters, range and radius and steps of b; or by the numbers
- *  of a trajectory's points and its duration. The steps are 2e-4 m or rad, and half of that. given: the provider's answer
- *  to the case, with a value. Costs four evaluations a derivative. Throws Error where the provider does not answer beside
- *  the place. */
+ *  of a trajectory's points and its duration. The steps are 2e-4 m or rad, and half of that. given: the provider's
+ *  answer to the case, with a value. Costs four evaluations a derivative. Throws Error where the provider does not
+ *  answer beside the place. */
 GradientCheck checkGradient(ProviderSet &providers, const ConstraintCase &asked, const ConstraintRow &given,
                             const ResourceOptions &resources, Workspace &workspace);
 

@@ -31,8 +31,8 @@ struct Blend {
   double value, error;
 };
 
-/* (1 - w) x + w y with w = rise(x/length + offset). No derivative by x is above 1 + |y - x| STEEPEST/length, and none by
- * y above 1, wherever both are within their errors. */
+/* (1 - w) x + w y with w = rise(x/length + offset). No derivative by x is above 1 + |y - x| STEEPEST/length, and none
+ * by y above 1, wherever both are within their errors. */
 double errorOf(const Blend &x, const Blend &y, double length) {
   const double apart = std::fabs(y.value - x.value) + x.error + y.error;
   return (1.0 + STEEPEST * apart / length) * x.error + y.error;
@@ -113,8 +113,8 @@ class Guide : public Constraint {
   const std::vector<GuideStage> stages_;
 };
 
-/* The least value along a curve. Where the distance proves the curve clear, that is the value. Else the guide is asked at
- * many parameters, and at the one where the overlap is deepest. */
+/* The least value along a curve. Where the distance proves the curve clear, that is the value. Else the guide is asked
+ * at many parameters, and at the one where the overlap is deepest. */
 class GuideAlong : public Constraint {
  public:
   GuideAlong(std::unique_ptr<const Constraint> exact, std::unique_ptr<const Constraint> standing, double sample)

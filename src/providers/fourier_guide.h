@@ -15,10 +15,10 @@ struct GuideStage {
   double sample;                         /**< [m] its period over its samples, below that of the stage before */
 };
 
-/** A value that is below 0 exactly where the sides overlap. It is their signed distance wherever they do not, and passes
- *  continuously, with its gradient, to the gaps: to the finest about a sample below contact, and to coarser ones the
- *  deeper those are. Along a curve it is the least of these values: the certified distance where that is above 0, else
- *  the least that is met.
+/** A value that is below 0 exactly where the sides overlap. It is their signed distance wherever they do not, and
+ *  passes continuously, with its gradient, to the gaps: to the finest about a sample below contact, and to coarser ones
+ *  the deeper those are. Along a curve it is the least of these values: the certified distance where that is above 0,
+ *  else the least that is met.
  *
  *  stages: one or more, the coarsest first, each of the standing pair. Throws Error where a part has no depth of its
  *  own. */

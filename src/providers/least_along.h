@@ -43,8 +43,8 @@ struct LeastAlong {
 };
 
 /** The parameter of the least value of many, then of the interval about it by the sign of the derivative; so of other
- *  local minima that may be as low. slope(t) evaluates into out and returns the derivative by t; also: one more parameter
- *  to look at. sample [m]. */
+ *  local minima that may be as low. slope(t) evaluates into out and returns the derivative by t; also: one more
+ *  parameter to look at. sample [m]. */
 template <class Slope>
 LeastAlong leastAlong(const ConstraintCurve &curve, double sample, std::optional<double> also, Workspace &workspace,
                       const Slope &slope, const ConstraintValue &out) {
@@ -107,8 +107,8 @@ LeastAlong leastAlong(const ConstraintCurve &curve, double sample, std::optional
   return least;
 }
 
-/** The gradient of a value at t by what defines the curve and by its range, n being that by the carried place (Danskin).
- */
+/** The gradient of a value at t by what defines the curve and by its range, n being that by the carried place
+ *  (Danskin). */
 inline void fillByCurve(const ConstraintCurve &curve, double t, const Eigen::Vector3d &n, Workspace &workspace,
                         ConstraintValue &out) {
   const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());

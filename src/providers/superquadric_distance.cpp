@@ -354,8 +354,8 @@ class SuperquadricConstraint : public Constraint {
     return measure(best.a, best.b, place, exact, workspace);
   }
 
-  /* Inside and in contact the way out may change from one side to another: then the normal jumps nearby. So it does where
-   * a mesh has two nearest points. The search itself mostly tells that no other way out is as near. */
+  /* Inside and in contact the way out may change from one side to another: then the normal jumps nearby. So it does
+   * where a mesh has two nearest points. The search itself mostly tells that no other way out is as near. */
   bool wayOutIsAlone(const Nearest &best, const ConstraintPlace &place, double size, Workspace &workspace) const {
     if (best.shift > NEAR * size) return true;
     const double near = lean(best, place, NEAR * size, workspace);

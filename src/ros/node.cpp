@@ -31,8 +31,9 @@ void catchSignals() {
 }
 
 /**
- * What a large request has taken goes back to the system as it ends. By itself glibc raises both thresholds with the blocks
- * that are freed, to 32 and 64 MB, and keeps up to the latter at the end of each thread's arena, where malloc_trim() leaves it.
+ * What a large request has taken goes back to the system as it ends. By itself glibc raises both thresholds with the
+ * blocks that are freed, to 32 and 64 MB, and keeps up to the latter at the end of each thread's arena, where
+ * malloc_trim() leaves it.
  */
 void giveMemoryBack() {
   mallopt(M_MMAP_THRESHOLD, 1 << 20);

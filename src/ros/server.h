@@ -43,8 +43,8 @@
 
 namespace curve_proximity {
 
-/** Serves until it is destroyed. It owns its callback queues and threads: a nodelet manager's own would still be running
- *  callbacks while the nodelet is being unloaded. */
+/** Serves until it is destroyed. It owns its callback queues and threads: a nodelet manager's own would still be
+ *  running callbacks while the nodelet is being unloaded. */
 class ProximityServer {
  public:
   /** handle: private; services and parameters live in its namespace. Throws what loadRobot() throws. */

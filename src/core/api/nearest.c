@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The k closest obstacles, and all obstacles within a distance: distance searches that end where an obstacle is out of query.
- * */
+/* The k closest obstacles, and all obstacles within a distance: distance searches that end where an obstacle is out of
+ * query. */
 #include <math.h>
 #include <string.h>
 

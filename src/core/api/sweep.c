@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A motion cut into intervals over each of which a geometry of the robot moves no farther than asked. doc/swept-volume.md
- */
+/* A motion cut into intervals over each of which a geometry of the robot moves no farther than asked.
+ * doc/swept-volume.md */
 #include <math.h>
 
 #include "base/rounding.h"

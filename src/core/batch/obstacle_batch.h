@@ -7,8 +7,8 @@
 #include "curve_proximity/cprox/query.h"
 #include "problem/candidates.h"
 
-/* A point in an obstacle or near it, in the world, and balls about it: one inside the obstacle, one round it. Margin is left
- * out. */
+/* A point in an obstacle or near it, in the world, and balls about it: one inside the obstacle, one round it. Margin is
+ * left out. */
 typedef struct batch_core {
   vec3 centre;
   double inner; /* rounding included; < 0: there is no such ball */

@@ -44,8 +44,8 @@ typedef struct set_traversal {
 /* False where memory is out, here as there. q has been asked about its whole curve. */
 bool traversal_begin(set_traversal *w, const obstacle_bvh *set, const query *q);
 
-/* The next obstacle, if its lower bound is at most `most`; else *obstacle is UINT32_MAX and *lower a bound of all that are
- * left. */
+/* The next obstacle, if its lower bound is at most `most`; else *obstacle is UINT32_MAX and *lower a bound of all that
+ * are left. */
 bool traversal_next(set_traversal *w, double most, uint32_t *obstacle, double *lower);
 
 #endif

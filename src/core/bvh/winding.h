@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Inside or outside of a closed mesh by its winding number: the signed crossings of a ray; where rays come too near to
- * edges, the solid angle that the triangles subtend, summed up, far ones together as a dipole (Barill, Dickson, Schmidt,
- * Levin, Jacobson, "Fast winding numbers for soups and clouds", 2018). */
+ * edges, the solid angle that the triangles subtend, summed up, far ones together as a dipole (Barill, Dickson,
+ * Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds", 2018). */
 #ifndef CPROX_BVH_WINDING_H
 #define CPROX_BVH_WINDING_H
 

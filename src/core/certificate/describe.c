@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* SceneObstacles as text, a line a convex part: what the checker takes as given. doc/certificates.md has the grammar. */
+/* SceneObstacles as text, a line a convex part: what the checker takes as given. doc/certificates.md has the
+ * grammar. */
 #include "certificate/describe.h"
 
 #include <stdarg.h>

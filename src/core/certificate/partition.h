@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Covers of a curve by parts, each with a normal that separates it from a set by more than delta: the substance of a
  * certificate. A cover is laid after the answer, at the answer's limit, and not collected from the search: the search
- * settles nodes by tangent balls, bounding spheres and other obstacles' distances, which no checker should have to know,
- * and in an order of its own. */
+ * settles nodes by tangent balls, bounding spheres and other obstacles' distances, which no checker should have to
+ * know, and in an order of its own. */
 #ifndef CPROX_CERTIFICATE_PARTITION_H
 #define CPROX_CERTIFICATE_PARTITION_H
 

@@ -28,7 +28,8 @@ typedef struct robot_cover {
   cprox_certificate *certificate;
 } robot_cover;
 
-/* The obstacles of a scene as covers take them, in the workspace; NULL where memory is out. Links become their hulls. */
+/* The obstacles of a scene as covers take them, in the workspace; NULL where memory is out. Links become their
+ * hulls. */
 const robot_cover_elements *partition_robot_begin(robot_scene *scene);
 
 /* Writes the trees of all segments: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY.

@@ -66,8 +66,8 @@ static reach_direction turn(cprox_quat q, double w, const reach_direction *n) {
 
 /* ---- bodies ---- */
 
-/* In doubles n·p is within 5 u (|n1| + |n2| + |n3|) scale: double-double numbers are for those that may be the farthest.
- */
+/* In doubles n·p is within 5 u (|n1| + |n2| + |n3|) scale: double-double numbers are for those that may be the
+ * farthest. */
 static dd farthest_vertex(const convex *shape, const reach_direction *n) {
   const double a = n->k[0].high, b = n->k[1].high, c = n->k[2].high;
   const double unsure = 16.0 * ROUND_U * (fabs(a) + fabs(b) + fabs(c)) * shape->scale;

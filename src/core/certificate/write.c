@@ -153,8 +153,8 @@ typedef struct section_place {
   size_t obstacle, part, load;
 } section_place;
 
-/* The set that part of an obstacle is, with the mover's ball, and what the answer knows of it; false where memory is out.
- */
+/* The set that part of an obstacle is, with the mover's ball, and what the answer knows of it; false where memory is
+ * out. */
 static bool cover_begin(const task *t, section_place of, uint32_t width, cover *c) {
   const cprox_obstacle *at = &t->obstacles[of.obstacle];
   *c = (cover){.curve = t->mover->curve,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The claim that somewhere the distance is at most delta: the parameter, and a point of the obstacle that is near enough.
- * The checker looks at the exact points, so the one named here is drawn in by more than the rounding of both. */
+/* The claim that somewhere the distance is at most delta: the parameter, and a point of the obstacle that is near
+ * enough. The checker looks at the exact points, so the one named here is drawn in by more than the rounding of
+ * both. */
 #include "base/rounding.h"
 #include "bvh/winding.h"
 #include "certificate/partition.h"

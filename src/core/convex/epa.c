@@ -423,8 +423,8 @@ static bool surface_expand(surface *s, const epa_set *set, const epa_goal *goal,
   return true;
 }
 
-/* The facet towards which the least shift of 0 leads out elsewhere, and that shift. The surface lies inside the set: a way
- * out that crosses a facet is at least as long as the way to the facet's plane. Where that facet is one with the
+/* The facet towards which the least shift of 0 leads out elsewhere, and that shift. The surface lies inside the set: a
+ * way out that crosses a facet is at least as long as the way to the facet's plane. Where that facet is one with the
  * nearest, its normal within e = EPA_ALIKE, a way out farther than 2e from the normal is longer by 1 / cos e: after a
  * shift by q it is no shorter while (least - q)(1 - cos e) > e q + (most - least), so up to 0.2 e least if most - least
  * is at most 0.25 e^2 least. */

@@ -673,8 +673,8 @@ static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 s
   return true;
 }
 
-/* A verdict needs no more than a point of both cores, and how far it is inside: a ball of the sum of both depths about 0
- * lies in M. */
+/* A verdict needs no more than a point of both cores, and how far it is inside: a ball of the sum of both depths about
+ * 0 lies in M. */
 static bool pair_meets_at(pair *p, const simplex_vertex *common) {
   if (!p->a->ops->closed_form || !p->b->ops->closed_form) return false;
   const vec3 y = pair_turn_to_b(p, vec_sub(common->a, p->t));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The ray from 0 along t leaves M = {a - r b} at t/g. In n, with n·m <= 1 for all m of M, g is the greatest n·t
  * (doc/implicit.md):
- *   1. A triangle of M's extreme points that the ray pierces moves outwards (Minkowski portal refinement). Its plane and
- *      the support value along its normal bound g from both sides.
+ *   1. A triangle of M's extreme points that the ray pierces moves outwards (Minkowski portal refinement). Its plane
+ *      and the support value along its normal bound g from both sides.
  *   2. Where the shapes are curved, Newton's method solves t = sum λ_i x_i(n), n·x_i(n) = 1 from there: x_i the extreme
  *      points of the smooth pieces on which the triangle's corners lie, their derivatives those of the kinds.
  *   3. The same matrix gives the second derivative of g by t.

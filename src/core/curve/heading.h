@@ -30,8 +30,8 @@ bool heading_advance(heading_curve *c, double to);
 /* The heading at a parameter, for a curve that goes on from there; *error grows by what that costs. */
 dd heading_at(const heading_curve *c, double t, double *error);
 
-/* moment[j] = the integral of tau^j (cos, sin)(heading) over tau in [0, to - origin], in plain doubles; false where that
- * takes too many steps. */
+/* moment[j] = the integral of tau^j (cos, sin)(heading) over tau in [0, to - origin], in plain doubles; false where
+ * that takes too many steps. */
 bool heading_moments(const heading_curve *c, double to, vec3 moment[3]);
 
 /* The curve as a source of pieces; constant and accuracy are the caller's. */

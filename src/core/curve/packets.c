@@ -172,8 +172,8 @@ double packet_nearest_point(const packet_chords *c, uint32_t first, vec3 from, u
   return least_of(square, nearest);
 }
 
-/* The square distances from the origin of LANES points in one half of a piece: t = (first + k)/CHORDS from its beginning
- * (step 1) or its end (step -1). With the degree n and c_j = C(n, j) P_j, counted from there, a point is
+/* The square distances from the origin of LANES points in one half of a piece: t = (first + k)/CHORDS from its
+ * beginning (step 1) or its end (step -1). With the degree n and c_j = C(n, j) P_j, counted from there, a point is
  * (1 - t)^n sum c_j (t/(1 - t))^j, by Horner's rule: no table of weights is needed, and t/(1 - t) is at most 1. */
 static inline void half_of_piece(const double *c[3], size_t degree, ptrdiff_t step, double first,
                                  double square[LANES]) {

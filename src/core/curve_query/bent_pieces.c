@@ -4,8 +4,8 @@
 
 #include "base/rounding.h"
 
-/* A piece over x in [-1/2, 1/2] is middle + x first + x² second, but for `rest`, and along a direction for `rest_along`.
- */
+/* A piece over x in [-1/2, 1/2] is middle + x first + x² second, but for `rest`, and along a direction for
+ * `rest_along`. */
 typedef struct bent_piece {
   vec3 middle, first, second;
   double rest, rest_along;

@@ -66,8 +66,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
 /* ---- cutting ---- */
 
-/* How near a plane is followed, as a fraction of epsilon: contact is measured there, and what is before is known to keep
- * nearly as much. */
+/* How near a plane is followed, as a fraction of epsilon: contact is measured there, and what is before is known to
+ * keep nearly as much. */
 static const double FOLLOWED = 0.5, KEPT = 0.49;
 
 /* Where the line through c_0 > 0 that lies below all other points (k / degree, c_k) comes down to 0, as a fraction of

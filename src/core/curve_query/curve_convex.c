@@ -129,9 +129,9 @@ static double rise(const curve_convex *o, const search_node *node, int end) {
 }
 
 /* An interval of an ellipsoid reaches below its chord by about c times its length squared, and towards it from the best
- * point the curve rises by about k times that. So of [f x, x] from the best point on all is settled where k f² >= c (1 -
- * f)²: the interval's own bound and end tell c and k. The cuts at f, f², … of the interval from the best point on, until
- * what is left is settled as well; their number. */
+ * point the curve rises by about k times that. So of [f x, x] from the best point on all is settled where
+ * k f² >= c (1 - f)²: the interval's own bound and end tell c and k. The cuts at f, f², … of the interval from the best
+ * point on, until what is left is settled as well; their number. */
 static int uneven_cuts(const curve_convex *o, const search_node *node, int end, double cut[CURVE_PACK]) {
   static const double MORE = 1.1, LEAST = 1.0 / 32, MOST = 0.75;
   const curve_interval *at = &curve_convex_known(node)->at;

@@ -5,7 +5,8 @@
 
 enum { MAX_ROUNDS = 6, MAX_STEPS = 8 };
 
-/* A secant is drawn through points that are farther apart than this: nearer ones differ by the rounding of distances. */
+/* A secant is drawn through points that are farther apart than this: nearer ones differ by the rounding of
+ * distances. */
 #define NEWTON_SECANT 1e-10
 
 /* A measured distance this near to the predicted one, by epsilon, is that of the same feature. */
@@ -108,8 +109,8 @@ static bool parabola_least(const parabola *p, double *s, double *gain) {
   return true;
 }
 
-/* Curves that are known by points alone: the least of the parabola through three of them, again and again, and the point
- * takes the place of the one farthest from it. */
+/* Curves that are known by points alone: the least of the parabola through three of them, again and again, and the
+ * point takes the place of the one farthest from it. */
 static cprox_status refine_by_points(curve_convex *o, double step) {
   enum { MOST_POINTS = 12 };
   const double least = o->side.part.a, most = o->side.part.b, from = o->best.s;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* When Newton's method along a piece ends. Steps are by the piece's parameter in [0, 1], whose unit roundoff is 2^-53. */
+/* When Newton's method along a piece ends. Steps are by the piece's parameter in [0, 1], whose unit roundoff is
+ * 2^-53. */
 #ifndef CPROX_CURVE_QUERY_NEWTON_STEPS_H
 #define CPROX_CURVE_QUERY_NEWTON_STEPS_H
 

@@ -17,8 +17,8 @@ static vec3 witness_direction(vec3 centre, vec3 surface, vec3 normal) {
   return aligned ? normal : vec_scale(1.0 / length, between);
 }
 
-/* The two surface points and their normal: where the ball of the mover and the padded obstacle come closest, or one point
- * of both where they overlap; signed, the two ends of the way out. */
+/* The two surface points and their normal: where the ball of the mover and the padded obstacle come closest, or one
+ * point of both where they overlap; signed, the two ends of the way out. */
 static void report_points(const query *q, double margin, const curve_finding *seen, vec3 position, cprox_result *r) {
   const vec3 centre = vec_add(seen->centre, position), surface = vec_add(seen->surface, position);
   const double apart = seen->distance, radius = q->mover.radius;

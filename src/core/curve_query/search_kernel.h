@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The four kernels of a mover's curve against one obstacle: a convex shape, the elements of a BVH, another curve, a set
- * known by its distance. Each knows a radius that changes along the curve. Searches for distances, for verdicts and for the time
- * of contact are the same for all of them; what differs between the kernels is one row of operations each. */
+ * known by its distance. Each knows a radius that changes along the curve. Searches for distances, for verdicts and for
+ * the time of contact are the same for all of them; what differs between the kernels is one row of operations each. */
 #ifndef CPROX_CURVE_QUERY_SEARCH_KERNEL_H
 #define CPROX_CURVE_QUERY_SEARCH_KERNEL_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What one edge adds to the model: values in the middle, rates, bounds on accelerations, and what rounding may cost; and
- * what errors of an execution may cost. doc/robot-edges.md, doc/rounding.md, doc/robust.md */
+/* What one edge adds to the model: values in the middle, rates, bounds on accelerations, and what rounding may cost;
+ * and what errors of an execution may cost. doc/robot-edges.md, doc/rounding.md, doc/robust.md */
 #ifndef CPROX_EDGES_EDGE_BOUND_H
 #define CPROX_EDGES_EDGE_BOUND_H
 

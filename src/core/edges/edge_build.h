@@ -60,8 +60,8 @@ static inline void *edge_take(edge_arena *a, size_t n, size_t size) {
 /* Entries of rotations below this are 0. */
 #define EDGE_SNAP 1e-9
 
-/* Entries of a rotation as they go into lanes; whether only coordinates are exchanged: column k is then `sign` times the
- * coordinate `from`. */
+/* Entries of a rotation as they go into lanes; whether only coordinates are exchanged: column k is then `sign` times
+ * the coordinate `from`. */
 static inline bool edge_snap(const double r[9], float out[9], int32_t from[3], float sign[3]) {
   bool exchanges = true;
   for (int k = 0; k < 9; k++) {

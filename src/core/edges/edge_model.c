@@ -421,8 +421,9 @@ static void write_key(kept_model *kept, const edge_asked *asked, const robot_cov
   kept->n_key = covers->n_signature + pairs + selves;
 }
 
-/* Balls that are not the part itself tell little of what is near, and there are many of them: such parts are left to the
- * search where their own ball comes near something. A robot with more than a few of them is left to it altogether. */
+/* Balls that are not the part itself tell little of what is near, and there are many of them: such parts are left to
+ * the search where their own ball comes near something. A robot with more than a few of them is left to it
+ * altogether. */
 static void mark_coarse(cprox_edge_checker *c) {
   size_t n = 0;
   for (size_t i = 0; i < c->n_parts; i++) {

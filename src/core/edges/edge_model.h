@@ -178,8 +178,8 @@ size_t edge_model_scene_size(const cprox_edge_checker *model, const cprox_obstac
 void edge_model_fill_robot(cprox_edge_checker *model, const edge_asked *asked, const robot_covers *covers,
                            char *memory);
 
-/* The robot's side in a buffer of the workspace, where it stays from query to query; it is made again where the robot or
- * what is asked about it is another one. NULL: lanes are no use for it, or memory is out. */
+/* The robot's side in a buffer of the workspace, where it stays from query to query; it is made again where the robot
+ * or what is asked about it is another one. NULL: lanes are no use for it, or memory is out. */
 cprox_edge_checker *edge_model_keep(const edge_asked *asked, cprox_workspace *workspace, workspace_buffer buffer);
 
 /* The scene's side: obstacles first … last - 1, those given to edge_model_scene_size(). `reach`

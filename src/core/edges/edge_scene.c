@@ -21,8 +21,8 @@ static bool wants_finest(const cprox_edge_checker *c) {
   return !options || options->max_lod == CPROX_LOD_NONE || options->max_lod == CPROX_LOD_MESH;
 }
 
-/* What a part of an obstacle is made of, which stands in the frame f. All coordinates are within `extent` of its origin:
- * of each place lanes round its origin, its axes as any rotation, and what they turn. */
+/* What a part of an obstacle is made of, which stands in the frame f. All coordinates are within `extent` of its
+ * origin: of each place lanes round its origin, its axes as any rotation, and what they turn. */
 static void add_content(cprox_edge_checker *c, const part_model *m, const frame *f, double margin, double world,
                         edge_obstacle *o) {
   const bool by_tree = m->tree && !m->winding && wants_finest(c);

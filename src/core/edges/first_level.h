@@ -27,8 +27,8 @@ typedef struct edge_first {
   edge_rest nearest;
 } edge_first;
 
-/* Asks lanes about obstacles first … last - 1 of a verdict about a robot. With `suspects` they end where they cannot tell
- * a pair apart. False: they cannot tell, or memory is out, and all of it is open. */
+/* Asks lanes about obstacles first … last - 1 of a verdict about a robot. With `suspects` they end where they cannot
+ * tell a pair apart. False: they cannot tell, or memory is out, and all of it is open. */
 bool edge_first_level(const query *q, size_t first, size_t last, bool suspects, edge_first *found);
 
 #endif

@@ -35,8 +35,8 @@ typedef struct edge_found {
   bool self;               /* this other geometry */
   bool is_suspect;         /* undecided, and a measurement there may prove contact of these: nothing else is known */
   float depth;             /* of it */
-  /* if it measures: nothing that is not open comes nearer than clear_beyond and this; the pair of which that was found, as
-   * edge_open has it, or UINT32_MAX, and where */
+  /* if it measures: nothing that is not open comes nearer than clear_beyond and this; the pair of which that was found,
+   * as edge_open has it, or UINT32_MAX, and where */
   float least;
   uint32_t nearest;
   float nearest_at;

@@ -82,7 +82,8 @@ void barrier_go(barrier *b, double primal, double dual, double least, double mos
 typedef enum barrier_reading { BARRIER_MIXED, BARRIER_LIFTED, BARRIER_TANGENT } barrier_reading;
 
 /* max of n·x over the body, from above whatever the multipliers are, rounding included: the multipliers times `share`
- * say how n splits over the constraints, and what is left of n costs its length times the radius. dual: receives the multipliers that were taken in the end; or NULL. */
+ * say how n splits over the constraints, and what is left of n costs its length times the radius. dual: receives the
+ * multipliers that were taken in the end; or NULL. */
 double barrier_height(const barrier *b, vec3 n, double share, barrier_reading reading, implicit_dual *dual);
 
 #endif

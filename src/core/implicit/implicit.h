@@ -214,9 +214,9 @@ bool implicit_separate(const implicit_query *query, const implicit_goal *goal, i
                        implicit_answer *answer);
 
 /* Two closed bodies, b moving: each plane between them says how much later they meet, so b goes on at each step of the
- * search above. From answer->time on, where they are further apart than `lost`; so they are until the answer's time, and
- * then, where true, no further than epsilon more. False where that stalls, with `warm` for implicit_solve() there, or where
- * they do not meet. */
+ * search above. From answer->time on, where they are further apart than `lost`; so they are until the answer's time,
+ * and then, where true, no further than epsilon more. False where that stalls, with `warm` for implicit_solve() there,
+ * or where they do not meet. */
 bool implicit_approach(const implicit_query *query, double epsilon, double lost, implicit_warm *warm,
                        implicit_answer *answer);
 

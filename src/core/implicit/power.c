@@ -21,8 +21,8 @@ static double reach_at(const implicit_term *term, int32_t n, const double *w, do
   return bound;
 }
 
-/* Newton's last step, times the largest k. What is left of z is 5e-9 then. The bound is least at the root, so that it is
- * off by the square of that, and the point is drawn to the surface. */
+/* Newton's last step, times the largest k. What is left of z is 5e-9 then. The bound is least at the root, so that it
+ * is off by the square of that, and the point is drawn to the surface. */
 static const double LAST_STEP = 1e-4;
 
 /* The multiplier where sum u^p = 1, by Newton's method in z = log mu on log sum exp(k_i (log(w_i/p_i) - z)), k =

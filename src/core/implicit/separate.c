@@ -11,8 +11,8 @@
 
 enum { SEPARATE_STEPS = 20 };
 
-/* An approach has stalled after more planes that do not part the bodies: at first, and from a normal of the interior point
- * method on. */
+/* An approach has stalled after more planes that do not part the bodies: at first, and from a normal of the interior
+ * point method on. */
 enum { APPROACH_BEHIND = 2, APPROACH_LATER = 12 };
 
 /* Behind them, the next plane lies between the hull's and the last one that parted them, of which it takes this part. */

@@ -164,8 +164,8 @@ static double round_arm(const axis_state *axis, const bound_side *side, uint32_t
   return ROUND_UP * (vec_norm(vec_cross(axis->z, from)) + sqrt(tilt2) * reach + rounding);
 }
 
-/* How far the side strays if the axis is left out, or infinity where it is not to be: planes lose about a twelfth of the
- * cube of the angle. */
+/* How far the side strays if the axis is left out, or infinity where it is not to be: planes lose about a twelfth of
+ * the cube of the angle. */
 static double round_stray(const axis_state *axis, const bound_side *side, uint32_t steps) {
   if (!side || axis->kind != AXIS_REVOLUTE || !convex_is_round(side->shape)) return INFINITY;
   static const double PLANES_LOSE = 1.0 / 16, MOST = 0.25, HALF_TURN = 3.15;

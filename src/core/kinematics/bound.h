@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Lower bounds on the distance of a part of a robot over an interval of its motion; doc/robot-motion-bounds.md proves them. */
+/* Lower bounds on the distance of a part of a robot over an interval of its motion; doc/robot-motion-bounds.md proves
+ * them. */
 #ifndef CPROX_KINEMATICS_BOUND_H
 #define CPROX_KINEMATICS_BOUND_H
 
@@ -71,15 +72,15 @@ typedef struct bound_side {
   /* of a box, axes those of the shape, that contains the core; half is infinite for halfspaces, 0 where no box is known
    */
   vec3 middle, half;
-  /* along the plane's normal the core may be lower than it is: each vertex by so much, in the order of the shape's; NULL:
-   * all of it by the largest of that, */
+  /* along the plane's normal the core may be lower than it is: each vertex by so much, in the order of the shape's;
+   * NULL: all of it by the largest of that, */
   const double *losses;
   double loss; /* which is this */
 } bound_side;
 
-/* Takes off the ends of a chain the axes that turn the side beside them about its own axis of symmetry, or so nearly that
- * planes would tell less: the first ones turn the standing side, the last ones the moving one. NULL: the side has none.
- * Neither side is ever farther than what is returned from where it would be without a turn of these axes. */
+/* Takes off the ends of a chain the axes that turn the side beside them about its own axis of symmetry, or so nearly
+ * that planes would tell less: the first ones turn the standing side, the last ones the moving one. NULL: the side has
+ * none. Neither side is ever farther than what is returned from where it would be without a turn of these axes. */
 double motion_leave_out_round(const axis_state *axes, chain_axis *chain, size_t *n, const bound_side *moving,
                               const bound_side *standing, uint32_t steps);
 

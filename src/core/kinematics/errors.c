@@ -44,8 +44,8 @@ axis_error errors_of_axis_over(const cprox_motion *motion, const robot_errors *e
       .still = still, .by_speed = errors->scale * speed, .most = ROUND_UP * (still + factor * speed * rates[0])};
 }
 
-/* An axis that is off by e turns or shifts all that is on it by at most e times its lever arm. Over the node the lever arm
- * grows by what moves tipside of it. */
+/* An axis that is off by e turns or shifts all that is on it by at most e times its lever arm. Over the node the lever
+ * arm grows by what moves tipside of it. */
 deviation errors_along_chain(const cprox_motion *motion, const axis_state *states, const axis_deviations *off,
                              int32_t from, int32_t to, vec3 centre, double radius, double *travel) {
   const robot_axis *axes = motion->robot->axes;

@@ -35,8 +35,8 @@ typedef struct axis_deviations {
 deviation errors_of_axis(const cprox_motion *motion, const robot_errors *errors, int32_t axis, size_t segment, double u,
                          const motion_interval *over);
 
-/* The same anywhere in the interval: by `still` and by_speed times the axis's own speed, which is |multiplier| times that
- * of its variable; by no more than `most`. */
+/* The same anywhere in the interval: by `still` and by_speed times the axis's own speed, which is |multiplier| times
+ * that of its variable; by no more than `most`. */
 typedef struct axis_error {
   double still, by_speed, most;
 } axis_error;
@@ -44,8 +44,9 @@ typedef struct axis_error {
 axis_error errors_of_axis_over(const cprox_motion *motion, const robot_errors *errors, int32_t axis,
                                const motion_interval *over);
 
-/* How far what a ball about a point in the middle of the node contains is off, which the axis `from` carries, by all axes
- * up to, not including, `to` above it. `off` of these axes must be known. *travel: how far it moves over the node. */
+/* How far what a ball about a point in the middle of the node contains is off, which the axis `from` carries, by all
+ * axes up to, not including, `to` above it. `off` of these axes must be known. *travel: how far it moves over the
+ * node. */
 deviation errors_along_chain(const cprox_motion *motion, const axis_state *axes, const axis_deviations *off,
                              int32_t from, int32_t to, vec3 centre, double radius, double *travel);
 

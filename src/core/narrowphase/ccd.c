@@ -9,13 +9,13 @@
  *    first corner falls to a part of the clearance is a division. Nothing depends on how good the plane is.
  *  - Contact with a margin: a point of the polygon that is as near.
  *  - Contact without: m is the polygon's normal at ta. Seen along m the origin is inside the polygon over [ta, tb]: for
- *    each side m . (w_k x w_k+1) > 0, a quadratic whose three Bernstein coefficients are positive. Then the line along m
- *    meets the polygon in one point, at a height that is continuous in t. It is above the origin at ta, where a plane
+ *    each side m . (w_k x w_k+1) > 0, a quadratic whose three Bernstein coefficients are positive. Then the line along
+ *    m meets the polygon in one point, at a height that is continuous in t. It is above the origin at ta, where a plane
  *    whose normal has a positive product with m separates, and below it at tb, where one with -m does. So it is 0 in
  *    between.
  *
- * Rounding: a corner is a difference of two coordinates that were given, so that its error is relative to itself. At any
- * t it is computed within `error` of the real one; everything else is a dot or a cross product of corners. */
+ * Rounding: a corner is a difference of two coordinates that were given, so that its error is relative to itself. At
+ * any t it is computed within `error` of the real one; everything else is a dot or a cross product of corners. */
 #include "curve_proximity/cprox/ccd.h"
 
 #include <float.h>

@@ -49,8 +49,8 @@ static void nearest_of_segments(const segment *a, const segment *b, vec3 apart, 
   *on_a = s, *on_b = t;
 }
 
-/* w, the difference of the nearest points, is all rounding where they are close: the axes on whose insides they lie tell
- * what it is across. */
+/* w, the difference of the nearest points, is all rounding where they are close: the axes on whose insides they lie
+ * tell what it is across. */
 static vec3 direction_of(const segment *a, double s, const segment *b, double t, vec3 w, double sizes) {
   const bool in_a = fabs(s) < a->half, in_b = fabs(t) < b->half;
   vec3 across = w, u;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The growth distance and its derivatives. Both bodies scaled by g about their centres touch where, unscaled, they would
- * touch with the centres 1/g times as far apart: where a ray leaves the Minkowski difference (convex/ray.h). */
+/* The growth distance and its derivatives. Both bodies scaled by g about their centres touch where, unscaled, they
+ * would touch with the centres 1/g times as far apart: where a ray leaves the Minkowski difference (convex/ray.h). */
 #include "narrowphase/growth.h"
 
 #include <math.h>

@@ -335,10 +335,10 @@ static bool body_holds(const cprox_obstacle *obstacle, vec3 point, double room) 
   return near.distance <= -room;
 }
 
-/* They are within epsilon at free_until. A little later they may certainly touch: by their speed, a hundredth of epsilon
- * deep, and deeper than rounding could hide. Halfway between what were the nearest points is a common one, where both
- * bodies can tell. Else it is asked whether they touch, and not how deep: no distance changes by more than they move.
- * Then *at is that time, and p->last holds what is known there. */
+/* They are within epsilon at free_until. A little later they may certainly touch: by their speed, a hundredth of
+ * epsilon deep, and deeper than rounding could hide. Halfway between what were the nearest points is a common one,
+ * where both bodies can tell. Else it is asked whether they touch, and not how deep: no distance changes by more than
+ * they move. Then *at is that time, and p->last holds what is known there. */
 static cprox_status approach_prove(approach *p, const cprox_options *options, cprox_workspace *workspace, double *at) {
   enum { MOST_STEPS = 12 };
   cprox_options fine = *options;

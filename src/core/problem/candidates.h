@@ -5,8 +5,8 @@
 
 #include "problem/problem.h"
 
-/* One convex part of one obstacle, or a curve, against one convex part of what is carried, with what their bounding spheres
- * say. placed_pair_resolve() looks the indices up. */
+/* One convex part of one obstacle, or a curve, against one convex part of what is carried, with what their bounding
+ * spheres say. placed_pair_resolve() looks the indices up. */
 typedef struct candidate {
   double lower;
   int32_t obstacle, part, mover_part;
@@ -15,8 +15,8 @@ typedef struct candidate {
   cprox_lod lod;       /* the model that is searched; CPROX_LOD_NONE: the finest that the query allows */
 } candidate;
 
-/* The candidates of obstacles first … last - 1, nearest ball first, in the workspace. NULL where memory is out. `ranked`
- * false: of a single candidate nothing is asked, its bound is minus infinity. */
+/* The candidates of obstacles first … last - 1, nearest ball first, in the workspace. NULL where memory is out.
+ * `ranked` false: of a single candidate nothing is asked, its bound is minus infinity. */
 candidate *candidates_list(const query *q, size_t first, size_t last, bool ranked, size_t *count);
 
 /* What the balls of mover and candidate say: never above the true distance; minus infinity where there is no ball. */

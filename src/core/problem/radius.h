@@ -12,9 +12,9 @@ static inline bool radius_changes(const cprox_mover *mover, const cprox_obstacle
   return mover->radius_curve || (obstacle && obstacle->radius_curve);
 }
 
-/* Checks the mover's radius, which changes (obstacle NULL), or what radii that change ask of an obstacle: the query knows
- * them, their parameters are those of the curve, and they are never negative. CPROX_OK, or CPROX_INVALID with an error
- * message. */
+/* Checks the mover's radius, which changes (obstacle NULL), or what radii that change ask of an obstacle: the query
+ * knows them, their parameters are those of the curve, and they are never negative. CPROX_OK, or CPROX_INVALID with an
+ * error message. */
 cprox_status radius_check(const cprox_mover *mover, const cprox_obstacle *obstacle, size_t index, arguments_query asked,
                           cprox_workspace *workspace);
 

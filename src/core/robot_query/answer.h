@@ -10,8 +10,8 @@
  * obstacles. */
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result);
 
-/* The same of all obstacles. travel: a bound on how far the pair that came nearest moves towards or away from each other
- * between any two times of the interval; infinity where nothing was measured. */
+/* The same of all obstacles. travel: a bound on how far the pair that came nearest moves towards or away from each
+ * other between any two times of the interval; infinity where nothing was measured. */
 cprox_status robot_answer_and_travel(const query *q, cprox_result *result, double *travel);
 
 /* Where the best distance of a search was measured, what that cost, and by which models. */

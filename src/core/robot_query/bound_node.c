@@ -449,8 +449,8 @@ static bool is_stopped(robot_search *o) {
   return goal->ended == CPROX_STOPPED;
 }
 
-/* Balls and boxes of all pairs of a node; those that still matter are kept. What is not bounded yet when the search must
- * stop stays as it is. */
+/* Balls and boxes of all pairs of a node; those that still matter are kept. What is not bounded yet when the search
+ * must stop stays as it is. */
 static cprox_status bound_roughly(robot_search *o, const search_node *node, int32_t list) {
   const size_t n = lists_count(&o->lists, list);
   const bool sweeps = o->scene.motion->sweeps != NULL;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The obstacles of a set as the parts of a robot come near them, by the tree of their boxes: a part and all that is under
- * a node of the tree are one entry of a list until the part comes near, and only then pairs. doc/robot-search.md, Many
- * obstacles */
+/* The obstacles of a set as the parts of a robot come near them, by the tree of their boxes: a part and all that is
+ * under a node of the tree are one entry of a list until the part comes near, and only then pairs. doc/robot-search.md,
+ * Many obstacles */
 #ifndef CPROX_ROBOT_QUERY_CLUSTER_H
 #define CPROX_ROBOT_QUERY_CLUSTER_H
 

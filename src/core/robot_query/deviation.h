@@ -16,8 +16,8 @@ deviation deviation_of_pair(robot_scene *scene, const robot_pair *pair, const ro
 
 /* What errors can take off along a plane's normal n, unit, world, that turns by `normal_rate` over the node, from the
  * standing side to the moving one: in the losses of `side`, which is the placed pair's moving side without errors; they
- * stand in the workspace until the next call. over: anywhere in the node; else in its middle. False where memory is out.
- */
+ * stand in the workspace until the next call. over: anywhere in the node; else in its middle. False where memory is
+ * out. */
 bool deviation_losses(robot_scene *scene, const placed_robot_pair *placed, vec3 n, double normal_rate, bool over,
                       bound_side *side);
 

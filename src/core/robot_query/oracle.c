@@ -36,7 +36,8 @@ bool robot_search_root(robot_search *o, const motion_interval *over, const motio
   const size_t n_pairs = s->n_pairs, n_parts = set && set->boxes ? s->motion->robot->n_parts : 0;
   const size_t room = n_pairs + n_parts + 1;
 
-  /* what stands is settled once; but where others as near as the nearest are looked for, or errors take off, with nodes */
+  /* what stands is settled once; but where others as near as the nearest are looked for, or errors take off, with
+   * nodes */
   const bool together = s->motion->is_state || o->goal.beyond > 0.0 || s->q->errors;
   lists_begin(&o->lists, s->q->workspace);
   int32_t list[2]; /* of what moves; of what stands */

@@ -15,7 +15,8 @@ typedef struct placed_robot_pair {
   const chain_motion *motion; /* of the moving side as the standing one sees it; NULL: not found yet */
   chain_motion own;
   /* Where the query has errors: how far both sides may be off, by all and by all but joints. The moving side is then
-   * `off`, with a margin for the middle of the node; what is added elsewhere in the node counts as if the sides moved. */
+   * `off`, with a margin for the middle of the node; what is added elsewhere in the node counts as if the sides
+   * moved. */
   deviation errors, places;
   robot_body off;
   const robot_body *nominal; /* the moving side without errors */

@@ -132,8 +132,8 @@ static inline bool robot_scene_stands(const robot_scene *scene, const robot_pair
   return scene->parts[pair->moving].carrier == other;
 }
 
-/* The parts of an obstacle are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move
- * all obstacles in memory. */
+/* The parts of an obstacle are obstacles; adds them: the number of the first one, or -1 where memory is out. It may
+ * move all obstacles in memory. */
 int32_t robot_scene_add_obstacles(robot_scene *scene, size_t obstacle);
 
 /* A new node: of one segment, or of any number; another clock is at the same times, or at its own. */

@@ -18,8 +18,8 @@ static cprox_status search(const query *q, const edge_rest *rest, double cutoff,
   return robot_answer(&part, rest->first, rest->last, cutoff, result);
 }
 
-/* What errors leave along the normal of a measured distance is no distance of an execution: another normal may leave more,
- * which the search can find. */
+/* What errors leave along the normal of a measured distance is no distance of an execution: another normal may leave
+ * more, which the search can find. */
 static bool is_sure(const query *q) {
   return !q->errors || q->errors->left + q->errors->loss <= q->limit;
 }

@@ -23,11 +23,11 @@ namespace curve_proximity {
 
 /** Asks ~server about each message on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, one after the other, and
  * hands on those that are clear, by pointer: ~clear_curve, ~clear_trajectory, ~clear_multi_dof_trajectory, ~clear_path.
- * ~queue_size messages wait; what is older never passes. What does not pass is told on ~refused. With ~watch it looks on
- * while a trajectory runs (MotionWatches, by ~joint_states); where what is left is not clear, a trajectory without points
- * follows on ~clear_trajectory, at which joint_trajectory_controller stops. A trajectory without points is a stop: it
- * passes at once, and no trajectory passes that came before it. With ~controller it is also a FollowJointTrajectory
- * action: see ActionGate. */
+ * ~queue_size messages wait; what is older never passes. What does not pass is told on ~refused. With ~watch it looks
+ * on while a trajectory runs (MotionWatches, by ~joint_states); where what is left is not clear, a trajectory without
+ * points follows on ~clear_trajectory, at which joint_trajectory_controller stops. A trajectory without points is a
+ * stop: it passes at once, and no trajectory passes that came before it. With ~controller it is also a
+ * FollowJointTrajectory action: see ActionGate. */
 class TrajectoryGate {
  public:
   /** handle: private. proofs: as of ServerCalls. */

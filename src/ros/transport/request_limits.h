@@ -21,8 +21,8 @@ inline void demandAtMost(const char *parameter, int most, std::size_t count, con
   throw Error(std::to_string(count) + " " + what + " are more than ~" + parameter + " = " + std::to_string(most));
 }
 
-/** Answers repeat ids and names once a row. Visits all texts of a message, as its serializer does. A body may name a file, so its texts may be as long as a
- *  path. */
+/** Answers repeat ids and names once a row. Visits all texts of a message, as its serializer does. A body may name a
+ *  file, so its texts may be as long as a path. */
 class NameLimits {
  public:
   explicit NameLimits(int most) : most_(static_cast<std::size_t>(most)) {}

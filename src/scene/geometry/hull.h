@@ -29,7 +29,8 @@ struct HullSurface {
 };
 
 /* The hull's surface as qhull finds it, each triangle either way round. Empty where qhull gives up: of fewer than four
- * points, or of flat ones. stop: asked some hundred times a second; once it holds, Error with CPROX_STOPPED is thrown. */
+ * points, or of flat ones. stop: asked some hundred times a second; once it holds, Error with CPROX_STOPPED is
+ * thrown. */
 HullSurface hullSurfaceOf(const Points &points, const std::function<bool()> &stop = {});
 
 /* The extreme points of `all`, or all of them where they are few or flat. `all`: at least one, finite, each once. */

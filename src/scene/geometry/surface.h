@@ -16,9 +16,9 @@ struct Surface {
 };
 
 /* The surface of a shape, of at most about `most` triangles (>= 100): meshes and height fields by their triangles, the
- * vertices of a cell of a grid drawn together where there are too many; convex bodies by their support points; of points and octree cells
- * as many as that allows; of a halfspace a square of its plane, `plane_size` [m] wide. No triangles where the shape has
- * no body, or its file has gone since the body was made. */
+ * vertices of a cell of a grid drawn together where there are too many; convex bodies by their support points; of
+ * points and octree cells as many as that allows; of a halfspace a square of its plane, `plane_size` [m] wide. No
+ * triangles where the shape has no body, or its file has gone since the body was made. */
 Surface surfaceOf(const ShapeDescription &shape, const BodyHandle &body, const ResourceOptions &resources,
                   std::size_t most, double plane_size);
 

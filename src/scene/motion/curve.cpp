@@ -31,7 +31,8 @@ void halve(cprox_vec3 *left, cprox_vec3 *right, std::size_t n) {
   }
 }
 
-/* Cuts each of the intervals between the breaks into `parts`, a power of two; one box where they are too short to cut. */
+/* Cuts each of the intervals between the breaks into `parts`, a power of two; one box where they are too short to
+ * cut. */
 std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::vector<double> &breaks,
                                           std::size_t parts) {
   const cprox_curve_info info = cprox_curve_get_info(curve);

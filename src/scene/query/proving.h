@@ -42,8 +42,8 @@ std::string unprovable(const std::string &who, const cprox_obstacle &obstacle, b
  * certificates. */
 std::string obstacleLines(const std::vector<cprox_obstacle> &obstacles, const std::vector<std::string> &names);
 
-/* What moves by joints against the obstacles, as the checker reads it, with these after obstacleLines(); empty where a body
- * or a motion is of a kind that has no certificates. */
+/* What moves by joints against the obstacles, as the checker reads it, with these after obstacleLines(); empty where a
+ * body or a motion is of a kind that has no certificates. */
 std::string describeQuery(const cprox_mover &mover, const std::vector<cprox_obstacle> &obstacles,
                           const std::vector<std::string> &names, const std::string &id);
 

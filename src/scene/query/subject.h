@@ -53,8 +53,8 @@ struct Part {
 };
 
 /** The parts that have rows of their own: each link (per_link), each object (Query::per_object), or one for all. A
- *  curve has one: its obstacles say what it is measured against. A search for a curve or a robot among objects that stand
- *  is one part, with a row an object. */
+ *  curve has one: its obstacles say what it is measured against. A search for a curve or a robot among objects that
+ *  stand is one part, with a row an object. */
 std::vector<Part> partsOf(const Subject &subject, const Question &question, const Query &query, bool per_link);
 
 /** By how much bounds of errors may grow: as in RobustAnswer. */

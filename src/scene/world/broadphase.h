@@ -34,8 +34,8 @@ class Broadphase {
   /* The box that is nearest to any of the boxes asked about, by boxGap within a relative 1e-12. */
   NearestBox nearest(const std::vector<Eigen::AlignedBox3d> &to, const std::vector<std::uint32_t> &names) const;
 
-  /* Appends the names of at least all boxes whose distance from any of the boxes asked about is at most `reach` (finite,
-   * >= 0); a name may come several times. */
+  /* Appends the names of at least all boxes whose distance from any of the boxes asked about is at most `reach`
+   * (finite, >= 0); a name may come several times. */
   void within(const std::vector<Eigen::AlignedBox3d> &of, double reach, const std::vector<std::uint32_t> &names,
               std::vector<std::uint32_t> &found) const;
 

@@ -23,8 +23,8 @@ struct PathFile {
 
 /** Reads a path, as rostopic prints one, a geometry_msgs/PoseArray likewise, or the lines of readPathText().
  *
- *  turns: else orientations are not looked at, and all poses are upright.
- *  Throws BadUsage naming the file and the place: no poses, one that is no pose, or in another frame than the path's. */
+ *  turns: else orientations are not looked at, and all poses are upright. Throws BadUsage naming the file and the
+ *   place: no poses, one that is no pose, or in another frame than the path's. */
 PathFile readPath(const std::string &path, bool turns, Warnings &warnings);
 
 /** A body in the words of an object of a scene file; without shapes it names one that a link carries. Its pose is in
