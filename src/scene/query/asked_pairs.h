@@ -33,6 +33,10 @@ struct Asked {
   Stated stated(const Query &query) const; /* both outlive it */
 };
 
+inline RobotPairs againstOf(bool self) {
+  return self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
+}
+
 /* The items of all objects, or of those that are named. Throws Error for a name that is none. */
 std::vector<std::size_t> namedItems(const RobotMotion::Data &data, const std::vector<std::string> &names);
 

@@ -71,7 +71,7 @@ Problem problemFor(const MotionSubject &subject, const Query &query) {
   Query of_part = query;
   if (subject.self) of_part.objects.clear();
   Problem out;
-  const Asked asked = askedOf(subject.motion, subject.self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT, of_part);
+  const Asked asked = askedOf(subject.motion, againstOf(subject.self), of_part);
   addDoubts(coverageOf(of_part, asked), unprovable(subject.motion, subject.self, of_part), out);
   if (!out.doubt.empty()) return out;
   out.is_empty = asked.pairs.empty();

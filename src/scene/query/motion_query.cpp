@@ -12,10 +12,6 @@
 namespace curve_proximity {
 namespace {
 
-RobotPairs againstOf(bool self) {
-  return self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
-}
-
 Answer answerOf(const Asked &asked, const Query &query, Workspace &workspace) {
   const Clock::time_point start = Clock::now();
   cprox_result result{};

@@ -51,27 +51,19 @@ double gapTo(const CompiledCurve &curve, const PlacedShape &shape) {
   return gap;
 }
 
-/* The bounded item whose box is nearest, and its box's distance. */
-struct Seed {
-  std::uint32_t index = 0;
-  double gap = INFINITE;
-};
-
-Seed nearestBoxOf(const Search &search, const SceneObstacles::Data &data) {
-  Seed seed;
-  const World &world = data.snapshot->world();
-  const NearestBox nearest = world.nearest(search.curve.boxes);
-  if (nearest.gap < INFINITE) seed = {nearest.id, nearest.gap};
+/* The bounded item whose box is nearest. */
+NearestBox nearestBoxOf(const Search &search, const SceneObstacles::Data &data) {
+  NearestBox nearest = data.snapshot->world().nearest(search.curve.boxes);
   for (std::size_t i = data.in_tree; i < search.items.size(); ++i) {
     const auto index = static_cast<std::uint32_t>(i);
     const double gap = unbounded(search.shape(index)) ? INFINITE : gapTo(search.curve, search.shape(index));
-    if (gap < seed.gap) seed = {index, gap};
+    if (gap < nearest.gap) nearest = {index, gap};
   }
-  return seed;
+  return nearest;
 }
 
 /* Chooses the items whose boxes are within reach of the curve's, the halfspaces and the seed. */
-void chooseWithin(double reach, const Seed &seed, const SceneObstacles::Data &data, Search &search) {
+void chooseWithin(double reach, const NearestBox &seed, const SceneObstacles::Data &data, Search &search) {
   const World &world = data.snapshot->world();
   std::vector<std::uint32_t> &chosen = search.chosen;
   world.within(search.curve.boxes, reach, chosen);
@@ -80,7 +72,7 @@ void chooseWithin(double reach, const Seed &seed, const SceneObstacles::Data &da
     const auto index = static_cast<std::uint32_t>(i);
     if (!(gapTo(search.curve, search.shape(index)) > reach)) chosen.push_back(index);
   }
-  chosen.push_back(seed.index);
+  chosen.push_back(seed.id);
 
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
@@ -92,27 +84,27 @@ void chooseAll(Search &search, std::size_t first, std::size_t last) {
 }
 
 /* Distance: nothing whose box is farther than some point of the curve is from the seed can be the nearest. */
-void chooseForDistance(const Seed &seed, const SceneObstacles::Data &data, Search &search) {
+void chooseForDistance(const NearestBox &seed, const SceneObstacles::Data &data, Search &search) {
   cprox_options rough = search.query.options;
   rough.relative_epsilon = std::max(rough.relative_epsilon, 0.1);
   cprox_result result{};
   const cprox_status status =
-      cprox_distance(moverOf(search.curve), search.shape(seed.index).obstacle, &rough, search.workspace.get(), &result);
+      cprox_distance(moverOf(search.curve), search.shape(seed.id).obstacle, &rough, search.workspace.get(), &result);
   if (status < 0) { // the core will refuse again, and say why
-    search.chosen.push_back(seed.index);
+    search.chosen.push_back(seed.id);
     return;
   }
-  const double upper = result.upper + search.shape(seed.index).rounding;
+  const double upper = result.upper + search.shape(seed.id).rounding;
   chooseWithin((upper + search.curve.reach) * (1.0 + SUMS), seed, data, search);
   search.left_out = upper;
 }
 
 /* Verdicts: nothing whose box is farther than the limit, and a little more, can touch them. */
-void chooseForVerdict(double limit, const Seed &seed, const SceneObstacles::Data &data, Search &search) {
+void chooseForVerdict(double limit, const NearestBox &seed, const SceneObstacles::Data &data, Search &search) {
   const double wide = limit + search.curve.reach;
   const double more = std::max({search.query.options.epsilon, 1e-3 * wide, 1e-6});
   if (!std::isfinite(wide + more) || wide < 0.0) { // the core will refuse, and say why
-    search.chosen.push_back(seed.index);
+    search.chosen.push_back(seed.id);
     return;
   }
   chooseWithin(wide + more, seed, data, search);
@@ -122,7 +114,7 @@ void chooseForVerdict(double limit, const Seed &seed, const SceneObstacles::Data
 
 void choose(const SceneObstacles::Data &data, Search &search) {
   const bool with_tree = data.in_tree > 0 && search.items.size() > FEW_SHAPES && !search.curve.boxes.empty();
-  const Seed seed = with_tree ? nearestBoxOf(search, data) : Seed();
+  const NearestBox seed = with_tree ? nearestBoxOf(search, data) : NearestBox();
   if (seed.gap == INFINITE) {
     chooseAll(search, 0, search.items.size());
     return;

@@ -64,10 +64,6 @@ class CoreErrors {
   cprox_error_bounds core_{};
 };
 
-RobotPairs pairsOf(bool self) {
-  return self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
-}
-
 /* fault: what the query says against it already. */
 void check(const Query &query, RobotPairs against, std::string fault) {
   if (fault.empty()) fault = faultInAll(against, query);
@@ -81,7 +77,7 @@ void check(const Query &query, RobotPairs against, std::string fault) {
 RobustAnswer askRobust(const RobotMotion &motion, bool self, const ErrorBounds &bounds, const Query &query,
                        Workspace &workspace) {
   const Clock::time_point start = Clock::now();
-  const RobotPairs against = pairsOf(self);
+  const RobotPairs against = againstOf(self);
   const bool distance = query.query_type == QueryType::DISTANCE;
   check(query, against, "");
   const CoreErrors errors(motion, bounds);
@@ -122,7 +118,7 @@ RobustAnswer askRobust(const RobotMotion &motion, bool self, const ErrorBounds &
 std::vector<ClearanceInterval> robustProfile(const RobotMotion &motion, bool self, const ErrorBounds &bounds,
                                              const std::vector<double> &breaks, const Query &query,
                                              Workspace &workspace) {
-  const RobotPairs against = pairsOf(self);
+  const RobotPairs against = againstOf(self);
   std::string fault = faultOfDistances(query);
   if (fault.empty()) fault = faultOfProfile(query, breaks, INFINITE);
   check(query, against, fault);
@@ -191,7 +187,7 @@ double certifiedUntil(const Asked &asked, const CoreErrors &errors, double resol
 Answer robustTimeOfContact(const RobotMotion &motion, bool self, const ErrorBounds &bounds, double resolution,
                            const Query &query, Workspace &workspace) {
   const Clock::time_point start = Clock::now();
-  const RobotPairs against = pairsOf(self);
+  const RobotPairs against = againstOf(self);
   check(query, against, faultOfContact(query));
   if (!(resolution > 0.0)) throw Error("the resolution must be above 0");
   const CoreErrors errors(motion, bounds);

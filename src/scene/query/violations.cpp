@@ -109,7 +109,7 @@ Violations violations(const SceneObstacles &obstacles, const CompiledCurve &curv
 Violations violations(const RobotMotion &motion, bool self, double resolution, const Query &query,
                       Workspace &workspace) {
   checkViolations(query, resolution);
-  const RobotPairs against = self ? RobotPairs::SELF : RobotPairs::ENVIRONMENT;
+  const RobotPairs against = againstOf(self);
   const std::string fault = faultInAll(against, query);
   if (!fault.empty()) throw Error(fault);
   const Asked asked = askedOf(motion, against, query);

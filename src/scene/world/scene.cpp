@@ -411,47 +411,35 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
     next->replaces_srdf_ = true;
   }
 
-  const auto apply_operations = [&] {
-    for (std::size_t i = 0; i < change.operations.size(); ++i) {
-      const Operation &operation = change.operations[i];
-      try {
-        applyOperation(operation, prepared[i], next->attached_, next->objects_, next->moving_);
-      } catch (const std::exception &error) {
-        faults.push_back("object '" + operation.object.id + "': " + error.what());
-      }
+  const auto attempt = [&](const std::string &whose, const auto &work) {
+    try {
+      work();
+    } catch (const std::exception &error) {
+      faults.push_back(whose + error.what());
     }
   };
+  const auto apply_operations = [&] {
+    for (std::size_t i = 0; i < change.operations.size(); ++i)
+      attempt("object '" + change.operations[i].object.id + "': ", [&] {
+        applyOperation(change.operations[i], prepared[i], next->attached_, next->objects_, next->moving_);
+      });
+  };
   if (!change.attachments_first) apply_operations();
-  try {
-    next->scaleLinks(change.link_scale, resources_);
-  } catch (const std::exception &error) {
-    faults.push_back(error.what());
-  }
-  for (const Attachment &attachment : change.attachments) {
-    Carrying carrying{next->robot_.get(), next->link_scale_, resources_,
-                      next->objects_,     next->moving_,     next->attached_};
-    try {
-      applyAttachment(attachment, carrying);
-    } catch (const std::exception &error) {
-      faults.push_back("object '" + attachment.object.id + "': " + error.what());
-    }
-  }
+  attempt("", [&] { next->scaleLinks(change.link_scale, resources_); });
+  Carrying carrying{next->robot_.get(), next->link_scale_, resources_, next->objects_, next->moving_, next->attached_};
+  for (const Attachment &attachment : change.attachments)
+    attempt("object '" + attachment.object.id + "': ", [&] { applyAttachment(attachment, carrying); });
   if (change.attachments_first) apply_operations();
-  try {
+  attempt("", [&] {
     checkLinkPaddings(change.link_padding, next->robot_.get());
     if (change.default_link_padding) checkPadding(*change.default_link_padding);
     for (const auto &[link, padding] : change.link_padding) next->link_padding_[link] = padding;
     if (change.default_link_padding) next->default_link_padding_ = *change.default_link_padding;
-  } catch (const Error &error) {
-    faults.push_back(error.what());
-  }
-  if (!change.allowed.empty()) {
-    try {
-      next->allowed_ = std::make_shared<const std::vector<AllowedPair>>(mergeAllowed(*next->allowed_, change.allowed));
-    } catch (const Error &error) {
-      faults.push_back(error.what());
-    }
-  }
+  });
+  attempt("", [&] {
+    if (change.allowed.empty()) return;
+    next->allowed_ = std::make_shared<const std::vector<AllowedPair>>(mergeAllowed(*next->allowed_, change.allowed));
+  });
 
   // Made in full before it becomes visible.
   next->world_ = std::make_shared<const World>(next->objects_, &before->world());
