@@ -30,6 +30,7 @@ KNOTS = [0.0] * DEGREE + list(np.linspace(0.0, 1.0, len(CONTROL) - DEGREE + 1)) 
 
 # The arm waiting in front of the shelf, and reaching into it (start and goal of the scene's planning problem).
 JOINTS = [f'panda_joint{i}' for i in range(1, 8)]
+FINGERS = 'panda_finger_joint1'  # closed, at 0
 WAITING = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]
 REACHING = [-2.7783, -0.7590, -2.4919, -2.1355, 2.8973, 2.0248, 0.4576]
 
@@ -182,7 +183,7 @@ def tool_path(t0=0.0, t1=1.0):
 
 
 def posture(positions):
-    return {'name': JOINTS, 'position': positions}
+    return {'name': JOINTS + [FINGERS], 'position': positions + [0.0]}
 
 
 def point(message):
