@@ -13,9 +13,9 @@
 
 #include <moveit/collision_detection/occupancy_map.h>
 #include <moveit/planning_scene/planning_scene.h>
-#include <moveit/utils/robot_model_test_utils.h>
 #include <ros/console.h>
 
+#include "../../test/moveit/panda.h"
 #include "certifier.h"
 
 namespace {
@@ -64,24 +64,6 @@ Eigen::Isometry3d at(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
-planning_scene::PlanningScenePtr sceneOf(const moveit::core::RobotModelPtr &model, bool ours) {
-  auto scene = std::make_shared<planning_scene::PlanningScene>(model);
-  if (ours)
-    scene->setActiveCollisionDetector(curve_proximity::CollisionDetectorAllocatorCurveProximity::create(), true);
-  moveit::core::RobotState &state = scene->getCurrentStateNonConst();
-  state.setToDefaultValues();
-  state.setToDefaultValues(model->getJointModelGroup("panda_arm"), "ready");
-  state.update();
-  return scene;
-}
-
-moveit::core::RobotState turned(const moveit::core::RobotState &from, double angle) {
-  moveit::core::RobotState out(from);
-  out.setVariablePosition("panda_joint1", angle);
-  out.update();
-  return out;
-}
-
 /* A closed surface of 2 n² - 4 n + 2 triangles. */
 shapes::ShapeConstPtr ball(unsigned int n, double radius) {
   auto out = std::make_shared<shapes::Mesh>(n * n, 2 * (n - 1) * (n - 1));
@@ -101,8 +83,8 @@ shapes::ShapeConstPtr ball(unsigned int n, double radius) {
   return out;
 }
 
-void attachedMesh(const moveit::core::RobotModelPtr &model) {
-  const auto scene = sceneOf(model, true);
+void attachedMesh() {
+  const auto scene = pandaScene(true);
   const shapes::ShapeConstPtr mesh = ball(71, 0.03);
   const moveit::core::RobotState without(scene->getCurrentState());
   moveit::core::RobotState with(without);
@@ -115,13 +97,13 @@ void attachedMesh(const moveit::core::RobotModelPtr &model) {
       [&] { scene->isStateColliding(with); }, [&] { scene->isStateColliding(without); });
 }
 
-void boxes(const moveit::core::RobotModelPtr &model, int n) {
-  const auto scene = sceneOf(model, true);
+void boxes(int n) {
+  const auto scene = pandaScene(true);
   const cd::WorldPtr &world = scene->getWorldNonConst();
   for (int i = 0; i < n; ++i)
     world->addToObject("box" + std::to_string(i), std::make_shared<shapes::Box>(0.1, 0.1, 0.1),
                        at(1.2 + 0.2 * (i % 10), 0.2 * (i / 10 % 10) - 1.0, 0.2 * (i / 100)));
-  const moveit::core::RobotState from(scene->getCurrentState()), to = turned(from, 0.05);
+  const moveit::core::RobotState from(scene->getCurrentState()), to = turned(0.05);
   int moves = 0;
   const Steps motion = [&] {
     cd::CollisionResult res;
@@ -137,9 +119,8 @@ void boxes(const moveit::core::RobotModelPtr &model, int n) {
 }
 
 /* Occupied cells beside the robot, `step` cells from one to the next. */
-void octomapOf(const moveit::core::RobotModelPtr &model, const std::string &what, const std::array<int, 3> &counts,
-               int step) {
-  const auto scene = sceneOf(model, false);
+void octomapOf(const std::string &what, const std::array<int, 3> &counts, int step) {
+  const auto scene = pandaScene(false);
   const auto tree = std::make_shared<cd::OccMapTree>(0.02);
   const auto cell = [step](int i, int k, int j) {
     const float apart = 0.02F * static_cast<float>(step);
@@ -150,9 +131,9 @@ void octomapOf(const moveit::core::RobotModelPtr &model, const std::string &what
     for (int k = 0; k < counts[1]; ++k)
       for (int j = 0; j < counts[2]; ++j) tree->updateNode(cell(i, k, j), true);
   scene->processOctomapPtr(tree, Eigen::Isometry3d::Identity());
-  robot_trajectory::RobotTrajectory plan(model, "panda_arm");
+  robot_trajectory::RobotTrajectory plan(panda(), "panda_arm");
   plan.addSuffixWayPoint(scene->getCurrentState(), 0.0);
-  plan.addSuffixWayPoint(turned(scene->getCurrentState(), 0.4), 1.0);
+  plan.addSuffixWayPoint(turned(0.4), 1.0);
   const curve_proximity::Certifier certifier;
   bool occupied = true;
   print(
@@ -178,13 +159,12 @@ int main() try {
   ros::console::set_logger_level(ROSCONSOLE_ROOT_LOGGER_NAME,
                                  ros::console::levels::Error); // its other lines go to stdout
   ros::console::notifyLoggerLevelsChanged();
-  const moveit::core::RobotModelPtr model = moveit::core::loadTestingRobotModel("panda");
   std::printf("what,first_ms,again_ms,changed_ms\n");
-  attachedMesh(model);
-  boxes(model, 1000);
-  octomapOf(model, "apart", {17, 17, 17}, 2);
-  octomapOf(model, "apart", {47, 47, 47}, 2);
-  octomapOf(model, "of a wall", {1, 322, 322}, 1);
+  attachedMesh();
+  boxes(1000);
+  octomapOf("apart", {17, 17, 17}, 2);
+  octomapOf("apart", {47, 47, 47}, 2);
+  octomapOf("of a wall", {1, 322, 322}, 1);
   return 0;
 } catch (const std::exception &error) {
   std::fprintf(stderr, "moveit_costs: %s\n", error.what());

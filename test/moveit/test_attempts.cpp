@@ -5,32 +5,19 @@
 #include <moveit/planning_request_adapter/planning_request_adapter.h>
 #include <moveit/planning_scene/planning_scene.h>
 #include <moveit/trajectory_processing/time_optimal_trajectory_generation.h>
-#include <moveit/utils/robot_model_test_utils.h>
 #include <ros/ros.h>
 #include <visualization_msgs/MarkerArray.h>
 #include <pluginlib/class_loader.hpp>
 
 #include <curve_proximity/ViolationIntervals.h>
 
+#include "panda.h"
+
 namespace {
 
 using planning_interface::MotionPlanRequest;
 using planning_interface::MotionPlanResponse;
 using planning_request_adapter::PlanningRequestAdapter;
-
-moveit::core::RobotModelPtr panda() {
-  static const moveit::core::RobotModelPtr model = moveit::core::loadTestingRobotModel("panda");
-  return model;
-}
-
-moveit::core::RobotState turned(double angle) {
-  moveit::core::RobotState state(panda());
-  state.setToDefaultValues();
-  state.setToDefaultValues(panda()->getJointModelGroup("panda_arm"), "ready");
-  state.setVariablePosition("panda_joint1", angle);
-  state.update();
-  return state;
-}
 
 class Attempts : public testing::Test {
  protected:

@@ -2,45 +2,23 @@
 /* What changes in MoveIt's scene reaches the collision detector and the certifier, and what does not change is kept. */
 #include <gtest/gtest.h>
 #include <moveit/collision_detection/occupancy_map.h>
-#include <moveit/planning_scene/planning_scene.h>
-#include <moveit/utils/robot_model_test_utils.h>
 #include <tf2_eigen/tf2_eigen.h>
 
 #include <thread>
 
 #include "certifier.h"
+#include "panda.h"
 
 namespace {
 
 namespace cd = collision_detection;
 using curve_proximity::CollisionEnvCurveProximity;
 
-moveit::core::RobotModelPtr panda() {
-  static const moveit::core::RobotModelPtr model = moveit::core::loadTestingRobotModel("panda");
-  return model;
-}
-
-moveit::core::RobotState ready() {
-  moveit::core::RobotState state(panda());
-  state.setToDefaultValues();
-  state.setToDefaultValues(panda()->getJointModelGroup("panda_arm"), "ready");
-  state.update();
-  return state;
-}
-
 /* A robot that stands. */
 robot_trajectory::RobotTrajectory standing(const moveit::core::RobotState &state) {
   robot_trajectory::RobotTrajectory out(panda(), "panda_arm");
   out.addSuffixWayPoint(state, 0.0);
   return out;
-}
-
-planning_scene::PlanningScenePtr sceneOf(bool ours) {
-  auto scene = std::make_shared<planning_scene::PlanningScene>(panda());
-  if (ours)
-    scene->setActiveCollisionDetector(curve_proximity::CollisionDetectorAllocatorCurveProximity::create(), true);
-  scene->setCurrentState(ready());
-  return scene;
 }
 
 bool isProven(const curve_proximity::Certifier &certifier, const planning_scene::PlanningScene &scene) {
@@ -92,7 +70,7 @@ void attach(moveit::core::RobotState &state, const std::string &id, const shapes
 /* MoveIt's monitor of octomaps changes the tree that the world has, and tells nobody. */
 TEST(Changes, cells_of_an_octree_that_is_changed_in_place_are_seen) {
   for (const bool ours : {false, true}) {
-    const auto scene = sceneOf(ours);
+    const auto scene = pandaScene(ours);
     const curve_proximity::Certifier certifier;
     const auto tree = std::make_shared<cd::OccMapTree>(0.05);
     const Eigen::Vector3d hand = ready().getGlobalLinkTransform("panda_hand").translation();
@@ -116,7 +94,7 @@ TEST(Changes, cells_of_an_octree_that_is_changed_in_place_are_seen) {
 
 /* By the detector alone: no certificate has compared the tree. */
 TEST(Changes, a_state_sees_changed_cells_after_a_tenth_of_a_second) {
-  const auto scene = sceneOf(true);
+  const auto scene = pandaScene(true);
   const auto tree = std::make_shared<cd::OccMapTree>(0.05);
   tree->updateNode(octomap::point3d(2.0F, 0.0F, 0.5F), true);
   scene->processOctomapPtr(tree, Eigen::Isometry3d::Identity());
@@ -128,7 +106,7 @@ TEST(Changes, a_state_sees_changed_cells_after_a_tenth_of_a_second) {
 }
 
 TEST(Changes, the_body_of_a_mesh_is_made_once_and_shared_by_copies) {
-  const auto scene = sceneOf(true);
+  const auto scene = pandaScene(true);
   const shapes::ShapeConstPtr mesh = tetrahedron(0.1);
   scene->getWorldNonConst()->addToObject("far", mesh, at(3.0, 0.0, 0.0));
   const void *first = bodyOf(*scene, "far");
@@ -143,7 +121,7 @@ TEST(Changes, the_body_of_a_mesh_is_made_once_and_shared_by_copies) {
 }
 
 TEST(Changes, robots_are_prepared_once_for_each_thing_attached_and_each_matrix) {
-  const auto scene = sceneOf(true);
+  const auto scene = pandaScene(true);
   scene->getWorldNonConst()->addToObject("far", std::make_shared<shapes::Box>(0.1, 0.1, 0.1), at(3.0, 0.0, 0.0));
   const shapes::ShapeConstPtr mesh = tetrahedron(0.05);
   const auto *without = snapshotOf(*scene);
@@ -166,7 +144,7 @@ TEST(Changes, robots_are_prepared_once_for_each_thing_attached_and_each_matrix) 
 
 /* A conditional entry or one that forbids does not let a default allow. */
 TEST(Changes, defaults_of_the_matrix_count_as_moveit_counts_them) {
-  const auto scene = sceneOf(true);
+  const auto scene = pandaScene(true);
   const Eigen::Vector3d hand = ready().getGlobalLinkTransform("panda_hand").translation();
   scene->getWorldNonConst()->addToObject("zz", std::make_shared<shapes::Box>(0.02, 0.02, 0.02),
                                          at(hand.x(), hand.y(), hand.z()));
@@ -189,7 +167,7 @@ TEST(Changes, defaults_of_the_matrix_count_as_moveit_counts_them) {
 
 /* What stood there before an object was replaced by one that cannot be used must not come back. */
 TEST(Changes, an_object_that_cannot_be_used_stays_so_when_it_is_moved) {
-  const auto scene = sceneOf(true);
+  const auto scene = pandaScene(true);
   const curve_proximity::Certifier certifier;
   const auto world = scene->getWorldNonConst();
   world->addToObject("odd", std::make_shared<shapes::Box>(0.1, 0.1, 0.1), at(3.0, 0.0, 0.0));
@@ -206,7 +184,7 @@ TEST(Changes, an_object_that_cannot_be_used_stays_so_when_it_is_moved) {
 
 /* A scene that changes after a motion was made of it: the motion is about the scene before, the next one about the new. */
 TEST(Changes, a_motion_is_about_the_scene_that_it_was_made_in) {
-  const auto scene = sceneOf(true);
+  const auto scene = pandaScene(true);
   const Eigen::Vector3d hand = ready().getGlobalLinkTransform("panda_hand").translation();
   const auto make = [&] {
     const auto plan = standing(ready());
@@ -250,7 +228,7 @@ TEST(Changes, a_plan_of_a_group_without_a_joint_that_moves_is_refused_in_one_lin
 /* One certifier, scenes of FCL's detector in turn. */
 TEST(Changes, a_certifier_answers_each_scene_by_its_own_objects) {
   const curve_proximity::Certifier certifier;
-  const auto free = sceneOf(false), blocked = sceneOf(false);
+  const auto free = pandaScene(false), blocked = pandaScene(false);
   const Eigen::Vector3d hand = ready().getGlobalLinkTransform("panda_hand").translation();
   for (const auto &scene : {free, blocked})
     scene->getWorldNonConst()->addToObject("post", std::make_shared<shapes::Box>(0.05, 0.05, 0.05), at(2.0, 0.0, 0.0));

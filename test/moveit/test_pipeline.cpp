@@ -5,27 +5,14 @@
 #include <moveit/collision_plugin_loader/collision_plugin_loader.h>
 #include <moveit/planning_pipeline/planning_pipeline.h>
 #include <moveit/planning_scene/planning_scene.h>
-#include <moveit/utils/robot_model_test_utils.h>
 #include <ros/ros.h>
+
+#include "panda.h"
 
 namespace {
 
 const std::string TIMING = "default_planner_request_adapters/AddTimeParameterization";
 const std::string OURS = "curve_proximity/CertifyTrajectory";
-
-moveit::core::RobotModelPtr panda() {
-  static const moveit::core::RobotModelPtr model = moveit::core::loadTestingRobotModel("panda");
-  return model;
-}
-
-moveit::core::RobotState turned(double angle) {
-  moveit::core::RobotState state(panda());
-  state.setToDefaultValues();
-  state.setToDefaultValues(panda()->getJointModelGroup("panda_arm"), "ready");
-  state.setVariablePosition("panda_joint1", angle);
-  state.update();
-  return state;
-}
 
 /* A post that the hand of a Panda turned to `angle` is in the middle of, moved outwards by `aside` [m]. */
 planning_scene::PlanningScenePtr sceneWithPost(double angle, double aside) {

@@ -2,28 +2,12 @@
 /* The question that MoveIt asks, beside its FCL detector: links that stand, planes. Needs a master for a parameter. */
 #include <gtest/gtest.h>
 #include <moveit/planning_scene/planning_scene.h>
-#include <moveit/utils/robot_model_test_utils.h>
 #include <ros/ros.h>
 
 #include <random>
 
 #include "certifier.h"
-
-namespace {
-
-planning_scene::PlanningScenePtr sceneOf(bool ours) {
-  static const moveit::core::RobotModelPtr model = moveit::core::loadTestingRobotModel("panda");
-  auto scene = std::make_shared<planning_scene::PlanningScene>(model);
-  if (ours)
-    scene->setActiveCollisionDetector(curve_proximity::CollisionDetectorAllocatorCurveProximity::create(), true);
-  moveit::core::RobotState &state = scene->getCurrentStateNonConst();
-  state.setToDefaultValues();
-  state.setToDefaultValues(model->getJointModelGroup("panda_arm"), "ready");
-  state.update();
-  return scene;
-}
-
-} // namespace
+#include "panda.h"
 
 /* 40 plates (seed 47), wider than the first link, beside and in it, which no joint moves: a motion of the last joint is in collision where FCL's state
  * is. */
@@ -35,7 +19,7 @@ TEST(Question, is_about_links_that_stand_too) {
   const curve_proximity::Certifier certifier;
   int hits = 0;
   for (int i = 0; i < 40; ++i) {
-    const auto by_fcl = sceneOf(false), by_us = sceneOf(true);
+    const auto by_fcl = pandaScene(false), by_us = pandaScene(true);
     const Eigen::Isometry3d pose(Eigen::Translation3d(random(-0.35, 0.35), random(-0.35, 0.35), random(-0.1, 0.1)));
     for (const auto &scene : {by_fcl, by_us})
       scene->getWorldNonConst()->addToObject("box", std::make_shared<shapes::Box>(0.25, 0.25, 0.02), pose);
@@ -64,7 +48,7 @@ TEST(Question, takes_planes_as_shape_msgs_says_and_by_a_parameter_as_fcl_does) {
   for (const double d : {0.5, -0.5}) {
     const auto collides = [d](bool ours, bool like_fcl) {
       ros::param::set("~curve_proximity/planes_like_fcl", like_fcl);
-      const auto scene = sceneOf(ours);
+      const auto scene = pandaScene(ours);
       scene->getWorldNonConst()->addToObject("plane", std::make_shared<shapes::Plane>(0.0, 0.0, 1.0, d),
                                              Eigen::Isometry3d::Identity());
       return scene->isStateColliding(scene->getCurrentState());
