@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Where on a trajectory a robot is: never later than it is, and nowhere if it is not on it. */
+/* Where on a trajectory a robot is: never later than it is, and nowhere if it is not on it. What a watch doubts. */
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gate/motion_watches.h"
 #include "gate/trajectory_progress.h"
 
 namespace curve_proximity {
@@ -60,9 +61,11 @@ TEST(TrajectoryProgress, what_lies_ahead_is_not_reached_in_no_time) {
   EXPECT_EQ(progress.point(), 2u);
 }
 
-TEST(TrajectoryProgress, joints_are_compared_up_to_full_turns_and_all_must_be_told) {
-  TrajectoryProgress progress(through({3.0, 3.3}, 1.0), 0.01);
+TEST(TrajectoryProgress, continuous_joints_are_compared_up_to_full_turns_and_all_must_be_told) {
+  TrajectoryProgress progress(through({3.0, 3.3}, 1.0), 0.01, {"a"}), other(through({3.0, 3.3}, 1.0), 0.01, {"b"});
   EXPECT_EQ(progress.tell({"b", "a"}, {7.0, 3.2 - 2.0 * M_PI}, 0.5), "");
+  EXPECT_NE(other.tell({"b", "a"}, {7.0, 3.2 - 2.0 * M_PI}, 0.5), ""); // it would turn back, or is a slide
+  EXPECT_EQ(other.tell(ONE, {3.2}, 0.5), "");
   EXPECT_EQ(progress.tell({"b"}, {3.2}, 0.5), "where joint 'a' is was not told");
   EXPECT_EQ(progress.tell(ONE, {}, 0.5), "where joint 'a' is was not told");
   EXPECT_EQ(progress.tell(ONE, {NAN}, 0.5), "where joint 'a' is was not told");
@@ -96,6 +99,25 @@ TEST(TrajectoryProgress, a_robot_on_the_spline_is_on_the_trajectory_and_not_befo
       ASSERT_LE(progress.point(), i);
     }
   }
+}
+
+/* ROS time is the test's own. */
+TEST(MotionWatch, silence_and_a_time_that_goes_back_are_doubts) {
+  ros::Time::init();
+  ros::Time::setNow(ros::Time(100.0));
+  ProximityQuery query;
+  query.trajectories.push_back(through({0.0, 1.0}, 10.0));
+  MotionWatch watch(query, SeenScene(), GateParameters(), {}, [](Refusal) {});
+  EXPECT_EQ(watch.doubt(), "");
+  ros::Time::setNow(ros::Time(101.0));
+  EXPECT_NE(watch.doubt().find("has not told"), std::string::npos);
+  watch.tell(ONE, {0.1}, ros::Time());
+  EXPECT_EQ(watch.doubt(), "");
+  ros::Time::setNow(ros::Time(100.9)); // less than ~feedback_timeout: a clock that is set
+  EXPECT_EQ(watch.doubt(), "");
+  ros::Time::setNow(ros::Time(50.0));
+  watch.tell(ONE, {0.2}, ros::Time());
+  EXPECT_EQ(watch.doubt(), "ROS time has gone back by 51 s");
 }
 
 } // namespace

@@ -118,13 +118,13 @@ void ActionGate::begin(Server::GoalHandle goal) {
   running->in = goal;
   if (!trajectory.points.empty()) {
     const std::weak_ptr<Running> weak = running;
-    running->watch =
-        std::make_shared<MotionWatch>(std::move(query), std::move(scene), parameters_, [this, weak](Refusal why) {
-          const RunningPointer stopped = weak.lock();
-          if (!stopped) return;
-          stop(stopped, why.message);
-          tell(std::move(why), stopped->in.getGoalID().id, true);
-        });
+    running->watch = std::make_shared<MotionWatch>(std::move(query), std::move(scene), parameters_,
+                                                   watches_->continuous(), [this, weak](Refusal why) {
+                                                     const RunningPointer stopped = weak.lock();
+                                                     if (!stopped) return;
+                                                     stop(stopped, why.message);
+                                                     tell(std::move(why), stopped->in.getGoalID().id, true);
+                                                   });
   }
   send(running);
 }

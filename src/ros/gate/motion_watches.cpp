@@ -2,6 +2,7 @@
 #include "gate/motion_watches.h"
 
 #include <ros/console.h>
+#include <tinyxml2.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -21,17 +22,30 @@ using trajectory_msgs::JointTrajectory;
 constexpr std::chrono::seconds AT_LEAST{1};
 constexpr std::uint32_t SCENE_QUEUE = 10;
 
+std::set<std::string> continuousJoints(const ros::NodeHandle &handle) {
+  std::set<std::string> out;
+  std::string name, urdf;
+  tinyxml2::XMLDocument document;
+  const bool is_there = handle.searchParam("robot_description", name) && handle.getParam(name, urdf);
+  if (!is_there || document.Parse(urdf.c_str()) != tinyxml2::XML_SUCCESS || !document.RootElement()) return out;
+  const tinyxml2::XMLElement *joint = document.RootElement()->FirstChildElement("joint");
+  for (; joint; joint = joint->NextSiblingElement("joint"))
+    if (joint->Attribute("type", "continuous") && joint->Attribute("name")) out.insert(joint->Attribute("name"));
+  return out;
+}
+
 } // namespace
 
 /* ---- one ---- */
 
-MotionWatch::MotionWatch(ProximityQuery query, SeenScene scene, const GateParameters &parameters, Stop stop)
+MotionWatch::MotionWatch(ProximityQuery query, SeenScene scene, const GateParameters &parameters,
+                         const std::set<std::string> &continuous, Stop stop)
     : began_(std::max(ros::Time::now(), query.trajectories.front().header.stamp)),
       patience_(parameters.feedback_timeout),
       stop_(std::move(stop)),
       query_(std::move(query)),
       scene_(std::move(scene)),
-      progress_(query_.trajectories.front(), parameters.path_tolerance),
+      progress_(query_.trajectories.front(), parameters.path_tolerance, continuous),
       told_(began_) {}
 
 void MotionWatch::tell(const std::vector<std::string> &names, const std::vector<double> &positions, ros::Time stamp) {
@@ -51,13 +65,19 @@ bool MotionWatch::isOver() const {
   return progress_.isAtEnd() && ros::Time::now() > began_ + trajectory().points.back().time_from_start;
 }
 
-std::string MotionWatch::doubt() const {
+std::string MotionWatch::doubt() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!elsewhere_.empty()) return elsewhere_;
-  const double silence = (ros::Time::now() - told_).toSec();
-  if (silence <= patience_) return "";
+  const ros::Time now = ros::Time::now();
+  latest_ = std::max(latest_, now);
+  const double silence = (now - told_).toSec(), back = (latest_ - now).toSec();
   std::ostringstream text;
   text.precision(3);
+  if (back > patience_) {
+    text << "ROS time has gone back by " << back << " s";
+    return text.str();
+  }
+  if (silence <= patience_) return "";
   text << "the robot has not told where its joints are for " << silence
        << " s, longer than ~feedback_timeout = " << patience_;
   return text.str();
@@ -101,7 +121,10 @@ void MotionWatch::stop(Refusal refusal) {
 /* ---- all ---- */
 
 MotionWatches::MotionWatches(const ros::NodeHandle &handle, const GateParameters &parameters, const ProofCheck *proofs)
-    : parameters_(parameters), calls_(handle, parameters.server, parameters.delta, proofs), queue_(2) {
+    : parameters_(parameters),
+      continuous_(continuousJoints(handle)),
+      calls_(handle, parameters.server, parameters.delta, proofs),
+      queue_(2) {
   ros::NodeHandle own = handle;
   states_ = own.subscribe<sensor_msgs::JointState>(
       "joint_states", SCENE_QUEUE,
@@ -167,7 +190,8 @@ JointTrajectory MotionWatches::fromHere(JointTrajectory trajectory) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (const std::string &joint : trajectory.joint_names) {
       const auto found = joints_.find(joint);
-      if (found == joints_.end() || now - found->second.second > ros::Duration(parameters_.feedback_timeout))
+      if (found == joints_.end() || found->second.second > now || // ROS time has gone back since then
+          now - found->second.second > ros::Duration(parameters_.feedback_timeout))
         unknown = joint;
       else
         here[joint] = found->second.first;
@@ -185,7 +209,7 @@ JointTrajectory MotionWatches::fromHere(JointTrajectory trajectory) const {
     std::vector<double> positions;
     for (const std::string &joint : trajectory.joint_names) positions.push_back(here.at(joint));
     const std::string why =
-        TrajectoryProgress(start, parameters_.path_tolerance).tell(trajectory.joint_names, positions, 0.0);
+        TrajectoryProgress(start, parameters_.path_tolerance, continuous_).tell(trajectory.joint_names, positions, 0.0);
     if (!why.empty()) throw Error(why);
   }
   return trajectory;

@@ -18,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,8 +37,9 @@ class MotionWatch {
   using Stop = std::function<void(Refusal)>;
 
   /** query: about one joint trajectory. It begins now or at its stamp, whichever is later. scene: it was clear of this.
-   */
-  MotionWatch(ProximityQuery query, SeenScene scene, const GateParameters &parameters, Stop stop);
+   *  continuous: as of TrajectoryProgress. */
+  MotionWatch(ProximityQuery query, SeenScene scene, const GateParameters &parameters,
+              const std::set<std::string> &continuous, Stop stop);
 
   const trajectory_msgs::JointTrajectory &trajectory() const {
     return progress_.trajectory();
@@ -49,11 +51,12 @@ class MotionWatch {
   /** The robot is at its end, and the last point's time has come. */
   bool isOver() const;
 
+  /** Why there is doubt without a question: the robot has not told where it is, or is elsewhere, or ROS time has gone
+   *  back. "": there is none. */
+  std::string doubt();
+
  private:
   friend class MotionWatches;
-
-  /** Why there is doubt without a question: it has not told where it is, or is elsewhere. "": there is none. */
-  std::string doubt() const;
 
   /** Asks about what is left where the scene is another one than that of the last answer, and once a second: data may
    *  have become too old. False: `refusal` says why. */
@@ -75,8 +78,8 @@ class MotionWatch {
   std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
   mutable std::mutex mutex_; /* of what follows */
   TrajectoryProgress progress_;
-  ros::Time told_;
-  std::string elsewhere_; /* why the robot is not on the trajectory */
+  ros::Time told_, latest_; /* when the robot was on it; the latest time that was seen */
+  std::string elsewhere_;   /* why the robot is not on the trajectory */
 };
 
 /** Hears ~joint_states for all of them. Looks at all of them 20 times a second, by a queue of its own: what else the
@@ -94,6 +97,11 @@ class MotionWatches {
 
   MotionWatches(const MotionWatches &) = delete;
   MotionWatches &operator=(const MotionWatches &) = delete;
+
+  /** The continuous joints of the robot description; none where there is no description. */
+  const std::set<std::string> &continuous() const {
+    return continuous_;
+  }
 
   void add(std::shared_ptr<MotionWatch> watch);
 
@@ -115,6 +123,7 @@ class MotionWatches {
   void supervise();
 
   const GateParameters parameters_;
+  const std::set<std::string> continuous_;
   ServerCalls calls_;
   ros::Subscriber states_;
   mutable std::mutex mutex_;

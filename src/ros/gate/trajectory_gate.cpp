@@ -107,7 +107,7 @@ void TrajectoryGate::judge(const std::string &topic, const boost::shared_ptr<con
   if (!watches_ || query.trajectories.empty()) return;
   const std::vector<std::string> joints = query.trajectories.front().joint_names;
   watches_->forget(joints);
-  watches_->add(std::make_shared<MotionWatch>(std::move(query), std::move(scene), parameters_,
+  watches_->add(std::make_shared<MotionWatch>(std::move(query), std::move(scene), parameters_, watches_->continuous(),
                                               [this, motion, joints](Refusal why) {
                                                 JointTrajectory stop;
                                                 stop.joint_names = joints;

@@ -39,24 +39,27 @@ PositionRange rangeBetween(const JointTrajectoryPoint &a, const JointTrajectoryP
   return range;
 }
 
-/** How far a value is from a range, full turns apart. */
-double distanceTo(const PositionRange &range, double value) {
+/** How far a value is from a range; of a continuous joint, up to full turns. */
+double distanceTo(const PositionRange &range, double value, bool continuous) {
   constexpr double TURN = 2.0 * M_PI;
-  value += TURN * std::round((0.5 * (range.least + range.most) - value) / TURN);
+  if (continuous) value += TURN * std::round((0.5 * (range.least + range.most) - value) / TURN);
   return std::max({range.least - value, value - range.most, 0.0});
 }
 
 } // namespace
 
-TrajectoryProgress::TrajectoryProgress(trajectory_msgs::JointTrajectory trajectory, double tolerance)
-    : trajectory_(std::move(trajectory)), tolerance_(tolerance) {}
+TrajectoryProgress::TrajectoryProgress(trajectory_msgs::JointTrajectory trajectory, double tolerance,
+                                       const std::set<std::string> &continuous)
+    : trajectory_(std::move(trajectory)), tolerance_(tolerance) {
+  for (const std::string &joint : trajectory_.joint_names) continuous_.push_back(continuous.count(joint) > 0);
+}
 
 double TrajectoryProgress::deviation(std::size_t point, const std::vector<double> &joints, std::size_t &worst) const {
   const auto &points = trajectory_.points;
   const JointTrajectoryPoint &next = points[std::min(point + 1, points.size() - 1)];
   double most = 0.0;
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    const double far = distanceTo(rangeBetween(points[point], next, j), joints[j]);
+    const double far = distanceTo(rangeBetween(points[point], next, j), joints[j], continuous_[j]);
     if (far > most) most = far, worst = j;
   }
   return most;

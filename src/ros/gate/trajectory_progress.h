@@ -6,6 +6,7 @@
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,16 +18,17 @@ namespace curve_proximity {
  * joints. So what is left of the trajectory is never taken to be less than it is. */
 class TrajectoryProgress {
  public:
-  /** tolerance [rad, m]: how far each joint may be from the trajectory, > 0. */
-  TrajectoryProgress(trajectory_msgs::JointTrajectory trajectory, double tolerance);
+  /** tolerance [rad, m]: how far each joint may be from the trajectory, > 0. continuous: joints that a full turn brings
+   *  to the same place; any other joint has to turn back. */
+  TrajectoryProgress(trajectory_msgs::JointTrajectory trajectory, double tolerance,
+                     const std::set<std::string> &continuous = {});
 
   const trajectory_msgs::JointTrajectory &trajectory() const {
     return trajectory_;
   }
 
   /** What the joints are `elapsed` seconds after what was told last; other joints may be among them. A robot is at most
-   *  as fast as the trajectory. Returns "" or why that is no place on what is left: a joint is missing or elsewhere.
-   *  Joints are compared up to full turns. */
+   *  as fast as the trajectory. Returns "" or why that is no place on what is left: a joint is missing or elsewhere. */
   std::string tell(const std::vector<std::string> &names, const std::vector<double> &positions, double elapsed);
 
   /** The robot is not before this point: the segment from it to the next is the first on which it may be. */
@@ -44,6 +46,7 @@ class TrajectoryProgress {
 
   trajectory_msgs::JointTrajectory trajectory_;
   double tolerance_;
+  std::vector<bool> continuous_; /* of each joint */
   std::size_t point_ = 0;
   double latest_ = 0.0; /* [s] of the trajectory: it is not farther than this, but for a message's way */
   bool at_end_ = false;
