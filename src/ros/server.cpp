@@ -411,32 +411,7 @@ std::vector<std::string> ProximityServer::applyChange(SceneChange &change, const
       std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                              std::chrono::duration<double, std::milli>(parameters_.scene_budget_ms));
   change.stop = [&] { return stop_ || std::chrono::steady_clock::now() >= deadline; };
-  std::vector<std::string> faults = live_.scene.apply(change);
-
-  // What somebody has set or removed by name is no sensor's until its next message.
-  const SnapshotPtr after = live_.scene.snapshot();
-  const auto object = [](const Snapshot &snapshot, const std::string &id) {
-    const auto found = snapshot.objects().find(id);
-    return found == snapshot.objects().end() ? nullptr : found->second;
-  };
-  for (const Operation &operation : change.operations) {
-    const std::string &id = operation.object.id;
-    if (!faults.empty() && object(before, id) == object(*after, id)) continue;
-    // what is moved, or has another part, is as unknown as before
-    if (operation.kind != Operation::Kind::ADD && operation.kind != Operation::Kind::REMOVE) continue;
-    if (operation.kind == Operation::Kind::REMOVE && id.empty())
-      live_.sensors.awaitsAll();
-    else
-      live_.sensors.forget(id);
-    live_.unknowns.forget(REFUSED_OBJECT + id);
-  }
-  for (const Attachment &attachment : change.attachments)
-    if (faults.empty() && attachment.kind == Attachment::Kind::ATTACH && !attachment.object.shapes.empty())
-      live_.unknowns.forget(REFUSED_OBJECT + attachment.object.id);
-  if (change.clear) {
-    live_.sensors.awaitsAll();
-    live_.forgetRefused();
-  }
+  std::vector<std::string> faults = live_.apply(change, before);
   state_file_.changed();
   return faults;
 }
@@ -528,11 +503,10 @@ void ProximityServer::restoreScene() {
 }
 
 void ProximityServer::getScene(const GetScene::Request &request, GetScene::Response &response) {
-  std::vector<SensorState> sensors = live_.sensors.states();
-  const SnapshotPtr snapshot = live_.scene.snapshot();
-  toMessage(*snapshot, request.ids, response);
+  LiveScene::Seen seen = live_.seen();
+  toMessage(*seen.snapshot, request.ids, response);
   for (CollisionObject &object : response.objects) object.header.frame_id = frames_.fixedFrame();
-  response.scene = live_.state(*snapshot, std::move(sensors));
+  response.scene = live_.state(*seen.snapshot, std::move(seen.sensors));
   response.frame_id = frames_.fixedFrame();
   response.success = true;
 }

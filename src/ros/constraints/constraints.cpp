@@ -305,14 +305,14 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
                          const TimeBudget &budget, Turn *turn) {
   if (providers_->all().empty()) throw Error("~constraint_providers names none");
   const memory::Share share(checkLimits(request), static_cast<std::size_t>(parameters_.max_request_mb) << 20);
-  std::vector<SensorState> sensors = live_.sensors.states();
-  const SnapshotPtr snapshot = live_.scene.snapshot();
-  response.scene = live_.state(*snapshot, std::move(sensors));
+  LiveScene::Seen seen = live_.seen();
+  const SnapshotPtr snapshot = seen.snapshot;
+  response.scene = live_.state(*snapshot, std::move(seen.sensors));
   live_.demand(*snapshot, request.scene_epoch, request.scene_version);
   const ResourceOptions resources = resourceOptions("", parameters_);
   const WorkspacePool::Lease workspace(workspaces_);
   Work work{snapshot, budget, FrameLookup(frames_, turn)};
-  Doubts doubts(parameters_.max_age, snapshot, response.scene.sensors, live_.unknowns.all());
+  Doubts doubts(parameters_.max_age, snapshot, response.scene.sensors, std::move(seen.unknowns));
   Failures failures;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
     const ConstraintQuery &asked = request.cases[i];

@@ -210,11 +210,10 @@ void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawi
 }
 
 void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
-  // One snapshot for all: what changes meanwhile does not change this answer. Sensors are looked at before: an object
-  // may be newer than what is said of it, and not older.
-  std::vector<SensorState> sensors = live_.sensors.states();
-  const SnapshotPtr snapshot = live_.scene.snapshot();
-  response.scene = live_.state(*snapshot, std::move(sensors));
+  // One moment for all: what changes meanwhile does not change this answer.
+  LiveScene::Seen seen = live_.seen();
+  const SnapshotPtr snapshot = seen.snapshot;
+  response.scene = live_.state(*snapshot, std::move(seen.sensors));
   live_.demand(*snapshot, request.more.scene_epoch, request.more.scene_version);
   Query query = toQuery(request, *snapshot);
   const double budget_ms = request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load();
@@ -234,7 +233,7 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
             FrameLookup(frames_, request.turn),
             currentJoints(request.more.joint_state, current && snapshot->robot(), live_.joints,
                           !request.more.robot_state && request.curves.size() == 0),
-            Doubts(parameters_.max_age, snapshot, response.scene.sensors, live_.unknowns.all()),
+            Doubts(parameters_.max_age, snapshot, response.scene.sensors, std::move(seen.unknowns)),
             response,
             drawing,
             0,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -42,8 +44,62 @@ SceneState LiveScene::state(const Snapshot &snapshot, std::vector<SensorState> s
 }
 
 SceneState LiveScene::state() const {
-  std::vector<SensorState> seen = sensors.states();
-  return state(*scene.snapshot(), std::move(seen));
+  Seen now = seen();
+  return state(*now.snapshot, std::move(now.sensors));
+}
+
+/* What is unknown, and how old sensors' objects are, is looked at before the scene: an object may be newer than what is
+ * said of it, and not older. But where the scene was emptied in between, an object of a sensor that is known is gone. */
+LiveScene::Seen LiveScene::seen() const {
+  constexpr int MOST = 100;
+  Seen out;
+  for (int i = 0; i < MOST; ++i) {
+    const std::uint64_t emptied = sensors.emptied();
+    out.unknowns = unknowns.all();
+    out.sensors = sensors.states();
+    out.snapshot = scene.snapshot();
+    if (sensors.emptied() == emptied) return out;
+  }
+  for (SensorState &sensor : out.sensors) sensor.unknown = true;
+  return out;
+}
+
+std::vector<std::string> LiveScene::apply(const SceneChange &change, const Snapshot &before) {
+  const auto removesAll = [](const Operation &operation) {
+    return operation.kind == Operation::Kind::REMOVE && operation.object.id.empty();
+  };
+  std::optional<SensorBoard::Emptying> emptying;
+  if (change.clear || std::any_of(change.operations.begin(), change.operations.end(), removesAll))
+    emptying.emplace(sensors, std::vector<std::string>());
+  else if (change.clear_objects)
+    emptying.emplace(sensors, change.kept);
+  std::vector<std::string> errors = scene.apply(change);
+
+  // What somebody has set or removed by name is no sensor's until its next message.
+  const SnapshotPtr after = scene.snapshot();
+  const auto object = [](const Snapshot &snapshot, const std::string &id) {
+    const auto found = snapshot.objects().find(id);
+    return found == snapshot.objects().end() ? nullptr : found->second;
+  };
+  for (const Operation &operation : change.operations) {
+    const std::string &id = operation.object.id;
+    if (!errors.empty() && object(before, id) == object(*after, id)) continue;
+    // what is moved, or has another part, is as unknown as before
+    if (operation.kind != Operation::Kind::ADD && operation.kind != Operation::Kind::REMOVE) continue;
+    if (!removesAll(operation)) sensors.forget(id);
+    unknowns.forget(REFUSED_OBJECT + id);
+  }
+  for (const Attachment &attachment : change.attachments)
+    if (errors.empty() && attachment.kind == Attachment::Kind::ATTACH && !attachment.object.shapes.empty())
+      unknowns.forget(REFUSED_OBJECT + attachment.object.id);
+  if (change.clear) forgetRefused();
+  return errors;
+}
+
+void LiveScene::applySeen(const SceneChange &change, const std::string &id, const ros::Time &stamp) {
+  const std::uint64_t emptied = sensors.emptied();
+  for (const std::string &error : scene.apply(change)) throw Error(error);
+  sensors.saw(id, stamp, emptied);
 }
 
 void LiveScene::refuse(const std::string &topic, const std::string &id, const std::string &about,

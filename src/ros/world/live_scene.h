@@ -34,6 +34,22 @@ struct LiveScene {
   ros::Time epoch; /**< when the server started */
   Unknowns unknowns;
 
+  /** What is known at one moment: no change that empties the scene comes between its parts. */
+  struct Seen {
+    std::vector<Unknown> unknowns;
+    std::vector<SensorState> sensors;
+    SnapshotPtr snapshot;
+  };
+  Seen seen() const;
+
+  /** Applies a change that comes from no sensor, and notes what it does to objects of sensors and to what was refused.
+   *  before: the scene that the change was made for. Returns what Scene::apply() returns. */
+  std::vector<std::string> apply(const SceneChange &change, const Snapshot &before);
+
+  /** Applies a change by which an object becomes as a sensor's message of this stamp shows it. Throws Error where it
+   *  cannot be applied; then it is as old as before. */
+  void applySeen(const SceneChange &change, const std::string &id, const ros::Time &stamp);
+
   /** An object came by a topic and could not be used. about: the object, or "" for what the robot carries. Of more than
    *  1000 such objects, or of ids that no object can have, one message for all is kept. */
   void refuse(const std::string &topic, const std::string &id, const std::string &about, const std::string &why,

@@ -5,12 +5,16 @@
 
 #include <curve_proximity/SensorState.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <list>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "world/age.h"
@@ -20,9 +24,10 @@ namespace curve_proximity {
 /** Any number of threads. */
 class SensorBoard {
  public:
-  /** The object is as a message of this stamp shows it. */
-  void saw(const std::string &id, const ros::Time &stamp) {
-    set(id, {Age(stamp), false});
+  /** The object is as a message of this stamp shows it. emptied_before: emptied() before it was put into the scene.
+   *  Where it is another number now, the object may have gone again, and is unknown. */
+  void saw(const std::string &id, const ros::Time &stamp, std::uint64_t emptied_before) {
+    change(id, [&](Sensor &sensor) { sensor = {Age(stamp), emptied_before != emptied_}; });
   }
 
   /** A message of this stamp had no valid point. */
@@ -40,10 +45,38 @@ class SensorBoard {
     set(id, {std::nullopt, true});
   }
 
-  /** The scene was emptied: nothing is known of what sensors see until their next messages. */
-  void awaitsAll() {
+  /** While this lives a change empties the scene, but for some objects. From then on nothing is known of what sensors
+   *  see until their next messages. */
+  class Emptying {
+   public:
+    Emptying(SensorBoard &board, std::vector<std::string> kept) : board_(board), kept_(std::move(kept)) {
+      const std::lock_guard<std::mutex> lock(board_.mutex_);
+      ++board_.emptied_;
+      board_.emptyings_.push_back(this);
+    }
+    ~Emptying() {
+      const std::lock_guard<std::mutex> lock(board_.mutex_);
+      ++board_.emptied_;
+      for (auto &sensor : board_.sensors_)
+        if (!keeps(sensor.first)) sensor.second.unknown = true;
+      board_.emptyings_.remove(this);
+    }
+    Emptying(const Emptying &) = delete;
+    Emptying &operator=(const Emptying &) = delete;
+
+    bool keeps(const std::string &id) const {
+      return std::find(kept_.begin(), kept_.end(), id) != kept_.end();
+    }
+
+   private:
+    SensorBoard &board_;
+    const std::vector<std::string> kept_;
+  };
+
+  /** How often an Emptying has begun or ended. */
+  std::uint64_t emptied() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    for (auto &sensor : sensors_) sensor.second.unknown = true;
+    return emptied_;
   }
 
   /** The object is no sensor's any more: somebody has set or removed it. */
@@ -62,7 +95,8 @@ class SensorBoard {
       SensorState state;
       state.id = id;
       state.age = sensor.age ? sensor.age->seconds() : std::numeric_limits<double>::infinity();
-      state.unknown = sensor.unknown;
+      state.unknown = sensor.unknown || std::any_of(emptyings_.begin(), emptyings_.end(),
+                                                    [&id = id](const Emptying *one) { return !one->keeps(id); });
       out.push_back(state);
     }
     return out;
@@ -91,6 +125,8 @@ class SensorBoard {
 
   mutable std::mutex mutex_;
   std::map<std::string, Sensor> sensors_;
+  std::list<const Emptying *> emptyings_; /* under way */
+  std::uint64_t emptied_ = 0;
 };
 
 } // namespace curve_proximity

@@ -44,8 +44,7 @@ void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
     if (valid == 0.0 || valid < parameters_.least_valid_share * all) {
       if (valid > 0.0 || !parameters_.empty_cloud_clears)
         return live_.sensors.sawNothing(parameters_.cloud_id, message->header.stamp);
-      remove(parameters_.cloud_id);
-      return live_.sensors.saw(parameters_.cloud_id, message->header.stamp);
+      return remove(parameters_.cloud_id, message->header.stamp);
     }
     ShapeDescription shape;
     shape.type = ShapeType::POINTS;
@@ -73,17 +72,16 @@ void Sensors::replace(const std::string &id, const std_msgs::Header &header, Sha
   operation.object.shapes.push_back(std::move(shape));
   SceneChange change;
   change.operations.push_back(std::move(operation));
-  for (const std::string &fault : live_.scene.apply(change)) throw Error(fault);
-  live_.sensors.saw(id, header.stamp);
+  live_.applySeen(change, id, header.stamp);
 }
 
-void Sensors::remove(const std::string &id) {
-  if (live_.scene.snapshot()->objects().count(id) == 0) return;
+void Sensors::remove(const std::string &id, const ros::Time &stamp) {
+  if (live_.scene.snapshot()->objects().count(id) == 0) return live_.sensors.saw(id, stamp, live_.sensors.emptied());
   SceneChange change;
   change.operations.resize(1);
   change.operations.front().kind = Operation::Kind::REMOVE;
   change.operations.front().object.id = id;
-  live_.scene.apply(change);
+  live_.applySeen(change, id, stamp);
 }
 
 } // namespace curve_proximity

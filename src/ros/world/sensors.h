@@ -43,7 +43,7 @@ class Sensors {
   void takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message);
   void takeOctomap(const octomap_msgs::Octomap::ConstPtr &message);
   void replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape);
-  void remove(const std::string &id);
+  void remove(const std::string &id, const ros::Time &stamp);
   template <class Work>
   void take(const std::string &topic, const std::string &id, Work &&work);
 

@@ -58,11 +58,11 @@ std::string textOf(const std::string &path) {
 /** What is to be there again; objects that sensors keep come by themselves. */
 KeptScene keptOf(const LiveScene &live, const std::string &fixed_frame) {
   KeptScene out;
-  for (const SensorState &sensor : live.sensors.states()) out.sensors.push_back(sensor.id);
+  const LiveScene::Seen seen = live.seen();
+  for (const SensorState &sensor : seen.sensors) out.sensors.push_back(sensor.id);
   GetSceneResponse scene;
-  const SnapshotPtr snapshot = live.scene.snapshot();
-  toMessage(*snapshot, {}, scene);
-  out.replaces_srdf = snapshot->replacesSrdf();
+  toMessage(*seen.snapshot, {}, scene);
+  out.replaces_srdf = seen.snapshot->replacesSrdf();
   std::size_t bytes = 0;
   out.request.clear = true;
   for (CollisionObject &object : scene.objects) {
