@@ -51,6 +51,23 @@ static cprox_body *make_mesh(rng *r, double size, world *w) {
   return keep(w, both);
 }
 
+/* A few points under a hull that may have a corner more, at which there is nothing, or under a box. */
+static cprox_body *make_points(rng *r, double size, world *w) {
+  vec3 points[11];
+  const size_t n = 5 + rng_index(r, 6);
+  for (size_t i = 0; i < n; i++) points[i] = rng_in_cube(r, size);
+  points[n] = rng_in_cube(r, 1.5 * size);
+  cprox_body *cloud = NULL, *hull = NULL, *both = NULL;
+  const double radius = 0.01 * size;
+  cprox_body_create_points(points, n, radius, SIZE_MAX, ws, &cloud);
+  if (rng_index(r, 3))
+    cprox_body_create_polytope(points, n + rng_index(r, 2), ws, &hull);
+  else
+    cprox_body_create_box(vec(2 * size, 2 * size, 2 * size), ws, &hull);
+  cprox_body_create_lod(keep(w, hull), radius, keep(w, cloud), ws, &both);
+  return keep(w, both);
+}
+
 static cprox_body *make_part(rng *r, double size, world *w) {
   cprox_body *body = NULL;
   vec3 points[MOST_POINTS];
@@ -62,7 +79,7 @@ static cprox_body *make_part(rng *r, double size, world *w) {
     case 1: cprox_body_create_cylinder(size, size * rng_uniform(r, 0.05, 0.6), ws, &body); break;
     case 2: cprox_body_create_cone(size, size * rng_uniform(r, 0.05, 0.6), ws, &body); break;
     case 3: cprox_body_create_sphere(0.5 * size, ws, &body); break;
-    case 4: return make_mesh(r, 0.5 * size, w);
+    case 4: return rng_index(r, 3) ? make_mesh(r, 0.5 * size, w) : make_points(r, size, w);
     default:
       for (size_t i = 0; i < n; i++) points[i] = rng_in_cube(r, 0.6 * size);
       cprox_body_create_polytope(points, n, ws, &body);
