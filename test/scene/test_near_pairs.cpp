@@ -153,6 +153,28 @@ TEST(NearPairs, are_those_within_reach_of_every_pair) {
   EXPECT_GT(apart, 4000u);
 }
 
+/* A sphere of .1 m with a padding of .05 m, and a box whose face is .01 m on either side of the reach. The box of the
+ * sphere ends where the padded sphere does: without the padding the box is not looked at. */
+TEST(NearPairs, the_padding_of_a_link_reaches_as_far_as_it_is) {
+  const std::shared_ptr<const Robot> ball = Robot::fromUrdf(
+      "<robot name='m'><link name='ball'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>"
+      "</robot>");
+  Workspace workspace;
+  for (const double reach : {0.0, 0.3}) {
+    for (const double gap : {-0.01, 0.01}) {
+      Scene scene(ball);
+      SceneChange all = change(
+          {add("box", {shape(ShapeType::BOX, {0.5, 0.5, 0.5})}, translation(0.1 + 0.05 + reach + gap + 0.25, 0, 0))});
+      all.link_padding["ball"] = 0.05;
+      ASSERT_TRUE(scene.apply(all).empty());
+      NearPairsQuery query;
+      query.reach = reach;
+      const auto near = visited(StandingRobot(scene.snapshot()), placed(*ball, {}), query, workspace);
+      EXPECT_EQ(near.size(), gap < 0.0 ? 1u : 0u) << reach << " " << gap;
+    }
+  }
+}
+
 /* 40 states (seed 82): a visitor that narrows its reach finds what askEnvironment() and askSelf() find by joint values.
  */
 TEST(NearPairs, the_nearest_is_that_of_the_state_by_joint_values) {
