@@ -24,6 +24,10 @@ static const double ROUGH_STEP = 1e-3;
 /* Of a step: 1000 times what its few operations round. */
 static const double STEP_ROUNDING = 1e-12;
 
+/* A position moved along a line: the difference of the velocities, its product with the time and the sum cost u each,
+ * together 3 u of the way and u of the position. What is above that is an allowance. */
+static const double ROUND_MOVED = 8.0;
+
 /* Of the way between the bodies: what values of the two lines may round where the lines meet. */
 static const double MEET_ROUNDING = 1e-14;
 
@@ -133,7 +137,7 @@ static cprox_status cut_at(const cprox_translating *a, const cprox_translating *
   cprox_result r;
   const cprox_status status = WORKSPACE_LEND(workspace, cprox_pair(a->from, moved, options, workspace, &r));
   if (status < 0) return status;
-  const double rounding = ROUND_UP * 8.0 * ROUND_U * (vec_norm(b->from.pose.position) + vec_norm(relative) * t);
+  const double rounding = ROUND_UP * ROUND_MOVED * ROUND_U * (vec_norm(b->from.pose.position) + vec_norm(relative) * t);
   *cut = (time_cut){.at = t, .value = r.lower - rounding, .slope = -vec_dot(r.normal, relative)};
   if (!(r.lower > 0.0)) cut->slope = 0.0; /* nothing separates them there; a distance is never below that value */
   r.upper += rounding;
@@ -302,7 +306,7 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
       p->never = true;
       return CPROX_OK;
     }
-    const double rounded = 8.0 * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
+    const double rounded = ROUND_MOVED * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
     const double step = (r->lower - rounded) / (towards + ROUND_TOWARDS * ROUND_U * speed) * (1.0 - STEP_ROUNDING);
     const double next = step > 0.0 ? nextafter(p->free_until + step, -INFINITY) : 0.0; /* below the exact sum */
     if (!(next > p->free_until)) return CPROX_PRECISION;
@@ -346,7 +350,7 @@ static cprox_status approach_prove(approach *p, const cprox_options *options, cp
   fine.relative_epsilon = 0.0;
   cprox_result r = p->last;
   const double speed = vec_norm(p->velocity), towards = vec_dot(r.normal, p->velocity),
-               rounded = 16.0 * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
+               rounded = 2.0 * ROUND_MOVED * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
   double t = p->free_until, hidden = 128.0 * ROUND_U *
                                      (vec_norm(p->b.pose.position) + vec_norm(p->a.pose.position) +
                                       speed * p->duration + p->a.body->ball_radius + p->b.body->ball_radius);
@@ -429,7 +433,8 @@ cprox_status translation_growth(cprox_obstacle a, cprox_obstacle b, double inner
   fine.epsilon = fmax(0.1 * fmin(asked->epsilon, 0.1) * inner, 1e-13 * (reach + begins));
   const cprox_status status = approach_run(&p, &fine, workspace);
   if (status < 0) return status;
-  const double rounding = 16.0 * ROUND_U * most, placed = turned + 8.0 * ROUND_U * (begins + vec_norm(centre_b));
+  const double rounding = 16.0 * ROUND_U * most,
+               placed = turned + ROUND_MOVED * ROUND_U * (begins + vec_norm(centre_b));
   const double least = most - p.free_until + rounding;
   growth->lower = fmax(1.0 - (placed + least * apart_error) / inner, 0.0) / least;
   growth->normal = p.last.normal;

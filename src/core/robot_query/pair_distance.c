@@ -8,6 +8,10 @@
 
 enum { GAP_STEPS = 128, DEPTH_STEPS = 400 };
 
+/* The difference of two places, turned back into a body's axes, less its box or along its plane, and less a radius: u,
+ * 6 u, 2 u, a norm 3 u, 2 u, of all sizes. The rest is an allowance; what placing costs is in the sides' errors. */
+static const double ROUND_BOX = 40.0;
+
 /* ---- cheap distances ---- */
 
 /* Of a point from the box round a body, or from its halfspace; inside minus the way out. */
@@ -39,7 +43,7 @@ double robot_pair_ball_distance(const robot_body *moving, const robot_body *stan
     most = greater(most, from_box(moving, standing->side.at.p) - moving->side.margin - standing->radius);
   const double sizes = vec_norm(apart) + moving->radius +
                        (robot_body_is_halfspace(standing) ? fabs(standing->side.shape->size[3]) : standing->radius);
-  return most - ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes);
+  return most - ROUND_UP * (moving->side.error + standing->side.error + ROUND_BOX * ROUND_U * sizes);
 }
 
 vec3 robot_pair_guess(const robot_body *moving, const robot_body *standing) {
@@ -71,7 +75,7 @@ static void measure_halfspace(const robot_body *moving, const robot_body *standi
   const double sizes =
       vec_norm(vec_sub(moving->side.at.p, standing->side.at.p)) + fabs(h[3]) + moving->radius + standing->side.margin;
   const double rounding =
-      ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes + 2.0 * shape->slack);
+      ROUND_UP * (moving->side.error + standing->side.error + ROUND_BOX * ROUND_U * sizes + 2.0 * shape->slack);
   /* the lowest point, drawn into the body */
   const vec3 drawn = convex_drawn(shape, at);
   const double reached = shape->drawn > 0.0 ? -vec_dot(down, drawn) - low : 0.0;
