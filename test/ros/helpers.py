@@ -427,14 +427,20 @@ class Node:
         return resident_mb(self.process.pid, shadow)
 
     def end(self):
+        """Ends it where it runs: it must do so without a fault."""
+        code, said = 0, ''
         if self.alive():
             self.process.terminate()
-            if self.wait(10) is None:
+            code = self.wait(10)
+            said = self.output()
+            if code is None:
                 self.process.kill()
                 self.process.wait()
         self._log.close()
         os.unlink(self._log.name)
         self.forget()
+        if code:
+            raise AssertionError('%s ended with code %d: %s' % (self.name, code, said[-2000:]))
 
 
 class Case(unittest.TestCase):

@@ -33,8 +33,7 @@ namespace curve_proximity {
  * one message after the other, on ~proximity, and tells contacts on ~contacts. Messages are taken and results handed on
  * by pointer: within one nodelet manager nothing is copied. While one message is being answered ~queue_size others
  * wait; what is older than these is dropped and counted. With ~profile_intervals the clearance profile follows on
- * ~clearance. With ~state_rate it also tells on ~state_proximity how close
- * the robot is as it stands. */
+ * ~clearance. With ~state_rate it also tells on ~state_proximity how close the robot is as it stands. */
 class Pipeline {
  public:
   /** handle: the server's private one. All are kept by reference. stop: as that of Queries. */
@@ -74,11 +73,12 @@ class Pipeline {
   const QueryType query_type_;
   JobQueue queue_;
   ros::NodeHandle handle_;
-  ros::Publisher results_, states_, contacts_;
+  ros::Publisher results_, contacts_;
   std::unique_ptr<ClearanceTopics> clearance_; /* null: without ~profile_intervals */
   LogLimit log_limit_{std::chrono::seconds(60)};
-  ThreadedQueue state_queue_; /* it waits for no message */
+  ThreadedQueue state_queue_; /* it waits for no message; what has callbacks on it ends before it */
   ros::NodeHandle state_handle_;
+  ros::Publisher states_;
   ros::WallTimer state_timer_;
   std::uint32_t state_seq_ = 0;
   std::vector<ros::Subscriber> subscribers_;
