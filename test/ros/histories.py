@@ -110,6 +110,9 @@ class Histories(unittest.TestCase):
     def add_by_topic(self, r):
         name, place, lost = 'object%d' % r.randrange(4), r.choice(PLACES), r.random() < 0.3
         self.topics['collision_object'].publish(sphere(name, RADIUS, place, frame='nowhere' if lost else ''))
+        self.topics['collision_object'].publish(sphere('next', RADIUS, AWAY))  # the node takes one after the other
+        self.assertTrue(until(lambda: self.server.scene('next').objects, PATIENCE))
+        self.assertTrue(self.server.apply(thing('next', operation=CollisionObject.REMOVE)).success)
         self.world.objects[name] = place
         (self.world.refused.add if lost else self.world.refused.discard)(name)
 

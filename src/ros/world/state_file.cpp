@@ -190,7 +190,7 @@ void StateFile::markBehind() const {
   if (!isKept()) return;
   std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
   if (!file.is_open()) file.open(path_, std::ios::out | std::ios::binary);
-  file << BEHIND << '\n' << run_ << '\n';
+  file << BEHIND << '\n' << run_ << '\n' << beginning_ << '\n';
 }
 
 void StateFile::watch() {
@@ -198,8 +198,8 @@ void StateFile::watch() {
   if (isKept()) std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), none);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    watching_ = true;
-    if (changed_) markBehind();
+    watching_ = changed_ = true; // who comes after this one is to know what it began with
+    markBehind();
   }
   timer_ = handle_.createWallTimer(ros::WallDuration(WRITING_PERIOD), [this](const ros::WallTimerEvent &) { write(); });
   queue_.start();
