@@ -9,12 +9,13 @@ import tempfile
 import time
 
 import rospy
-from curve_proximity.msg import AttachedCollisionObject, CollisionObject, ConstraintQuery, ProximityResults
+from curve_proximity.msg import AttachedCollisionObject, CollisionObject, ConstraintQuery, ProximityResults, RobotTrajectory
 from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
 from foreign_types import moveit
-from helpers import (Case, Node, Server, bezier, cloud, joint_trajectory, joints, run, service, sphere, thing, transform,
-                     until)
+from geometry_msgs.msg import PoseStamped
+from helpers import (Case, Node, Server, bezier, cloud, joint_trajectory, joints, pose, run, service, sphere, thing,
+                     transform, until)
 from sensor_msgs.msg import JointState, PointCloud2
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
@@ -433,6 +434,14 @@ class Known(Case):
         self.assertEqual(row(LINE, joint_state=joints(turn=0.0)).status, 'unknown')  # curves meet links there
         self.assertEqual(row(LINE, joint_state=joints(turn=0.0, lift=0.0)).verdict, 'clear')
         self.assertEqual([constraint(trajectory=of) for of in (turning, whole)], ['unknown', 'ok'])
+
+        def beside(**fields):
+            other = RobotTrajectory(name='other', base=PoseStamped(pose=pose((9, 0, 0))), trajectory=turning, **fields)
+            return dict(trajectory=whole, moving_robots=[other])
+        for fields, status in (({}, 'unknown'), (dict(joint_state=joints(lift=0.0)), 'ok')):
+            self.assertEqual((row(**beside(**fields)).status, constraint(**beside(**fields))), (status, status))
+            self.assertEqual("robot 'other': where joint 'lift'" in row(**beside(**fields)).message, status == 'unknown')
+            self.assertEqual(self.row(server.tolerance([], 0.01, movers=True, moving_robots=beside(**fields)['moving_robots'])).status, status)
         states.publish(joints(turn=0.0))
         self.assertEqual(until(lambda: [r.status for r in server.tolerance([], 0.01, robot_state=True).results], 5), ['unknown'])
         self.assertEqual(row(LINE, current_joints=True).status, 'unknown')

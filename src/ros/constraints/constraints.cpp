@@ -257,6 +257,7 @@ void Constraints::gatherOthers(const ConstraintQuery &message, MotionCase &out, 
   out.origin = static_cast<std::int64_t>((stamp.isZero() ? ros::Time::now() : stamp).toNSec());
   GatheredRobots others = gatherRobots(message.moving_robots, robots_, out.origin, work.lookup);
   out.other_robots = std::move(others.robots);
+  if (work.unknown.empty()) work.unknown = others.unknown;
   if (!out.isAmongMovers()) return;
   const std::size_t own = work.snapshot->robot()->links().size() * (out.trajectory.points.size() + 2);
   work.share.emplace(bytesOfMovers(movingObjects(*work.snapshot, out.origin), own + others.values),

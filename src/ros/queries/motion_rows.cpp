@@ -204,6 +204,7 @@ void Queries::answerRide(const std::string &id, const std::string &frame, const 
     const MovingObject rides = toRider(work.request.more, *work.snapshot, std::move(poses));
     const Surroundings around(work.snapshot, work.request.more, robots_, rides, resourceOptions("", parameters_), stamp,
                               work.lookup, mostBytes(), stopOf(work.query));
+    work.doubts.joints(around.unknown());
     out.ask(around.subject(false), covered(work.query, NAN, true, work), work.request, workspace);
     out.remark = remark;
     out.movers = around.movers();
@@ -291,6 +292,7 @@ void Queries::answerMovers(Work &work) {
     if (!work.query.links.empty()) throw Error("links and group do not apply to movers");
     const Surroundings around(work.snapshot, request.more, robots_, nullptr, ros::Time(), 0, work.lookup, mostBytes(),
                               stopOf(work.query));
+    work.doubts.joints(around.unknown());
     out.ask(around.subject(request.more.self_collision != 0), covered(work.query, NAN, true, work), request, workspace);
     out.movers = around.movers();
     out.robots = around.robots();
@@ -310,7 +312,9 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     demandTime(work.query);
     const Robot &robot = *work.snapshot->robot();
     adoptBase(live_.srdf.virtual_joints, robot, trajectory);
-    work.doubts.joints(unknownJoints(robot, trajectory.joints, work.joints.positions, parameters_.assumed_joints));
+    const std::string unknown =
+        unknownJoints(robot, trajectory.joints, work.joints.positions, parameters_.assumed_joints);
+    work.doubts.joints(unknown);
     out.remark = remark;
     const Eigen::Isometry3d base = trajectory.base.empty()
                                        ? rootPose(robot, live_.srdf, stamp, work.lookup)
@@ -328,6 +332,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
       const Surroundings around(work.snapshot, request.more, robots_, out.motion, stamp, out.trajectory.points.size(),
                                 work.lookup, mostBytes(), stopOf(work.query));
       const std::vector<std::string> own = ownNames(*work.snapshot, work.query.links);
+      if (unknown.empty()) work.doubts.joints(around.unknown());
       Query among = covered(environment, work.joints.age, true, work);
       among.links = own;
       out.ask(around.subject(false), among, request, workspace);
@@ -343,6 +348,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
     self.per_object = false;
     self.objects.clear();
     if (request.turn) request.turn->yield();
+    work.doubts.joints(unknown);
     out.ask(MotionSubject{*out.motion, true, errors}, covered(self, work.joints.age, false, work), request, workspace);
   });
 }

@@ -6,14 +6,16 @@
 
 #include "messages/geometry_message.h"
 #include "messages/trajectory_message.h"
+#include "world/live_scene.h"
 
 namespace curve_proximity {
 namespace {
 
 constexpr double NANOSECOND = 1e-9;
 
+/** unknown: as of GatheredRobots, where a joint of this one is. */
 MovingRobot toMovingRobot(const RobotTrajectory &message, const FurtherRobots &robots, std::int64_t origin,
-                          FrameLookup &lookup) {
+                          FrameLookup &lookup, std::string &unknown) {
   try {
     const auto found = robots.find(message.robot);
     if (found == robots.end() && message.robot.empty()) throw Error("this server has no robot of its own");
@@ -24,7 +26,9 @@ MovingRobot toMovingRobot(const RobotTrajectory &message, const FurtherRobots &r
     std::string remark;
     TrajectoryDescription trajectory = toDescription(message.trajectory, rest, remark);
     if (!remark.empty()) throw Error(remark);
-    adoptBase(robot.srdf.virtual_joints, *robot.alone->robot(), trajectory);
+    adoptBase(robot.srdf.virtual_joints, *robot.robot, trajectory);
+    const std::string untold = unknownJoints(*robot.robot, trajectory.joints, rest, robot.assumed);
+    if (!untold.empty()) unknown = "robot '" + message.name + "': " + untold;
     const std_msgs::Header &header = message.base.header;
     const Eigen::Isometry3d base =
         lookup.toFixed(header.frame_id, header.stamp) *
@@ -67,7 +71,7 @@ GatheredRobots gatherRobots(const std::vector<RobotTrajectory> &messages, const 
                             std::int64_t origin, FrameLookup &lookup) {
   GatheredRobots out;
   for (const RobotTrajectory &message : messages) {
-    out.robots.push_back(toMovingRobot(message, robots, origin, lookup));
+    out.robots.push_back(toMovingRobot(message, robots, origin, lookup, out.unknown));
     out.values += robots.at(message.robot).robot->links().size() * (message.trajectory.points.size() + 2);
   }
   return out;
@@ -111,6 +115,7 @@ std::size_t Surroundings::gather(const ProximityQuery &query, const FurtherRobot
                                  FrameLookup &lookup) {
   GatheredRobots gathered = gatherRobots(query.moving_robots, robots, origin, lookup);
   robots_ = std::move(gathered.robots);
+  unknown_ = std::move(gathered.unknown);
   return gathered.values;
 }
 

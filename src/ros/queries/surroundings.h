@@ -30,6 +30,7 @@ bool movesBeside(const ProximityQuery &query, const Snapshot &snapshot);
 struct GatheredRobots {
   std::vector<MovingRobot> robots;
   std::size_t values = 0;
+  std::string unknown; /**< which joints of one of them nobody told, as a message; "": of none */
 };
 
 /** The robots of a request. origin: [ns] the moment that is time 0. Throws Error, which names the robot. */
@@ -65,6 +66,10 @@ class Surroundings {
   const std::vector<MovingRobot> &robots() const {
     return robots_;
   }
+  /** As of GatheredRobots. */
+  const std::string &unknown() const {
+    return unknown_;
+  }
 
  private:
   std::size_t gather(const ProximityQuery &query, const FurtherRobots &robots, std::int64_t origin,
@@ -75,6 +80,7 @@ class Surroundings {
   std::array<double, 2> rides_over_{}; /* [s] from when to when */
   std::optional<memory::Share> share_;
   std::vector<MovingRobot> robots_; /* the subject first */
+  std::string unknown_;
   std::shared_ptr<const Movers> movers_;
 };
 

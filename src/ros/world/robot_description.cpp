@@ -95,7 +95,7 @@ std::map<std::string, FurtherRobot> loadFurtherRobots(const ros::NodeHandle &han
   std::map<std::string, FurtherRobot> out;
   const auto add = [&](const std::string &name, std::shared_ptr<const Robot> robot, const Srdf &srdf) {
     const Scene alone(robot, {}, allowedPairs(srdf));
-    out[name] = {std::move(robot), srdf, alone.snapshot()};
+    out[name] = {std::move(robot), srdf, alone.snapshot(), parameters.assumed_joints};
   };
   if (own) add("", own, own_srdf);
   for (const auto &[name, parameter] : parameters.robots) {

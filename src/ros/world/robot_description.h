@@ -33,6 +33,7 @@ struct FurtherRobot {
   std::shared_ptr<const Robot> robot;
   Srdf srdf;
   SnapshotPtr alone;
+  std::vector<std::string> assumed; /**< joints that are at 0 where nobody says where they are */
 };
 
 /** The robots of ~robots by name; that of the name '' is the server's own one, if it has one. A URDF stands in the
