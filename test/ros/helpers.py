@@ -302,7 +302,7 @@ class RawClient:
             try:
                 self._sized()
                 break
-            except socket.timeout:  # roscpp loses one handshake of some 500,000: doc/ros.md
+            except socket.timeout:  # roscpp loses one now and then: doc/ros.md
                 self.close()
                 if not more:
                     raise

@@ -16,8 +16,8 @@ using Box = Eigen::AlignedBox3d;
 /* Up to so many items the core alone is faster. */
 constexpr std::size_t MANY_ITEMS = 64;
 
-/* Boxes cost a forward kinematics for each geometry and segment: a million of placed links and geometries is some 5 ms,
- * which is little beside a budget. */
+/* Boxes cost a forward kinematics for each geometry and segment, whatever the budget: so many links and geometries may
+ * be placed for all of them. */
 constexpr std::size_t MOST_SEGMENTS = 256, MOST_PLACED = 1000000;
 
 /* Of the sizes that enter a box: some roundings of doubles. */
