@@ -61,6 +61,20 @@ TEST(TrajectoryProgress, what_lies_ahead_is_not_reached_in_no_time) {
   EXPECT_EQ(progress.point(), 2u);
 }
 
+TEST(TrajectoryProgress, the_continuous_joints_of_a_robot_are_those_of_its_description) {
+  const std::string limit = "<limit lower='-9' upper='9' effort='1' velocity='1'/>";
+  const std::string urdf =
+      "<robot name='three'><link name='a'/><link name='b'/><link name='c'/><link name='d'/>"
+      "<joint name='wheel' type='continuous'><parent link='a'/><child link='b'/></joint>"
+      "<joint name='elbow' type='revolute'><parent link='b'/><child link='c'/>" +
+      limit +
+      "</joint>"
+      "<joint name='slide' type='prismatic'><parent link='c'/><child link='d'/>" +
+      limit + "</joint>";
+  EXPECT_EQ(continuousJoints(urdf + "</robot>"), std::set<std::string>{"wheel"});
+  EXPECT_THROW(continuousJoints(urdf), Error);
+}
+
 TEST(TrajectoryProgress, continuous_joints_are_compared_up_to_full_turns_and_all_must_be_told) {
   TrajectoryProgress progress(through({3.0, 3.3}, 1.0), 0.01, {"a"}), other(through({3.0, 3.3}, 1.0), 0.01, {"b"});
   EXPECT_EQ(progress.tell({"b", "a"}, {7.0, 3.2 - 2.0 * M_PI}, 0.5), "");

@@ -2,7 +2,6 @@
 #include "gate/motion_watches.h"
 
 #include <ros/console.h>
-#include <tinyxml2.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -25,12 +24,9 @@ constexpr std::uint32_t SCENE_QUEUE = 10;
 std::set<std::string> continuousJoints(const ros::NodeHandle &handle) {
   std::set<std::string> out;
   std::string name, urdf;
-  tinyxml2::XMLDocument document;
-  const bool is_there = handle.searchParam("robot_description", name) && handle.getParam(name, urdf);
-  if (!is_there || document.Parse(urdf.c_str()) != tinyxml2::XML_SUCCESS || !document.RootElement()) return out;
-  const tinyxml2::XMLElement *joint = document.RootElement()->FirstChildElement("joint");
-  for (; joint; joint = joint->NextSiblingElement("joint"))
-    if (joint->Attribute("type", "continuous") && joint->Attribute("name")) out.insert(joint->Attribute("name"));
+  if (!handle.searchParam("robot_description", name) || !handle.getParam(name, urdf)) return out;
+  guarded([&] { out = continuousJoints(urdf); },
+          [&](const std::string &why) { logGateError("the URDF in '" + name + "': " + why); });
   return out;
 }
 

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <utility>
 
+#include "../../scene/robot/urdf_document.h"
+
 namespace curve_proximity {
 namespace {
 
@@ -47,6 +49,14 @@ double distanceTo(const PositionRange &range, double value, bool continuous) {
 }
 
 } // namespace
+
+std::set<std::string> continuousJoints(const std::string &urdf) {
+  std::set<std::string> out;
+  const UrdfDocument document = readUrdf(urdf);
+  for (const auto &[name, joint] : document.model->joints_)
+    if (joint->type == urdf::Joint::CONTINUOUS) out.insert(name);
+  return out;
+}
 
 TrajectoryProgress::TrajectoryProgress(trajectory_msgs::JointTrajectory trajectory, double tolerance,
                                        const std::set<std::string> &continuous)

@@ -12,6 +12,9 @@
 
 namespace curve_proximity {
 
+/** The joints of a URDF that a full turn brings to the same place. Throws Error where it cannot be read. */
+std::set<std::string> continuousJoints(const std::string &urdf);
+
 /** The clock does not tell where a robot is: it may run at a part of its speed. Between two points of the trajectory
  * each joint stays in the range of the Bézier points of the cubic or quintic there, or of the line where the points
  * have no velocities. The robot is taken to be in the first segment whose ranges, widened by the tolerance, hold its
