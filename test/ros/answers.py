@@ -6,7 +6,7 @@ import math
 from curve_proximity import srv
 from curve_proximity.msg import AllowedContact, Body, CollisionObject, LinkPadding, PairQuery, SceneState
 from geometry_msgs.msg import Pose, Vector3
-from helpers import (BOX, CONE, CYLINDER, SPHERE, Case, Server, bezier, body, box, bspline, grid, implicit, mesh, plane, point, pose,
+from helpers import (BOX, CONE, CYLINDER, SPHERE, Case, Server, bezier, body, box, bspline, implicit, mesh, plane, point, pose,
                      run, service, solid, sphere, thing)
 
 EPSILON = 1e-9  # [m] asked for in each query that is compared
@@ -80,15 +80,15 @@ class Answers(TestCase):
 
     def test_ground_and_grids_of_distances_are_bodies(self):
         line = bezier((-1, 0, 2), (1, 0, 2))
-        self.server.replace(grid('ground', 'height_field', [1, 1, 3, 3, -1], [0, 0, 0, 0, .5, 0, 0, 0, 0], (-1, -1, 0)))
+        self.server.replace(body('ground', 'height_field', [1, 1, 3, 3, -1], (), (-1, -1, 0), [0, 0, 0, 0, .5, 0, 0, 0, 0]))
         self.assertContains(self.distance(line), 1.5)
         values = [math.sqrt(x * x + y * y + z * z) for z in (-1, 0, 1) for y in (-1, 0, 1) for x in (-1, 0, 1)]
-        self.server.replace(grid('point', 'distance_grid', [1, 3, 3, 3], values, (-1, -1, -1)))
+        self.server.replace(body('point', 'distance_grid', [1, 3, 3, 3], (), (-1, -1, -1), values))
         row = self.distance(line)
         self.assertLessEqual(row.lower, 2.0)
         self.assertGreaterEqual(row.upper, 2.0)
         values[0] = 9.0
-        self.assertRefused(self.server.apply(grid('point', 'distance_grid', [1, 3, 3, 3], values)), 'neighbour')
+        self.assertRefused(self.server.apply(body('point', 'distance_grid', [1, 3, 3, 3], values=values)), 'neighbour')
 
     def test_what_does_not_apply_is_refused_and_named(self):
         self.server.replace(sphere('ball', 0.25, (1, 0, 0)))

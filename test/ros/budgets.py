@@ -9,12 +9,9 @@ import unittest
 
 import rospy
 from curve_proximity import srv
-from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, PairQuery, PoseTrajectory, RobotTrajectory, Waypoint
-from geometry_msgs.msg import PoseStamped
-from helpers import Node, RawClient, Server, bezier, box, bspline, joints, point, pose, query, run, serialized, sphere
-from nav_msgs.msg import Path
-from std_msgs.msg import Header
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, PairQuery, RobotTrajectory
+from helpers import (Node, RawClient, Server, bezier, box, bspline, framed, joint_trajectory, joints, moving, path, point, pose, query, run,
+                     serialized, sphere, turned, waypoint)
 
 SEARCHES = [srv.Distance, srv.Tolerance, srv.Collision]
 BUDGET, SLACK = 0.2, 10.0  # [s]
@@ -32,18 +29,14 @@ def chain(links):
     return text + '</robot>'
 
 
-def motion(points, joint='j1', turns=1.0):
+def motion(points, turns=1.0):
     """A trajectory to and fro with so many points."""
-    return JointTrajectory(joint_names=[joint], points=[
-        JointTrajectoryPoint(positions=[math.sin(turns * i)], time_from_start=rospy.Duration(0.1 * i)) for i in range(points)])
+    return joint_trajectory(['j1'], *[[math.sin(turns * i)] for i in range(points)], times=[0.1 * i for i in range(points)])
 
 
 def mover(i):
     x, y = 0.3 * (i % 40), 0.3 * (i // 40)
-    way = [Waypoint(10.0 * k, pose((x + 0.1 * k, y, 0.5 + 2 * k))) for k in range(2)]
-    out = sphere('mover%04d' % i, 0.1)
-    out.trajectory = PoseTrajectory(waypoints=way)
-    return out
+    return moving(sphere('mover%04d' % i, 0.1), *[waypoint(10.0 * k, (x + 0.1 * k, y, 0.5 + 2 * k)) for k in range(2)])
 
 
 def hull(count, name='', position=(0, 0, 0), scale=1.0):
@@ -62,9 +55,9 @@ def pair(a, b, ask='', apart=3.0):
 
 
 def way(poses):
-    out = Path()
-    for i in range(poses):
-        out.poses.append(PoseStamped(header=Header(stamp=rospy.Time(0.1 * i)), pose=pose((math.sin(i), math.cos(i), 0.01 * i))))
+    out = path(*[(math.sin(i), math.cos(i), 0.01 * i) for i in range(poses)], orientations=[turned(0)] * poses)
+    for i, at in enumerate(out.poses):
+        at.header.stamp = rospy.Time(0.1 * i)
     return out
 
 
@@ -97,7 +90,7 @@ class Budgets(unittest.TestCase):
                    srv.TimeOfContact: 'time_of_contact', srv.EvaluateConstraints: 'evaluate_constraints'}[kind]
         data = serialized(request)
         client = RawClient('/%s/%s' % (self.name, service), kind, 200)
-        client.connection.sendall(len(data).to_bytes(4, 'little') + data)
+        client.connection.sendall(framed(data))
         began = time.monotonic()
         good = client._received(1) == b'\1'
         took = time.monotonic() - began

@@ -8,13 +8,9 @@ import sys
 import tempfile
 import unittest
 
-import rospy
-from helpers import Drawings, Server, bezier, box, joints, run, sphere, until
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from helpers import Drawings, Server, bezier, box, joint_trajectory, joints, run, sphere, until
+from draw_legend import clearance_colour  # helpers has put scripts/ on the path
 from visualization_msgs.msg import Marker
-
-sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'scripts'))
-from draw_legend import clearance_colour  # noqa: E402
 
 READY = dict(panda_joint1=0.0, panda_joint2=-0.785, panda_joint3=0.0, panda_joint4=-2.356, panda_joint5=0.0,
              panda_joint6=1.571, panda_joint7=0.785, panda_finger_joint1=0.035)  # what demo.launch publishes
@@ -59,11 +55,8 @@ class Demo(unittest.TestCase):
     def test_a_trajectory_is_shown_at_its_closest_moment_and_swept(self):
         self.assertTrue(self.server.apply(sphere('post', 0.05, (0.45, 0.25, 0.5))).success)
         self.addCleanup(lambda: self.server.replace(box('table', (1, 2, 0.1), (0.9, 0, -0.05))))
-        end = dict(READY, panda_joint1=1.0)
         names = [n for n in READY if n.startswith('panda_joint')]
-        trajectory = JointTrajectory(joint_names=names, points=[
-            JointTrajectoryPoint(positions=[state[n] for n in names], time_from_start=rospy.Duration(t))
-            for t, state in ((0, READY), (2, end))])
+        trajectory = joint_trajectory(names, *[[state[n] for n in names] for state in (READY, dict(READY, panda_joint1=1.0))], times=(0, 2))
         drawn = Drawings()
         response = self.server.distance([], trajectory=trajectory, joint_state=joints(panda_finger_joint1=0.035))
         self.assertTrue(response.success, response.message)

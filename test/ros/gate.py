@@ -11,9 +11,10 @@ import unittest
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from curve_proximity.msg import CollisionObject, PoseTrajectory, Proximity, Refusal, Waypoint
+from curve_proximity.msg import CollisionObject, Proximity, Refusal
 from foreign_types import control
-from helpers import ActionClient, Node, Server, connected, free_flight, joints, path, pose, run, sphere, thing, until
+from helpers import (ActionClient, Node, Server, connected, free_flight, joint_trajectory, joints, moving, path, run, sphere, thing, turned,
+                     until, waypoint)
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -92,8 +93,8 @@ class Controller:
 
 
 def turning(to, seconds, parts=2, first=0):
-    return JointTrajectory(joint_names=['turn'], points=[
-        JointTrajectoryPoint(positions=[to * i / parts], time_from_start=rospy.Duration(seconds * i / parts)) for i in range(first, parts + 1)])
+    steps = range(first, parts + 1)
+    return joint_trajectory(['turn'], *[[to * i / parts] for i in steps], times=[seconds * i / parts for i in steps])
 
 
 def ends_of(client, seconds=10):
@@ -210,8 +211,8 @@ class Gate(unittest.TestCase):
     def test_a_goal_that_begins_later_is_asked_about_at_its_time(self):
         """A cart stands where the arm will be, from five seconds after now on."""
         now = rospy.Time.now()
-        way = [Waypoint(time=t, pose=pose(p)) for t, p in ((0, (0, 3, 0.5)), (5, (0, 3, 0.5)), (5.5, (0, 0.5, 0.5)), (60, (0, 0.5, 0.5)))]
-        self.server.apply(sphere('cart', 0.1, trajectory=PoseTrajectory(start=now, waypoints=way)))
+        way = [waypoint(t, p) for t, p in ((0, (0, 3, 0.5)), (5, (0, 3, 0.5)), (5.5, (0, 0.5, 0.5)), (60, (0, 0.5, 0.5)))]
+        self.server.apply(moving(sphere('cart', 0.1), *way, start=now))
         goal = turning(3.0, 2.0)
         for stamp, passes in ((now + rospy.Duration(5.5), False), (now, True)):
             goal.header.stamp = stamp
@@ -288,24 +289,16 @@ class Gate(unittest.TestCase):
         """A plank of 2 m goes along x past a post .4 beside it, and at the end turns into the post or does not."""
         server = Server('/plank')
         server.replace(sphere('post', 0.1, (1, 0.6, 3)))
-        for name in ('path', 'multi_dof_trajectory'):
-            passed, refused = [], []
-            kind = type(path()) if name == 'path' else type(free_flight('drone'))
+        ways = dict(path=lambda *turns: path((-1, 0, 3), (1, 0, 3), orientations=turns),
+                    multi_dof_trajectory=lambda *turns: free_flight('drone', (-1, 0, 3), (1, 0, 3), orientations=turns))
+        for name, way in ways.items():
+            passed, refused, kind = [], [], type(way())
             topic = rospy.Publisher('/plank_gate/' + name, kind, queue_size=5)
             out = [rospy.Subscriber('/plank_gate/clear_' + name, kind, passed.append), rospy.Subscriber('/plank_gate/refused', Refusal, refused.append)]
             self.assertTrue(connected(topic, *out))
             for turns in (False, True):
-                half = math.radians(45) if turns else 0.0
-                if name == 'path':
-                    message = path((-1, 0, 3), (1, 0, 3))
-                    for at, angle in zip(message.poses, (0.0, half)):
-                        at.pose.orientation.z, at.pose.orientation.w = math.sin(angle), math.cos(angle)
-                else:
-                    message = free_flight('drone', (-1, 0, 3), (1, 0, 3))
-                    turn = message.points[1].transforms[0].rotation
-                    turn.z, turn.w = math.sin(half), math.cos(half)
                 del passed[:], refused[:]
-                topic.publish(message)
+                topic.publish(way(turned(0), turned(math.radians(90) if turns else 0)))
                 self.assertTrue(until(lambda: passed or refused, 5), (name, turns))
                 self.assertEqual((len(passed), [(r.row.a, r.row.b) for r in refused]), (0, [('plank', 'post')]) if turns else (1, []), (name, turns))
                 if turns:

@@ -20,13 +20,14 @@ import rosgraph
 import rospy
 import rostest
 import rosunit.xmlrunner
-from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric, ProximityQuery
+from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric, PoseTrajectory, ProximityQuery, Waypoint
 from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance,
                                  DistanceRequest, GetScene, Tolerance, ToleranceRequest)
-from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Transform, TransformStamped
+from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Transform, TransformStamped, Vector3
 from nav_msgs.msg import Path
 from sensor_msgs.msg import JointState, PointCloud2, PointField
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
+from std_msgs.msg import Header
 from trajectory_msgs.msg import (JointTrajectory, JointTrajectoryPoint, MultiDOFJointTrajectory,
                                  MultiDOFJointTrajectoryPoint)
 from visualization_msgs.msg import MarkerArray
@@ -75,6 +76,20 @@ def pose(position=(0, 0, 0), orientation=(0, 0, 0, 1)):
     return Pose(point(position), Quaternion(*[float(c) for c in orientation]))
 
 
+def turned(angle, axis=(0, 0, 1)):
+    """The orientation after a turn by so many radians about a unit axis."""
+    return (*[math.sin(angle / 2) * c for c in axis], math.cos(angle / 2))
+
+
+def waypoint(time, position, orientation=(0, 0, 0, 1)):
+    return Waypoint(time, pose(position, orientation))
+
+
+def moving(thing, *waypoints, **fields):
+    thing.trajectory = PoseTrajectory(waypoints=list(waypoints), **fields)
+    return thing
+
+
 def bezier(*points, **fields):
     """A Bezier curve; further fields of the message by name, frame and stamp among them."""
     curve = Curve(basis='bezier', points=[point(p) for p in points])
@@ -116,15 +131,10 @@ def box(name, size, position=(0, 0, 0), **fields):
     return solid(name, BOX, size, position, **fields)
 
 
-def body(name, kind, dimensions=(), vertices=(), position=(0, 0, 0), **fields):
+def body(name, kind, dimensions=(), vertices=(), position=(0, 0, 0), values=(), **fields):
+    """values: of a height field or a grid of distances."""
     return thing(name, position, bodies=[Body(type=kind, dimensions=[float(d) for d in dimensions],
-                                              vertices=[point(v) for v in vertices])], **fields)
-
-
-def grid(name, kind, dimensions, values, position=(0, 0, 0), **fields):
-    """A height field or a grid of distances."""
-    return thing(name, position, bodies=[Body(type=kind, dimensions=[float(d) for d in dimensions],
-                                              values=[float(v) for v in values])], **fields)
+                                              vertices=[point(v) for v in vertices], values=values)], **fields)
 
 
 def implicit(name, hyperquadrics=(), planes=(), quadrics=(), position=(0, 0, 0), **fields):
@@ -176,11 +186,8 @@ def cloud(points, frame='', order='<', kind='f', names='xyz', padding=0, width=N
 
 def transform(parent, child, translation=(0, 0, 0), stamp=None, turn=0.0):
     """turn: about z."""
-    out = TransformStamped(child_frame_id=child)
-    out.header.frame_id, out.header.stamp = parent, stamp or rospy.Time()
-    out.transform.translation.x, out.transform.translation.y, out.transform.translation.z = translation
-    out.transform.rotation.z, out.transform.rotation.w = math.sin(turn / 2), math.cos(turn / 2)
-    return out
+    return TransformStamped(Header(frame_id=parent, stamp=stamp or rospy.Time()), child,
+                            Transform(Vector3(*translation), Quaternion(*turned(turn))))
 
 
 MASK = 2**64 - 1
@@ -188,9 +195,7 @@ MASK = 2**64 - 1
 
 def fingerprint(message):
     """As include/curve_proximity/fingerprint.hpp documents it."""
-    buffer = io.BytesIO()
-    message.serialize(buffer)
-    data = b'\0\0\0\0' + buffer.getvalue()[4:]
+    data = b'\0\0\0\0' + serialized(message)[4:]
     value = 0xcbf29ce484222325 ^ len(data)
     data += b'\0' * (-len(data) % 8)
     for word, in struct.iter_unpack('<Q', data):
@@ -199,30 +204,23 @@ def fingerprint(message):
     return value
 
 
-def path(*points, frame='', **fields):
-    message = Path(**fields)
-    message.header.frame_id = frame
-    for x, y, z in points:
-        pose = PoseStamped()
-        pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = x, y, z
-        message.poses.append(pose)
-    return message
+def path(*points, frame='', orientations=None):
+    """The poses have no orientation where none are given."""
+    poses = [PoseStamped(pose=pose(*at)) for at in zip(points, orientations or itertools.repeat((0, 0, 0, 0)))]
+    return Path(Header(frame_id=frame), poses)
 
 
-def joint_trajectory(names, *rows):
+def joint_trajectory(names, *rows, times=None):
+    """A point a second where no times are given."""
     return JointTrajectory(joint_names=names, points=[
-        JointTrajectoryPoint(positions=row, time_from_start=rospy.Duration(i)) for i, row in enumerate(rows)])
+        JointTrajectoryPoint(positions=row, time_from_start=rospy.Duration(t)) for row, t in zip(rows, times or itertools.count())])
 
 
-def free_flight(name, *points, times=None):
-    message = MultiDOFJointTrajectory(joint_names=[name])
-    for i, (x, y, z) in enumerate(points):
-        transform = Transform()
-        transform.translation.x, transform.translation.y, transform.translation.z = x, y, z
-        transform.rotation.w = 1.0
-        when = rospy.Duration(i if times is None else times[i])
-        message.points.append(MultiDOFJointTrajectoryPoint(transforms=[transform], time_from_start=when))
-    return message
+def free_flight(name, *points, times=None, orientations=None):
+    """A point a second where no times are given, not turned where no orientations are."""
+    return MultiDOFJointTrajectory(joint_names=[name], points=[
+        MultiDOFJointTrajectoryPoint(transforms=[Transform(Vector3(*at), Quaternion(*turn))], time_from_start=rospy.Duration(t))
+        for at, turn, t in zip(points, orientations or itertools.repeat(turned(0)), times or itertools.count())])
 
 
 def service(name, kind, node='/curve_proximity', persistent=True, timeout=20.0):

@@ -3,7 +3,6 @@
 """Bytes that no honest client sends, under the memory limit: the node lives, and answers afterwards.
 
 Seeded; CURVE_PROXIMITY_HOSTILE sets the number of connections."""
-import io
 import os
 import random
 import socket
@@ -13,7 +12,7 @@ import unittest
 import rosgraph
 from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import Distance, DistanceRequest
-from helpers import Node, Server, bezier, framed, handshake, header, run, sphere
+from helpers import Node, Server, bezier, framed, handshake, header, run, serialized, sphere
 
 CONNECTIONS = int(os.environ.get('CURVE_PROXIMITY_HOSTILE', 300))
 MEMORY_MB = 2048
@@ -26,9 +25,7 @@ def target_handshake(**fields):
 
 
 def request():
-    buffer = io.BytesIO()
-    DistanceRequest(ProximityQuery(curves=[LINE])).serialize(buffer)
-    return buffer.getvalue()
+    return serialized(DistanceRequest(ProximityQuery(curves=[LINE])))
 
 
 def post(body, length=None, path='/RPC2'):

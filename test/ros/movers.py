@@ -5,11 +5,11 @@ profiles are true is held against references of their own by scene.test_movers, 
 import math
 
 import rospy
-from curve_proximity.msg import (AttachedCollisionObject, Body, CollisionObject, LinkPadding, PoseTrajectory, ProximityResults,
-                                 RobotTrajectory, Waypoint)
+from curve_proximity.msg import AttachedCollisionObject, Body, CollisionObject, LinkPadding, ProximityResults, RobotTrajectory
 from curve_proximity.srv import (ClearanceProfile, ClearanceProfileRequest, ListViolations, ListViolationsRequest, NearestPairs,
                                  NearestPairsRequest)
-from helpers import Case, Drawings, Server, bezier, box, connected, free_flight, joints, path, pose, query, run, service, sphere, until
+from helpers import (Case, Drawings, Server, bezier, box, connected, free_flight, joint_trajectory, joints, moving, path, pose, query, run,
+                     service, sphere, turned, until, waypoint)
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker
 
@@ -17,24 +17,11 @@ READY = dict(panda_joint1=0.0, panda_joint2=0.4, panda_joint3=0.0, panda_joint4=
              panda_joint7=0.785, panda_finger_joint1=0.02, panda_finger_joint2=0.02)
 
 
-# ---- messages ----
-
-def waypoint(time, position, orientation=(0, 0, 0, 1)):
-    return Waypoint(time, pose(position, orientation))
-
-
-def moving(thing, *waypoints, **fields):
-    thing.trajectory = PoseTrajectory(waypoints=list(waypoints), **fields)
-    return thing
-
-
-def swing(begin, end, seconds=2.0, stamp=0.0):
+def swing(begin, end, stamp=0.0):
+    """In two seconds."""
     names = [name for name in READY if name != 'panda_finger_joint2']
-    message = JointTrajectory(joint_names=names)
+    message = joint_trajectory(names, *[[dict(READY, panda_joint1=value)[n] for n in names] for value in (begin, end)], times=(0.0, 2.0))
     message.header.stamp = rospy.Time.from_sec(stamp)
-    for t, value in ((0.0, begin), (seconds, end)):
-        values = dict(READY, panda_joint1=value)
-        message.points.append(JointTrajectoryPoint(positions=[values[n] for n in names], time_from_start=rospy.Duration(t)))
     return message
 
 
@@ -59,8 +46,7 @@ class Movers(Case):
     @staticmethod
     def fall(**fields):
         """A box that falls by 2 m in 0.8 s, turning by 120 degrees about x."""
-        half = math.radians(60)
-        return moving(box('box', (0.2, 0.1, 0.3)), waypoint(0, (0, 2, 3)), waypoint(0.8, (0, 2, 1), (math.sin(half), 0, 0, math.cos(half))), **fields)
+        return moving(box('box', (0.2, 0.1, 0.3)), waypoint(0, (0, 2, 3)), waypoint(0.8, (0, 2, 1), turned(math.radians(120), (1, 0, 0))), **fields)
 
     def test_a_further_robot_may_be_of_the_servers_own_model(self):
         first, second = swing(-0.8, 0.8, stamp=1000.0), swing(-0.8, 0.8, stamp=1000.75)
@@ -136,9 +122,7 @@ class Movers(Case):
         carried = box('carried', (0.2, 0.2, 0.6))
         lying = (0, math.sqrt(0.5), 0, math.sqrt(0.5))  # its z axis is x
         for orientation, half in (((0, 0, 0, 1), 0.3), (lying, 0.1)):
-            way = path((-1, 3, 4), (1, 3, 4), frame='world')
-            for at in way.poses:
-                at.pose = pose((at.pose.position.x, 3, 4), orientation)
+            way = path((-1, 3, 4), (1, 3, 4), frame='world', orientations=[orientation] * 2)
             row = self.row(self.server.distance([], paths=[way], body=carried, objects=['ball']))
             self.assertEqual((row.kind, row.a, row.b), ('movers', 'carried', 'ball'))
             self.assertHolds(row.lower, row.upper, 1.0 - half - 0.25, 1.01e-6)
@@ -150,8 +134,7 @@ class Movers(Case):
             self.assertEqual(response.success, found, response.message)
 
     def test_a_body_on_a_path_of_one_pose_is_measured_against_what_stands_and_moves_at_all_times(self):
-        way = path((0, 3, 4), frame='world')
-        way.poses[0].pose.orientation.w = 1.0
+        way = path((0, 3, 4), frame='world', orientations=[turned(0)])
         falling = moving(sphere('falling', 0.1), waypoint(0, (0, 3, 8)), waypoint(9, (0, 3, 5)))
         for things, b, expected in (((sphere('ball', 0.25, (0, 3, 3)), falling), 'ball', 0.45),
                                     ((sphere('ball', 0.25, (0, 3, 2)), falling), 'falling', 0.6)):
@@ -176,9 +159,7 @@ class Movers(Case):
         self.server.replace(sphere('ball', 0.25, (0, 3, 3)))
         self.hold('panda_hand', (0, 0, 0.4))
         for orientation, height in (((0, 0, 0, 1), 1.4), ((1, 0, 0, 0), 0.6)):
-            way = path((-1, 3, 4), (1, 3, 4), frame='world')
-            for at in way.poses:
-                at.pose.orientation = pose((0, 0, 0), orientation).orientation
+            way = path((-1, 3, 4), (1, 3, 4), frame='world', orientations=[orientation] * 2)
             row = self.assertDistance(self.server.distance([], paths=[way], body=CollisionObject(id='tool'), objects=['ball']), 'tool',
                                       height - 0.25 - 0.1)
             self.assertEqual((row.kind, row.id), ('movers', 'path'))
@@ -190,9 +171,7 @@ class Movers(Case):
         """The base turns by 120 degrees about z: the tool, 2 m ahead of it, comes over the ball on the way, and goes on."""
         self.server.replace(sphere('ball', 0.25, (math.sqrt(3), 1, 2)))
         self.hold('panda_link0', (2, 0, 0))
-        flight = free_flight('virtual_joint', (0, 0, 3), (0, 0, 3))
-        half = math.radians(60)
-        flight.points[1].transforms[0].rotation.z, flight.points[1].transforms[0].rotation.w = math.sin(half), math.cos(half)
+        flight = free_flight('virtual_joint', (0, 0, 3), (0, 0, 3), orientations=(turned(0), turned(math.radians(120))))
         asked = dict(multi_dof_trajectories=[flight], joint_state=joints(**READY), objects=['ball'])
         row = self.assertDistance(self.server.distance([], **asked), 'tool', 1 - 0.25 - 0.1)
         self.assertEqual(row.kind, 'environment')
@@ -204,12 +183,8 @@ class Movers(Case):
         results = rospy.Subscriber('/curve_proximity/proximity', ProximityResults, received.append)
         self.addCleanup(results.unregister)
         self.server.replace(sphere('ball', 0.25, (0, 3, 3)))
-        way = path((-1, 3, 4), (1, 3, 4), frame='world')
-        for at in way.poses:
-            at.pose.orientation = pose((0, 0, 0), (1, 0, 0, 0)).orientation
-        flight = free_flight('drone', (0, 3, 4), (0, 3, 4))
-        for point, half in zip(flight.points, (math.radians(50), math.radians(120))):
-            point.transforms[0].rotation.x, point.transforms[0].rotation.w = math.sin(half), math.cos(half)
+        way = path((-1, 3, 4), (1, 3, 4), frame='world', orientations=[(1, 0, 0, 0)] * 2)
+        flight = free_flight('drone', (0, 3, 4), (0, 3, 4), orientations=[turned(math.radians(angle), (1, 0, 0)) for angle in (100, 240)])
         for topic, message, name in (('path', way, 'path'), ('multi_dof_trajectory', flight, 'drone')):
             publisher = rospy.Publisher('/curve_proximity/' + topic, type(message), queue_size=1)
             self.assertTrue(connected(publisher, results))
@@ -225,11 +200,10 @@ class Movers(Case):
     def test_stamps_of_poses_put_a_body_on_the_clock_of_what_moves(self):
         """It and the ball go past each other half way, at 1003 s; by the stamp of the header a quarter of a metre later."""
         self.server.replace(moving(sphere('ball', 0.25), waypoint(1, (1, 3, 5)), waypoint(5, (-1, 3, 5)), start=rospy.Time(1000)))
-        way = path((-1, 3, 4), (1, 3, 4), frame='world')
+        way = path((-1, 3, 4), (1, 3, 4), frame='world', orientations=[turned(0)] * 2)
         way.header.stamp = rospy.Time(1000)
         for at, stamp in zip(way.poses, (1001, 1005)):
             at.header.stamp = rospy.Time(stamp)
-            at.pose.orientation.w = 1
         row = self.assertDistance(self.server.distance([], paths=[way], body=sphere('pea', 0.1)), 'pea', 1 - 0.25 - 0.1)
         self.assertAlmostEqual(row.witness_a.x, 0.0, delta=1e-2)
         for at in way.poses:
@@ -255,9 +229,7 @@ class Movers(Case):
         self.server.replace(sphere('ball', 0.25, (2 * math.cos(direction), 3 + 2 * math.sin(direction), 4)))
         crank = box('crank', (0.2, 0.1, 0.1), primitive_poses=[pose(), pose((0.5, 0, 0))])
         crank.primitives += sphere('knob', 0.1).primitives
-        way = path((0, 3, 4), (0, 3, 4), frame='world')
-        for at, half in zip(way.poses, (0.0, math.radians(45))):
-            at.pose.orientation = pose((0, 0, 0), (0, 0, math.sin(half), math.cos(half))).orientation
+        way = path((0, 3, 4), (0, 3, 4), frame='world', orientations=[turned(0), turned(math.radians(90))])
         markers, response = self.shown(lambda: self.server.distance([], paths=[way], body=crank, objects=['ball']))
         row = self.row(response)
         self.assertAlmostEqual(row.upper, 2 - 0.5 - 0.1 - 0.25, delta=2e-6)
@@ -304,39 +276,39 @@ class Movers(Case):
         self.assertRefused(ask(other(JointTrajectory(joint_names=['elbow'], points=[JointTrajectoryPoint(positions=[0])]))), "robot 'right'", 'elbow')
 
     def test_clearance_over_time_beside_another_panda(self):
-        def asked(**fields):
-            return query(trajectory=swing(-0.8, 0.8, stamp=1000.0), moving_robots=[other(swing(-0.8, 0.8, stamp=1000.75))], **fields)
+        beside = dict(trajectory=swing(-0.8, 0.8, stamp=1000.0), moving_robots=[other(swing(-0.8, 0.8, stamp=1000.75))])
         self.server.replace(moving(sphere('ball', 0.1), waypoint(0, (0.4, 2, 0.5)), waypoint(2, (0.4, 1, 0.5))), box('table', (1, 1, 0.1), (0, 3, 0)))
-        whole, = self.server.distance([], trajectory=swing(-0.8, 0.8, stamp=1000.0), moving_robots=[other(swing(-0.8, 0.8, stamp=1000.75))]).results
+        whole, = self.server.distance([], **beside).results
         self.assertEqual(whole.b.split('/')[0], 'right')
 
-        profile, = self.profile(ClearanceProfileRequest(query=asked(), intervals=8)).profiles
+        profile, = self.profile(ClearanceProfileRequest(query=query(**beside), intervals=8)).profiles
         self.assertAlmostEqual(min(profile.lower), whole.lower, delta=2e-6)
         self.assertEqual((profile.t0[0], profile.t1[-1], profile.summary.b), (0.0, 2.0, whole.b))
         for i in range(8):
             a, b = profile.witness_a[i], profile.witness_b[i]
             self.assertAlmostEqual(math.dist((a.x, a.y, a.z), (b.x, b.y, b.z)), profile.lower[i], delta=3e-6)
-        links = self.profile(ClearanceProfileRequest(query=asked(), intervals=4, per_link=True)).profiles
+        links = self.profile(ClearanceProfileRequest(query=query(**beside), intervals=4, per_link=True)).profiles
         self.assertIn('panda_hand', [one.link for one in links])
         self.assertAlmostEqual(min(min(one.lower) for one in links), whole.lower, delta=2e-6)
 
-        rows = self.server.distance([], trajectory=swing(-0.8, 0.8, stamp=1000.0), per_object=True,
-                                    moving_robots=[other(swing(-0.8, 0.8, stamp=1000.75))]).results
+        rows = self.server.distance([], per_object=True, **beside).results
         self.assertEqual([row.b.split('/')[0] for row in rows], ['table', 'ball', 'right'])
         self.assertAlmostEqual(rows[2].upper, whole.upper, delta=2e-6)
         row, = self.server.distance([], trajectory=swing(-0.8, 0.8, stamp=1000.0), objects=['ball']).results
         self.assertEqual((row.b, round(row.upper, 5)), ('ball', round(rows[1].upper, 5)))
 
-        pairs = self.nearest(NearestPairsRequest(query=asked(), count=5)).results
+        pairs = self.nearest(NearestPairsRequest(query=query(**beside), count=5)).results
         self.assertEqual(len(pairs), 5)
         self.assertEqual((pairs[0].a, pairs[0].b), (whole.a, whole.b))
         self.assertAlmostEqual(pairs[0].upper, whole.upper, delta=2e-6)
         self.assertEqual([row.upper for row in pairs], sorted(row.upper for row in pairs))
 
+    @staticmethod
+    def many(count):
+        return [moving(sphere('ball%d' % i, 0.1), waypoint(0.001 * i, (i, 2, 0.5)), waypoint(2 + 0.001 * i, (i, 3, 0.5))) for i in range(count)]
+
     def test_what_takes_too_much_memory_is_refused(self):
-        many = [moving(sphere('ball%d' % i, 0.1), waypoint(0.001 * i, (i, 2, 0.5)), waypoint(2 + 0.001 * i, (i, 3, 0.5)))
-                for i in range(200)]
-        self.server.replace(*many)
+        self.server.replace(*self.many(200))
         self.assertTrue(self.server.distance([], movers=True).success)
         self.assertTrue(self.server.distance([], trajectory=swing(-0.8, 0.8)).success)
         long = moving(sphere('long', 0.1), *[waypoint(0.001 * i, (0.001 * i, 2, 0.5)) for i in range(20000)])
@@ -345,8 +317,7 @@ class Movers(Case):
         self.assertRefused(self.server.distance([], trajectory=swing(-0.8, 0.8)), 'too large')
 
     def test_a_budget_ends_the_joining_of_many(self):
-        self.server.replace(*[moving(sphere('ball%d' % i, 0.1), waypoint(0.001 * i, (i, 2, 0.5)), waypoint(2 + 0.001 * i, (i, 3, 0.5)))
-                              for i in range(100)])
+        self.server.replace(*self.many(100))
         self.assertRefused(self.server.distance([], movers=True, budget_ms=1e-6), 'stopped while the movers were being joined')
         self.assertTrue(self.server.distance([], movers=True, budget_ms=60000).success)
 

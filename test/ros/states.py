@@ -7,9 +7,9 @@ import time
 
 import rospy
 from curve_proximity.msg import (AllowedContact, AttachedCollisionObject, Body, CollisionObject, Octree, Proximity, ProximityResults)
-from helpers import Case, Node, Server, bezier, connected, joints, run, sphere, thing, until
+from helpers import Case, Node, Server, bezier, connected, joint_trajectory, joints, run, sphere, thing, until
 from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectory
 
 # A chain in the plane: two arms of a metre, turning about z, a ball at the end of each.
 CHAIN = '''<robot name="chain">
@@ -28,9 +28,7 @@ SRDF = '''<robot name="chain"><virtual_joint name="ground" type="fixed" parent_f
 
 
 def trajectory(*rows, times=None):
-    times = times or [0.0] * len(rows)
-    return JointTrajectory(joint_names=['one', 'two'], points=[
-        JointTrajectoryPoint(positions=list(row), time_from_start=rospy.Duration(t)) for row, t in zip(rows, times)])
+    return joint_trajectory(['one', 'two'], *rows, times=times or [0.0] * len(rows))
 
 
 class States(Case):

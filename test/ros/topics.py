@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Trajectories in by topic, results out, and the gate behind them, all in one nodelet manager."""
-import io
 import math
 import time
 
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, Curve, ProximityResults
-from helpers import (Case, Server, bezier, box, connected, fingerprint, free_flight, joint_trajectory, mesh, path, run, sphere,
-                     transform, until)
+from helpers import (Case, Server, bezier, box, connected, fingerprint, free_flight, joint_trajectory, mesh, path, run, serialized,
+                     sphere, transform, until)
 from nav_msgs.msg import Path
 from tf2_msgs.msg import TFMessage
 from trajectory_msgs.msg import JointTrajectory, MultiDOFJointTrajectory
@@ -211,9 +210,7 @@ class Topics(Case):
         big = mesh('big', vertices, [(0, 1, 2)])
         big.meshes[0].vertices = big.meshes[0].vertices * (n // 4)
         big.meshes[0].triangles = big.meshes[0].triangles * n
-        buffer = io.BytesIO()
-        big.serialize(buffer)
-        self.assertGreater(len(buffer.getvalue()), 70e6)
+        self.assertGreater(len(serialized(big)), 70e6)
         self.objects.publish(big)
         self.objects.publish(sphere('after', 0.25))
         self.assertTrue(until(lambda: any(o.id == 'after' for o in self.server.scene('after').objects), 60, 0.5))
